@@ -1,0 +1,11 @@
+//! `whiskmap`: where does a tapered, curved whisker pushed against a pole stay in contact, where does it
+//! slip off, and where is it pulled off?
+//!
+//! The mechanics are those of Hires, Pammer, Svoboda and Golomb (2013), "Tapered whiskers are required for
+//! active tactile sensation", eLife 2:e01350. `ARCHITECTURE.md` names the rooms and the way data takes
+//! through them.
+
+pub mod classify;
+pub mod scene;
+pub mod store;
+pub mod render;

@@ -1,0 +1,1 @@
+//! Pictures of stored maps: works from the file alone.
