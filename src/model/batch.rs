@@ -1,0 +1,249 @@
+//! Thousands of trajectories in `f64`: lanes of the widest SIMD unit that the machine has, on all cores.
+//!
+//! The integrator is generic and inlined whole into three functions compiled for AVX-512, for AVX2 with FMA,
+//! and for the target's baseline; which one runs is decided once per call from the processor's features.
+//! Results do not depend on the number of threads: every trajectory is computed by itself.
+
+use super::integrator::{Integrator, Scales, integrate, steps_for};
+use super::landing::{Curved, Full, Landing};
+use super::order::{First, FirstAndEnergy, Order, Second};
+use super::rhs::{Bent, Intrinsic, Planar, Radius, RodSystem, State, Straight};
+#[cfg(target_arch = "x86_64")]
+use super::simd::x86::{Avx2, Avx512};
+use super::simd::{Lanes, Plain, WIDTH};
+use super::{Effects, Real, Rod, Start};
+use rayon::prelude::*;
+
+/// One trajectory: from the contact at `tau` under `load = f/radius^2` to the base.
+#[derive(Clone, Copy, Debug)]
+pub struct Launch {
+    /// The rod.
+    pub rod: Rod,
+    /// `tau` of the contact.
+    pub tau: f64,
+    /// Signed load.
+    pub load: f64,
+}
+
+/// What a batch computes per trajectory, and the derivatives it carries for that.
+pub trait Kind<const N: usize>: Order<N> + 'static {
+    /// The answer.
+    type Answer: Copy + Send;
+
+    /// The answer from the final state.
+    fn answer(rod: &Rod, start: &Start, state: &Planar<f64>, sens: &[f64; N]) -> Self::Answer;
+}
+
+impl Kind<6> for First {
+    type Answer = Landing;
+    fn answer(rod: &Rod, start: &Start, state: &Planar<f64>, sens: &[f64; 6]) -> Landing {
+        Landing::new(rod, start, state, sens)
+    }
+}
+
+impl Kind<7> for FirstAndEnergy {
+    type Answer = Full;
+    fn answer(rod: &Rod, start: &Start, state: &Planar<f64>, sens: &[f64; 7]) -> Full {
+        Full::new(rod, start, state, sens)
+    }
+}
+
+impl Kind<15> for Second {
+    type Answer = Curved;
+    fn answer(rod: &Rod, start: &Start, state: &Planar<f64>, sens: &[f64; 15]) -> Curved {
+        Curved::new(rod, start, state, sens)
+    }
+}
+
+/// How a batch integrates.
+#[derive(Clone, Copy, Debug)]
+pub struct Method {
+    /// The effects of every rod in the batch.
+    pub effects: Effects,
+    /// Steps per trajectory, more for slender tips (see [`steps_for`]).
+    pub steps: u32,
+}
+
+/// Blocks per piece of work that one thread takes: long enough to hide the hand-over, short enough to share.
+const BLOCKS_PER_TASK: usize = 16;
+
+/// Computes `K` for every launch with the integrator `M`, on all threads of the current pool.
+#[must_use]
+pub fn land<M: Integrator, K: Kind<N>, const N: usize>(
+    method: Method,
+    launches: &[Launch],
+) -> Vec<K::Answer> {
+    let unit = Unit::detect();
+    launches
+        .par_chunks(WIDTH * BLOCKS_PER_TASK)
+        .flat_map_iter(|task| {
+            task.chunks(WIDTH).flat_map(move |launches| {
+                let landed = unit.block::<M, K, N>(method, launches);
+                landed.into_iter().take(launches.len())
+            })
+        })
+        .collect()
+}
+
+/// A SIMD unit.
+#[derive(Clone, Copy, Debug)]
+enum Unit {
+    #[cfg(target_arch = "x86_64")]
+    Avx512,
+    #[cfg(target_arch = "x86_64")]
+    Avx2,
+    Baseline,
+}
+
+impl Unit {
+    fn detect() -> Self {
+        #[cfg(target_arch = "x86_64")]
+        {
+            if is_x86_feature_detected!("avx512f")
+                && is_x86_feature_detected!("avx512dq")
+                && is_x86_feature_detected!("avx512vl")
+            {
+                return Self::Avx512;
+            }
+            if is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma") {
+                return Self::Avx2;
+            }
+        }
+        Self::Baseline
+    }
+
+    #[allow(
+        unsafe_code,
+        reason = "a function compiled for a SIMD unit may be called where `detect` has found that unit"
+    )]
+    fn block<M: Integrator, K: Kind<N>, const N: usize>(
+        self,
+        method: Method,
+        launches: &[Launch],
+    ) -> [K::Answer; WIDTH] {
+        match self {
+            #[cfg(target_arch = "x86_64")]
+            // SAFETY: `detect` has seen every feature that the function enables.
+            Self::Avx512 => unsafe { avx512::<M, K, N>(method, launches) },
+            #[cfg(target_arch = "x86_64")]
+            // SAFETY: as above.
+            Self::Avx2 => unsafe { avx2::<M, K, N>(method, launches) },
+            Self::Baseline => by_effects::<M, K, Plain, N>(method, launches),
+        }
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx512f,avx512dq,avx512vl,fma")]
+fn avx512<M: Integrator, K: Kind<N>, const N: usize>(
+    method: Method,
+    launches: &[Launch],
+) -> [K::Answer; WIDTH] {
+    by_effects::<M, K, Avx512, N>(method, launches)
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2,fma")]
+fn avx2<M: Integrator, K: Kind<N>, const N: usize>(
+    method: Method,
+    launches: &[Launch],
+) -> [K::Answer; WIDTH] {
+    by_effects::<M, K, Avx2, N>(method, launches)
+}
+
+/// One specialised kernel per set of effects.
+#[inline(always)]
+fn by_effects<M: Integrator, K: Kind<N>, T: Lanes, const N: usize>(
+    method: Method,
+    launches: &[Launch],
+) -> [K::Answer; WIDTH] {
+    let Effects { taper, curvature } = method.effects;
+    match (taper, curvature) {
+        (false, false) => block::<M, K, T, Straight, false, N>(method.steps, launches),
+        (false, true) => block::<M, K, T, Bent<_>, false, N>(method.steps, launches),
+        (true, false) => block::<M, K, T, Straight, true, N>(method.steps, launches),
+        (true, true) => block::<M, K, T, Bent<_>, true, N>(method.steps, launches),
+    }
+}
+
+/// A rest shape that can be gathered from the rods of a block.
+trait Gather<T: Lanes>: Intrinsic<T> {
+    fn gather(rods: &[Rod; WIDTH], starts: &[Start; WIDTH]) -> (Self, Self::State);
+}
+
+impl<T: Lanes> Gather<T> for Straight {
+    #[inline(always)]
+    fn gather(_: &[Rod; WIDTH], _: &[Start; WIDTH]) -> (Self, ()) {
+        (Self, ())
+    }
+}
+
+impl<T: Lanes> Gather<T> for Bent<T> {
+    #[inline(always)]
+    fn gather(rods: &[Rod; WIDTH], starts: &[Start; WIDTH]) -> (Self, [T; 2]) {
+        let twice_bend = T::pack(rods.map(|rod| 2.0 * rod.bend));
+        let cos = T::pack(starts.map(|start| start.cos));
+        let sin = T::pack(starts.map(|start| start.sin));
+        (Self { twice_bend }, [cos, sin])
+    }
+}
+
+/// Integrates up to `WIDTH` trajectories in step; missing ones repeat the last.
+#[inline(always)]
+fn block<M, K, T, I, const TAPER: bool, const N: usize>(
+    least_steps: u32,
+    launches: &[Launch],
+) -> [K::Answer; WIDTH]
+where
+    M: Integrator,
+    K: Kind<N>,
+    T: Lanes,
+    I: Gather<T>,
+{
+    let launch = |i: usize| launches[i.min(launches.len() - 1)];
+    let rods: [Rod; WIDTH] = std::array::from_fn(|i| launch(i).rod);
+    let starts: [Start; WIDTH] =
+        std::array::from_fn(|i| Start::new(&rods[i], launch(i).tau, launch(i).load));
+    let at_start: [[f64; N]; WIDTH] = std::array::from_fn(|i| K::start(&rods[i], &starts[i]));
+
+    let steps = launches
+        .iter()
+        .map(|l| steps_for(least_steps, l.rod.taper, l.tau))
+        .max()
+        .unwrap_or(least_steps);
+    let h = T::pack(starts.map(|start| start.tau / f64::from(steps)));
+    let one = T::of(1.0);
+    let (scales, from) = if TAPER {
+        let rho = T::pack(starts.map(|start| start.radius));
+        let taper = T::pack(rods.map(|rod| rod.taper));
+        let inverse_cube = one / (rho * rho * rho);
+        (Scales::tapered::<M>(taper, h), Radius { rho, inverse_cube })
+    } else {
+        (
+            Scales::cylinder(),
+            Radius {
+                rho: one,
+                inverse_cube: one,
+            },
+        )
+    };
+    let (intrinsic, rest) = I::gather(&rods, &starts);
+    let force = T::pack(starts.map(|start| start.force));
+    let system = RodSystem { force, intrinsic };
+    let zero = T::of(0.0);
+    let mut sens = [zero; N];
+    for (n, lane) in sens.iter_mut().enumerate() {
+        *lane = T::pack(at_start.map(|values| values[n]));
+    }
+    let state: State<_, I, N> = (rest, ([one, zero, zero, zero], sens));
+    let (_, (rod, sens)) = integrate::<M, _, I, K, N>(&system, &scales, from, h, steps, state);
+    let (rod, sens) = (rod.map(T::unpack), sens.map(T::unpack));
+    std::array::from_fn(|i| {
+        K::answer(
+            &rods[i],
+            &starts[i],
+            &rod.map(|x| x[i]),
+            &sens.map(|x| x[i]),
+        )
+    })
+}

@@ -1,0 +1,101 @@
+//! Fixed-step integration along the rod: what the Runge-Kutta methods share.
+
+use super::real::exp_small;
+use super::rhs::{Intrinsic, RodSystem, Sensitivity, State};
+use super::{Radius, Real};
+
+/// The longest step in `beta tau`: beyond, the stages' radii would leave the range of `exp_small`.
+const LONGEST_STEP: f64 = 0.35;
+
+/// Steps for trajectories up to `tau` on rods of taper up to `taper`: `least`, or more where the radius falls
+/// by more than a factor `exp(0.35)` per step.
+#[must_use]
+#[allow(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "tau is at most 21 (a cone cut at 1e-9), so the quotient is a small positive number"
+)]
+pub fn steps_for(least: u32, taper: f64, tau: f64) -> u32 {
+    least.max((taper * tau / LONGEST_STEP).ceil() as u32)
+}
+
+/// An explicit Runge-Kutta method with fixed steps.
+pub trait Integrator: Copy + Send + Sync + 'static {
+    /// One step of length `h` from the radius `from`; `scales[i]` is the factor by which the radius has grown
+    /// at stage `i`.
+    fn step<T: Real, I: Intrinsic<T>, S: Sensitivity<N>, const N: usize>(
+        system: &RodSystem<T, I>,
+        scales: &Scales<T>,
+        from: Radius<T>,
+        h: T,
+        state: State<T, I, N>,
+    ) -> State<T, I, N>;
+
+    /// Where the stages lie in the unit step.
+    const NODES: [f64; STAGES];
+}
+
+/// Stages of the largest method.
+pub const STAGES: usize = 12;
+
+/// The factors by which the radius, and its inverse cube, change from the start of a step to each stage; the
+/// last node of every method is the end of the step.
+#[derive(Clone, Copy, Debug)]
+pub struct Scales<T> {
+    stages: Option<[Radius<T>; STAGES]>,
+}
+
+impl<T: Real> Scales<T> {
+    /// The factors for steps of `h` on a rod of this `taper`.
+    #[inline(always)]
+    pub fn tapered<M: Integrator>(taper: T, h: T) -> Self {
+        let mut stages = [Radius {
+            rho: T::of(1.0),
+            inverse_cube: T::of(1.0),
+        }; STAGES];
+        for (stage, node) in stages.iter_mut().zip(M::NODES) {
+            let rho = exp_small(taper * h * T::of(node));
+            stage.rho = rho;
+            stage.inverse_cube = T::of(1.0) / (rho * rho * rho);
+        }
+        Self {
+            stages: Some(stages),
+        }
+    }
+
+    /// The factors of a cylinder.
+    #[inline(always)]
+    pub const fn cylinder() -> Self {
+        Self { stages: None }
+    }
+
+    /// The radius at stage `i` of a step that starts at `from`.
+    #[inline(always)]
+    pub fn at(&self, i: usize, from: Radius<T>) -> Radius<T> {
+        match &self.stages {
+            Some(stages) => Radius {
+                rho: from.rho * stages[i].rho,
+                inverse_cube: from.inverse_cube * stages[i].inverse_cube,
+            },
+            None => from,
+        }
+    }
+}
+
+/// Integrates `system` over `tau` in `steps` steps from the radius `from`.
+#[inline(always)]
+pub fn integrate<M: Integrator, T: Real, I: Intrinsic<T>, S: Sensitivity<N>, const N: usize>(
+    system: &RodSystem<T, I>,
+    scales: &Scales<T>,
+    from: Radius<T>,
+    h: T,
+    steps: u32,
+    mut state: State<T, I, N>,
+) -> State<T, I, N> {
+    let mut radius = from;
+    for _ in 0..steps {
+        state = M::step::<T, I, S, N>(system, scales, radius, h, state);
+        radius = scales.at(STAGES - 1, radius);
+    }
+    state
+}

@@ -1,0 +1,178 @@
+//! What a trajectory says when it lands on the base: the pole as the base sees it.
+//!
+//! With `w` the pole's centre seen from the base in the axes of the contact, and `theta` the base's tangent
+//! there, `G = ln w - i theta` (complex) has the real part `ln D` and the imaginary part `phi`, the two
+//! coordinates of a whisker in front of a pole. Its derivatives need no trigonometry:
+//! `G_i = w_i/w - i theta_i`, `G_ij = w_ij/w - w_i w_j/w^2 - i theta_ij`.
+//! The coordinates of the sheet are `tau` of the contact and `load = f/rho^2` there.
+
+use super::{Planar, Rod, Start};
+use glam::DVec2;
+
+/// Product of complex numbers.
+fn times(a: DVec2, b: DVec2) -> DVec2 {
+    a.rotate(b)
+}
+
+/// Quotient of complex numbers.
+fn over(a: DVec2, b: DVec2) -> DVec2 {
+    DVec2::new(b.x, -b.y).rotate(a) / b.length_squared()
+}
+
+/// The pole's centre `w` seen from the base, in the axes of the contact.
+struct Centre {
+    w: DVec2,
+    pole: DVec2,
+}
+
+impl Centre {
+    fn new(rod: &Rod, [c, s, x, y]: &Planar<f64>) -> Self {
+        let w = -DVec2::new(*x, y + rod.pole);
+        Self {
+            w,
+            pole: DVec2::new(*c, -s).rotate(w),
+        }
+    }
+
+    /// `G_f` and `G_s`.
+    fn first(&self, sens: &[f64]) -> [DVec2; 2] {
+        [0, 3]
+            .map(|i| over(-DVec2::new(sens[i + 1], sens[i + 2]), self.w) - DVec2::new(0.0, sens[i]))
+    }
+
+    fn landing(&self, rod: &Rod, start: &Start, sens: &[f64]) -> Landing {
+        let [f, s] = self.first(sens);
+        let rho = start.radius;
+        Landing {
+            pole: self.pole,
+            by_tau: rho * s - 2.0 * rod.taper * start.force * f,
+            by_load: rho * rho * f,
+        }
+    }
+}
+
+/// The base as seen from the contact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Base {
+    /// Unit tangent.
+    pub tangent: DVec2,
+    /// Position.
+    pub position: DVec2,
+    /// Load `f` at the contact.
+    pub force: f64,
+}
+
+/// Where the pole is, and how that changes with the contact and the load.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Landing {
+    /// Centre of the pole in the frame of the base.
+    pub pole: DVec2,
+    /// `d(ln D, phi)/dtau` at fixed load.
+    pub by_tau: DVec2,
+    /// `d(ln D, phi)/dload`.
+    pub by_load: DVec2,
+}
+
+impl Landing {
+    /// `det d(ln D, phi)/d(tau, load)`: 0 at a fold.
+    #[must_use]
+    pub fn det(&self) -> f64 {
+        self.by_tau.perp_dot(self.by_load)
+    }
+
+    /// The step `(tau, load)` that cancels `residual = ln P_wanted/P` to first order.
+    #[must_use]
+    pub fn solve(&self, residual: DVec2) -> DVec2 {
+        DVec2::new(
+            residual.perp_dot(self.by_load),
+            self.by_tau.perp_dot(residual),
+        ) / self.det()
+    }
+
+    /// `P_wanted/P - 1`: what Newton's method cancels. Its length is the miss relative to `D`.
+    #[must_use]
+    pub fn residual(&self, wanted: DVec2) -> DVec2 {
+        over(wanted - self.pole, self.pole)
+    }
+
+    pub(super) fn new(rod: &Rod, start: &Start, state: &Planar<f64>, first: &[f64]) -> Self {
+        Centre::new(rod, state).landing(rod, start, first)
+    }
+}
+
+/// A state with everything that a map tells about it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Full {
+    /// Pole and derivatives.
+    pub landing: Landing,
+    /// The base as seen from the contact.
+    pub base: Base,
+    /// Bending energy in `E I_base/L_w`.
+    pub energy: f64,
+}
+
+impl Full {
+    pub(super) fn new(rod: &Rod, start: &Start, state: &Planar<f64>, first: &[f64; 7]) -> Self {
+        let [c, s, x, y] = *state;
+        Self {
+            landing: Landing::new(rod, start, state, first),
+            base: Base {
+                tangent: DVec2::new(c, s),
+                position: DVec2::new(x, y),
+                force: start.force,
+            },
+            energy: first[6],
+        }
+    }
+}
+
+/// A landing with the second derivatives of `(ln D, phi)`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Curved {
+    /// Pole and first derivatives.
+    pub landing: Landing,
+    /// Twice by `tau`.
+    pub by_tau_tau: DVec2,
+    /// By `tau` and load.
+    pub by_tau_load: DVec2,
+    /// Twice by load.
+    pub by_load_load: DVec2,
+}
+
+impl Curved {
+    /// Gradient of [`Landing::det`] in `(tau, load)`.
+    #[must_use]
+    pub fn det_gradient(&self) -> DVec2 {
+        let Landing {
+            by_tau, by_load, ..
+        } = self.landing;
+        DVec2::new(
+            self.by_tau_tau.perp_dot(by_load) + by_tau.perp_dot(self.by_tau_load),
+            self.by_tau_load.perp_dot(by_load) + by_tau.perp_dot(self.by_load_load),
+        )
+    }
+
+    pub(super) fn new(rod: &Rod, start: &Start, state: &Planar<f64>, sens: &[f64; 15]) -> Self {
+        let centre = Centre::new(rod, state);
+        let [f, s] = centre.first(sens);
+        let second = |i: usize, wa: DVec2, wb: DVec2| {
+            let w = -DVec2::new(sens[i + 1], sens[i + 2]);
+            over(w, centre.w) - times(wa, wb) - DVec2::new(0.0, sens[i])
+        };
+        let wf = over(-DVec2::new(sens[1], sens[2]), centre.w);
+        let ws = over(-DVec2::new(sens[4], sens[5]), centre.w);
+        let (ff, fs, ss) = (second(6, wf, wf), second(9, wf, ws), second(12, ws, ws));
+        let (rho, beta) = (start.radius, rod.taper);
+        let (f_load, f_tau) = (rho * rho, -2.0 * beta * start.force);
+        Self {
+            landing: centre.landing(rod, start, sens),
+            by_tau_tau: f_tau * f_tau * ff
+                + 2.0 * f_tau * rho * fs
+                + rho * rho * ss
+                + 4.0 * beta * beta * start.force * f
+                - beta * rho * s,
+            by_tau_load: f_load * (f_tau * ff + rho * fs - 2.0 * beta * f),
+            by_load_load: f_load * f_load * ff,
+        }
+    }
+}

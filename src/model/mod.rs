@@ -1,0 +1,35 @@
+//! The physics: an elastic rod seen from its contact with the pole.
+//!
+//! Lengths are in whisker lengths `L_w`, loads in `E I_base / L_w^2`. The rod is integrated backward, from
+//! the contact (origin, tangent along `e1`, no moment) to the base, so that `(contact, load) -> base pose` is
+//! explicit and no boundary-value problem is left. A trajectory yields the position of the pole in the frame
+//! of the base together with its derivatives; everything else in the crate is built from those.
+//!
+//! All code here is generic over the scalar ([`Real`]): one text serves `f64`, the SIMD lanes of [`batch`],
+//! and `f32`, in which it is the twin of `shaders/`.
+
+pub mod batch;
+mod dopri8;
+mod integrator;
+mod landing;
+mod order;
+mod real;
+mod rest;
+mod rhs;
+mod rk4;
+mod rod;
+mod simd;
+mod start;
+mod vector;
+
+pub use dopri8::Dopri8;
+pub use integrator::{Integrator, Scales, integrate, steps_for};
+pub use landing::{Base, Curved, Full, Landing};
+pub use order::{First, FirstAndEnergy, Order, Second};
+pub use real::Real;
+pub use rest::Rest;
+pub use rhs::{Bent, Intrinsic, Planar, Radius, RodSystem, Sensitivity, Shape, State, Straight};
+pub use rk4::Rk4;
+pub use rod::{Effects, PERFECT_CONE_CUT, Rod, Side};
+pub use start::{Start, arclength};
+pub use vector::Vector;

@@ -1,0 +1,116 @@
+//! The derivatives that a trajectory can carry, hand-written (the tests hold them against `num-dual`).
+//!
+//! `f` and `s` in the names below are the load and the arclength of the contact. The start values follow
+//! from the rod being at the origin, untilted, whatever the contact: `y_s = -y'` there.
+
+use super::rhs::{Planar, Radius, Sensitivity};
+use super::{Real, Rod, Start};
+
+/// First derivatives: `theta_f, X_f, Y_f, theta_s, X_s, Y_s`.
+#[derive(Clone, Copy, Debug)]
+pub struct First;
+
+/// [`First`] and the bending energy.
+#[derive(Clone, Copy, Debug)]
+pub struct FirstAndEnergy;
+
+/// [`First`], then `ff`, `fs` and `ss` of `theta, X, Y`.
+#[derive(Clone, Copy, Debug)]
+pub struct Second;
+
+/// The start of a set of derivatives at the contact.
+pub trait Order<const N: usize>: Sensitivity<N> {
+    /// Values at the contact.
+    fn start(rod: &Rod, start: &Start) -> [f64; N];
+}
+
+impl Sensitivity<6> for First {
+    #[inline(always)]
+    fn rhs<T: Real>(f: T, radius: Radius<T>, rod: &Planar<T>, state: &[T; 6]) -> [T; 6] {
+        let [c, s, x, _] = *rod;
+        let Radius {
+            rho,
+            inverse_cube: w,
+        } = radius;
+        let [theta_f, x_f, _, theta_s, x_s, _] = *state;
+        [
+            w * f.mul_add(x_f, x),
+            rho * s * theta_f,
+            -rho * c * theta_f,
+            w * f * x_s,
+            rho * s * theta_s,
+            -rho * c * theta_s,
+        ]
+    }
+}
+
+impl Order<6> for First {
+    fn start(rod: &Rod, start: &Start) -> [f64; 6] {
+        [0.0, 0.0, 0.0, -start.curvature(rod), -1.0, 0.0]
+    }
+}
+
+impl Sensitivity<7> for FirstAndEnergy {
+    #[inline(always)]
+    fn rhs<T: Real>(f: T, radius: Radius<T>, rod: &Planar<T>, state: &[T; 7]) -> [T; 7] {
+        let [a, b, c, d, e, g, _] = *state;
+        let first = First::rhs(f, radius, rod, &[a, b, c, d, e, g]);
+        let moment = f * rod[2];
+        let [a, b, c, d, e, g] = first;
+        let energy = T::of(0.5) * moment * moment * radius.inverse_cube;
+        [a, b, c, d, e, g, energy]
+    }
+}
+
+impl Order<7> for FirstAndEnergy {
+    fn start(rod: &Rod, start: &Start) -> [f64; 7] {
+        let [a, b, c, d, e, g] = First::start(rod, start);
+        [a, b, c, d, e, g, 0.0]
+    }
+}
+
+impl Sensitivity<15> for Second {
+    #[inline(always)]
+    fn rhs<T: Real>(f: T, radius: Radius<T>, rod: &Planar<T>, state: &[T; 15]) -> [T; 15] {
+        let [c, s, _, _] = *rod;
+        let Radius {
+            rho,
+            inverse_cube: w,
+        } = radius;
+        let [theta_f, x_f, y_f, theta_s, x_s, y_s, second @ ..] = *state;
+        let [theta_ff, x_ff, _, theta_fs, x_fs, _, theta_ss, x_ss, _] = second;
+        let first = [theta_f, x_f, y_f, theta_s, x_s, y_s];
+        let [theta_f1, x_f1, y_f1, theta_s1, x_s1, y_s1] = First::rhs(f, radius, rod, &first);
+        let along = |turns, theta| rho * s.mul_add(theta, c * turns);
+        let across = |turns: T, theta: T| rho * (s * turns - c * theta);
+        let (ff, fs, ss) = (theta_f * theta_f, theta_f * theta_s, theta_s * theta_s);
+        [
+            theta_f1,
+            x_f1,
+            y_f1,
+            theta_s1,
+            x_s1,
+            y_s1,
+            w * f.mul_add(x_ff, x_f + x_f),
+            along(ff, theta_ff),
+            across(ff, theta_ff),
+            w * f.mul_add(x_fs, x_s),
+            along(fs, theta_fs),
+            across(fs, theta_fs),
+            w * f * x_ss,
+            along(ss, theta_ss),
+            across(ss, theta_ss),
+        ]
+    }
+}
+
+impl Order<15> for Second {
+    fn start(rod: &Rod, start: &Start) -> [f64; 15] {
+        let [a, b, c, d, e, g] = First::start(rod, start);
+        let kappa = start.curvature(rod);
+        let theta_ss = -start.curvature_slope(rod) - start.force / start.radius.powi(4);
+        [
+            a, b, c, d, e, g, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, theta_ss, 0.0, kappa,
+        ]
+    }
+}

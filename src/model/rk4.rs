@@ -1,0 +1,36 @@
+//! The classical Runge-Kutta method of order 4; the twin of `shaders/rk4.wgsl`.
+
+use super::integrator::{Integrator, STAGES, Scales};
+use super::rhs::{Intrinsic, RodSystem, Sensitivity, State};
+use super::{Radius, Real, Vector};
+
+/// Order 4, 4 stages.
+#[derive(Clone, Copy, Debug)]
+pub struct Rk4;
+
+impl Integrator for Rk4 {
+    // The two middle stages share a node.
+    const NODES: [f64; STAGES] = [0.0, 0.5, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0];
+
+    #[inline(always)]
+    fn step<T: Real, I: Intrinsic<T>, S: Sensitivity<N>, const N: usize>(
+        system: &RodSystem<T, I>,
+        scales: &Scales<T>,
+        from: Radius<T>,
+        h: T,
+        y: State<T, I, N>,
+    ) -> State<T, I, N> {
+        let half = T::of(0.5) * h;
+        let (middle, end) = (scales.at(1, from), scales.at(2, from));
+        let k1 = system.rhs::<S, N>(from, y);
+        let k2 = system.rhs::<S, N>(middle, y.plus(half, k1));
+        let k3 = system.rhs::<S, N>(middle, y.plus(half, k2));
+        let k4 = system.rhs::<S, N>(end, y.plus(h, k3));
+        let sixth = T::of(1.0 / 6.0) * h;
+        let third = T::of(1.0 / 3.0) * h;
+        y.plus(sixth, k1)
+            .plus(third, k2)
+            .plus(third, k3)
+            .plus(sixth, k4)
+    }
+}

@@ -1,0 +1,110 @@
+//! A whisker and its pole without dimensions.
+
+use crate::scene::Whisker;
+
+/// The side of the whisker that the pole is on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Side {
+    /// Concave backward: the pole is on the convex side, the force bends the whisker further.
+    Cb,
+    /// Concave forward: the pole is on the concave side.
+    Cf,
+}
+
+impl Side {
+    /// Both sides, in the order of growing push angle.
+    pub const BOTH: [Self; 2] = [Self::Cf, Self::Cb];
+
+    /// The sign of push angles, loads and the pole's offset: + CB, - CF.
+    #[must_use]
+    pub const fn sign(self) -> f64 {
+        match self {
+            Self::Cb => 1.0,
+            Self::Cf => -1.0,
+        }
+    }
+
+    /// The name in files and messages.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Cb => "CB",
+            Self::Cf => "CF",
+        }
+    }
+}
+
+/// One whisker on one side of one pole; lengths in whisker lengths.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rod {
+    /// `beta = 1 - r_tip/r_base`, in `[0, 1]`.
+    pub taper: f64,
+    /// Parabola coefficient `A* = A L_w`, at least 0.
+    pub bend: f64,
+    /// Slope `t0 = -2 A x0` of the parabola at the base.
+    pub slope: f64,
+    /// Pole radius with the sign of the side: the pole's centre is at `-pole e2` from the contact.
+    pub pole: f64,
+}
+
+/// A perfect cone is cut where its radius is this part of the base radius: below, the contact is closer to
+/// the tip than any length that `f64` millimetres of a whisker can tell apart from it in practice.
+pub const PERFECT_CONE_CUT: f64 = 1e-9;
+
+impl Rod {
+    /// `whisker` with a pole of `pole_radius_mm` on `side`.
+    #[must_use]
+    pub fn new(whisker: &Whisker, pole_radius_mm: f64, side: Side) -> Self {
+        let (a, x0) = whisker
+            .curvature
+            .map_or((0.0, 0.0), |c| (c.parabola_per_mm, c.vertex_mm));
+        Self {
+            taper: 1.0 - whisker.tip_radius_um / whisker.base_radius_um,
+            bend: a * whisker.length_mm,
+            slope: -2.0 * a * x0,
+            pole: side.sign() * pole_radius_mm / whisker.length_mm,
+        }
+    }
+
+    /// `tau` at arclength `s`: `-ln(1 - beta s)/beta`, the variable in which a tapered rod is smooth.
+    #[must_use]
+    pub fn tau(&self, s: f64) -> f64 {
+        if self.taper == 0.0 {
+            s
+        } else {
+            -(-self.taper * s).ln_1p() / self.taper
+        }
+    }
+
+    /// `tau` at the tip; a perfect cone ends at [`PERFECT_CONE_CUT`].
+    #[must_use]
+    pub fn tau_tip(&self) -> f64 {
+        let cut = (1.0 - PERFECT_CONE_CUT) / self.taper;
+        self.tau(cut.min(1.0))
+    }
+
+    /// Radius at `tau` over the base radius.
+    #[must_use]
+    pub fn radius(&self, tau: f64) -> f64 {
+        (-self.taper * tau).exp()
+    }
+}
+
+/// The effects that a scene calls for; each set has kernels of its own.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct Effects {
+    /// The stiffness falls toward the tip.
+    pub taper: bool,
+    /// The whisker is curved at rest.
+    pub curvature: bool,
+}
+
+impl Effects {
+    /// The effects that at least one of `rods` has.
+    pub fn of<'a>(rods: impl IntoIterator<Item = &'a Rod>) -> Self {
+        rods.into_iter().fold(Self::default(), |set, rod| Self {
+            taper: set.taper || rod.taper != 0.0,
+            curvature: set.curvature || rod.bend != 0.0,
+        })
+    }
+}
