@@ -1,4 +1,16 @@
 //! A scene: what to simulate, read from TOML and checked. An accepted scene is valid everywhere after.
+//!
+//! Text (`read`) becomes tables (`file`, `axis`), tables become a [`Scene`] (`check`, `limits`), and whatever is
+//! refused becomes one message that points into the text (`error`).
+
+mod axis;
+mod check;
+mod error;
+mod file;
+mod limits;
+mod read;
+
+pub use error::SceneError;
 
 /// A whisker at rest.
 #[derive(Clone, Debug, PartialEq)]
@@ -42,7 +54,7 @@ pub struct Grid {
 pub struct Scene {
     /// One line for people.
     pub title: String,
-    /// The whisker; taper and curvature axes replace its own values.
+    /// The whisker as the file describes it; [`Scene::whiskers`] yields those to simulate.
     pub whisker: Whisker,
     /// Radius of the pole; 0 is a point contact.
     pub pole_radius_mm: f64,
@@ -52,4 +64,48 @@ pub struct Scene {
     pub name: String,
     /// The file as it was read.
     pub text: String,
+}
+
+impl Scene {
+    /// The scene's whisker with a taper (`1 - tip/base radius`) and a parabola coefficient in place of its
+    /// own. The vertex stays: the whisker's own, or 0 where its file gives no curvature.
+    #[must_use]
+    pub fn whisker_at(&self, taper: Option<f64>, curvature_per_mm: Option<f64>) -> Whisker {
+        let mut whisker = self.whisker.clone();
+        if let Some(taper) = taper {
+            whisker.tip_radius_um = whisker.base_radius_um * (1.0 - taper);
+        }
+        if let Some(parabola_per_mm) = curvature_per_mm {
+            let vertex_mm = whisker.curvature.map_or(0.0, |own| own.vertex_mm);
+            whisker.curvature = Some(Curvature {
+                parabola_per_mm,
+                vertex_mm,
+            });
+        }
+        whisker.curvature = whisker.curvature.filter(|c| c.parabola_per_mm != 0.0);
+        whisker
+    }
+
+    /// Every whisker of the sweep, in the order of the atlas: taper varies fastest (its columns), curvature
+    /// slowest (its rows). Without such axes, the one whisker of the file.
+    pub fn whiskers(&self) -> impl Iterator<Item = Whisker> {
+        let tapers = choices(self.grid.taper.as_deref());
+        choices(self.grid.curvature_per_mm.as_deref())
+            .into_iter()
+            .flat_map(move |curvature| {
+                tapers
+                    .clone()
+                    .into_iter()
+                    .map(move |taper| (taper, curvature))
+            })
+            .map(|(taper, curvature)| self.whisker_at(taper, curvature))
+    }
+}
+
+/// What an axis puts in place of the whisker's own value: its values one by one, or nothing, once.
+fn choices(axis: Option<&[f64]>) -> Vec<Option<f64>> {
+    axis.map_or_else(
+        || vec![None],
+        |values| values.iter().copied().map(Some).collect(),
+    )
 }

@@ -1,0 +1,223 @@
+//! The ranges: what makes a scene valid everywhere after.
+//!
+//! Ranges are wide; they keep units from being mixed up and f32 from overflowing, and they hold wherever
+//! the geometry of first touch is one-to-one. Lengths are measured in lengths of the whisker.
+
+use std::f64::consts::SQRT_2;
+use std::ops::Range;
+
+use toml::Spanned;
+
+use super::axis;
+use super::error::Fault;
+use super::file::{CurvatureTable, GridTable, Number, OutputTable, SceneTable, WhiskerTable};
+use super::limits::Limits;
+use super::{Curvature, Grid, Scene, Whisker};
+
+/// As many as 16,384 x 16,384; a stored cell takes about 60 bytes.
+const MOST_CELLS: u128 = 1 << 28;
+
+/// File systems allow 255 bytes; the output adds its own endings.
+const LONGEST_NAME: usize = 100;
+
+/// The scene that the tables describe.
+pub(super) fn scene(table: &SceneTable, text: &str, default_name: &str) -> Result<Scene, Fault> {
+    let title = title(&table.title)?;
+    let length_mm =
+        Limits::between(1e-3, 1e5).check("whisker.length_mm", &table.whisker.length_mm)?;
+    let grid = grid(&table.grid, length_mm)?;
+    let steepest = grid.curvature_per_mm.as_ref().and_then(|axis| axis.last());
+    let whisker = whisker(&table.whisker, length_mm, steepest.copied())?;
+    let pole_radius_mm = match &table.pole {
+        Some(pole) => {
+            let own = whisker.curvature.map_or(0.0, |own| own.parabola_per_mm);
+            let parabola_per_mm = steepest.copied().unwrap_or(own);
+            pole_radius(&pole.radius_mm, parabola_per_mm, &grid.distance_mm)?
+        }
+        None => 0.0,
+    };
+    Ok(Scene {
+        title,
+        whisker,
+        pole_radius_mm,
+        grid,
+        name: name(table.output.as_ref(), default_name)?,
+        text: text.to_owned(),
+    })
+}
+
+fn title(title: &Spanned<String>) -> Result<String, Fault> {
+    let text = title.get_ref();
+    if text.trim().is_empty() || text.contains(char::is_control) {
+        return Err(Fault::new(
+            "title",
+            title.span(),
+            "must be one line of text",
+        ));
+    }
+    Ok(text.clone())
+}
+
+/// The whisker of the file; `steepest` is the largest `A` of a curvature axis.
+fn whisker(table: &WhiskerTable, length_mm: f64, steepest: Option<f64>) -> Result<Whisker, Fault> {
+    let base_radius_um =
+        Limits::between(1e-3, 1e5).check("whisker.base_radius_um", &table.base_radius_um)?;
+    let tip_radius_um = Limits::between(0.0, ("base_radius_um", base_radius_um))
+        .check("whisker.tip_radius_um", &table.tip_radius_um)?;
+    let youngs_modulus_gpa = Limits::between(1e-6, 1e4)
+        .check("whisker.youngs_modulus_gpa", &table.youngs_modulus_gpa)?;
+    let curvature = match &table.curvature {
+        Some(table) => curvature(table, length_mm, steepest)?,
+        None => None,
+    };
+    Ok(Whisker {
+        length_mm,
+        base_radius_um,
+        tip_radius_um,
+        youngs_modulus_gpa,
+        curvature,
+    })
+}
+
+/// The chord from the base to a point of `y = A (x - v)^2` has `chord^2 = x^2 (1 + A^2 (x - 2v)^2)`. With
+/// `u = x - 2v` half its derivative is `x (1 + A^2 (2u^2 + 2uv))`, whose bracket is least, `1 - A^2 v^2 / 2`,
+/// at `x = 3v/2`. So the chord grows along the whole curve if `v <= 0` or `A v < sqrt 2`.
+fn curvature(
+    table: &CurvatureTable,
+    length_mm: f64,
+    steepest: Option<f64>,
+) -> Result<Option<Curvature>, Fault> {
+    let number = &table.parabola_per_mm;
+    let key = "whisker.curvature.parabola_per_mm";
+    let parabola_per_mm = parabola_limits(length_mm).check(key, number)?;
+    refuse_faint(&[parabola_per_mm], length_mm, key, number.span())?;
+
+    let vertex_mm = match &table.vertex_mm {
+        Some(number) => {
+            let turning = SQRT_2 / steepest.unwrap_or(parabola_per_mm);
+            let far = 10.0 * length_mm;
+            let end = if turning < far {
+                ("sqrt(2) / the largest parabola coefficient", turning)
+            } else {
+                ("10 * length_mm", far)
+            };
+            Limits::below(("-10 * length_mm", -far), end)
+                .remark("farther out, the chord from the base would not grow along the whisker")
+                .check("whisker.curvature.vertex_mm", number)?
+        }
+        None => 0.0,
+    };
+    // With an axis, a coefficient of 0 is replaced but its vertex is not.
+    let bent = parabola_per_mm > 0.0 || steepest.is_some();
+    Ok(bent.then_some(Curvature {
+        parabola_per_mm,
+        vertex_mm,
+    }))
+}
+
+fn parabola_limits(length_mm: f64) -> Limits {
+    Limits::between(0.0, ("10 / length_mm", 10.0 / length_mm))
+        .remark("a whisker bent toward the other side is the same one mirrored")
+}
+
+/// Coefficients next to 0 would underflow in f32 without bending anything.
+fn refuse_faint(
+    parabolas_per_mm: &[f64],
+    length_mm: f64,
+    key: &str,
+    span: Range<usize>,
+) -> Result<(), Fault> {
+    let least = 1e-9 / length_mm;
+    match parabolas_per_mm.iter().find(|a| **a > 0.0 && **a < least) {
+        Some(_) => {
+            let must = format!("must be 0 (straight) or at least 1e-9 / length_mm ({least:e})");
+            Err(Fault::new(key, span, must))
+        }
+        None => Ok(()),
+    }
+}
+
+fn grid(table: &Spanned<GridTable>, length_mm: f64) -> Result<Grid, Fault> {
+    let axes = table.get_ref();
+    let push_angle_deg = axis::values(
+        &axes.push_angle_deg,
+        "grid.push_angle_deg",
+        &Limits::between(-360.0, 360.0),
+    )?;
+    let near = ("length_mm / 1000", length_mm / 1000.0);
+    let far = ("10 * length_mm", 10.0 * length_mm);
+    let distance_mm = axis::values(
+        &axes.distance_mm,
+        "grid.distance_mm",
+        &Limits::between(near, far),
+    )?;
+    let taper = match &axes.taper {
+        Some(axis) => Some(axis::values(
+            axis,
+            "grid.taper",
+            &Limits::between(0.0, 1.0),
+        )?),
+        None => None,
+    };
+    let curvature_per_mm = match &axes.curvature_per_mm {
+        Some(axis) => {
+            let key = "grid.curvature_per_mm";
+            let values = axis::values(axis, key, &parabola_limits(length_mm))?;
+            refuse_faint(&values, length_mm, key, axis.span())?;
+            Some(values)
+        }
+        None => None,
+    };
+
+    let counts = [
+        push_angle_deg.len(),
+        distance_mm.len(),
+        taper.as_ref().map_or(1, Vec::len),
+        curvature_per_mm.as_ref().map_or(1, Vec::len),
+    ];
+    let cells: u128 = counts.iter().map(|&count| count as u128).product();
+    if cells > MOST_CELLS {
+        let must = format!("must have at most {MOST_CELLS} cells over all axes, has {cells}");
+        return Err(Fault::new("grid", table.span(), must));
+    }
+    Ok(Grid {
+        push_angle_deg,
+        distance_mm,
+        taper,
+        curvature_per_mm,
+    })
+}
+
+/// Where the pole's rim touches the whisker at rest, the centre is `D` away from the base, and `D^2` grows along the
+/// whisker `1 -+ r kappa` times as fast as the chord's square (the sign is the side). So with `r < 1 / 2A`, the
+/// sharpest bend of the parabola, first touch is one-to-one and the base stays outside the pole.
+fn pole_radius(number: &Number, parabola_per_mm: f64, distance_mm: &[f64]) -> Result<f64, Fault> {
+    let sharpest = 0.5 / parabola_per_mm;
+    let nearest = distance_mm.first().copied().unwrap_or(f64::INFINITY);
+    let end = if sharpest < nearest {
+        ("the whisker's smallest radius of curvature", sharpest)
+    } else {
+        ("the smallest distance", nearest)
+    };
+    Limits::below(0.0, end).check("pole.radius_mm", number)
+}
+
+fn name(output: Option<&OutputTable>, default_name: &str) -> Result<String, Fault> {
+    let given = output.and_then(|output| output.name.as_ref());
+    let name = given.map_or(default_name, |name| name.get_ref());
+    let plain = |c: char| c.is_ascii_alphanumeric() || "-_.".contains(c);
+    let fits = (1..=LONGEST_NAME).contains(&name.len());
+    if fits && name.chars().all(plain) && !name.starts_with('.') {
+        return Ok(name.to_owned());
+    }
+    let must = format!(
+        "must be 1 to {LONGEST_NAME} ASCII letters, digits, - _ . and not begin with a dot"
+    );
+    Err(match given {
+        Some(name) => Fault::new("output.name", name.span(), must),
+        None => Fault::absent(
+            "output.name",
+            format!("is left out and the file's own name, {name:?}, does not do: {must}"),
+        ),
+    })
+}

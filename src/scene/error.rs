@@ -1,0 +1,113 @@
+//! What is wrong with a scene: one message that says what, where, which value and what is allowed.
+
+use std::ops::Range;
+
+use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
+use thiserror::Error;
+
+/// A scene that cannot be read or is refused.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("{}", self.render(false))]
+pub struct SceneError {
+    origin: String,
+    text: String,
+    span: Option<Range<usize>>,
+    message: String,
+}
+
+impl SceneError {
+    /// An error about a place in the text.
+    pub(super) fn at(
+        origin: &str,
+        text: &str,
+        span: Option<Range<usize>>,
+        message: impl Into<String>,
+    ) -> Self {
+        Self {
+            origin: origin.to_owned(),
+            text: text.to_owned(),
+            span: span.and_then(|span| within_a_line(text, span)),
+            message: message.into(),
+        }
+    }
+
+    /// An error about the file as a whole.
+    pub(super) fn whole(origin: &str, message: impl Into<String>) -> Self {
+        Self::at(origin, "", None, message)
+    }
+
+    /// The message for people, over several lines: what is wrong, then file, line, column, the line itself
+    /// and a mark below the culprit. It begins with `error: `; colours are ANSI escapes.
+    #[must_use]
+    pub fn render(&self, color: bool) -> String {
+        let renderer = if color {
+            Renderer::styled()
+        } else {
+            Renderer::plain()
+        };
+        match &self.span {
+            Some(span) => {
+                let mark = AnnotationKind::Primary.span(span.clone());
+                let snippet = Snippet::source(&self.text)
+                    .path(&self.origin)
+                    .annotation(mark);
+                let title = Level::ERROR.primary_title(&self.message);
+                renderer.render(&[title.element(snippet)])
+            }
+            None => {
+                let message = format!("{}: {}", self.origin, self.message);
+                let title = Level::ERROR.primary_title(message);
+                renderer.render(&[Group::with_title(title)])
+            }
+        }
+    }
+}
+
+/// The part of a span on its first line: a mark under a whole table would bury the message.
+fn within_a_line(text: &str, span: Range<usize>) -> Option<Range<usize>> {
+    let line = text.get(span.clone())?.lines().next().unwrap_or_default();
+    Some(span.start..span.start + line.len())
+}
+
+/// What the checks refuse, before the file's name and text join it.
+pub(super) struct Fault {
+    key: String,
+    span: Option<Range<usize>>,
+    must: String,
+}
+
+impl Fault {
+    /// The value at `span` does not do what it must.
+    pub fn new(key: impl Into<String>, span: Range<usize>, must: impl Into<String>) -> Self {
+        Self {
+            key: key.into(),
+            span: Some(span),
+            must: must.into(),
+        }
+    }
+
+    /// A value that the file does not have.
+    pub fn absent(key: impl Into<String>, must: impl Into<String>) -> Self {
+        Self {
+            key: key.into(),
+            span: None,
+            must: must.into(),
+        }
+    }
+
+    /// `key = value: must ...`, with the value as the file writes it.
+    pub fn in_scene(self, origin: &str, text: &str) -> SceneError {
+        let Self { key, span, must } = self;
+        let value = span.clone().and_then(|span| text.get(span));
+        let message = match value.filter(|value| is_short(value)) {
+            Some(value) => format!("{key} = {value}: {must}"),
+            None => format!("{key}: {must}"),
+        };
+        SceneError::at(origin, text, span, message)
+    }
+}
+
+/// A value that fits into a sentence; a list, a table or a long text is shown by the marked line alone.
+fn is_short(value: &str) -> bool {
+    value.len() <= 40 && !value.contains('\n') && !value.starts_with(['[', '{'])
+}

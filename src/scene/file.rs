@@ -1,0 +1,63 @@
+//! The tables of a scene file, as TOML has them: right in shape, not yet checked in value.
+
+use serde::Deserialize;
+use toml::Spanned;
+
+use super::axis::Axis;
+
+/// A number and where the file has it. Integers are numbers too.
+pub(super) type Number = Spanned<f64>;
+
+/// The whole file.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct SceneTable {
+    pub title: Spanned<String>,
+    pub whisker: WhiskerTable,
+    pub pole: Option<PoleTable>,
+    pub grid: Spanned<GridTable>,
+    pub output: Option<OutputTable>,
+}
+
+/// `[whisker]`
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct WhiskerTable {
+    pub length_mm: Number,
+    pub base_radius_um: Number,
+    pub tip_radius_um: Number,
+    pub youngs_modulus_gpa: Number,
+    pub curvature: Option<CurvatureTable>,
+}
+
+/// `[whisker.curvature]`
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct CurvatureTable {
+    pub parabola_per_mm: Number,
+    pub vertex_mm: Option<Number>,
+}
+
+/// `[pole]`
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct PoleTable {
+    pub radius_mm: Number,
+}
+
+/// `[grid]`
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct GridTable {
+    pub push_angle_deg: Spanned<Axis>,
+    pub distance_mm: Spanned<Axis>,
+    pub taper: Option<Spanned<Axis>>,
+    pub curvature_per_mm: Option<Spanned<Axis>>,
+}
+
+/// `[output]`
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct OutputTable {
+    pub name: Option<Spanned<String>>,
+}

@@ -1,0 +1,84 @@
+//! The values a key may have, and how a message says so.
+
+use std::fmt;
+use std::ops::{Bound, RangeBounds};
+
+use super::error::Fault;
+use super::file::Number;
+
+/// A range of numbers. NaN is in none, and no range here reaches infinity.
+pub(super) struct Limits {
+    range: (Bound<f64>, Bound<f64>),
+    must: String,
+}
+
+impl Limits {
+    /// Both ends are allowed.
+    pub fn between(min: impl Into<End>, max: impl Into<End>) -> Self {
+        let (min, max) = (min.into(), max.into());
+        Self {
+            range: (Bound::Included(min.value), Bound::Included(max.value)),
+            must: format!("must be between {min} and {max}"),
+        }
+    }
+
+    /// The lower end is allowed, the upper one is not.
+    pub fn below(min: impl Into<End>, max: impl Into<End>) -> Self {
+        let (min, max) = (min.into(), max.into());
+        Self {
+            range: (Bound::Included(min.value), Bound::Excluded(max.value)),
+            must: format!("must be at least {min} and less than {max}"),
+        }
+    }
+
+    /// The same limits with a remark at the end of their message.
+    pub fn remark(mut self, remark: &str) -> Self {
+        self.must = format!("{}; {remark}", self.must);
+        self
+    }
+
+    /// The number itself if it lies within.
+    pub fn check(&self, key: &str, number: &Number) -> Result<f64, Fault> {
+        if self.range.contains(number.get_ref()) {
+            Ok(*number.get_ref())
+        } else {
+            Err(Fault::new(key, number.span(), &*self.must))
+        }
+    }
+}
+
+/// One end of a range: a number, and what it stands for if that is not plain.
+pub(super) struct End {
+    value: f64,
+    meaning: Option<&'static str>,
+}
+
+impl From<f64> for End {
+    fn from(value: f64) -> Self {
+        Self {
+            value,
+            meaning: None,
+        }
+    }
+}
+
+impl From<(&'static str, f64)> for End {
+    fn from((meaning, value): (&'static str, f64)) -> Self {
+        Self {
+            value,
+            meaning: Some(meaning),
+        }
+    }
+}
+
+impl fmt::Display for End {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        // `Debug` writes 5e-11 where `Display` writes eleven digits, but also 30.0 for 30.
+        let digits = format!("{:?}", self.value);
+        let digits = digits.trim_end_matches(".0");
+        match self.meaning {
+            None => f.write_str(digits),
+            Some(meaning) => write!(f, "{meaning} ({digits})"),
+        }
+    }
+}

@@ -1,0 +1,185 @@
+//! The scene room: shipped scenes are accepted, bad ones are refused with a message that helps, nothing panics.
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    reason = "a test that cannot go on has failed"
+)]
+
+mod any_text;
+mod refused;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use whiskmap::scene::{Curvature, Scene};
+
+/// A valid scene with every table and axis, to be spoilt line by line. Lines are counted from 1.
+const BASE: &str = r#"title = "base"
+[whisker]
+length_mm = 20
+base_radius_um = 30.0
+tip_radius_um = 1.5
+youngs_modulus_gpa = 3.0
+[whisker.curvature]
+parabola_per_mm = 0.02
+vertex_mm = 2.5
+[pole]
+radius_mm = 0.25
+[grid]
+push_angle_deg = { from = -70, to = 70, count = 5 }
+distance_mm = [2.0, 7.5, 20.0]
+taper = { from = 0, to = 1, count = 3 }
+curvature_per_mm = [0, 0.04]
+[output]
+name = "base"
+"#;
+
+fn parse(text: &str) -> Result<Scene, String> {
+    Scene::parse(text, "test.toml", "fallback").map_err(|why| why.to_string())
+}
+
+/// The base scene with one line replaced by others.
+fn with_line(line: usize, replacement: &str) -> String {
+    let mut lines: Vec<&str> = BASE.lines().collect();
+    lines[line - 1] = replacement;
+    lines.join("\n")
+}
+
+fn shipped() -> Vec<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
+    let mut paths: Vec<_> = fs::read_dir(folder)
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .collect();
+    paths.sort();
+    paths
+}
+
+#[test]
+fn every_shipped_scene_is_accepted() {
+    let mut names = Vec::new();
+    for path in shipped() {
+        let scene = Scene::read(&path).unwrap_or_else(|why| panic!("{why}"));
+        assert_eq!(scene.name, path.file_stem().unwrap().to_str().unwrap());
+        assert_eq!(scene.text, fs::read_to_string(&path).unwrap());
+        let side = if scene.name == "morphology" { 96 } else { 512 };
+        assert_eq!(scene.grid.push_angle_deg.len(), side, "{}", scene.name);
+        assert_eq!(scene.grid.distance_mm.len(), side, "{}", scene.name);
+        names.push(scene.name);
+    }
+    let expected = [
+        "cone",
+        "cylinder",
+        "fig4_hair",
+        "fig4_whisker",
+        "fig5_left",
+        "fig5_right",
+        "morphology",
+    ];
+    assert_eq!(names, expected);
+}
+
+#[test]
+fn every_value_arrives_where_it_belongs() {
+    let scene = parse(BASE).unwrap();
+    assert_eq!(scene.title, "base");
+    assert_eq!(scene.name, "base");
+    assert_eq!(scene.whisker.length_mm, 20.0);
+    assert_eq!(scene.whisker.base_radius_um, 30.0);
+    assert_eq!(scene.whisker.tip_radius_um, 1.5);
+    assert_eq!(scene.whisker.youngs_modulus_gpa, 3.0);
+    assert_eq!(scene.whisker.curvature, curvature(0.02, 2.5));
+    assert_eq!(scene.pole_radius_mm, 0.25);
+    assert_eq!(scene.grid.push_angle_deg, [-70.0, -35.0, 0.0, 35.0, 70.0]);
+    assert_eq!(scene.grid.distance_mm, [2.0, 7.5, 20.0]);
+    assert_eq!(scene.grid.taper.unwrap(), [0.0, 0.5, 1.0]);
+    assert_eq!(scene.grid.curvature_per_mm.unwrap(), [0.0, 0.04]);
+}
+
+fn curvature(parabola_per_mm: f64, vertex_mm: f64) -> Option<Curvature> {
+    Some(Curvature {
+        parabola_per_mm,
+        vertex_mm,
+    })
+}
+
+#[test]
+fn what_may_be_left_out_may_be_left_out() {
+    let scene = parse(
+        "title = 'bare'
+         whisker = { length_mm = 20, base_radius_um = 30, tip_radius_um = 0, youngs_modulus_gpa = 3 }
+         grid = { push_angle_deg = { from = 5, count = 1 }, distance_mm = { from = 2, to = 2, count = 1 } }",
+    )
+    .unwrap();
+    assert_eq!(scene.whisker.curvature, None);
+    assert_eq!(scene.pole_radius_mm, 0.0);
+    assert_eq!(scene.grid.push_angle_deg, [5.0]);
+    assert_eq!(scene.grid.distance_mm, [2.0]);
+    assert_eq!(scene.name, "fallback");
+    let whiskers: Vec<_> = scene.whiskers().collect();
+    assert_eq!(whiskers, std::slice::from_ref(&scene.whisker));
+}
+
+#[test]
+fn a_parabola_of_zero_is_straight_but_lends_its_vertex_to_an_axis() {
+    let own_zero = with_line(8, "parabola_per_mm = 0");
+    let scene = parse(&own_zero).unwrap();
+    assert_eq!(
+        scene.whisker_at(None, Some(0.04)).curvature,
+        curvature(0.04, 2.5)
+    );
+    assert_eq!(scene.whisker_at(None, None).curvature, None);
+
+    let no_axis = own_zero.replace("curvature_per_mm = [0, 0.04]", "");
+    assert_eq!(parse(&no_axis).unwrap().whisker.curvature, None);
+}
+
+#[test]
+fn whiskers_come_in_atlas_order_taper_first() {
+    let scene = parse(BASE).unwrap();
+    let seen: Vec<_> = scene
+        .whiskers()
+        .map(|whisker| (whisker.tip_radius_um, whisker.curvature))
+        .collect();
+    let bent = curvature(0.04, 2.5);
+    let expected = [
+        (30.0, None),
+        (15.0, None),
+        (0.0, None),
+        (30.0, bent),
+        (15.0, bent),
+        (0.0, bent),
+    ];
+    assert_eq!(seen, expected);
+}
+
+/// The bound on the vertex is that beyond which the chord from the base stops growing.
+#[test]
+fn the_chord_grows_along_the_whisker_up_to_the_last_vertex_allowed() {
+    let chord = |a: f64, v: f64, x: f64| x.hypot(a * ((x - v).powi(2) - v * v));
+    let grows = |a: f64, v: f64| {
+        let chords: Vec<f64> = (0..100_000)
+            .map(|i| chord(a, v, f64::from(i) * 1e-3))
+            .collect();
+        chords.is_sorted_by(|near, far| near < far)
+    };
+    let accepted = |a: f64, v: f64| {
+        let own = BASE.replace("curvature_per_mm = [0, 0.04]", "");
+        let own = own.replace("per_mm = 0.02", &format!("per_mm = {a}"));
+        parse(&own.replace("vertex_mm = 2.5", &format!("vertex_mm = {v}"))).is_ok()
+    };
+    for (a, v) in [
+        (0.05, 28.2),
+        (0.05, 28.4),
+        (0.1, 14.1),
+        (0.1, 14.2),
+        (0.1, -30.0),
+        (0.5, 2.9),
+    ] {
+        assert_eq!(
+            accepted(a, v),
+            grows(a, v),
+            "A = {a} per mm, vertex at {v} mm"
+        );
+    }
+}

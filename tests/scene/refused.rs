@@ -1,0 +1,138 @@
+//! What is refused, and how the message says so.
+
+use std::fs;
+use std::path::Path;
+
+use whiskmap::scene::Scene;
+
+use crate::{BASE, parse, with_line};
+
+#[test]
+fn a_bad_value_is_named_with_its_place_and_what_is_allowed() {
+    let cases = include_str!("refused.txt").lines();
+    for case in cases.filter(|line| !line.starts_with('#')) {
+        let cells: Vec<&str> = case.split(" | ").collect();
+        let [line, replacement, place, parts @ ..] = &cells[..] else {
+            panic!("no case: {case}");
+        };
+        let message = parse(&with_line(line.parse().unwrap(), replacement)).expect_err(case);
+        let place = format!(" test.toml:{place}");
+        for part in parts.iter().copied().chain([&*place, "error: "]) {
+            assert!(message.contains(part), "{case}\nno {part:?} in:\n{message}");
+        }
+        assert!(
+            !parts.is_empty() && !message.contains('\u{1b}'),
+            "{message}"
+        );
+    }
+}
+
+#[test]
+fn the_whole_message_reads_like_this() {
+    let why = Scene::parse(&with_line(5, "tip_radius_um = 40"), "test.toml", "x").unwrap_err();
+    let expected = "\
+error: whisker.tip_radius_um = 40: must be between 0 and base_radius_um (30)
+ --> test.toml:5:17
+  |
+5 | tip_radius_um = 40
+  |                 ^^";
+    assert_eq!(why.to_string(), expected);
+    assert_eq!(why.render(false), expected);
+    assert!(why.render(true).contains("\u{1b}["));
+
+    // Of a value over several lines, only the first is shown.
+    let expected = "\
+error: title: must be one line of text
+ --> test.toml:1:9
+  |
+1 | title = \"\"\"over
+  |         ^^^^^^^";
+    let why = parse(&with_line(1, "title = \"\"\"over\ntwo lines\"\"\"")).unwrap_err();
+    assert_eq!(why, expected);
+}
+
+/// Checks that need more than one line of the base scene to be reached.
+#[test]
+fn values_at_odds_with_each_other_are_refused() {
+    // The axis' largest coefficient, 0.04, decides; not the whisker's own 0.02.
+    let base = BASE.replace("distance_mm = [2.0,", "distance_mm = [");
+    let bulky = base
+        .replace("radius_mm = 0.25", "radius_mm = 6")
+        .replace("0.04]", "0.1]");
+    let why = parse(&bulky).unwrap_err();
+    let sharpest = "pole.radius_mm = 6: must be at least 0 and less than the whisker's smallest radius of curvature (5)";
+    assert!(why.contains(sharpest), "{why}");
+    let slim = bulky.replace("curvature_per_mm = [0, 0.1]", "");
+    assert!(
+        parse(&slim).is_ok(),
+        "the whisker's own coefficient allows 25 mm"
+    );
+
+    let far = BASE
+        .replace("vertex_mm = 2.5", "vertex_mm = 30")
+        .replace("0.04]", "0.05]");
+    let why = parse(&far).unwrap_err();
+    assert!(
+        why.contains("vertex_mm = 30: must be") && why.contains("(28.28"),
+        "{why}"
+    );
+    assert!(parse(&far.replace("curvature_per_mm = [0, 0.05]", "")).is_ok());
+
+    let many = BASE
+        .replace("count = 5", "count = 65536")
+        .replace("count = 3", "count = 2048");
+    let why = parse(&many).unwrap_err();
+    let cells = "grid: must have at most 268435456 cells over all axes, has 805306368";
+    assert!(why.contains(cells) && why.contains(":12:1"), "{why}");
+}
+
+#[test]
+fn unreadable_files_are_told_apart() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = |name: &str, bytes: &[u8]| {
+        let path = folder.path().join(name);
+        fs::write(&path, bytes).unwrap();
+        path
+    };
+    let message = |path: &Path| {
+        let message = Scene::read(path).unwrap_err().to_string();
+        assert!(message.contains(path.to_str().unwrap()), "{message}");
+        message
+    };
+    assert!(message(&folder.path().join("none.toml")).contains("cannot be read: No such file"));
+    assert!(message(folder.path()).contains("cannot be read: Is a directory"));
+    assert!(message(&file("large.toml", &vec![b'#'; (1 << 20) + 1])).contains("longer than 1 MiB"));
+    let latin = message(&file("latin.toml", b"title = 'x'\n# 5 \xb5m\n"));
+    assert!(latin.contains("not UTF-8 text: byte 0xB5"), "{latin}");
+    assert!(latin.contains("latin.toml:2:5"), "{latin}");
+
+    let unnamed = BASE.replace("name = \"base\"", "");
+    let spaced = message(&file("my scene.toml", unnamed.as_bytes()));
+    assert!(
+        spaced.contains("output.name: is left out and the file's own name, \"my scene\""),
+        "{spaced}"
+    );
+    let plain = file("plain.toml", unnamed.as_bytes());
+    assert_eq!(Scene::read(&plain).unwrap().name, "plain");
+    let full = [
+        unnamed.as_bytes(),
+        b"#",
+        &vec![b'x'; (1 << 20) - unnamed.len() - 1],
+    ]
+    .concat();
+    assert!(
+        Scene::read(&file("full.toml", &full)).is_ok(),
+        "1 MiB is allowed"
+    );
+}
+
+#[test]
+fn a_byte_order_mark_and_windows_line_ends_do_no_harm() {
+    let windows = format!("\u{feff}{}", BASE.replace('\n', "\r\n"));
+    assert!(parse(&windows).is_ok());
+    let why = parse(&windows.replace("tip_radius_um = 1.5", "tip_radius_um = 40")).unwrap_err();
+    assert!(
+        why.contains("test.toml:5:17") && why.contains("um = 40: must"),
+        "{why}"
+    );
+}
