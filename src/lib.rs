@@ -6,6 +6,7 @@
 //! through them.
 
 pub mod classify;
+pub mod integrate;
 pub mod model;
 pub mod render;
 pub mod scene;

@@ -13,6 +13,7 @@ use super::simd::x86::{Avx2, Avx512};
 use super::simd::{Lanes, Plain, WIDTH};
 use super::{Effects, Real, Rod, Start};
 use rayon::prelude::*;
+use std::fmt;
 
 /// One trajectory: from the contact at `tau` under `load = f/radius^2` to the base.
 #[derive(Clone, Copy, Debug)]
@@ -87,16 +88,33 @@ pub fn land<M: Integrator, K: Kind<N>, const N: usize>(
 
 /// A SIMD unit.
 #[derive(Clone, Copy, Debug)]
-enum Unit {
+pub enum Unit {
+    /// AVX-512.
     #[cfg(target_arch = "x86_64")]
     Avx512,
+    /// AVX2 with FMA.
     #[cfg(target_arch = "x86_64")]
     Avx2,
+    /// What every processor of this architecture has.
     Baseline,
 }
 
+impl fmt::Display for Unit {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx512 => "AVX-512",
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx2 => "AVX2",
+            Self::Baseline => "baseline SIMD",
+        })
+    }
+}
+
 impl Unit {
-    fn detect() -> Self {
+    /// The widest unit of this processor.
+    #[must_use]
+    pub fn detect() -> Self {
         #[cfg(target_arch = "x86_64")]
         {
             if is_x86_feature_detected!("avx512f")

@@ -9,6 +9,10 @@
 use super::{Planar, Rod, Start};
 use glam::DVec2;
 
+/// The longest Newton step, relative to the arclength of the contact and to the load (plus 1/s^2, the load's
+/// scale on the sheet).
+pub const LONGEST_STEP: f64 = 0.25;
+
 /// Product of complex numbers.
 fn times(a: DVec2, b: DVec2) -> DVec2 {
     a.rotate(b)
@@ -87,6 +91,16 @@ impl Landing {
             residual.perp_dot(self.by_load),
             self.by_tau.perp_dot(residual),
         ) / self.det()
+    }
+
+    /// Newton's step `(tau, load)` toward `wanted` from the contact at arclength `s` under `load`, shortened
+    /// as a whole to [`LONGEST_STEP`]: near a fold the Jacobian is nearly singular, and the full step would
+    /// leave the sheet.
+    #[must_use]
+    pub fn newton_step(&self, wanted: DVec2, s: f64, load: f64) -> DVec2 {
+        let step = self.solve(self.residual(wanted));
+        let length = (step.x.abs() / s).max(step.y.abs() / (load.abs() + 1.0 / (s * s)));
+        step * (LONGEST_STEP / length).min(1.0)
     }
 
     /// `P_wanted/P - 1`: what Newton's method cancels. Its length is the miss relative to `D`.
