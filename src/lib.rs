@@ -10,4 +10,5 @@ pub mod integrate;
 pub mod model;
 pub mod render;
 pub mod scene;
+pub mod sheet;
 pub mod store;

@@ -2,11 +2,11 @@
 
 use super::{Description, Engine, EngineError, Hit, MOST_STEPS, Outcome, Shot};
 use crate::model::batch::{Launch, Method, Unit, land};
-use crate::model::{Dopri8, Effects, First, Landing, Rod, arclength};
+use crate::model::{Dopri8, Effects, First, Landing, Resolution, Rod, arclength};
 use glam::DVec2;
 
-/// Steps of [`Dopri8`] per trajectory: worst error 5e-10 over taper up to 0.99, far below the tolerance.
-const STEPS: u32 = 16;
+/// Accurate to 5e-10 over taper up to 0.99, far below the tolerance.
+const RESOLUTION: Resolution = Resolution { least: 16, longest: 0.3 };
 
 /// Residual at which the refinement takes over, in whisker lengths: one Newton step away from 1e-12.
 const TOLERANCE: f64 = 1e-6;
@@ -35,7 +35,7 @@ impl Engine for Cpu {
     ) -> Result<Vec<Hit>, EngineError> {
         let method = Method {
             effects,
-            steps: STEPS,
+            resolution: RESOLUTION,
         };
         let mut hits: Vec<Hit> = shots
             .iter()

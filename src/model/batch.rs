@@ -4,14 +4,14 @@
 //! and for the target's baseline; which one runs is decided once per call from the processor's features.
 //! Results do not depend on the number of threads: every trajectory is computed by itself.
 
-use super::integrator::{Integrator, Scales, integrate, steps_for};
+use super::integrator::{Integrator, Resolution, Scales, integrate};
 use super::landing::{Curved, Full, Landing};
 use super::order::{First, FirstAndEnergy, Order, Second};
 use super::rhs::{Bent, Intrinsic, Planar, Radius, RodSystem, State, Straight};
 #[cfg(target_arch = "x86_64")]
 use super::simd::x86::{Avx2, Avx512};
 use super::simd::{Lanes, Plain, WIDTH};
-use super::{Effects, Real, Rod, Start};
+use super::{Effects, Rod, Start};
 use rayon::prelude::*;
 use std::fmt;
 
@@ -61,8 +61,8 @@ impl Kind<15> for Second {
 pub struct Method {
     /// The effects of every rod in the batch.
     pub effects: Effects,
-    /// Steps per trajectory, more for slender tips (see [`steps_for`]).
-    pub steps: u32,
+    /// How finely.
+    pub resolution: Resolution,
 }
 
 /// Blocks per piece of work that one thread takes: long enough to hide the hand-over, short enough to share.
@@ -177,10 +177,10 @@ fn by_effects<M: Integrator, K: Kind<N>, T: Lanes, const N: usize>(
 ) -> [K::Answer; WIDTH] {
     let Effects { taper, curvature } = method.effects;
     match (taper, curvature) {
-        (false, false) => block::<M, K, T, Straight, false, N>(method.steps, launches),
-        (false, true) => block::<M, K, T, Bent<_>, false, N>(method.steps, launches),
-        (true, false) => block::<M, K, T, Straight, true, N>(method.steps, launches),
-        (true, true) => block::<M, K, T, Bent<_>, true, N>(method.steps, launches),
+        (false, false) => block::<M, K, T, Straight, false, N>(method.resolution, launches),
+        (false, true) => block::<M, K, T, Bent<_>, false, N>(method.resolution, launches),
+        (true, false) => block::<M, K, T, Straight, true, N>(method.resolution, launches),
+        (true, true) => block::<M, K, T, Bent<_>, true, N>(method.resolution, launches),
     }
 }
 
@@ -209,7 +209,7 @@ impl<T: Lanes> Gather<T> for Bent<T> {
 /// Integrates up to `WIDTH` trajectories in step; missing ones repeat the last.
 #[inline(always)]
 fn block<M, K, T, I, const TAPER: bool, const N: usize>(
-    least_steps: u32,
+    resolution: Resolution,
     launches: &[Launch],
 ) -> [K::Answer; WIDTH]
 where
@@ -226,9 +226,9 @@ where
 
     let steps = launches
         .iter()
-        .map(|l| steps_for(least_steps, l.rod.taper, l.tau))
+        .map(|l| resolution.steps(l.rod.taper, l.tau))
         .max()
-        .unwrap_or(least_steps);
+        .unwrap_or(resolution.least);
     let h = T::pack(starts.map(|start| start.tau / f64::from(steps)));
     let one = T::of(1.0);
     let (scales, from) = if TAPER {

@@ -1,22 +1,30 @@
 //! Fixed-step integration along the rod: what the Runge-Kutta methods share.
 
 use super::real::exp_small;
-use super::rhs::{Intrinsic, RodSystem, Sensitivity, State};
+use super::rhs::{Intrinsic, Planar, RodSystem, Sensitivity, State};
 use super::{Radius, Real};
 
-/// The longest step in `beta tau`: beyond, the stages' radii would leave the range of `exp_small`.
-const LONGEST_STEP: f64 = 0.35;
+/// How finely trajectories are integrated: at least `least` steps, and none along which the radius changes by
+/// more than a factor `exp(longest)`, in `beta tau`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Resolution {
+    /// Fewest steps.
+    pub least: u32,
+    /// Longest step in `beta tau`; at most 0.4, the range of the stages' radii.
+    pub longest: f64,
+}
 
-/// Steps for trajectories up to `tau` on rods of taper up to `taper`: `least`, or more where the radius falls
-/// by more than a factor `exp(0.35)` per step.
-#[must_use]
-#[allow(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "tau is at most 21 (a cone cut at 1e-9), so the quotient is a small positive number"
-)]
-pub fn steps_for(least: u32, taper: f64, tau: f64) -> u32 {
-    least.max((taper * tau / LONGEST_STEP).ceil() as u32)
+impl Resolution {
+    /// Steps for a trajectory over `tau` on a rod of this `taper`.
+    #[must_use]
+    #[allow(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "beta tau is at most 25 (a cone cut at 1e-9 and some), so the quotient is small and positive"
+    )]
+    pub fn steps(&self, taper: f64, tau: f64) -> u32 {
+        self.least.max((taper * tau / self.longest).ceil() as u32)
+    }
 }
 
 /// An explicit Runge-Kutta method with fixed steps.
@@ -94,8 +102,17 @@ pub fn integrate<M: Integrator, T: Real, I: Intrinsic<T>, S: Sensitivity<N>, con
 ) -> State<T, I, N> {
     let mut radius = from;
     for _ in 0..steps {
-        state = M::step::<T, I, S, N>(system, scales, radius, h, state);
+        let (rest, (rod, sens)) = M::step::<T, I, S, N>(system, scales, radius, h, state);
+        state = (rest, (upright(rod), sens));
         radius = scales.at(STAGES - 1, radius);
     }
     state
+}
+
+/// The rod with its tangent brought back to unit length, to first order in the drift of a step. Without this,
+/// the drift near a slender tip stretches all that follows.
+#[inline(always)]
+fn upright<T: Real>([c, s, x, y]: Planar<T>) -> Planar<T> {
+    let scale = T::of(1.5) - T::of(0.5) * c.mul_add(c, s * s);
+    [scale * c, scale * s, x, y]
 }

@@ -23,7 +23,7 @@ mod start;
 mod vector;
 
 pub use dopri8::Dopri8;
-pub use integrator::{Integrator, Scales, integrate, steps_for};
+pub use integrator::{Integrator, Resolution, Scales, integrate};
 pub use landing::{Base, Curved, Full, LONGEST_STEP, Landing};
 pub use order::{First, FirstAndEnergy, Order, Second};
 pub use real::Real;

@@ -127,13 +127,13 @@ pub mod x86 {
 pub struct Plain([f64; WIDTH]);
 
 macro_rules! plain {
-    ($trait:ident, $method:ident, $sign:tt) => {
+    ($trait:ident, $method:ident, $assign:tt) => {
         impl $trait for Plain {
             type Output = Self;
             #[inline(always)]
             fn $method(mut self, other: Self) -> Self {
                 for (a, b) in self.0.iter_mut().zip(other.0) {
-                    *a = *a $sign b;
+                    *a $assign b;
                 }
                 self
             }
@@ -141,10 +141,10 @@ macro_rules! plain {
     };
 }
 
-plain!(Add, add, +);
-plain!(Sub, sub, -);
-plain!(Mul, mul, *);
-plain!(Div, div, /);
+plain!(Add, add, +=);
+plain!(Sub, sub, -=);
+plain!(Mul, mul, *=);
+plain!(Div, div, /=);
 
 impl Neg for Plain {
     type Output = Self;

@@ -1,0 +1,137 @@
+//! The fold edge: the first load at which the Jacobian becomes singular, contact by contact.
+
+use crate::model::batch::{Launch, Method, land};
+use crate::model::{Curved, Dopri8, First, Rod, Second, Side, arclength};
+
+/// A point of the fold edge.
+#[derive(Clone, Copy, Debug)]
+pub struct FoldPoint {
+    /// `tau` of the contact.
+    pub tau: f64,
+    /// Signed load.
+    pub load: f64,
+    /// The pole there, with second derivatives.
+    pub landing: Curved,
+}
+
+/// Samples of `q = |load| s^2` per round of the search.
+const SAMPLES: usize = 16;
+
+/// Distance of the first samples. The sheet is at least 6.8 wide in `q`, and the second fold is farther from
+/// the first than this.
+const FIRST_STEP: f64 = 0.5;
+
+/// Where the search is given up; the first fold lies below 20 for every whisker but those within a
+/// hundredth of the tip of a nearly perfect cone.
+const LARGEST_Q: f64 = 1e6;
+
+/// Rounds of the safeguarded Newton method; bisection alone would need 50.
+const ROUNDS: usize = 60;
+
+/// First folds of `rod` at the contacts `taus`; `None` where there is none up to [`LARGEST_Q`].
+pub fn first_folds(method: Method, rod: &Rod, side: Side, taus: &[f64]) -> Vec<Option<FoldPoint>> {
+    let brackets = bracket(method, rod, side, taus);
+    polish(method, rod, &brackets)
+}
+
+/// A stretch of load over which `det` changes its sign for the first time.
+#[derive(Clone, Copy, Debug)]
+struct Bracket {
+    tau: f64,
+    stable: f64,
+    beyond: f64,
+    guess: f64,
+}
+
+/// Marches every contact out from first touch until `det` has changed its sign.
+fn bracket(method: Method, rod: &Rod, side: Side, taus: &[f64]) -> Vec<Option<Bracket>> {
+    struct March {
+        index: usize,
+        scale: f64,
+        last: Option<(f64, f64)>,
+    }
+    let mut found = vec![None; taus.len()];
+    let mut open: Vec<March> = (0..taus.len())
+        .map(|index| March {
+            index,
+            scale: side.sign() / arclength(rod, taus[index]).powi(2),
+            last: None,
+        })
+        .collect();
+    let (mut q, mut step) = (0.0, FIRST_STEP);
+    while !open.is_empty() && q < LARGEST_Q {
+        let samples: Vec<f64> = (0..SAMPLES).map(|i| step.mul_add(i as f64, q)).collect();
+        let launches: Vec<Launch> = open
+            .iter()
+            .flat_map(|m| samples.iter().map(|q| (taus[m.index], q * m.scale)))
+            .map(|(tau, load)| Launch { rod: *rod, tau, load })
+            .collect();
+        let dets: Vec<f64> = land::<Dopri8, First, 6>(method, &launches)
+            .iter()
+            .map(crate::model::Landing::det)
+            .collect();
+        let mut dets = dets.chunks(SAMPLES);
+        open.retain_mut(|march| {
+            for (q, det) in samples.iter().zip(dets.next().unwrap_or_default()) {
+                let load = q * march.scale;
+                if let Some((stable, before)) = march.last
+                    && before * det <= 0.0
+                {
+                    found[march.index] = Some(Bracket {
+                        tau: taus[march.index],
+                        stable,
+                        beyond: load,
+                        guess: stable + (load - stable) * before / (before - det),
+                    });
+                    return false;
+                }
+                march.last = Some((load, *det));
+            }
+            true
+        });
+        q += step * SAMPLES as f64;
+        if q >= 2.0 * FIRST_STEP * SAMPLES as f64 {
+            step = q / SAMPLES as f64;
+        }
+    }
+    found
+}
+
+/// Newton's method on `det(load) = 0` inside the brackets.
+fn polish(method: Method, rod: &Rod, brackets: &[Option<Bracket>]) -> Vec<Option<FoldPoint>> {
+    let mut points = vec![None; brackets.len()];
+    let mut open: Vec<(usize, Bracket)> = brackets
+        .iter()
+        .enumerate()
+        .filter_map(|(i, bracket)| bracket.map(|b| (i, b)))
+        .collect();
+    for _ in 0..ROUNDS {
+        let launches: Vec<Launch> = open
+            .iter()
+            .map(|(_, b)| Launch { rod: *rod, tau: b.tau, load: b.guess })
+            .collect();
+        let mut landings = land::<Dopri8, Second, 15>(method, &launches).into_iter();
+        open.retain_mut(|(i, b)| {
+            let Some(landing) = landings.next() else { return false };
+            let (det, slope) = (landing.landing.det(), landing.det_gradient().y);
+            points[*i] = Some(FoldPoint { tau: b.tau, load: b.guess, landing });
+            // `det` falls through 0 in the direction of growing load where it was positive, and the reverse.
+            let stable = det * slope * (b.beyond - b.stable) < 0.0;
+            if stable {
+                b.stable = b.guess;
+            } else {
+                b.beyond = b.guess;
+            }
+            let newton = b.guess - det / slope;
+            let inside = (newton - b.stable) * (newton - b.beyond) < 0.0;
+            let next = if inside { newton } else { 0.5 * (b.stable + b.beyond) };
+            let done = (newton - b.guess).abs() <= 1e-14 * b.guess.abs() || next == b.guess;
+            b.guess = next;
+            !done
+        });
+    }
+    for (i, _) in open {
+        points[i] = None;
+    }
+    points
+}

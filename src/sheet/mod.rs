@@ -1,0 +1,1 @@
+mod fold; pub use fold::*;
