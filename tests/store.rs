@@ -12,8 +12,10 @@ use std::fs;
 use std::path::Path;
 use whiskmap::store::{Error, Layout, MapWriter, Panel, STATE_CHANNELS, Samples, StoredMap};
 
+type Swept = Option<Vec<f64>>;
+
 /// One whisker, and an atlas of three tapers by two curvatures.
-fn sweeps() -> [(Option<Vec<f64>>, Option<Vec<f64>>); 2] {
+fn sweeps() -> [(Swept, Swept); 2] {
     [
         (None, None),
         (Some(vec![0.5, 0.75, 0.95]), Some(vec![0.0, 0.012])),

@@ -11,6 +11,7 @@
 mod attributes;
 mod error;
 mod fresh;
+mod header;
 mod layout;
 mod reader;
 mod tally;

@@ -2,16 +2,15 @@
 
 use super::attributes;
 use super::layout::{self, Layout, SAMPLE_BYTES};
-use super::{Counts, Error};
+use super::{Counts, Error, header};
 use crate::scene::Grid;
 use exr::block::UncompressedBlock;
 use exr::block::chunk::Chunk;
 use exr::meta::MetaData;
 use exr::meta::attribute::SampleType;
-use serde::de::DeserializeOwned;
 use std::collections::BTreeMap;
 use std::fs::File;
-use std::io::{self, BufReader, Read, Seek, SeekFrom};
+use std::io::{self, BufReader, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
 /// The values of a channel.
@@ -70,21 +69,21 @@ impl StoredMap {
     /// The file cannot be read, is not EXR, is not a map of this program, or is damaged.
     pub fn open(path: &Path) -> Result<Self, Error> {
         let mut file = BufReader::new(File::open(path).map_err(unreadable(path))?);
-        let meta = read_header(path, &mut file)?;
+        let meta = header::read(path, &mut file)?;
         let foreign = |reason| Error::NotAMap {
             path: path.to_owned(),
             reason,
         };
-        let grid = attributes::decode_axes(text(&meta, "axes").map_err(foreign)?)
+        let grid = attributes::decode_axes(header::text(&meta, "axes").map_err(foreign)?)
             .map_err(|reason| foreign(format!("attribute `axes`: {reason}")))?;
         let layout = Layout::of(&grid);
-        check_layout(&meta, layout).map_err(foreign)?;
+        header::check_layout(&meta, layout).map_err(foreign)?;
         Ok(Self {
-            offsets: read_offsets(path, &mut file, &meta)?,
-            title: parse(&meta, "title").map_err(foreign)?,
-            regime_names: parse(&meta, "regime_names").map_err(foreign)?,
-            status_names: parse(&meta, "status_names").map_err(foreign)?,
-            counts: parse(&meta, "counts").map_err(foreign)?,
+            offsets: header::read_offsets(path, &mut file, &meta)?,
+            title: header::parse(&meta, "title").map_err(foreign)?,
+            regime_names: header::parse(&meta, "regime_names").map_err(foreign)?,
+            status_names: header::parse(&meta, "status_names").map_err(foreign)?,
+            counts: header::parse(&meta, "counts").map_err(foreign)?,
             path: path.to_owned(),
             meta,
             layout,
@@ -134,7 +133,7 @@ impl StoredMap {
     ///
     /// There is no such attribute, or it is not JSON.
     pub fn attribute(&self, name: &str) -> Result<serde_json::Value, Error> {
-        parse(&self.meta, name).map_err(|reason| Error::NotAMap {
+        header::parse(&self.meta, name).map_err(|reason| Error::NotAMap {
             path: self.path.clone(),
             reason,
         })
@@ -229,77 +228,6 @@ impl StoredMap {
         }
         Ok(())
     }
-}
-
-/// The headers, not yet checked against the layout.
-fn read_header(path: &Path, file: &mut BufReader<File>) -> Result<MetaData, Error> {
-    let mut magic = [0; 4];
-    match file.read_exact(&mut magic) {
-        Ok(()) if magic == exr::meta::magic_number::BYTES => {}
-        Err(cause) if cause.kind() != io::ErrorKind::UnexpectedEof => {
-            return Err(unreadable(path)(cause));
-        }
-        _ => {
-            return Err(Error::NotExr {
-                path: path.to_owned(),
-            });
-        }
-    }
-    file.rewind().map_err(unreadable(path))?;
-    MetaData::read_from_buffered(file, true).map_err(|cause| Error::Damaged {
-        path: path.to_owned(),
-        reason: format!("header: {cause}"),
-    })
-}
-
-/// The table between the headers and the blocks.
-fn read_offsets(
-    path: &Path,
-    file: &mut BufReader<File>,
-    meta: &MetaData,
-) -> Result<[Vec<u64>; 3], Error> {
-    let mut offsets: [Vec<u64>; 3] = Default::default();
-    for (table, header) in offsets.iter_mut().zip(&meta.headers) {
-        for _ in 0..header.chunk_count {
-            let mut offset = [0; 8];
-            file.read_exact(&mut offset)
-                .map_err(|cause| Error::Damaged {
-                    path: path.to_owned(),
-                    reason: format!("offset table: {cause}"),
-                })?;
-            table.push(u64::from_le_bytes(offset));
-        }
-    }
-    Ok(offsets)
-}
-
-/// Compares parts, channels, size, tiles and compression with what `layout` is written as.
-fn check_layout(meta: &MetaData, layout: Layout) -> Result<(), String> {
-    if parse::<[usize; 2]>(meta, "panels")? != [layout.columns, layout.rows] {
-        return Err("attributes `panels` and `axes` differ".to_owned());
-    }
-    let mut found = meta.headers.clone();
-    for header in &mut found {
-        header.own_attributes.other.clear();
-    }
-    if found != layout.headers(&BTreeMap::new()) {
-        return Err("the parts and channels are not those that the axes demand".to_owned());
-    }
-    Ok(())
-}
-
-/// An attribute of the first part.
-fn text<'a>(meta: &'a MetaData, name: &str) -> Result<&'a str, String> {
-    let attributes = meta.headers.first().map(|header| &header.own_attributes);
-    let mut attributes = attributes.into_iter().flat_map(|own| &own.other);
-    attributes
-        .find(|(found, _)| found.bytes() == name.as_bytes())
-        .and_then(|(_, value)| str::from_utf8(value.to_text().ok()?.bytes()).ok())
-        .ok_or_else(|| format!("there is no text attribute `{name}`"))
-}
-
-fn parse<T: DeserializeOwned>(meta: &MetaData, name: &str) -> Result<T, String> {
-    serde_json::from_str(text(meta, name)?).map_err(|error| format!("attribute `{name}`: {error}"))
 }
 
 fn unreadable(path: &Path) -> impl Fn(io::Error) -> Error {

@@ -3,12 +3,11 @@
 use super::attributes::{self, Description};
 use super::layout::{self, Layout, SAMPLE_BYTES};
 use super::tally::{Counts, Tally};
-use super::{Error, Panel, fresh};
+use super::{Error, Panel, fresh, header};
 use crate::classify::Regime;
 use exr::block::UncompressedBlock;
-use exr::meta::attribute::{self, AttributeValue, Text};
-use exr::meta::header::Header;
-use exr::meta::{Headers, MetaData, magic_number, sequence_end};
+use exr::meta::Headers;
+use exr::meta::attribute::{AttributeValue, Text};
 use rayon::prelude::*;
 use std::io::{self, BufWriter, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
@@ -49,7 +48,7 @@ impl MapWriter {
         attributes.insert("counts", " ".repeat(counts_width));
         let headers = layout.headers(&attributes);
 
-        let preamble = preamble(&headers, &Default::default()).map_err(refused(path))?;
+        let preamble = header::encode(&headers, &Default::default()).map_err(refused(path))?;
         let file = fresh::beside(path, ".exr").map_err(unwritable(path))?;
         let mut writer = Self {
             path: path.to_owned(),
@@ -133,7 +132,7 @@ impl MapWriter {
                 .insert(Text::from("counts"), value);
         }
         // The counts were given their room at the start, so this has the length of what it replaces.
-        let preamble = preamble(&self.headers, &self.offsets).map_err(refused(&self.path))?;
+        let preamble = header::encode(&self.headers, &self.offsets).map_err(refused(&self.path))?;
         self.file
             .seek(SeekFrom::Start(0))
             .and_then(|_| self.file.write_all(&preamble))
@@ -219,29 +218,6 @@ impl MapWriter {
             .write(&mut bytes, self.headers.len())?;
         Ok(bytes)
     }
-}
-
-/// All that precedes the blocks: headers and the table of `offsets`, zero where they are not known yet. Attributes
-/// are sorted by name, so that equal maps have equal bytes.
-fn preamble(headers: &[Header], offsets: &[Vec<u64>; 3]) -> exr::error::Result<Vec<u8>> {
-    let requirements = MetaData::validate(headers, true)?;
-    let mut bytes = Vec::new();
-    magic_number::write(&mut bytes)?;
-    requirements.write(&mut bytes)?;
-    for header in headers {
-        let mut attributes: Vec<_> = header.all_named_attributes().collect();
-        attributes.sort_unstable_by(|(one, _), (next, _)| one.cmp(next));
-        for (name, value) in attributes {
-            attribute::write(name, &value, &mut bytes)?;
-        }
-        sequence_end::write(&mut bytes)?;
-    }
-    sequence_end::write(&mut bytes)?;
-    for (header, known) in headers.iter().zip(offsets) {
-        let table = known.iter().copied().chain(std::iter::repeat(0));
-        bytes.extend(table.take(header.chunk_count).flat_map(u64::to_le_bytes));
-    }
-    Ok(bytes)
 }
 
 fn unwritable(path: &Path) -> impl Fn(io::Error) -> Error {
