@@ -170,7 +170,7 @@ fn a_channel_map_is_white_at_zero_when_both_signs_occur() {
         "a quarter of the way to blue"
     );
 
-    panel.state[2] = vec![1.0, f32::NAN, 4.0];
+    panel.state[2] = vec![1.0, f32::INFINITY, 4.0];
     let picture = draw(&scene, &[panel], Some("force_un"));
     let [least, none, most] = [0.1, 0.4, 0.9].map(|across| picture.body(across, 0.5));
     assert_eq!(none, BLANK);
