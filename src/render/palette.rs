@@ -77,7 +77,7 @@ pub(super) fn qualitative(place: usize) -> Fill {
 }
 
 /// From dark blue at 0 through green to yellow at 1: the polynomial that M. Zucker fitted to matplotlib's viridis
-/// (<https://www.shadertoy.com/view/WlfXRN>), within 2 of 255 of it.
+/// (<https://www.shadertoy.com/view/WlfXRN>), at most 4 of 255 away from it.
 pub(super) fn sequential(at: f64) -> Rgb {
     const COEFFICIENTS: [[f64; 7]; 3] = [
         [
