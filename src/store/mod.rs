@@ -1,4 +1,29 @@
 //! The stored map: a multi-part EXR file that is enough to make the map again.
+//!
+//! A map is written panel by panel and read panel by panel, so neither side's memory grows with the number of
+//! whiskers. The file has three parts, `regime`, `state` and `numerics`. Column 0 is the first push angle and row 0
+//! the first distance. One whisker fills the image; a sweep of whiskers is an atlas with one tile per whisker, taper
+//! along x and curvature along y. Every attribute is ASCII JSON: `axes`, `scene`, `title`, `whiskmap_version`,
+//! `engine`, `adapter`, `tolerances`, `regime_names`, `status_names`, `counts` and `panels`.
+//!
+//! Invariant: a file that bears its final name is complete.
+
+mod attributes;
+mod error;
+mod fresh;
+mod header;
+mod layout;
+mod reader;
+mod tally;
+mod writer;
+
+pub use attributes::Description;
+pub use error::Error;
+pub(crate) use fresh::beside;
+pub use layout::Layout;
+pub use reader::{Samples, StoredMap};
+pub use tally::Counts;
+pub use writer::MapWriter;
 
 /// The channels of the part `state`, in the order of [`Panel::state`].
 pub const STATE_CHANNELS: [&str; 9] = [

@@ -1,0 +1,162 @@
+//! The attributes: ASCII JSON, every one of them.
+
+use super::layout::Layout;
+use super::tally::{Counts, Tally};
+use crate::scene::{Grid, Scene};
+use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
+use std::collections::BTreeMap;
+use std::fmt::Write;
+
+/// What is known before the run, and written first.
+#[derive(Clone, Copy, Debug)]
+pub struct Description<'a> {
+    /// What is simulated.
+    pub scene: &'a Scene,
+    /// What integrates, such as `cpu f64`.
+    pub engine: &'a str,
+    /// The device it runs on.
+    pub adapter: &'a str,
+    /// Tolerances and step limits.
+    pub tolerances: &'a Value,
+    /// Code and name of every status.
+    pub status_names: &'a [(u32, &'a str)],
+}
+
+/// An axis of the map.
+#[derive(Debug, PartialEq, Serialize, Deserialize)]
+struct Axis {
+    name: String,
+    unit: String,
+    /// `x` and `y` inside a panel, `panel x` and `panel y` from one panel to the next.
+    direction: String,
+    /// Where the first value lies.
+    first: String,
+    values: Vec<f64>,
+}
+
+/// Name, unit, direction and place of the first value of every axis there can be, in the order of the attribute.
+const AXES: [[&str; 4]; 4] = [
+    ["push_angle_deg", "deg", "x", "column 0 of the panel (left)"],
+    ["distance_mm", "mm", "y", "row 0 of the panel (top)"],
+    ["taper", "1", "panel x", "column 0 of the atlas (left)"],
+    [
+        "curvature_per_mm",
+        "1/mm",
+        "panel y",
+        "row 0 of the atlas (top)",
+    ],
+];
+
+/// The attributes of a map. `counts` is left out; [`encode_counts`] makes it.
+pub(super) fn encode(
+    about: &Description<'_>,
+    regimes: &Tally,
+    statuses: &Tally,
+) -> BTreeMap<&'static str, String> {
+    let layout = Layout::of(&about.scene.grid);
+    BTreeMap::from([
+        ("axes", ascii_json(&json!(axes(&about.scene.grid)))),
+        ("scene", ascii_json(&json!(about.scene.text))),
+        ("title", ascii_json(&json!(about.scene.title))),
+        (
+            "whiskmap_version",
+            ascii_json(&json!(env!("CARGO_PKG_VERSION"))),
+        ),
+        ("engine", ascii_json(&json!(about.engine))),
+        ("adapter", ascii_json(&json!(about.adapter))),
+        ("tolerances", ascii_json(&json!(about.tolerances))),
+        ("regime_names", ascii_json(&json!(regimes.names()))),
+        ("status_names", ascii_json(&json!(statuses.names()))),
+        ("panels", ascii_json(&json!([layout.columns, layout.rows]))),
+    ])
+}
+
+/// `counts`, padded with spaces to `width`.
+pub(super) fn encode_counts(counts: &Counts, width: usize) -> String {
+    let text = ascii_json(&json!(counts));
+    format!("{text:width$}")
+}
+
+/// The longest text that any run's counts can have.
+pub(super) fn counts_width(about: &Description<'_>, regimes: &[(u32, &str)]) -> usize {
+    let longest = |names: &[(u32, &str)]| Tally::new(names.iter().copied(), u64::MAX).by_name();
+    let counts = Counts {
+        regimes: longest(regimes),
+        statuses: longest(about.status_names),
+        worst_residual: Some(-f64::MIN_POSITIVE),
+    };
+    ascii_json(&json!(counts)).len()
+}
+
+/// The axes as they are written.
+fn axes(grid: &Grid) -> Vec<Axis> {
+    let values = [
+        Some(&grid.push_angle_deg),
+        Some(&grid.distance_mm),
+        grid.taper.as_ref(),
+        grid.curvature_per_mm.as_ref(),
+    ];
+    let described = AXES.iter().zip(values).filter_map(|(about, values)| {
+        let [name, unit, direction, first] = about.map(str::to_owned);
+        Some(Axis {
+            name,
+            unit,
+            direction,
+            first,
+            values: values?.clone(),
+        })
+    });
+    described.collect()
+}
+
+/// The sweep that an attribute `axes` describes.
+///
+/// # Errors
+///
+/// The text is not JSON, an axis is unknown or missing, or its values are not increasing.
+pub(super) fn decode_axes(text: &str) -> Result<Grid, String> {
+    let mut found: Vec<Axis> = serde_json::from_str(text).map_err(|error| error.to_string())?;
+    let mut take = |name: &str| {
+        let place = found.iter().position(|axis| axis.name == name)?;
+        Some(found.swap_remove(place).values)
+    };
+    let [push_angle_deg, distance_mm, taper, curvature_per_mm] = AXES.map(|[name, ..]| take(name));
+    let grid = Grid {
+        push_angle_deg: push_angle_deg.ok_or("there is no axis push_angle_deg")?,
+        distance_mm: distance_mm.ok_or("there is no axis distance_mm")?,
+        taper,
+        curvature_per_mm,
+    };
+    if let Some(axis) = found.first() {
+        return Err(format!(
+            "the axis `{}` is unknown or there twice",
+            axis.name
+        ));
+    }
+    for axis in axes(&grid) {
+        if axis.values.is_empty() || !axis.values.is_sorted_by(|one, next| one < next) {
+            return Err(format!("the values of `{}` do not increase", axis.name));
+        }
+    }
+    Ok(grid)
+}
+
+/// JSON in which every character beyond ASCII is written as `\uXXXX`, in surrogate pairs where needed: other readers
+/// refuse a whole file for a single `µ`.
+fn ascii_json(value: &Value) -> String {
+    let json = value.to_string();
+    let mut ascii = String::with_capacity(json.len());
+    let mut units = [0; 2];
+    for character in json.chars() {
+        if character.is_ascii() {
+            ascii.push(character);
+        } else {
+            for unit in character.encode_utf16(&mut units) {
+                // Writing into a `String` cannot fail.
+                let _ = write!(ascii, "\\u{unit:04x}");
+            }
+        }
+    }
+    ascii
+}

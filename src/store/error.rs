@@ -1,0 +1,106 @@
+//! What can go wrong with a stored map.
+
+use std::path::PathBuf;
+
+/// A map that cannot be written or read. Every message is complete; there is no chain of sources to print.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    /// The file system refused.
+    #[error("cannot {action} {}: {cause}", path.display())]
+    Io {
+        /// "read" or "write".
+        action: &'static str,
+        /// The map.
+        path: PathBuf,
+        /// What the system said.
+        cause: std::io::Error,
+    },
+    /// The map cannot be expressed as EXR, such as an atlas wider than 2^30 pixels.
+    #[error("cannot write {} as EXR: {cause}", path.display())]
+    Encode {
+        /// The map.
+        path: PathBuf,
+        /// What the EXR library said.
+        cause: exr::error::Error,
+    },
+    /// The file does not start like an EXR file.
+    #[error("{} is not an EXR file", path.display())]
+    NotExr {
+        /// The file.
+        path: PathBuf,
+    },
+    /// An EXR file that this program did not write.
+    #[error("{} is an EXR file, but not a map of whiskmap: {reason}", path.display())]
+    NotAMap {
+        /// The file.
+        path: PathBuf,
+        /// What is missing or different.
+        reason: String,
+    },
+    /// A map whose bytes end too early or contradict each other.
+    #[error("{} is damaged: {reason}", path.display())]
+    Damaged {
+        /// The file.
+        path: PathBuf,
+        /// Where, and how.
+        reason: String,
+    },
+    /// No part has a channel of this name.
+    #[error("{} has no channel `{name}`; it has {known}", path.display())]
+    UnknownChannel {
+        /// The file.
+        path: PathBuf,
+        /// The name asked for.
+        name: String,
+        /// The names there are, separated by commas.
+        known: String,
+    },
+    /// A panel that the atlas does not have.
+    #[error("there is no panel {index}; the map has {panels}")]
+    NoSuchPanel {
+        /// The index asked for.
+        index: usize,
+        /// The number of panels.
+        panels: usize,
+    },
+    /// Panels must be written one after the other.
+    #[error("panel {index} was written where panel {due} of {panels} is due")]
+    PanelOrder {
+        /// The index that came.
+        index: usize,
+        /// The index that is due.
+        due: usize,
+        /// The number of panels.
+        panels: usize,
+    },
+    /// A channel of a panel does not have one value per cell.
+    #[error("panel {index}: channel `{channel}` has {cells} cells instead of {expected}")]
+    PanelSize {
+        /// The panel.
+        index: usize,
+        /// The channel.
+        channel: &'static str,
+        /// Its length.
+        cells: usize,
+        /// Distances times push angles.
+        expected: usize,
+    },
+    /// A regime or status that has no name.
+    #[error("panel {index}: channel `{channel}` holds the code {code}, which has no name")]
+    UnknownCode {
+        /// The panel.
+        index: usize,
+        /// `regime` or `status`.
+        channel: &'static str,
+        /// The code.
+        code: u32,
+    },
+    /// The map was finished before its last panel.
+    #[error("the map was finished after {written} of {panels} panels")]
+    Incomplete {
+        /// Panels written.
+        written: usize,
+        /// Panels due.
+        panels: usize,
+    },
+}

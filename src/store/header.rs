@@ -1,0 +1,112 @@
+//! The header: what precedes the blocks, written and read.
+
+use super::Error;
+use super::layout::Layout;
+use exr::meta::attribute;
+use exr::meta::header::Header;
+use exr::meta::{MetaData, magic_number, sequence_end};
+use serde::de::DeserializeOwned;
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::io::{self, BufReader, Read, Seek};
+use std::path::Path;
+
+/// All that precedes the blocks: headers and the table of `offsets`, zero where they are not known yet. Attributes
+/// are sorted by name, so that equal maps have equal bytes.
+pub(super) fn encode(headers: &[Header], offsets: &[Vec<u64>; 3]) -> exr::error::Result<Vec<u8>> {
+    let requirements = MetaData::validate(headers, true)?;
+    let mut bytes = Vec::new();
+    magic_number::write(&mut bytes)?;
+    requirements.write(&mut bytes)?;
+    for header in headers {
+        let mut attributes: Vec<_> = header.all_named_attributes().collect();
+        attributes.sort_unstable_by_key(|(name, _)| *name);
+        for (name, value) in attributes {
+            attribute::write(name, &value, &mut bytes)?;
+        }
+        sequence_end::write(&mut bytes)?;
+    }
+    sequence_end::write(&mut bytes)?;
+    for (header, known) in headers.iter().zip(offsets) {
+        let table = known.iter().copied().chain(std::iter::repeat(0));
+        bytes.extend(table.take(header.chunk_count).flat_map(u64::to_le_bytes));
+    }
+    Ok(bytes)
+}
+
+/// The headers, not yet checked against the layout.
+pub(super) fn read(path: &Path, file: &mut BufReader<File>) -> Result<MetaData, Error> {
+    let unreadable = |cause| Error::Io {
+        action: "read",
+        path: path.to_owned(),
+        cause,
+    };
+    let mut magic = [0; 4];
+    match file.read_exact(&mut magic) {
+        Ok(()) if magic == magic_number::BYTES => {}
+        Err(cause) if cause.kind() != io::ErrorKind::UnexpectedEof => {
+            return Err(unreadable(cause));
+        }
+        _ => {
+            return Err(Error::NotExr {
+                path: path.to_owned(),
+            });
+        }
+    }
+    file.rewind().map_err(unreadable)?;
+    MetaData::read_from_buffered(file, true).map_err(|cause| Error::Damaged {
+        path: path.to_owned(),
+        reason: format!("header: {cause}"),
+    })
+}
+
+/// The table between the headers and the blocks.
+pub(super) fn read_offsets(
+    path: &Path,
+    file: &mut BufReader<File>,
+    meta: &MetaData,
+) -> Result<[Vec<u64>; 3], Error> {
+    let mut offsets: [Vec<u64>; 3] = Default::default();
+    for (table, header) in offsets.iter_mut().zip(&meta.headers) {
+        for _ in 0..header.chunk_count {
+            let mut offset = [0; 8];
+            file.read_exact(&mut offset)
+                .map_err(|cause| Error::Damaged {
+                    path: path.to_owned(),
+                    reason: format!("offset table: {cause}"),
+                })?;
+            table.push(u64::from_le_bytes(offset));
+        }
+    }
+    Ok(offsets)
+}
+
+/// Compares parts, channels, size, tiles and compression with what `layout` is written as.
+pub(super) fn check_layout(meta: &MetaData, layout: Layout) -> Result<(), String> {
+    if parse::<[usize; 2]>(meta, "panels")? != [layout.columns, layout.rows] {
+        return Err("attributes `panels` and `axes` differ".to_owned());
+    }
+    let mut found = meta.headers.clone();
+    for header in &mut found {
+        header.own_attributes.other.clear();
+    }
+    if found != layout.headers(&BTreeMap::new()) {
+        return Err("the parts and channels are not those that the axes demand".to_owned());
+    }
+    Ok(())
+}
+
+/// An attribute of the first part.
+pub(super) fn text<'a>(meta: &'a MetaData, name: &str) -> Result<&'a str, String> {
+    let attributes = meta.headers.first().map(|header| &header.own_attributes);
+    let mut attributes = attributes.into_iter().flat_map(|own| &own.other);
+    attributes
+        .find(|(found, _)| found.bytes() == name.as_bytes())
+        .and_then(|(_, value)| str::from_utf8(value.to_text().ok()?.bytes()).ok())
+        .ok_or_else(|| format!("there is no text attribute `{name}`"))
+}
+
+/// An attribute of the first part, decoded.
+pub(super) fn parse<T: DeserializeOwned>(meta: &MetaData, name: &str) -> Result<T, String> {
+    serde_json::from_str(text(meta, name)?).map_err(|error| format!("attribute `{name}`: {error}"))
+}

@@ -1,0 +1,179 @@
+//! Where each value lies in the file: parts, channels, tiles and blocks.
+
+use super::{Panel, STATE_CHANNELS};
+use crate::scene::Grid;
+use exr::block::BlockIndex;
+use exr::math::{RoundingMode, Vec2};
+use exr::meta::attribute::{
+    AttributeValue, ChannelDescription, LevelMode, LineOrder, SampleType, Text, TileDescription,
+};
+use exr::meta::header::Header;
+use exr::meta::{BlockDescription, Headers};
+use exr::prelude::Compression;
+use std::collections::BTreeMap;
+
+/// How many panels, and how many cells in each.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Layout {
+    /// Panels along x, one per taper.
+    pub columns: usize,
+    /// Panels along y, one per curvature.
+    pub rows: usize,
+    /// Cells along x in a panel, one per push angle.
+    pub push_angles: usize,
+    /// Cells along y in a panel, one per distance.
+    pub distances: usize,
+}
+
+impl Layout {
+    /// The layout of a sweep.
+    #[must_use]
+    pub fn of(grid: &Grid) -> Self {
+        Self {
+            columns: grid.taper.as_ref().map_or(1, Vec::len),
+            rows: grid.curvature_per_mm.as_ref().map_or(1, Vec::len),
+            push_angles: grid.push_angle_deg.len(),
+            distances: grid.distance_mm.len(),
+        }
+    }
+
+    /// Number of panels. Panel `row * columns + column` belongs to that curvature and that taper.
+    #[must_use]
+    pub const fn panels(&self) -> usize {
+        self.columns * self.rows
+    }
+
+    /// Number of cells in a panel.
+    #[must_use]
+    pub const fn cells(&self) -> usize {
+        self.push_angles * self.distances
+    }
+
+    /// Tiles, one per panel, or, when there is only one panel, scan lines: their many blocks compress in parallel.
+    fn blocks(&self) -> BlockDescription {
+        if self.panels() == 1 {
+            return BlockDescription::ScanLines;
+        }
+        BlockDescription::Tiles(TileDescription {
+            tile_size: Vec2(self.push_angles, self.distances),
+            level_mode: LevelMode::Singular,
+            rounding_mode: RoundingMode::Down,
+        })
+    }
+
+    /// Rows of cells in each block but the last one of a panel.
+    fn block_height(&self) -> usize {
+        match self.blocks() {
+            BlockDescription::ScanLines => COMPRESSION.scan_lines_per_block(),
+            BlockDescription::Tiles(tiles) => tiles.tile_size.height(),
+        }
+    }
+
+    /// Number of blocks of a panel in each part.
+    pub(super) fn blocks_per_panel(&self) -> usize {
+        self.distances.div_ceil(self.block_height())
+    }
+
+    /// Block `block` of panel `panel` in part `part`, and the panel's first row that lies in it.
+    pub(super) fn block(&self, part: usize, panel: usize, block: usize) -> (BlockIndex, usize) {
+        let first_row = block * self.block_height();
+        let rows = self.block_height().min(self.distances - first_row);
+        let corner = Vec2(
+            panel % self.columns * self.push_angles,
+            panel / self.columns * self.distances + first_row,
+        );
+        let index = BlockIndex {
+            layer: part,
+            pixel_position: corner,
+            pixel_size: Vec2(self.push_angles, rows),
+            level: Vec2(0, 0),
+        };
+        (index, first_row)
+    }
+
+    /// One header per part, all with the same attributes, so that each part stands alone.
+    pub(super) fn headers(&self, attributes: &BTreeMap<&'static str, String>) -> Headers {
+        let size = Vec2(self.columns * self.push_angles, self.rows * self.distances);
+        let described = parts().into_iter().map(|part| {
+            let channels = part
+                .channels
+                .into_iter()
+                .map(|(name, kind)| ChannelDescription::named(name, kind))
+                .collect();
+            let mut header = Header::new(Text::from(part.name), size, channels).with_encoding(
+                COMPRESSION,
+                self.blocks(),
+                LineOrder::Increasing,
+            );
+            header.own_attributes.other = attributes
+                .iter()
+                .map(|(&name, text)| {
+                    (
+                        Text::from(name),
+                        AttributeValue::Text(Text::from(text.as_str())),
+                    )
+                })
+                .collect();
+            header
+        });
+        described.collect()
+    }
+}
+
+/// Lossless.
+const COMPRESSION: Compression = Compression::ZIP16;
+
+/// A part of the file: its name, and its channels in the order of their names, as EXR wants them.
+pub(super) struct Part {
+    pub(super) name: &'static str,
+    pub(super) channels: Vec<(&'static str, SampleType)>,
+}
+
+/// The parts, in the order of the file.
+pub(super) fn parts() -> [Part; 3] {
+    let mut state = STATE_CHANNELS.map(|name| (name, SampleType::F32)).to_vec();
+    state.sort_unstable_by_key(|(name, _)| *name);
+    [
+        Part {
+            name: "regime",
+            channels: vec![("regime", SampleType::U32), ("status", SampleType::U32)],
+        },
+        Part {
+            name: "state",
+            channels: state,
+        },
+        Part {
+            name: "numerics",
+            channels: vec![
+                ("margin_deg", SampleType::F32),
+                ("newton_steps", SampleType::U32),
+                ("residual", SampleType::F32),
+            ],
+        },
+    ]
+}
+
+/// The bytes of every channel of a panel, in the order of [`parts`].
+pub(super) fn channel_bytes(panel: &Panel) -> [Vec<(&'static str, &[u8])>; 3] {
+    let mut state: Vec<(&str, &[u8])> = STATE_CHANNELS
+        .into_iter()
+        .zip(&panel.state)
+        .map(|(name, values)| (name, bytemuck::cast_slice(values)))
+        .collect();
+    state.sort_unstable_by_key(|(name, _)| *name);
+    [
+        vec![
+            ("regime", bytemuck::cast_slice(&panel.regime)),
+            ("status", bytemuck::cast_slice(&panel.status)),
+        ],
+        state,
+        vec![
+            ("margin_deg", bytemuck::cast_slice(&panel.margin_deg)),
+            ("newton_steps", bytemuck::cast_slice(&panel.newton_steps)),
+            ("residual", bytemuck::cast_slice(&panel.residual)),
+        ],
+    ]
+}
+
+/// Bytes of one sample; every channel is 32 bits wide.
+pub(super) const SAMPLE_BYTES: usize = 4;

@@ -1,0 +1,240 @@
+//! Reads a map, a channel of a panel at a time.
+
+use super::attributes;
+use super::layout::{self, Layout, SAMPLE_BYTES};
+use super::{Counts, Error, header};
+use crate::scene::Grid;
+use exr::block::UncompressedBlock;
+use exr::block::chunk::Chunk;
+use exr::meta::MetaData;
+use exr::meta::attribute::SampleType;
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::io::{self, BufReader, Seek, SeekFrom};
+use std::path::{Path, PathBuf};
+
+/// The values of a channel.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Samples {
+    /// Quantities; NaN where there is none.
+    F32(Vec<f32>),
+    /// Codes and counts.
+    U32(Vec<u32>),
+}
+
+impl Samples {
+    /// The value of a cell, exactly.
+    ///
+    /// # Panics
+    ///
+    /// There is no such cell.
+    #[must_use]
+    pub fn value(&self, cell: usize) -> f64 {
+        match self {
+            Self::F32(values) => f64::from(values[cell]),
+            Self::U32(values) => f64::from(values[cell]),
+        }
+    }
+
+    /// Every value, exactly.
+    pub fn values(&self) -> impl Iterator<Item = f64> + '_ {
+        let cells = match self {
+            Self::F32(values) => values.len(),
+            Self::U32(values) => values.len(),
+        };
+        (0..cells).map(|cell| self.value(cell))
+    }
+}
+
+/// A map on disk whose header has been read and checked.
+#[derive(Debug)]
+pub struct StoredMap {
+    path: PathBuf,
+    meta: MetaData,
+    /// Where the blocks of each part begin.
+    offsets: [Vec<u64>; 3],
+    layout: Layout,
+    grid: Grid,
+    title: String,
+    regime_names: BTreeMap<u32, String>,
+    status_names: BTreeMap<u32, String>,
+    counts: Counts,
+}
+
+impl StoredMap {
+    /// Reads the header of a map.
+    ///
+    /// # Errors
+    ///
+    /// The file cannot be read, is not EXR, is not a map of this program, or is damaged.
+    pub fn open(path: &Path) -> Result<Self, Error> {
+        let mut file = BufReader::new(File::open(path).map_err(unreadable(path))?);
+        let meta = header::read(path, &mut file)?;
+        let foreign = |reason| Error::NotAMap {
+            path: path.to_owned(),
+            reason,
+        };
+        let grid = attributes::decode_axes(header::text(&meta, "axes").map_err(foreign)?)
+            .map_err(|reason| foreign(format!("attribute `axes`: {reason}")))?;
+        let layout = Layout::of(&grid);
+        header::check_layout(&meta, layout).map_err(foreign)?;
+        Ok(Self {
+            offsets: header::read_offsets(path, &mut file, &meta)?,
+            title: header::parse(&meta, "title").map_err(foreign)?,
+            regime_names: header::parse(&meta, "regime_names").map_err(foreign)?,
+            status_names: header::parse(&meta, "status_names").map_err(foreign)?,
+            counts: header::parse(&meta, "counts").map_err(foreign)?,
+            path: path.to_owned(),
+            meta,
+            layout,
+            grid,
+        })
+    }
+
+    /// One line for people.
+    #[must_use]
+    pub fn title(&self) -> &str {
+        &self.title
+    }
+
+    /// The axes.
+    #[must_use]
+    pub const fn grid(&self) -> &Grid {
+        &self.grid
+    }
+
+    /// Panels and cells.
+    #[must_use]
+    pub const fn layout(&self) -> Layout {
+        self.layout
+    }
+
+    /// Name of every code of the channel `regime`.
+    #[must_use]
+    pub const fn regime_names(&self) -> &BTreeMap<u32, String> {
+        &self.regime_names
+    }
+
+    /// Name of every code of the channel `status`.
+    #[must_use]
+    pub const fn status_names(&self) -> &BTreeMap<u32, String> {
+        &self.status_names
+    }
+
+    /// What the map holds.
+    #[must_use]
+    pub const fn counts(&self) -> &Counts {
+        &self.counts
+    }
+
+    /// Any attribute, such as `tolerances`; a text, such as `scene` or `adapter`, is a JSON string.
+    ///
+    /// # Errors
+    ///
+    /// There is no such attribute, or it is not JSON.
+    pub fn attribute(&self, name: &str) -> Result<serde_json::Value, Error> {
+        header::parse(&self.meta, name).map_err(|reason| Error::NotAMap {
+            path: self.path.clone(),
+            reason,
+        })
+    }
+
+    /// The names of all channels, part by part.
+    #[must_use]
+    pub fn channels(&self) -> Vec<&'static str> {
+        let parts = layout::parts().into_iter();
+        parts
+            .flat_map(|part| part.channels)
+            .map(|(name, _)| name)
+            .collect()
+    }
+
+    /// A whole channel, panel after panel: `[curvature][taper][distance][push angle]`, the last one fastest.
+    ///
+    /// # Errors
+    ///
+    /// There is no such channel, or the file is damaged.
+    pub fn read_channel(&self, name: &str) -> Result<Samples, Error> {
+        self.read(name, 0..self.layout.panels())
+    }
+
+    /// A channel of one panel: `[distance][push angle]`. Nothing but this panel is read.
+    ///
+    /// # Errors
+    ///
+    /// There is no such channel or panel, or the file is damaged.
+    pub fn read_panel(&self, name: &str, index: usize) -> Result<Samples, Error> {
+        let panels = self.layout.panels();
+        if index >= panels {
+            return Err(Error::NoSuchPanel { index, panels });
+        }
+        self.read(name, index..index + 1)
+    }
+
+    fn read(&self, name: &str, panels: std::ops::Range<usize>) -> Result<Samples, Error> {
+        let (part, channel, kind) = self.find(name)?;
+        let mut file = BufReader::new(File::open(&self.path).map_err(unreadable(&self.path))?);
+        let mut bytes = Vec::new();
+        for panel in panels {
+            for block in 0..self.layout.blocks_per_panel() {
+                self.read_block(&mut file, [part, panel, block], channel, &mut bytes)
+                    .map_err(|cause| Error::Damaged {
+                        path: self.path.clone(),
+                        reason: format!("channel `{name}`, panel {panel}, block {block}: {cause}"),
+                    })?;
+            }
+        }
+        Ok(match kind {
+            SampleType::U32 => Samples::U32(bytemuck::pod_collect_to_vec(&bytes)),
+            _ => Samples::F32(bytemuck::pod_collect_to_vec(&bytes)),
+        })
+    }
+
+    /// Part, place in that part, and type of a channel.
+    fn find(&self, name: &str) -> Result<(usize, usize, SampleType), Error> {
+        for (part, about) in layout::parts().iter().enumerate() {
+            for (place, (channel, kind)) in about.channels.iter().enumerate() {
+                if *channel == name {
+                    return Ok((part, place, *kind));
+                }
+            }
+        }
+        Err(Error::UnknownChannel {
+            path: self.path.clone(),
+            name: name.to_owned(),
+            known: self.channels().join(", "),
+        })
+    }
+
+    /// Appends the samples of one channel in one block to `bytes`.
+    fn read_block(
+        &self,
+        file: &mut BufReader<File>,
+        [part, panel, block]: [usize; 3],
+        channel: usize,
+        bytes: &mut Vec<u8>,
+    ) -> exr::error::Result<()> {
+        let place = panel * self.layout.blocks_per_panel() + block;
+        file.seek(SeekFrom::Start(self.offsets[part][place]))?;
+        let chunk = Chunk::read(file, &self.meta)?;
+        let read = UncompressedBlock::decompress_chunk(chunk, &self.meta, false)?;
+        if read.index != self.layout.block(part, panel, block).0 {
+            return Err(io::Error::other("another block is in its place").into());
+        }
+        let line = self.layout.push_angles * SAMPLE_BYTES;
+        let channels = self.meta.headers[part].channels.list.len();
+        for row in read.data.chunks_exact(channels * line) {
+            bytes.extend_from_slice(&row[channel * line..][..line]);
+        }
+        Ok(())
+    }
+}
+
+fn unreadable(path: &Path) -> impl Fn(io::Error) -> Error {
+    let path = path.to_owned();
+    move |cause| Error::Io {
+        action: "read",
+        path: path.clone(),
+        cause,
+    }
+}

@@ -1,0 +1,238 @@
+//! Writes a map panel by panel.
+
+use super::attributes::{self, Description};
+use super::layout::{self, Layout, SAMPLE_BYTES};
+use super::tally::{Counts, Tally};
+use super::{Error, Panel, fresh, header};
+use crate::classify::Regime;
+use exr::block::UncompressedBlock;
+use exr::meta::Headers;
+use exr::meta::attribute::{AttributeValue, Text};
+use rayon::prelude::*;
+use std::io::{self, BufWriter, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+use tempfile::NamedTempFile;
+
+/// A map on its way to disk. It bears a temporary name until [`MapWriter::finish`]; dropped before that, it vanishes.
+#[derive(Debug)]
+pub struct MapWriter {
+    path: PathBuf,
+    file: BufWriter<NamedTempFile>,
+    /// Bytes written so far.
+    position: u64,
+    layout: Layout,
+    headers: Headers,
+    /// Where the blocks of each part begin.
+    offsets: [Vec<u64>; 3],
+    /// Panels written so far.
+    written: usize,
+    regimes: Tally,
+    statuses: Tally,
+    worst_residual: Option<f64>,
+    counts_width: usize,
+}
+
+impl MapWriter {
+    /// Begins the map that will be `path`, with a header of all that is known before the run.
+    ///
+    /// # Errors
+    ///
+    /// The folder is not writable, or the map is too large for EXR.
+    pub fn create(path: &Path, about: &Description<'_>) -> Result<Self, Error> {
+        let regimes = Regime::ALL.map(|regime| (regime.code(), regime.name()));
+        let counts_width = attributes::counts_width(about, &regimes);
+        let regimes = Tally::new(regimes, 0);
+        let statuses = Tally::new(about.status_names.iter().copied(), 0);
+        let layout = Layout::of(&about.scene.grid);
+        let mut attributes = attributes::encode(about, &regimes, &statuses);
+        attributes.insert("counts", " ".repeat(counts_width));
+        let headers = layout.headers(&attributes);
+
+        let preamble = header::encode(&headers, &Default::default()).map_err(refused(path))?;
+        let file = fresh::beside(path, ".exr").map_err(unwritable(path))?;
+        let mut writer = Self {
+            path: path.to_owned(),
+            file: BufWriter::new(file),
+            position: 0,
+            layout,
+            headers,
+            offsets: Default::default(),
+            written: 0,
+            regimes,
+            statuses,
+            worst_residual: None,
+            counts_width,
+        };
+        writer.append(&preamble)?;
+        Ok(writer)
+    }
+
+    /// Compresses and appends the next panel; `index` is `curvature * tapers + taper`.
+    ///
+    /// # Errors
+    ///
+    /// The panel is not the next one, has the wrong size or a code without a name, or the disk is full.
+    pub fn write_panel(&mut self, index: usize, panel: &Panel) -> Result<(), Error> {
+        let panels = self.layout.panels();
+        if index != self.written || index >= panels {
+            return Err(Error::PanelOrder {
+                index,
+                due: self.written,
+                panels,
+            });
+        }
+        let channels = layout::channel_bytes(panel);
+        self.check_sizes(index, &channels)?;
+        self.count(index, panel)?;
+
+        let blocks = self.layout.blocks_per_panel();
+        let chunks: Vec<Vec<u8>> = (0..channels.len() * blocks)
+            .into_par_iter()
+            .map(|task| {
+                self.chunk(
+                    index,
+                    task / blocks,
+                    task % blocks,
+                    &channels[task / blocks],
+                )
+            })
+            .collect::<exr::error::Result<_>>()
+            .map_err(refused(&self.path))?;
+        for (task, chunk) in chunks.iter().enumerate() {
+            self.offsets[task / blocks].push(self.position);
+            self.append(chunk)?;
+        }
+        self.written += 1;
+        Ok(())
+    }
+
+    /// Writes the counts into the header and gives the map its name. Returns the counts.
+    ///
+    /// # Errors
+    ///
+    /// A panel is missing, or the file cannot be written or renamed; then no map appears.
+    pub fn finish(mut self) -> Result<Counts, Error> {
+        if self.written != self.layout.panels() {
+            return Err(Error::Incomplete {
+                written: self.written,
+                panels: self.layout.panels(),
+            });
+        }
+        let counts = Counts {
+            regimes: self.regimes.by_name(),
+            statuses: self.statuses.by_name(),
+            worst_residual: self.worst_residual,
+        };
+        let text = attributes::encode_counts(&counts, self.counts_width);
+        for header in &mut self.headers {
+            let value = AttributeValue::Text(Text::from(text.as_str()));
+            header
+                .own_attributes
+                .other
+                .insert(Text::from("counts"), value);
+        }
+        // The counts were given their room at the start, so this has the length of what it replaces.
+        let preamble = header::encode(&self.headers, &self.offsets).map_err(refused(&self.path))?;
+        self.file
+            .seek(SeekFrom::Start(0))
+            .and_then(|_| self.file.write_all(&preamble))
+            .map_err(unwritable(&self.path))?;
+        let file = self
+            .file
+            .into_inner()
+            .map_err(|error| unwritable(&self.path)(error.into_error()))?;
+        file.persist(&self.path)
+            .map_err(|error| unwritable(&self.path)(error.error))?;
+        Ok(counts)
+    }
+
+    fn append(&mut self, bytes: &[u8]) -> Result<(), Error> {
+        self.file.write_all(bytes).map_err(unwritable(&self.path))?;
+        self.position += bytes.len() as u64;
+        Ok(())
+    }
+
+    fn check_sizes(
+        &self,
+        index: usize,
+        channels: &[Vec<(&'static str, &[u8])>; 3],
+    ) -> Result<(), Error> {
+        let expected = self.layout.cells();
+        for &(channel, bytes) in channels.iter().flatten() {
+            let cells = bytes.len() / SAMPLE_BYTES;
+            if cells != expected {
+                return Err(Error::PanelSize {
+                    index,
+                    channel,
+                    cells,
+                    expected,
+                });
+            }
+        }
+        Ok(())
+    }
+
+    /// Counts the cells of a panel, or, where a code has no name, none of them.
+    fn count(&mut self, index: usize, panel: &Panel) -> Result<(), Error> {
+        let unknown = |channel| {
+            move |code| Error::UnknownCode {
+                index,
+                channel,
+                code,
+            }
+        };
+        let mut regimes = self.regimes.clone();
+        let mut statuses = self.statuses.clone();
+        regimes.add(&panel.regime).map_err(unknown("regime"))?;
+        statuses.add(&panel.status).map_err(unknown("status"))?;
+        (self.regimes, self.statuses) = (regimes, statuses);
+        let residuals = panel.residual.iter().filter(|residual| !residual.is_nan());
+        self.worst_residual = residuals
+            .map(|residual| f64::from(*residual))
+            .chain(self.worst_residual)
+            .reduce(f64::max);
+        Ok(())
+    }
+
+    /// One block of one part of a panel, compressed and ready to be appended.
+    fn chunk(
+        &self,
+        panel: usize,
+        part: usize,
+        block: usize,
+        channels: &[(&str, &[u8])],
+    ) -> exr::error::Result<Vec<u8>> {
+        let (index, first_row) = self.layout.block(part, panel, block);
+        let line = self.layout.push_angles * SAMPLE_BYTES;
+        let rows = first_row..first_row + index.pixel_size.height();
+        let mut data = Vec::with_capacity(rows.len() * line * channels.len());
+        for row in rows {
+            for (_, bytes) in channels {
+                data.extend_from_slice(&bytes[row * line..][..line]);
+            }
+        }
+        let block = UncompressedBlock { index, data };
+        let mut bytes = Vec::new();
+        block
+            .compress_to_chunk(&self.headers)?
+            .write(&mut bytes, self.headers.len())?;
+        Ok(bytes)
+    }
+}
+
+fn unwritable(path: &Path) -> impl Fn(io::Error) -> Error {
+    let path = path.to_owned();
+    move |cause| Error::Io {
+        action: "write",
+        path: path.clone(),
+        cause,
+    }
+}
+
+fn refused(path: &Path) -> impl Fn(exr::error::Error) -> Error {
+    let path = path.to_owned();
+    move |cause| Error::Encode {
+        path: path.clone(),
+        cause,
+    }
+}

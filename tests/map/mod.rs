@@ -1,0 +1,122 @@
+//! A map made up for tests: it looks like a whisker's and is cheap to make.
+#![allow(dead_code, reason = "each test program uses its own share")]
+
+use serde_json::{Value, json};
+use std::path::Path;
+use whiskmap::classify::Regime;
+use whiskmap::scene::{Grid, Scene, Whisker};
+use whiskmap::store::{Counts, Description, MapWriter, Panel, STATE_CHANNELS};
+
+pub const STATUS_NAMES: [(u32, &str); 3] =
+    [(0, "solved"), (1, "beyond an edge"), (7, "refined twice")];
+
+/// `count` values from `first` to `last`.
+pub fn spread(first: f64, last: f64, count: usize) -> Vec<f64> {
+    if count == 1 {
+        return vec![first];
+    }
+    let step = (last - first) / (count - 1) as f64;
+    (0..count).map(|i| first + step * i as f64).collect()
+}
+
+pub fn scene(
+    push_angles: usize,
+    distances: usize,
+    taper: Option<Vec<f64>>,
+    curvature_per_mm: Option<Vec<f64>>,
+) -> Scene {
+    Scene {
+        title: "A made-up whisker in front of a pole".to_owned(),
+        whisker: Whisker {
+            length_mm: 20.0,
+            base_radius_um: 33.0,
+            tip_radius_um: 2.0,
+            youngs_modulus_gpa: 3.0,
+            curvature: None,
+        },
+        pole_radius_mm: 0.25,
+        grid: Grid {
+            push_angle_deg: spread(-60.0, 70.0, push_angles),
+            distance_mm: spread(3.0, 20.5, distances),
+            taper,
+            curvature_per_mm,
+        },
+        name: "made-up".to_owned(),
+        text: "title = \"A made-up whisker\"\n".to_owned(),
+    }
+}
+
+/// Push angle of detachment and whether the whisker slips off there, for a distance in whisker lengths.
+fn edge(distance: f64, side: f64, index: usize) -> Option<(f64, bool)> {
+    let reach = if side < 0.0 { 1.0 } else { 0.96 };
+    let left = reach - distance;
+    (left > 0.0).then(|| {
+        let slip = 68.0 * (left / reach).powf(0.6) * (0.75 + 0.05 * index as f64);
+        let pull = 400.0 * left;
+        (slip.min(pull), slip < pull)
+    })
+}
+
+/// Panel `index` of a map.
+pub fn panel(scene: &Scene, index: usize) -> Panel {
+    let grid = &scene.grid;
+    let cells = grid.push_angle_deg.len() * grid.distance_mm.len();
+    let mut panel = Panel {
+        regime: Vec::with_capacity(cells),
+        status: Vec::with_capacity(cells),
+        state: [const { Vec::new() }; STATE_CHANNELS.len()],
+        residual: Vec::with_capacity(cells),
+        margin_deg: Vec::with_capacity(cells),
+        newton_steps: Vec::with_capacity(cells),
+    };
+    for distance in &grid.distance_mm {
+        for &angle in &grid.push_angle_deg {
+            let far = distance / scene.whisker.length_mm;
+            let edge = edge(far, angle, index);
+            let regime = match edge {
+                None => Regime::OutOfReach,
+                Some((end, _)) if angle.abs() < end && far > 0.97 => Regime::Unreachable,
+                Some((end, _)) if angle.abs() < end => Regime::Contact,
+                Some((_, true)) => Regime::SlipOff,
+                Some((_, false)) => Regime::PullOff,
+            };
+            let touching = matches!(regime, Regime::Contact | Regime::Unreachable);
+            let f32_or_nan = |value: f64| if touching { value as f32 } else { f32::NAN };
+            panel.regime.push(regime.code());
+            panel.status.push(u32::from(!touching));
+            for (place, values) in panel.state.iter_mut().enumerate() {
+                let scale = 10_f64.powi(place as i32 - 3);
+                values.push(f32_or_nan(scale * angle / (far * far + 0.01)));
+            }
+            panel.residual.push(f32_or_nan(1e-9 * far * angle.abs()));
+            let margin = edge.map_or(0.0, |(end, _)| end - angle.abs());
+            panel.margin_deg.push(f32_or_nan(margin));
+            let steps = 2 + (angle.abs() / 20.0) as u32;
+            panel.newton_steps.push(if touching { steps } else { 0 });
+        }
+    }
+    panel
+}
+
+pub fn describe<'a>(scene: &'a Scene, tolerances: &'a Value) -> Description<'a> {
+    Description {
+        scene,
+        engine: "cpu f64",
+        adapter: "a \u{201c}card\u{201d}",
+        tolerances,
+        status_names: &STATUS_NAMES,
+    }
+}
+
+/// Writes the whole map.
+pub fn write(path: &Path, scene: &Scene) -> Counts {
+    let tolerances = json!({"rtol": 0.1 + 0.2});
+    let mut writer = MapWriter::create(path, &describe(scene, &tolerances)).unwrap();
+    let grid = &scene.grid;
+    let tapers = grid.taper.as_ref().map_or(1, Vec::len);
+    let curvatures = grid.curvature_per_mm.as_ref().map_or(1, Vec::len);
+    for index in 0..tapers * curvatures {
+        writer.write_panel(index, &panel(scene, index)).unwrap();
+    }
+    writer.finish().unwrap()
+}

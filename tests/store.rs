@@ -1,0 +1,397 @@
+//! What is written comes back, whole or not at all.
+#![allow(
+    clippy::unwrap_used,
+    reason = "a test that cannot set up its files should stop"
+)]
+
+mod map;
+
+use map::{STATUS_NAMES, panel, scene, write};
+use serde_json::json;
+use std::fs;
+use std::path::Path;
+use whiskmap::store::{Error, Layout, MapWriter, Panel, STATE_CHANNELS, Samples, StoredMap};
+
+type Swept = Option<Vec<f64>>;
+
+/// One whisker, and an atlas of three tapers by two curvatures.
+fn sweeps() -> [(Swept, Swept); 2] {
+    [
+        (None, None),
+        (Some(vec![0.5, 0.75, 0.95]), Some(vec![0.0, 0.012])),
+    ]
+}
+
+fn bits(samples: &Samples) -> Vec<u32> {
+    match samples {
+        Samples::F32(values) => values.iter().map(|value| value.to_bits()).collect(),
+        Samples::U32(values) => values.clone(),
+    }
+}
+
+/// A channel of a panel, by the name it has in the file.
+fn channel(panel: &Panel, name: &str) -> Samples {
+    match name {
+        "regime" => Samples::U32(panel.regime.clone()),
+        "status" => Samples::U32(panel.status.clone()),
+        "newton_steps" => Samples::U32(panel.newton_steps.clone()),
+        "residual" => Samples::F32(panel.residual.clone()),
+        "margin_deg" => Samples::F32(panel.margin_deg.clone()),
+        _ => {
+            let place = STATE_CHANNELS.iter().position(|known| *known == name);
+            Samples::F32(panel.state[place.unwrap()].clone())
+        }
+    }
+}
+
+fn listing(folder: &Path) -> Vec<String> {
+    let entries = fs::read_dir(folder).unwrap();
+    entries
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect()
+}
+
+#[test]
+fn every_channel_of_every_panel_comes_back_bit_for_bit() {
+    for (taper, curvature) in sweeps() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("map.exr");
+        // 37 rows are two blocks of 16 scan lines and one of 5.
+        let scene = scene(23, 37, taper, curvature);
+        write(&path, &scene);
+        let map = StoredMap::open(&path).unwrap();
+        let layout = Layout::of(&scene.grid);
+        assert_eq!(map.layout(), layout);
+        assert_eq!(map.channels().len(), STATE_CHANNELS.len() + 5);
+        for name in map.channels() {
+            let mut whole = Vec::new();
+            for index in 0..layout.panels() {
+                let expected = bits(&channel(&panel(&scene, index), name));
+                let found = bits(&map.read_panel(name, index).unwrap());
+                assert_eq!(found, expected, "{name} of panel {index}");
+                whole.extend(found);
+            }
+            assert_eq!(bits(&map.read_channel(name).unwrap()), whole, "{name}");
+        }
+        let Samples::F32(force) = map.read_channel("force_un").unwrap() else {
+            panic!("forces are f32");
+        };
+        assert!(force.iter().any(|value| value.is_nan()) && force.iter().any(|f| f.is_finite()));
+    }
+}
+
+#[test]
+fn every_attribute_comes_back() {
+    for (taper, curvature) in sweeps() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("map.exr");
+        let mut scene = scene(3, 2, taper, curvature);
+        scene.title = "Whisker of 100 \u{b5}m, \"\u{1f400}\"".to_owned();
+        scene.text = "title = \"\u{e9}\\\"\"\n\t# \u{4e2d}\n".to_owned();
+        scene.grid.distance_mm = vec![0.1 + 0.2, 2.5e300];
+        // Many values with 17 digits: a parser that rounds twice loses some of them.
+        scene.grid.push_angle_deg = map::spread(-60.0 / 7.0, 70.0 / 3.0, 997);
+        let counts = write(&path, &scene);
+        let map = StoredMap::open(&path).unwrap();
+        assert_eq!(map.title(), scene.title);
+        assert_eq!(map.grid(), &scene.grid);
+        assert_eq!(map.counts(), &counts);
+        let layout = map.layout();
+        let attribute = |name| map.attribute(name).unwrap();
+        assert_eq!(attribute("scene"), json!(scene.text));
+        assert_eq!(
+            attribute("whiskmap_version"),
+            json!(env!("CARGO_PKG_VERSION"))
+        );
+        assert_eq!(attribute("engine"), json!("cpu f64"));
+        assert_eq!(attribute("adapter"), json!("a \u{201c}card\u{201d}"));
+        assert_eq!(attribute("tolerances"), json!({"rtol": 0.1 + 0.2}));
+        assert_eq!(attribute("panels"), json!([layout.columns, layout.rows]));
+        assert_eq!(attribute("axes")[1]["unit"], "mm");
+        assert_eq!(attribute("axes")[1]["direction"], "y");
+        assert_eq!(map.regime_names()[&255], "unresolved");
+        assert_eq!(map.status_names()[&7], STATUS_NAMES[2].1);
+        assert_eq!(map.status_names().len(), STATUS_NAMES.len());
+        let error = map.attribute("weather").unwrap_err().to_string();
+        assert!(error.contains("`weather`"), "{error}");
+    }
+}
+
+#[test]
+fn the_header_counts_the_cells() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("map.exr");
+    let scene = scene(40, 30, Some(vec![0.5, 0.9]), None);
+    let counts = write(&path, &scene);
+    let map = StoredMap::open(&path).unwrap();
+    let Samples::U32(regimes) = map.read_channel("regime").unwrap() else {
+        panic!("regimes are u32");
+    };
+    for (code, name) in map.regime_names() {
+        let cells = regimes.iter().filter(|found| *found == code).count();
+        assert_eq!(counts.regimes[name], cells as u64, "{name}");
+    }
+    assert_eq!(counts.regimes.values().sum::<u64>(), regimes.len() as u64);
+    assert_eq!(counts.statuses.values().sum::<u64>(), regimes.len() as u64);
+    let worst = map.read_channel("residual").unwrap();
+    let worst = worst.values().filter(|value| !value.is_nan());
+    assert_eq!(counts.worst_residual, worst.reduce(f64::max));
+    assert!(counts.worst_residual.is_some());
+}
+
+#[test]
+fn equal_maps_have_equal_bytes_all_attributes_ascii() {
+    for (taper, curvature) in sweeps() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut scene = scene(23, 37, taper, curvature);
+        scene.title = "\u{b5}".to_owned();
+        let files = ["one.exr", "two.exr"].map(|name| {
+            write(&folder.path().join(name), &scene);
+            fs::read(folder.path().join(name)).unwrap()
+        });
+        assert!(files[0] == files[1]);
+        let meta = exr::meta::MetaData::read_from_buffered(&files[0][..], true).unwrap();
+        assert_eq!(meta.headers.len(), 3);
+        for header in &meta.headers {
+            assert_eq!(header.own_attributes.other.len(), 11);
+            for value in header.own_attributes.other.values() {
+                assert!(value.to_text().unwrap().bytes().is_ascii());
+            }
+        }
+    }
+}
+
+#[test]
+fn another_strict_reader_finds_every_cell_where_the_axes_say() {
+    use exr::prelude::*;
+    for (taper, curvature) in sweeps() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("map.exr");
+        let scene = scene(23, 37, taper, curvature);
+        write(&path, &scene);
+        let image = read()
+            .no_deep_data()
+            .largest_resolution_level()
+            .all_channels()
+            .all_layers()
+            .all_attributes()
+            .pedantic()
+            .from_file(&path)
+            .unwrap();
+        let names = image.layer_data.iter().map(|layer| &layer.attributes);
+        let names: Vec<_> = names
+            .map(|own| own.layer_name.clone().unwrap().to_string())
+            .collect();
+        assert_eq!(names, ["regime", "state", "numerics"]);
+        let layout = Layout::of(&scene.grid);
+        let width = layout.columns * 23;
+        for found in image
+            .layer_data
+            .iter()
+            .flat_map(|layer| &layer.channel_data.list)
+        {
+            let name = found.name.to_string();
+            for index in 0..layout.panels() {
+                let (column, row) = (index % layout.columns, index / layout.columns);
+                let expected = channel(&panel(&scene, index), &name);
+                for (cell, expected) in bits(&expected).into_iter().enumerate() {
+                    let (x, y) = (column * 23 + cell % 23, row * 37 + cell / 23);
+                    let found = match &found.sample_data {
+                        FlatSamples::F32(values) => values[y * width + x].to_bits(),
+                        FlatSamples::U32(values) => values[y * width + x],
+                        FlatSamples::F16(_) => panic!("no channel is f16"),
+                    };
+                    assert_eq!(found, expected, "{name} at {x}, {y}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn blocks_lie_in_the_order_that_the_header_promises() {
+    use exr::meta::attribute::LineOrder;
+    use std::io::Read;
+    for (taper, curvature) in sweeps() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("map.exr");
+        write(&path, &scene(23, 37, taper, curvature));
+        let mut file = std::io::BufReader::new(fs::File::open(&path).unwrap());
+        let meta = exr::meta::MetaData::read_from_buffered(&mut file, true).unwrap();
+        for header in &meta.headers {
+            assert_eq!(header.line_order, LineOrder::Increasing);
+            let mut table = vec![0; 8 * header.chunk_count];
+            file.read_exact(&mut table).unwrap();
+            let offsets: Vec<u64> = table
+                .as_chunks()
+                .0
+                .iter()
+                .copied()
+                .map(u64::from_le_bytes)
+                .collect();
+            assert!(offsets.is_sorted_by(|one, next| one < next), "{offsets:?}");
+        }
+    }
+}
+
+#[test]
+fn a_map_appears_only_when_it_is_finished() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("map.exr");
+    let scene = scene(5, 4, Some(vec![0.5, 0.9]), None);
+    let tolerances = json!(null);
+    let about = map::describe(&scene, &tolerances);
+
+    let mut dropped = MapWriter::create(&path, &about).unwrap();
+    dropped.write_panel(0, &panel(&scene, 0)).unwrap();
+    assert_eq!(listing(folder.path()).len(), 1);
+    assert!(!path.exists());
+    drop(dropped);
+    assert!(listing(folder.path()).is_empty());
+
+    let mut short = MapWriter::create(&path, &about).unwrap();
+    short.write_panel(0, &panel(&scene, 0)).unwrap();
+    let error = short.finish().unwrap_err().to_string();
+    assert_eq!(error, "the map was finished after 1 of 2 panels");
+    assert!(listing(folder.path()).is_empty());
+
+    fs::write(&path, "an older map").unwrap();
+    write(&path, &scene);
+    assert_eq!(listing(folder.path()), ["map.exr"]);
+    StoredMap::open(&path).unwrap();
+
+    let nowhere = folder.path().join("no such folder/map.exr");
+    let error = MapWriter::create(&nowhere, &about).unwrap_err().to_string();
+    assert!(error.starts_with("cannot write "), "{error}");
+}
+
+#[cfg(unix)]
+#[test]
+fn a_map_has_the_permissions_of_any_new_file() {
+    use std::os::unix::fs::PermissionsExt;
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("map.exr");
+    write(&path, &scene(2, 2, None, None));
+    let plain = folder.path().join("plain");
+    fs::write(&plain, "").unwrap();
+    let mode = |path: &Path| fs::metadata(path).unwrap().permissions().mode();
+    assert_eq!(mode(&path), mode(&plain));
+}
+
+#[test]
+fn a_panel_that_does_not_fit_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("map.exr");
+    let scene = scene(5, 4, Some(vec![0.5, 0.9]), None);
+    let tolerances = json!(null);
+    let mut writer = MapWriter::create(&path, &map::describe(&scene, &tolerances)).unwrap();
+    let good = panel(&scene, 0);
+    let mut refusal = |index, panel| writer.write_panel(index, panel).unwrap_err().to_string();
+
+    assert_eq!(
+        refusal(1, &good),
+        "panel 1 was written where panel 0 of 2 is due"
+    );
+    let mut small = good.clone();
+    small.state[3].pop();
+    assert_eq!(
+        refusal(0, &small),
+        "panel 0: channel `base_force_x_un` has 19 cells instead of 20"
+    );
+    let mut strange = good.clone();
+    strange.regime[7] = 99;
+    assert_eq!(
+        refusal(0, &strange),
+        "panel 0: channel `regime` holds the code 99, which has no name"
+    );
+}
+
+#[test]
+fn an_unknown_channel_is_answered_with_the_known_ones() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("map.exr");
+    write(&path, &scene(2, 2, None, None));
+    let map = StoredMap::open(&path).unwrap();
+    let error = map.read_channel("force").unwrap_err().to_string();
+    for name in ["`force`", "regime", "force_un", "margin_deg"] {
+        assert!(error.contains(name), "{error}");
+    }
+    let error = map.read_panel("regime", 1).unwrap_err().to_string();
+    assert_eq!(error, "there is no panel 1; the map has 1");
+}
+
+#[test]
+fn other_files_are_told_apart() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("map.exr");
+    let missing = StoredMap::open(&path).unwrap_err();
+    assert!(matches!(missing, Error::Io { action: "read", .. }));
+    for text in ["", "\x76", "this is no picture"] {
+        fs::write(&path, text).unwrap();
+        let error = StoredMap::open(&path).unwrap_err();
+        assert!(matches!(error, Error::NotExr { .. }), "{error}");
+    }
+    exr::prelude::write_rgb_file(&path, 4, 4, |x, y| (x as f32, y as f32, 0.0)).unwrap();
+    let error = StoredMap::open(&path).unwrap_err();
+    assert!(matches!(error, Error::NotAMap { .. }), "{error}");
+}
+
+#[test]
+fn channels_that_do_not_fit_the_axes_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("map.exr");
+    write(&path, &scene(3, 2, None, None));
+    let mut bytes = fs::read(&path).unwrap();
+    let name = b"newton_steps\0";
+    let place = bytes.windows(name.len()).position(|found| found == name);
+    bytes[place.unwrap()] = b'm';
+    fs::write(&path, bytes).unwrap();
+    let error = StoredMap::open(&path).unwrap_err();
+    assert!(matches!(error, Error::NotAMap { .. }), "{error}");
+}
+
+/// Opens a file and reads every block of it.
+fn read_all(path: &Path) -> Result<(), Error> {
+    let map = StoredMap::open(path)?;
+    for name in ["regime", "force_un", "residual"] {
+        map.read_channel(name)?;
+    }
+    Ok(())
+}
+
+#[test]
+fn a_file_cut_short_is_an_error_at_every_length() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("map.exr");
+    for (taper, curvature) in sweeps() {
+        write(&path, &scene(3, 2, taper, curvature));
+        let whole = fs::read(&path).unwrap();
+        read_all(&path).unwrap();
+        for length in (0..whole.len()).rev().step_by(17) {
+            fs::write(&path, &whole[..length]).unwrap();
+            let error = read_all(&path).unwrap_err();
+            assert!(
+                matches!(error, Error::NotExr { .. } | Error::Damaged { .. }),
+                "{length}: {error}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_spoiled_byte_never_panics() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("map.exr");
+    let mut refused = 0;
+    for (taper, curvature) in sweeps() {
+        write(&path, &scene(3, 2, taper, curvature));
+        let whole = fs::read(&path).unwrap();
+        for place in (0..whole.len()).step_by(11) {
+            let mut spoiled = whole.clone();
+            spoiled[place] ^= 1 << (place % 8);
+            fs::write(&path, &spoiled).unwrap();
+            refused += usize::from(read_all(&path).is_err());
+        }
+    }
+    assert!(refused > 300, "{refused}");
+}
