@@ -8,6 +8,8 @@
 pub mod classify;
 pub mod integrate;
 pub mod model;
+pub mod plan;
+pub mod refine;
 pub mod render;
 pub mod scene;
 pub mod sheet;

@@ -6,7 +6,10 @@ use crate::model::{Dopri8, Effects, First, Landing, Resolution, Rod, arclength};
 use glam::DVec2;
 
 /// Accurate to 5e-10 over taper up to 0.99, far below the tolerance.
-const RESOLUTION: Resolution = Resolution { least: 16, longest: 0.3 };
+const RESOLUTION: Resolution = Resolution {
+    least: 16,
+    longest: 0.3,
+};
 
 /// Residual at which the refinement takes over, in whisker lengths: one Newton step away from 1e-12.
 const TOLERANCE: f64 = 1e-6;

@@ -13,6 +13,14 @@ use glam::DVec2;
 /// scale on the sheet).
 pub const LONGEST_STEP: f64 = 0.25;
 
+/// `step` in `(tau, load)`, shortened as a whole to [`LONGEST_STEP`], and its length before: near a fold the
+/// Jacobian is nearly singular, and the full step would leave the sheet.
+#[must_use]
+pub fn limited(step: DVec2, s: f64, load: f64) -> (DVec2, f64) {
+    let length = (step.x.abs() / s).max(step.y.abs() / (load.abs() + 1.0 / (s * s)));
+    (step * (LONGEST_STEP / length).min(1.0), length)
+}
+
 /// Product of complex numbers.
 fn times(a: DVec2, b: DVec2) -> DVec2 {
     a.rotate(b)
@@ -93,14 +101,10 @@ impl Landing {
         ) / self.det()
     }
 
-    /// Newton's step `(tau, load)` toward `wanted` from the contact at arclength `s` under `load`, shortened
-    /// as a whole to [`LONGEST_STEP`]: near a fold the Jacobian is nearly singular, and the full step would
-    /// leave the sheet.
+    /// Newton's step `(tau, load)` toward `wanted`, [`limited`], from the contact at arclength `s` under `load`.
     #[must_use]
     pub fn newton_step(&self, wanted: DVec2, s: f64, load: f64) -> DVec2 {
-        let step = self.solve(self.residual(wanted));
-        let length = (step.x.abs() / s).max(step.y.abs() / (load.abs() + 1.0 / (s * s)));
-        step * (LONGEST_STEP / length).min(1.0)
+        limited(self.solve(self.residual(wanted)), s, load).0
     }
 
     /// `P_wanted/P - 1`: what Newton's method cancels. Its length is the miss relative to `D`.

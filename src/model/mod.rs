@@ -24,7 +24,7 @@ mod vector;
 
 pub use dopri8::Dopri8;
 pub use integrator::{Integrator, Resolution, Scales, integrate};
-pub use landing::{Base, Curved, Full, LONGEST_STEP, Landing};
+pub use landing::{Base, Curved, Full, LONGEST_STEP, Landing, limited};
 pub use order::{First, FirstAndEnergy, Order, Second};
 pub use real::Real;
 pub use rest::Rest;

@@ -64,7 +64,11 @@ fn bracket(method: Method, rod: &Rod, side: Side, taus: &[f64]) -> Vec<Option<Br
         let launches: Vec<Launch> = open
             .iter()
             .flat_map(|m| samples.iter().map(|q| (taus[m.index], q * m.scale)))
-            .map(|(tau, load)| Launch { rod: *rod, tau, load })
+            .map(|(tau, load)| Launch {
+                rod: *rod,
+                tau,
+                load,
+            })
             .collect();
         let dets: Vec<f64> = land::<Dopri8, First, 6>(method, &launches)
             .iter()
@@ -108,13 +112,23 @@ fn polish(method: Method, rod: &Rod, brackets: &[Option<Bracket>]) -> Vec<Option
     for _ in 0..ROUNDS {
         let launches: Vec<Launch> = open
             .iter()
-            .map(|(_, b)| Launch { rod: *rod, tau: b.tau, load: b.guess })
+            .map(|(_, b)| Launch {
+                rod: *rod,
+                tau: b.tau,
+                load: b.guess,
+            })
             .collect();
         let mut landings = land::<Dopri8, Second, 15>(method, &launches).into_iter();
         open.retain_mut(|(i, b)| {
-            let Some(landing) = landings.next() else { return false };
+            let Some(landing) = landings.next() else {
+                return false;
+            };
             let (det, slope) = (landing.landing.det(), landing.det_gradient().y);
-            points[*i] = Some(FoldPoint { tau: b.tau, load: b.guess, landing });
+            points[*i] = Some(FoldPoint {
+                tau: b.tau,
+                load: b.guess,
+                landing,
+            });
             // `det` falls through 0 in the direction of growing load where it was positive, and the reverse.
             let stable = det * slope * (b.beyond - b.stable) < 0.0;
             if stable {
@@ -124,7 +138,11 @@ fn polish(method: Method, rod: &Rod, brackets: &[Option<Bracket>]) -> Vec<Option
             }
             let newton = b.guess - det / slope;
             let inside = (newton - b.stable) * (newton - b.beyond) < 0.0;
-            let next = if inside { newton } else { 0.5 * (b.stable + b.beyond) };
+            let next = if inside {
+                newton
+            } else {
+                0.5 * (b.stable + b.beyond)
+            };
             let done = (newton - b.guess).abs() <= 1e-14 * b.guess.abs() || next == b.guess;
             b.guess = next;
             !done

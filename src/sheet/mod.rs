@@ -1,1 +1,101 @@
-mod fold; pub use fold::*;
+//! The stable sheet: where all the physics of a whisker on one side of a pole lives.
+//!
+//! The stable states form a rectangle in (contact, load) with the edges touch (no load), tip, fold (first
+//! singular Jacobian) and base; its image in (distance, direction of the pole) is simple. So the edges alone
+//! give the exact boundary of a regime map ([`Sheet::crossings`]), and a lattice of trajectories over the
+//! rectangle gives every cell of the map a guess, or the certainty that it has no solution
+//! ([`Sheet::guesses`]). The two are computed independently of each other.
+
+mod columns;
+mod edges;
+mod fold;
+mod lattice;
+mod polynomial;
+mod rows;
+
+pub use edges::{Crossing, Edge, fold_step};
+pub use fold::FoldPoint;
+pub use lattice::{Guess, nearest_turn};
+pub use rows::Row;
+
+use crate::model::batch::Method;
+use crate::model::{Effects, Landing, Resolution, Rest, Rod, Side};
+use columns::Columns;
+use edges::Edges;
+use lattice::Lattice;
+
+/// The resolution at which a state is exact to rounding for taper up to 0.95, and to 2e-12 up to 0.99.
+pub const FINE: Resolution = Resolution {
+    least: 32,
+    longest: 0.1,
+};
+
+/// The sheet of one whisker on one side, with the rows of a map.
+#[derive(Clone, Debug)]
+pub struct Sheet {
+    /// The whisker and its pole.
+    pub rod: Rod,
+    /// The side.
+    pub side: Side,
+    /// The rows.
+    pub rows: Vec<Row>,
+    /// Per row: where it leaves the sheet, sorted by push angle.
+    pub crossings: Vec<Vec<Crossing>>,
+    columns: Columns,
+    lattice: Lattice,
+    edges: Edges,
+}
+
+impl Sheet {
+    /// The sheet of `rod` for rows at these distances (first touch, in whisker lengths); `None` if some
+    /// contact has no fold, which no whisker is known for.
+    #[must_use]
+    pub fn new(effects: Effects, rod: &Rod, side: Side, distances: &[f64]) -> Option<Self> {
+        let method = Method {
+            effects,
+            resolution: FINE,
+        };
+        let rest = Rest::new(rod);
+        let rows: Vec<Row> = distances.iter().map(|d| Row::new(&rest, *d)).collect();
+        let nearest = rows
+            .iter()
+            .map(|row| row.pole_distance)
+            .fold(f64::INFINITY, f64::min);
+        let columns = Columns::new(method, rod, side, nearest)?;
+        let lattice = Lattice::new(method, rod, side, &columns);
+        let edges = Edges::new(method, rod, &columns, &lattice);
+        let crossings = edges::crossings(method, rod, side, &edges, &rows);
+        Some(Self {
+            rod: *rod,
+            side,
+            rows,
+            crossings,
+            columns,
+            lattice,
+            edges,
+        })
+    }
+
+    /// Whether the whisker at rest reaches the pole of `row`.
+    #[must_use]
+    pub fn touches(&self, row: usize) -> bool {
+        self.edges.touches(&self.rows[row])
+    }
+
+    /// Guesses for the cells of `row` at growing `pushes` (magnitudes, in radians); `None` outside the sheet.
+    pub fn guesses(&self, row: usize, pushes: impl Iterator<Item = f64>) -> Vec<Option<Guess>> {
+        self.lattice
+            .level(&self.columns, &self.rows[row])
+            .guesses(pushes)
+    }
+
+    /// Whether a state, as far as the fold goes, is on the sheet: loaded toward the pole, on the stable side of
+    /// the Jacobian's first singularity.
+    #[must_use]
+    pub fn is_stable(&self, tau: f64, load: f64, landing: &Landing) -> bool {
+        let part = self.side.sign() * load / self.columns.fold_load(tau);
+        let scale = landing.by_tau.length() * landing.by_load.length();
+        let before_fold = landing.det() > -1e-7 * scale;
+        part > -1e-9 && part < 1.0 + 1e-4 && before_fold
+    }
+}

@@ -1,0 +1,104 @@
+//! The boundary of one row, and the verdict on its cells.
+
+use super::{Regime, Status};
+use crate::sheet::{Crossing, Edge};
+
+/// Push angles, in radians, closer to a boundary than this count as on it; both verdicts are right there.
+pub const TIE: f64 = 1e-10;
+
+/// The largest error of a crossing, relative to the distance of the pole, that is taken for a boundary.
+const CROSSING_TOLERANCE: f64 = 1e-10;
+
+/// A stretch of push angles (magnitudes, in radians) on the stable sheet.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Span {
+    /// Where it begins.
+    pub from: f64,
+    /// Where the whisker detaches.
+    pub to: f64,
+    /// How it detaches there.
+    pub edge: Edge,
+}
+
+/// Which push angles of a row are on the stable sheet.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RowBoundary {
+    /// Whether the whisker at rest reaches the pole: the first span then begins at first touch.
+    touches: bool,
+    /// Spans in the order of growing push angle; `None` when the crossings do not make sense.
+    spans: Option<Vec<Span>>,
+}
+
+impl RowBoundary {
+    /// The boundary made of a row's `crossings`, sorted by push angle.
+    #[must_use]
+    pub fn new(touches: bool, crossings: &[Crossing]) -> Self {
+        let sound = crossings.iter().all(|c| c.residual <= CROSSING_TOLERANCE);
+        let even = (crossings.len() + usize::from(touches)).is_multiple_of(2);
+        let mut ends = crossings.iter();
+        let mut spans = Vec::new();
+        let mut from = touches.then_some(0.0);
+        loop {
+            let Some(begin) = from.take().or_else(|| ends.next().map(|c| c.push)) else {
+                break;
+            };
+            let Some(end) = ends.next() else { break };
+            spans.push(Span {
+                from: begin,
+                to: end.push,
+                edge: end.edge,
+            });
+        }
+        Self {
+            touches,
+            spans: (sound && even).then_some(spans),
+        }
+    }
+
+    /// The span that the push angle is on, if any.
+    #[must_use]
+    pub fn span(&self, push: f64) -> Option<&Span> {
+        let spans = self.spans.as_deref().unwrap_or_default();
+        spans
+            .iter()
+            .find(|span| span.from - TIE <= push && push <= span.to + TIE)
+    }
+
+    /// Where a push from first touch ends, if the boundary is known and there is a first touch.
+    #[must_use]
+    pub fn detachment(&self) -> Option<&Span> {
+        self.spans.as_ref().filter(|_| self.touches)?.first()
+    }
+
+    /// The regime at `push` for a cell that was settled with `status`, and the status, which turns into one of
+    /// the unresolved kinds where cell and boundary contradict each other.
+    #[must_use]
+    pub fn judge(&self, push: f64, status: Status) -> (Regime, Status) {
+        let Some(spans) = &self.spans else {
+            return (Regime::Unresolved, Status::NoBoundary);
+        };
+        match (status, self.span(push)) {
+            (Status::Solved, Some(span)) => {
+                let connected = self.touches && spans.first() == Some(span);
+                let regime = if connected {
+                    Regime::Contact
+                } else {
+                    Regime::Unreachable
+                };
+                (regime, status)
+            }
+            (Status::Outside | Status::BeyondFold | Status::BeyondTip, span)
+                if span.is_none_or(|span| push < span.from + TIE || push > span.to - TIE) =>
+            {
+                let regime = match self.detachment().map(|span| span.edge) {
+                    None => Regime::OutOfReach,
+                    Some(Edge::Fold) => Regime::SlipOff,
+                    Some(Edge::Tip) => Regime::PullOff,
+                };
+                (regime, status)
+            }
+            (Status::NotConverged | Status::NoFold, _) => (Regime::Unresolved, status),
+            _ => (Regime::Unresolved, Status::Disagreement),
+        }
+    }
+}

@@ -1,0 +1,81 @@
+//! What will be computed, decided before anything is: pure, no device, no disk, no clock.
+
+use crate::model::{Effects, Rod, Side};
+use crate::scene::{Scene, Whisker};
+
+/// Bytes that a run may take for its panels.
+pub const MEMORY_LIMIT: u64 = 4 << 30;
+
+/// Bytes per cell of a panel: 15 channels of 4 bytes, once as computed and once more while they are packed.
+const BYTES_PER_CELL: u64 = 2 * 15 * 4;
+
+/// Bytes per cell in flight: shots, answers and states of the refinement.
+const BYTES_IN_FLIGHT: u64 = 1024;
+
+/// Cells handed to an engine at once: enough for every lane of a GPU, little memory.
+const CELLS_IN_FLIGHT: usize = 1 << 17;
+
+/// A run.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// The whiskers, in atlas order.
+    pub whiskers: Vec<Whisker>,
+    /// The effects that the scene calls for.
+    pub effects: Effects,
+    /// Panels computed together, so that small panels fill an engine too.
+    pub panels_at_once: usize,
+    /// Rows of one side of a panel handed to an engine at once.
+    pub rows_at_once: usize,
+    /// Bytes that the panels in work take at most.
+    pub bytes: u64,
+}
+
+/// A run that is too large.
+#[derive(Debug, thiserror::Error, PartialEq, Eq)]
+#[error(
+    "grid: {push_angles} push angles x {distances} distances make a panel of {cells} cells that takes \
+     {needed} MiB: must be at most {limit} MiB; lower grid.push_angle_deg.count or grid.distance_mm.count"
+)]
+pub struct PlanError {
+    push_angles: usize,
+    distances: usize,
+    cells: u64,
+    needed: u64,
+    limit: u64,
+}
+
+impl Plan {
+    /// The plan for `scene`.
+    ///
+    /// # Errors
+    /// When one panel takes more than [`MEMORY_LIMIT`].
+    pub fn new(scene: &Scene) -> Result<Self, PlanError> {
+        let push_angles = scene.grid.push_angle_deg.len();
+        let distances = scene.grid.distance_mm.len();
+        let cells = push_angles * distances;
+        let whiskers: Vec<Whisker> = scene.whiskers().collect();
+        let panels_at_once = (CELLS_IN_FLIGHT / cells).clamp(1, whiskers.len());
+        let in_flight = CELLS_IN_FLIGHT.max(push_angles) as u64;
+        let bytes = (cells * panels_at_once) as u64 * BYTES_PER_CELL + in_flight * BYTES_IN_FLIGHT;
+        if bytes > MEMORY_LIMIT {
+            return Err(PlanError {
+                push_angles,
+                distances,
+                cells: cells as u64,
+                needed: bytes >> 20,
+                limit: MEMORY_LIMIT >> 20,
+            });
+        }
+        let rods: Vec<Rod> = whiskers
+            .iter()
+            .map(|whisker| Rod::new(whisker, scene.pole_radius_mm, Side::Cb))
+            .collect();
+        Ok(Self {
+            effects: Effects::of(&rods),
+            panels_at_once,
+            rows_at_once: (CELLS_IN_FLIGHT / push_angles).max(1),
+            bytes,
+            whiskers,
+        })
+    }
+}

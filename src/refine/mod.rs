@@ -1,0 +1,168 @@
+//! Refinement: Newton's method in `f64` from whatever an engine or a lattice offers, and the verdict.
+//!
+//! "Newton converged" is not "still on the pole": a solution counts only on the stable sheet. Where Newton's
+//! method fails, the fold at the same distance decides: either the wanted direction lies beyond it, or the
+//! fold's normal form gives the start that Newton's method needs.
+
+mod near_fold;
+
+use crate::integrate::Shot;
+use crate::model::batch::{Launch, Method, land};
+use crate::model::{Dopri8, Effects, FirstAndEnergy, Full, arclength};
+use crate::sheet::{FINE, Sheet};
+use near_fold::Verdict;
+
+/// Residual, in whisker lengths, at which a state is accepted without another step.
+pub const GOAL: f64 = 1e-12;
+
+/// Residual, in whisker lengths, up to which a state is accepted when steps no longer help.
+pub const TOLERANCE: f64 = 1e-11;
+
+/// Newton steps before the fold is asked.
+const STEPS: u32 = 8;
+
+/// Newton steps from the fold's normal form.
+const STEPS_NEAR_FOLD: u32 = 30;
+
+/// What became of a cell.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Refined {
+    /// The last state computed.
+    pub state: State,
+    /// Newton steps taken here.
+    pub steps: u32,
+    /// The verdict.
+    pub end: End,
+}
+
+/// A state of the whisker.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct State {
+    /// `tau` of the contact.
+    pub tau: f64,
+    /// Signed load.
+    pub load: f64,
+    /// Everything else.
+    pub full: Full,
+    /// Distance of the pole from the wanted place, in whisker lengths.
+    pub residual: f64,
+}
+
+/// The verdict on a cell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum End {
+    /// A stable state.
+    Solved,
+    /// A stable state of a longer whisker: the contact lies beyond the tip.
+    BeyondTip,
+    /// The wanted direction lies beyond the fold.
+    BeyondFold,
+    /// Neither a state nor a proof that there is none.
+    NotConverged,
+}
+
+/// Refines `starts` toward `shots`, each on the sheet `sheets[shot.rod]`.
+#[must_use]
+pub fn refine(
+    effects: Effects,
+    sheets: &[&Sheet],
+    shots: &[Shot],
+    starts: &[(f64, f64)],
+) -> Vec<Refined> {
+    let method = Method {
+        effects,
+        resolution: FINE,
+    };
+    let mut cells = newton(method, sheets, shots, starts, STEPS);
+    let lost: Vec<usize> = (0..cells.len())
+        .filter(|&i| cells[i].end == End::NotConverged)
+        .collect();
+    let lost_shots: Vec<Shot> = lost.iter().map(|&i| shots[i]).collect();
+    let verdicts = near_fold::decide(method, sheets, &lost_shots);
+    let mut again = Vec::new();
+    let mut restarts = Vec::new();
+    for (&i, verdict) in lost.iter().zip(&verdicts) {
+        match verdict {
+            Verdict::Beyond => cells[i].end = End::BeyondFold,
+            Verdict::Start(start) => {
+                again.push(i);
+                restarts.push(*start);
+            }
+            Verdict::Unknown => {}
+        }
+    }
+    let again_shots: Vec<Shot> = again.iter().map(|&i| shots[i]).collect();
+    let second = newton(method, sheets, &again_shots, &restarts, STEPS_NEAR_FOLD);
+    for (&i, cell) in again.iter().zip(second) {
+        cells[i] = Refined {
+            steps: cells[i].steps + cell.steps,
+            ..cell
+        };
+    }
+    cells
+}
+
+/// Newton's method with at most `most` steps per cell.
+fn newton(
+    method: Method,
+    sheets: &[&Sheet],
+    shots: &[Shot],
+    starts: &[(f64, f64)],
+    most: u32,
+) -> Vec<Refined> {
+    let mut cells: Vec<Option<Refined>> = vec![None; shots.len()];
+    let mut points = starts.to_vec();
+    let mut open: Vec<usize> = (0..shots.len()).collect();
+    for steps in 0..=most {
+        let launches: Vec<Launch> = open
+            .iter()
+            .map(|&i| Launch {
+                rod: sheets[shots[i].rod as usize].rod,
+                tau: points[i].0,
+                load: points[i].1,
+            })
+            .collect();
+        let mut answers = land::<Dopri8, FirstAndEnergy, 7>(method, &launches).into_iter();
+        let mut launches = launches.iter();
+        open.retain(|&i| {
+            let (Some(full), Some(launch)) = (answers.next(), launches.next()) else {
+                return false;
+            };
+            let residual = full.landing.pole.distance(shots[i].pole);
+            let state = State {
+                tau: launch.tau,
+                load: launch.load,
+                full,
+                residual,
+            };
+            let before = cells[i].map_or(f64::INFINITY, |cell| cell.state.residual);
+            let stuck = residual <= TOLERANCE && residual > 0.5 * before;
+            if residual <= GOAL || stuck {
+                let end = verdict(sheets[shots[i].rod as usize], &state);
+                cells[i] = Some(Refined { state, steps, end });
+                return false;
+            }
+            cells[i] = Some(Refined {
+                state,
+                steps,
+                end: End::NotConverged,
+            });
+            let s = arclength(&launch.rod, launch.tau);
+            let step = full.landing.newton_step(shots[i].pole, s, launch.load);
+            points[i] = (launch.tau + step.x, launch.load + step.y);
+            step.is_finite() && points[i].0 > 0.0
+        });
+    }
+    cells.into_iter().flatten().collect()
+}
+
+/// Whether a converged state counts.
+fn verdict(sheet: &Sheet, state: &State) -> End {
+    if !sheet.is_stable(state.tau, state.load, &state.full.landing) {
+        End::NotConverged
+    } else if state.tau > sheet.rod.tau_tip() * (1.0 + 1e-12) {
+        End::BeyondTip
+    } else {
+        End::Solved
+    }
+}

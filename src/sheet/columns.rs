@@ -1,0 +1,100 @@
+//! Where along the whisker the sheet is sampled.
+//!
+//! Columns are evenly spaced in `u = ln tau + tau`: toward the base the sheet depends on the contact through
+//! its logarithm (everything scales), toward a slender tip through `tau`. One column lies exactly at the tip;
+//! a few lie beyond it, because a trajectory does not know where the whisker ends, so that interpolation is
+//! as good at the tip as elsewhere.
+
+use super::fold::{FoldPoint, first_folds};
+use super::polynomial::{NODES, Polynomial, stencil};
+use crate::model::batch::Method;
+use crate::model::{Rod, Side};
+
+/// Distance of the columns in `u`.
+const SPACING: f64 = 0.15;
+
+/// Columns beyond the tip.
+pub const BEYOND_TIP: usize = 3;
+
+/// Most columns: the smallest `tau` is then below 1e-12 of the tip's.
+const MOST: usize = 400;
+
+/// The sampled contacts with their folds, from the base outward.
+#[derive(Clone, Debug)]
+pub struct Columns {
+    /// The fold at each contact.
+    pub folds: Vec<FoldPoint>,
+    /// Index of the column at the tip.
+    pub tip: usize,
+    first_u: f64,
+}
+
+fn u_of(tau: f64) -> f64 {
+    tau.ln() + tau
+}
+
+/// Inverse of [`u_of`] by Newton's method on the increasing, concave function.
+fn tau_of(u: f64) -> f64 {
+    let mut tau = if u < 1.0 { u.exp() } else { u };
+    for _ in 0..50 {
+        let next = tau * (1.0 - (u_of(tau) - u) / (1.0 + tau)).max(0.1);
+        if (next - tau).abs() <= 2.0 * f64::EPSILON * tau {
+            return next;
+        }
+        tau = next;
+    }
+    tau
+}
+
+impl Columns {
+    /// Columns from the tip of `rod` down to a contact whose fold is nearer to the base than `nearest`, the
+    /// smallest distance of the pole's centre that is asked for. `None` where a fold is missing.
+    pub fn new(method: Method, rod: &Rod, side: Side, nearest: f64) -> Option<Self> {
+        let u_tip = u_of(rod.tau_tip());
+        let tau = |below_tip: f64| tau_of(u_tip - SPACING * below_tip);
+        let beyond = (1..=BEYOND_TIP).rev().map(|i| tau(-(i as f64)));
+        let mut taus: Vec<f64> = beyond.chain([rod.tau_tip()]).collect();
+        let mut folds = Vec::new();
+        loop {
+            let batch: Option<Vec<FoldPoint>> =
+                first_folds(method, rod, side, &taus).into_iter().collect();
+            folds.extend(batch?);
+            let reached = folds.last()?.landing.landing.pole.length() < nearest;
+            if (reached && folds.len() >= 2 * NODES) || folds.len() > MOST {
+                break;
+            }
+            let from = folds.len() - BEYOND_TIP;
+            taus = (from..from + 8).map(|i| tau(i as f64)).collect();
+        }
+        folds.reverse();
+        let tip = folds.len() - 1 - BEYOND_TIP;
+        Some(Self {
+            first_u: u_tip - SPACING * tip as f64,
+            tip,
+            folds,
+        })
+    }
+
+    /// Contact at the fractional column `k + t`.
+    #[must_use]
+    pub fn tau(&self, k: usize, t: f64) -> f64 {
+        tau_of(self.first_u + SPACING * (k as f64 + t))
+    }
+
+    /// `|load|` at the fold for the contact at `tau`, by interpolation.
+    #[must_use]
+    pub fn fold_load(&self, tau: f64) -> f64 {
+        let place = (u_of(tau) - self.first_u) / SPACING;
+        let last = self.folds.len() - 2;
+        #[allow(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "the cast saturates, and the result is clamped to the columns"
+        )]
+        let k = (place as usize).min(last);
+        let start = stencil(k, 0, self.folds.len());
+        let scaled = |fold: &FoldPoint| (fold.load.abs() * fold.tau * fold.tau).ln();
+        let polynomial = Polynomial::through(self.folds[start..].iter().take(NODES).map(scaled));
+        polynomial.at(place - start as f64).0.exp() / (tau * tau)
+    }
+}

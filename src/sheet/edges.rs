@@ -1,0 +1,287 @@
+//! Where each row of a map leaves the stable sheet: over the fold (slip-off) or over the tip (pull-off).
+//!
+//! The edges form one closed line, touch - tip - corner - fold; consecutive samples share their computed
+//! distance, and a row crosses between two samples when exactly one of them is at most its own distance. So
+//! the number of crossings has the right parity whatever the rounding.
+
+use super::columns::Columns;
+use super::lattice::{Lattice, nearest_turn};
+use super::rows::Row;
+use crate::model::batch::{Launch, Method, land};
+use crate::model::{Curved, Dopri8, First, Landing, Rod, Second, Side, arclength, limited};
+use glam::DVec2;
+
+/// The edge that a crossing lies on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Edge {
+    /// The saddle-node: the whisker slips off.
+    Fold,
+    /// The contact reaches the tip: the whisker is pulled off.
+    Tip,
+}
+
+/// A row's crossing of an edge.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Crossing {
+    /// Which edge.
+    pub edge: Edge,
+    /// `tau` of the contact.
+    pub tau: f64,
+    /// Signed load.
+    pub load: f64,
+    /// Push angle since first touch, in radians, as a magnitude on the row's side.
+    pub push: f64,
+    /// Remaining error: distance in `ln D` and, at a fold, the last step taken, both relative.
+    pub residual: f64,
+}
+
+/// Samples along the tip edge; the distance has at most a few extrema there.
+const TIP_SAMPLES: usize = 64;
+
+/// Rounds of Newton's method; the start is a hundredth of a column away, so that 4 are the rule.
+const ROUNDS: usize = 12;
+
+/// Relative slack with which a distance counts as reached, so that a whisker whose resting tip just touches
+/// the pole does touch it, whatever the rounding.
+pub const REACH_SLACK: f64 = 1e-12;
+
+/// A row and a place near its crossing.
+struct Candidate {
+    row: usize,
+    edge: Edge,
+    tau: f64,
+    load: f64,
+    /// Direction of the pole there, continuous from first touch.
+    phi: f64,
+}
+
+/// Every crossing of every row, sorted by push angle.
+pub fn crossings(
+    method: Method,
+    rod: &Rod,
+    side: Side,
+    edges: &Edges,
+    rows: &[Row],
+) -> Vec<Vec<Crossing>> {
+    let mut candidates = Vec::new();
+    for (edge, samples) in [(Edge::Fold, &edges.fold), (Edge::Tip, &edges.tip)] {
+        for pair in samples.windows(2) {
+            let (a, b) = (pair[0], pair[1]);
+            for (index, row) in rows.iter().enumerate() {
+                let target = row.pole_distance.ln() - REACH_SLACK;
+                if (a.ln_distance <= target) != (b.ln_distance <= target) {
+                    let t = (target - a.ln_distance) / (b.ln_distance - a.ln_distance);
+                    let scaled = |s: Sample| s.load * s.tau * s.tau;
+                    let tau = a.tau + t * (b.tau - a.tau);
+                    let load = (scaled(a) + t * (scaled(b) - scaled(a))) / (tau * tau);
+                    let phi = a.phi + t * (b.phi - a.phi);
+                    candidates.push(Candidate {
+                        row: index,
+                        edge,
+                        tau,
+                        load,
+                        phi,
+                    });
+                }
+            }
+        }
+    }
+    let mut found = vec![Vec::new(); rows.len()];
+    for (candidate, crossing) in candidates
+        .iter()
+        .zip(polish(method, rod, side, rows, &candidates))
+    {
+        found[candidate.row].push(crossing);
+    }
+    for row in &mut found {
+        row.sort_by(|a, b| a.push.total_cmp(&b.push));
+    }
+    found
+}
+
+/// A computed point of an edge.
+#[derive(Clone, Copy, Debug)]
+struct Sample {
+    tau: f64,
+    load: f64,
+    ln_distance: f64,
+    phi: f64,
+}
+
+impl Sample {
+    fn new(tau: f64, load: f64, landing: &Landing, phi_near: f64) -> Self {
+        Self {
+            tau,
+            load,
+            ln_distance: landing.pole.length().ln(),
+            phi: nearest_turn(landing.pole.to_angle(), phi_near),
+        }
+    }
+}
+
+/// The sampled edges of a sheet.
+#[derive(Clone, Debug)]
+pub struct Edges {
+    fold: Vec<Sample>,
+    tip: Vec<Sample>,
+}
+
+impl Edges {
+    /// Samples both edges; `lattice` knows the whole turns of the pole's direction.
+    pub fn new(method: Method, rod: &Rod, columns: &Columns, lattice: &Lattice) -> Self {
+        let mut tip = tip_samples(method, rod, columns);
+        let fold: Vec<Sample> = columns.folds[..=columns.tip]
+            .iter()
+            .zip(lattice.phi_at_fold())
+            .map(|(fold, phi)| Sample::new(fold.tau, fold.load, &fold.landing.landing, *phi))
+            .collect();
+        tip.extend(fold.last());
+        Self { fold, tip }
+    }
+
+    /// Whether a whisker at rest reaches the pole of this row.
+    #[must_use]
+    pub fn touches(&self, row: &Row) -> bool {
+        self.tip[0].ln_distance > row.pole_distance.ln() - REACH_SLACK
+    }
+}
+
+/// The tip edge from first touch to before the corner, with its extrema of distance among the samples.
+fn tip_samples(method: Method, rod: &Rod, columns: &Columns) -> Vec<Sample> {
+    let corner = &columns.folds[columns.tip];
+    let launch = |load| Launch {
+        rod: *rod,
+        tau: corner.tau,
+        load,
+    };
+    let launches: Vec<Launch> = (0..TIP_SAMPLES)
+        .map(|i| launch(corner.load * i as f64 / TIP_SAMPLES as f64))
+        .collect();
+    let landings = land::<Dopri8, First, 6>(method, &launches);
+    let mut samples: Vec<Sample> = Vec::new();
+    let mut push = |launch: &Launch, landing: &Landing| {
+        let near = samples.last().map_or(0.0, |sample| sample.phi);
+        samples.push(Sample::new(launch.tau, launch.load, landing, near));
+    };
+    for i in 0..TIP_SAMPLES {
+        push(&launches[i], &landings[i]);
+        let Some(next) = landings.get(i + 1) else {
+            break;
+        };
+        if (landings[i].by_load.x < 0.0) != (next.by_load.x < 0.0) {
+            let load = extremum(method, rod, launches[i], launches[i + 1].load);
+            let launch = launch(load);
+            let landing = land::<Dopri8, Second, 15>(method, &[launch])[0].landing;
+            push(&launch, &landing);
+        }
+    }
+    samples
+}
+
+/// The load between `from` and `to` at which `dlnD/dload` vanishes at the contact of `from`.
+fn extremum(method: Method, rod: &Rod, from: Launch, to: f64) -> f64 {
+    let (mut low, mut high) = (from.load, to);
+    let mut load = 0.5 * (low + high);
+    let falling_at_low = land::<Dopri8, Second, 15>(method, &[from])[0]
+        .landing
+        .by_load
+        .x
+        < 0.0;
+    for _ in 0..60 {
+        let here = land::<Dopri8, Second, 15>(
+            method,
+            &[Launch {
+                rod: *rod,
+                tau: from.tau,
+                load,
+            }],
+        )[0];
+        let slope = here.landing.by_load.x;
+        if (slope < 0.0) == falling_at_low {
+            low = load;
+        } else {
+            high = load;
+        }
+        let newton = load - slope / here.by_load_load.x;
+        let inside = (newton - low) * (newton - high) < 0.0;
+        let next = if inside { newton } else { 0.5 * (low + high) };
+        if (next - load).abs() <= 1e-13 * load.abs() {
+            return next;
+        }
+        load = next;
+    }
+    load
+}
+
+/// Newton's method from every candidate, in batches.
+fn polish(
+    method: Method,
+    rod: &Rod,
+    side: Side,
+    rows: &[Row],
+    candidates: &[Candidate],
+) -> Vec<Crossing> {
+    let mut points: Vec<DVec2> = candidates
+        .iter()
+        .map(|c| DVec2::new(c.tau, c.load))
+        .collect();
+    let mut crossings: Vec<Option<Crossing>> = vec![None; candidates.len()];
+    let mut open: Vec<usize> = (0..candidates.len()).collect();
+    for _ in 0..ROUNDS {
+        let launches: Vec<Launch> = open
+            .iter()
+            .map(|&i| Launch {
+                rod: *rod,
+                tau: points[i].x,
+                load: points[i].y,
+            })
+            .collect();
+        let mut landings = land::<Dopri8, Second, 15>(method, &launches).into_iter();
+        open.retain(|&i| {
+            let Some(here) = landings.next() else {
+                return false;
+            };
+            let (row, point) = (&rows[candidates[i].row], points[i]);
+            let miss = (row.pole_distance / here.landing.pole.length()).ln();
+            let step = match candidates[i].edge {
+                Edge::Fold => fold_step(&here, miss),
+                Edge::Tip => DVec2::new(0.0, miss / here.landing.by_load.x),
+            };
+            let (step, length) = limited(step, arclength(rod, point.x), point.y);
+            let phi = nearest_turn(here.landing.pole.to_angle(), candidates[i].phi);
+            crossings[i] = Some(Crossing {
+                edge: candidates[i].edge,
+                tau: point.x,
+                load: point.y,
+                push: side.sign() * (phi - row.touch),
+                residual: miss.abs().max(length * length),
+            });
+            points[i] = point + step;
+            length > 1e-12
+        });
+    }
+    crossings
+        .into_iter()
+        .zip(candidates)
+        .map(|(crossing, c)| {
+            crossing.unwrap_or(Crossing {
+                edge: c.edge,
+                tau: c.tau,
+                load: c.load,
+                push: f64::NAN,
+                residual: f64::INFINITY,
+            })
+        })
+        .collect()
+}
+
+/// The step toward the point of the fold whose `ln D` is larger by `miss`.
+pub fn fold_step(here: &Curved, miss: f64) -> DVec2 {
+    let by_distance = DVec2::new(here.landing.by_tau.x, here.landing.by_load.x);
+    let by_det = here.det_gradient();
+    let det = here.landing.det();
+    DVec2::new(
+        miss * by_det.y + det * by_distance.y,
+        -miss * by_det.x - det * by_distance.x,
+    ) / by_distance.perp_dot(by_det)
+}

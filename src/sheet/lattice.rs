@@ -1,0 +1,230 @@
+//! The lattice of trajectories over the stable sheet, and guesses from it.
+//!
+//! Nodes lie at the columns and at the loads `x = 0, 1/16, 2/16, ...` of the fold's load, two steps beyond the
+//! fold, so that interpolation is as good at the fold as elsewhere. A row of a map is a level curve of `D` on
+//! the lattice; along it the push angle grows from first touch to detachment.
+
+use super::columns::Columns;
+use super::polynomial::{NODES, Polynomial, stencil};
+use super::rows::Row;
+use crate::model::batch::{Launch, Method, land};
+use crate::model::{Dopri8, First, Rod, Side};
+use std::f64::consts::TAU;
+
+/// Steps in load from first touch to the fold.
+const LOADS: usize = 16;
+
+/// Nodes per column: two lie beyond the fold.
+const NODES_PER_COLUMN: usize = LOADS + 3;
+
+/// `(ln D, phi)` at the nodes.
+#[derive(Clone, Debug)]
+pub struct Lattice {
+    side: Side,
+    /// `ln_distance[m][k]`: load step `m`, column `k`.
+    ln_distance: Vec<Vec<f64>>,
+    phi: Vec<Vec<f64>>,
+}
+
+/// A guess for one cell.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Guess {
+    /// `tau` of the contact.
+    pub tau: f64,
+    /// Signed load.
+    pub load: f64,
+}
+
+impl Lattice {
+    /// The lattice over `columns`.
+    pub fn new(method: Method, rod: &Rod, side: Side, columns: &Columns) -> Self {
+        let launches: Vec<Launch> = (0..NODES_PER_COLUMN)
+            .flat_map(|m| {
+                let part = m as f64 / LOADS as f64;
+                columns.folds.iter().map(move |fold| Launch {
+                    rod: *rod,
+                    tau: fold.tau,
+                    load: part * fold.load,
+                })
+            })
+            .collect();
+        let landings = land::<Dopri8, First, 6>(method, &launches);
+        let rows = || landings.chunks(columns.folds.len());
+        let ln_distance = rows()
+            .map(|row| row.iter().map(|l| l.pole.length().ln()).collect())
+            .collect();
+        let mut phi: Vec<Vec<f64>> = rows()
+            .map(|row| row.iter().map(|l| l.pole.to_angle()).collect())
+            .collect();
+        for m in 1..phi.len() {
+            for k in 0..phi[m].len() {
+                phi[m][k] = nearest_turn(phi[m][k], phi[m - 1][k]);
+            }
+        }
+        Self {
+            side,
+            ln_distance,
+            phi,
+        }
+    }
+
+    /// Direction of the pole at the fold, column by column, continuous from first touch.
+    #[must_use]
+    pub fn phi_at_fold(&self) -> &[f64] {
+        &self.phi[LOADS]
+    }
+
+    /// The level curve of `row` on the lattice.
+    #[must_use]
+    pub fn level(&self, columns: &Columns, row: &Row) -> Level {
+        let target = row.pole_distance.ln();
+        let mut level = Level::default();
+        let mut last: Option<usize> = None;
+        for m in 0..NODES_PER_COLUMN {
+            let ln_distance = &self.ln_distance[m];
+            let crossings = ln_distance
+                .windows(2)
+                .enumerate()
+                .filter(|(_, ends)| (ends[0] <= target) != (ends[1] <= target))
+                .map(|(k, _)| k);
+            let Some(k) = crossings.min_by_key(|k| last.map_or(0, |last| last.abs_diff(*k))) else {
+                if level.nodes.is_empty() {
+                    continue;
+                }
+                break;
+            };
+            if level.nodes.is_empty() {
+                level.first = m;
+            }
+            last = Some(k);
+            let start = stencil(k, 0, ln_distance.len());
+            let local =
+                |values: &[f64]| Polynomial::through(values[start..].iter().take(NODES).copied());
+            let offset = (k - start) as f64;
+            let t = local(ln_distance).solve(target, offset, offset + 1.0);
+            let tau = columns.tau(start, t);
+            let phi = local(&self.phi[m]).at(t).0;
+            level.nodes.push(Node {
+                push: self.side.sign() * (phi - row.touch),
+                tau,
+                load: self.side.sign() * columns.fold_load(tau) * m as f64 / LOADS as f64,
+            });
+        }
+        level
+    }
+}
+
+/// `angle` plus the whole turns that bring it nearest to `near`.
+#[must_use]
+pub fn nearest_turn(angle: f64, near: f64) -> f64 {
+    angle + TAU * ((near - angle) / TAU).round()
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Node {
+    push: f64,
+    tau: f64,
+    load: f64,
+}
+
+/// A level curve of `D`, sampled at steps of load.
+#[derive(Clone, Debug, Default)]
+pub struct Level {
+    /// Load step of the first node.
+    first: usize,
+    nodes: Vec<Node>,
+}
+
+/// How far beyond the lattice's own detachment angle, in radians, a guess is still made: many times the
+/// interpolation error, so that no cell of the sheet is missed.
+const MARGIN: f64 = 1e-3;
+
+impl Level {
+    /// Guesses for growing push angles (at least 0, in radians, as magnitudes); `None` outside the sheet.
+    pub fn guesses(&self, pushes: impl Iterator<Item = f64>) -> Vec<Option<Guess>> {
+        let n = self.nodes.len();
+        if n < 2 {
+            return pushes.map(|_| None).collect();
+        }
+        // The fold is the node at load step `LOADS`; intervals beyond it belong to the unstable sheet.
+        let last = (LOADS - self.first.min(LOADS - 1)).min(n - 1);
+        let mut interval = 0;
+        let mut piece = Piece::new(self, 0);
+        pushes
+            .map(|push| {
+                while interval + 1 < last && push > self.nodes[interval + 1].push {
+                    interval += 1;
+                    piece = Piece::new(self, interval);
+                }
+                piece.guess(push, interval == 0, interval + 1 == last)
+            })
+            .collect()
+    }
+}
+
+/// The level curve between two nodes.
+struct Piece {
+    offset: f64,
+    push: Polynomial,
+    tau: Polynomial,
+    load: Polynomial,
+}
+
+impl Piece {
+    fn new(level: &Level, interval: usize) -> Self {
+        let start = stencil(interval, 0, level.nodes.len());
+        let local = |f: fn(&Node) -> f64| {
+            Polynomial::through(level.nodes[start..].iter().take(NODES).map(f))
+        };
+        Self {
+            offset: (interval - start) as f64,
+            push: local(|node| node.push),
+            tau: local(|node| node.tau),
+            load: local(|node| node.load),
+        }
+    }
+
+    /// The guess at `push`; the first and the last interval reach one step farther, the last one up to the
+    /// largest push angle of its polynomial.
+    fn guess(&self, push: f64, first: bool, last: bool) -> Option<Guess> {
+        let low = if first {
+            self.offset - 1.0
+        } else {
+            self.offset
+        };
+        let high = if last {
+            self.summit()
+        } else {
+            self.offset + 1.0
+        };
+        let (from, to) = (self.push.at(low).0, self.push.at(high).0);
+        let t = if push < from {
+            (first && push > from - MARGIN).then_some(low)?
+        } else if push > to {
+            (push < to + MARGIN).then_some(high)?
+        } else {
+            self.push.solve(push, low, high)
+        };
+        Some(Guess {
+            tau: self.tau.at(t).0,
+            load: self.load.at(t).0,
+        })
+    }
+
+    /// Where the push angle is largest, within one step of the interval's end.
+    fn summit(&self) -> f64 {
+        let (mut low, mut high) = (self.offset, self.offset + 2.0);
+        if self.push.at(high).1 > 0.0 {
+            return high;
+        }
+        for _ in 0..50 {
+            let middle = 0.5 * (low + high);
+            if self.push.at(middle).1 > 0.0 {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        low
+    }
+}

@@ -1,0 +1,31 @@
+//! The rows of a map: distances at first touch, and where the pole stands for each.
+
+use crate::model::Rest;
+use glam::DVec2;
+
+/// One distance of a map for one whisker and side; lengths in whisker lengths.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Row {
+    /// Distance `D` of the pole's centre from the base.
+    pub pole_distance: f64,
+    /// Direction of the pole at first touch, an angle from the base's tangent.
+    pub touch: f64,
+}
+
+impl Row {
+    /// The row of first touch at `distance` from the base; continued beyond the tip along the rest shape.
+    #[must_use]
+    pub fn new(rest: &Rest, distance: f64) -> Self {
+        let pole = rest.pole_at_distance(distance);
+        Self {
+            pole_distance: pole.length(),
+            touch: pole.to_angle(),
+        }
+    }
+
+    /// Centre of the pole in the frame of the base after a rotation of the base by `push` since first touch.
+    #[must_use]
+    pub fn pole(&self, push: f64) -> DVec2 {
+        self.pole_distance * DVec2::from_angle(self.touch + push)
+    }
+}
