@@ -7,6 +7,7 @@
 
 pub mod classify;
 pub mod integrate;
+pub mod map;
 pub mod model;
 pub mod plan;
 pub mod refine;

@@ -7,6 +7,7 @@
 
 use super::fold::{FoldPoint, first_folds};
 use super::polynomial::{NODES, Polynomial, stencil};
+use super::rows::Row;
 use crate::model::batch::Method;
 use crate::model::{Rod, Side};
 
@@ -15,6 +16,9 @@ const SPACING: f64 = 0.15;
 
 /// Columns beyond the tip.
 pub const BEYOND_TIP: usize = 3;
+
+/// Columns between the row nearest to the base and the end of the lattice.
+const BEYOND_NEAREST: usize = 4;
 
 /// Most columns: the smallest `tau` is then below 1e-12 of the tip's.
 const MOST: usize = 400;
@@ -47,9 +51,9 @@ fn tau_of(u: f64) -> f64 {
 }
 
 impl Columns {
-    /// Columns from the tip of `rod` down to a contact whose fold is nearer to the base than `nearest`, the
-    /// smallest distance of the pole's centre that is asked for. `None` where a fold is missing.
-    pub fn new(method: Method, rod: &Rod, side: Side, nearest: f64) -> Option<Self> {
+    /// Columns from the tip of `rod` down to some beyond `nearest`, the row nearest to the base: at the last
+    /// ones the pole is nearer than that at first touch and at the fold. `None` where a fold is missing.
+    pub fn new(method: Method, rod: &Rod, side: Side, nearest: &Row) -> Option<Self> {
         let u_tip = u_of(rod.tau_tip());
         let tau = |below_tip: f64| tau_of(u_tip - SPACING * below_tip);
         let beyond = (1..=BEYOND_TIP).rev().map(|i| tau(-(i as f64)));
@@ -59,8 +63,11 @@ impl Columns {
             let batch: Option<Vec<FoldPoint>> =
                 first_folds(method, rod, side, &taus).into_iter().collect();
             folds.extend(batch?);
-            let reached = folds.last()?.landing.landing.pole.length() < nearest;
-            if (reached && folds.len() >= 2 * NODES) || folds.len() > MOST {
+            let reached = folds.iter().rev().nth(BEYOND_NEAREST).is_some_and(|fold| {
+                let distance = fold.landing.landing.pole.length();
+                distance < nearest.pole_distance && fold.tau < rod.tau(nearest.contact.min(1.0))
+            });
+            if reached || folds.len() > MOST {
                 break;
             }
             let from = folds.len() - BEYOND_TIP;

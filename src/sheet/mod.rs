@@ -59,8 +59,7 @@ impl Sheet {
         let rows: Vec<Row> = distances.iter().map(|d| Row::new(&rest, *d)).collect();
         let nearest = rows
             .iter()
-            .map(|row| row.pole_distance)
-            .fold(f64::INFINITY, f64::min);
+            .min_by(|a, b| a.pole_distance.total_cmp(&b.pole_distance))?;
         let columns = Columns::new(method, rod, side, nearest)?;
         let lattice = Lattice::new(method, rod, side, &columns);
         let edges = Edges::new(method, rod, &columns, &lattice);

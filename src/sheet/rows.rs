@@ -8,6 +8,8 @@ use glam::DVec2;
 pub struct Row {
     /// Distance `D` of the pole's centre from the base.
     pub pole_distance: f64,
+    /// Arclength of the contact at first touch; beyond 1 the rest shape is continued.
+    pub contact: f64,
     /// Direction of the pole at first touch, an angle from the base's tangent.
     pub touch: f64,
 }
@@ -19,6 +21,7 @@ impl Row {
         let pole = rest.pole_at_distance(distance);
         Self {
             pole_distance: pole.length(),
+            contact: rest.arclength_at_distance(distance),
             touch: pole.to_angle(),
         }
     }

@@ -1,0 +1,109 @@
+//! The stages in order, for a whole scene: sheets, guesses, shooting, refinement, regimes, panels.
+
+mod cells;
+mod panel;
+mod summary;
+
+pub use summary::Summary;
+
+use crate::integrate::{Engine, EngineError};
+use crate::model::{Effects, Rod, Side};
+use crate::plan::Plan;
+use crate::scene::{Scene, Whisker};
+use crate::sheet::Sheet;
+use crate::store::Panel;
+use cells::Strip;
+use rayon::prelude::*;
+use summary::Stage;
+
+/// What a run reports while it goes on.
+pub trait Observer {
+    /// Takes one finished panel, in atlas order.
+    ///
+    /// # Errors
+    /// Whatever keeps the panel from being kept; the run stops with it.
+    fn panel(&mut self, index: usize, panel: &Panel) -> Result<(), crate::store::Error>;
+
+    /// `cells` more cells are settled.
+    fn settled(&mut self, cells: usize);
+}
+
+/// A run that stopped.
+#[derive(Debug, thiserror::Error)]
+pub enum MapError {
+    /// The engine failed.
+    #[error(transparent)]
+    Engine(#[from] EngineError),
+    /// A panel could not be kept.
+    #[error(transparent)]
+    Store(#[from] crate::store::Error),
+}
+
+/// One side of one whisker.
+struct Face {
+    side: Side,
+    sheet: Option<Sheet>,
+}
+
+impl Face {
+    fn new(scene: &Scene, effects: Effects, whisker: &Whisker, side: Side) -> Self {
+        let rod = Rod::new(whisker, scene.pole_radius_mm, side);
+        let distances: Vec<f64> = scene
+            .grid
+            .distance_mm
+            .iter()
+            .map(|d| d / whisker.length_mm)
+            .collect();
+        let sheet = Sheet::new(effects, &rod, side, &distances);
+        Self { side, sheet }
+    }
+}
+
+/// Computes every panel of `scene` as `plan` says.
+///
+/// # Errors
+/// When the engine fails or the observer refuses a panel; a cell without an answer is no error.
+pub fn run(
+    scene: &Scene,
+    plan: &Plan,
+    engine: &mut dyn Engine,
+    observer: &mut dyn Observer,
+) -> Result<Summary, MapError> {
+    let mut summary = Summary::default();
+    let sides = sides(scene);
+    for (group, whiskers) in plan.whiskers.chunks(plan.panels_at_once).enumerate() {
+        let faces: Vec<Face> = summary.time(Stage::Sheets, || {
+            let pairs: Vec<(&Whisker, Side)> = whiskers
+                .iter()
+                .flat_map(|whisker| sides.iter().map(move |side| (whisker, *side)))
+                .collect();
+            pairs
+                .par_iter()
+                .map(|(whisker, side)| Face::new(scene, plan.effects, whisker, *side))
+                .collect()
+        });
+        let mut panels: Vec<Panel> = whiskers.iter().map(|_| panel::blank(scene)).collect();
+        for strip in Strip::all(faces.len(), scene.grid.distance_mm.len(), plan.rows_at_once) {
+            let cells = cells::settle(scene, plan.effects, &faces, &strip, engine, &mut summary)?;
+            summary.time(Stage::Regimes, || {
+                panel::fill(scene, whiskers, &faces, sides.len(), &cells, &mut panels);
+            });
+            observer.settled(cells.len());
+        }
+        for (i, panel) in panels.iter().enumerate() {
+            summary.count(panel);
+            let index = group * plan.panels_at_once + i;
+            summary.time(Stage::Files, || observer.panel(index, panel))?;
+        }
+    }
+    Ok(summary)
+}
+
+/// The sides that the push angles of `scene` ask for; first touch itself belongs to CB.
+fn sides(scene: &Scene) -> Vec<Side> {
+    let pushes = &scene.grid.push_angle_deg;
+    Side::BOTH
+        .into_iter()
+        .filter(|side| pushes.iter().any(|push| cells::side_of(*push) == *side))
+        .collect()
+}
