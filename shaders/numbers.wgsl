@@ -39,8 +39,8 @@ fn arsinh(t: real) -> real {
         scale = 2.0 * scale;
     }
     let w = small / (1.0 + sqrt(1.0 + small * small));
-    var sum = real(1.0 / 19.0);
-    for (var n = 17; n > 0; n -= 2) {
+    var sum = real(1.0 / 17.0);
+    for (var n = 15; n > 0; n -= 2) {
         sum = 1.0 / real(n) + w * w * sum;
     }
     return scale * w * sum;

@@ -1,7 +1,8 @@
 // The classical Runge-Kutta method of order 4; the twin of `src/model/{rk4,integrator}.rs`.
 
-// What the radius and its inverse cube gain from the start of a step to its middle and to its end, relative:
-// a factor 1 + gain would bring the same rounding into every step.
+// What the radius and its inverse cube gain from the start of a step to its middle and to its end, relative.
+// Rust multiplies by 1 + gain; in f32 that would bring the same rounding into every step (measured: 2.5 times
+// the error of a trajectory).
 struct Gains {
     middle: Radius,
     end: Radius,

@@ -79,19 +79,19 @@ impl AdapterReport {
     }
 }
 
-/// Every adapter of every interface.
+/// Every adapter that a driver offers.
 pub(super) fn enumerate() -> Vec<wgpu::Adapter> {
     let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
     pollster::block_on(instance.enumerate_adapters(wgpu::Backends::all()))
 }
 
-/// What [`enumerate`] finds, reported.
+/// Every adapter of every interface, for people to see.
 #[must_use]
 pub fn adapters() -> Vec<AdapterReport> {
     enumerate().iter().map(AdapterReport::new).collect()
 }
 
-/// The adapter that the engine takes: the first of the best kind.
+/// Which adapter the engine takes: the first of the best kind.
 #[must_use]
 pub fn preferred(reports: &[AdapterReport]) -> Option<usize> {
     (0..reports.len()).min_by_key(|&i| reports[i].kind)

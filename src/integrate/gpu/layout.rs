@@ -3,6 +3,7 @@
 use super::Precision;
 use crate::integrate::{Hit, Outcome, Shot};
 use crate::model::Rod;
+use bytemuck::Pod;
 
 /// Sizes, and the ways in and out.
 #[derive(Debug)]
@@ -36,10 +37,25 @@ pub const OUTCOMES: [(&str, Outcome); 3] = [
     ("NOT_FINITE", Outcome::NotFinite),
 ];
 
+/// Things as bytes, in the shape `P`.
+fn write<T, P: Pod + for<'a> From<&'a T>>(things: &[T]) -> Vec<u8> {
+    let mut bytes = Vec::with_capacity(size_of_val(things));
+    for thing in things {
+        bytes.extend_from_slice(bytemuck::bytes_of(&P::from(thing)));
+    }
+    bytes
+}
+
+/// Appends things read from bytes in the shape `P`.
+fn read<T, P: Pod + Into<T>>(bytes: &[u8], things: &mut Vec<T>) {
+    let each = bytes.chunks_exact(size_of::<P>());
+    things.extend(each.map(|bytes| bytemuck::pod_read_unaligned::<P>(bytes).into()));
+}
+
 macro_rules! layout {
     ($module:ident, $real:ident) => {
         mod $module {
-            use super::{Layout, OUTCOMES};
+            use super::{Layout, OUTCOMES, read, write};
             use crate::integrate::{self as host, Outcome};
             use crate::model;
             use bytemuck::{Pod, Zeroable};
@@ -121,18 +137,9 @@ macro_rules! layout {
             pub const LAYOUT: Layout = Layout {
                 shot: size_of::<Shot>(),
                 hit: size_of::<Hit>(),
-                rods: |rods| {
-                    bytemuck::pod_collect_to_vec(&Vec::from_iter(rods.iter().map(Rod::from)))
-                },
-                shots: |shots| {
-                    bytemuck::pod_collect_to_vec(&Vec::from_iter(shots.iter().map(Shot::from)))
-                },
-                hits: |bytes, hits| {
-                    let each = bytes.chunks_exact(size_of::<Hit>());
-                    hits.extend(
-                        each.map(|hit| host::Hit::from(bytemuck::pod_read_unaligned::<Hit>(hit))),
-                    );
-                },
+                rods: write::<_, Rod>,
+                shots: write::<_, Shot>,
+                hits: read::<_, Hit>,
             };
         }
     };
