@@ -1,1 +1,171 @@
-//! The GPU engine: WGSL compute shaders through wgpu.
+//! The GPU engine: WGSL compute shaders through wgpu, one Newton iteration per invocation.
+//!
+//! The shaders are joined from whole pieces ([`shaders`]), in `f32` or `f64` by a type alias; each set of
+//! effects has a pipeline of its own, made from `override` constants. Work goes out in dispatches short
+//! enough for any watchdog, at most two in flight; nothing here panics when a device fails.
+//!
+//! Absent on purpose: a second try on a lost device. The caller has the CPU engine for that.
+
+mod adapters;
+mod device;
+mod layout;
+mod pace;
+mod pipeline;
+pub mod shaders;
+mod slot;
+
+pub use adapters::{AdapterReport, Kind, adapters, preferred};
+
+use super::{Description, Engine, EngineError, Hit, Shot};
+use crate::model::{Effects, Rod};
+use device::Device;
+use layout::Layout;
+use pipeline::Pipeline;
+use slot::{Flight, Slot};
+use std::collections::hash_map::Entry;
+use std::collections::{HashMap, VecDeque};
+use std::fmt;
+use std::time::Instant;
+
+/// The shaders' scalar.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Precision {
+    /// 32 bits: every GPU.
+    F32,
+    /// 64 bits: Vulkan adapters with `shaderFloat64`.
+    F64,
+}
+
+impl fmt::Display for Precision {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::F32 => "f32",
+            Self::F64 => "f64",
+        })
+    }
+}
+
+/// The GPU engine on the [`preferred`] adapter.
+#[derive(Debug)]
+pub struct Gpu {
+    precision: Precision,
+    layout: &'static Layout,
+    device: Device,
+    rods: Option<wgpu::Buffer>,
+    slots: Vec<Slot>,
+    pipelines: HashMap<Effects, Pipeline>,
+}
+
+/// Dispatches in flight: one runs while the answers of the other are read.
+const IN_FLIGHT: usize = 2;
+
+impl Gpu {
+    /// Opens the adapter.
+    ///
+    /// # Errors
+    /// [`EngineError::NoAdapter`] without a driver, [`EngineError::Unsupported`] where the adapter has no
+    /// `f64`, [`EngineError::Device`] when the driver refuses a device.
+    pub fn new(precision: Precision) -> Result<Self, EngineError> {
+        Ok(Self {
+            precision,
+            layout: Layout::of(precision),
+            device: Device::open(precision)?,
+            rods: None,
+            slots: Vec::new(),
+            pipelines: HashMap::new(),
+        })
+    }
+
+    /// Whether the adapter is a program on the CPU, slower than the CPU engine.
+    #[must_use]
+    pub fn is_software(&self) -> bool {
+        self.device.report.kind == Kind::Software
+    }
+
+    /// Uploads the rods, in a buffer that grows when it must.
+    fn upload(&mut self, rods: &[Rod]) -> Result<wgpu::Buffer, EngineError> {
+        let bytes = (self.layout.rods)(rods);
+        let size = bytes.len() as u64;
+        let most = self.device.most_bytes();
+        if size > most {
+            return Err(EngineError::Unsupported {
+                adapter: self.device.report.name.clone(),
+                what: format!("hold {} rods: {size} bytes, at most {most}", rods.len()),
+            });
+        }
+        let buffer = match self.rods.take() {
+            Some(buffer) if buffer.size() >= size => buffer,
+            _ => {
+                let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST;
+                self.device.buffer("rods", size, usage)?
+            }
+        };
+        self.device.queue.write_buffer(&buffer, 0, &bytes);
+        self.rods = Some(buffer.clone());
+        Ok(buffer)
+    }
+
+    fn run(
+        &mut self,
+        effects: Effects,
+        rods: &[Rod],
+        shots: &[Shot],
+    ) -> Result<Vec<Hit>, EngineError> {
+        let rods = self.upload(rods)?;
+        let pipeline = match self.pipelines.entry(effects) {
+            Entry::Occupied(known) => known.into_mut(),
+            Entry::Vacant(new) => new.insert(Pipeline::new(
+                &self.device,
+                self.precision,
+                self.layout,
+                effects,
+            )?),
+        };
+        let mut hits = Vec::with_capacity(shots.len());
+        let mut waiting = shots;
+        let mut flights: VecDeque<Flight> = VecDeque::new();
+        let mut idle_since = Instant::now();
+        loop {
+            if flights.len() < IN_FLIGHT && !waiting.is_empty() {
+                let (now, later) = waiting.split_at(pipeline.pace.shots.min(waiting.len()));
+                waiting = later;
+                let slot = self.slots.pop().unwrap_or_default();
+                let (device, layout) = (&self.device, self.layout);
+                flights.push_back(slot.launch(device, layout, pipeline, &rods, now)?);
+            } else if let Some(flight) = flights.pop_front() {
+                let (count, started) = (flight.shots, flight.submitted.max(idle_since));
+                self.slots
+                    .push(flight.land(&self.device, self.layout, &mut hits)?);
+                idle_since = Instant::now();
+                pipeline.pace.learn(count, idle_since - started);
+            } else {
+                return Ok(hits);
+            }
+        }
+    }
+}
+
+impl Engine for Gpu {
+    fn describe(&self) -> Description {
+        let report = &self.device.report;
+        Description {
+            engine: format!("gpu {}", self.precision),
+            adapter: format!(
+                "{}, {}, {} {}",
+                report.name, report.backend, report.driver, report.driver_info
+            ),
+        }
+    }
+
+    fn shoot(
+        &mut self,
+        effects: Effects,
+        rods: &[Rod],
+        shots: &[Shot],
+    ) -> Result<Vec<Hit>, EngineError> {
+        if shots.is_empty() {
+            return Ok(Vec::new());
+        }
+        self.run(effects, rods, shots)
+    }
+}

@@ -1,0 +1,51 @@
+// For tests only: the pieces' numbers laid bare. One invocation per case.
+
+@group(0) @binding(0) var<storage, read> cases: array<real>;
+@group(0) @binding(1) var<storage, read_write> answers: array<real>;
+
+// force, twice_bend, taper, h, rho, then the state; answers the state after STEPS steps.
+@compute @workgroup_size(1)
+fn probe_steps(@builtin(global_invocation_id) id: vec3<u32>) {
+    let i = 17u * id.x;
+    let system = System(cases[i], cases[i + 1u]);
+    let h = cases[i + 3u];
+    let rho = cases[i + 4u];
+    let y = integrate(
+        system,
+        gains(cases[i + 2u], h),
+        Radius(rho, 1.0 / (rho * rho * rho)),
+        h,
+        State(
+            vec2<real>(cases[i + 5u], cases[i + 6u]),
+            vec4<real>(cases[i + 7u], cases[i + 8u], cases[i + 9u], cases[i + 10u]),
+            vec3<real>(cases[i + 11u], cases[i + 12u], cases[i + 13u]),
+            vec3<real>(cases[i + 14u], cases[i + 15u], cases[i + 16u]),
+        ),
+    );
+    let o = 12u * id.x;
+    answers[o] = y.rest.x;
+    answers[o + 1u] = y.rest.y;
+    answers[o + 2u] = y.rod.x;
+    answers[o + 3u] = y.rod.y;
+    answers[o + 4u] = y.rod.z;
+    answers[o + 5u] = y.rod.w;
+    answers[o + 6u] = y.by_force.x;
+    answers[o + 7u] = y.by_force.y;
+    answers[o + 8u] = y.by_force.z;
+    answers[o + 9u] = y.by_arclength.x;
+    answers[o + 10u] = y.by_arclength.y;
+    answers[o + 11u] = y.by_arclength.z;
+}
+
+// taper, bend, slope, tau, load; answers radius, arclength, force, cos, sin.
+@compute @workgroup_size(1)
+fn probe_start(@builtin(global_invocation_id) id: vec3<u32>) {
+    let i = 5u * id.x;
+    let rod = Rod(cases[i], cases[i + 1u], cases[i + 2u], 0.0);
+    let start = start_at(rod, cases[i + 3u], cases[i + 4u]);
+    answers[i] = start.radius;
+    answers[i + 1u] = start.arclength;
+    answers[i + 2u] = start.force;
+    answers[i + 3u] = start.cos;
+    answers[i + 4u] = start.sin;
+}

@@ -1,0 +1,55 @@
+// The right-hand sides, in sigma = tau_contact - tau; the twin of `src/model/{rhs,order,vector}.rs`.
+
+struct Radius {
+    rho: real,
+    inverse_cube: real,
+}
+
+struct State {
+    // cos and sin of the rest tangent
+    rest: vec2<real>,
+    // c, s, X, Y
+    rod: vec4<real>,
+    // d(theta, X, Y) by the force
+    by_force: vec3<real>,
+    // and by the arclength of the contact
+    by_arclength: vec3<real>,
+}
+
+struct System {
+    force: real,
+    twice_bend: real,
+}
+
+fn rhs(system: System, radius: Radius, y: State) -> State {
+    let f = system.force;
+    let rho = radius.rho;
+    let w = radius.inverse_cube;
+    let c = y.rod.x;
+    let s = y.rod.y;
+    let x = y.rod.z;
+    var turn = -f * x * w;
+    var rest = vec2<real>();
+    if CURVATURE {
+        let at_rest = rho * system.twice_bend * y.rest.x * y.rest.x * y.rest.x;
+        rest = vec2<real>(at_rest * y.rest.y, -at_rest * y.rest.x);
+        turn += at_rest;
+    }
+    let theta_f = y.by_force.x;
+    let theta_s = y.by_arclength.x;
+    return State(
+        rest,
+        vec4<real>(turn * s, -turn * c, -rho * c, -rho * s),
+        vec3<real>(w * (f * y.by_force.y + x), rho * s * theta_f, -rho * c * theta_f),
+        vec3<real>(w * f * y.by_arclength.y, rho * s * theta_s, -rho * c * theta_s),
+    );
+}
+
+fn plus(y: State, h: real, k: State) -> State {
+    return State(
+        y.rest + h * k.rest,
+        y.rod + h * k.rod,
+        y.by_force + h * k.by_force,
+        y.by_arclength + h * k.by_arclength,
+    );
+}

@@ -1,0 +1,55 @@
+// The rod and its contact; the twin of `src/model/{rod,rest,start}.rs`.
+
+// Lengths in whisker lengths; as in Rust.
+struct Rod {
+    taper: real,
+    bend: real,
+    slope: real,
+    pole: real,
+}
+
+struct Start {
+    radius: real,
+    arclength: real,
+    force: real,
+    cos: real,
+    sin: real,
+}
+
+// Four times `bend` times the arclength of the parabola from its vertex to the slope t.
+fn arc(t: real) -> real {
+    return t * sqrt(1.0 + t * t) + arsinh(t);
+}
+
+// Slope of the parabola at arclength s: three steps of Halley's method.
+fn slope_at(rod: Rod, s: real) -> real {
+    let z = 4.0 * rod.bend * s + arc(rod.slope);
+    var t = 0.5 * z / sqrt(sqrt(1.0 + z * z / 16.0));
+    for (var i = 0; i < 3; i++) {
+        let root = sqrt(1.0 + t * t);
+        let miss = arc(t) - z;
+        t -= miss * root / (2.0 * root * root - 0.5 * miss * t / root);
+    }
+    return t;
+}
+
+// The contact at tau with load = force/radius^2.
+fn start_at(rod: Rod, tau: real, load: real) -> Start {
+    var start = Start(1.0, tau, load, 1.0, 0.0);
+    if TAPER {
+        start.radius = exponential(-rod.taper * tau);
+        start.arclength = tau * expm1_over(-rod.taper * tau);
+        start.force = load * start.radius * start.radius;
+    }
+    if CURVATURE {
+        let slope = slope_at(rod, start.arclength);
+        start.cos = 1.0 / sqrt(1.0 + slope * slope);
+        start.sin = slope * start.cos;
+    }
+    return start;
+}
+
+// Curvature at rest of a parabola at a contact.
+fn curvature(rod: Rod, start: Start) -> real {
+    return 2.0 * rod.bend * start.cos * start.cos * start.cos;
+}

@@ -1,0 +1,104 @@
+//! A device whose errors are values.
+
+use super::adapters::{AdapterReport, enumerate, preferred};
+use super::{EngineError, Precision};
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// A device, its queue, and the first error that nobody has seen yet.
+///
+/// wgpu reports errors when it likes; one handler writes them down, and [`Device::check`] hands them out.
+#[derive(Debug)]
+pub struct Device {
+    pub report: AdapterReport,
+    pub queue: wgpu::Queue,
+    pub handle: wgpu::Device,
+    fault: Fault,
+}
+
+#[derive(Clone, Debug, Default)]
+struct Fault(Arc<Mutex<Option<String>>>);
+
+impl Fault {
+    fn note(&self, what: String) {
+        let mut slot = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        slot.get_or_insert(what);
+    }
+
+    fn take(&self) -> Option<String> {
+        let mut slot = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        slot.take()
+    }
+}
+
+impl Device {
+    /// Opens the preferred adapter for shaders of this precision.
+    pub fn open(precision: Precision) -> Result<Self, EngineError> {
+        let mut found = enumerate();
+        let reports: Vec<_> = found.iter().map(AdapterReport::new).collect();
+        let Some(chosen) = preferred(&reports) else {
+            let tried = "no driver of Vulkan, Metal or DirectX 12 answered".to_owned();
+            return Err(EngineError::NoAdapter(tried));
+        };
+        let (adapter, report) = (found.swap_remove(chosen), reports[chosen].clone());
+        let required_features = match precision {
+            Precision::F32 => wgpu::Features::empty(),
+            Precision::F64 => wgpu::Features::SHADER_F64,
+        };
+        if !adapter.features().contains(required_features) {
+            return Err(EngineError::Unsupported {
+                adapter: report.name,
+                what: "compute in f64 (no SHADER_F64)".to_owned(),
+            });
+        }
+        let (handle, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
+            required_features,
+            ..Default::default()
+        }))
+        .map_err(|error| EngineError::Device(error.to_string()))?;
+        let fault = Fault::default();
+        let noted = fault.clone();
+        handle.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
+            noted.note(error.to_string());
+        }));
+        let noted = fault.clone();
+        handle.set_device_lost_callback(move |reason, message| {
+            if reason != wgpu::DeviceLostReason::Destroyed {
+                noted.note(format!("device lost: {message}"));
+            }
+        });
+        Ok(Self {
+            report,
+            queue,
+            handle,
+            fault,
+        })
+    }
+
+    /// The error that has come in since the last call, if any.
+    pub fn check(&self) -> Result<(), EngineError> {
+        self.fault
+            .take()
+            .map_or(Ok(()), |what| Err(EngineError::Device(what)))
+    }
+
+    /// Largest storage buffer of this device, in bytes.
+    pub fn most_bytes(&self) -> u64 {
+        self.handle.limits().max_storage_buffer_binding_size
+    }
+
+    /// A new buffer.
+    pub fn buffer(
+        &self,
+        label: &str,
+        size: u64,
+        usage: wgpu::BufferUsages,
+    ) -> Result<wgpu::Buffer, EngineError> {
+        let buffer = self.handle.create_buffer(&wgpu::BufferDescriptor {
+            label: Some(label),
+            size,
+            usage,
+            mapped_at_creation: false,
+        });
+        self.check().map(|()| buffer)
+    }
+}

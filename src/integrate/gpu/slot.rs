@@ -1,0 +1,142 @@
+//! The buffers of one dispatch, used again and again.
+
+use super::EngineError;
+use super::device::Device;
+use super::layout::Layout;
+use super::pipeline::Pipeline;
+use super::shaders::WORKGROUP;
+use crate::integrate::{Hit, Shot};
+use std::time::Instant;
+use wgpu::BufferUsages as Usage;
+
+/// Room for a number of shots and their hits.
+#[derive(Debug, Default)]
+pub struct Slot {
+    buffers: Option<Buffers>,
+}
+
+#[derive(Debug)]
+struct Buffers {
+    capacity: usize,
+    shots: wgpu::Buffer,
+    hits: wgpu::Buffer,
+    readback: wgpu::Buffer,
+}
+
+impl Buffers {
+    fn new(device: &Device, layout: &Layout, capacity: usize) -> Result<Self, EngineError> {
+        let bytes = |each: usize| (capacity * each) as u64;
+        let (shots, hits) = (bytes(layout.shot), bytes(layout.hit));
+        Ok(Self {
+            capacity,
+            shots: device.buffer("shots", shots, Usage::STORAGE | Usage::COPY_DST)?,
+            hits: device.buffer("hits", hits, Usage::STORAGE | Usage::COPY_SRC)?,
+            readback: device.buffer("readback", hits, Usage::MAP_READ | Usage::COPY_DST)?,
+        })
+    }
+}
+
+/// A dispatch under way.
+#[derive(Debug)]
+pub struct Flight {
+    /// How many shots.
+    pub shots: usize,
+    /// When it was handed to the queue.
+    pub submitted: Instant,
+    index: wgpu::SubmissionIndex,
+    buffers: Buffers,
+}
+
+/// The first `size` bytes of a buffer.
+fn part(binding: u32, buffer: &wgpu::Buffer, size: u64) -> wgpu::BindGroupEntry<'_> {
+    wgpu::BindGroupEntry {
+        binding,
+        resource: wgpu::BindingResource::Buffer(wgpu::BufferBinding {
+            buffer,
+            offset: 0,
+            size: wgpu::BufferSize::new(size),
+        }),
+    }
+}
+
+impl Slot {
+    /// Sends `shots` on their way.
+    pub fn launch(
+        self,
+        device: &Device,
+        layout: &Layout,
+        pipeline: &Pipeline,
+        rods: &wgpu::Buffer,
+        shots: &[Shot],
+    ) -> Result<Flight, EngineError> {
+        let buffers = match self.buffers {
+            Some(buffers) if buffers.capacity >= shots.len() => buffers,
+            _ => Buffers::new(device, layout, shots.len())?,
+        };
+        let shots_size = (shots.len() * layout.shot) as u64;
+        let hits_size = (shots.len() * layout.hit) as u64;
+        device
+            .queue
+            .write_buffer(&buffers.shots, 0, &(layout.shots)(shots));
+        let bindings = device.handle.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("shoot"),
+            layout: &pipeline.handle.get_bind_group_layout(0),
+            entries: &[
+                part(0, rods, rods.size()),
+                part(1, &buffers.shots, shots_size),
+                part(2, &buffers.hits, hits_size),
+            ],
+        });
+        let mut commands = device.handle.create_command_encoder(&Default::default());
+        {
+            let mut pass = commands.begin_compute_pass(&Default::default());
+            pass.set_pipeline(&pipeline.handle);
+            pass.set_bind_group(0, &bindings, &[]);
+            // The pace keeps the shots below what `u32` can count.
+            pass.dispatch_workgroups((shots.len() as u32).div_ceil(WORKGROUP), 1, 1);
+        }
+        commands.copy_buffer_to_buffer(&buffers.hits, 0, &buffers.readback, 0, hits_size);
+        let submitted = Instant::now();
+        let index = device.queue.submit([commands.finish()]);
+        // Whether it worked is told by `get_mapped_range`.
+        buffers
+            .readback
+            .map_async(wgpu::MapMode::Read, ..hits_size, |_| ());
+        device.check()?;
+        Ok(Flight {
+            shots: shots.len(),
+            submitted,
+            index,
+            buffers,
+        })
+    }
+}
+
+impl Flight {
+    /// Waits for the hits, appends them, and gives the buffers back.
+    pub fn land(
+        self,
+        device: &Device,
+        layout: &Layout,
+        hits: &mut Vec<Hit>,
+    ) -> Result<Slot, EngineError> {
+        let failed = |what: &dyn std::fmt::Display| EngineError::Device(what.to_string());
+        let waited = device.handle.poll(wgpu::PollType::Wait {
+            submission_index: Some(self.index),
+            timeout: None,
+        });
+        device.check()?;
+        waited.map_err(|error| failed(&error))?;
+        let size = (self.shots * layout.hit) as u64;
+        let readback = &self.buffers.readback;
+        let bytes = readback
+            .get_mapped_range(..size)
+            .map_err(|error| failed(&error))?;
+        (layout.hits)(&bytes, hits);
+        drop(bytes);
+        readback.unmap();
+        Ok(Slot {
+            buffers: Some(self.buffers),
+        })
+    }
+}

@@ -1,0 +1,128 @@
+//! Shots with known answers: random states, landed in `f64` by the CPU.
+
+use glam::DVec2;
+use whiskmap::integrate::Shot;
+use whiskmap::model::batch::{Launch, Method, land};
+use whiskmap::model::{Dopri8, Effects, First, Landing, Rod, arclength};
+
+/// A reproducible stream of numbers in `[0, 1)` (splitmix64).
+pub struct Random(pub u64);
+
+impl Random {
+    pub fn unit(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        (z >> 40) as f64 / 16_777_216.0
+    }
+
+    pub fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.unit()
+    }
+}
+
+pub const EFFECTS: [Effects; 4] = [
+    Effects {
+        taper: false,
+        curvature: false,
+    },
+    Effects {
+        taper: false,
+        curvature: true,
+    },
+    Effects {
+        taper: true,
+        curvature: false,
+    },
+    Effects {
+        taper: true,
+        curvature: true,
+    },
+];
+
+/// A whisker of taper up to 0.99 and `A*` up to 0.8 on either side of a pole of radius up to 0.03.
+pub fn rod(effects: Effects, random: &mut Random) -> Rod {
+    let bend = f64::from(effects.curvature) * random.between(0.0, 0.8);
+    let side = if random.unit() < 0.5 { 1.0 } else { -1.0 };
+    Rod {
+        taper: f64::from(effects.taper) * random.between(0.0, 0.99),
+        bend,
+        slope: -2.0 * bend * random.between(-0.3, 0.3),
+        pole: side * random.between(0.0, 0.03),
+    }
+}
+
+/// A contact on `rod` under `q = |load| s^2` up to `most_q`, on the side of its pole.
+pub fn launch(rod: Rod, most_q: f64, random: &mut Random) -> Launch {
+    let tau = rod.tau_tip() * random.between(0.1, 1.0);
+    let s = arclength(&rod, tau);
+    let load = rod.pole.signum() * random.between(0.0, most_q) / (s * s);
+    Launch { rod, tau, load }
+}
+
+/// The truth: 32 steps of Dormand and Prince are off by less than 2e-12.
+pub fn landings(effects: Effects, launches: &[Launch]) -> Vec<Landing> {
+    let method = Method { effects, steps: 32 };
+    land::<Dopri8, First, 6>(method, launches)
+}
+
+/// Shots at the poles of random states, with guesses off by 1 to 3 %.
+pub struct Range {
+    pub effects: Effects,
+    pub rods: Vec<Rod>,
+    pub truth: Vec<Launch>,
+    pub shots: Vec<Shot>,
+}
+
+impl Range {
+    pub fn new(effects: Effects, count: usize, most_q: f64, seed: u64) -> Self {
+        let mut random = Random(seed);
+        let rods: Vec<Rod> = (0..count.div_ceil(8))
+            .map(|_| rod(effects, &mut random))
+            .collect();
+        let truth: Vec<Launch> = (0..count)
+            .map(|i| launch(rods[i / 8], most_q, &mut random))
+            .collect();
+        let mut off = || {
+            let size = random.between(0.01, 0.03);
+            if random.unit() < 0.5 { -size } else { size }
+        };
+        let shots = landings(effects, &truth)
+            .iter()
+            .zip(&truth)
+            .enumerate()
+            .map(|(i, (landing, launch))| Shot {
+                rod: (i / 8) as u32,
+                tau: launch.tau * (1.0 + off()),
+                load: launch.load * (1.0 + off()),
+                pole: landing.pole,
+            })
+            .collect();
+        Self {
+            effects,
+            rods,
+            truth,
+            shots,
+        }
+    }
+
+    /// How far from the wanted place the poles of `(tau, load)` really are.
+    pub fn misses(&self, states: impl IntoIterator<Item = (f64, f64)>) -> Vec<f64> {
+        let launches: Vec<Launch> = states
+            .into_iter()
+            .zip(&self.truth)
+            .map(|((tau, load), truth)| Launch {
+                rod: truth.rod,
+                tau,
+                load,
+            })
+            .collect();
+        let wanted = self.shots.iter().map(|shot| shot.pole);
+        landings(self.effects, &launches)
+            .iter()
+            .zip(wanted)
+            .map(|(landing, wanted): (&Landing, DVec2)| landing.pole.distance(wanted))
+            .collect()
+    }
+}

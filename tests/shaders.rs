@@ -1,0 +1,71 @@
+//! The shaders without a device: every text that the engine can build is valid.
+#![allow(
+    clippy::unwrap_used,
+    clippy::panic,
+    reason = "a test fails by panicking"
+)]
+
+use naga::back::PipelineConstants;
+use naga::back::pipeline_constants::process_overrides;
+use naga::valid::{Capabilities, ValidationFlags, Validator};
+use whiskmap::integrate::gpu::{Precision, shaders};
+use whiskmap::model::Effects;
+
+const PRECISIONS: [Precision; 2] = [Precision::F32, Precision::F64];
+const PROBE: &str = include_str!("../shaders/probe.wgsl");
+
+fn effects() -> impl Iterator<Item = Effects> {
+    [false, true]
+        .into_iter()
+        .flat_map(|taper| [false, true].map(|curvature| Effects { taper, curvature }))
+}
+
+/// Parses and validates `text`, for every entry point and with the values of its constants put in.
+fn validate(text: &str, precision: Precision) -> Result<(), String> {
+    let module = naga::front::wgsl::parse_str(text).map_err(|e| e.emit_to_string(text))?;
+    let capabilities = match precision {
+        Precision::F32 => Capabilities::empty(),
+        Precision::F64 => Capabilities::FLOAT64,
+    };
+    let mut validator = Validator::new(ValidationFlags::all(), capabilities);
+    let info = validator
+        .validate(&module)
+        .map_err(|e| e.emit_to_string(text))?;
+    for entry in &module.entry_points {
+        for effects in effects() {
+            let constants: PipelineConstants = shaders::overrides(effects, precision.steps())
+                .map(|(name, value)| (name.to_owned(), value))
+                .into_iter()
+                .collect();
+            let entry_point = Some((entry.stage, entry.name.as_str()));
+            let (module, _) = process_overrides(&module, &info, entry_point, &constants)
+                .map_err(|e| format!("{effects:?}: {e}"))?;
+            let resolved = Validator::new(ValidationFlags::all(), capabilities).validate(&module);
+            resolved.map_err(|e| format!("{effects:?}: {e:?}"))?;
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn every_text_is_valid() {
+    for precision in PRECISIONS {
+        validate(&shaders::shoot(precision), precision).unwrap_or_else(|e| panic!("{e}"));
+        let probe = shaders::model(precision) + PROBE;
+        validate(&probe, precision).unwrap_or_else(|e| panic!("{e}"));
+    }
+}
+
+#[test]
+fn a_broken_text_is_refused() {
+    let text = shaders::shoot(Precision::F32);
+    for (good, bad) in [
+        ("rods[shot.rod]", "rods[shot.tau]"),
+        ("override STEPS: u32;", ""),
+    ] {
+        assert!(text.contains(good));
+        assert!(validate(&text.replace(good, bad), Precision::F32).is_err());
+    }
+    // Double precision is a capability.
+    assert!(validate(&shaders::shoot(Precision::F64), Precision::F32).is_err());
+}
