@@ -6,6 +6,7 @@
 //! through them.
 
 pub mod classify;
+pub mod cli;
 pub mod integrate;
 pub mod map;
 pub mod model;

@@ -1,1 +1,7 @@
-fn main() {}
+//! The command `whiskmap`: see `whiskmap --help`.
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    whiskmap::cli::main()
+}

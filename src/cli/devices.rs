@@ -1,0 +1,47 @@
+//! `whiskmap devices`.
+
+use super::engine::{self, Choice};
+use super::failure::Failure;
+use crate::integrate::gpu::{adapters, preferred};
+use std::io::Write;
+
+/// Runs `devices`.
+pub fn run() -> Result<(), Failure> {
+    let mut out = std::io::stdout().lock();
+    let reports = adapters();
+    if reports.is_empty() {
+        writeln!(out, "no GPU adapter found")?;
+    }
+    let taken = preferred(&reports);
+    for (i, report) in reports.iter().enumerate() {
+        let mark = if taken == Some(i) { "*" } else { " " };
+        writeln!(
+            out,
+            "{mark} {} ({}, {})",
+            report.name, report.kind, report.backend
+        )?;
+        writeln!(out, "    driver   {} {}", report.driver, report.driver_info)?;
+        writeln!(
+            out,
+            "    f64      {}",
+            if report.shader_f64 { "yes" } else { "no" }
+        )?;
+        writeln!(
+            out,
+            "    limits   {} MiB per storage buffer, {} workgroups per dispatch",
+            report.most_storage_bytes >> 20,
+            report.most_workgroups
+        )?;
+    }
+    if taken.is_some() {
+        writeln!(out, "* is what --engine gpu takes")?;
+    }
+    let (engine, why) = engine::open(Choice::Auto, None)?;
+    let description = engine.describe();
+    writeln!(
+        out,
+        "--engine auto takes {} on {} ({why})",
+        description.engine, description.adapter
+    )?;
+    Ok(())
+}

@@ -1,0 +1,66 @@
+//! What ends a command early, and the exit code for it.
+
+use crate::integrate::EngineError;
+use crate::map::MapError;
+use crate::plan::PlanError;
+use crate::scene::SceneError;
+use std::io::IsTerminal;
+use std::process::ExitCode;
+
+/// An error of a command.
+#[derive(Debug, thiserror::Error)]
+pub enum Failure {
+    /// The scene is not valid.
+    #[error("{0}")]
+    Scene(#[from] SceneError),
+    /// The scene is too large.
+    #[error(transparent)]
+    Plan(#[from] PlanError),
+    /// Arguments that cannot be right together with this machine or these files.
+    #[error("{0}")]
+    Input(String),
+    /// The engine failed.
+    #[error(transparent)]
+    Engine(#[from] EngineError),
+    /// The map failed.
+    #[error(transparent)]
+    Map(#[from] MapError),
+    /// A stored map could not be read or written.
+    #[error(transparent)]
+    Store(#[from] crate::store::Error),
+    /// A picture could not be drawn.
+    #[error(transparent)]
+    Render(#[from] crate::render::Error),
+    /// Standard output is gone or full.
+    #[error("standard output: {0}")]
+    Output(#[from] std::io::Error),
+}
+
+impl Failure {
+    fn code(&self) -> u8 {
+        match self {
+            Self::Scene(_) | Self::Plan(_) | Self::Input(_) => 2,
+            Self::Engine(_) | Self::Map(_) | Self::Store(_) | Self::Render(_) | Self::Output(_) => {
+                1
+            }
+        }
+    }
+
+    /// Prints the message and gives the exit code.
+    pub fn report(&self) -> ExitCode {
+        match self {
+            // A reader that has seen enough, like `head`, is no failure of ours.
+            Self::Output(error) if error.kind() == std::io::ErrorKind::BrokenPipe => {
+                return ExitCode::SUCCESS;
+            }
+            Self::Scene(error) => eprintln!("{}", error.render(color())),
+            _ => eprintln!("error: {self}"),
+        }
+        ExitCode::from(self.code())
+    }
+}
+
+/// Whether messages may be coloured: on a terminal, unless `NO_COLOR` is set.
+fn color() -> bool {
+    std::io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none_or(|v| v.is_empty())
+}

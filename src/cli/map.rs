@@ -1,0 +1,155 @@
+//! `whiskmap map`.
+
+use super::engine::{self, Choice, Shaders};
+use super::failure::Failure;
+use super::progress;
+use crate::classify::{Regime, Status};
+use crate::map::{self, Observer, Summary};
+use crate::plan::Plan;
+use crate::refine::{GOAL, TOLERANCE};
+use crate::scene::Scene;
+use crate::store::{Description, MapWriter, Panel};
+use crate::{render, store};
+use clap::Args;
+use indicatif::ProgressBar;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+/// Options of `map`.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  whiskmap map scenes/cone.toml
+  whiskmap map scenes/morphology.toml -o /tmp --engine cpu --threads 1
+  whiskmap map - < my_whisker.toml")]
+pub struct Options {
+    /// Scene file; - reads it from standard input
+    scene: PathBuf,
+    /// Folder for the files; it is made if it is missing
+    #[arg(short, long, value_name = "DIR", default_value = "outputs")]
+    output: PathBuf,
+    /// What solves the cells
+    #[arg(long, value_enum, default_value = "auto")]
+    engine: Choice,
+    /// Scalar of the shaders [default: f32]
+    #[arg(long, value_enum)]
+    precision: Option<Shaders>,
+    /// Threads of the CPU [default: all cores]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+    /// Write no picture
+    #[arg(long)]
+    no_png: bool,
+}
+
+/// Runs `map`.
+pub fn run(options: &Options) -> Result<(), Failure> {
+    let scene = Scene::read(&options.scene)?;
+    let plan = Plan::new(&scene)?;
+    folder(&options.output)?;
+    if let Some(threads) = options.threads {
+        rayon::ThreadPoolBuilder::new()
+            .num_threads(threads.into())
+            .build_global()
+            .map_err(|error| Failure::Input(format!("--threads {threads}: {error}")))?;
+    }
+    let (mut engine, why) = engine::open(options.engine, options.precision)?;
+    let description = engine.describe();
+    eprintln!(
+        "engine: {} on {} ({why})",
+        description.engine, description.adapter
+    );
+
+    let start = Instant::now();
+    let file = options.output.join(format!("{}.exr", scene.name));
+    let writer = MapWriter::create(
+        &file,
+        &Description {
+            scene: &scene,
+            engine: &description.engine,
+            adapter: &description.adapter,
+            tolerances: &serde_json::json!({
+                "residual_goal_whisker_lengths": GOAL,
+                "residual_accepted_whisker_lengths": TOLERANCE,
+            }),
+            status_names: &Status::ALL.map(|status| (status.code(), status.name())),
+        },
+    )?;
+    let cells =
+        scene.grid.push_angle_deg.len() * scene.grid.distance_mm.len() * plan.whiskers.len();
+    let bar = progress::bar(cells as u64);
+    let mut keeper = Keeper { writer, bar };
+    let summary = map::run(&scene, &plan, engine.as_mut(), &mut keeper)?;
+    keeper.bar.finish_and_clear();
+    keeper.writer.finish()?;
+    let mut written = vec![file];
+    if !options.no_png {
+        let picture = written[0].with_extension("png");
+        render::regimes(&store::StoredMap::open(&written[0])?, &picture)?;
+        written.push(picture);
+    }
+    print(&scene, &summary, start.elapsed().as_secs_f64(), &written)?;
+    Ok(())
+}
+
+/// Keeps panels in the file and moves the bar.
+struct Keeper {
+    writer: MapWriter,
+    bar: ProgressBar,
+}
+
+impl Observer for Keeper {
+    fn panel(&mut self, index: usize, panel: &Panel) -> Result<(), store::Error> {
+        self.writer.write_panel(index, panel)
+    }
+
+    fn settled(&mut self, cells: usize) {
+        self.bar.inc(cells as u64);
+    }
+}
+
+/// Makes the output folder and finds out, before any work, whether files can be made in it.
+fn folder(path: &Path) -> Result<(), Failure> {
+    let refuse = |what: &str, error: std::io::Error| {
+        let path = path.display();
+        Failure::Input(format!(
+            "--output {path}: {what}: {error}; give a folder that can be written"
+        ))
+    };
+    std::fs::create_dir_all(path).map_err(|error| refuse("cannot make the folder", error))?;
+    tempfile::tempfile_in(path).map_err(|error| refuse("cannot write there", error))?;
+    Ok(())
+}
+
+fn print(scene: &Scene, summary: &Summary, seconds: f64, files: &[PathBuf]) -> std::io::Result<()> {
+    let mut out = std::io::stdout().lock();
+    writeln!(out, "{}", scene.title)?;
+    for (regime, cells) in Regime::ALL.iter().zip(summary.regimes) {
+        if cells > 0 || *regime == Regime::Unresolved {
+            writeln!(out, "{cells:>12}  {}", regime.name())?;
+        }
+    }
+    writeln!(
+        out,
+        "{:>12}  refined in f64, {:.2} Newton steps each, worst residual {:.1e} of the length",
+        summary.refined,
+        summary.steps as f64 / summary.refined.max(1) as f64,
+        summary.worst_residual
+    )?;
+    writeln!(
+        out,
+        "{:>12}  disagreements between cells and boundaries",
+        summary.disagreements
+    )?;
+    let rate = summary.cells() as f64 / seconds;
+    write!(out, "{rate:>12.0}  cells/s; {seconds:.2} s:")?;
+    for (stage, seconds) in summary.seconds() {
+        write!(out, " {stage} {seconds:.2}")?;
+    }
+    writeln!(out)?;
+    for file in files {
+        writeln!(out, "{}", file.display())?;
+    }
+    Ok(())
+}

@@ -1,0 +1,53 @@
+//! `whiskmap render`.
+
+use super::failure::Failure;
+use crate::render;
+use crate::store::StoredMap;
+use clap::Args;
+use std::io::Write;
+use std::path::PathBuf;
+
+/// Options of `render`.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  whiskmap render outputs/cone.exr
+  whiskmap render outputs/cone.exr --channel force_un -o force.png")]
+pub struct Options {
+    /// Map written by `whiskmap map`
+    file: PathBuf,
+    /// Channel to draw with a colour bar; without it the regimes are drawn
+    #[arg(long, value_name = "NAME")]
+    channel: Option<String>,
+    /// Picture to write [default: FILE.png or FILE.NAME.png beside the map]
+    #[arg(short, long, value_name = "PNG")]
+    output: Option<PathBuf>,
+}
+
+/// Runs `render`.
+pub fn run(options: &Options) -> Result<(), Failure> {
+    let input = |error: crate::store::Error| Failure::Input(error.to_string());
+    let map = StoredMap::open(&options.file).map_err(input)?;
+    let channels = map.channels();
+    if let Some(name) = &options.channel
+        && !channels.contains(&name.as_str())
+    {
+        let channels = channels.join(", ");
+        return Err(Failure::Input(format!(
+            "--channel {name}: must be one of {channels}"
+        )));
+    }
+    let picture = options.output.clone().unwrap_or_else(|| {
+        let ending = options
+            .channel
+            .as_ref()
+            .map_or("png".to_owned(), |name| format!("{name}.png"));
+        options.file.with_extension(ending)
+    });
+    match &options.channel {
+        Some(name) => render::channel(&map, name, &picture)?,
+        None => render::regimes(&map, &picture)?,
+    }
+    writeln!(std::io::stdout(), "{}", picture.display())?;
+    Ok(())
+}
