@@ -38,10 +38,7 @@ impl RowBoundary {
         let mut ends = crossings.iter();
         let mut spans = Vec::new();
         let mut from = touches.then_some(0.0);
-        loop {
-            let Some(begin) = from.take().or_else(|| ends.next().map(|c| c.push)) else {
-                break;
-            };
+        while let Some(begin) = from.take().or_else(|| ends.next().map(|c| c.push)) {
             let Some(end) = ends.next() else { break };
             spans.push(Span {
                 from: begin,

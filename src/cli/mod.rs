@@ -16,7 +16,6 @@ mod progress;
 mod render;
 
 use clap::{Parser, Subcommand};
-use failure::Failure;
 use std::process::ExitCode;
 
 /// Where does a whisker pushed against a pole stay in contact, where does it slip off, where is it pulled off?

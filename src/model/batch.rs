@@ -8,9 +8,11 @@ use super::integrator::{Integrator, Resolution, Scales, integrate};
 use super::landing::{Curved, Full, Landing};
 use super::order::{First, FirstAndEnergy, Order, Second};
 use super::rhs::{Bent, Intrinsic, Planar, Radius, RodSystem, State, Straight};
+#[cfg(not(target_arch = "x86_64"))]
+use super::simd::plain::Plain as Baseline;
 #[cfg(target_arch = "x86_64")]
-use super::simd::x86::{Avx2, Avx512};
-use super::simd::{Lanes, Plain, WIDTH};
+use super::simd::x86::{Avx2, Avx512, Sse2 as Baseline};
+use super::simd::{Lanes, WIDTH};
 use super::{Effects, Rod, Start};
 use rayon::prelude::*;
 use std::fmt;
@@ -146,7 +148,7 @@ impl Unit {
             #[cfg(target_arch = "x86_64")]
             // SAFETY: as above.
             Self::Avx2 => unsafe { avx2::<M, K, N>(method, launches) },
-            Self::Baseline => by_effects::<M, K, Plain, N>(method, launches),
+            Self::Baseline => by_effects::<M, K, Baseline, N>(method, launches),
         }
     }
 }

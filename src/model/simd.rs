@@ -69,6 +69,39 @@ pub mod x86 {
     use super::*;
     use std::arch::x86_64::*;
 
+    /// Four registers of SSE2, which every processor of this architecture has; it has no fused multiply-add.
+    #[derive(Clone, Copy, Debug)]
+    pub struct Sse2(__m128d, __m128d, __m128d, __m128d);
+
+    #[inline(always)]
+    unsafe fn multiply_then_add(a: __m128d, b: __m128d, c: __m128d) -> __m128d {
+        // SAFETY: SSE2 is part of x86-64.
+        unsafe { _mm_add_pd(_mm_mul_pd(a, b), c) }
+    }
+
+    arithmetic!(Sse2, [0 1 2 3]; _mm_add_pd, _mm_sub_pd, _mm_mul_pd, _mm_div_pd, multiply_then_add, _mm_set1_pd);
+
+    impl Lanes for Sse2 {
+        #[inline(always)]
+        fn pack(lanes: [f64; WIDTH]) -> Self {
+            let pair = |i: usize| {
+                // SAFETY: two of eight numbers, `i` is at most 6; SSE2 is part of x86-64.
+                unsafe { _mm_loadu_pd(lanes.as_ptr().add(i)) }
+            };
+            Self(pair(0), pair(2), pair(4), pair(6))
+        }
+
+        #[inline(always)]
+        fn unpack(self) -> [f64; WIDTH] {
+            let mut lanes = [0.0; WIDTH];
+            for (i, pair) in [self.0, self.1, self.2, self.3].into_iter().enumerate() {
+                // SAFETY: two of eight numbers, `i` is at most 3; SSE2 is part of x86-64.
+                unsafe { _mm_storeu_pd(lanes.as_mut_ptr().add(2 * i), pair) };
+            }
+            lanes
+        }
+    }
+
     /// One register of AVX-512.
     #[derive(Clone, Copy, Debug)]
     pub struct Avx512(__m512d);
@@ -122,61 +155,66 @@ pub mod x86 {
     }
 }
 
-/// Plain numbers, for machines without a unit named here.
-#[derive(Clone, Copy, Debug)]
-pub struct Plain([f64; WIDTH]);
+/// Plain numbers, for architectures without a unit named here.
+#[cfg(not(target_arch = "x86_64"))]
+pub mod plain {
+    use super::*;
 
-macro_rules! plain {
-    ($trait:ident, $method:ident, $assign:tt) => {
-        impl $trait for Plain {
-            type Output = Self;
-            #[inline(always)]
-            fn $method(mut self, other: Self) -> Self {
-                for (a, b) in self.0.iter_mut().zip(other.0) {
-                    *a $assign b;
+    #[derive(Clone, Copy, Debug)]
+    pub struct Plain([f64; WIDTH]);
+
+    macro_rules! plain {
+        ($trait:ident, $method:ident, $assign:tt) => {
+            impl $trait for Plain {
+                type Output = Self;
+                #[inline(always)]
+                fn $method(mut self, other: Self) -> Self {
+                    for (a, b) in self.0.iter_mut().zip(other.0) {
+                        *a $assign b;
+                    }
+                    self
                 }
-                self
             }
+        };
+    }
+
+    plain!(Add, add, +=);
+    plain!(Sub, sub, -=);
+    plain!(Mul, mul, *=);
+    plain!(Div, div, /=);
+
+    impl Neg for Plain {
+        type Output = Self;
+        #[inline(always)]
+        fn neg(mut self) -> Self {
+            for a in &mut self.0 {
+                *a = -*a;
+            }
+            self
         }
-    };
-}
+    }
 
-plain!(Add, add, +=);
-plain!(Sub, sub, -=);
-plain!(Mul, mul, *=);
-plain!(Div, div, /=);
-
-impl Neg for Plain {
-    type Output = Self;
-    #[inline(always)]
-    fn neg(mut self) -> Self {
-        for a in &mut self.0 {
-            *a = -*a;
+    impl Real for Plain {
+        #[inline(always)]
+        fn of(x: f64) -> Self {
+            Self([x; WIDTH])
         }
-        self
-    }
-}
 
-impl Real for Plain {
-    #[inline(always)]
-    fn of(x: f64) -> Self {
-        Self([x; WIDTH])
+        #[inline(always)]
+        fn mul_add(self, a: Self, b: Self) -> Self {
+            self * a + b
+        }
     }
 
-    #[inline(always)]
-    fn mul_add(self, a: Self, b: Self) -> Self {
-        self * a + b
-    }
-}
+    impl Lanes for Plain {
+        #[inline(always)]
+        fn pack(lanes: [f64; WIDTH]) -> Self {
+            Self(lanes)
+        }
 
-impl Lanes for Plain {
-    #[inline(always)]
-    fn pack(lanes: [f64; WIDTH]) -> Self {
-        Self(lanes)
-    }
-
-    #[inline(always)]
-    fn unpack(self) -> [f64; WIDTH] {
-        self.0
+        #[inline(always)]
+        fn unpack(self) -> [f64; WIDTH] {
+            self.0
+        }
     }
 }
