@@ -1,4 +1,4 @@
-//! Speed and accuracy of every engine on this machine: `cargo run --release --example engines [shots]`.
+//! Speed and accuracy of every engine on this machine: `cargo bench --bench engines -- [shots]`.
 //!
 //! A trajectory is one integration with first derivatives; a shot takes three or four. The miss is the
 //! distance, in whisker lengths, of the pole from where it should be, as `f64` sees it.

@@ -1,0 +1,263 @@
+//! The integrators and the derivatives that they carry.
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use glam::DVec2;
+use num_dual::{DualNum, HyperDual64, second_partial_derivative};
+use std::ops::{Add, Div, Mul, Neg, Sub};
+use whiskmap::model::batch::{Launch, Method, land};
+use whiskmap::model::{
+    Curved, Dopri8, Effects, First, Integrator, Landing, Planar, Radius, Real, Resolution, Rk4,
+    Rod, RodSystem, Scales, Second, Shape, Straight, integrate,
+};
+
+const EFFECTS: Effects = Effects {
+    taper: true,
+    curvature: true,
+};
+
+fn steps(least: u32) -> Method {
+    Method {
+        effects: EFFECTS,
+        resolution: Resolution {
+            least,
+            longest: 0.4,
+        },
+    }
+}
+
+fn rods() -> Vec<Launch> {
+    let mut launches = Vec::new();
+    for taper in [0.0, 0.3, 0.95, 0.99] {
+        for bend in [0.0, 0.4, 0.8] {
+            for (pole, load) in [(0.0125, 5.0), (-0.0125, -5.0)] {
+                let rod = Rod {
+                    taper,
+                    bend,
+                    slope: -0.1 * bend,
+                    pole,
+                };
+                launches.push(Launch {
+                    rod,
+                    tau: rod.tau(0.9),
+                    load,
+                });
+            }
+        }
+    }
+    launches
+}
+
+/// Largest difference of the poles from a run that is 16 times finer.
+fn error<M: Integrator>(least: u32) -> f64 {
+    let fine = land::<M, First, 6>(steps(2048), &rods());
+    let coarse = land::<M, First, 6>(steps(least), &rods());
+    fine.iter()
+        .zip(&coarse)
+        .map(|(a, b)| a.pole.distance(b.pole))
+        .fold(0.0, f64::max)
+}
+
+/// Halving the step divides the error by `2^order`; the factor is measured where the error is neither that of
+/// coarse steps nor rounding.
+#[test]
+fn integrators_have_their_order() {
+    let rk4 = (error::<Rk4>(64) / error::<Rk4>(128)).log2();
+    let dopri8 = (error::<Dopri8>(16) / error::<Dopri8>(32)).log2();
+    assert!((3.7..4.8).contains(&rk4), "RK4 has order {rk4}");
+    assert!((7.3..9.0).contains(&dopri8), "Dopri8 has order {dopri8}");
+}
+
+/// The finest resolution in use is exact to 1e-11 up to taper 0.99.
+#[test]
+fn the_fine_resolution_is_exact() {
+    let fine = Method {
+        resolution: whiskmap::sheet::FINE,
+        ..steps(1)
+    };
+    let exact = land::<Dopri8, First, 6>(steps(512), &rods());
+    for (a, b) in exact.iter().zip(land::<Dopri8, First, 6>(fine, &rods())) {
+        assert!(a.pole.distance(b.pole) < 1e-11, "{} {}", a.pole, b.pole);
+    }
+}
+
+/// A hyper-dual number as a scalar of the model.
+#[derive(Clone, Copy, Debug)]
+struct Dual(HyperDual64);
+
+macro_rules! operator {
+    ($op:ident, $method:ident) => {
+        impl $op for Dual {
+            type Output = Self;
+            fn $method(self, other: Self) -> Self {
+                Self(self.0.$method(other.0))
+            }
+        }
+    };
+}
+
+operator!(Add, add);
+operator!(Sub, sub);
+operator!(Mul, mul);
+operator!(Div, div);
+
+impl Neg for Dual {
+    type Output = Self;
+    fn neg(self) -> Self {
+        Self(-self.0)
+    }
+}
+
+impl Real for Dual {
+    fn of(x: f64) -> Self {
+        Self(HyperDual64::from(x))
+    }
+    fn mul_add(self, a: Self, b: Self) -> Self {
+        self * a + b
+    }
+}
+
+/// `(ln D, phi)` of a straight, tapered rod, differentiated by num-dual through the whole integration.
+fn ln_pole(rod: &Rod, tau: HyperDual64, load: HyperDual64) -> [HyperDual64; 2] {
+    let rho = (tau * -rod.taper).exp();
+    let steps = 256;
+    let h = Dual(tau / f64::from(steps));
+    let system = RodSystem {
+        force: Dual(load * rho * rho),
+        intrinsic: Straight,
+    };
+    let from = Radius {
+        rho: Dual(rho),
+        inverse_cube: Dual((rho * rho * rho).recip()),
+    };
+    let scales = Scales::tapered::<Rk4>(Dual::of(rod.taper), h);
+    let contact: Planar<Dual> = [1.0, 0.0, 0.0, 0.0].map(Dual::of);
+    let (_, (end, _)) =
+        integrate::<Rk4, _, _, Shape, 0>(&system, &scales, from, h, steps, ((), (contact, [])));
+    let [c, s, x, y] = end.map(|dual| dual.0);
+    let (wx, wy) = (-x, -y - rod.pole);
+    let ln_distance = (wx * wx + wy * wy).ln() * 0.5;
+    [ln_distance, wy.atan2(wx) - s.atan2(c)]
+}
+
+/// First and second sensitivities against automatic differentiation of the same equations: both are exact up
+/// to the truncation of 256 RK4 steps (measured: 2e-8 relative).
+#[test]
+fn sensitivities_agree_with_num_dual() {
+    for taper in [0.1, 0.7, 0.95] {
+        for (pole, load) in [(0.0, 3.0), (0.0125, 6.0), (-0.05, -6.0)] {
+            let rod = Rod {
+                taper,
+                bend: 0.0,
+                slope: 0.0,
+                pole,
+            };
+            let tau = rod.tau(0.8);
+            let effects = Effects {
+                taper: true,
+                curvature: false,
+            };
+            let method = Method {
+                effects,
+                ..steps(128)
+            };
+            let hand = land::<Dopri8, Second, 15>(method, &[Launch { rod, tau, load }])[0];
+            for (i, (name, pick)) in PICKS.iter().enumerate() {
+                for axis in 0..2 {
+                    let dual = second(&rod, tau, load, axis, i);
+                    let own = pick(&hand)[axis];
+                    let scale = pick(&hand).length();
+                    assert!(
+                        (dual - own).abs() < 1e-6 * scale,
+                        "{name}[{axis}] at taper {taper}, load {load}: {own}, num-dual {dual}"
+                    );
+                }
+            }
+        }
+    }
+}
+
+type Pick = fn(&Curved) -> DVec2;
+
+const PICKS: [(&str, Pick); 5] = [
+    ("by_tau", |c| c.landing.by_tau),
+    ("by_load", |c| c.landing.by_load),
+    ("by_tau_load", |c| c.by_tau_load),
+    ("by_tau_tau", |c| c.by_tau_tau),
+    ("by_load_load", |c| c.by_load_load),
+];
+
+fn second(rod: &Rod, tau: f64, load: f64, axis: usize, which: usize) -> f64 {
+    let mixed = |f: &dyn Fn(HyperDual64, HyperDual64) -> HyperDual64, x: f64, y: f64| {
+        second_partial_derivative(|(a, b)| f(a, b), (x, y))
+    };
+    let at = |tau, load| ln_pole(rod, tau, load)[axis];
+    match which {
+        0 => mixed(&at, tau, load).1,
+        1 => mixed(&at, tau, load).2,
+        2 => mixed(&at, tau, load).3,
+        // f(a + b) has d2/dadb = f''.
+        3 => mixed(&|a, b| at(a + b, HyperDual64::from(load)), tau, 0.0).3,
+        _ => mixed(&|a, b| at(HyperDual64::from(tau), a + b), load, 0.0).3,
+    }
+}
+
+/// Curved rods: derivatives against central differences of one order less (measured: 3e-9 relative).
+#[test]
+fn sensitivities_of_curved_rods_agree_with_differences() {
+    for launch in rods().iter().filter(|launch| launch.rod.bend > 0.0) {
+        let at = |tau: f64, load: f64| {
+            land::<Dopri8, Second, 15>(
+                steps(128),
+                &[Launch {
+                    rod: launch.rod,
+                    tau,
+                    load,
+                }],
+            )[0]
+        };
+        let (tau, load) = (launch.tau, launch.load);
+        let h = 1e-4;
+        let here = at(tau, load);
+        let difference = |pick: fn(&Landing) -> DVec2, dt: f64, dl: f64| {
+            let f = |k: f64| pick(&at(tau + k * dt, load + k * dl).landing);
+            (8.0 * (f(1.0) - f(-1.0)) - (f(2.0) - f(-2.0))) / 12.0
+        };
+        let by_tau: fn(&Landing) -> DVec2 = |l| l.by_tau;
+        let by_load: fn(&Landing) -> DVec2 = |l| l.by_load;
+        let ln_pole: fn(&Landing) -> DVec2 =
+            |l| DVec2::new(l.pole.length().ln(), l.pole.to_angle());
+        for (name, exact, numeric) in [
+            (
+                "by_tau",
+                here.landing.by_tau,
+                difference(ln_pole, h, 0.0) / h,
+            ),
+            (
+                "by_load",
+                here.landing.by_load,
+                difference(ln_pole, 0.0, h) / h,
+            ),
+            (
+                "by_tau_tau",
+                here.by_tau_tau,
+                difference(by_tau, h, 0.0) / h,
+            ),
+            (
+                "by_tau_load",
+                here.by_tau_load,
+                difference(by_load, h, 0.0) / h,
+            ),
+            (
+                "by_load_load",
+                here.by_load_load,
+                difference(by_load, 0.0, h) / h,
+            ),
+        ] {
+            let miss = exact.distance(numeric) / exact.length();
+            assert!(
+                miss < 1e-5,
+                "{name} of {launch:?}: {exact}, differences {numeric}"
+            );
+        }
+    }
+}

@@ -1,0 +1,167 @@
+//! The boundary of the map against an independent solver, the paper, and closed forms.
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use whiskmap::classify::{RowBoundary, Span};
+use whiskmap::model::{Effects, Rest, Rod, Side, arclength};
+use whiskmap::scene::{Curvature, Whisker};
+use whiskmap::sheet::{Crossing, Edge, Sheet};
+
+/// The detachment of `whisker` at `distance_mm` from a pole: push angle in degrees, signed, and the crossing.
+fn detachment(whisker: &Whisker, pole_mm: f64, side: Side, distance_mm: f64) -> (f64, Crossing) {
+    let rod = Rod::new(whisker, pole_mm, side);
+    let sheet = Sheet::new(
+        Effects::of([&rod]),
+        &rod,
+        side,
+        &[distance_mm / whisker.length_mm],
+    )
+    .unwrap();
+    let crossing = sheet.crossings[0][0];
+    let boundary = RowBoundary::new(sheet.touches(0), &sheet.crossings[0]);
+    let span: &Span = boundary.detachment().unwrap();
+    assert_eq!((span.from, span.to), (0.0, crossing.push));
+    (side.sign() * span.to.to_degrees(), crossing)
+}
+
+fn whisker(
+    length_mm: f64,
+    base_radius_um: f64,
+    tip_radius_um: f64,
+    a: f64,
+    vertex_mm: f64,
+) -> Whisker {
+    Whisker {
+        length_mm,
+        base_radius_um,
+        tip_radius_um,
+        youngs_modulus_gpa: 3.0,
+        curvature: (a > 0.0).then_some(Curvature {
+            parabola_per_mm: a,
+            vertex_mm,
+        }),
+    }
+}
+
+/// `tests/data/detachment.csv`: detachment points from AUTO-07p on the paper's boundary-value problem.
+/// The rows with projection wait for that effect.
+#[test]
+fn the_reference_is_reproduced() {
+    let text = std::fs::read_to_string("tests/data/detachment.csv").unwrap();
+    let mut lines = text.lines();
+    let names: Vec<&str> = lines.next().unwrap().split(',').collect();
+    let mut compared = 0;
+    for line in lines {
+        let fields: Vec<&str> = line.split(',').collect();
+        let text = |name: &str| fields[names.iter().position(|n| *n == name).unwrap()];
+        let number = |name: &str| text(name).parse::<f64>().unwrap();
+        if number("modulus_gradient") != 0.0 || number("projection") != 1.0 {
+            continue;
+        }
+        let whisker = whisker(
+            number("length_mm"),
+            number("base_radius_um"),
+            number("tip_radius_um"),
+            number("parabola_per_mm"),
+            number("vertex_mm"),
+        );
+        let side = if text("side") == "CB" {
+            Side::Cb
+        } else {
+            Side::Cf
+        };
+        let pole = number("pole_radius_mm");
+        let (push, crossing) = detachment(&whisker, pole, side, number("distance_mm"));
+        let kind = if crossing.edge == Edge::Fold {
+            "slip-off"
+        } else {
+            "pull-off"
+        };
+        assert_eq!(kind, text("kind"), "{line}");
+        // The file has 9 decimals.
+        let miss = (push - number("push_angle_deg")).abs();
+        assert!(miss < 1e-8, "{line}: {push}, off by {miss:.1e}");
+        let rod = Rod::new(&whisker, pole, side);
+        let arc = arclength(&rod, crossing.tau) * whisker.length_mm;
+        let miss = (arc - number("arc_length_mm")).abs() / whisker.length_mm;
+        assert!(miss < 1e-8, "{line}: arc length {arc}");
+        compared += 1;
+    }
+    assert_eq!(compared, 34);
+}
+
+/// The distance at first touch of the paper's pole, whose centre is at (15.13, 4.29) mm with radius 0.25 mm.
+fn fig2_distance(whisker: &Whisker) -> f64 {
+    let rest = Rest::new(&Rod::new(whisker, 0.25, Side::Cb));
+    let wanted = 15.13_f64.hypot(4.29) / whisker.length_mm;
+    let (mut low, mut high) = (0.5, 1.0);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if rest.pole_at_distance(middle).length() < wanted {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    low * whisker.length_mm
+}
+
+/// Fig. 2B and 2D: the cone slips off at 15.6 degrees, the cylinder is pulled off at 62.7 degrees.
+#[test]
+fn the_published_angles_are_reproduced() {
+    for (tip_um, edge, published, exact, digits) in [
+        (1.5, Edge::Fold, 15.6, 15.59975, 1e-5),
+        (30.0, Edge::Tip, 62.7, 62.7532, 1e-4),
+    ] {
+        let whisker = whisker(20.0, 30.0, tip_um, 0.02, 0.0);
+        let (push, crossing) = detachment(&whisker, 0.25, Side::Cb, fig2_distance(&whisker));
+        assert_eq!(crossing.edge, edge);
+        assert!(
+            (push - published).abs() < 0.1,
+            "{push}, published {published}"
+        );
+        assert!((push - exact).abs() < digits, "{push}, exact {exact}");
+    }
+}
+
+/// A straight cylinder at a point contact: elliptic integrals give the fold at 99.56849875 degrees and
+/// `s/d = 1.79038351`.
+#[test]
+fn the_fold_of_a_straight_cylinder_has_its_closed_form() {
+    let cylinder = whisker(20.0, 30.0, 30.0, 0.0, 0.0);
+    for distance in [2.0, 5.0, 11.0] {
+        let (push, crossing) = detachment(&cylinder, 0.0, Side::Cb, distance);
+        assert_eq!(crossing.edge, Edge::Fold);
+        assert!((push - 99.568_498_75).abs() < 1e-8, "{push}");
+        assert!((crossing.tau * 20.0 / distance - 1.790_383_51).abs() < 1e-8);
+    }
+    let (_, crossing) = detachment(&cylinder, 0.0, Side::Cb, 0.5586 * 20.0);
+    assert_eq!(crossing.edge, Edge::Tip);
+}
+
+/// Without curvature CB and CF are mirror images: to the last bit, since every sum and product is.
+#[test]
+fn straight_whiskers_are_symmetric() {
+    for tip_um in [0.0, 1.5, 20.0, 30.0] {
+        for pole_mm in [0.0, 0.25] {
+            for distance in [2.0, 9.0, 15.0, 19.9] {
+                let whisker = whisker(20.0, 30.0, tip_um, 0.0, 0.0);
+                let (cb, at_cb) = detachment(&whisker, pole_mm, Side::Cb, distance);
+                let (cf, at_cf) = detachment(&whisker, pole_mm, Side::Cf, distance);
+                assert_eq!(cb, -cf);
+                assert_eq!((at_cb.tau, at_cb.load), (at_cf.tau, -at_cf.load));
+            }
+        }
+    }
+}
+
+/// Scaling every length scales nothing that is an angle; Young's modulus neither.
+#[test]
+fn angles_do_not_depend_on_units() {
+    let (push, _) = detachment(&whisker(20.0, 30.0, 1.5, 0.02, 0.0), 0.25, Side::Cb, 14.0);
+    for scale in [5e-3, 50.0] {
+        let mut scaled = whisker(20.0 * scale, 30.0 * scale, 1.5 * scale, 0.02 / scale, 0.0);
+        scaled.youngs_modulus_gpa = 1.0;
+        let (other, _) = detachment(&scaled, 0.25 * scale, Side::Cb, 14.0 * scale);
+        assert!((other - push).abs() < 1e-10, "{other} {push}");
+    }
+}
