@@ -39,11 +39,18 @@ fn step(system: System, gains: Gains, start: Radius, h: real, y: State) -> State
     return plus(plus(plus(plus(y, sixth, k1), third, k2), third, k3), sixth, k4);
 }
 
+// The rod with its tangent brought back to unit length, to first order in the drift of a step.
+fn upright(rod: vec4<real>) -> vec4<real> {
+    let scale = 1.5 - 0.5 * dot(rod.xy, rod.xy);
+    return vec4<real>(scale * rod.xy, rod.zw);
+}
+
 fn integrate(system: System, gains: Gains, start: Radius, h: real, at_start: State) -> State {
     var radius = start;
     var y = at_start;
     for (var i = 0u; i < STEPS; i++) {
         y = step(system, gains, radius, h, y);
+        y.rod = upright(y.rod);
         radius = at(gains.end, radius);
     }
     return y;

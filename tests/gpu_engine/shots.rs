@@ -63,7 +63,10 @@ pub fn launch(rod: Rod, most_q: f64, random: &mut Random) -> Launch {
 
 /// The truth: 32 steps of Dormand and Prince are off by less than 2e-12.
 pub fn landings(effects: Effects, launches: &[Launch]) -> Vec<Landing> {
-    let method = Method { effects, steps: 32 };
+    let method = Method {
+        effects,
+        resolution: whiskmap::sheet::FINE,
+    };
     land::<Dopri8, First, 6>(method, launches)
 }
 
