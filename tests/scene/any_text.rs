@@ -17,8 +17,8 @@ proptest! {
         prop_assert_eq!(values.len(), count);
         prop_assert_eq!(values[0], from);
         prop_assert_eq!(values[count - 1], to);
-        let step = (to - from) / (count - 1) as f64;
-        prop_assert!(values.windows(2).all(|pair| (pair[1] - pair[0] - step).abs() < 1e-12));
+        let step: f64 = (to - from) / (count - 1) as f64;
+        prop_assert!(values.windows(2).all(|pair| f64::abs(pair[1] - pair[0] - step) < 1e-12));
     }
 
     #[test]
