@@ -121,6 +121,7 @@ fn a_folder_that_takes_no_files() {
 
 #[cfg(unix)]
 #[test]
+#[allow(clippy::print_stderr, reason = "a test that tests nothing says so")]
 fn a_folder_without_permission() {
     use std::os::unix::fs::PermissionsExt;
     let place = Place::with(SCENE);
