@@ -1,0 +1,121 @@
+//! `whiskmap map` on one whisker.
+
+use crate::{Place, SCENE, names};
+use std::io::Read;
+use std::process::Stdio;
+use whiskmap::store::StoredMap;
+
+#[test]
+fn a_map_end_to_end() {
+    let place = Place::with(SCENE);
+    let run = place.map(&["scene.toml", "-o", "new/folder"]);
+    assert_eq!(names(&place.path("new/folder")), ["scene.exr", "scene.png"]);
+
+    run.assert_settled();
+    let regimes = ["out of reach", "  contact", "slip-off", "pull-off"];
+    let counts = regimes.map(|name| run.count(name));
+    assert!(counts.iter().all(|cells| *cells > 0), "{run:?}");
+    assert_eq!(counts.iter().sum::<u64>(), 24 * 24, "{run:?}");
+    assert!(run.out.starts_with("A small map\n"), "{run:?}");
+    assert!(run.out.contains("scene.exr\n"), "{run:?}");
+    assert!(run.out.ends_with("scene.png\n"), "{run:?}");
+
+    let engine = run.err.strip_prefix("engine: cpu f64 on ");
+    let engine = engine.unwrap_or_else(|| panic!("{run:?}"));
+    assert_eq!(engine.find('\n'), Some(engine.len() - 1), "{run:?}");
+    assert!(engine.ends_with("(asked for)\n"), "{run:?}");
+
+    let stored = StoredMap::open(&place.path("new/folder/scene.exr")).unwrap();
+    assert_eq!(stored.counts().regimes["slip-off"], counts[2]);
+    assert_eq!(stored.attribute("scene").unwrap(), SCENE);
+}
+
+#[test]
+fn the_same_bytes_every_time_and_with_any_number_of_threads() {
+    let place = Place::with(SCENE);
+    place.map(&["scene.toml", "-o", "first"]);
+    place.map(&["scene.toml", "-o", "second"]);
+    place.map(&["scene.toml", "-o", "one", "--threads", "1"]);
+    place.map(&["scene.toml", "-o", "two", "--threads", "2"]);
+    let same = |a: &str, b: &str| assert!(place.bytes(a) == place.bytes(b), "{a} and {b} differ");
+    same("first/scene.exr", "second/scene.exr");
+    same("first/scene.png", "second/scene.png");
+    same("one/scene.png", "two/scene.png");
+
+    // The header of each of the three parts names the engine with its threads; all else is the same.
+    let (one, two) = (place.bytes("one/scene.exr"), place.bytes("two/scene.exr"));
+    assert_eq!(one.len(), two.len());
+    let differ: Vec<usize> = (0..one.len()).filter(|i| one[*i] != two[*i]).collect();
+    assert_eq!(differ.len(), 3, "bytes {differ:?}");
+    for i in differ {
+        let digits_and_word = (one[i], two[i], &one[i + 1..i + 8]);
+        assert_eq!(digits_and_word, (b'1', b'2', &b" thread"[..]));
+    }
+}
+
+#[test]
+fn a_map_replaces_the_one_before_it() {
+    let place = Place::with(SCENE);
+    place.map(&["scene.toml", "-o", "."]);
+    let before = place.bytes("scene.exr");
+    place.write("scene.toml", &SCENE.replace("count = 24", "count = 12"));
+    place.map(&["scene.toml", "-o", "."]);
+    assert!(place.bytes("scene.exr").len() < before.len());
+    assert_eq!(
+        names(&place.path("")),
+        ["scene.exr", "scene.png", "scene.toml"]
+    );
+}
+
+#[test]
+fn no_png() {
+    let place = Place::with(SCENE);
+    let run = place.map(&["scene.toml", "--no-png"]);
+    assert_eq!(names(&place.path("outputs")), ["scene.exr"]);
+    assert!(run.out.ends_with("scene.exr\n"), "{run:?}");
+}
+
+#[test]
+fn standard_input_gives_the_map_that_the_file_gives() {
+    let place = Place::with(SCENE);
+    place.map(&["scene.toml"]);
+    let mut command = place.command(&["map", "-", "--engine", "cpu", "-o", "piped"]);
+    command.write_stdin(SCENE).assert().code(0);
+    assert_eq!(names(&place.path("piped")), ["scene.exr", "scene.png"]);
+    for file in ["scene.exr", "scene.png"] {
+        let piped = place.bytes(&format!("piped/{file}"));
+        assert!(piped == place.bytes(&format!("outputs/{file}")), "{file}");
+    }
+}
+
+#[test]
+fn a_scene_names_its_output() {
+    let place = Place::with(&format!("{SCENE}[output]\nname = \"other\"\n"));
+    place.map(&["scene.toml"]);
+    assert_eq!(names(&place.path("outputs")), ["other.exr", "other.png"]);
+}
+
+/// Like `whiskmap map scene.toml | head -0`.
+#[test]
+fn a_reader_that_has_gone_is_no_failure() {
+    let place = Place::with(SCENE);
+    for arguments in [&["map", "scene.toml", "--engine", "cpu"][..], &["devices"]] {
+        let mut child = place
+            .plain_command(arguments)
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        drop(child.stdout.take());
+        let mut err = String::new();
+        child
+            .stderr
+            .take()
+            .unwrap()
+            .read_to_string(&mut err)
+            .unwrap();
+        assert!(!err.contains("panicked"), "{err}");
+        assert_eq!(child.wait().unwrap().code(), Some(0), "{err}");
+    }
+    assert_eq!(names(&place.path("outputs")), ["scene.exr", "scene.png"]);
+}

@@ -1,0 +1,153 @@
+//! Wrong input is refused in one message, with exit code 2, before any file is made.
+
+use crate::{Place, SCENE, names};
+use std::fs;
+
+/// Runs `map` on [`SCENE`] with `line` in place of the line that begins like it; the message has all of `parts`.
+fn refused(line: &str, parts: &[&str]) {
+    let key = line.split('=').next().unwrap();
+    let lines = SCENE.lines();
+    let spoilt: Vec<&str> = lines
+        .map(|old| if old.starts_with(key) { line } else { old })
+        .collect();
+    assert!(spoilt.contains(&line), "no line begins with {key}");
+    let place = Place::with(&spoilt.join("\n"));
+    let run = place.run(&["map", "scene.toml", "--engine", "cpu"]);
+    run.assert_refused(parts);
+    assert_eq!(names(&place.path("")), ["scene.toml"], "{line}");
+}
+
+#[test]
+fn scenes_that_cannot_be_read() {
+    let place = Place::with("title = = 3");
+    fs::create_dir(place.path("folder")).unwrap();
+    let map = |scene: &str| place.run(&["map", scene, "--engine", "cpu"]);
+    map("scene.toml").assert_refused(&["scene.toml:1:9", "title = = 3"]);
+    map("nowhere.toml").assert_refused(&["nowhere.toml: cannot be read: No such file"]);
+    map("folder").assert_refused(&["folder: cannot be read"]);
+    fs::write(place.path("bytes.toml"), b"title = \"\xff\"").unwrap();
+    map("bytes.toml").assert_refused(&["not UTF-8 text: byte 0xFF"]);
+    fs::write(place.path("empty.toml"), "").unwrap();
+    map("empty.toml").assert_refused(&["missing field `title`"]);
+    let left = ["bytes.toml", "empty.toml", "folder", "scene.toml"];
+    assert_eq!(names(&place.path("")), left);
+}
+
+#[test]
+fn whiskers_and_poles_out_of_range() {
+    for length in ["-20", "0", "nan", "inf", "-inf", "1e300"] {
+        let said = format!("whisker.length_mm = {length}: must be between 0.001 and 100000");
+        refused(
+            &format!("length_mm = {length}"),
+            &[&said, "scene.toml:3:13"],
+        );
+    }
+    refused("length_mm = \"long\"", &["length_mm", "long"]);
+    let wide = "whisker.tip_radius_um = 30.5: must be between 0 and base_radius_um (30)";
+    refused("tip_radius_um = 30.5", &[wide]);
+    let thick = "pole.radius_mm = 2.0: must be at least 0 and less than the smallest distance (2)";
+    refused("radius_mm = 2.0", &[thick]);
+    let unknown = ["unknown field `titel`", "`title`"];
+    let place = Place::with(&SCENE.replace("title", "titel"));
+    place.run(&["map", "scene.toml"]).assert_refused(&unknown);
+}
+
+#[test]
+fn grids_out_of_range() {
+    let distances = |axis: &str, parts: &[&str]| refused(&format!("distance_mm = {axis}"), parts);
+    distances(
+        "[]",
+        &[
+            "grid.distance_mm",
+            "must have between 1 and 65536 values, has 0",
+        ],
+    );
+    let backwards = "grid.distance_mm.to = 2: must be greater than from (20)";
+    distances("{ from = 20, to = 2, count = 24 }", &[backwards]);
+    for count in ["0", "-1", "65537", "9223372036854775807"] {
+        let said = format!("grid.distance_mm.count = {count}: must be between 1 and 65536");
+        distances(
+            &format!("{{ from = 2, to = 20, count = {count} }}"),
+            &[&said],
+        );
+    }
+    let angle = "grid.push_angle_deg.to = 361: must be between -360 and 360";
+    refused(
+        "push_angle_deg = { from = 0, to = 361, count = 9 }",
+        &[angle],
+    );
+}
+
+#[test]
+fn maps_too_large_to_compute() {
+    let place = Place::with(&SCENE.replace("count = 24", "count = 16384"));
+    let run = place.run(&["map", "scene.toml", "--engine", "cpu"]);
+    let needed = [
+        "16384 push angles x 16384 distances",
+        "268435456 cells",
+        "at most 4096 MiB",
+    ];
+    run.assert_refused(&needed);
+    assert!(
+        run.err.contains("lower grid.push_angle_deg.count"),
+        "{run:?}"
+    );
+
+    place.write("scene.toml", &SCENE.replace("count = 24", "count = 65536"));
+    let run = place.run(&["map", "scene.toml", "--engine", "cpu"]);
+    run.assert_refused(&["must have at most 268435456 cells", "has 4294967296"]);
+    assert_eq!(names(&place.path("")), ["scene.toml"]);
+}
+
+#[test]
+fn output_folders_that_cannot_be_used() {
+    let place = Place::with(SCENE);
+    let to = |output: &str| place.run(&["map", "scene.toml", "--engine", "cpu", "-o", output]);
+    let help = "give a folder that can be written";
+    to("scene.toml").assert_refused(&["--output scene.toml", help]);
+    to("scene.toml/in").assert_refused(&["--output scene.toml/in", help]);
+    assert_eq!(place.bytes("scene.toml"), SCENE.as_bytes());
+    assert_eq!(names(&place.path("")), ["scene.toml"]);
+}
+
+/// Nobody makes files in `/proc`, not even an administrator.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_folder_that_takes_no_files() {
+    let place = Place::with(SCENE);
+    let run = place.run(&["map", "scene.toml", "--engine", "cpu", "-o", "/proc"]);
+    run.assert_refused(&["--output /proc: cannot write there"]);
+}
+
+#[cfg(unix)]
+#[test]
+#[allow(clippy::print_stderr, reason = "a test that tests nothing says so")]
+fn a_folder_without_permission() {
+    use std::os::unix::fs::PermissionsExt;
+    let place = Place::with(SCENE);
+    let locked = place.path("locked");
+    fs::create_dir(&locked).unwrap();
+    fs::set_permissions(&locked, fs::Permissions::from_mode(0o555)).unwrap();
+    if tempfile::tempfile_in(&locked).is_ok() {
+        eprintln!("SKIPPED a_folder_without_permission: this user may write to any folder");
+        return;
+    }
+    let run = place.run(&["map", "scene.toml", "--engine", "cpu", "-o", "locked"]);
+    run.assert_refused(&["--output locked: cannot write there", "ermission"]);
+    assert_eq!(names(&locked), [""; 0]);
+}
+
+#[test]
+fn arguments_out_of_range() {
+    let place = Place::with(SCENE);
+    let map = |arguments: &[&str]| place.run(&[&["map", "scene.toml"], arguments].concat());
+    map(&["--threads", "0"]).assert_refused(&["'0'", "--threads", "1..=1024"]);
+    map(&["--threads", "many"]).assert_refused(&["'many'", "--threads"]);
+    map(&["--engine", "abacus"]).assert_refused(&["'abacus'", "--engine", "auto, cpu, gpu"]);
+    let f32 = ["--precision f32", "f64", "--engine gpu"];
+    map(&["--engine", "cpu", "--precision", "f32"]).assert_refused(&f32);
+    place.run(&["map"]).assert_refused(&["<SCENE>"]);
+    for file in ["scene.exr", "scene.png"] {
+        assert!(!place.path("outputs").join(file).exists());
+    }
+}
