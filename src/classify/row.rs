@@ -61,6 +61,12 @@ impl RowBoundary {
             .find(|span| span.from - TIE <= push && push <= span.to + TIE)
     }
 
+    /// Whether `push` is on an end of `span` beyond which there is no state; first touch is no such end.
+    fn is_on_edge(&self, span: &Span, push: f64) -> bool {
+        let from_touch = self.detachment() == Some(span);
+        (push < span.from + TIE && !from_touch) || push > span.to - TIE
+    }
+
     /// Where a push from first touch ends, if the boundary is known and there is a first touch.
     #[must_use]
     pub fn detachment(&self) -> Option<&Span> {
@@ -85,7 +91,7 @@ impl RowBoundary {
                 (regime, status)
             }
             (Status::Outside | Status::BeyondFold | Status::BeyondTip, span)
-                if span.is_none_or(|span| push < span.from + TIE || push > span.to - TIE) =>
+                if span.is_none_or(|span| self.is_on_edge(span, push)) =>
             {
                 let regime = match self.detachment().map(|span| span.edge) {
                     None => Regime::OutOfReach,
@@ -97,5 +103,84 @@ impl RowBoundary {
             (Status::NotConverged | Status::NoFold, _) => (Regime::Unresolved, status),
             _ => (Regime::Unresolved, Status::Disagreement),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn crossing(edge: Edge, push: f64) -> Crossing {
+        Crossing {
+            edge,
+            tau: 1.0,
+            load: 1.0,
+            push,
+            residual: 0.0,
+        }
+    }
+
+    #[test]
+    fn a_row_that_touches_ends_at_its_edge() {
+        let row = RowBoundary::new(true, &[crossing(Edge::Fold, 0.5)]);
+        assert_eq!(
+            row.judge(0.3, Status::Solved),
+            (Regime::Contact, Status::Solved)
+        );
+        assert_eq!(
+            row.judge(0.6, Status::Outside),
+            (Regime::SlipOff, Status::Outside)
+        );
+        let row = RowBoundary::new(true, &[crossing(Edge::Tip, 0.5)]);
+        assert_eq!(
+            row.judge(0.6, Status::BeyondTip),
+            (Regime::PullOff, Status::BeyondTip)
+        );
+    }
+
+    #[test]
+    fn a_row_beyond_reach_is_entered_over_an_edge() {
+        let row = RowBoundary::new(
+            false,
+            &[crossing(Edge::Tip, 0.2), crossing(Edge::Fold, 0.5)],
+        );
+        assert_eq!(
+            row.judge(0.3, Status::Solved),
+            (Regime::Unreachable, Status::Solved)
+        );
+        for push in [0.1, 0.6] {
+            assert_eq!(
+                row.judge(push, Status::Outside),
+                (Regime::OutOfReach, Status::Outside)
+            );
+        }
+    }
+
+    #[test]
+    fn contradictions_are_unresolved() {
+        let row = RowBoundary::new(true, &[crossing(Edge::Fold, 0.5)]);
+        for (push, status) in [
+            (0.6, Status::Solved),
+            (0.3, Status::Outside),
+            (0.0, Status::BeyondFold),
+        ] {
+            assert_eq!(
+                row.judge(push, status),
+                (Regime::Unresolved, Status::Disagreement)
+            );
+        }
+        let odd = RowBoundary::new(false, &[crossing(Edge::Fold, 0.5)]);
+        assert_eq!(
+            odd.judge(0.3, Status::Solved),
+            (Regime::Unresolved, Status::NoBoundary)
+        );
+    }
+
+    #[test]
+    fn both_verdicts_are_right_on_the_edge() {
+        let row = RowBoundary::new(true, &[crossing(Edge::Fold, 0.5)]);
+        let at = 0.5 + 0.5 * TIE;
+        assert_eq!(row.judge(at, Status::Solved).0, Regime::Contact);
+        assert_eq!(row.judge(at, Status::BeyondFold).0, Regime::SlipOff);
     }
 }

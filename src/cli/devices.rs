@@ -2,7 +2,7 @@
 
 use super::engine::{self, Choice};
 use super::failure::Failure;
-use crate::integrate::gpu::{adapters, preferred};
+use crate::integrate::gpu::{Precision, adapters, preferred};
 use std::io::Write;
 
 /// Runs `devices`.
@@ -12,7 +12,7 @@ pub fn run() -> Result<(), Failure> {
     if reports.is_empty() {
         writeln!(out, "no GPU adapter found")?;
     }
-    let taken = preferred(&reports);
+    let taken = preferred(&reports, Precision::F32);
     for (i, report) in reports.iter().enumerate() {
         let mark = if taken == Some(i) { "*" } else { " " };
         writeln!(

@@ -1,7 +1,7 @@
 //! Which engine a command takes.
 
 use super::failure::Failure;
-use crate::integrate::gpu::{Gpu, Precision};
+use crate::integrate::gpu::{Gpu, Kind, Precision, adapters, preferred};
 use crate::integrate::{Cpu, Engine, EngineError};
 use clap::ValueEnum;
 
@@ -52,16 +52,23 @@ pub fn open(
             ))),
             Err(error) => Err(error.into()),
         },
-        Choice::Auto => match Gpu::new(precision) {
-            Ok(gpu) if gpu.is_software() => {
-                let why = format!(
-                    "auto: {} is software, slower than the CPU engine",
-                    gpu.describe().adapter
-                );
-                Ok((Box::new(Cpu), why))
-            }
-            Ok(gpu) => Ok((Box::new(gpu), "auto: a hardware adapter".to_owned())),
-            Err(error) => Ok((Box::new(Cpu), format!("auto: {error}"))),
-        },
+        Choice::Auto => Ok(automatic(precision)),
     }
+}
+
+/// A hardware adapter with this precision, or else the CPU, always in f64.
+fn automatic(precision: Precision) -> (Box<dyn Engine>, String) {
+    let reports = adapters();
+    let why = match preferred(&reports, precision).map(|i| &reports[i]) {
+        Some(report) if report.kind != Kind::Software => match Gpu::new(precision) {
+            Ok(gpu) => return (Box::new(gpu), "auto: a hardware adapter".to_owned()),
+            Err(error) => format!("auto: {error}"),
+        },
+        Some(report) => format!(
+            "auto: {} is software, slower than the CPU engine",
+            report.name
+        ),
+        None => format!("auto: no GPU adapter with {precision}"),
+    };
+    (Box::new(Cpu), why)
 }

@@ -4,7 +4,7 @@ use crate::integrate::EngineError;
 use crate::map::MapError;
 use crate::plan::PlanError;
 use crate::scene::SceneError;
-use std::io::IsTerminal;
+use std::io::{IsTerminal, Write};
 use std::process::ExitCode;
 
 /// An error of a command.
@@ -53,11 +53,16 @@ impl Failure {
             Self::Output(error) if error.kind() == std::io::ErrorKind::BrokenPipe => {
                 return ExitCode::SUCCESS;
             }
-            Self::Scene(error) => eprintln!("{}", error.render(color())),
-            _ => eprintln!("error: {self}"),
+            Self::Scene(error) => say(&error.render(color())),
+            _ => say(&format!("error: {self}")),
         }
         ExitCode::from(self.code())
     }
+}
+
+/// A line on standard error, if anybody listens.
+pub fn say(line: &str) {
+    let _ = writeln!(std::io::stderr(), "{line}");
 }
 
 /// Whether messages may be coloured: on a terminal, unless `NO_COLOR` is set.

@@ -1,7 +1,7 @@
 //! `whiskmap map`.
 
 use super::engine::{self, Choice, Shaders};
-use super::failure::Failure;
+use super::failure::{Failure, say};
 use super::progress;
 use crate::classify::{Regime, Status};
 use crate::map::{self, Observer, Summary};
@@ -47,7 +47,6 @@ pub struct Options {
 pub fn run(options: &Options) -> Result<(), Failure> {
     let scene = Scene::read(&options.scene)?;
     let plan = Plan::new(&scene)?;
-    folder(&options.output)?;
     if let Some(threads) = options.threads {
         rayon::ThreadPoolBuilder::new()
             .num_threads(threads.into())
@@ -56,13 +55,18 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     }
     let (mut engine, why) = engine::open(options.engine, options.precision)?;
     let description = engine.describe();
-    eprintln!(
+    let file = options.output.join(format!("{}.exr", scene.name));
+    let picture = (!options.no_png).then(|| file.with_extension("png"));
+    writable(
+        &options.output,
+        [Some(&file), picture.as_ref()].into_iter().flatten(),
+    )?;
+    say(&format!(
         "engine: {} on {} ({why})",
         description.engine, description.adapter
-    );
+    ));
 
     let start = Instant::now();
-    let file = options.output.join(format!("{}.exr", scene.name));
     let writer = MapWriter::create(
         &file,
         &Description {
@@ -75,20 +79,20 @@ pub fn run(options: &Options) -> Result<(), Failure> {
             }),
             status_names: &Status::ALL.map(|status| (status.code(), status.name())),
         },
-    )?;
+    )
+    .map_err(|error| Failure::Input(error.to_string()))?;
     let cells =
         scene.grid.push_angle_deg.len() * scene.grid.distance_mm.len() * plan.whiskers.len();
     let bar = progress::bar(cells as u64);
     let mut keeper = Keeper { writer, bar };
-    let summary = map::run(&scene, &plan, engine.as_mut(), &mut keeper)?;
+    let result = map::run(&scene, &plan, engine.as_mut(), &mut keeper);
     keeper.bar.finish_and_clear();
+    let summary = result?;
     keeper.writer.finish()?;
-    let mut written = vec![file];
-    if !options.no_png {
-        let picture = written[0].with_extension("png");
-        render::regimes(&store::StoredMap::open(&written[0])?, &picture)?;
-        written.push(picture);
+    if let Some(picture) = &picture {
+        render::regimes(&store::StoredMap::open(&file)?, picture)?;
     }
+    let written: Vec<PathBuf> = [Some(file), picture].into_iter().flatten().collect();
     print(&scene, &summary, start.elapsed().as_secs_f64(), &written)?;
     Ok(())
 }
@@ -109,16 +113,27 @@ impl Observer for Keeper {
     }
 }
 
-/// Makes the output folder and finds out, before any work, whether files can be made in it.
-fn folder(path: &Path) -> Result<(), Failure> {
+/// Makes the output folder and finds out, before any work, whether `files` can be made in it.
+fn writable<'a>(path: &Path, mut files: impl Iterator<Item = &'a PathBuf>) -> Result<(), Failure> {
     let refuse = |what: &str, error: std::io::Error| {
         let path = path.display();
         Failure::Input(format!(
             "--output {path}: {what}: {error}; give a folder that can be written"
         ))
     };
+    if path.is_file() {
+        let path = path.display();
+        return Err(Failure::Input(format!(
+            "--output {path}: is a file; give a folder"
+        )));
+    }
     std::fs::create_dir_all(path).map_err(|error| refuse("cannot make the folder", error))?;
     tempfile::tempfile_in(path).map_err(|error| refuse("cannot write there", error))?;
+    if let Some(file) = files.find(|file| file.is_dir()).map(|file| file.display()) {
+        return Err(Failure::Input(format!(
+            "{file}: is a folder; remove it or choose another --output"
+        )));
+    }
     Ok(())
 }
 

@@ -2,11 +2,6 @@
 //!
 //! Answers go to standard output, everything said along the way to standard error. Exit code 2 is for input
 //! that cannot be right, 1 for what fails while running.
-#![allow(
-    clippy::print_stdout,
-    clippy::print_stderr,
-    reason = "printing is what this room is for"
-)]
 
 mod devices;
 mod engine;

@@ -44,6 +44,23 @@ pub fn run(options: &Options) -> Result<(), Failure> {
             .map_or("png".to_owned(), |name| format!("{name}.png"));
         options.file.with_extension(ending)
     });
+    let folder = picture
+        .parent()
+        .filter(|folder| !folder.as_os_str().is_empty());
+    let same = picture
+        .canonicalize()
+        .is_ok_and(|path| options.file.canonicalize().is_ok_and(|map| map == path));
+    if same || picture.is_dir() || folder.is_some_and(|folder| !folder.is_dir()) {
+        let why = if same {
+            "is the map itself"
+        } else {
+            "is not a file in an existing folder"
+        };
+        let picture = picture.display();
+        return Err(Failure::Input(format!(
+            "--output {picture}: {why}; name a picture to write"
+        )));
+    }
     match &options.channel {
         Some(name) => render::channel(&map, name, &picture)?,
         None => render::regimes(&map, &picture)?,

@@ -22,11 +22,7 @@ impl Engine for Cpu {
     fn describe(&self) -> Description {
         Description {
             engine: "cpu f64".to_owned(),
-            adapter: format!(
-                "{}, {} threads",
-                Unit::detect(),
-                rayon::current_num_threads()
-            ),
+            adapter: Unit::detect().to_string(),
         }
     }
 

@@ -16,14 +16,13 @@ pub struct Strip {
 }
 
 impl Strip {
-    /// Every row of every face, in pieces of about `rows_at_once` rows of whole panels (two faces each).
+    /// Every row of every face, in pieces of `rows_at_once`.
     pub fn all(faces: usize, rows: usize, rows_at_once: usize) -> impl Iterator<Item = Self> {
         let all: Vec<(usize, usize)> = (0..faces)
             .flat_map(|face| (0..rows).map(move |row| (face, row)))
             .collect();
-        let size = 2 * rows_at_once;
         let pieces: Vec<Self> = all
-            .chunks(size)
+            .chunks(rows_at_once)
             .map(|piece| Self {
                 rows: piece.to_vec(),
             })

@@ -3,7 +3,7 @@
 use super::{Face, cells::Cell};
 use crate::classify::{Regime, RowBoundary, Status};
 use crate::model::{Rest, arclength};
-use crate::refine::State;
+use crate::refine::{State, TIP_TIE};
 use crate::scene::{Scene, Whisker};
 use crate::sheet::{Sheet, nearest_turn};
 use crate::store::{Panel, STATE_CHANNELS};
@@ -79,7 +79,16 @@ fn answer(
     units: &Units,
 ) -> Answer {
     let push = push_deg.to_radians();
+    let at_tip = sheet
+        .zip(cell.state)
+        .is_some_and(|(sheet, state)| (state.tau / sheet.rod.tau_tip() - 1.0).abs() <= TIP_TIE);
     let (regime, status) = match boundary {
+        // At the tip both verdicts are right; the boundary's is taken.
+        Some(boundary)
+            if at_tip && cell.status == Status::Solved && boundary.span(push.abs()).is_none() =>
+        {
+            boundary.judge(push.abs(), Status::BeyondTip)
+        }
         Some(boundary) => boundary.judge(push.abs(), cell.status),
         None => (Regime::Unresolved, Status::NoFold),
     };
@@ -90,6 +99,9 @@ fn answer(
         residual: f32::NAN,
         margin_deg: f32::NAN,
     };
+    if let (Regime::Unresolved, Some(state)) = (regime, &cell.state) {
+        answer.residual = narrow(state.residual);
+    }
     let in_contact = matches!(regime, Regime::Contact | Regime::Unreachable);
     if let (true, Some(sheet), Some(state)) = (in_contact, sheet, &cell.state) {
         answer.state = units.state(sheet, cell.row, push, state).map(narrow);

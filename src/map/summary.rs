@@ -67,8 +67,9 @@ impl Summary {
                 .filter(|code| **code == regime.code())
                 .count() as u64;
         }
-        for (residual, status) in panel.residual.iter().zip(&panel.status) {
-            if residual.is_finite() {
+        let verdicts = panel.regime.iter().zip(&panel.status);
+        for (residual, (regime, status)) in panel.residual.iter().zip(verdicts) {
+            if residual.is_finite() && *regime != Regime::Unresolved.code() {
                 self.refined += 1;
                 self.worst_residual = self.worst_residual.max(f64::from(*residual));
             }

@@ -117,16 +117,4 @@ impl Rest {
         let (point, tangent) = self.at(self.x_of_chord(distance));
         point - self.pole * tangent.perp()
     }
-
-    /// Distance from the base to the point at arclength `s`.
-    #[must_use]
-    pub fn distance_at(&self, s: f64) -> f64 {
-        let t = self.slope_at(s);
-        let x = if self.bend == 0.0 {
-            s * self.base.x
-        } else {
-            (t - self.slope) / (2.0 * self.bend)
-        };
-        self.at(x).0.length()
-    }
 }

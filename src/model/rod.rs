@@ -23,15 +23,6 @@ impl Side {
             Self::Cf => -1.0,
         }
     }
-
-    /// The name in files and messages.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Cb => "CB",
-            Self::Cf => "CF",
-        }
-    }
 }
 
 /// One whisker on one side of one pole; lengths in whisker lengths.

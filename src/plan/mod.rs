@@ -15,6 +15,9 @@ const BYTES_IN_FLIGHT: u64 = 1024;
 /// Cells handed to an engine at once: enough for every lane of a GPU, little memory.
 const CELLS_IN_FLIGHT: usize = 1 << 17;
 
+/// Most panels computed together: each has two sheets of some 100 KiB.
+const MOST_PANELS: usize = 64;
+
 /// A run.
 #[derive(Clone, Debug)]
 pub struct Plan {
@@ -24,10 +27,8 @@ pub struct Plan {
     pub effects: Effects,
     /// Panels computed together, so that small panels fill an engine too.
     pub panels_at_once: usize,
-    /// Rows of one side of a panel handed to an engine at once.
+    /// Rows of a panel handed to an engine at once.
     pub rows_at_once: usize,
-    /// Bytes that the panels in work take at most.
-    pub bytes: u64,
 }
 
 /// A run that is too large.
@@ -54,7 +55,9 @@ impl Plan {
         let distances = scene.grid.distance_mm.len();
         let cells = push_angles * distances;
         let whiskers: Vec<Whisker> = scene.whiskers().collect();
-        let panels_at_once = (CELLS_IN_FLIGHT / cells).clamp(1, whiskers.len());
+        let panels_at_once = (CELLS_IN_FLIGHT / cells)
+            .clamp(1, MOST_PANELS)
+            .min(whiskers.len());
         let in_flight = CELLS_IN_FLIGHT.max(push_angles) as u64;
         let bytes = (cells * panels_at_once) as u64 * BYTES_PER_CELL + in_flight * BYTES_IN_FLIGHT;
         if bytes > MEMORY_LIMIT {
@@ -74,7 +77,6 @@ impl Plan {
             effects: Effects::of(&rods),
             panels_at_once,
             rows_at_once: (CELLS_IN_FLIGHT / push_angles).max(1),
-            bytes,
             whiskers,
         })
     }

@@ -18,6 +18,9 @@ pub const GOAL: f64 = 1e-12;
 /// Residual, in whisker lengths, up to which a state is accepted when steps no longer help.
 pub const TOLERANCE: f64 = 1e-11;
 
+/// Contacts closer to the tip than this, relative to `tau` there, count as at the tip.
+pub const TIP_TIE: f64 = 1e-12;
+
 /// Newton steps before the fold is asked.
 const STEPS: u32 = 8;
 
@@ -160,7 +163,7 @@ fn newton(
 fn verdict(sheet: &Sheet, state: &State) -> End {
     if !sheet.is_stable(state.tau, state.load, &state.full.landing) {
         End::NotConverged
-    } else if state.tau > sheet.rod.tau_tip() * (1.0 + 1e-12) {
+    } else if state.tau > sheet.rod.tau_tip() * (1.0 + TIP_TIE) {
         End::BeyondTip
     } else {
         End::Solved

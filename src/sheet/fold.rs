@@ -21,8 +21,14 @@ const SAMPLES: usize = 16;
 /// the first than this.
 const FIRST_STEP: f64 = 0.5;
 
-/// Where the search is given up; the first fold lies below 20 for every whisker but those within a
-/// hundredth of the tip of a nearly perfect cone.
+/// Beyond this `q` the samples spread out. The largest first fold known lies at 24.15: the limit at the tip of a
+/// perfect cone that is slender against the pole.
+const EVEN_UP_TO: f64 = 64.0;
+
+/// The largest Newton step left, relative to the load, at a point that counts as a fold.
+const STEP_LEFT: f64 = 1e-9;
+
+/// Where the search is given up.
 const LARGEST_Q: f64 = 1e6;
 
 /// Rounds of the safeguarded Newton method; bisection alone would need 50.
@@ -94,7 +100,7 @@ fn bracket(method: Method, rod: &Rod, side: Side, taus: &[f64]) -> Vec<Option<Br
             true
         });
         q += step * SAMPLES as f64;
-        if q >= 2.0 * FIRST_STEP * SAMPLES as f64 {
+        if q >= EVEN_UP_TO {
             step = q / SAMPLES as f64;
         }
     }
@@ -129,9 +135,7 @@ fn polish(method: Method, rod: &Rod, brackets: &[Option<Bracket>]) -> Vec<Option
                 load: b.guess,
                 landing,
             });
-            // `det` falls through 0 in the direction of growing load where it was positive, and the reverse.
-            let stable = det * slope * (b.beyond - b.stable) < 0.0;
-            if stable {
+            if det > 0.0 {
                 b.stable = b.guess;
             } else {
                 b.beyond = b.guess;
@@ -148,8 +152,12 @@ fn polish(method: Method, rod: &Rod, brackets: &[Option<Bracket>]) -> Vec<Option
             !done
         });
     }
-    for (i, _) in open {
-        points[i] = None;
+    // A bracket that closed on something else than a root, or did not close, is no fold.
+    for point in &mut points {
+        *point = point.filter(|fold| {
+            let step = fold.landing.landing.det() / fold.landing.det_gradient().y;
+            step.abs() <= STEP_LEFT * fold.load.abs()
+        });
     }
     points
 }

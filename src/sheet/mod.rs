@@ -30,6 +30,10 @@ pub const FINE: Resolution = Resolution {
     longest: 0.1,
 };
 
+/// How far below zero the load of an unloaded whisker may come out, relative to the fold's: at the soft tip of a
+/// strongly curved cone the rounding of first touch (1e-13 of the length) is a load of 1e-8.
+const UNLOADED: f64 = 1e-6;
+
 /// The sheet of one whisker on one side, with the rows of a map.
 #[derive(Clone, Debug)]
 pub struct Sheet {
@@ -95,6 +99,6 @@ impl Sheet {
         let part = self.side.sign() * load / self.columns.fold_load(tau);
         let scale = landing.by_tau.length() * landing.by_load.length();
         let before_fold = landing.det() > -1e-7 * scale;
-        part > -1e-9 && part < 1.0 + 1e-4 && before_fold
+        part > -UNLOADED && part < 1.0 + 1e-4 && before_fold
     }
 }

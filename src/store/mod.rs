@@ -48,8 +48,8 @@ pub struct Panel {
     pub status: Vec<u32>,
     /// One vector per name in [`STATE_CHANNELS`]; NaN where there is no contact.
     pub state: [Vec<f32>; STATE_CHANNELS.len()],
-    /// Distance of the solution's pole centre from the wanted one, relative to the whisker's length; NaN
-    /// where there is no contact.
+    /// Distance of the solution's pole centre from the wanted one, relative to the whisker's length; that of
+    /// the last state computed where a cell is unresolved, NaN where there is no contact.
     pub residual: Vec<f32>,
     /// Push angle left until detachment; NaN where there is no contact.
     pub margin_deg: Vec<f32>,

@@ -186,9 +186,15 @@ impl MapWriter {
         regimes.add(&panel.regime).map_err(unknown("regime"))?;
         statuses.add(&panel.status).map_err(unknown("status"))?;
         (self.regimes, self.statuses) = (regimes, statuses);
-        let residuals = panel.residual.iter().filter(|residual| !residual.is_nan());
-        self.worst_residual = residuals
-            .map(|residual| f64::from(*residual))
+        let solved = panel
+            .residual
+            .iter()
+            .zip(&panel.regime)
+            .filter(|(residual, regime)| {
+                !residual.is_nan() && **regime != Regime::Unresolved.code()
+            });
+        self.worst_residual = solved
+            .map(|(residual, _)| f64::from(*residual))
             .chain(self.worst_residual)
             .reduce(f64::max);
         Ok(())

@@ -164,7 +164,7 @@ fn the_engine_runs_on_the_preferred_adapter() {
         return;
     };
     let reports = adapters();
-    let chosen = &reports[preferred(&reports).unwrap()];
+    let chosen = &reports[preferred(&reports, Precision::F32).unwrap()];
     assert!(gpu.describe().adapter.starts_with(&chosen.name));
     assert_eq!(gpu.describe().engine, "gpu f32");
 }

@@ -1,5 +1,6 @@
 //! Which adapters there are, and which one is taken.
 
+use super::Precision;
 use std::fmt;
 
 /// What an adapter is, in order of preference.
@@ -91,10 +92,12 @@ pub fn adapters() -> Vec<AdapterReport> {
     enumerate().iter().map(AdapterReport::new).collect()
 }
 
-/// Which adapter the engine takes: the first of the best kind.
+/// Which adapter the engine takes: the first of the best kind among those with this precision.
 #[must_use]
-pub fn preferred(reports: &[AdapterReport]) -> Option<usize> {
-    (0..reports.len()).min_by_key(|&i| reports[i].kind)
+pub fn preferred(reports: &[AdapterReport], precision: Precision) -> Option<usize> {
+    (0..reports.len())
+        .filter(|&i| precision == Precision::F32 || reports[i].shader_f64)
+        .min_by_key(|&i| reports[i].kind)
 }
 
 #[cfg(test)]
@@ -122,8 +125,19 @@ mod tests {
             Kind::Discrete,
             Kind::Discrete,
         ];
-        assert_eq!(preferred(&kinds.map(report)), Some(2));
-        assert_eq!(preferred(&[report(Kind::Software)]), Some(0));
-        assert_eq!(preferred(&[]), None);
+        assert_eq!(preferred(&kinds.map(report), Precision::F32), Some(2));
+        assert_eq!(
+            preferred(&[report(Kind::Software)], Precision::F32),
+            Some(0)
+        );
+        assert_eq!(preferred(&[], Precision::F32), None);
+    }
+
+    #[test]
+    fn f64_is_asked_of_an_adapter_that_has_it() {
+        let mut reports = [Kind::Discrete, Kind::Software].map(report);
+        assert_eq!(preferred(&reports, Precision::F64), None);
+        reports[1].shader_f64 = true;
+        assert_eq!(preferred(&reports, Precision::F64), Some(1));
     }
 }

@@ -35,23 +35,24 @@ impl Device {
     pub fn open(precision: Precision) -> Result<Self, EngineError> {
         let mut found = enumerate();
         let reports: Vec<_> = found.iter().map(AdapterReport::new).collect();
-        let Some(chosen) = preferred(&reports) else {
+        let Some(best) = preferred(&reports, Precision::F32) else {
             let tried = "no driver of Vulkan, Metal or DirectX 12 answered".to_owned();
             return Err(EngineError::NoAdapter(tried));
+        };
+        let Some(chosen) = preferred(&reports, precision) else {
+            return Err(EngineError::Unsupported {
+                adapter: reports[best].name.clone(),
+                what: "compute in f64 (no SHADER_F64)".to_owned(),
+            });
         };
         let (adapter, report) = (found.swap_remove(chosen), reports[chosen].clone());
         let required_features = match precision {
             Precision::F32 => wgpu::Features::empty(),
             Precision::F64 => wgpu::Features::SHADER_F64,
         };
-        if !adapter.features().contains(required_features) {
-            return Err(EngineError::Unsupported {
-                adapter: report.name,
-                what: "compute in f64 (no SHADER_F64)".to_owned(),
-            });
-        }
         let (handle, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
             required_features,
+            required_limits: adapter.limits(),
             ..Default::default()
         }))
         .map_err(|error| EngineError::Device(error.to_string()))?;

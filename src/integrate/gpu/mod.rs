@@ -76,12 +76,6 @@ impl Gpu {
         })
     }
 
-    /// Whether the adapter is a program on the CPU, slower than the CPU engine.
-    #[must_use]
-    pub fn is_software(&self) -> bool {
-        self.device.report.kind == Kind::Software
-    }
-
     /// Uploads the rods, in a buffer that grows when it must.
     fn upload(&mut self, rods: &[Rod]) -> Result<wgpu::Buffer, EngineError> {
         let bytes = (self.layout.rods)(rods);
