@@ -124,7 +124,7 @@ fn writable<'a>(path: &Path, mut files: impl Iterator<Item = &'a PathBuf>) -> Re
     if path.is_file() {
         let path = path.display();
         return Err(Failure::Input(format!(
-            "--output {path}: is a file; give a folder"
+            "--output {path}: is a file; give a folder that can be written"
         )));
     }
     std::fs::create_dir_all(path).map_err(|error| refuse("cannot make the folder", error))?;
