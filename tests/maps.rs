@@ -100,8 +100,26 @@ fn shipped_scenes_have_no_doubtful_cell() {
     }
 }
 
+/// Largest difference of two stored channels, relative to the largest value; infinite where only one is NaN.
+/// Two roundings to f32 are 1.2e-7.
+fn difference(a: &[f32], b: &[f32]) -> f32 {
+    let largest = a
+        .iter()
+        .filter(|x| x.is_finite())
+        .fold(0.0_f32, |m, x| m.max(x.abs()));
+    let misses = a
+        .iter()
+        .zip(b)
+        .map(|(x, y)| match (x.is_nan(), y.is_nan()) {
+            (true, true) => 0.0,
+            (false, false) => (x - y).abs() / largest,
+            _ => f32::INFINITY,
+        });
+    misses.fold(0.0, f32::max)
+}
+
 #[test]
-fn engines_agree_on_every_regime() {
+fn engines_agree_on_every_cell() {
     for mut scene in shipped() {
         if scene.grid.taper.is_some() {
             for axis in [&mut scene.grid.taper, &mut scene.grid.curvature_per_mm] {
@@ -118,6 +136,17 @@ fn engines_agree_on_every_regime() {
             assert_eq!(summary.unresolved(), 0, "{} on {name}", scene.title);
             for (a, b) in cpu.iter().zip(&panels) {
                 assert!(a.regime == b.regime, "{} on {name}", scene.title);
+                for (channel, (x, y)) in store::STATE_CHANNELS
+                    .iter()
+                    .zip(a.state.iter().zip(&b.state))
+                {
+                    let miss = difference(x, y);
+                    assert!(
+                        miss <= 2e-7,
+                        "{channel} of {} on {name}: {miss:.1e}",
+                        scene.title
+                    );
+                }
             }
         }
     }
