@@ -2,14 +2,12 @@
 
 use super::{Face, cells::Cell};
 use crate::classify::{Regime, RowBoundary, Status};
-use crate::model::{Rest, arclength};
+use crate::model::Units;
 use crate::refine::{State, TIP_TIE};
 use crate::scene::{Scene, Whisker};
-use crate::sheet::{Sheet, nearest_turn};
+use crate::sheet::Sheet;
 use crate::store::{Panel, STATE_CHANNELS};
-use glam::DVec2;
 use rayon::prelude::*;
-use std::f64::consts::FRAC_PI_4;
 
 /// A panel without answers.
 pub fn blank(scene: &Scene) -> Panel {
@@ -104,7 +102,7 @@ fn answer(
     }
     let in_contact = matches!(regime, Regime::Contact | Regime::Unreachable);
     if let (true, Some(sheet), Some(state)) = (in_contact, sheet, &cell.state) {
-        answer.state = units.state(sheet, cell.row, push, state).map(narrow);
+        answer.state = channels(units, sheet, cell.row, push, state).map(narrow);
         answer.residual = narrow(state.residual);
         let span = boundary.and_then(|boundary| boundary.span(push.abs()));
         answer.margin_deg = span.map_or(f32::NAN, |span| {
@@ -119,55 +117,25 @@ fn narrow(x: f64) -> f32 {
     x as f32
 }
 
-/// The units of one whisker.
-pub struct Units {
-    length_mm: f64,
-    force_un: f64,
-    moment_nnm: f64,
-}
-
-impl Units {
-    /// With `E I_base` in N m^2: forces in `E I/L^2`, moments and energies in `E I/L`.
-    #[must_use]
-    pub fn new(whisker: &Whisker) -> Self {
-        let stiffness =
-            whisker.youngs_modulus_gpa * 1e9 * FRAC_PI_4 * (whisker.base_radius_um * 1e-6).powi(4);
-        let length = whisker.length_mm * 1e-3;
-        Self {
-            length_mm: whisker.length_mm,
-            force_un: stiffness / (length * length) * 1e6,
-            moment_nnm: stiffness / length * 1e9,
-        }
-    }
-
-    /// The channels of [`STATE_CHANNELS`] for a state at the signed push angle `push`, in radians.
-    ///
-    /// The base frame has its first axis along the base's tangent. Forces and moment are those that the pole
-    /// puts on the base; the contact angle is that of the whisker's tangent at the contact.
-    fn state(
-        &self,
-        sheet: &Sheet,
-        row: usize,
-        push: f64,
-        state: &State,
-    ) -> [f64; STATE_CHANNELS.len()] {
-        let base = &state.full.base;
-        let to_base = DVec2::new(base.tangent.x, -base.tangent.y);
-        let contact = to_base.rotate(-base.position);
-        let pole_from_contact = -(base.position + DVec2::new(0.0, sheet.rod.pole));
-        let phi = sheet.rows[row].touch + push;
-        let rest = Rest::new(&sheet.rod);
-        let chord = contact.to_angle() - rest.direction_at_distance(contact.length());
-        [
-            arclength(&sheet.rod, state.tau) * self.length_mm,
-            (phi - pole_from_contact.to_angle()).to_degrees(),
-            base.force.abs() * self.force_un,
-            base.force * base.tangent.y * self.force_un,
-            base.force * base.tangent.x * self.force_un,
-            -base.force * base.position.x * self.moment_nnm,
-            nearest_turn(chord, push).to_degrees(),
-            contact.length() * self.length_mm,
-            state.full.energy * self.moment_nnm,
-        ]
-    }
+/// The channels of [`STATE_CHANNELS`] for a state at the signed push angle `push`, in radians.
+fn channels(
+    units: &Units,
+    sheet: &Sheet,
+    row: usize,
+    push: f64,
+    state: &State,
+) -> [f64; STATE_CHANNELS.len()] {
+    let touch = sheet.rows[row].touch;
+    let reading = units.read(&sheet.rod, state.tau, &state.full, touch, push);
+    [
+        reading.arc_length_mm,
+        reading.contact_angle_deg,
+        reading.force_un,
+        reading.base_force_un.x,
+        reading.base_force_un.y,
+        reading.base_moment_nnm,
+        reading.push_chord_deg,
+        reading.contact_distance_mm,
+        reading.energy_nj,
+    ]
 }

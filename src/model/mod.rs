@@ -20,6 +20,8 @@ mod rk4;
 mod rod;
 mod simd;
 mod start;
+mod turn;
+mod units;
 mod vector;
 
 pub use dopri8::Dopri8;
@@ -32,4 +34,6 @@ pub use rhs::{Bent, Intrinsic, Planar, Radius, RodSystem, Sensitivity, Shape, St
 pub use rk4::Rk4;
 pub use rod::{Effects, PERFECT_CONE_CUT, Rod, Side};
 pub use start::{Start, arclength};
+pub use turn::nearest_turn;
+pub use units::{Reading, Units};
 pub use vector::Vector;

@@ -5,9 +5,9 @@
 //! solution at all, and `eta` where it is.
 
 use crate::integrate::Shot;
-use crate::model::batch::{Launch, Method, land};
-use crate::model::{Curved, Dopri8, Second, arclength, limited};
-use crate::sheet::{Sheet, fold_step, nearest_turn};
+use crate::model::batch::Method;
+use crate::model::{Curved, nearest_turn};
+use crate::sheet::{Edge, Sheet, Wanted, seek};
 use glam::DVec2;
 
 /// What the fold says about a cell.
@@ -21,41 +21,30 @@ pub enum Verdict {
     Unknown,
 }
 
-/// Rounds of Newton's method for the fold.
-const ROUNDS: usize = 20;
+/// The step, as Newton's method measures it, below which a fold counts as found.
+const FOUND: f64 = 1e-9;
 
 /// Finds, for every shot, the fold at its distance, from its own guess, and compares.
 pub fn decide(method: Method, sheets: &[&Sheet], shots: &[Shot]) -> Vec<Verdict> {
-    let mut points: Vec<DVec2> = shots.iter().map(|s| DVec2::new(s.tau, s.load)).collect();
-    let mut verdicts = vec![Verdict::Unknown; shots.len()];
-    let mut open: Vec<usize> = (0..shots.len()).collect();
-    for _ in 0..ROUNDS {
-        let launches: Vec<Launch> = open
-            .iter()
-            .map(|&i| Launch {
-                rod: sheets[shots[i].rod as usize].rod,
-                tau: points[i].x,
-                load: points[i].y,
-            })
-            .collect();
-        let mut landings = land::<Dopri8, Second, 15>(method, &launches).into_iter();
-        let mut launches = launches.iter();
-        open.retain(|&i| {
-            let (Some(here), Some(launch)) = (landings.next(), launches.next()) else {
-                return false;
-            };
-            let miss = (shots[i].pole.length() / here.landing.pole.length()).ln();
-            let s = arclength(&launch.rod, launch.tau);
-            let (step, length) = limited(fold_step(&here, miss), s, launch.load);
-            if length < 1e-9 {
-                verdicts[i] = compare(sheets[shots[i].rod as usize], &shots[i], points[i], &here);
-                return false;
+    let wanted: Vec<Wanted> = shots
+        .iter()
+        .map(|shot| Wanted {
+            rod: sheets[shot.rod as usize].rod,
+            edge: Edge::Fold,
+            pole_distance: shot.pole.length(),
+            from: DVec2::new(shot.tau, shot.load),
+        })
+        .collect();
+    let folds = seek(method, &wanted).into_iter().zip(shots);
+    folds
+        .map(|(fold, shot)| {
+            if fold.step < FOUND {
+                compare(sheets[shot.rod as usize], shot, fold.point, &fold.here)
+            } else {
+                Verdict::Unknown
             }
-            points[i] += step;
-            step.is_finite() && points[i].x > 0.0
-        });
-    }
-    verdicts
+        })
+        .collect()
 }
 
 /// The fold `here`, at `point`, against the wanted direction.

@@ -5,20 +5,12 @@
 //! the number of crossings has the right parity whatever the rounding.
 
 use super::columns::Columns;
-use super::lattice::{Lattice, nearest_turn};
+use super::lattice::Lattice;
 use super::rows::Row;
+use super::seek::{Edge, Wanted, seek};
 use crate::model::batch::{Launch, Method, land};
-use crate::model::{Curved, Dopri8, First, Landing, Rod, Second, Side, arclength, limited};
+use crate::model::{Dopri8, First, Landing, Rod, Second, Side, nearest_turn};
 use glam::DVec2;
-
-/// The edge that a crossing lies on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Edge {
-    /// The saddle-node: the whisker slips off.
-    Fold,
-    /// The contact reaches the tip: the whisker is pulled off.
-    Tip,
-}
 
 /// A row's crossing of an edge.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,9 +29,6 @@ pub struct Crossing {
 
 /// Samples along the tip edge; the distance has at most a few extrema there.
 const TIP_SAMPLES: usize = 64;
-
-/// Rounds of Newton's method; the start is a hundredth of a column away, so that 4 are the rule.
-const ROUNDS: usize = 12;
 
 /// Relative slack with which a distance counts as reached, so that a whisker whose resting tip just touches
 /// the pole does touch it, whatever the rounding.
@@ -213,7 +202,7 @@ fn extremum(method: Method, rod: &Rod, from: Launch, to: f64) -> f64 {
     load
 }
 
-/// Newton's method from every candidate, in batches.
+/// The crossings that the candidates lead to.
 fn polish(
     method: Method,
     rod: &Rod,
@@ -221,67 +210,26 @@ fn polish(
     rows: &[Row],
     candidates: &[Candidate],
 ) -> Vec<Crossing> {
-    let mut points: Vec<DVec2> = candidates
+    let wanted: Vec<Wanted> = candidates
         .iter()
-        .map(|c| DVec2::new(c.tau, c.load))
+        .map(|c| Wanted {
+            rod: *rod,
+            edge: c.edge,
+            pole_distance: rows[c.row].pole_distance,
+            from: DVec2::new(c.tau, c.load),
+        })
         .collect();
-    let mut crossings: Vec<Option<Crossing>> = vec![None; candidates.len()];
-    let mut open: Vec<usize> = (0..candidates.len()).collect();
-    for _ in 0..ROUNDS {
-        let launches: Vec<Launch> = open
-            .iter()
-            .map(|&i| Launch {
-                rod: *rod,
-                tau: points[i].x,
-                load: points[i].y,
-            })
-            .collect();
-        let mut landings = land::<Dopri8, Second, 15>(method, &launches).into_iter();
-        open.retain(|&i| {
-            let Some(here) = landings.next() else {
-                return false;
-            };
-            let (row, point) = (&rows[candidates[i].row], points[i]);
-            let miss = (row.pole_distance / here.landing.pole.length()).ln();
-            let step = match candidates[i].edge {
-                Edge::Fold => fold_step(&here, miss),
-                Edge::Tip => DVec2::new(0.0, miss / here.landing.by_load.x),
-            };
-            let (step, length) = limited(step, arclength(rod, point.x), point.y);
-            let phi = nearest_turn(here.landing.pole.to_angle(), candidates[i].phi);
-            crossings[i] = Some(Crossing {
-                edge: candidates[i].edge,
-                tau: point.x,
-                load: point.y,
-                push: side.sign() * (phi - row.touch),
-                residual: miss.abs().max(length * length),
-            });
-            points[i] = point + step;
-            length > 1e-12
-        });
-    }
-    crossings
-        .into_iter()
-        .zip(candidates)
-        .map(|(crossing, c)| {
-            crossing.unwrap_or(Crossing {
+    let polished = seek(method, &wanted).into_iter().zip(candidates);
+    polished
+        .map(|(sought, c)| {
+            let phi = nearest_turn(sought.here.landing.pole.to_angle(), c.phi);
+            Crossing {
                 edge: c.edge,
-                tau: c.tau,
-                load: c.load,
-                push: f64::NAN,
-                residual: f64::INFINITY,
-            })
+                tau: sought.point.x,
+                load: sought.point.y,
+                push: side.sign() * (phi - rows[c.row].touch),
+                residual: sought.miss.abs() + sought.step * sought.step,
+            }
         })
         .collect()
-}
-
-/// The step toward the point of the fold whose `ln D` is larger by `miss`.
-pub fn fold_step(here: &Curved, miss: f64) -> DVec2 {
-    let by_distance = DVec2::new(here.landing.by_tau.x, here.landing.by_load.x);
-    let by_det = here.det_gradient();
-    let det = here.landing.det();
-    DVec2::new(
-        miss * by_det.y + det * by_distance.y,
-        -miss * by_det.x - det * by_distance.x,
-    ) / by_distance.perp_dot(by_det)
 }

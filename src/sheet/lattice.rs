@@ -8,8 +8,7 @@ use super::columns::Columns;
 use super::polynomial::{NODES, Polynomial, stencil};
 use super::rows::Row;
 use crate::model::batch::{Launch, Method, land};
-use crate::model::{Dopri8, First, Rod, Side};
-use std::f64::consts::TAU;
+use crate::model::{Dopri8, First, Rod, Side, nearest_turn};
 
 /// Steps in load from first touch to the fold.
 const LOADS: usize = 16;
@@ -112,12 +111,6 @@ impl Lattice {
         }
         level
     }
-}
-
-/// `angle` plus the whole turns that bring it nearest to `near`.
-#[must_use]
-pub fn nearest_turn(angle: f64, near: f64) -> f64 {
-    angle + TAU * ((near - angle) / TAU).round()
 }
 
 #[derive(Clone, Copy, Debug)]

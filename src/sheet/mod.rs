@@ -12,11 +12,13 @@ mod fold;
 mod lattice;
 mod polynomial;
 mod rows;
+mod seek;
 
-pub use edges::{Crossing, Edge, fold_step};
+pub use edges::Crossing;
 pub use fold::FoldPoint;
-pub use lattice::{Guess, nearest_turn};
+pub use lattice::Guess;
 pub use rows::Row;
+pub use seek::{Edge, Sought, Wanted, seek};
 
 use crate::model::batch::Method;
 use crate::model::{Effects, Landing, Resolution, Rest, Rod, Side};

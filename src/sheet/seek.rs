@@ -1,0 +1,97 @@
+//! Newton's method for the points in which a row leaves the sheet.
+
+use crate::model::batch::{Launch, Method, land};
+use crate::model::{Curved, Dopri8, Rod, Second, arclength, limited};
+use glam::DVec2;
+
+/// The edge that a point lies on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Edge {
+    /// The saddle-node: the whisker slips off.
+    Fold,
+    /// The contact reaches the tip: the whisker is pulled off.
+    Tip,
+}
+
+/// A point that is wanted on an edge: a fold, or a state with the contact where it is, for a pole at a distance.
+#[derive(Clone, Copy, Debug)]
+pub struct Wanted {
+    /// The whisker and its pole.
+    pub rod: Rod,
+    /// The edge.
+    pub edge: Edge,
+    /// Distance of the pole's centre.
+    pub pole_distance: f64,
+    /// `(tau, load)` to start from.
+    pub from: DVec2,
+}
+
+/// The last point computed on the way to a [`Wanted`].
+#[derive(Clone, Copy, Debug)]
+pub struct Sought {
+    /// `(tau, load)`.
+    pub point: DVec2,
+    /// The pole there.
+    pub here: Curved,
+    /// What is missing in `ln D`.
+    pub miss: f64,
+    /// Length of the step that Newton's method would take from here, as [`limited`] measures it.
+    pub step: f64,
+}
+
+/// Rounds of Newton's method; from a hundredth of a column away 4 are the rule.
+const ROUNDS: usize = 20;
+
+/// The step at which a point is as good as it gets.
+const SMALLEST_STEP: f64 = 1e-12;
+
+/// Newton's method for all `wanted` at once; the caller judges what is left in `miss` and `step`.
+#[must_use]
+pub fn seek(method: Method, wanted: &[Wanted]) -> Vec<Sought> {
+    let mut points: Vec<DVec2> = wanted.iter().map(|w| w.from).collect();
+    let mut found: Vec<Option<Sought>> = vec![None; wanted.len()];
+    let mut open: Vec<usize> = (0..wanted.len()).collect();
+    for _ in 0..ROUNDS {
+        let launches: Vec<Launch> = open
+            .iter()
+            .map(|&i| Launch {
+                rod: wanted[i].rod,
+                tau: points[i].x,
+                load: points[i].y,
+            })
+            .collect();
+        let mut landings = land::<Dopri8, Second, 15>(method, &launches).into_iter();
+        open.retain(|&i| {
+            let Some(here) = landings.next() else {
+                return false;
+            };
+            let (goal, point) = (&wanted[i], points[i]);
+            let miss = (goal.pole_distance / here.landing.pole.length()).ln();
+            let step = match goal.edge {
+                Edge::Fold => fold_step(&here, miss),
+                Edge::Tip => DVec2::new(0.0, miss / here.landing.by_load.x),
+            };
+            let (step, length) = limited(step, arclength(&goal.rod, point.x), point.y);
+            found[i] = Some(Sought {
+                point,
+                here,
+                miss,
+                step: length,
+            });
+            points[i] = point + step;
+            length > SMALLEST_STEP && step.is_finite() && points[i].x > 0.0
+        });
+    }
+    found.into_iter().flatten().collect()
+}
+
+/// The step toward the point of the fold whose `ln D` is larger by `miss`.
+fn fold_step(here: &Curved, miss: f64) -> DVec2 {
+    let by_distance = DVec2::new(here.landing.by_tau.x, here.landing.by_load.x);
+    let by_det = here.det_gradient();
+    let det = here.landing.det();
+    DVec2::new(
+        miss * by_det.y + det * by_distance.y,
+        -miss * by_det.x - det * by_distance.x,
+    ) / by_distance.perp_dot(by_det)
+}
