@@ -84,14 +84,19 @@ pub(super) fn labels(ticks: &[f64]) -> Vec<String> {
             format!("{tick:.decimals$}")
         }
     };
-    let exact = |decimals: &usize| {
-        let off = |tick: &f64| match text(tick, *decimals).parse::<f64>() {
-            Ok(shown) => (shown - tick).abs() > 1e-6 * largest,
-            Err(_) => true,
+    let apart = ticks.windows(2).map(|pair| (pair[1] - pair[0]).abs());
+    let tenth = 0.1 * apart.fold(f64::INFINITY, f64::min);
+    let within = |decimals: usize, allowed: f64| {
+        let near = |tick: &f64| match text(tick, decimals).parse::<f64>() {
+            Ok(shown) => (shown - tick).abs() <= allowed,
+            Err(_) => false,
         };
-        !ticks.iter().any(off)
+        ticks.iter().all(near)
     };
-    let decimals = (0..4).find(exact).unwrap_or(4);
+    let exact = (0..4).find(|decimals| within(*decimals, tenth.min(1e-6 * largest)));
+    let decimals = exact
+        .or_else(|| (4..=12).find(|decimals| within(*decimals, tenth)))
+        .unwrap_or(4);
     let shown = ticks.iter().map(|tick| text(tick, decimals));
     shown.map(|text| text.replace('-', "\u{2212}")).collect()
 }
@@ -128,6 +133,8 @@ mod tests {
             (vec![-20.0, 0.0], vec!["\u{2212}20", "0"]),
             (vec![0.0, 2e-9], vec!["0", "2e\u{2212}9"]),
             (vec![1.0 / 3.0], vec!["0.3333"]),
+            (vec![2.00001, 2.00002], vec!["2.00001", "2.00002"]),
+            (vec![2e5, 2e5 + 0.1], vec!["200000.0", "200000.1"]),
         ] {
             assert_eq!(labels(&ticks), expected);
         }

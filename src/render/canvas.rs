@@ -1,6 +1,7 @@
 //! A bitmap with text and lines, drawn at twice its size and averaged.
 
 use super::Error;
+use super::brush::Cover;
 use super::palette::{Fill, INK, Rgb, WHITE};
 use crate::store;
 use plotters::backend::BitMapBackend;
@@ -11,6 +12,11 @@ use std::path::Path;
 
 /// Drawn pixels per pixel of the picture, in each direction.
 const SCALE: usize = 2;
+
+/// An em of DejaVu Sans in font sizes: here a size is the height from ascent to descent, 1.164 ems.
+pub(super) const EM: f64 = 1.0 / 1.164;
+/// The height of its capitals in font sizes, 0.729 ems.
+pub(super) const CAPITALS: f64 = 0.626;
 
 /// The colour of text.
 const PEN: RGBColor = RGBColor(INK[0], INK[1], INK[2]);
@@ -88,22 +94,24 @@ impl Canvas {
 
     /// A straight line with round ends.
     pub(super) fn line(&mut self, from: [f64; 2], to: [f64; 2], width: f64, ink: Rgb, alpha: f64) {
-        let [from, to] = [from, to].map(|point| point.map(|at| at * SCALE as f64));
-        let radius = width * SCALE as f64 / 2.0;
-        let reach = |axis: usize, limit: usize| {
-            let low = from[axis].min(to[axis]) - radius - 1.0;
-            let high = from[axis].max(to[axis]) + radius + 2.0;
-            low.max(0.0) as usize..high.clamp(0.0, (limit * SCALE) as f64) as usize
-        };
-        for y in reach(1, self.height) {
-            for x in reach(0, self.width) {
-                let away = distance([x as f64 + 0.5, y as f64 + 0.5], from, to);
-                let cover = (radius + 0.5 - away).clamp(0.0, 1.0) * alpha;
-                let pixel = self.pixel(x, y);
-                for (channel, ink) in pixel.iter_mut().zip(ink) {
-                    let mixed = f64::from(*channel) * (1.0 - cover) + f64::from(ink) * cover;
-                    *channel = mixed.round() as u8;
-                }
+        self.stroke(&[from, to], width, ink, alpha);
+    }
+
+    /// A polyline with round ends and corners; a single point is a disc. No pixel is inked twice, so that many short
+    /// segments look like one long one.
+    pub(super) fn stroke(&mut self, points: &[[f64; 2]], width: f64, ink: Rgb, alpha: f64) {
+        let scale = SCALE as f64;
+        let points: Vec<_> = points
+            .iter()
+            .map(|point| point.map(|at| at * scale))
+            .collect();
+        let limit = [self.width * SCALE, self.height * SCALE];
+        let cover = Cover::new(&points, width * scale / 2.0, limit);
+        for (x, y, part) in cover.pixels() {
+            let part = part * alpha;
+            for (channel, ink) in self.pixel(x, y).iter_mut().zip(ink) {
+                let mixed = f64::from(*channel) * (1.0 - part) + f64::from(ink) * part;
+                *channel = mixed.round() as u8;
             }
         }
     }
@@ -127,9 +135,8 @@ impl Canvas {
     ) -> Result<(), Error> {
         let size = size * SCALE as f64;
         let [x, y] = at.map(|at| at * SCALE as f64);
-        // plotters puts the baseline half a font size below the top; the capitals of DejaVu Sans are 0.626 font sizes
-        // high (729 of the 1164 thousandths of an em from ascent to descent).
-        let centring = size * (0.626 / 2.0 - 0.5);
+        // plotters puts the baseline half a font size below the top.
+        let centring = size * (CAPITALS / 2.0 - 0.5);
         let (horizontal, turn, x, y) = match anchor {
             Anchor::Left => (HPos::Left, FontTransform::None, x, y + centring),
             Anchor::Centre => (HPos::Center, FontTransform::None, x, y + centring),
@@ -145,21 +152,14 @@ impl Canvas {
 
     /// Encodes the picture under a temporary name and renames it to `out`.
     pub(super) fn save(&self, out: &Path) -> Result<(), Error> {
-        let failed = |cause: String| Error::Write {
-            path: out.to_owned(),
-            cause,
-        };
-        let file = store::beside(out, ".png").map_err(|cause| failed(cause.to_string()))?;
-        let size = (self.width as u32, self.height as u32);
-        let mut backend = BitMapBackend::new(file.path(), size);
-        backend
-            .blit_bitmap((0, 0), size, &self.averaged())
-            .and_then(|()| backend.present())
-            .map_err(|cause| failed(cause.to_string()))?;
-        drop(backend);
-        file.persist(out)
-            .map_err(|cause| failed(cause.to_string()))?;
-        Ok(())
+        whole(out, ".png", |file| {
+            let size = (self.width as u32, self.height as u32);
+            let mut backend = BitMapBackend::new(file, size);
+            backend
+                .blit_bitmap((0, 0), size, &self.averaged())
+                .and_then(|()| backend.present())
+                .map_err(|cause| cause.to_string())
+        })
     }
 
     fn pixel(&mut self, x: usize, y: usize) -> &mut [u8; 3] {
@@ -181,6 +181,23 @@ impl Canvas {
             .map(|i| sample(i / 3 % self.width, i / 3 / self.width, i % 3))
             .collect()
     }
+}
+
+/// Has `write` fill a temporary file next to `out` and renames that to `out`: whole or not at all.
+pub(super) fn whole(
+    out: &Path,
+    suffix: &str,
+    write: impl FnOnce(&Path) -> Result<(), String>,
+) -> Result<(), Error> {
+    let failed = |cause: String| Error::Write {
+        path: out.to_owned(),
+        cause,
+    };
+    let file = store::beside(out, suffix).map_err(|cause| failed(cause.to_string()))?;
+    write(file.path()).map_err(failed)?;
+    file.persist(out)
+        .map_err(|cause| failed(cause.to_string()))?;
+    Ok(())
 }
 
 /// How far a text of this size reaches along its line.
@@ -214,18 +231,4 @@ fn unwritten(text: &str, cause: impl ToString) -> Error {
         text: text.to_owned(),
         cause: cause.to_string(),
     }
-}
-
-/// From a point to a segment.
-fn distance(point: [f64; 2], from: [f64; 2], to: [f64; 2]) -> f64 {
-    let along = [to[0] - from[0], to[1] - from[1]];
-    let away = [point[0] - from[0], point[1] - from[1]];
-    let length = along[0] * along[0] + along[1] * along[1];
-    let dot = along[0] * away[0] + along[1] * away[1];
-    let nearest = if length > 0.0 {
-        (dot / length).clamp(0.0, 1.0)
-    } else {
-        0.0
-    };
-    (away[0] - nearest * along[0]).hypot(away[1] - nearest * along[1])
 }

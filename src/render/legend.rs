@@ -10,10 +10,10 @@ use super::shading::{Scale, Shading};
 pub(super) const TITLE: f64 = 36.0;
 pub(super) const LABEL: f64 = 27.0;
 pub(super) const TICK: f64 = 23.0;
-const NAME: f64 = 21.0;
+pub(super) const NAME: f64 = 21.0;
 
 /// From one line of the legend to the next.
-const LINE: f64 = 38.0;
+pub(super) const LINE: f64 = 38.0;
 /// Width of a swatch, and from one swatch's text to the next swatch.
 const SWATCH: f64 = 36.0;
 const GAP: f64 = 26.0;
@@ -54,18 +54,17 @@ impl Heading {
         {
             marks.push((Mark::Line, "detachment boundary".to_owned()));
         }
-        let mut entries = Vec::new();
-        let (mut line, mut offset) = (0, 0.0);
-        for (mark, name) in marks {
-            let needed = SWATCH + 12.0 + text_width(&name, NAME)?;
-            if offset > 0.0 && offset + needed > width {
-                (line, offset) = (line + 1, 0.0);
-            }
-            entries.push((line, offset, mark, name));
-            offset += needed + GAP;
+        let mut widths = Vec::new();
+        for (_, name) in &marks {
+            widths.push(SWATCH + 12.0 + text_width(name, NAME)?);
         }
-        let lines = if entries.is_empty() { 0 } else { line + 1 };
-        let (title, title_size) = fitted(title, width)?;
+        let (places, lines) = flow(&widths, width);
+        let entries = places
+            .into_iter()
+            .zip(marks)
+            .map(|((line, offset), (mark, name))| (line, offset, mark, name))
+            .collect();
+        let (title, title_size) = fitted(title, TITLE, width)?;
         Ok(Self {
             title,
             title_size,
@@ -98,10 +97,24 @@ impl Heading {
     }
 }
 
-/// A title in the largest size that fits, cut if even the smallest one does not.
-fn fitted(title: &str, width: f64) -> Result<(String, f64), Error> {
-    let size = TITLE * (width / text_width(title, TITLE)?.max(1.0)).clamp(0.6, 1.0);
-    let mut shown = title.to_owned();
+/// Line and offset of things of these widths, one after the other, and the number of lines.
+pub(super) fn flow(widths: &[f64], room: f64) -> (Vec<(usize, f64)>, usize) {
+    let mut places = Vec::new();
+    let (mut line, mut offset) = (0, 0.0);
+    for width in widths {
+        if offset > 0.0 && offset + width > room {
+            (line, offset) = (line + 1, 0.0);
+        }
+        places.push((line, offset));
+        offset += width + GAP;
+    }
+    (places, if widths.is_empty() { 0 } else { line + 1 })
+}
+
+/// A text in the largest size that fits, at most `largest`, cut if even the smallest one does not.
+pub(super) fn fitted(text: &str, largest: f64, width: f64) -> Result<(String, f64), Error> {
+    let size = largest * (width / text_width(text, largest)?.max(1.0)).clamp(0.6, 1.0);
+    let mut shown = text.to_owned();
     while text_width(&shown, size)? > width + 1.0 {
         let kept = shown.chars().count().saturating_sub(2);
         shown = shown.chars().take(kept).chain(['\u{2026}']).collect();

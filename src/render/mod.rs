@@ -1,12 +1,14 @@
-//! Pictures of stored maps: works from the file alone, one panel at a time.
+//! Pictures: maps from the stored file alone, one panel at a time; charts from the lines they are given.
 //!
-//! Invariant: a picture shows every cell of the map as it is stored, nearest cell by pixel; nothing is smoothed. Only
+//! Invariant: the picture of a map shows every cell of the map as it is stored, nearest cell by pixel; nothing is smoothed. Only
 //! the detachment boundary is a curve, drawn from the margins that the cells carry.
 
 mod atlas;
 mod axis;
 mod boundary;
+mod brush;
 mod canvas;
+mod chart;
 mod error;
 mod legend;
 mod palette;
@@ -14,6 +16,7 @@ mod panel;
 mod shading;
 mod single;
 
+pub use chart::{Chart, ChartFormat, Disc, Dot, Ink, Line, Plot, Stroke};
 pub use error::Error;
 
 use crate::store::StoredMap;

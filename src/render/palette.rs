@@ -8,8 +8,11 @@ pub(super) type Rgb = [u8; 3];
 pub(super) const WHITE: Rgb = [255, 255, 255];
 /// Text and lines.
 pub(super) const INK: Rgb = [0x22, 0x2b, 0x33];
-/// Cells without a value.
-const BLANK: Rgb = [0xdc, 0xdd, 0xde];
+/// Lines of charts beside [`INK`].
+pub(super) const BLUE: Rgb = [0x1c, 0x6c, 0xc4];
+pub(super) const GREY: Rgb = [0x9a, 0xa1, 0xa8];
+/// Cells without a value, and bodies in charts.
+pub(super) const BLANK: Rgb = [0xdc, 0xdd, 0xde];
 
 const CONTACT: Rgb = [0x8c, 0xcb, 0xae];
 const CONTACT_PALE: Rgb = [0xd9, 0xee, 0xe3];
