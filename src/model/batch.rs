@@ -228,7 +228,7 @@ where
 
     let steps = launches
         .iter()
-        .map(|l| resolution.steps(l.rod.taper, l.tau))
+        .map(|l| resolution.steps(&l.rod, l.tau))
         .max()
         .unwrap_or(resolution.least);
     let h = T::pack(starts.map(|start| start.tau / f64::from(steps)));

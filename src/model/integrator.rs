@@ -2,28 +2,29 @@
 
 use super::real::exp_small;
 use super::rhs::{Intrinsic, Planar, RodSystem, Sensitivity, State};
-use super::{Radius, Real};
+use super::{Radius, Real, Rod};
 
-/// How finely trajectories are integrated: at least `least` steps, and none along which the radius changes by
-/// more than a factor `exp(longest)`, in `beta tau`.
+/// How finely trajectories are integrated: at least `least` steps, and none along which the radius changes by more than
+/// a factor `exp(longest)` or the resting whisker turns by more than `longest`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Resolution {
     /// Fewest steps.
     pub least: u32,
-    /// Longest step in `beta tau`; at most 0.4, the range of the stages' radii.
+    /// Longest step in `beta tau` and in `2 A* tau`; at most 0.4, the range of the stages' radii.
     pub longest: f64,
 }
 
 impl Resolution {
-    /// Steps for a trajectory over `tau` on a rod of this `taper`.
+    /// Steps for a trajectory over `tau` on `rod`.
     #[must_use]
     #[allow(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
-        reason = "beta tau is at most 25 (a cone cut at 1e-9 and some), so the quotient is small and positive"
+        reason = "tau is at most 25 (a cone cut at 1e-9 and some) and 2 A* at most 20, so the quotient is positive and small"
     )]
-    pub fn steps(&self, taper: f64, tau: f64) -> u32 {
-        self.least.max((taper * tau / self.longest).ceil() as u32)
+    pub fn steps(&self, rod: &Rod, tau: f64) -> u32 {
+        let fastest = rod.taper.max(2.0 * rod.bend);
+        self.least.max((fastest * tau / self.longest).ceil() as u32)
     }
 }
 
