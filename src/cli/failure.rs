@@ -4,7 +4,9 @@ use crate::integrate::EngineError;
 use crate::map::MapError;
 use crate::plan::PlanError;
 use crate::scene::SceneError;
+use crate::trace::NoState;
 use std::io::{IsTerminal, Write};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 /// An error of a command.
@@ -31,6 +33,25 @@ pub enum Failure {
     /// A picture could not be drawn.
     #[error(transparent)]
     Render(#[from] crate::render::Error),
+    /// A solution branch could not be followed.
+    #[error(transparent)]
+    State(NoState),
+    /// Numbers are not what they should be.
+    #[error("{failed} of {all} checks fail")]
+    Checks {
+        /// How many.
+        failed: usize,
+        /// Of how many.
+        all: usize,
+    },
+    /// A file could not be written.
+    #[error("cannot write {}: {cause}", path.display())]
+    Write {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        cause: std::io::Error,
+    },
     /// Standard output is gone or full.
     #[error("standard output: {0}")]
     Output(#[from] std::io::Error),
@@ -40,9 +61,7 @@ impl Failure {
     fn code(&self) -> u8 {
         match self {
             Self::Scene(_) | Self::Plan(_) | Self::Input(_) => 2,
-            Self::Engine(_) | Self::Map(_) | Self::Store(_) | Self::Render(_) | Self::Output(_) => {
-                1
-            }
+            _ => 1,
         }
     }
 

@@ -3,12 +3,19 @@
 //! Answers go to standard output, everything said along the way to standard error. Exit code 2 is for input
 //! that cannot be right, 1 for what fails while running.
 
+mod branch;
+mod curve;
 mod devices;
 mod engine;
 mod failure;
 mod map;
+mod outputs;
+mod pole;
 mod progress;
 mod render;
+mod reproduce;
+mod shape;
+mod verify;
 
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;
@@ -26,6 +33,11 @@ Examples:
   whiskmap map scenes/cone.toml                    regime map as outputs/cone.exr and outputs/cone.png
   whiskmap map scenes/cone.toml --engine gpu       the same, shot by the GPU
   whiskmap render outputs/cone.exr --channel force_un
+  whiskmap curve scenes/cone.toml --plot curve.png where the whisker detaches, distance by distance
+  whiskmap branch scenes/cone.toml --distance 15.66 stable and unstable states in front of one pole
+  whiskmap shape scenes/cone.toml --distance 15.66 --push-angle 10 --plot shape.svg
+  whiskmap reproduce                               the theory lines of the paper's figures
+  whiskmap verify                                  every number that is known otherwise
   whiskmap devices                                 adapters, and which one `auto` takes";
 
 #[derive(Debug, Subcommand)]
@@ -34,6 +46,16 @@ enum Command {
     Map(map::Options),
     /// Draw a stored map again, its regimes or any channel
     Render(render::Options),
+    /// Compute the exact detachment curve of a scene, as CSV, PNG or SVG
+    Curve(curve::Options),
+    /// Follow the solution branch in front of one pole, through the fold and beyond
+    Branch(branch::Options),
+    /// Compute the shape of the whisker in one state
+    Shape(shape::Options),
+    /// Draw the theory lines of the paper's figures
+    Reproduce(reproduce::Options),
+    /// Compare with every number that is published, exact, or from an independent solver
+    Verify,
     /// List the GPU adapters
     Devices,
 }
@@ -45,6 +67,11 @@ pub fn main() -> ExitCode {
     let result = match &arguments.command {
         Command::Map(options) => map::run(options),
         Command::Render(options) => render::run(options),
+        Command::Curve(options) => curve::run(options),
+        Command::Branch(options) => branch::run(options),
+        Command::Shape(options) => shape::run(options),
+        Command::Reproduce(options) => reproduce::run(options),
+        Command::Verify => verify::run(),
         Command::Devices => devices::run(),
     };
     match result {

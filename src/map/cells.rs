@@ -48,15 +48,6 @@ pub struct Cell {
     pub steps: u32,
 }
 
-/// The side that a push angle belongs to.
-pub fn side_of(push_angle_deg: f64) -> Side {
-    if push_angle_deg < 0.0 {
-        Side::Cf
-    } else {
-        Side::Cb
-    }
-}
-
 /// Settles the cells of `strip`.
 pub fn settle(
     scene: &Scene,
@@ -133,7 +124,7 @@ fn guess_row(
 ) -> Vec<(Cell, Option<Shot>)> {
     let pushes = &scene.grid.push_angle_deg;
     let mut columns: Vec<usize> = (0..pushes.len())
-        .filter(|&column| side_of(pushes[column]) == face.side)
+        .filter(|&column| Side::of_push(pushes[column]) == face.side)
         .collect();
     if face.side == Side::Cf {
         columns.reverse();

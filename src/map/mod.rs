@@ -104,6 +104,6 @@ fn sides(scene: &Scene) -> Vec<Side> {
     let pushes = &scene.grid.push_angle_deg;
     Side::BOTH
         .into_iter()
-        .filter(|side| pushes.iter().any(|push| cells::side_of(*push) == *side))
+        .filter(|side| pushes.iter().any(|push| Side::of_push(*push) == *side))
         .collect()
 }

@@ -13,6 +13,7 @@ mod dopri8;
 mod integrator;
 mod landing;
 mod order;
+pub mod profile;
 mod real;
 mod rest;
 mod rhs;

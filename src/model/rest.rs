@@ -71,6 +71,17 @@ impl Rest {
         (to_base.rotate(point), to_base.rotate(tangent))
     }
 
+    /// Point and unit tangent at arclength `s`.
+    #[must_use]
+    pub fn at_arclength(&self, s: f64) -> (DVec2, DVec2) {
+        let x = if self.bend == 0.0 {
+            s / self.slope.hypot(1.0)
+        } else {
+            (self.slope_at(s) - self.slope) / (2.0 * self.bend)
+        };
+        self.at(x)
+    }
+
     /// How far along the parabola's axis the chord from the base is `chord`: the root of
     /// `x^2 (1 + (A x + t0)^2) = chord^2`, whose left side grows with `x` (the scene made sure).
     fn x_of_chord(&self, chord: f64) -> f64 {
@@ -116,5 +127,25 @@ impl Rest {
     pub fn pole_at_distance(&self, distance: f64) -> DVec2 {
         let (point, tangent) = self.at(self.x_of_chord(distance));
         point - self.pole * tangent.perp()
+    }
+
+    /// The distance from the base at which the pole first touches the whisker when its centre is `pole_distance` from
+    /// the base: the inverse of [`Rest::pole_at_distance`], which grows with the distance (the scene made sure).
+    #[must_use]
+    pub fn distance_of_pole(&self, pole_distance: f64) -> f64 {
+        let radius = self.pole.abs();
+        let mut low = (pole_distance - radius).max(0.0);
+        let mut high = pole_distance + radius;
+        loop {
+            let middle = 0.5 * (low + high);
+            if middle <= low || middle >= high {
+                return middle;
+            }
+            if self.pole_at_distance(middle).length() < pole_distance {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
     }
 }

@@ -1,9 +1,11 @@
 //! A whisker and its pole without dimensions.
 
 use crate::scene::Whisker;
+use serde::Serialize;
 
 /// The side of the whisker that the pole is on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Side {
     /// Concave backward: the pole is on the convex side, the force bends the whisker further.
     Cb,
@@ -14,6 +16,12 @@ pub enum Side {
 impl Side {
     /// Both sides, in the order of growing push angle.
     pub const BOTH: [Self; 2] = [Self::Cf, Self::Cb];
+
+    /// The side that a push angle belongs to; first touch itself belongs to CB.
+    #[must_use]
+    pub fn of_push(push: f64) -> Self {
+        if push < 0.0 { Self::Cf } else { Self::Cb }
+    }
 
     /// The sign of push angles, loads and the pole's offset: + CB, - CF.
     #[must_use]

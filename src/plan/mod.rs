@@ -54,7 +54,7 @@ impl Plan {
         let push_angles = scene.grid.push_angle_deg.len();
         let distances = scene.grid.distance_mm.len();
         let cells = push_angles * distances;
-        let whiskers: Vec<Whisker> = scene.whiskers().collect();
+        let whiskers: Vec<Whisker> = scene.whiskers().map(|(_, whisker)| whisker).collect();
         let panels_at_once = (CELLS_IN_FLIGHT / cells)
             .clamp(1, MOST_PANELS)
             .min(whiskers.len());

@@ -15,9 +15,11 @@ mod palette;
 mod panel;
 mod shading;
 mod single;
+mod traces;
 
 pub use chart::{Chart, ChartFormat, Disc, Dot, Ink, Line, Plot, Stroke};
 pub use error::Error;
+pub use traces::{BranchAxis, CurveAxis, Drawn, branches, curves, shapes};
 
 use crate::store::StoredMap;
 use shading::Shading;

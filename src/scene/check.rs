@@ -12,7 +12,7 @@ use super::axis;
 use super::error::Fault;
 use super::file::{CurvatureTable, GridTable, Number, OutputTable, SceneTable, WhiskerTable};
 use super::limits::Limits;
-use super::{Curvature, Grid, Scene, Whisker};
+use super::{Curvature, FARTHEST, Grid, NEAREST, Scene, Whisker};
 
 /// As many as 16,384 x 16,384; a stored cell takes about 60 bytes.
 const MOST_CELLS: u128 = 1 << 28;
@@ -144,8 +144,8 @@ fn grid(table: &Spanned<GridTable>, length_mm: f64) -> Result<Grid, Fault> {
         "grid.push_angle_deg",
         &Limits::between(-360.0, 360.0),
     )?;
-    let near = ("length_mm / 1000", length_mm / 1000.0);
-    let far = ("10 * length_mm", 10.0 * length_mm);
+    let near = ("length_mm / 1000", length_mm / NEAREST);
+    let far = ("10 * length_mm", FARTHEST * length_mm);
     let distance_mm = axis::values(
         &axes.distance_mm,
         "grid.distance_mm",

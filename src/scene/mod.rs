@@ -12,6 +12,8 @@ mod read;
 
 pub use error::SceneError;
 
+use serde::Serialize;
+
 /// A whisker at rest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Whisker {
@@ -88,7 +90,7 @@ impl Scene {
 
     /// Every whisker of the sweep, in the order of the atlas: taper varies fastest (its columns), curvature
     /// slowest (its rows). Without such axes, the one whisker of the file.
-    pub fn whiskers(&self) -> impl Iterator<Item = Whisker> {
+    pub fn whiskers(&self) -> impl Iterator<Item = (Morphology, Whisker)> {
         let tapers = choices(self.grid.taper.as_deref());
         choices(self.grid.curvature_per_mm.as_deref())
             .into_iter()
@@ -98,8 +100,45 @@ impl Scene {
                     .into_iter()
                     .map(move |taper| (taper, curvature))
             })
-            .map(|(taper, curvature)| self.whisker_at(taper, curvature))
+            .map(|(taper, curvature)| {
+                let whisker = self.whisker_at(taper, curvature);
+                let own = whisker.curvature.map_or(0.0, |own| own.parabola_per_mm);
+                let morphology = Morphology {
+                    taper: taper.unwrap_or(1.0 - whisker.tip_radius_um / whisker.base_radius_um),
+                    curvature_per_mm: curvature.unwrap_or(own),
+                };
+                (morphology, whisker)
+            })
     }
+
+    /// Whether whiskers are swept: whether there is an axis of taper or curvature.
+    #[must_use]
+    pub fn is_sweep(&self) -> bool {
+        self.grid.taper.is_some() || self.grid.curvature_per_mm.is_some()
+    }
+
+    /// The distances that a pole may have: more than the first, and at most the second.
+    #[must_use]
+    pub fn distances_mm(&self) -> (f64, f64) {
+        let length = self.whisker.length_mm;
+        let nearest = (length / NEAREST).max(self.pole_radius_mm);
+        (nearest, FARTHEST * length)
+    }
+}
+
+/// The nearest first touch is the whisker's length over this.
+const NEAREST: f64 = 1000.0;
+
+/// The farthest is the whisker's length times this.
+const FARTHEST: f64 = 10.0;
+
+/// Where a whisker stands in a sweep.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Morphology {
+    /// `1 - tip/base radius`.
+    pub taper: f64,
+    /// Parabola coefficient `A`.
+    pub curvature_per_mm: f64,
 }
 
 /// What an axis puts in place of the whisker's own value: its values one by one, or nothing, once.

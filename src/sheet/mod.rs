@@ -81,6 +81,16 @@ impl Sheet {
         })
     }
 
+    /// The fold with the contact at the tip, where slip-off turns into pull-off; `None` if it is not found.
+    #[must_use]
+    pub fn fold_at_tip(effects: Effects, rod: &Rod, side: Side) -> Option<FoldPoint> {
+        let method = Method {
+            effects,
+            resolution: FINE,
+        };
+        fold::first_folds(method, rod, side, &[rod.tau_tip()]).pop()?
+    }
+
     /// Whether the whisker at rest reaches the pole of `row`.
     #[must_use]
     pub fn touches(&self, row: usize) -> bool {

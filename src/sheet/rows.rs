@@ -1,6 +1,7 @@
 //! The rows of a map: distances at first touch, and where the pole stands for each.
 
-use crate::model::Rest;
+use super::edges::REACH_SLACK;
+use crate::model::{Rest, Rod};
 use glam::DVec2;
 
 /// One distance of a map for one whisker and side; lengths in whisker lengths.
@@ -24,6 +25,12 @@ impl Row {
             contact: rest.arclength_at_distance(distance),
             touch: pole.to_angle(),
         }
+    }
+
+    /// Whether the resting `rod` is long enough to touch the pole.
+    #[must_use]
+    pub fn is_reached(&self, rod: &Rod) -> bool {
+        rod.tau(self.contact) <= rod.tau_tip() * (1.0 + REACH_SLACK)
     }
 
     /// Centre of the pole in the frame of the base after a rotation of the base by `push` since first touch.

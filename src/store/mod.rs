@@ -14,6 +14,7 @@ mod fresh;
 mod header;
 mod layout;
 mod reader;
+mod table;
 mod tally;
 mod writer;
 
@@ -22,6 +23,7 @@ pub use error::Error;
 pub(crate) use fresh::beside;
 pub use layout::Layout;
 pub use reader::{Samples, StoredMap};
+pub use table::Table;
 pub use tally::Counts;
 pub use writer::MapWriter;
 

@@ -8,6 +8,7 @@ mod map;
 mod other;
 mod refused;
 mod sweep;
+mod traces;
 
 use assert_cmd::Command;
 use std::fs;

@@ -11,7 +11,7 @@ mod refused;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use whiskmap::scene::{Curvature, Scene};
+use whiskmap::scene::{Curvature, Morphology, Scene};
 
 /// A valid scene with every table and axis, to be spoilt line by line. Lines are counted from 1.
 const BASE: &str = r#"title = "base"
@@ -117,7 +117,12 @@ fn what_may_be_left_out_may_be_left_out() {
     assert_eq!(scene.grid.distance_mm, [2.0]);
     assert_eq!(scene.name, "fallback");
     let whiskers: Vec<_> = scene.whiskers().collect();
-    assert_eq!(whiskers, std::slice::from_ref(&scene.whisker));
+    let straight_cone = Morphology {
+        taper: 1.0,
+        curvature_per_mm: 0.0,
+    };
+    assert_eq!(whiskers, [(straight_cone, scene.whisker.clone())]);
+    assert!(!scene.is_sweep());
 }
 
 #[test]
@@ -139,16 +144,17 @@ fn whiskers_come_in_atlas_order_taper_first() {
     let scene = parse(BASE).unwrap();
     let seen: Vec<_> = scene
         .whiskers()
-        .map(|whisker| (whisker.tip_radius_um, whisker.curvature))
+        .map(|(place, whisker)| (place.taper, whisker.tip_radius_um, whisker.curvature))
         .collect();
+    assert!(scene.is_sweep());
     let bent = curvature(0.04, 2.5);
     let expected = [
-        (30.0, None),
-        (15.0, None),
-        (0.0, None),
-        (30.0, bent),
-        (15.0, bent),
-        (0.0, bent),
+        (0.0, 30.0, None),
+        (0.5, 15.0, None),
+        (1.0, 0.0, None),
+        (0.0, 30.0, bent),
+        (0.5, 15.0, bent),
+        (1.0, 0.0, bent),
     ];
     assert_eq!(seen, expected);
 }

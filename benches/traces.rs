@@ -1,0 +1,48 @@
+//! Curves, branches and shapes on one thread: `cargo bench --bench traces`.
+#![allow(missing_docs, reason = "criterion's macros make public functions")]
+#![allow(clippy::expect_used, reason = "a bench that cannot start should stop")]
+
+use criterion::{Criterion, criterion_group, criterion_main};
+use std::hint::black_box;
+use whiskmap::model::Side;
+use whiskmap::scene::Scene;
+use whiskmap::trace::{Branch, Shape, corner, curve};
+
+fn traces(criterion: &mut Criterion) {
+    let text = include_str!("../scenes/cone.toml");
+    let scene = Scene::parse(text, "cone.toml", "cone").expect("the scene is good");
+    let (whisker, pole) = (&scene.whisker, scene.pole_radius_mm);
+    let distances: Vec<f64> = (0..256)
+        .map(|i| 2.0 + 18.0 * f64::from(i) / 255.0)
+        .collect();
+    let branch = Branch::new(whisker, pole, Side::Cb, 10.0).expect("the pole is in reach");
+    let state = branch.state(0.5, true).expect("the whisker is on the pole");
+
+    let mut group = criterion.benchmark_group("traces");
+    group.bench_function("curve, 256 distances, both sides", |bench| {
+        bench.iter(|| Side::BOTH.map(|side| curve(whisker, pole, side, black_box(&distances))));
+    });
+    group.bench_function("corner", |bench| {
+        bench.iter(|| corner(black_box(whisker), pole, Side::Cb));
+    });
+    group.bench_function("branch, 200 points, one side", |bench| {
+        bench.iter(|| {
+            let branch = Branch::new(black_box(whisker), pole, Side::Cb, 10.0);
+            branch.and_then(|branch| branch.points(200))
+        });
+    });
+    group.bench_function("shape, 200 places", |bench| {
+        bench.iter(|| Shape::new(&branch, black_box(&state), 200));
+    });
+    group.finish();
+}
+
+/// On one thread, so that numbers are those of one core.
+fn one_thread(criterion: &mut Criterion) {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
+    pool.expect("a thread can be had")
+        .install(|| traces(criterion));
+}
+
+criterion_group!(benches, one_thread);
+criterion_main!(benches);

@@ -1,0 +1,85 @@
+//! `whiskmap branch`.
+
+use super::failure::Failure;
+use super::outputs::Outputs;
+use super::pole::Pole;
+use crate::model::Side;
+use crate::render::{BranchAxis, Chart, branches};
+use crate::trace::Branch;
+use clap::{Args, ValueEnum};
+
+/// Options of `branch`.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  whiskmap branch scenes/cone.toml --distance 15.66 | less
+  whiskmap branch scenes/cone.toml --distance 15.66 --side cb --csv branch.csv --plot branch.png
+
+Points are evenly spaced in push angle, contact angle and arclength together, from first touch (mark: touch) through
+the fold (fold), where stable and unstable states meet, to the tip (tip) or the end of the unstable states
+(second-fold). The column det is det d(D, phi)/d(s_obj, f) with lengths in whisker lengths.")]
+pub struct Options {
+    #[command(flatten)]
+    pole: Pole,
+    /// Side of the whisker that the pole is on
+    #[arg(long, value_enum, default_value = "both")]
+    side: Choice,
+    /// Points per side
+    #[arg(long, value_name = "N", default_value = "200", value_parser = clap::value_parser!(u32).range(3..=1_000_000))]
+    points: u32,
+    #[command(flatten)]
+    outputs: Outputs,
+}
+
+/// Sides by name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Choice {
+    /// Concave backward: the pole is on the convex side
+    Cb,
+    /// Concave forward: the pole is on the concave side
+    Cf,
+    /// CF, then CB
+    Both,
+}
+
+/// Runs `branch`.
+pub fn run(options: &Options) -> Result<(), Failure> {
+    let (scene, whisker) = options.pole.read("branch")?;
+    let mut outputs = options.outputs.open()?;
+    let sides: &[Side] = match options.side {
+        Choice::Cb => &[Side::Cb],
+        Choice::Cf => &[Side::Cf],
+        Choice::Both => &Side::BOTH,
+    };
+    let mut points = Vec::new();
+    for side in sides {
+        let branch = Branch::new(&whisker, scene.pole_radius_mm, *side, options.pole.distance)
+            .map_err(|why| options.pole.refuse(why))?;
+        let count = options.points as usize;
+        points.extend(
+            branch
+                .points(count)
+                .map_err(|why| options.pole.refuse(why))?,
+        );
+    }
+    if let Some(table) = &mut outputs.table {
+        table.rows(&points)?;
+    }
+    let chart = Chart {
+        title: format!("{}, touched at {} mm", scene.title, options.pole.distance),
+        plots: vec![branches("", &points, AXES)],
+        columns: 1,
+    };
+    outputs.finish(Some(&chart))
+}
+
+const AXES: [BranchAxis; 2] = [
+    BranchAxis {
+        label: "push angle (deg)   CF < 0 < CB",
+        value: |point| point.push_angle_deg,
+    },
+    BranchAxis {
+        label: "arc length of contact (mm)",
+        value: |point| point.arc_length_mm,
+    },
+];

@@ -1,0 +1,62 @@
+//! One whisker in front of one pole.
+
+use super::failure::Failure;
+use crate::scene::{Scene, Whisker};
+use crate::trace::NoState;
+use clap::Args;
+use std::path::PathBuf;
+
+/// The scene, and where the pole stands.
+#[derive(Debug, Args)]
+pub struct Pole {
+    /// Scene file; - reads it from standard input
+    scene: PathBuf,
+    /// Distance from the base to the contact at first touch
+    #[arg(long, value_name = "MM")]
+    pub distance: f64,
+}
+
+impl Pole {
+    /// Reads the scene and its only whisker for `command`.
+    pub fn read(&self, command: &str) -> Result<(Scene, Whisker), Failure> {
+        let scene = Scene::read(&self.scene)?;
+        let mut whiskers = scene.whiskers();
+        let first = whiskers.next();
+        let more = whiskers.count();
+        let whisker = match first {
+            Some((_, whisker)) if more == 0 => whisker,
+            _ => {
+                let axes = [
+                    ("grid.taper", &scene.grid.taper),
+                    ("grid.curvature_per_mm", &scene.grid.curvature_per_mm),
+                ];
+                let key = axes
+                    .iter()
+                    .find(|(_, axis)| axis.as_ref().is_some_and(|axis| axis.len() > 1))
+                    .map_or("grid", |(key, _)| key);
+                return Err(Failure::Input(format!(
+                    "{key}: the scene sweeps {} whiskers; {command} looks at one, so give the axis one value or leave \
+                     it out",
+                    more + 1
+                )));
+            }
+        };
+        let (nearest, farthest) = scene.distances_mm();
+        let distance = self.distance;
+        if !(nearest < distance && distance <= farthest) {
+            return Err(Failure::Input(format!(
+                "--distance {distance}: must be more than {nearest} (length_mm / 1000 or pole.radius_mm) and at most \
+                 {farthest} (10 * length_mm)"
+            )));
+        }
+        Ok((scene, whisker))
+    }
+
+    /// A state that does not exist was asked for; a continuation that got lost is no fault of the input.
+    pub fn refuse(&self, why: NoState) -> Failure {
+        match why {
+            NoState::Lost { .. } => Failure::State(why),
+            _ => Failure::Input(format!("--distance {}: {why}", self.distance)),
+        }
+    }
+}

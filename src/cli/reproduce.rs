@@ -1,0 +1,57 @@
+//! `whiskmap reproduce`.
+
+use super::failure::Failure;
+use crate::paper;
+use crate::render::ChartFormat;
+use crate::store::Table;
+use clap::Args;
+use std::io::Write;
+use std::path::PathBuf;
+
+/// Options of `reproduce`.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  whiskmap reproduce
+  whiskmap reproduce /tmp/figures
+
+Solid lines are stable and dashed ones unstable states; black is slip-off and blue is pull-off, as in the paper.")]
+pub struct Options {
+    /// Folder for the files; it is made if it is missing
+    #[arg(value_name = "DIR", default_value = "outputs")]
+    folder: PathBuf,
+}
+
+/// Runs `reproduce`.
+pub fn run(options: &Options) -> Result<(), Failure> {
+    let folder = &options.folder;
+    let refuse = |error: std::io::Error| {
+        let folder = folder.display();
+        Failure::Input(format!(
+            "{folder}: {error}; give a folder that can be written"
+        ))
+    };
+    std::fs::create_dir_all(folder).map_err(refuse)?;
+    tempfile::tempfile_in(folder).map_err(refuse)?;
+    let mut out = std::io::stdout().lock();
+    for figure in paper::figures().map_err(Failure::State)? {
+        for (ending, format) in [("png", ChartFormat::Png), ("svg", ChartFormat::Svg)] {
+            let path = folder.join(figure.name).with_extension(ending);
+            figure.chart.save(&path, format)?;
+            writeln!(out, "{}", path.display())?;
+        }
+        for (name, rows) in &figure.tables {
+            let path = folder.join(name).with_extension("csv");
+            let written = Table::create(&path).and_then(|mut table| {
+                rows.write(&mut table)?;
+                table.finish()
+            });
+            written.map_err(|cause| Failure::Write {
+                path: path.clone(),
+                cause,
+            })?;
+            writeln!(out, "{}", path.display())?;
+        }
+    }
+    Ok(())
+}

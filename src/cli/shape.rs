@@ -1,0 +1,91 @@
+//! `whiskmap shape`.
+
+use super::failure::Failure;
+use super::outputs::Outputs;
+use super::pole::Pole;
+use crate::model::Side;
+use crate::render::{Chart, Drawn, Ink, Stroke, shapes};
+use crate::trace::{Branch, NoState, Shape};
+use clap::{Args, ValueEnum};
+
+/// Options of `shape`.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  whiskmap shape scenes/cone.toml --distance 15.66 --push-angle 10 --plot shape.svg
+  whiskmap shape scenes/cone.toml --distance 15.66 --push-angle 10 --branch unstable --csv shape.csv
+  whiskmap shape scenes/cone.toml --distance 15.66 --push-angle -20
+
+The origin is at the base and the first axis along the base's tangent at first touch. Since then the base has turned
+by the push angle, and the pole has stayed where it is. The column part says which places are loaded, which one is
+the contact, and which are free.")]
+pub struct Options {
+    #[command(flatten)]
+    pole: Pole,
+    /// Rotation of the base since first touch: positive CB, negative CF
+    #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
+    push_angle: f64,
+    /// Which of the two states there are below the fold
+    #[arg(long, value_enum, default_value = "stable")]
+    branch: Part,
+    /// Places along the whisker, besides the contact
+    #[arg(long, value_name = "N", default_value = "200", value_parser = clap::value_parser!(u32).range(2..=1_000_000))]
+    points: u32,
+    #[command(flatten)]
+    outputs: Outputs,
+}
+
+/// Parts of a branch by name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Part {
+    /// What a push from first touch leads to
+    Stable,
+    /// What it must not cross
+    Unstable,
+}
+
+/// Runs `shape`.
+pub fn run(options: &Options) -> Result<(), Failure> {
+    let (scene, whisker) = options.pole.read("shape")?;
+    let push_deg = options.push_angle;
+    if !(-360.0..=360.0).contains(&push_deg) {
+        return Err(Failure::Input(format!(
+            "--push-angle {push_deg}: must be between -360 and 360"
+        )));
+    }
+    let mut outputs = options.outputs.open()?;
+    let side = Side::of_push(push_deg);
+    let stable = options.branch == Part::Stable;
+    let refuse = |why| match why {
+        NoState::OutOfReach { .. } | NoState::Lost { .. } => options.pole.refuse(why),
+        _ => Failure::Input(format!("--push-angle {push_deg}: {why}")),
+    };
+    let branch =
+        Branch::new(&whisker, scene.pole_radius_mm, side, options.pole.distance).map_err(refuse)?;
+    let state = branch
+        .state(push_deg.to_radians(), stable)
+        .map_err(refuse)?;
+    let count = options.points as usize;
+    let shape = Shape::new(&branch, &state, count);
+    if let Some(table) = &mut outputs.table {
+        table.rows(&shape.points)?;
+    }
+    let (stroke, name) = if stable {
+        (Stroke::Solid, "stable")
+    } else {
+        (Stroke::Dashed, "unstable")
+    };
+    let drawn = Drawn {
+        shape: &shape,
+        ink: Ink::Black,
+        stroke,
+        name: format!("{name}, {push_deg} deg"),
+    };
+    let at_rest = Shape::at_rest(&branch, count);
+    let chart = Chart {
+        title: format!("{}, touched at {} mm", scene.title, options.pole.distance),
+        plots: vec![shapes("", at_rest, &[drawn])],
+        columns: 1,
+    };
+    outputs.finish(Some(&chart))
+}

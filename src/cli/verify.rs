@@ -1,0 +1,51 @@
+//! `whiskmap verify`.
+
+use super::failure::Failure;
+use crate::paper::{Expected, checks};
+use std::io::Write;
+
+/// Runs `verify`.
+pub fn run() -> Result<(), Failure> {
+    let checks = checks();
+    let mut out = std::io::stdout().lock();
+    let wide = |texts: &mut dyn Iterator<Item = usize>| texts.max().unwrap_or_default();
+    let case = wide(&mut checks.iter().map(|check| check.case.len()));
+    let quantity = wide(&mut checks.iter().map(|check| check.quantity.len()));
+    writeln!(
+        out,
+        "{:case$}  {:quantity$}  {:11}  {:>15}  {:>17}  {:>10}  {:>9}",
+        "case", "quantity", "known from", "expected", "computed", "difference", "allowed"
+    )?;
+    for check in &checks {
+        let (expected, allowed) = match check.expected {
+            Expected::Near(value, tolerance) => (format!("{value}"), format!("{tolerance:.1e}")),
+            Expected::Above(bound) => (format!("> {bound}"), String::new()),
+        };
+        writeln!(
+            out,
+            "{:case$}  {:quantity$}  {:11}  {:>15.15}  {:>17}  {:>10}  {:>9}  {}",
+            check.case,
+            check.quantity,
+            check.source,
+            expected,
+            format!("{:.11}", check.computed),
+            format!("{:.1e}", check.difference()),
+            allowed,
+            if check.passes() { "PASS" } else { "FAIL" }
+        )?;
+    }
+    let failed = checks.iter().filter(|check| !check.passes()).count();
+    writeln!(
+        out,
+        "{} of {} checks pass",
+        checks.len() - failed,
+        checks.len()
+    )?;
+    if failed > 0 {
+        return Err(Failure::Checks {
+            failed,
+            all: checks.len(),
+        });
+    }
+    Ok(())
+}

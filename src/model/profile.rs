@@ -1,0 +1,108 @@
+//! A trajectory seen at places along the whisker.
+
+use super::rhs::{Bent, Radius, RodSystem, Shape, State};
+use super::{Dopri8, Resolution, Rest, Rod, Scales, Start, arclength, integrate};
+use glam::DVec2;
+
+/// The whisker at one place, in the axes of the contact (origin there, `e1` its tangent); lengths in whisker lengths.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Place {
+    /// Arclength from the base.
+    pub arclength: f64,
+    /// Position.
+    pub position: DVec2,
+    /// Unit tangent.
+    pub tangent: DVec2,
+    /// `dtheta/ds`.
+    pub curvature: f64,
+    /// Bending moment, in `E I_base/L_w`; 0 beyond the contact.
+    pub moment: f64,
+}
+
+/// The places at growing arclengths `at` of the whisker in contact at `tau` under `load`; beyond the contact it keeps
+/// its rest shape.
+#[must_use]
+pub fn profile(rod: &Rod, tau: f64, load: f64, resolution: Resolution, at: &[f64]) -> Vec<Place> {
+    let contact = arclength(rod, tau);
+    let deflected = at.partition_point(|s| *s < contact);
+    let start = Start::new(rod, tau, load);
+    let mut state: State<f64, Bent<f64>, 0> = ([start.cos, start.sin], ([1.0, 0.0, 0.0, 0.0], []));
+    let mut from = tau;
+    let mut places: Vec<Place> = at[..deflected]
+        .iter()
+        .rev()
+        .map(|s| {
+            let to = rod.tau(*s);
+            state = advance(rod, start.force, resolution, (from, to), state);
+            from = to;
+            loaded(rod, *s, start.force, &state)
+        })
+        .collect();
+    places.reverse();
+    places.extend(at[deflected..].iter().map(|s| free(rod, contact, *s)));
+    places
+}
+
+/// Integrates `state` from one `tau` back to a smaller one.
+fn advance(
+    rod: &Rod,
+    force: f64,
+    resolution: Resolution,
+    (from, to): (f64, f64),
+    state: State<f64, Bent<f64>, 0>,
+) -> State<f64, Bent<f64>, 0> {
+    // A whole trajectory takes `least` steps at least; a part of one takes its share.
+    let share = ((from - to) / rod.tau_tip() * f64::from(resolution.least)).ceil();
+    #[allow(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a share of `least`, at most some times as large"
+    )]
+    let least = (share as u32).max(1);
+    let steps = Resolution {
+        least,
+        ..resolution
+    }
+    .steps(rod, from - to);
+    let h = (from - to) / f64::from(steps);
+    let rho = rod.radius(from);
+    let radius = Radius {
+        rho,
+        inverse_cube: 1.0 / (rho * rho * rho),
+    };
+    let system = RodSystem {
+        force,
+        intrinsic: Bent {
+            twice_bend: 2.0 * rod.bend,
+        },
+    };
+    let scales = Scales::tapered::<Dopri8>(rod.taper, h);
+    integrate::<Dopri8, f64, Bent<f64>, Shape, 0>(&system, &scales, radius, h, steps, state)
+}
+
+fn loaded(rod: &Rod, s: f64, force: f64, state: &State<f64, Bent<f64>, 0>) -> Place {
+    let ([cos, _], ([c, sin, x, y], [])) = *state;
+    let moment = -force * x;
+    Place {
+        arclength: s,
+        position: DVec2::new(x, y),
+        tangent: DVec2::new(c, sin),
+        curvature: 2.0 * rod.bend * cos.powi(3) + moment / rod.radius(rod.tau(s)).powi(4),
+        moment,
+    }
+}
+
+fn free(rod: &Rod, contact: f64, s: f64) -> Place {
+    let rest = Rest::new(rod);
+    let (from, axis) = rest.at_arclength(contact);
+    let (to, tangent) = rest.at_arclength(s);
+    let turn = DVec2::new(axis.x, -axis.y);
+    let slope = rest.slope_at(s);
+    Place {
+        arclength: s,
+        position: turn.rotate(to - from),
+        tangent: turn.rotate(tangent),
+        curvature: 2.0 * rod.bend / slope.hypot(1.0).powi(3),
+        moment: 0.0,
+    }
+}

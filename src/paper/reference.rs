@@ -1,0 +1,97 @@
+//! Detachment points of AUTO-07p on the paper's boundary-value problem, solved forward from the base.
+
+use super::checks::{Check, Expected};
+use super::whiskers::whisker;
+use crate::model::Side;
+use crate::trace::{Kind, curve};
+use serde::Deserialize;
+
+const POINTS: &str = include_str!("../../tests/data/detachment.csv");
+
+/// One point; angles in degrees with 9 decimals.
+#[derive(Clone, Debug, Deserialize)]
+struct Point {
+    length_mm: f64,
+    base_radius_um: f64,
+    tip_radius_um: f64,
+    parabola_per_mm: f64,
+    vertex_mm: f64,
+    pole_radius_mm: f64,
+    modulus_gradient: f64,
+    projection: f64,
+    side: String,
+    distance_mm: f64,
+    kind: String,
+    push_angle_deg: f64,
+    arc_length_mm: f64,
+}
+
+impl Point {
+    /// Difference in kind (0 or 1), push angle (degrees) and arclength (whisker lengths).
+    fn differences(&self) -> [f64; 3] {
+        let whisker = whisker(
+            [self.length_mm, self.base_radius_um, self.tip_radius_um],
+            self.parabola_per_mm,
+            self.vertex_mm,
+        );
+        let side = if self.side == "CB" {
+            Side::Cb
+        } else {
+            Side::Cf
+        };
+        let end = curve(&whisker, self.pole_radius_mm, side, &[self.distance_mm])[0];
+        let expected = match self.kind.as_str() {
+            "slip-off" => Kind::SlipOff,
+            "pull-off" => Kind::PullOff,
+            _ => Kind::Unresolved,
+        };
+        let miss = |computed: Option<f64>, known: f64| {
+            let miss = computed.map(|computed| (computed - known).abs());
+            miss.filter(|miss| miss.is_finite())
+                .unwrap_or(f64::INFINITY)
+        };
+        [
+            f64::from(u8::from(end.kind != expected)),
+            miss(end.push_angle_deg, self.push_angle_deg),
+            miss(end.arc_length_mm, self.arc_length_mm) / self.length_mm,
+        ]
+    }
+}
+
+/// The worst differences of all points whose effects are modelled, and how many points there are.
+pub fn checks() -> Vec<Check> {
+    let points: Vec<Point> = csv::Reader::from_reader(POINTS.as_bytes())
+        .deserialize()
+        .filter_map(Result::ok)
+        .filter(|point: &Point| point.modulus_gradient == 0.0 && point.projection == 1.0)
+        .collect();
+    let worst = points
+        .iter()
+        .map(Point::differences)
+        .fold([0.0_f64; 3], |worst, differences| {
+            std::array::from_fn(|i| worst[i].max(differences[i]))
+        });
+    #[allow(clippy::cast_precision_loss, reason = "a few dozen")]
+    let count = points.len() as f64;
+    let check = |quantity, expected, computed| Check {
+        case: "reference file".to_owned(),
+        quantity,
+        source: "AUTO-07p",
+        expected,
+        computed,
+    };
+    vec![
+        check("points compared", Expected::Near(34.0, 0.0), count),
+        check("kinds that differ", Expected::Near(0.0, 0.0), worst[0]),
+        check(
+            "worst push angle (deg)",
+            Expected::Near(0.0, 1e-8),
+            worst[1],
+        ),
+        check(
+            "worst arc length (L_w)",
+            Expected::Near(0.0, 1e-8),
+            worst[2],
+        ),
+    ]
+}

@@ -1,0 +1,145 @@
+//! Detachment curves, branches and shapes as plots: solid for stable and dashed for unstable states, black where the
+//! whisker slips off and blue where it is pulled off, as in the paper.
+
+use super::chart::{Disc, Dot, Ink, Line, Plot, Stroke};
+use crate::trace::{BranchPoint, Detachment, Kind, Mark, Shape};
+
+/// An axis of a detachment curve.
+#[derive(Clone, Copy, Debug)]
+pub struct CurveAxis {
+    /// What it is called, with its unit.
+    pub label: &'static str,
+    /// Its values.
+    pub value: fn(&Detachment) -> Option<f64>,
+}
+
+/// A plot of detachment curves; `rows` of one side and whisker after the other, each at growing distances.
+#[must_use]
+pub fn curves(title: &str, rows: &[Detachment], [x, y]: [CurveAxis; 2]) -> Plot {
+    let mut plot = empty(title, x.label, y.label);
+    let place = |row: &Detachment| Some([(x.value)(row)?, (y.value)(row)?]);
+    for side in rows.chunk_by(|a, b| a.side == b.side && a.distance_mm < b.distance_mm) {
+        let mut before = None;
+        for part in side.chunk_by(|a, b| a.kind == b.kind) {
+            let (ink, name) = match part[0].kind {
+                Kind::SlipOff => (Ink::Black, "slip-off"),
+                Kind::PullOff => (Ink::Blue, "pull-off"),
+                Kind::OutOfReach | Kind::Unresolved => continue,
+            };
+            // A line begins where the one of the other kind has ended.
+            let points: Vec<[f64; 2]> = before
+                .into_iter()
+                .chain(part.iter().filter_map(place))
+                .collect();
+            before = points.last().copied();
+            plot.lines.push(Line {
+                points,
+                ink,
+                stroke: Stroke::Solid,
+                name: Some(name.to_owned()),
+            });
+        }
+    }
+    plot
+}
+
+/// An axis of a branch.
+#[derive(Clone, Copy, Debug)]
+pub struct BranchAxis {
+    /// What it is called, with its unit.
+    pub label: &'static str,
+    /// Its values.
+    pub value: fn(&BranchPoint) -> f64,
+}
+
+/// A bifurcation diagram; `points` of one side after the other, each from first touch on.
+#[must_use]
+pub fn branches(title: &str, points: &[BranchPoint], [x, y]: [BranchAxis; 2]) -> Plot {
+    let mut plot = empty(title, x.label, y.label);
+    let place = |point: &BranchPoint| [(x.value)(point), (y.value)(point)];
+    for side in points.chunk_by(|a, b| a.side == b.side) {
+        let mut fold = None;
+        for part in side.chunk_by(|a, b| a.stable == b.stable) {
+            let (stroke, name) = if part[0].stable {
+                (Stroke::Solid, "stable")
+            } else {
+                (Stroke::Dashed, "unstable")
+            };
+            let points: Vec<[f64; 2]> = fold.into_iter().chain(part.iter().map(place)).collect();
+            fold = points.last().copied();
+            plot.lines.push(Line {
+                points,
+                ink: Ink::Black,
+                stroke,
+                name: Some(name.to_owned()),
+            });
+        }
+        for point in side {
+            let (ink, name) = match point.mark {
+                Some(Mark::Fold) => (Ink::Black, "slip-off"),
+                Some(Mark::Tip) if point.stable => (Ink::Blue, "pull-off"),
+                _ => continue,
+            };
+            plot.dots.push(Dot {
+                at: place(point),
+                ink,
+                name: Some(name.to_owned()),
+            });
+        }
+    }
+    plot
+}
+
+/// A shape to draw, and how.
+#[derive(Clone, Debug)]
+pub struct Drawn<'a> {
+    /// The whisker.
+    pub shape: &'a Shape,
+    /// Its colour.
+    pub ink: Ink,
+    /// Solid or dashed.
+    pub stroke: Stroke,
+    /// For the legend.
+    pub name: String,
+}
+
+/// Whiskers in front of their pole, with the whisker at first touch in grey.
+#[must_use]
+pub fn shapes(title: &str, at_rest: Vec<[f64; 2]>, drawn: &[Drawn]) -> Plot {
+    let mut plot = empty(title, "x (mm)", "y (mm)");
+    plot.equal_axes = true;
+    plot.lines.push(Line {
+        points: at_rest,
+        ink: Ink::Grey,
+        stroke: Stroke::Solid,
+        name: Some("first touch".to_owned()),
+    });
+    for Drawn {
+        shape,
+        ink,
+        stroke,
+        name,
+    } in drawn
+    {
+        plot.lines.push(Line {
+            points: shape.points.iter().map(|p| [p.x_mm, p.y_mm]).collect(),
+            ink: *ink,
+            stroke: *stroke,
+            name: Some(name.clone()),
+        });
+    }
+    plot.discs.extend(drawn.first().map(|drawn| Disc {
+        centre: drawn.shape.pole_mm,
+        radius: drawn.shape.pole_radius_mm,
+    }));
+    plot
+}
+
+fn empty(title: &str, x_label: &str, y_label: &str) -> Plot {
+    Plot {
+        title: title.to_owned(),
+        x_label: x_label.to_owned(),
+        y_label: y_label.to_owned(),
+        ..Plot::default()
+    }
+}

@@ -1,0 +1,191 @@
+//! The solution branch at one pole: the stable states from first touch to the fold, and on along the unstable ones.
+
+use super::even::{interpolate, targets};
+use super::level::{Level, Node, ON_CURVE};
+use super::walk::{Walk, walk};
+use super::{FINER, Found, Mark, NoState};
+use crate::model::batch::Method;
+use crate::model::{Effects, Reading, Rest, Rod, Side, Units};
+use crate::scene::Whisker;
+use crate::sheet::{Edge, Row};
+use glam::DVec2;
+use serde::Serialize;
+
+/// One pole in front of one whisker, and every state connected with first touch.
+#[derive(Clone, Debug)]
+pub struct Branch {
+    pub(super) level: Level,
+    units: Units,
+    pub(super) walk: Walk,
+}
+
+/// A state on a branch, in the units of people.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct BranchPoint {
+    /// The side.
+    pub side: Side,
+    /// Whether the state is stable; at the fold, the last one that is.
+    pub stable: bool,
+    /// Rotation of the base since first touch.
+    pub push_angle_deg: f64,
+    /// The push angle of the paper's Fig. 1D.
+    pub push_chord_deg: f64,
+    /// Of the contact, from the base.
+    pub arc_length_mm: f64,
+    /// Of the tangent at the contact, from the base's tangent.
+    pub contact_angle_deg: f64,
+    /// Between pole and whisker.
+    pub force_un: f64,
+    /// That the pole puts on the base.
+    pub base_moment_nnm: f64,
+    /// `det d(D, phi)/d(s_obj, f)`, lengths in whisker lengths and `f = F L^2/(E I_base)`: 0 at a fold.
+    pub det: f64,
+    /// What is special about the point.
+    pub mark: Option<Mark>,
+}
+
+impl Branch {
+    /// The branch of `whisker` at a pole of `pole_radius_mm` that first touches it at `distance_mm`.
+    ///
+    /// # Errors
+    /// When the whisker at rest does not reach the pole, or the continuation gets lost.
+    pub fn new(
+        whisker: &Whisker,
+        pole_radius_mm: f64,
+        side: Side,
+        distance_mm: f64,
+    ) -> Result<Self, NoState> {
+        let rod = Rod::new(whisker, pole_radius_mm, side);
+        let rest = Rest::new(&rod);
+        let row = Row::new(&rest, distance_mm / whisker.length_mm);
+        if !row.is_reached(&rod) {
+            let (tip, _) = rest.at_arclength(1.0);
+            return Err(NoState::OutOfReach {
+                reach_mm: tip.length() * whisker.length_mm,
+            });
+        }
+        let level = Level {
+            method: Method {
+                effects: Effects::of([&rod]),
+                resolution: FINER,
+            },
+            rod,
+            side,
+            row,
+        };
+        Ok(Self {
+            level,
+            units: Units::new(whisker),
+            walk: walk(&level).ok_or(NoState::Lost { push_deg: 0.0 })?,
+        })
+    }
+
+    /// The whisker and its pole.
+    #[must_use]
+    pub fn rod(&self) -> &Rod {
+        &self.level.rod
+    }
+
+    /// Where the pole stands.
+    #[must_use]
+    pub fn row(&self) -> &Row {
+        &self.level.row
+    }
+
+    /// The units of the whisker.
+    #[must_use]
+    pub fn units(&self) -> &Units {
+        &self.units
+    }
+
+    /// `count` points, at least 3, as evenly spaced as the fold allows, which is one of them: in push angle, contact
+    /// angle (radians) and arclength of the contact (whisker lengths).
+    ///
+    /// # Errors
+    /// When a point between two nodes of the continuation cannot be brought onto the curve.
+    pub fn points(&self, count: usize) -> Result<Vec<BranchPoint>, NoState> {
+        let Walk { nodes, fold, end } = &self.walk;
+        let lengths = self.lengths();
+        let (targets, fold_at) = targets(&lengths, *fold, count.max(3));
+        let guesses: Vec<(usize, DVec2)> = targets
+            .iter()
+            .map(|target| interpolate(nodes, &lengths, *target))
+            .collect();
+        let starts: Vec<DVec2> = guesses.iter().map(|(_, start)| *start).collect();
+        let settled = self.level.settle(&starts, ON_CURVE);
+        let last = targets.len() - 1;
+        let on_curve = guesses.iter().zip(settled).enumerate();
+        on_curve
+            .map(|(i, ((near, _), settled))| {
+                // The ends and the fold are known better than any corrector knows them.
+                let exact = match i {
+                    0 => Some((nodes[0], Mark::Touch)),
+                    _ if i == last => Some((nodes[nodes.len() - 1], end_mark(*fold, *end))),
+                    _ if Some(i) == fold_at => fold.map(|fold| (nodes[fold], Mark::Fold)),
+                    _ => None,
+                };
+                let near = &nodes[*near];
+                let (node, mark) = match exact {
+                    Some((node, mark)) => (node, Some(mark)),
+                    None => {
+                        let (point, full) = settled.ok_or_else(|| self.lost())?;
+                        (self.level.node(point, &full, near.push, near.angle), None)
+                    }
+                };
+                Ok(self.point(&node, fold_at.is_none_or(|fold| i <= fold), mark))
+            })
+            .collect()
+    }
+
+    /// A state of the branch in the units of people.
+    #[must_use]
+    pub fn read(&self, state: &Found) -> Reading {
+        let Level { rod, row, .. } = &self.level;
+        self.units
+            .read(rod, state.tau, &state.full, row.touch, state.push)
+    }
+
+    pub(super) fn lost(&self) -> NoState {
+        NoState::Lost {
+            push_deg: self.walk.nodes[self.walk.nodes.len() - 1].push.to_degrees(),
+        }
+    }
+
+    /// Length of the curve from first touch to each node.
+    fn lengths(&self) -> Vec<f64> {
+        let mut length = 0.0;
+        let steps = self.walk.nodes.windows(2);
+        let rest = steps.map(|pair| {
+            length += self.level.length(&pair[0], &pair[1]);
+            length
+        });
+        std::iter::once(0.0).chain(rest).collect()
+    }
+
+    fn point(&self, node: &Node, stable: bool, mark: Option<Mark>) -> BranchPoint {
+        let Level { rod, side, row, .. } = &self.level;
+        let reading = self
+            .units
+            .read(rod, node.point.x, &node.full, row.touch, node.push);
+        BranchPoint {
+            side: *side,
+            stable,
+            push_angle_deg: node.push.to_degrees(),
+            push_chord_deg: reading.push_chord_deg,
+            arc_length_mm: reading.arc_length_mm,
+            contact_angle_deg: node.angle.to_degrees(),
+            force_un: reading.force_un,
+            base_moment_nnm: reading.base_moment_nnm,
+            // From (ln D, phi) by (tau, load) to (D, phi) by (s, f): dtau/ds = 1/rho, dload/df = 1/rho^2.
+            det: node.full.landing.det() * row.pole_distance / rod.radius(node.point.x).powi(3),
+            mark,
+        }
+    }
+}
+
+fn end_mark(fold: Option<usize>, end: Edge) -> Mark {
+    match (fold, end) {
+        (Some(_), Edge::Fold) => Mark::SecondFold,
+        _ => Mark::Tip,
+    }
+}

@@ -1,0 +1,191 @@
+//! Detachment curves: where pushes from first touch end, distance by distance.
+
+use crate::classify::RowBoundary;
+use crate::model::batch::{Launch, Method, land};
+use crate::model::{Dopri8, Effects, FirstAndEnergy, Rest, Rod, Side, Units};
+use crate::scene::Whisker;
+use crate::sheet::{Edge, FINE, Sheet};
+use serde::Serialize;
+
+/// How a push from first touch ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Kind {
+    /// At the fold.
+    SlipOff,
+    /// With the tip at the pole.
+    PullOff,
+    /// It never begins: the resting whisker does not reach the pole.
+    OutOfReach,
+    /// The boundary was not found.
+    Unresolved,
+}
+
+/// The end of a push at one distance; without values where there is none.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Detachment {
+    /// The side.
+    pub side: Side,
+    /// From the base to the contact at first touch.
+    pub distance_mm: f64,
+    /// From the base to the pole's centre.
+    pub pole_distance_mm: f64,
+    /// How the push ends.
+    pub kind: Kind,
+    /// Rotation of the base since first touch.
+    pub push_angle_deg: Option<f64>,
+    /// The push angle of the paper's Fig. 1D.
+    pub push_chord_deg: Option<f64>,
+    /// From the base to the contact.
+    pub contact_distance_mm: Option<f64>,
+    /// The same along the whisker.
+    pub arc_length_mm: Option<f64>,
+    /// Between pole and whisker.
+    pub force_un: Option<f64>,
+    /// That the pole puts on the base, along its tangent.
+    pub base_force_x_un: Option<f64>,
+    /// The same across its tangent.
+    pub base_force_y_un: Option<f64>,
+    /// The same as a moment.
+    pub base_moment_nnm: Option<f64>,
+    /// Of the tangent at the contact, from the base's tangent.
+    pub contact_angle_deg: Option<f64>,
+    /// Remaining error relative to the distance of the pole.
+    pub residual: Option<f64>,
+}
+
+/// Where slip-off turns into pull-off, if it does: the fold with the contact at the tip.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Corner {
+    /// The side.
+    pub side: Side,
+    /// From the base to the contact at first touch.
+    pub distance_mm: Option<f64>,
+    /// Rotation of the base since first touch.
+    pub push_angle_deg: Option<f64>,
+}
+
+/// The detachment curve of `whisker` on one side of a pole of `pole_radius_mm`, at growing `distances_mm`.
+#[must_use]
+pub fn curve(
+    whisker: &Whisker,
+    pole_radius_mm: f64,
+    side: Side,
+    distances_mm: &[f64],
+) -> Vec<Detachment> {
+    let rod = Rod::new(whisker, pole_radius_mm, side);
+    let effects = Effects::of([&rod]);
+    let units = Units::new(whisker);
+    let rest = Rest::new(&rod);
+    let distances: Vec<f64> = distances_mm.iter().map(|d| d / whisker.length_mm).collect();
+    let sheet = Sheet::new(effects, &rod, side, &distances);
+    let mut rows: Vec<Detachment> = distances_mm
+        .iter()
+        .zip(&distances)
+        .map(|(distance_mm, distance)| {
+            let pole = rest.pole_at_distance(*distance).length() * whisker.length_mm;
+            blank(side, *distance_mm, pole)
+        })
+        .collect();
+    let Some(sheet) = sheet else {
+        return rows;
+    };
+    let mut ends = Vec::new();
+    for (i, row) in rows.iter_mut().enumerate() {
+        let boundary = RowBoundary::new(sheet.touches(i), &sheet.crossings[i]);
+        if !sheet.touches(i) {
+            row.kind = Kind::OutOfReach;
+        } else if let (Some(_), Some(end)) = (boundary.detachment(), sheet.crossings[i].first()) {
+            ends.push((i, end));
+        }
+    }
+    let launches: Vec<Launch> = ends
+        .iter()
+        .map(|(_, end)| Launch {
+            rod,
+            tau: end.tau,
+            load: end.load,
+        })
+        .collect();
+    let method = Method {
+        effects,
+        resolution: FINE,
+    };
+    let states = land::<Dopri8, FirstAndEnergy, 7>(method, &launches);
+    for ((i, end), full) in ends.into_iter().zip(&states) {
+        let push = side.sign() * end.push;
+        let reading = units.read(&rod, end.tau, full, sheet.rows[i].touch, push);
+        rows[i] = Detachment {
+            kind: match end.edge {
+                Edge::Fold => Kind::SlipOff,
+                Edge::Tip => Kind::PullOff,
+            },
+            push_angle_deg: Some(push.to_degrees()),
+            push_chord_deg: Some(reading.push_chord_deg),
+            contact_distance_mm: Some(reading.contact_distance_mm),
+            arc_length_mm: Some(reading.arc_length_mm),
+            force_un: Some(reading.force_un),
+            base_force_x_un: Some(reading.base_force_un.x),
+            base_force_y_un: Some(reading.base_force_un.y),
+            base_moment_nnm: Some(reading.base_moment_nnm),
+            contact_angle_deg: Some(reading.contact_angle_deg),
+            residual: Some(end.residual),
+            ..rows[i]
+        };
+    }
+    rows
+}
+
+fn blank(side: Side, distance_mm: f64, pole_distance_mm: f64) -> Detachment {
+    Detachment {
+        side,
+        distance_mm,
+        pole_distance_mm,
+        kind: Kind::Unresolved,
+        push_angle_deg: None,
+        push_chord_deg: None,
+        contact_distance_mm: None,
+        arc_length_mm: None,
+        force_un: None,
+        base_force_x_un: None,
+        base_force_y_un: None,
+        base_moment_nnm: None,
+        contact_angle_deg: None,
+        residual: None,
+    }
+}
+
+/// The corner of `whisker` on one side of a pole of `pole_radius_mm`; without values where there is none: a perfect
+/// cone always slips off, and other whiskers may be too short to be pulled off.
+#[must_use]
+pub fn corner(whisker: &Whisker, pole_radius_mm: f64, side: Side) -> Corner {
+    let rod = Rod::new(whisker, pole_radius_mm, side);
+    let rest = Rest::new(&rod);
+    let none = Corner {
+        side,
+        distance_mm: None,
+        push_angle_deg: None,
+    };
+    if rod.taper == 1.0 {
+        return none;
+    }
+    let Some(fold) = Sheet::fold_at_tip(Effects::of([&rod]), &rod, side) else {
+        return none;
+    };
+    let pole = fold.landing.landing.pole;
+    let distance = rest.distance_of_pole(pole.length());
+    let end = curve(
+        whisker,
+        pole_radius_mm,
+        side,
+        &[distance * whisker.length_mm],
+    )[0];
+    if end.kind == Kind::OutOfReach {
+        return none;
+    }
+    Corner {
+        side,
+        distance_mm: Some(distance * whisker.length_mm),
+        push_angle_deg: end.push_angle_deg,
+    }
+}

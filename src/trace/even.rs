@@ -1,0 +1,52 @@
+//! Even spacing along a walk.
+
+use super::level::Node;
+use glam::DVec2;
+
+/// Where along the curve `count` points go, and which of them is the fold: the two parts share the intervals by length.
+pub fn targets(lengths: &[f64], fold: Option<usize>, count: usize) -> (Vec<f64>, Option<usize>) {
+    let intervals = count - 1;
+    let total = lengths[lengths.len() - 1];
+    let even = |from: f64, to: f64, n: usize| {
+        (0..n).map(move |i| (to - from).mul_add(i as f64 / n as f64, from))
+    };
+    let Some(fold) = fold.map(|fold| lengths[fold]) else {
+        let targets = even(0.0, total, intervals).chain([total]);
+        return (targets.collect(), None);
+    };
+    #[allow(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a share of `intervals`"
+    )]
+    let before = (fold / total * intervals as f64).round() as usize;
+    let before = before.clamp(1, intervals - 1);
+    let targets = even(0.0, fold, before)
+        .chain(even(fold, total, intervals - before))
+        .chain([total]);
+    (targets.collect(), Some(before))
+}
+
+/// Nodes that an interpolation takes.
+const NODES: usize = 6;
+
+/// The polynomial through the nodes around `target`, there, and the node before it.
+pub fn interpolate(nodes: &[Node], lengths: &[f64], target: f64) -> (usize, DVec2) {
+    let after = lengths.partition_point(|length| *length <= target);
+    let near = after.saturating_sub(1);
+    let first = after
+        .saturating_sub(NODES / 2)
+        .min(nodes.len().saturating_sub(NODES));
+    let around = first..nodes.len().min(first + NODES);
+    let point = around
+        .clone()
+        .map(|i| {
+            let others = around.clone().filter(|j| *j != i);
+            let weight: f64 = others
+                .map(|j| (target - lengths[j]) / (lengths[i] - lengths[j]))
+                .product();
+            weight * nodes[i].point
+        })
+        .sum();
+    (near, point)
+}

@@ -1,0 +1,82 @@
+//! Exact lines through the parameter space, in `f64`: detachment curves, solution branches, shapes.
+//!
+//! A detachment curve is the image of two edges of the stable sheet, so it comes from [`crate::sheet`]. A branch goes
+//! on where the sheet ends, past the fold and along the unstable states, and is followed by continuation.
+
+mod branch;
+mod curve;
+mod even;
+mod level;
+mod shape;
+mod state;
+mod walk;
+
+pub use branch::{Branch, BranchPoint};
+pub use curve::{Corner, Detachment, Kind, corner, curve};
+pub use shape::{Part, Shape, ShapePoint};
+pub use state::Found;
+
+use crate::model::Resolution;
+use serde::Serialize;
+
+/// Twice as fine as [`crate::sheet::FINE`]: unstable states carry larger loads. On branches of twelve whiskers, from
+/// cylinder to perfect cone, it leaves at most 3e-12 of the pole's distance, where `FINE` leaves 2e-9.
+const FINER: Resolution = Resolution {
+    least: 64,
+    longest: 0.05,
+};
+
+/// What is special about a point of a branch.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Mark {
+    /// First touch.
+    Touch,
+    /// The saddle-node, where the stable states end.
+    Fold,
+    /// The contact has reached the tip.
+    Tip,
+    /// Where the unstable states end.
+    SecondFold,
+}
+
+/// Why there is no state.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum NoState {
+    /// The whisker at rest does not reach the pole.
+    #[error("out of reach: the tip of the resting whisker is {reach_mm:.9} mm from its base")]
+    OutOfReach {
+        /// The farthest first touch of a point contact.
+        reach_mm: f64,
+    },
+    /// The push goes beyond the fold.
+    #[error("slipped off at {at_deg:.9} deg")]
+    SlippedOff {
+        /// Signed push angle of the fold.
+        at_deg: f64,
+    },
+    /// The push goes beyond the tip.
+    #[error("pulled off at {at_deg:.9} deg")]
+    PulledOff {
+        /// Signed push angle at which the tip reaches the pole.
+        at_deg: f64,
+    },
+    /// There are no unstable states.
+    #[error("no unstable state: pulled off at {at_deg:.9} deg, before any fold")]
+    NoFold {
+        /// Signed push angle at which the tip reaches the pole.
+        at_deg: f64,
+    },
+    /// The unstable states lie elsewhere.
+    #[error("the unstable states lie between {:.9} and {:.9} deg", .ends_deg[0], .ends_deg[1])]
+    NotUnstable {
+        /// Signed push angles of the fold and of the branch's end.
+        ends_deg: [f64; 2],
+    },
+    /// The continuation failed.
+    #[error("the continuation of the branch got lost near {push_deg} deg")]
+    Lost {
+        /// Signed push angle.
+        push_deg: f64,
+    },
+}

@@ -1,0 +1,88 @@
+//! Where the answer is known exactly.
+
+use crate::whisker;
+use whiskmap::model::{Side, Units};
+use whiskmap::paper::checks;
+use whiskmap::paper::elastica::{elastica, fold};
+use whiskmap::trace::{Branch, Kind, curve};
+
+/// Ten turning angles of the straight cylinder at a point contact, up to the fold at 119 degrees.
+#[test]
+fn the_straight_cylinder_is_the_elastica() {
+    let cylinder = whisker(30.0, 0.0);
+    for side in Side::BOTH {
+        let branch = Branch::new(&cylinder, 0.0, side, 8.0).unwrap();
+        for degrees in [1.0, 12.0, 24.0, 36.0, 48.0, 60.0, 75.0, 90.0, 105.0, 115.0] {
+            let exact = elastica(f64::to_radians(degrees));
+            let state = branch.state(side.sign() * exact.push, true).unwrap();
+            let arc = state.tau / 0.4;
+            let load = state.load.abs() * 0.16;
+            assert!(
+                (arc - exact.arc_over_distance).abs() < 1e-10,
+                "{degrees}: {arc}"
+            );
+            assert!((load / exact.load - 1.0).abs() < 1e-10, "{degrees}: {load}");
+            let turned = branch.read(&state).contact_angle_deg;
+            assert!(
+                (turned.abs() - degrees).abs() < 1e-10,
+                "{degrees}: {turned}"
+            );
+        }
+    }
+}
+
+#[test]
+fn the_straight_cylinder_slips_at_its_closed_form() {
+    for (side, distance) in [(Side::Cb, 2.0), (Side::Cf, 8.0), (Side::Cb, 11.0)] {
+        let end = curve(&whisker(30.0, 0.0), 0.0, side, &[distance])[0];
+        assert_eq!(end.kind, Kind::SlipOff);
+        let push = end.push_angle_deg.unwrap() * side.sign();
+        assert!((push - 99.568_498_75).abs() < 1e-8, "{push}");
+        assert!((push - fold().push.to_degrees()).abs() < 1e-10, "{push}");
+    }
+}
+
+/// `M = 3 E I theta (L - a)/(a L)` is the limit of small angles; what is missing shrinks with their square.
+#[test]
+fn a_straight_cone_tends_to_its_small_load_formula() {
+    for (tip, a) in [
+        (0.0, 5.0),
+        (0.0, 15.0),
+        (1.5, 15.0),
+        (20.0, 10.0),
+        (30.0, 10.0),
+    ] {
+        let cone = whisker(tip, 0.0);
+        let branch = Branch::new(&cone, 0.0, Side::Cb, a).unwrap();
+        let part = a * (1.0 - tip / 30.0) / 20.0;
+        let stiffness = Units::new(&cone).moment_nnm * 20.0;
+        let miss = |push: f64| {
+            let moment = branch
+                .read(&branch.state(push, true).unwrap())
+                .base_moment_nnm;
+            (moment / (3.0 * stiffness * push * (1.0 - part) / a) - 1.0).abs()
+        };
+        let (coarse, fine) = (miss(1e-2), miss(1e-3));
+        assert!(coarse < 1e-2, "tip {tip} at {a}: {coarse:e}");
+        let ratio = coarse / fine;
+        assert!(
+            (90.0..110.0).contains(&ratio),
+            "tip {tip} at {a}: {coarse:e} {fine:e}"
+        );
+    }
+}
+
+/// What `whiskmap verify` prints; the points of the independent solver are among it.
+#[test]
+fn every_number_that_is_known_otherwise_is_reproduced() {
+    let checks = checks();
+    assert!(checks.len() > 30);
+    for check in checks {
+        assert!(check.passes(), "{check:?}");
+        let spoilt = whiskmap::paper::Check {
+            computed: f64::NAN,
+            ..check
+        };
+        assert!(!spoilt.passes(), "{spoilt:?}");
+    }
+}

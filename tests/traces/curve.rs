@@ -1,0 +1,84 @@
+//! Detachment curves and their corners.
+
+use crate::{everything, whisker};
+use whiskmap::model::Side;
+use whiskmap::trace::{Branch, Kind, corner, curve};
+
+/// 1e-8 mm before the corner a push ends at the fold, 1e-8 mm behind it at the tip.
+#[test]
+fn at_the_corner_slip_off_turns_into_pull_off() {
+    let mut corners = 0;
+    for (whisker, pole) in everything() {
+        for side in Side::BOTH {
+            let corner = corner(&whisker, pole, side);
+            let Some(distance) = corner.distance_mm else {
+                // Then no push ends at the tip.
+                let distances: Vec<f64> = (1..40).map(|i| pole + 0.5 * f64::from(i)).collect();
+                let ends = curve(&whisker, pole, side, &distances);
+                assert!(
+                    ends.iter().all(|end| end.kind != Kind::PullOff),
+                    "{whisker:?} {pole} {side:?}"
+                );
+                continue;
+            };
+            let ends = curve(&whisker, pole, side, &[distance - 1e-8, distance + 1e-8]);
+            let kinds = [ends[0].kind, ends[1].kind];
+            assert_eq!(
+                kinds,
+                [Kind::SlipOff, Kind::PullOff],
+                "{whisker:?} {pole} {side:?}"
+            );
+            let push = corner.push_angle_deg.unwrap();
+            assert!((ends[0].push_angle_deg.unwrap() - push).abs() < 1e-6);
+            corners += 1;
+        }
+    }
+    assert!(corners > 60, "{corners}");
+}
+
+#[test]
+fn a_curve_is_the_end_of_each_branch() {
+    let whisker = whisker(6.0, 0.04);
+    let distances = [3.0, 8.0, 13.0, 18.0];
+    for side in Side::BOTH {
+        for (distance, end) in distances
+            .iter()
+            .zip(curve(&whisker, 0.25, side, &distances))
+        {
+            let branch = Branch::new(&whisker, 0.25, side, *distance).unwrap();
+            let points = branch.points(50).unwrap();
+            let last = points.iter().rfind(|point| point.stable).unwrap();
+            for (one, other) in [
+                (last.push_angle_deg, end.push_angle_deg),
+                (last.push_chord_deg, end.push_chord_deg),
+                (last.contact_angle_deg, end.contact_angle_deg),
+                (last.arc_length_mm, end.arc_length_mm),
+                (last.force_un, end.force_un),
+                (last.base_moment_nnm, end.base_moment_nnm),
+            ] {
+                let other = other.unwrap();
+                // A fold is known to the root of the rounding, but for the push angle.
+                assert!(
+                    (one - other).abs() < 1e-6 * other.abs(),
+                    "{side:?} {distance}: {one} {other}"
+                );
+            }
+            let pole = branch.row().pole_distance * whisker.length_mm;
+            assert!((end.pole_distance_mm - pole).abs() < 1e-12);
+        }
+    }
+}
+
+#[test]
+fn rows_out_of_reach_have_no_values() {
+    let ends = curve(&whisker(1.5, 0.0), 0.25, Side::Cb, &[19.99, 20.01]);
+    assert_eq!(
+        [ends[0].kind, ends[1].kind],
+        [Kind::PullOff, Kind::OutOfReach]
+    );
+    assert!(ends[0].residual.unwrap() < 1e-12);
+    assert_eq!(
+        (ends[1].push_angle_deg, ends[1].force_un, ends[1].residual),
+        (None, None, None)
+    );
+}

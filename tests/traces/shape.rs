@@ -1,0 +1,110 @@
+//! Shapes: geometry, statics, and the rest shape as a limit.
+
+use crate::{everything, whisker};
+use whiskmap::model::Side;
+use whiskmap::trace::{Branch, Part, Shape};
+
+/// The base is at the origin and turned by the push angle, the contact touches the pole, and the moment at the base
+/// is what the pole puts there.
+#[test]
+fn a_shape_fits_its_state() {
+    for (whisker, pole) in everything() {
+        for (side, stable) in [
+            (Side::Cb, true),
+            (Side::Cf, true),
+            (Side::Cb, false),
+            (Side::Cf, false),
+        ] {
+            let case = format!("{whisker:?} pole {pole} {side:?} {stable}");
+            let branch = Branch::new(&whisker, pole, side, 9.0).unwrap();
+            let points = branch.points(41).unwrap();
+            let mut part = points.iter().filter(|point| point.stable == stable);
+            let Some(push) = part.nth(3).map(|point| point.push_angle_deg) else {
+                continue;
+            };
+            let state = branch.state(push.to_radians(), stable).unwrap();
+            let shape = Shape::new(&branch, &state, 100);
+            let base = shape.points[0];
+            assert!(base.x_mm.hypot(base.y_mm) < 2e-10, "{case}: {base:?}");
+            assert!((base.angle_deg + push).abs() < 2e-9, "{case}: {base:?}");
+            let reading = branch.read(&state);
+            let miss = (base.moment_nnm / reading.base_moment_nnm - 1.0).abs();
+            assert!(miss < 1e-9, "{case}: {base:?}");
+            assert!(shape.residual < 1e-12, "{case}");
+
+            let contact = shape
+                .points
+                .iter()
+                .find(|p| p.part == Part::Contact)
+                .unwrap();
+            let [x, y] = shape.pole_mm;
+            let (dx, dy) = (x - contact.x_mm, y - contact.y_mm);
+            assert!((dx.hypot(dy) - pole).abs() < 1e-11, "{case}");
+            let (sin, cos) = contact.angle_deg.to_radians().sin_cos();
+            assert!(
+                (dx * cos + dy * sin).abs() < 1e-10,
+                "{case}: not tangential"
+            );
+            assert!(
+                (contact.arc_length_mm - reading.arc_length_mm).abs() < 1e-12,
+                "{case}"
+            );
+            assert_eq!(
+                (
+                    contact.moment_nnm,
+                    shape.points.last().unwrap().arc_length_mm
+                ),
+                (0.0, 20.0)
+            );
+        }
+    }
+}
+
+/// Places are as far apart as the arclength says, tangents are the direction between them, and the curvature is how
+/// fast they turn: centred differences, so to the square of the spacing.
+#[test]
+fn a_shape_is_a_curve() {
+    let branch = Branch::new(&whisker(1.5, 0.02), 0.25, Side::Cb, 15.0).unwrap();
+    let state = branch.state(0.2, true).unwrap();
+    let error = |count: usize| {
+        let points = Shape::new(&branch, &state, count).points;
+        let mut worst = [0.0_f64; 2];
+        for triple in points.windows(3) {
+            let [a, b, c] = [triple[0], triple[1], triple[2]];
+            let even = (c.arc_length_mm - b.arc_length_mm) / (b.arc_length_mm - a.arc_length_mm);
+            if (even - 1.0).abs() > 1e-6 || b.part == Part::Contact {
+                continue;
+            }
+            let h = c.arc_length_mm - a.arc_length_mm;
+            let chord = (c.y_mm - a.y_mm).atan2(c.x_mm - a.x_mm) - b.angle_deg.to_radians();
+            let bend = (c.angle_deg - a.angle_deg).to_radians() / h - b.curvature_per_mm;
+            worst = [worst[0].max(chord.abs()), worst[1].max(bend.abs())];
+        }
+        worst
+    };
+    let (coarse, fine) = (error(400), error(800));
+    for (coarse, fine) in coarse.into_iter().zip(fine) {
+        assert!(
+            coarse < 1e-3 && (3.0..5.0).contains(&(coarse / fine)),
+            "{coarse:e} {fine:e}"
+        );
+    }
+}
+
+#[test]
+fn without_a_push_the_whisker_is_at_rest() {
+    for (whisker, pole) in everything() {
+        let branch = Branch::new(&whisker, pole, Side::Cf, 9.0).unwrap();
+        let state = branch.state(0.0, true).unwrap();
+        // The contact is one place more.
+        let shape = Shape::new(&branch, &state, 50);
+        let places = shape
+            .points
+            .iter()
+            .filter(|point| point.part != Part::Contact);
+        for (point, [x, y]) in places.zip(Shape::at_rest(&branch, 50)) {
+            let miss = (point.x_mm - x).hypot(point.y_mm - y);
+            assert!(miss < 1e-10, "{whisker:?} {pole}: {point:?} {x} {y}");
+        }
+    }
+}
