@@ -39,9 +39,9 @@ fn traces(criterion: &mut Criterion) {
 
 /// On one thread, so that numbers are those of one core.
 fn one_thread(criterion: &mut Criterion) {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
-    pool.expect("a thread can be had")
-        .install(|| traces(criterion));
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1);
+    pool.build_global().expect("no pool is there yet");
+    traces(criterion);
 }
 
 criterion_group!(benches, one_thread);

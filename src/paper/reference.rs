@@ -1,6 +1,6 @@
 //! Detachment points of AUTO-07p on the paper's boundary-value problem, solved forward from the base.
 
-use super::checks::{Check, Expected};
+use super::check::{AUTO, Check, Expected};
 use super::whiskers::whisker;
 use crate::model::Side;
 use crate::trace::{Kind, curve};
@@ -76,7 +76,7 @@ pub fn checks() -> Vec<Check> {
     let check = |quantity, expected, computed| Check {
         case: "reference file".to_owned(),
         quantity,
-        source: "AUTO-07p",
+        source: AUTO,
         expected,
         computed,
     };

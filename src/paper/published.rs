@@ -1,0 +1,94 @@
+//! The numbers of the paper, and the same from AUTO-07p with more digits.
+
+use super::check::{AUTO, Check, Expected, PAPER, end, near};
+use super::whiskers::{CONE, CYLINDER, POLE_MM, fig2_distance_mm};
+use crate::model::Side;
+use crate::trace::{Detachment, Kind, corner};
+
+/// The checks.
+pub fn checks() -> Vec<Check> {
+    let mut checks = Vec::new();
+    for (case, whisker, kind, quantity, published, exact) in [
+        (
+            "Fig. 2B, cone CB",
+            CONE,
+            Kind::SlipOff,
+            "slip-off (deg)",
+            (15.6, 0.05),
+            (15.59975, 5e-6),
+        ),
+        (
+            "Fig. 2D, cylinder CB",
+            CYLINDER,
+            Kind::PullOff,
+            "pull-off (deg)",
+            (62.7, 0.1),
+            (62.7532, 5e-5),
+        ),
+    ] {
+        let end = end(&whisker, POLE_MM, Side::Cb, fig2_distance_mm(&whisker));
+        let push = push_if(kind, &end);
+        checks.push(near(case, quantity, PAPER, published, push));
+        checks.push(near(case, quantity, AUTO, exact, push));
+    }
+    for (case, side, values) in [
+        (
+            "cone CB, touched at 15.66 mm",
+            Side::Cb,
+            [
+                (15.60793, 5e-6),
+                (17.4303, 5e-5),
+                (1.2898, 5e-5),
+                (5.5572, 5e-5),
+            ],
+        ),
+        (
+            "cone CF, touched at 15.66 mm",
+            Side::Cf,
+            [
+                (-24.9168, 5e-5),
+                (16.3284, 5e-5),
+                (2.958, 5e-4),
+                (-25.70, 5e-3),
+            ],
+        ),
+    ] {
+        let end = end(&CONE, POLE_MM, side, 15.660_459_763_365_8);
+        let quantities = [
+            ("slip-off (deg)", push_if(Kind::SlipOff, &end)),
+            ("contact s_obj (mm)", end.arc_length_mm),
+            ("force (uN)", end.force_un),
+            ("base moment (nN m)", end.base_moment_nnm),
+        ];
+        for ((quantity, computed), expected) in quantities.into_iter().zip(values) {
+            checks.push(near(case, quantity, AUTO, expected, computed));
+        }
+    }
+    checks.push(near(
+        "cone CB",
+        "slip-off turns into pull-off at (mm)",
+        AUTO,
+        (19.09, 5e-3),
+        corner(&CONE, POLE_MM, Side::Cb).distance_mm,
+    ));
+    let cylinder = |side| end(&CYLINDER, POLE_MM, side, 10.0).push_angle_deg;
+    checks.push(near(
+        "cylinder CB, touched at 10 mm",
+        "slip-off (deg)",
+        AUTO,
+        (89.22, 5e-3),
+        cylinder(Side::Cb),
+    ));
+    checks.push(Check {
+        case: "cylinder CF, touched at 10 mm".to_owned(),
+        quantity: "slip-off, magnitude (deg)",
+        source: PAPER,
+        expected: Expected::Above(90.0),
+        computed: cylinder(Side::Cf).map_or(f64::NAN, f64::abs),
+    });
+    checks
+}
+
+fn push_if(kind: Kind, end: &Detachment) -> Option<f64> {
+    end.push_angle_deg.filter(|_| end.kind == kind)
+}
