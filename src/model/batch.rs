@@ -77,14 +77,35 @@ pub fn land<M: Integrator, K: Kind<N>, const N: usize>(
     launches: &[Launch],
 ) -> Vec<K::Answer> {
     let unit = Unit::detect();
-    launches
-        .par_chunks(WIDTH * BLOCKS_PER_TASK)
-        .flat_map_iter(|task| {
-            task.chunks(WIDTH).flat_map(move |launches| {
-                let landed = unit.block::<M, K, N>(method, launches);
-                landed.into_iter().take(launches.len())
-            })
+    let steps: Vec<u32> = launches
+        .iter()
+        .map(|l| method.resolution.steps(&l.rod, l.tau))
+        .collect();
+    // Lanes step together, so only trajectories of equally many steps share a block: company changes nothing.
+    let mut order: Vec<usize> = (0..launches.len()).collect();
+    order.sort_by_key(|&i| steps[i]);
+    let blocks: Vec<&[usize]> = order
+        .chunk_by(|&i, &j| steps[i] == steps[j])
+        .flat_map(|equal| equal.chunks(WIDTH))
+        .collect();
+    let landed: Vec<[K::Answer; WIDTH]> = blocks
+        .par_iter()
+        .with_min_len(BLOCKS_PER_TASK)
+        .map(|block| {
+            let lane = |i: usize| launches[block[i.min(block.len() - 1)]];
+            let lanes: [Launch; WIDTH] = std::array::from_fn(lane);
+            unit.block::<M, K, N>(method.effects, steps[block[0]], &lanes)
         })
+        .collect();
+    let mut places = vec![(0, 0); launches.len()];
+    for (b, block) in blocks.iter().enumerate() {
+        for (lane, &i) in block.iter().enumerate() {
+            places[i] = (b, lane);
+        }
+    }
+    places
+        .into_iter()
+        .map(|(b, lane)| landed[b][lane])
         .collect()
 }
 
@@ -138,17 +159,18 @@ impl Unit {
     )]
     fn block<M: Integrator, K: Kind<N>, const N: usize>(
         self,
-        method: Method,
-        launches: &[Launch],
+        effects: Effects,
+        steps: u32,
+        launches: &[Launch; WIDTH],
     ) -> [K::Answer; WIDTH] {
         match self {
             #[cfg(target_arch = "x86_64")]
             // SAFETY: `detect` has seen every feature that the function enables.
-            Self::Avx512 => unsafe { avx512::<M, K, N>(method, launches) },
+            Self::Avx512 => unsafe { avx512::<M, K, N>(effects, steps, launches) },
             #[cfg(target_arch = "x86_64")]
             // SAFETY: as above.
-            Self::Avx2 => unsafe { avx2::<M, K, N>(method, launches) },
-            Self::Baseline => by_effects::<M, K, Baseline, N>(method, launches),
+            Self::Avx2 => unsafe { avx2::<M, K, N>(effects, steps, launches) },
+            Self::Baseline => by_effects::<M, K, Baseline, N>(effects, steps, launches),
         }
     }
 }
@@ -156,33 +178,36 @@ impl Unit {
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx512f,avx512dq,avx512vl,fma")]
 fn avx512<M: Integrator, K: Kind<N>, const N: usize>(
-    method: Method,
-    launches: &[Launch],
+    effects: Effects,
+    steps: u32,
+    launches: &[Launch; WIDTH],
 ) -> [K::Answer; WIDTH] {
-    by_effects::<M, K, Avx512, N>(method, launches)
+    by_effects::<M, K, Avx512, N>(effects, steps, launches)
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,fma")]
 fn avx2<M: Integrator, K: Kind<N>, const N: usize>(
-    method: Method,
-    launches: &[Launch],
+    effects: Effects,
+    steps: u32,
+    launches: &[Launch; WIDTH],
 ) -> [K::Answer; WIDTH] {
-    by_effects::<M, K, Avx2, N>(method, launches)
+    by_effects::<M, K, Avx2, N>(effects, steps, launches)
 }
 
 /// One specialised kernel per set of effects.
 #[inline(always)]
 fn by_effects<M: Integrator, K: Kind<N>, T: Lanes, const N: usize>(
-    method: Method,
-    launches: &[Launch],
+    effects: Effects,
+    steps: u32,
+    launches: &[Launch; WIDTH],
 ) -> [K::Answer; WIDTH] {
-    let Effects { taper, curvature } = method.effects;
+    let Effects { taper, curvature } = effects;
     match (taper, curvature) {
-        (false, false) => block::<M, K, T, Straight, false, N>(method.resolution, launches),
-        (false, true) => block::<M, K, T, Bent<_>, false, N>(method.resolution, launches),
-        (true, false) => block::<M, K, T, Straight, true, N>(method.resolution, launches),
-        (true, true) => block::<M, K, T, Bent<_>, true, N>(method.resolution, launches),
+        (false, false) => block::<M, K, T, Straight, false, N>(steps, launches),
+        (false, true) => block::<M, K, T, Bent<_>, false, N>(steps, launches),
+        (true, false) => block::<M, K, T, Straight, true, N>(steps, launches),
+        (true, true) => block::<M, K, T, Bent<_>, true, N>(steps, launches),
     }
 }
 
@@ -208,11 +233,11 @@ impl<T: Lanes> Gather<T> for Bent<T> {
     }
 }
 
-/// Integrates up to `WIDTH` trajectories in step; missing ones repeat the last.
+/// Integrates `WIDTH` trajectories in step.
 #[inline(always)]
 fn block<M, K, T, I, const TAPER: bool, const N: usize>(
-    resolution: Resolution,
-    launches: &[Launch],
+    steps: u32,
+    launches: &[Launch; WIDTH],
 ) -> [K::Answer; WIDTH]
 where
     M: Integrator,
@@ -220,17 +245,10 @@ where
     T: Lanes,
     I: Gather<T>,
 {
-    let launch = |i: usize| launches[i.min(launches.len() - 1)];
-    let rods: [Rod; WIDTH] = std::array::from_fn(|i| launch(i).rod);
-    let starts: [Start; WIDTH] =
-        std::array::from_fn(|i| Start::new(&rods[i], launch(i).tau, launch(i).load));
+    let rods = launches.map(|launch| launch.rod);
+    let starts = launches.map(|launch| Start::new(&launch.rod, launch.tau, launch.load));
     let at_start: [[f64; N]; WIDTH] = std::array::from_fn(|i| K::start(&rods[i], &starts[i]));
 
-    let steps = launches
-        .iter()
-        .map(|l| resolution.steps(&l.rod, l.tau))
-        .max()
-        .unwrap_or(resolution.least);
     let h = T::pack(starts.map(|start| start.tau / f64::from(steps)));
     let one = T::of(1.0);
     let (scales, from) = if TAPER {

@@ -15,18 +15,23 @@ pub struct Resolution {
 }
 
 impl Resolution {
-    /// Steps for a trajectory over `tau` on `rod`.
+    /// Steps for a trajectory over `tau` on `rod`: a multiple of `least`, so that many trajectories take equally many.
     #[must_use]
     #[allow(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
-        reason = "tau is at most 25 (a cone cut at 1e-9 and some) and 2 A* at most 20, so the quotient is positive and small"
+        reason = "clamped to a range of small positive numbers; NaN becomes 0 and then the smallest"
     )]
     pub fn steps(&self, rod: &Rod, tau: f64) -> u32 {
         let fastest = rod.taper.max(2.0 * rod.bend);
-        self.least.max((fastest * tau / self.longest).ceil() as u32)
+        let multiple = fastest * tau / (self.longest * f64::from(self.least));
+        self.least * (multiple.ceil() as u32).clamp(1, MOST_MULTIPLES)
     }
 }
+
+/// Bounds the work on a trajectory that a lost Newton step has sent far away. `tau` is at most 25 on a whisker (a cone
+/// cut at 1e-9, and some) and `2 A*` at most 20.
+const MOST_MULTIPLES: u32 = 256;
 
 /// An explicit Runge-Kutta method with fixed steps.
 pub trait Integrator: Copy + Send + Sync + 'static {
