@@ -27,9 +27,9 @@ fn land(rod: Rod, tau: real, start: Start) -> Landing {
     let inverse_cube = 1.0 / (start.radius * start.radius * start.radius);
     let at_contact = State(
         vec2<real>(start.cos, start.sin),
-        vec4<real>(1.0, 0.0, 0.0, 0.0),
+        vec4<real>(start.tangent, 0.0, 0.0),
         vec3<real>(),
-        vec3<real>(-curvature(rod, start), -1.0, 0.0),
+        vec3<real>(-curvature(rod, start), -start.tangent),
     );
     let y = integrate(
         System(start.force, 2.0 * rod.bend),
@@ -38,7 +38,8 @@ fn land(rod: Rod, tau: real, start: Start) -> Landing {
         h,
         at_contact,
     );
-    let w = -vec2<real>(y.rod.z, y.rod.w + rod.pole);
+    let to_pole = rod.pole * vec2<real>(start.tangent.y, -start.tangent.x);
+    let w = to_pole - y.rod.zw;
     let f = over(-y.by_force.yz, w) - vec2<real>(0.0, y.by_force.x);
     let s = over(-y.by_arclength.yz, w) - vec2<real>(0.0, y.by_arclength.x);
     let rho = start.radius;

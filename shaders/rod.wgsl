@@ -6,12 +6,14 @@ struct Rod {
     bend: real,
     slope: real,
     pole: real,
+    friction: real,
 }
 
 struct Start {
     radius: real,
     arclength: real,
     force: real,
+    tangent: vec2<real>,
     cos: real,
     sin: real,
 }
@@ -33,9 +35,14 @@ fn slope_at(rod: Rod, s: real) -> real {
     return t;
 }
 
+// The whisker's tangent at the contact, in axes whose second one is along the force.
+fn contact_tangent(rod: Rod) -> vec2<real> {
+    return vec2<real>(1.0, rod.friction) / sqrt(1.0 + rod.friction * rod.friction);
+}
+
 // The contact at tau with load = force/radius^2.
 fn start_at(rod: Rod, tau: real, load: real) -> Start {
-    var start = Start(1.0, tau, load, 1.0, 0.0);
+    var start = Start(1.0, tau, load, contact_tangent(rod), 1.0, 0.0);
     if TAPER {
         start.radius = exponential(-rod.taper * tau);
         start.arclength = tau * expm1_over(-rod.taper * tau);

@@ -160,7 +160,7 @@ fn engines_agree_on_every_field() {
     thin(&mut scene.grid.push_angle_deg, 128);
     thin(&mut scene.grid.distance_mm, 128);
     for side in Side::BOTH {
-        let rod = Rod::new(&scene.whisker, scene.pole_radius_mm, side);
+        let rod = Rod::new(&scene.whisker, &scene.pole, side);
         let effects = Effects::of([&rod]);
         let distances: Vec<f64> = scene.grid.distance_mm.iter().map(|d| d / 20.0).collect();
         let sheet = Sheet::new(effects, &rod, side, &distances).unwrap();
@@ -270,7 +270,7 @@ fn first_touch_and_the_tip_are_decided() {
     assert_eq!(compute(&scene, &mut Cpu).1[0].regime, [1]);
 
     scene.whisker = scene.whisker_at(None, Some(0.0));
-    scene.pole_radius_mm = 0.0;
+    scene.pole.radius_mm = 0.0;
     grid(&mut scene, &[-1e-3, -1e-5, 0.0, 1e-5, 1e-3], 20.0);
     assert_eq!(compute(&scene, &mut Cpu).1[0].regime, [3, 3, 1, 3, 3]);
 }

@@ -35,6 +35,8 @@ fn rods() -> Vec<Launch> {
                     bend,
                     slope: -0.1 * bend,
                     pole,
+                    friction: 10.0 * pole,
+                    ..Rod::default()
                 };
                 launches.push(Launch {
                     rod,
@@ -150,6 +152,7 @@ fn sensitivities_agree_with_num_dual() {
                 bend: 0.0,
                 slope: 0.0,
                 pole,
+                ..Rod::default()
             };
             let tau = rod.tau(0.8);
             let effects = Effects {

@@ -53,7 +53,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     };
     let mut points = Vec::new();
     for side in sides {
-        let branch = Branch::new(&whisker, scene.pole_radius_mm, *side, options.pole.distance)
+        let branch = Branch::new(&whisker, &scene.pole, *side, options.pole.distance)
             .map_err(|why| options.pole.refuse(why))?;
         let count = options.points as usize;
         points.extend(

@@ -58,7 +58,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         if options.corner {
             let rows: Vec<(Morphology, Corner)> = sides()
                 .map(|((morphology, whisker), side)| {
-                    let corner = trace::corner(whisker, scene.pole_radius_mm, side);
+                    let corner = trace::corner(whisker, &scene.pole, side);
                     (*morphology, corner)
                 })
                 .collect();
@@ -67,7 +67,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
             let rows: Vec<(Morphology, Detachment)> = sides()
                 .flat_map_iter(|((morphology, whisker), side)| {
                     let distances = &scene.grid.distance_mm;
-                    let curve = trace::curve(whisker, scene.pole_radius_mm, side, distances);
+                    let curve = trace::curve(whisker, &scene.pole, side, distances);
                     curve.into_iter().map(|row| (*morphology, row))
                 })
                 .collect();

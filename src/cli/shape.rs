@@ -60,8 +60,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         NoState::OutOfReach { .. } | NoState::Lost { .. } => options.pole.refuse(why),
         _ => Failure::Input(format!("--push-angle {push_deg}: {why}")),
     };
-    let branch =
-        Branch::new(&whisker, scene.pole_radius_mm, side, options.pole.distance).map_err(refuse)?;
+    let branch = Branch::new(&whisker, &scene.pole, side, options.pole.distance).map_err(refuse)?;
     let state = branch
         .state(push_deg.to_radians(), stable)
         .map_err(refuse)?;

@@ -47,7 +47,7 @@ struct Face {
 
 impl Face {
     fn new(scene: &Scene, effects: Effects, whisker: &Whisker, side: Side) -> Self {
-        let rod = Rod::new(whisker, scene.pole_radius_mm, side);
+        let rod = Rod::new(whisker, &scene.pole, side);
         let distances: Vec<f64> = scene
             .grid
             .distance_mm

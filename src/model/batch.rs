@@ -273,7 +273,9 @@ where
     for (n, lane) in sens.iter_mut().enumerate() {
         *lane = T::pack(at_start.map(|values| values[n]));
     }
-    let state: State<_, I, N> = (rest, ([one, zero, zero, zero], sens));
+    let c = T::pack(starts.map(|start| start.tangent.x));
+    let s = T::pack(starts.map(|start| start.tangent.y));
+    let state: State<_, I, N> = (rest, ([c, s, zero, zero], sens));
     let (_, (rod, sens)) = integrate::<M, _, I, K, N>(&system, &scales, from, h, steps, state);
     let (rod, sens) = (rod.map(T::unpack), sens.map(T::unpack));
     std::array::from_fn(|i| {

@@ -39,7 +39,7 @@ struct Centre {
 
 impl Centre {
     fn new(rod: &Rod, [c, s, x, y]: &Planar<f64>) -> Self {
-        let w = -DVec2::new(*x, y + rod.pole);
+        let w = rod.to_pole() - DVec2::new(*x, *y);
         Self {
             w,
             pole: DVec2::new(*c, -s).rotate(w),
@@ -63,14 +63,14 @@ impl Centre {
     }
 }
 
-/// The base as seen from the contact.
+/// The base as seen from the contact, in axes whose second one is along the force.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Base {
     /// Unit tangent.
     pub tangent: DVec2,
     /// Position.
     pub position: DVec2,
-    /// Load `f` at the contact.
+    /// Force at the contact.
     pub force: f64,
 }
 
@@ -123,7 +123,7 @@ impl Landing {
 pub struct Full {
     /// Pole and derivatives.
     pub landing: Landing,
-    /// The base as seen from the contact.
+    /// The base as seen from the contact, in axes whose second one is along the force.
     pub base: Base,
     /// Bending energy in `E I_base/L_w`.
     pub energy: f64,

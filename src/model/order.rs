@@ -1,10 +1,11 @@
 //! The derivatives that a trajectory can carry, hand-written (the tests hold them against `num-dual`).
 //!
-//! `f` and `s` in the names below are the load and the arclength of the contact. The start values follow
-//! from the rod being at the origin, untilted, whatever the contact: `y_s = -y'` there.
+//! `f` and `s` in the names below are the force and the arclength of the contact. The start values follow from the rod
+//! being at the origin at the same tilt, whatever the contact: `y_s = -y'` there.
 
 use super::rhs::{Planar, Radius, Sensitivity};
 use super::{Real, Rod, Start};
+use glam::DVec2;
 
 /// First derivatives: `theta_f, X_f, Y_f, theta_s, X_s, Y_s`.
 #[derive(Clone, Copy, Debug)]
@@ -46,7 +47,8 @@ impl Sensitivity<6> for First {
 
 impl Order<6> for First {
     fn start(rod: &Rod, start: &Start) -> [f64; 6] {
-        [0.0, 0.0, 0.0, -start.curvature(rod), -1.0, 0.0]
+        let DVec2 { x, y } = -start.tangent;
+        [0.0, 0.0, 0.0, -start.curvature(rod), x, y]
     }
 }
 
@@ -108,9 +110,11 @@ impl Order<15> for Second {
     fn start(rod: &Rod, start: &Start) -> [f64; 15] {
         let [a, b, c, d, e, g] = First::start(rod, start);
         let kappa = start.curvature(rod);
-        let theta_ss = -start.curvature_slope(rod) - start.force / start.radius.powi(4);
+        let lever = start.force * start.tangent.x;
+        let theta_ss = -start.curvature_slope(rod) - lever / start.radius.powi(4);
+        let DVec2 { x, y } = kappa * start.tangent.perp();
         [
-            a, b, c, d, e, g, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, theta_ss, 0.0, kappa,
+            a, b, c, d, e, g, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, theta_ss, x, y,
         ]
     }
 }

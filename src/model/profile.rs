@@ -4,7 +4,8 @@ use super::rhs::{Bent, Radius, RodSystem, Shape, State};
 use super::{Dopri8, Resolution, Rest, Rod, Scales, Start, arclength, integrate};
 use glam::DVec2;
 
-/// The whisker at one place, in the axes of the contact (origin there, `e1` its tangent); lengths in whisker lengths.
+/// The whisker at one place, as seen from the contact, in axes whose second one is along the force; lengths in whisker
+/// lengths.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Place {
     /// Arclength from the base.
@@ -26,7 +27,10 @@ pub fn profile(rod: &Rod, tau: f64, load: f64, resolution: Resolution, at: &[f64
     let contact = arclength(rod, tau);
     let deflected = at.partition_point(|s| *s < contact);
     let start = Start::new(rod, tau, load);
-    let mut state: State<f64, Bent<f64>, 0> = ([start.cos, start.sin], ([1.0, 0.0, 0.0, 0.0], []));
+    let mut state: State<f64, Bent<f64>, 0> = (
+        [start.cos, start.sin],
+        ([start.tangent.x, start.tangent.y, 0.0, 0.0], []),
+    );
     let mut from = tau;
     let mut places: Vec<Place> = at[..deflected]
         .iter()
@@ -96,7 +100,7 @@ fn free(rod: &Rod, contact: f64, s: f64) -> Place {
     let rest = Rest::new(rod);
     let (from, axis) = rest.at_arclength(contact);
     let (to, tangent) = rest.at_arclength(s);
-    let turn = DVec2::new(axis.x, -axis.y);
+    let turn = rod.contact_tangent().rotate(DVec2::new(axis.x, -axis.y));
     let slope = rest.slope_at(s);
     Place {
         arclength: s,

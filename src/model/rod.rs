@@ -1,6 +1,7 @@
 //! A whisker and its pole without dimensions.
 
-use crate::scene::Whisker;
+use crate::scene::{Pole, Whisker};
+use glam::DVec2;
 use serde::Serialize;
 
 /// The side of the whisker that the pole is on.
@@ -34,9 +35,9 @@ impl Side {
 }
 
 /// One whisker on one side of one pole; lengths in whisker lengths.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Rod {
-    /// `beta = 1 - r_tip/r_base`, in `[0, 1]`.
+    /// `beta = 1 - r_tip/r_base`, times the arc stretch; in `[0, 1]`.
     pub taper: f64,
     /// Parabola coefficient `A* = A L_w`, at least 0.
     pub bend: f64,
@@ -44,6 +45,8 @@ pub struct Rod {
     pub slope: f64,
     /// Pole radius with the sign of the side: the pole's centre is at `-pole e2` from the contact.
     pub pole: f64,
+    /// Coulomb's coefficient with the sign of the side: friction over normal force.
+    pub friction: f64,
 }
 
 /// A perfect cone is cut where its radius is this part of the base radius: below, the contact is closer to
@@ -51,18 +54,35 @@ pub struct Rod {
 pub const PERFECT_CONE_CUT: f64 = 1e-9;
 
 impl Rod {
-    /// `whisker` with a pole of `pole_radius_mm` on `side`.
+    /// `whisker` with `pole` on `side`.
     #[must_use]
-    pub fn new(whisker: &Whisker, pole_radius_mm: f64, side: Side) -> Self {
+    pub fn new(whisker: &Whisker, pole: &Pole, side: Side) -> Self {
         let (a, x0) = whisker
             .curvature
             .map_or((0.0, 0.0), |c| (c.parabola_per_mm, c.vertex_mm));
         Self {
-            taper: 1.0 - whisker.tip_radius_um / whisker.base_radius_um,
+            taper: (1.0 - whisker.tip_radius_um / whisker.base_radius_um) * whisker.arc_stretch,
             bend: a * whisker.length_mm,
             slope: -2.0 * a * x0,
-            pole: side.sign() * pole_radius_mm / whisker.length_mm,
+            pole: side.sign() * pole.radius_mm / whisker.length_mm,
+            friction: side.sign() * pole.friction,
         }
+    }
+
+    /// The whisker's unit tangent at the contact, in axes whose second one is along the force.
+    ///
+    /// Friction tilts the force from the normal by the angle whose tangent is its coefficient. In axes turned with the
+    /// force the equations are those without friction: the lever `X - friction Y` is the new `X`, but for a factor
+    /// that the force takes up. So friction costs nothing along the trajectory.
+    #[must_use]
+    pub fn contact_tangent(&self) -> DVec2 {
+        DVec2::new(1.0, self.friction).normalize()
+    }
+
+    /// From the contact to the pole's centre, in the same axes.
+    #[must_use]
+    pub fn to_pole(&self) -> DVec2 {
+        -self.pole * self.contact_tangent().perp()
     }
 
     /// `tau` at arclength `s`: `-ln(1 - beta s)/beta`, the variable in which a tapered rod is smooth.

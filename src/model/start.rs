@@ -1,6 +1,7 @@
 //! The contact, where every trajectory starts.
 
 use super::{Rest, Rod};
+use glam::DVec2;
 
 /// What the integration needs to know of the contact.
 #[derive(Clone, Copy, Debug)]
@@ -9,8 +10,10 @@ pub struct Start {
     pub tau: f64,
     /// Radius at the contact over the base radius.
     pub radius: f64,
-    /// Load `f = F L_w^2/(E I_base)`, signed.
+    /// The whole force `F L_w^2/(E I_base)`, signed; without friction it is the normal force.
     pub force: f64,
+    /// The whisker's tangent there, see [`Rod::contact_tangent`].
+    pub tangent: DVec2,
     /// cos of the intrinsic tangent in the frame of the parabola.
     pub cos: f64,
     /// sin of the same.
@@ -32,6 +35,7 @@ impl Start {
             tau,
             radius,
             force: load * radius * radius,
+            tangent: rod.contact_tangent(),
             cos,
             sin: slope * cos,
         }

@@ -60,12 +60,14 @@ impl Units {
         let base = &full.base;
         let to_base = DVec2::new(base.tangent.x, -base.tangent.y);
         let contact = to_base.rotate(-base.position);
-        let pole_from_contact = -(base.position + DVec2::new(0.0, rod.pole));
+        let to_pole = rod.to_pole() - base.position;
+        let tangent = rod.contact_tangent();
         let chord = contact.to_angle() - Rest::new(rod).direction_at_distance(contact.length());
         Reading {
             arc_length_mm: arclength(rod, tau) * self.length_mm,
-            contact_angle_deg: (touch + push - pole_from_contact.to_angle()).to_degrees(),
-            force_un: base.force.abs() * self.force_un,
+            contact_angle_deg: (touch + push - to_pole.to_angle() + tangent.to_angle())
+                .to_degrees(),
+            force_un: base.force.abs() * tangent.x * self.force_un,
             base_force_un: base.force * DVec2::new(base.tangent.y, base.tangent.x) * self.force_un,
             base_moment_nnm: -base.force * base.position.x * self.moment_nnm,
             push_chord_deg: nearest_turn(chord, push).to_degrees(),

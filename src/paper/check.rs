@@ -1,7 +1,7 @@
 //! A number that is known otherwise, and how far ours is from it.
 
 use crate::model::Side;
-use crate::scene::Whisker;
+use crate::scene::{Pole, Whisker};
 use crate::trace::{Detachment, curve};
 
 /// A number that is known, and the same number computed.
@@ -52,6 +52,7 @@ impl Check {
 /// Where numbers are known from.
 pub(super) const PAPER: &str = "paper";
 pub(super) const AUTO: &str = "AUTO-07p";
+pub(super) const FORWARD: &str = "forward BVP";
 pub(super) const CLOSED: &str = "closed form";
 pub(super) const EXACT: &str = "symmetry";
 
@@ -73,6 +74,6 @@ pub(super) fn near(
 }
 
 /// The end of the push at one distance.
-pub(super) fn end(whisker: &Whisker, pole_mm: f64, side: Side, distance_mm: f64) -> Detachment {
-    curve(whisker, pole_mm, side, &[distance_mm])[0]
+pub(super) fn end(whisker: &Whisker, pole: &Pole, side: Side, distance_mm: f64) -> Detachment {
+    curve(whisker, pole, side, &[distance_mm])[0]
 }

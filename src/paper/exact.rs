@@ -2,9 +2,9 @@
 
 use super::check::{CLOSED, Check, EXACT, end, near};
 use super::elastica::{elastica, fold};
-use super::whiskers::{CONE, CYLINDER, POLE_MM, whisker};
+use super::whiskers::{CONE, CYLINDER, POLE, whisker};
 use crate::model::{Side, Units};
-use crate::scene::Whisker;
+use crate::scene::{Pole, Whisker};
 use crate::trace::{Branch, Kind, NoState, corner, curve};
 
 /// The checks.
@@ -12,15 +12,17 @@ pub fn checks() -> Vec<Check> {
     [straight_cylinder(), straight_cone(), symmetries()].concat()
 }
 
+/// A point contact.
+const POINT: Pole = Pole::smooth(0.0);
 const STRAIGHT_CYLINDER: Whisker = whisker([20.0, 30.0, 30.0], 0.0, 0.0);
 const STRAIGHT_CONE: Whisker = whisker([20.0, 30.0, 0.0], 0.0, 0.0);
 const STRAIGHT_WHISKER: Whisker = whisker([20.0, 30.0, 1.5], 0.0, 0.0);
 
 fn straight_cylinder() -> Vec<Check> {
     let case = "straight cylinder, point contact";
-    let end = end(&STRAIGHT_CYLINDER, 0.0, Side::Cb, 8.0);
+    let end = end(&STRAIGHT_CYLINDER, &POINT, Side::Cb, 8.0);
     let arc = end.arc_length_mm.map(|arc| arc / 8.0);
-    let corner = corner(&STRAIGHT_CYLINDER, 0.0, Side::Cb);
+    let corner = corner(&STRAIGHT_CYLINDER, &POINT, Side::Cb);
     let mut checks = vec![
         near(
             case,
@@ -69,7 +71,7 @@ fn straight_cylinder() -> Vec<Check> {
 
 /// `s_obj/d` and `F d^2/(E I)` of a straight cylinder touched by a point at `distance_mm`, after a push in radians.
 fn turned(cylinder: &Whisker, distance_mm: f64, push: f64) -> Result<(f64, f64), NoState> {
-    let branch = Branch::new(cylinder, 0.0, Side::Cb, distance_mm)?;
+    let branch = Branch::new(cylinder, &POINT, Side::Cb, distance_mm)?;
     let state = branch.state(push, true)?;
     let distance = distance_mm / cylinder.length_mm;
     Ok((state.tau / distance, state.load * distance * distance))
@@ -89,7 +91,7 @@ fn straight_cone() -> Vec<Check> {
         let length = cone.length_mm / (1.0 - cone.tip_radius_um / cone.base_radius_um);
         let units = Units::new(&cone);
         let exact = 3.0 * units.moment_nnm * cone.length_mm * push * (length - a) / (a * length);
-        let moment = Branch::new(&cone, 0.0, Side::Cb, a)
+        let moment = Branch::new(&cone, &POINT, Side::Cb, a)
             .and_then(|branch| Ok((branch.state(push, true)?, branch)))
             .map(|(state, branch)| branch.read(&state).base_moment_nnm);
         near(
@@ -104,7 +106,7 @@ fn straight_cone() -> Vec<Check> {
 }
 
 fn symmetries() -> Vec<Check> {
-    let push = |whisker: &Whisker, pole, side, d| end(whisker, pole, side, d).push_angle_deg;
+    let push = |whisker: &Whisker, pole: &Pole, side, d| end(whisker, pole, side, d).push_angle_deg;
     let sum = |a: Option<f64>, b: Option<f64>, sign: f64| Some(a? + sign * b?);
     let scaled = whisker([1000.0, 1500.0, 75.0], 4e-4, 0.0);
     let mut soft = CONE;
@@ -117,15 +119,15 @@ fn symmetries() -> Vec<Check> {
         .flat_map(|side| {
             curve(
                 &whisker([20.0, 30.0, 0.0], 0.02, 0.0),
-                POLE_MM,
+                &POLE,
                 *side,
                 &distances,
             )
         })
         .filter(|end| end.kind == Kind::PullOff)
         .count();
-    let cone = push(&CONE, POLE_MM, Side::Cb, 14.0);
-    let mirror = |side| push(&STRAIGHT_WHISKER, POLE_MM, side, 14.0);
+    let cone = push(&CONE, &POLE, Side::Cb, 14.0);
+    let mirror = |side| push(&STRAIGHT_WHISKER, &POLE, side, 14.0);
     vec![
         near(
             "straight whisker",
@@ -139,7 +141,7 @@ fn symmetries() -> Vec<Check> {
             "slip-off, change (deg)",
             EXACT,
             (0.0, 0.0),
-            sum(push(&soft, POLE_MM, Side::Cb, 14.0), cone, -1.0),
+            sum(push(&soft, &POLE, Side::Cb, 14.0), cone, -1.0),
         ),
         near(
             "cylinder, radius over 10",
@@ -147,8 +149,8 @@ fn symmetries() -> Vec<Check> {
             EXACT,
             (0.0, 0.0),
             sum(
-                push(&thin, POLE_MM, Side::Cb, 14.0),
-                push(&CYLINDER, POLE_MM, Side::Cb, 14.0),
+                push(&thin, &POLE, Side::Cb, 14.0),
+                push(&CYLINDER, &POLE, Side::Cb, 14.0),
                 -1.0,
             ),
         ),
@@ -157,7 +159,16 @@ fn symmetries() -> Vec<Check> {
             "slip-off, change (deg)",
             EXACT,
             (0.0, 1e-10),
-            sum(push(&scaled, 50.0 * POLE_MM, Side::Cb, 700.0), cone, -1.0),
+            sum(
+                push(
+                    &scaled,
+                    &Pole::smooth(50.0 * POLE.radius_mm),
+                    Side::Cb,
+                    700.0,
+                ),
+                cone,
+                -1.0,
+            ),
         ),
         #[allow(clippy::cast_precision_loss, reason = "at most 128")]
         near(

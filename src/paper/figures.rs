@@ -1,7 +1,7 @@
 //! The theory lines of the paper's figures.
 
 use super::whiskers::{
-    CONE, CYLINDER, FIG4_HAIR, FIG4_WHISKER, FIG5_LEFT, FIG5_RIGHT, POLE_MM, fig2_distance_mm,
+    CONE, CYLINDER, FIG4_HAIR, FIG4_WHISKER, FIG5_LEFT, FIG5_RIGHT, POLE, fig2_distance_mm,
 };
 use crate::model::Side;
 use crate::render::{
@@ -95,7 +95,7 @@ fn fig2() -> Result<Figure, NoState> {
         (["A", "B"], ["fig2a", "fig2b"], "truncated cone", CONE),
         (["C", "D"], ["fig2c", "fig2d"], "cylinder", CYLINDER),
     ] {
-        let branch = Branch::new(&whisker, POLE_MM, Side::Cb, fig2_distance_mm(&whisker))?;
+        let branch = Branch::new(&whisker, &POLE, Side::Cb, fig2_distance_mm(&whisker))?;
         let points = branch.points(BODY_POINTS)?;
         let mut states = vec![(FIG2_PUSH_DEG, true, Ink::Black, Stroke::Solid)];
         match points.iter().find(|point| !point.stable) {
@@ -245,7 +245,7 @@ fn both_sides(whisker: &Whisker) -> Vec<Detachment> {
         .collect();
     Side::BOTH
         .into_iter()
-        .flat_map(|side| curve(whisker, POLE_MM, side, &distances))
+        .flat_map(|side| curve(whisker, &POLE, side, &distances))
         .collect()
 }
 

@@ -1,9 +1,13 @@
 //! The numbers of the paper, and the same from AUTO-07p with more digits.
 
-use super::check::{AUTO, Check, Expected, PAPER, end, near};
-use super::whiskers::{CONE, CYLINDER, POLE_MM, fig2_distance_mm};
+use super::check::{AUTO, Check, Expected, FORWARD, PAPER, end, near};
+use super::whiskers::{CONE, CYLINDER, POLE, fig2_distance_mm};
 use crate::model::Side;
+use crate::scene::Pole;
 use crate::trace::{Detachment, Kind, corner};
+
+/// Where the pole of Fig. 2 touches the cone, nearly.
+const TOUCH_MM: f64 = 15.660_459_763_365_8;
 
 /// The checks.
 pub fn checks() -> Vec<Check> {
@@ -26,7 +30,7 @@ pub fn checks() -> Vec<Check> {
             (62.7532, 5e-5),
         ),
     ] {
-        let end = end(&whisker, POLE_MM, Side::Cb, fig2_distance_mm(&whisker));
+        let end = end(&whisker, &POLE, Side::Cb, fig2_distance_mm(&whisker));
         let push = push_if(kind, &end);
         checks.push(near(case, quantity, PAPER, published, push));
         checks.push(near(case, quantity, AUTO, exact, push));
@@ -53,7 +57,7 @@ pub fn checks() -> Vec<Check> {
             ],
         ),
     ] {
-        let end = end(&CONE, POLE_MM, side, 15.660_459_763_365_8);
+        let end = end(&CONE, &POLE, side, TOUCH_MM);
         let quantities = [
             ("slip-off (deg)", push_if(Kind::SlipOff, &end)),
             ("contact s_obj (mm)", end.arc_length_mm),
@@ -69,9 +73,9 @@ pub fn checks() -> Vec<Check> {
         "slip-off turns into pull-off at (mm)",
         AUTO,
         (19.09, 5e-3),
-        corner(&CONE, POLE_MM, Side::Cb).distance_mm,
+        corner(&CONE, &POLE, Side::Cb).distance_mm,
     ));
-    let cylinder = |side| end(&CYLINDER, POLE_MM, side, 10.0).push_angle_deg;
+    let cylinder = |side| end(&CYLINDER, &POLE, side, 10.0).push_angle_deg;
     checks.push(near(
         "cylinder CB, touched at 10 mm",
         "slip-off (deg)",
@@ -86,9 +90,36 @@ pub fn checks() -> Vec<Check> {
         expected: Expected::Above(90.0),
         computed: cylinder(Side::Cf).map_or(f64::NAN, f64::abs),
     });
+    checks.extend(friction());
     checks
 }
 
 fn push_if(kind: Kind, end: &Detachment) -> Option<f64> {
     end.push_angle_deg.filter(|_| end.kind == kind)
+}
+
+/// A forward solution of the boundary-value problem with friction, cone touched at 15.66 mm.
+fn friction() -> impl Iterator<Item = Check> {
+    let known = [
+        ("cone, friction 0.1", 0.1, 16.2596, -25.8128),
+        ("cone, friction 0.2", 0.2, 16.8615, -26.6635),
+        ("cone, friction 0.48", 0.48, 18.2851, -28.7734),
+    ];
+    known.into_iter().flat_map(|(case, friction, cb, cf)| {
+        let pole = Pole { friction, ..POLE };
+        [
+            ("slip-off CB (deg)", Side::Cb, cb),
+            ("slip-off CF (deg)", Side::Cf, cf),
+        ]
+        .map(|(quantity, side, expected)| {
+            let end = end(&CONE, &pole, side, TOUCH_MM);
+            near(
+                case,
+                quantity,
+                FORWARD,
+                (expected, 5e-5),
+                push_if(Kind::SlipOff, &end),
+            )
+        })
+    })
 }

@@ -1,10 +1,10 @@
 //! The whiskers of the paper, and those of the closed forms.
 
 use crate::model::{Rest, Rod, Side};
-use crate::scene::{Curvature, Whisker};
+use crate::scene::{Curvature, Pole, Whisker};
 
-/// Radius of the paper's pole.
-pub const POLE_MM: f64 = 0.25;
+/// The paper's pole.
+pub const POLE: Pole = Pole::smooth(0.25);
 
 /// Where the paper's Fig. 2 puts the centre of the pole, in the frame of the base at first touch.
 const FIG2_POLE_MM: [f64; 2] = [15.13, 4.29];
@@ -24,8 +24,11 @@ pub const FIG4_HAIR: Whisker = whisker([15.0, 30.0, 26.5], 0.017, 0.0);
 /// The blunt whisker of Fig. 5.
 pub const FIG5_LEFT: Whisker = whisker([12.5, 35.0, 8.5], 0.02, 2.2);
 
-/// The slender whisker of Fig. 5.
-pub const FIG5_RIGHT: Whisker = whisker([15.3, 33.5, 2.0], 0.02, 2.2);
+/// The slender whisker of Fig. 5, which droops out of the plane: it is 3 % longer than it looks.
+pub const FIG5_RIGHT: Whisker = Whisker {
+    arc_stretch: 1.03,
+    ..whisker([15.3, 33.5, 2.0], 0.02, 2.2)
+};
 
 /// A whisker with length (mm), base and tip radius (um), parabola coefficient (1/mm) and its vertex (mm).
 pub const fn whisker([length_mm, base, tip]: [f64; 3], a_per_mm: f64, vertex_mm: f64) -> Whisker {
@@ -42,12 +45,13 @@ pub const fn whisker([length_mm, base, tip]: [f64; 3], a_per_mm: f64, vertex_mm:
         } else {
             None
         },
+        arc_stretch: 1.0,
     }
 }
 
 /// The distance at which the pole of Fig. 2 first touches `whisker`.
 pub fn fig2_distance_mm(whisker: &Whisker) -> f64 {
-    let rest = Rest::new(&Rod::new(whisker, POLE_MM, Side::Cb));
+    let rest = Rest::new(&Rod::new(whisker, &POLE, Side::Cb));
     let [x, y] = FIG2_POLE_MM;
     rest.distance_of_pole(x.hypot(y) / whisker.length_mm) * whisker.length_mm
 }

@@ -71,7 +71,7 @@ impl Plan {
         }
         let rods: Vec<Rod> = whiskers
             .iter()
-            .map(|whisker| Rod::new(whisker, scene.pole_radius_mm, Side::Cb))
+            .map(|whisker| Rod::new(whisker, &scene.pole, Side::Cb))
             .collect();
         Ok(Self {
             effects: Effects::of(&rods),

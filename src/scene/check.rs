@@ -12,10 +12,16 @@ use super::axis;
 use super::error::Fault;
 use super::file::{CurvatureTable, GridTable, Number, OutputTable, SceneTable, WhiskerTable};
 use super::limits::Limits;
-use super::{Curvature, FARTHEST, Grid, NEAREST, Scene, Whisker};
+use super::{Curvature, FARTHEST, Grid, NEAREST, Pole, Scene, Whisker};
 
 /// As many as 16,384 x 16,384; a stored cell takes about 60 bytes.
 const MOST_CELLS: u128 = 1 << 28;
+
+/// Rubber on concrete; the whiskers of rats on steel have about 0.5.
+const MOST_FRICTION: f64 = 2.0;
+
+/// A whisker that is twice as long as it looks.
+const MOST_STRETCH: f64 = 2.0;
 
 /// File systems allow 255 bytes; the output adds its own endings.
 const LONGEST_NAME: usize = 100;
@@ -26,9 +32,15 @@ pub(super) fn scene(table: &SceneTable, text: &str, default_name: &str) -> Resul
     let length_mm =
         Limits::between(1e-3, 1e5).check("whisker.length_mm", &table.whisker.length_mm)?;
     let grid = grid(&table.grid, length_mm)?;
+    let sharpest = grid.taper.as_ref().and_then(|axis| axis.last());
     let steepest = grid.curvature_per_mm.as_ref().and_then(|axis| axis.last());
-    let whisker = whisker(&table.whisker, length_mm, steepest.copied())?;
-    let pole_radius_mm = match &table.pole {
+    let whisker = whisker(
+        &table.whisker,
+        length_mm,
+        steepest.copied(),
+        sharpest.copied(),
+    )?;
+    let radius_mm = match &table.pole {
         Some(pole) => {
             let own = whisker.curvature.map_or(0.0, |own| own.parabola_per_mm);
             let parabola_per_mm = steepest.copied().unwrap_or(own);
@@ -36,10 +48,19 @@ pub(super) fn scene(table: &SceneTable, text: &str, default_name: &str) -> Resul
         }
         None => 0.0,
     };
+    let friction = match &table.contact {
+        Some(contact) => {
+            Limits::between(0.0, MOST_FRICTION).check("contact.friction", &contact.friction)?
+        }
+        None => 0.0,
+    };
     Ok(Scene {
         title,
         whisker,
-        pole_radius_mm,
+        pole: Pole {
+            radius_mm,
+            friction,
+        },
         grid,
         name: name(table.output.as_ref(), default_name)?,
         text: text.to_owned(),
@@ -58,8 +79,13 @@ fn title(title: &Spanned<String>) -> Result<String, Fault> {
     Ok(text.clone())
 }
 
-/// The whisker of the file; `steepest` is the largest `A` of a curvature axis.
-fn whisker(table: &WhiskerTable, length_mm: f64, steepest: Option<f64>) -> Result<Whisker, Fault> {
+/// The whisker of the file; `steepest` is the largest `A` of a curvature axis, `sharpest` the largest taper of one.
+fn whisker(
+    table: &WhiskerTable,
+    length_mm: f64,
+    steepest: Option<f64>,
+    sharpest: Option<f64>,
+) -> Result<Whisker, Fault> {
     let base_radius_um =
         Limits::between(1e-3, 1e5).check("whisker.base_radius_um", &table.base_radius_um)?;
     let tip_radius_um = Limits::between(0.0, ("base_radius_um", base_radius_um))
@@ -70,12 +96,27 @@ fn whisker(table: &WhiskerTable, length_mm: f64, steepest: Option<f64>) -> Resul
         Some(table) => curvature(table, length_mm, steepest)?,
         None => None,
     };
+    let arc_stretch = match &table.projection {
+        Some(projection) => {
+            let taper = sharpest.unwrap_or(1.0 - tip_radius_um / base_radius_um);
+            let pointed = 1.0 / taper;
+            let end = if pointed < MOST_STRETCH {
+                ("1 / taper, where the radius at the tip is 0", pointed)
+            } else {
+                ("twice as long", MOST_STRETCH)
+            };
+            Limits::between(1.0, end)
+                .check("whisker.projection.arc_stretch", &projection.arc_stretch)?
+        }
+        None => 1.0,
+    };
     Ok(Whisker {
         length_mm,
         base_radius_um,
         tip_radius_um,
         youngs_modulus_gpa,
         curvature,
+        arc_stretch,
     })
 }
 

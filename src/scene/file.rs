@@ -15,6 +15,7 @@ pub(super) struct SceneTable {
     pub title: Spanned<String>,
     pub whisker: WhiskerTable,
     pub pole: Option<PoleTable>,
+    pub contact: Option<ContactTable>,
     pub grid: Spanned<GridTable>,
     pub output: Option<OutputTable>,
 }
@@ -28,6 +29,21 @@ pub(super) struct WhiskerTable {
     pub tip_radius_um: Number,
     pub youngs_modulus_gpa: Number,
     pub curvature: Option<CurvatureTable>,
+    pub projection: Option<ProjectionTable>,
+}
+
+/// `[whisker.projection]`
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ProjectionTable {
+    pub arc_stretch: Number,
+}
+
+/// `[contact]`
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ContactTable {
+    pub friction: Number,
 }
 
 /// `[whisker.curvature]`

@@ -27,6 +27,29 @@ pub struct Whisker {
     pub youngs_modulus_gpa: f64,
     /// Intrinsic curvature, `None` for a straight whisker.
     pub curvature: Option<Curvature>,
+    /// Real arclength over the arclength in the plane of contact: more than 1 where the whisker droops out of the
+    /// plane. The radius is read at the real arclength.
+    pub arc_stretch: f64,
+}
+
+/// What the whisker is pushed against.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pole {
+    /// Radius; 0 is a point contact.
+    pub radius_mm: f64,
+    /// Coulomb's coefficient; the whisker slides toward its tip at this limit.
+    pub friction: f64,
+}
+
+impl Pole {
+    /// A pole without friction.
+    #[must_use]
+    pub const fn smooth(radius_mm: f64) -> Self {
+        Self {
+            radius_mm,
+            friction: 0.0,
+        }
+    }
 }
 
 /// The undeflected shape `y = A (x - vertex)^2` with the base at `x = 0` (paper, Eq. 7).
@@ -58,8 +81,8 @@ pub struct Scene {
     pub title: String,
     /// The whisker as the file describes it; [`Scene::whiskers`] yields those to simulate.
     pub whisker: Whisker,
-    /// Radius of the pole; 0 is a point contact.
-    pub pole_radius_mm: f64,
+    /// The pole.
+    pub pole: Pole,
     /// The sweep.
     pub grid: Grid,
     /// Stem of the output files.
@@ -121,7 +144,7 @@ impl Scene {
     #[must_use]
     pub fn distances_mm(&self) -> (f64, f64) {
         let length = self.whisker.length_mm;
-        let nearest = (length / NEAREST).max(self.pole_radius_mm);
+        let nearest = (length / NEAREST).max(self.pole.radius_mm);
         (nearest, FARTHEST * length)
     }
 }

@@ -6,7 +6,7 @@ use super::walk::{Walk, walk};
 use super::{FINER, Found, Mark, NoState};
 use crate::model::batch::Method;
 use crate::model::{Effects, Reading, Rest, Rod, Side, Units};
-use crate::scene::Whisker;
+use crate::scene::{Pole, Whisker};
 use crate::sheet::{Edge, Row};
 use glam::DVec2;
 use serde::Serialize;
@@ -45,17 +45,17 @@ pub struct BranchPoint {
 }
 
 impl Branch {
-    /// The branch of `whisker` at a pole of `pole_radius_mm` that first touches it at `distance_mm`.
+    /// The branch of `whisker` at `pole`, which first touches it at `distance_mm`.
     ///
     /// # Errors
     /// When the whisker at rest does not reach the pole, or the continuation gets lost.
     pub fn new(
         whisker: &Whisker,
-        pole_radius_mm: f64,
+        pole: &Pole,
         side: Side,
         distance_mm: f64,
     ) -> Result<Self, NoState> {
-        let rod = Rod::new(whisker, pole_radius_mm, side);
+        let rod = Rod::new(whisker, pole, side);
         let rest = Rest::new(&rod);
         let row = Row::new(&rest, distance_mm / whisker.length_mm);
         if !row.is_reached(&rod) {
@@ -176,8 +176,10 @@ impl Branch {
             contact_angle_deg: node.angle.to_degrees(),
             force_un: reading.force_un,
             base_moment_nnm: reading.base_moment_nnm,
-            // From (ln D, phi) by (tau, load) to (D, phi) by (s, f): dtau/ds = 1/rho, dload/df = 1/rho^2.
-            det: node.full.landing.det() * row.pole_distance / rod.radius(node.point.x).powi(3),
+            // From (ln D, phi) by (tau, load) to (D, phi) by (s, f): dtau/ds = 1/rho, dload/df = 1/rho^2, and f is the
+            // part of the force along the normal.
+            det: node.full.landing.det() * row.pole_distance
+                / (rod.radius(node.point.x).powi(3) * rod.contact_tangent().x),
             mark,
         }
     }

@@ -3,7 +3,7 @@
 use crate::classify::RowBoundary;
 use crate::model::batch::{Launch, Method, land};
 use crate::model::{Dopri8, Effects, FirstAndEnergy, Rest, Rod, Side, Units};
-use crate::scene::Whisker;
+use crate::scene::{Pole, Whisker};
 use crate::sheet::{Edge, FINE, Sheet};
 use serde::Serialize;
 
@@ -65,15 +65,10 @@ pub struct Corner {
     pub push_angle_deg: Option<f64>,
 }
 
-/// The detachment curve of `whisker` on one side of a pole of `pole_radius_mm`, at growing `distances_mm`.
+/// The detachment curve of `whisker` on one side of `pole`, at growing `distances_mm`.
 #[must_use]
-pub fn curve(
-    whisker: &Whisker,
-    pole_radius_mm: f64,
-    side: Side,
-    distances_mm: &[f64],
-) -> Vec<Detachment> {
-    let rod = Rod::new(whisker, pole_radius_mm, side);
+pub fn curve(whisker: &Whisker, pole: &Pole, side: Side, distances_mm: &[f64]) -> Vec<Detachment> {
+    let rod = Rod::new(whisker, pole, side);
     let effects = Effects::of([&rod]);
     let units = Units::new(whisker);
     let rest = Rest::new(&rod);
@@ -155,11 +150,11 @@ fn blank(side: Side, distance_mm: f64, pole_distance_mm: f64) -> Detachment {
     }
 }
 
-/// The corner of `whisker` on one side of a pole of `pole_radius_mm`; without values where there is none: a perfect
+/// The corner of `whisker` on one side of `pole`; without values where there is none: a perfect
 /// cone always slips off, and other whiskers may be too short to be pulled off.
 #[must_use]
-pub fn corner(whisker: &Whisker, pole_radius_mm: f64, side: Side) -> Corner {
-    let rod = Rod::new(whisker, pole_radius_mm, side);
+pub fn corner(whisker: &Whisker, pole: &Pole, side: Side) -> Corner {
+    let rod = Rod::new(whisker, pole, side);
     let rest = Rest::new(&rod);
     let none = Corner {
         side,
@@ -172,14 +167,8 @@ pub fn corner(whisker: &Whisker, pole_radius_mm: f64, side: Side) -> Corner {
     let Some(fold) = Sheet::fold_at_tip(Effects::of([&rod]), &rod, side) else {
         return none;
     };
-    let pole = fold.landing.landing.pole;
-    let distance = rest.distance_of_pole(pole.length());
-    let end = curve(
-        whisker,
-        pole_radius_mm,
-        side,
-        &[distance * whisker.length_mm],
-    )[0];
+    let distance = rest.distance_of_pole(fold.landing.landing.pole.length());
+    let end = curve(whisker, pole, side, &[distance * whisker.length_mm])[0];
     if end.kind == Kind::OutOfReach {
         return none;
     }

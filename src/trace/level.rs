@@ -56,12 +56,13 @@ impl Level {
     /// The state `full` at `point`, its angles continued from `push` and `angle`.
     pub fn node(&self, point: DVec2, full: &Full, push: f64, angle: f64) -> Node {
         let phi = full.landing.pole.to_angle();
-        let pole_from_contact = -(full.base.position + DVec2::new(0.0, self.rod.pole));
+        let to_pole = self.rod.to_pole() - full.base.position;
+        let tilt = self.rod.contact_tangent().to_angle();
         Node {
             point,
             full: *full,
             push: nearest_turn(phi - self.row.touch, push),
-            angle: nearest_turn(phi - pole_from_contact.to_angle(), angle),
+            angle: nearest_turn(phi - to_pole.to_angle() + tilt, angle),
         }
     }
 

@@ -67,7 +67,7 @@ impl Shape {
         let base = &found.full.base;
         let to_base = DVec2::new(base.tangent.x, -base.tangent.y);
         let turn = DVec2::from_angle(-found.push).rotate(to_base);
-        let pole = turn.rotate(-base.position - DVec2::new(0.0, rod.pole));
+        let pole = turn.rotate(rod.to_pole() - base.position);
         let length = units.length_mm;
         let mut angle = -found.push;
         let points = places.iter().enumerate().map(|(i, place)| {

@@ -39,7 +39,7 @@ fn a_curve_is_a_table_of_exact_numbers() {
     let whisker = scene.whisker_at(None, None);
     let expected: Vec<_> = Side::BOTH
         .into_iter()
-        .flat_map(|side| curve(&whisker, 0.25, side, &scene.grid.distance_mm))
+        .flat_map(|side| curve(&whisker, &scene.pole, side, &scene.grid.distance_mm))
         .collect();
     assert_eq!(rows.len(), expected.len());
     for (row, end) in rows.iter().zip(&expected) {
@@ -181,7 +181,7 @@ fn a_shape_is_the_state_asked_for() {
     let stable = good(&place, &at);
     let unstable = good(&place, &[&at[..], &["--branch", "unstable"]].concat());
     let scene = Scene::parse(SCENE, "scene", "scene").unwrap();
-    let branch = Branch::new(&scene.whisker, 0.25, Side::Cb, 15.66).unwrap();
+    let branch = Branch::new(&scene.whisker, &scene.pole, Side::Cb, 15.66).unwrap();
     for (run, part) in [(stable, true), (unstable, false)] {
         let rows = cells(&run.out, SHAPE);
         assert_eq!(rows.len(), 12);

@@ -276,6 +276,7 @@ fn contacts_are_right<T: Number>(tolerance: f64) {
                     bend,
                     slope,
                     pole: 0.0,
+                    ..Rod::default()
                 };
                 let tau = reach * rod.tau_tip();
                 let case = [taper, bend, slope, tau, random.between(-8.0, 8.0)];
@@ -294,6 +295,7 @@ fn contacts_are_right<T: Number>(tolerance: f64) {
             bend: case[1],
             slope: case[2],
             pole: 0.0,
+            ..Rod::default()
         };
         let start = Start::new(&rod, case[3], case[4]);
         let right = [

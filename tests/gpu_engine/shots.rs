@@ -41,7 +41,7 @@ pub const EFFECTS: [Effects; 4] = [
     },
 ];
 
-/// A whisker of taper up to 0.99 and `A*` up to 0.8 on either side of a pole of radius up to 0.03.
+/// A whisker of taper up to 0.99 and `A*` up to 0.8 on either side of a pole of radius up to 0.03 with friction up to 0.5.
 pub fn rod(effects: Effects, random: &mut Random) -> Rod {
     let bend = f64::from(effects.curvature) * random.between(0.0, 0.8);
     let side = if random.unit() < 0.5 { 1.0 } else { -1.0 };
@@ -50,6 +50,8 @@ pub fn rod(effects: Effects, random: &mut Random) -> Rod {
         bend,
         slope: -2.0 * bend * random.between(-0.3, 0.3),
         pole: side * random.between(0.0, 0.03),
+        friction: side * random.between(0.0, 0.5),
+        ..Rod::default()
     }
 }
 

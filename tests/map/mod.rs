@@ -4,7 +4,7 @@
 use serde_json::{Value, json};
 use std::path::Path;
 use whiskmap::classify::Regime;
-use whiskmap::scene::{Grid, Scene, Whisker};
+use whiskmap::scene::{Grid, Pole, Scene, Whisker};
 use whiskmap::store::{Counts, Description, MapWriter, Panel, STATE_CHANNELS};
 
 pub const STATUS_NAMES: [(u32, &str); 3] =
@@ -33,8 +33,9 @@ pub fn scene(
             tip_radius_um: 2.0,
             youngs_modulus_gpa: 3.0,
             curvature: None,
+            arc_stretch: 1.0,
         },
-        pole_radius_mm: 0.25,
+        pole: Pole::smooth(0.25),
         grid: Grid {
             push_angle_deg: spread(-60.0, 70.0, push_angles),
             distance_mm: spread(3.0, 20.5, distances),

@@ -89,7 +89,7 @@ fn every_value_arrives_where_it_belongs() {
     assert_eq!(scene.whisker.tip_radius_um, 1.5);
     assert_eq!(scene.whisker.youngs_modulus_gpa, 3.0);
     assert_eq!(scene.whisker.curvature, curvature(0.02, 2.5));
-    assert_eq!(scene.pole_radius_mm, 0.25);
+    assert_eq!(scene.pole.radius_mm, 0.25);
     assert_eq!(scene.grid.push_angle_deg, [-70.0, -35.0, 0.0, 35.0, 70.0]);
     assert_eq!(scene.grid.distance_mm, [2.0, 7.5, 20.0]);
     assert_eq!(scene.grid.taper.unwrap(), [0.0, 0.5, 1.0]);
@@ -112,7 +112,7 @@ fn what_may_be_left_out_may_be_left_out() {
     )
     .unwrap();
     assert_eq!(scene.whisker.curvature, None);
-    assert_eq!(scene.pole_radius_mm, 0.0);
+    assert_eq!(scene.pole.radius_mm, 0.0);
     assert_eq!(scene.grid.push_angle_deg, [5.0]);
     assert_eq!(scene.grid.distance_mm, [2.0]);
     assert_eq!(scene.name, "fallback");

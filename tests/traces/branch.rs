@@ -1,7 +1,8 @@
 //! What must hold along every branch.
 
-use crate::{everything, whisker};
+use crate::{POLE, everything, whisker};
 use whiskmap::model::Side;
+use whiskmap::scene::Pole;
 use whiskmap::trace::{Branch, BranchPoint, Kind, Mark, NoState, curve};
 
 const DISTANCES: [f64; 4] = [0.5, 9.0, 17.5, 19.0];
@@ -10,13 +11,13 @@ const DISTANCES: [f64; 4] = [0.5, 9.0, 17.5, 19.0];
 fn every_branch(count: usize, check: impl Fn(&str, &Branch, &[BranchPoint], f64)) {
     let mut followed = 0;
     for (whisker, pole) in everything() {
-        for distance in DISTANCES.into_iter().filter(|d| *d > pole) {
+        for distance in DISTANCES.into_iter().filter(|d| *d > pole.radius_mm) {
             for side in Side::BOTH {
-                let case = format!("{whisker:?} pole {pole} {side:?} at {distance}");
-                match Branch::new(&whisker, pole, side, distance) {
+                let case = format!("{whisker:?} {pole:?} {side:?} at {distance}");
+                match Branch::new(&whisker, &pole, side, distance) {
                     Ok(branch) => {
                         let points = branch.points(count).unwrap();
-                        let end = curve(&whisker, pole, side, &[distance])[0];
+                        let end = curve(&whisker, &pole, side, &[distance])[0];
                         check(
                             &case,
                             &branch,
@@ -32,7 +33,7 @@ fn every_branch(count: usize, check: impl Fn(&str, &Branch, &[BranchPoint], f64)
                         followed += 1;
                     }
                     Err(NoState::OutOfReach { .. }) => {
-                        let end = curve(&whisker, pole, side, &[distance])[0];
+                        let end = curve(&whisker, &pole, side, &[distance])[0];
                         assert_eq!(end.kind, Kind::OutOfReach, "{case}");
                     }
                     Err(why) => panic!("{case}: {why}"),
@@ -98,10 +99,11 @@ fn a_branch_begins_at_first_touch_and_says_how_it_ends() {
 #[test]
 fn points_are_evenly_spaced() {
     for (tip, a) in [(30.0, 0.0), (6.0, 0.04), (0.0, 0.02)] {
-        for (pole, distance) in [(0.0, 4.0), (0.25, 0.5), (0.25, 12.0), (1.0, 18.5)] {
+        for (radius, distance) in [(0.0, 4.0), (0.25, 0.5), (0.25, 12.0), (1.0, 18.5)] {
+            let pole = Pole::smooth(radius);
             for side in Side::BOTH {
-                let case = format!("tip {tip} a {a} pole {pole} at {distance} {side:?}");
-                let branch = Branch::new(&whisker(tip, a), pole, side, distance).unwrap();
+                let case = format!("tip {tip} a {a} {pole:?} at {distance} {side:?}");
+                let branch = Branch::new(&whisker(tip, a), &pole, side, distance).unwrap();
                 let points = branch.points(2000).unwrap();
                 let chords: Vec<f64> = points
                     .windows(2)
@@ -149,7 +151,7 @@ fn states_are_found_again() {
 
 #[test]
 fn missing_states_have_a_reason() {
-    let branch = Branch::new(&whisker(1.5, 0.02), 0.25, Side::Cb, 15.660_459_763_365_8).unwrap();
+    let branch = Branch::new(&whisker(1.5, 0.02), &POLE, Side::Cb, 15.660_459_763_365_8).unwrap();
     let slipped = branch.state(0.3, true).unwrap_err().to_string();
     assert_eq!(slipped, "slipped off at 15.607930004 deg");
     let unstable = branch.state(0.3, false).unwrap_err().to_string();
@@ -157,7 +159,7 @@ fn missing_states_have_a_reason() {
         unstable.starts_with("the unstable states lie between 15.607930004 and -22.11"),
         "{unstable}"
     );
-    let branch = Branch::new(&whisker(30.0, 0.02), 0.25, Side::Cf, 17.063_022_998_952_17).unwrap();
+    let branch = Branch::new(&whisker(30.0, 0.02), &POLE, Side::Cf, 17.063_022_998_952_17).unwrap();
     let pulled = branch.state(-1.7, true).unwrap_err().to_string();
     assert_eq!(pulled, "pulled off at -90.346386911 deg");
     let none = branch.state(-1.0, false).unwrap_err().to_string();
@@ -165,7 +167,7 @@ fn missing_states_have_a_reason() {
         none,
         "no unstable state: pulled off at -90.346386911 deg, before any fold"
     );
-    let far = Branch::new(&whisker(1.5, 0.0), 0.25, Side::Cb, 20.5).unwrap_err();
+    let far = Branch::new(&whisker(1.5, 0.0), &POLE, Side::Cb, 20.5).unwrap_err();
     assert_eq!(
         far.to_string(),
         "out of reach: the tip of the resting whisker is 20.000000000 mm from its base"

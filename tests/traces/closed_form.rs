@@ -1,6 +1,6 @@
 //! Where the answer is known exactly.
 
-use crate::whisker;
+use crate::{POINT, whisker};
 use whiskmap::model::{Side, Units};
 use whiskmap::paper::checks;
 use whiskmap::paper::elastica::{elastica, fold};
@@ -11,7 +11,7 @@ use whiskmap::trace::{Branch, Kind, curve};
 fn the_straight_cylinder_is_the_elastica() {
     let cylinder = whisker(30.0, 0.0);
     for side in Side::BOTH {
-        let branch = Branch::new(&cylinder, 0.0, side, 8.0).unwrap();
+        let branch = Branch::new(&cylinder, &POINT, side, 8.0).unwrap();
         for degrees in [1.0, 12.0, 24.0, 36.0, 48.0, 60.0, 75.0, 90.0, 105.0, 115.0] {
             let exact = elastica(f64::to_radians(degrees));
             let state = branch.state(side.sign() * exact.push, true).unwrap();
@@ -34,7 +34,7 @@ fn the_straight_cylinder_is_the_elastica() {
 #[test]
 fn the_straight_cylinder_slips_at_its_closed_form() {
     for (side, distance) in [(Side::Cb, 2.0), (Side::Cf, 8.0), (Side::Cb, 11.0)] {
-        let end = curve(&whisker(30.0, 0.0), 0.0, side, &[distance])[0];
+        let end = curve(&whisker(30.0, 0.0), &POINT, side, &[distance])[0];
         assert_eq!(end.kind, Kind::SlipOff);
         let push = end.push_angle_deg.unwrap() * side.sign();
         assert!((push - 99.568_498_75).abs() < 1e-8, "{push}");
@@ -53,7 +53,7 @@ fn a_straight_cone_tends_to_its_small_load_formula() {
         (30.0, 10.0),
     ] {
         let cone = whisker(tip, 0.0);
-        let branch = Branch::new(&cone, 0.0, Side::Cb, a).unwrap();
+        let branch = Branch::new(&cone, &POINT, Side::Cb, a).unwrap();
         let part = a * (1.0 - tip / 30.0) / 20.0;
         let stiffness = Units::new(&cone).moment_nnm * 20.0;
         let miss = |push: f64| {

@@ -1,6 +1,6 @@
 //! Detachment curves and their corners.
 
-use crate::{everything, whisker};
+use crate::{POLE, everything, whisker};
 use whiskmap::model::Side;
 use whiskmap::trace::{Branch, Kind, corner, curve};
 
@@ -10,23 +10,25 @@ fn at_the_corner_slip_off_turns_into_pull_off() {
     let mut corners = 0;
     for (whisker, pole) in everything() {
         for side in Side::BOTH {
-            let corner = corner(&whisker, pole, side);
+            let corner = corner(&whisker, &pole, side);
             let Some(distance) = corner.distance_mm else {
                 // Then no push ends at the tip.
-                let distances: Vec<f64> = (1..40).map(|i| pole + 0.5 * f64::from(i)).collect();
-                let ends = curve(&whisker, pole, side, &distances);
+                let distances: Vec<f64> = (1..40)
+                    .map(|i| pole.radius_mm + 0.5 * f64::from(i))
+                    .collect();
+                let ends = curve(&whisker, &pole, side, &distances);
                 assert!(
                     ends.iter().all(|end| end.kind != Kind::PullOff),
-                    "{whisker:?} {pole} {side:?}"
+                    "{whisker:?} {pole:?} {side:?}"
                 );
                 continue;
             };
-            let ends = curve(&whisker, pole, side, &[distance - 1e-8, distance + 1e-8]);
+            let ends = curve(&whisker, &pole, side, &[distance - 1e-8, distance + 1e-8]);
             let kinds = [ends[0].kind, ends[1].kind];
             assert_eq!(
                 kinds,
                 [Kind::SlipOff, Kind::PullOff],
-                "{whisker:?} {pole} {side:?}"
+                "{whisker:?} {pole:?} {side:?}"
             );
             let push = corner.push_angle_deg.unwrap();
             assert!((ends[0].push_angle_deg.unwrap() - push).abs() < 1e-6);
@@ -43,9 +45,9 @@ fn a_curve_is_the_end_of_each_branch() {
     for side in Side::BOTH {
         for (distance, end) in distances
             .iter()
-            .zip(curve(&whisker, 0.25, side, &distances))
+            .zip(curve(&whisker, &POLE, side, &distances))
         {
-            let branch = Branch::new(&whisker, 0.25, side, *distance).unwrap();
+            let branch = Branch::new(&whisker, &POLE, side, *distance).unwrap();
             let points = branch.points(50).unwrap();
             let last = points.iter().rfind(|point| point.stable).unwrap();
             for (one, other) in [
@@ -71,7 +73,7 @@ fn a_curve_is_the_end_of_each_branch() {
 
 #[test]
 fn rows_out_of_reach_have_no_values() {
-    let ends = curve(&whisker(1.5, 0.0), 0.25, Side::Cb, &[19.99, 20.01]);
+    let ends = curve(&whisker(1.5, 0.0), &POLE, Side::Cb, &[19.99, 20.01]);
     assert_eq!(
         [ends[0].kind, ends[1].kind],
         [Kind::PullOff, Kind::OutOfReach]

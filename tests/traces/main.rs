@@ -6,7 +6,7 @@ mod closed_form;
 mod curve;
 mod shape;
 
-use whiskmap::scene::{Curvature, Whisker};
+use whiskmap::scene::{Curvature, Pole, Whisker};
 
 /// A whisker of 20 mm with a base radius of 30 um.
 fn whisker(tip_radius_um: f64, a_per_mm: f64) -> Whisker {
@@ -19,13 +19,26 @@ fn whisker(tip_radius_um: f64, a_per_mm: f64) -> Whisker {
             parabola_per_mm: a_per_mm,
             vertex_mm: 0.0,
         }),
+        arc_stretch: 1.0,
     }
 }
 
-/// Whiskers and poles from cylinder to perfect cone, straight to strongly bent, point to thick pole.
-fn everything() -> impl Iterator<Item = (Whisker, f64)> {
+/// Whiskers and poles from cylinder to perfect cone, straight to strongly bent, point to thick pole, smooth to rough.
+fn everything() -> impl Iterator<Item = (Whisker, Pole)> {
     [30.0, 20.0, 6.0, 1.5, 0.1, 0.0]
         .into_iter()
         .flat_map(|tip| [0.0, 0.02, 0.04, 0.07].map(|a| whisker(tip, a)))
-        .flat_map(|whisker| [0.0, 0.25, 1.0].map(|pole| (whisker.clone(), pole)))
+        .flat_map(|whisker| POLES.map(|pole| (whisker.clone(), pole)))
 }
+
+const POLES: [Pole; 4] = [POINT, POLE, Pole::smooth(1.0), ROUGH];
+
+/// A pole with friction.
+const ROUGH: Pole = Pole {
+    radius_mm: 0.25,
+    friction: 0.4,
+};
+
+/// The paper's pole, and none at all.
+const POLE: Pole = Pole::smooth(0.25);
+const POINT: Pole = Pole::smooth(0.0);

@@ -1,6 +1,6 @@
 //! Shapes: geometry, statics, and the rest shape as a limit.
 
-use crate::{everything, whisker};
+use crate::{POLE, everything, whisker};
 use whiskmap::model::Side;
 use whiskmap::trace::{Branch, Part, Shape};
 
@@ -15,8 +15,8 @@ fn a_shape_fits_its_state() {
             (Side::Cb, false),
             (Side::Cf, false),
         ] {
-            let case = format!("{whisker:?} pole {pole} {side:?} {stable}");
-            let branch = Branch::new(&whisker, pole, side, 9.0).unwrap();
+            let case = format!("{whisker:?} {pole:?} {side:?} {stable}");
+            let branch = Branch::new(&whisker, &pole, side, 9.0).unwrap();
             let points = branch.points(41).unwrap();
             let mut part = points.iter().filter(|point| point.stable == stable);
             let Some(push) = part.nth(3).map(|point| point.push_angle_deg) else {
@@ -39,7 +39,7 @@ fn a_shape_fits_its_state() {
                 .unwrap();
             let [x, y] = shape.pole_mm;
             let (dx, dy) = (x - contact.x_mm, y - contact.y_mm);
-            assert!((dx.hypot(dy) - pole).abs() < 1e-11, "{case}");
+            assert!((dx.hypot(dy) - pole.radius_mm).abs() < 1e-11, "{case}");
             let (sin, cos) = contact.angle_deg.to_radians().sin_cos();
             assert!(
                 (dx * cos + dy * sin).abs() < 1e-10,
@@ -64,7 +64,7 @@ fn a_shape_fits_its_state() {
 /// fast they turn: centred differences, so to the square of the spacing.
 #[test]
 fn a_shape_is_a_curve() {
-    let branch = Branch::new(&whisker(1.5, 0.02), 0.25, Side::Cb, 15.0).unwrap();
+    let branch = Branch::new(&whisker(1.5, 0.02), &POLE, Side::Cb, 15.0).unwrap();
     let state = branch.state(0.2, true).unwrap();
     let error = |count: usize| {
         let points = Shape::new(&branch, &state, count).points;
@@ -94,7 +94,7 @@ fn a_shape_is_a_curve() {
 #[test]
 fn without_a_push_the_whisker_is_at_rest() {
     for (whisker, pole) in everything() {
-        let branch = Branch::new(&whisker, pole, Side::Cf, 9.0).unwrap();
+        let branch = Branch::new(&whisker, &pole, Side::Cf, 9.0).unwrap();
         let state = branch.state(0.0, true).unwrap();
         // The contact is one place more.
         let shape = Shape::new(&branch, &state, 50);
@@ -104,7 +104,7 @@ fn without_a_push_the_whisker_is_at_rest() {
             .filter(|point| point.part != Part::Contact);
         for (point, [x, y]) in places.zip(Shape::at_rest(&branch, 50)) {
             let miss = (point.x_mm - x).hypot(point.y_mm - y);
-            assert!(miss < 1e-10, "{whisker:?} {pole}: {point:?} {x} {y}");
+            assert!(miss < 1e-10, "{whisker:?} {pole:?}: {point:?} {x} {y}");
         }
     }
 }

@@ -67,6 +67,7 @@ macro_rules! layout {
                 pub bend: $real,
                 pub slope: $real,
                 pub pole: $real,
+                pub friction: $real,
             }
 
             #[derive(Clone, Copy, Pod, Zeroable)]
@@ -97,6 +98,7 @@ macro_rules! layout {
                         bend: rod.bend as $real,
                         slope: rod.slope as $real,
                         pole: rod.pole as $real,
+                        friction: rod.friction as $real,
                     }
                 }
             }
@@ -186,7 +188,7 @@ mod tests {
         ($module:ident, $precision:expr) => {
             let shader = in_shader($precision);
             for rust in [
-                in_rust!($module::Rod, "Rod", taper, bend, slope, pole),
+                in_rust!($module::Rod, "Rod", taper, bend, slope, pole, friction),
                 in_rust!(
                     $module::Shot,
                     "Shot",
