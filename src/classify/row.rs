@@ -30,7 +30,7 @@ pub struct RowBoundary {
 }
 
 impl RowBoundary {
-    /// The boundary made of a row's `crossings`, sorted by push angle.
+    /// The boundary made of a row's `crossings`: the end of a push from first touch, then the others by push angle.
     #[must_use]
     pub fn new(touches: bool, crossings: &[Crossing]) -> Self {
         let sound = crossings.iter().all(|c| c.residual <= CROSSING_TOLERANCE);

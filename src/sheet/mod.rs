@@ -10,15 +10,19 @@ mod columns;
 mod edges;
 mod fold;
 mod lattice;
+mod level;
 mod polynomial;
 mod rows;
 mod seek;
+mod walk;
 
 pub use edges::Crossing;
 pub use fold::FoldPoint;
 pub use lattice::Guess;
+pub use level::{LevelCurve, Node, ON_CURVE};
 pub use rows::Row;
 pub use seek::{Edge, Sought, Wanted, seek};
+pub use walk::{Walk, walk};
 
 use crate::model::batch::Method;
 use crate::model::{Effects, Landing, Resolution, Rest, Rod, Side};
@@ -45,7 +49,7 @@ pub struct Sheet {
     pub side: Side,
     /// The rows.
     pub rows: Vec<Row>,
-    /// Per row: where it leaves the sheet, sorted by push angle.
+    /// Per row: where it leaves the sheet, sorted by push angle; but where a push from first touch ends comes first.
     pub crossings: Vec<Vec<Crossing>>,
     columns: Columns,
     lattice: Lattice,
@@ -69,7 +73,18 @@ impl Sheet {
         let columns = Columns::new(method, rod, side, nearest)?;
         let lattice = Lattice::new(method, rod, side, &columns);
         let edges = Edges::new(method, rod, &columns, &lattice);
-        let crossings = edges::crossings(method, rod, side, &edges, &rows);
+        let mut crossings = edges::crossings(method, rod, side, &edges, &rows);
+        for (row, crossings) in rows.iter().zip(&mut crossings) {
+            if crossings.len() > 1 && edges.touches(row) {
+                let level = LevelCurve {
+                    method,
+                    rod: *rod,
+                    side,
+                    row: *row,
+                };
+                lead_with_the_end(&level, crossings);
+            }
+        }
         Some(Self {
             rod: *rod,
             side,
@@ -112,5 +127,21 @@ impl Sheet {
         let scale = landing.by_tau.length() * landing.by_load.length();
         let before_fold = landing.det() > -1e-7 * scale;
         part > -UNLOADED && part < 1.0 + 1e-4 && before_fold
+    }
+}
+
+/// Moves the crossing where a push from first touch ends to the front. With several crossings the level curve of `D` is
+/// in several pieces (with friction, `D` can have a saddle on the sheet), and only walking along it tells which crossing
+/// belongs to first touch. Where the walk fails, none does.
+fn lead_with_the_end(level: &LevelCurve, crossings: &mut Vec<Crossing>) {
+    let end = walk(level, false).and_then(|walk| Some((walk.end, *walk.nodes.last()?)));
+    let ours = end.and_then(|(edge, node)| {
+        let candidates = crossings.iter().enumerate().filter(|(_, c)| c.edge == edge);
+        let away = |c: &Crossing| (c.tau - node.point.x).abs();
+        candidates.min_by(|(_, a), (_, b)| away(a).total_cmp(&away(b)))
+    });
+    match ours.map(|(index, _)| index) {
+        Some(index) => crossings[..=index].rotate_right(1),
+        None => crossings.clear(),
     }
 }

@@ -1,20 +1,18 @@
 //! The solution branch at one pole: the stable states from first touch to the fold, and on along the unstable ones.
 
 use super::even::{interpolate, targets};
-use super::level::{Level, Node, ON_CURVE};
-use super::walk::{Walk, walk};
 use super::{FINER, Found, Mark, NoState};
 use crate::model::batch::Method;
 use crate::model::{Effects, Reading, Rest, Rod, Side, Units};
 use crate::scene::{Pole, Whisker};
-use crate::sheet::{Edge, Row};
+use crate::sheet::{Edge, LevelCurve, Node, ON_CURVE, Row, Walk, walk};
 use glam::DVec2;
 use serde::Serialize;
 
 /// One pole in front of one whisker, and every state connected with first touch.
 #[derive(Clone, Debug)]
 pub struct Branch {
-    pub(super) level: Level,
+    pub(super) level: LevelCurve,
     units: Units,
     pub(super) walk: Walk,
 }
@@ -64,7 +62,7 @@ impl Branch {
                 reach_mm: tip.length() * whisker.length_mm,
             });
         }
-        let level = Level {
+        let level = LevelCurve {
             method: Method {
                 effects: Effects::of([&rod]),
                 resolution: FINER,
@@ -76,7 +74,7 @@ impl Branch {
         Ok(Self {
             level,
             units: Units::new(whisker),
-            walk: walk(&level).ok_or(NoState::Lost { push_deg: 0.0 })?,
+            walk: walk(&level, true).ok_or(NoState::Lost { push_deg: 0.0 })?,
         })
     }
 
@@ -140,7 +138,7 @@ impl Branch {
     /// A state of the branch in the units of people.
     #[must_use]
     pub fn read(&self, state: &Found) -> Reading {
-        let Level { rod, row, .. } = &self.level;
+        let LevelCurve { rod, row, .. } = &self.level;
         self.units
             .read(rod, state.tau, &state.full, row.touch, state.push)
     }
@@ -163,7 +161,7 @@ impl Branch {
     }
 
     fn point(&self, node: &Node, stable: bool, mark: Option<Mark>) -> BranchPoint {
-        let Level { rod, side, row, .. } = &self.level;
+        let LevelCurve { rod, side, row, .. } = &self.level;
         let reading = self
             .units
             .read(rod, node.point.x, &node.full, row.touch, node.push);

@@ -150,31 +150,54 @@ fn blank(side: Side, distance_mm: f64, pole_distance_mm: f64) -> Detachment {
     }
 }
 
-/// The corner of `whisker` on one side of `pole`; without values where there is none: a perfect
-/// cone always slips off, and other whiskers may be too short to be pulled off.
+/// The corner of `whisker` on one side of `pole`; without values where there is none: a perfect cone always slips off,
+/// and other whiskers may be too short to be pulled off.
 #[must_use]
 pub fn corner(whisker: &Whisker, pole: &Pole, side: Side) -> Corner {
     let rod = Rod::new(whisker, pole, side);
-    let rest = Rest::new(&rod);
-    let none = Corner {
-        side,
-        distance_mm: None,
-        push_angle_deg: None,
+    let length = whisker.length_mm;
+    let end = |distance: f64| curve(whisker, pole, side, &[distance])[0];
+    let switches = |distance: &f64| {
+        let kinds = [-1.0, 1.0].map(|sign| end(distance + sign * CORNER_TOLERANCE * length).kind);
+        kinds == [Kind::SlipOff, Kind::PullOff]
     };
-    if rod.taper == 1.0 {
-        return none;
-    }
-    let Some(fold) = Sheet::fold_at_tip(Effects::of([&rod]), &rod, side) else {
-        return none;
-    };
-    let distance = rest.distance_of_pole(fold.landing.landing.pole.length());
-    let end = curve(whisker, pole, side, &[distance * whisker.length_mm])[0];
-    if end.kind == Kind::OutOfReach {
-        return none;
-    }
+    let tip = (rod.taper < 1.0).then(|| Sheet::fold_at_tip(Effects::of([&rod]), &rod, side));
+    let distance = tip.flatten().and_then(|fold| {
+        let pole = fold.landing.landing.pole.length();
+        let at_tip = Rest::new(&rod).distance_of_pole(pole) * length;
+        Some(at_tip)
+            .filter(switches)
+            .or_else(|| switch(&end, length, rod.pole.abs()))
+    });
     Corner {
         side,
-        distance_mm: Some(distance * whisker.length_mm),
-        push_angle_deg: end.push_angle_deg,
+        distance_mm: distance,
+        push_angle_deg: distance.and_then(|distance| end(distance).push_angle_deg),
     }
+}
+
+/// Half the width, in whisker lengths, of the gap in which slip-off must turn into pull-off.
+const CORNER_TOLERANCE: f64 = 1e-10;
+
+/// Samples among which the switch is looked for where it is not at the fold with the contact at the tip.
+const CORNER_SAMPLES: u32 = 128;
+
+/// The distance at which slip-off turns into pull-off, by bisection: with friction it can lie where the branches of two
+/// poles swap their ends. No pole is nearer than `nearest`, in whisker lengths.
+fn switch(end: &impl Fn(f64) -> Detachment, length: f64, nearest: f64) -> Option<f64> {
+    let samples: Vec<f64> = (1..=CORNER_SAMPLES)
+        .map(|i| nearest + (1.0 - nearest) * f64::from(i) / f64::from(CORNER_SAMPLES))
+        .map(|distance| distance * length)
+        .collect();
+    let pulled = samples.iter().position(|d| end(*d).kind == Kind::PullOff)?;
+    let (mut low, mut high) = (samples[pulled.checked_sub(1)?], samples[pulled]);
+    while high - low > CORNER_TOLERANCE * length {
+        let middle = 0.5 * (low + high);
+        match end(middle).kind {
+            Kind::SlipOff => low = middle,
+            Kind::PullOff => high = middle,
+            Kind::OutOfReach | Kind::Unresolved => return None,
+        }
+    }
+    Some(low)
 }

@@ -1,6 +1,6 @@
 //! Even spacing along a walk.
 
-use super::level::Node;
+use crate::sheet::Node;
 use glam::DVec2;
 
 /// Where along the curve `count` points go, and which of them is the fold: the two parts share the intervals by length.

@@ -6,10 +6,8 @@
 mod branch;
 mod curve;
 mod even;
-mod level;
 mod shape;
 mod state;
-mod walk;
 
 pub use branch::{Branch, BranchPoint};
 pub use curve::{Corner, Detachment, Kind, corner, curve};

@@ -1,9 +1,8 @@
 //! The state of a branch at a push angle.
 
-use super::level::{Node, ON_CURVE};
-use super::walk::Walk;
 use super::{Branch, NoState};
 use crate::model::Full;
+use crate::sheet::{Node, ON_CURVE, Walk};
 
 /// Rounds of the search between two nodes; bisection alone would need 50.
 const MOST_ROUNDS: usize = 100;

@@ -5,9 +5,9 @@
 //! trajectory brings along; predictor along the tangent, corrector along the gradient. Its length is measured where
 //! people look at it: in push angle, contact angle (both in radians) and arclength of the contact (in whisker lengths).
 
+use super::Row;
 use crate::model::batch::{Launch, Method, land};
 use crate::model::{Dopri8, FirstAndEnergy, Full, Rod, Side, arclength, nearest_turn};
-use crate::sheet::Row;
 use glam::{DVec2, DVec3};
 
 /// Rounds of the corrector; from a step's predictor 4 are the rule.
@@ -31,7 +31,7 @@ pub struct Node {
 
 /// The level curve of one row.
 #[derive(Clone, Copy, Debug)]
-pub struct Level {
+pub struct LevelCurve {
     /// How trajectories are integrated.
     pub method: Method,
     /// The whisker and its pole.
@@ -42,8 +42,9 @@ pub struct Level {
     pub row: Row,
 }
 
-impl Level {
+impl LevelCurve {
     /// First touch, from where pushes are counted.
+    #[must_use]
     pub fn touch(&self) -> Option<Node> {
         let at_touch = DVec2::new(self.rod.tau(self.row.contact).min(self.rod.tau_tip()), 0.0);
         let full = *self.land(&[at_touch]).first()?;
@@ -54,6 +55,7 @@ impl Level {
     }
 
     /// The state `full` at `point`, its angles continued from `push` and `angle`.
+    #[must_use]
     pub fn node(&self, point: DVec2, full: &Full, push: f64, angle: f64) -> Node {
         let phi = full.landing.pole.to_angle();
         let to_pole = self.rod.to_pole() - full.base.position;
@@ -67,6 +69,7 @@ impl Level {
     }
 
     /// The next node, about `step` further on, where the corrector finds the curve again.
+    #[must_use]
     pub fn step(&self, from: &Node, step: f64) -> Option<Node> {
         let scale = self.scale(from.point);
         let gradient = scale * gradient(from);
@@ -80,6 +83,7 @@ impl Level {
     }
 
     /// Brings every point onto the curve, to `tolerance` in `ln D` or to rounding; `None` where that fails.
+    #[must_use]
     pub fn settle(&self, points: &[DVec2], tolerance: f64) -> Vec<Option<(DVec2, Full)>> {
         let mut points = points.to_vec();
         let mut settled = vec![None; points.len()];
@@ -127,12 +131,14 @@ impl Level {
     }
 
     /// Where people see a node.
+    #[must_use]
     pub fn place(&self, node: &Node) -> DVec3 {
         let s = arclength(&self.rod, node.point.x);
         DVec3::new(node.push, node.angle, s)
     }
 
     /// How far apart people see two nodes.
+    #[must_use]
     pub fn length(&self, from: &Node, to: &Node) -> f64 {
         self.place(from).distance(self.place(to))
     }

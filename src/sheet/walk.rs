@@ -1,7 +1,7 @@
 //! From first touch through the fold to the end of the branch, in steps that suit the curve.
 
-use super::level::{Level, Node, ON_CURVE};
-use crate::sheet::{Edge, Wanted, seek};
+use super::level::{LevelCurve, Node, ON_CURVE};
+use super::seek::{Edge, Wanted, seek};
 use glam::DVec2;
 
 /// Nodes are about this far apart.
@@ -36,8 +36,9 @@ pub struct Walk {
     pub end: Edge,
 }
 
-/// Walks along `level`; `None` where the continuation gets lost.
-pub fn walk(level: &Level) -> Option<Walk> {
+/// Walks along `level`, past the fold or only to it; `None` where the continuation gets lost.
+#[must_use]
+pub fn walk(level: &LevelCurve, past_fold: bool) -> Option<Walk> {
     let mut nodes = vec![level.touch()?];
     let mut fold = None;
     let mut step = FIRST_STEP;
@@ -76,9 +77,11 @@ pub fn walk(level: &Level) -> Option<Walk> {
             nodes.pop();
         }
         nodes.push(node);
-        if edge == Edge::Fold && fold.is_none() {
+        let first_fold = edge == Edge::Fold && fold.is_none();
+        if first_fold {
             fold = Some(nodes.len() - 1);
-        } else {
+        }
+        if !(first_fold && past_fold) {
             return Some(Walk {
                 nodes,
                 fold,
@@ -98,7 +101,7 @@ enum Meeting {
 }
 
 /// The first edge between two nodes of the stable or the unstable part.
-fn meet(level: &Level, from: &Node, to: &Node, stable: bool) -> Meeting {
+fn meet(level: &LevelCurve, from: &Node, to: &Node, stable: bool) -> Meeting {
     let mut met = Meeting::None;
     if to.point.x > level.rod.tau_tip() {
         let Some(tip) = edge(level, Edge::Tip, from, to) else {
@@ -119,7 +122,7 @@ fn meet(level: &Level, from: &Node, to: &Node, stable: bool) -> Meeting {
 }
 
 /// The point of an edge between two nodes; `None` if Newton's method found none, or one somewhere else.
-fn edge(level: &Level, edge: Edge, from: &Node, to: &Node) -> Option<Node> {
+fn edge(level: &LevelCurve, edge: Edge, from: &Node, to: &Node) -> Option<Node> {
     let height = |node: &Node| match edge {
         Edge::Fold => node.full.landing.det(),
         Edge::Tip => node.point.x - level.rod.tau_tip(),
