@@ -36,7 +36,6 @@ fn rods() -> Vec<Launch> {
                     slope: -0.1 * bend,
                     pole,
                     friction: 10.0 * pole,
-                    ..Rod::default()
                 };
                 launches.push(Launch {
                     rod,

@@ -4,7 +4,7 @@
 
 mod row;
 
-pub use row::{RowBoundary, Span};
+pub use row::{RowBoundary, Span, TIE};
 
 /// What becomes of a whisker at `(push angle, distance)`. The discriminants are the codes of the stored map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]

@@ -6,9 +6,6 @@ use crate::sheet::{Crossing, Edge};
 /// Push angles, in radians, closer to a boundary than this count as on it; both verdicts are right there.
 pub const TIE: f64 = 1e-10;
 
-/// The largest error of a crossing, relative to the distance of the pole, that is taken for a boundary.
-const CROSSING_TOLERANCE: f64 = 1e-10;
-
 /// A stretch of push angles (magnitudes, in radians) on the stable sheet.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Span {
@@ -33,7 +30,7 @@ impl RowBoundary {
     /// The boundary made of a row's `crossings`: the end of a push from first touch, then the others by push angle.
     #[must_use]
     pub fn new(touches: bool, crossings: &[Crossing]) -> Self {
-        let sound = crossings.iter().all(|c| c.residual <= CROSSING_TOLERANCE);
+        let sound = crossings.iter().all(Crossing::is_sound);
         let even = (crossings.len() + usize::from(touches)).is_multiple_of(2);
         let mut ends = crossings.iter();
         let mut spans = Vec::new();
@@ -55,10 +52,15 @@ impl RowBoundary {
     /// The span that the push angle is on, if any.
     #[must_use]
     pub fn span(&self, push: f64) -> Option<&Span> {
-        let spans = self.spans.as_deref().unwrap_or_default();
-        spans
+        self.spans()
             .iter()
             .find(|span| span.from - TIE <= push && push <= span.to + TIE)
+    }
+
+    /// The spans: the one from first touch, if there is one, before the others; none where the boundary is not known.
+    #[must_use]
+    pub fn spans(&self) -> &[Span] {
+        self.spans.as_deref().unwrap_or_default()
     }
 
     /// Whether `push` is on an end of `span` beyond which there is no state; first touch is no such end.

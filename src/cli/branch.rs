@@ -15,8 +15,8 @@ Examples:
   whiskmap branch scenes/cone.toml --distance 15.66 | less
   whiskmap branch scenes/cone.toml --distance 15.66 --side cb --csv branch.csv --plot branch.png
 
-Points are evenly spaced in push angle, contact angle and arclength together, from first touch (mark: touch) through
-the fold (fold), where stable and unstable states meet, to the tip (tip) or the end of the unstable states
+Points are evenly spaced in push angle, contact angle and arclength together, from first touch (mark: touch) \
+through the fold (fold), where stable and unstable states meet, to the tip (tip) or the end of the unstable states \
 (second-fold). The column det is det d(D, phi)/d(s_obj, f) with lengths in whisker lengths.")]
 pub struct Options {
     #[command(flatten)]
@@ -62,15 +62,12 @@ pub fn run(options: &Options) -> Result<(), Failure> {
                 .map_err(|why| options.pole.refuse(why))?,
         );
     }
-    if let Some(table) = &mut outputs.table {
-        table.rows(&points)?;
-    }
-    let chart = Chart {
+    outputs.rows(&points)?;
+    outputs.finish(|| Chart {
         title: format!("{}, touched at {} mm", scene.title, options.pole.distance),
         plots: vec![branches("", &points, AXES)],
         columns: 1,
-    };
-    outputs.finish(Some(&chart))
+    })
 }
 
 const AXES: [BranchAxis; 2] = [

@@ -1,16 +1,14 @@
 //! `whiskmap curve`.
 
-use super::failure::Failure;
-use super::outputs::Outputs;
+use super::failure::{Failure, say};
+use super::outputs::{Opened, Outputs};
 use crate::model::Side;
 use crate::render::{Chart, CurveAxis, curves};
 use crate::scene::{Morphology, Scene, Whisker};
-use crate::store::Table;
-use crate::trace::{self, Corner, Detachment};
+use crate::trace::{self, Corner, Detachment, Kind};
 use clap::Args;
 use rayon::prelude::*;
 use serde::Serialize;
-use std::io;
 use std::path::PathBuf;
 
 /// Options of `curve`.
@@ -21,9 +19,10 @@ Examples:
   whiskmap curve scenes/cone.toml --csv curve.csv --plot curve.svg
   whiskmap curve scenes/cone.toml --corner
 
-One line per side and distance of the scene, CF before CB; angles are positive for CB and negative for CF. Lines
-without values are out of reach. A scene with taper or curvature axes gives the curve of every whisker, with the
-leading columns taper and curvature_per_mm.")]
+One line per side and distance of the scene, CF before CB; angles are positive for CB and negative for CF. The kind \
+is slip-off, pull-off or out-of-reach, the last one without values; unresolved, which is said on standard error, \
+marks an end that was not found. A scene with taper or curvature axes gives the curve of every whisker, with the \
+leading columns taper and curvature_per_mm; a plot shows one whisker.")]
 pub struct Options {
     /// Scene file; - reads it from standard input
     scene: PathBuf,
@@ -49,6 +48,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     }
     let mut outputs = options.outputs.open()?;
     let mut drawn = Vec::new();
+    let mut unresolved = 0;
     for group in whiskers.chunks(AT_ONCE) {
         let sides = || {
             group
@@ -62,7 +62,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
                     (*morphology, corner)
                 })
                 .collect();
-            write(&scene, outputs.table.as_mut(), &rows)?;
+            write(&scene, &mut outputs, &rows)?;
         } else {
             let rows: Vec<(Morphology, Detachment)> = sides()
                 .flat_map_iter(|((morphology, whisker), side)| {
@@ -71,30 +71,36 @@ pub fn run(options: &Options) -> Result<(), Failure> {
                     curve.into_iter().map(|row| (*morphology, row))
                 })
                 .collect();
-            write(&scene, outputs.table.as_mut(), &rows)?;
+            write(&scene, &mut outputs, &rows)?;
+            let lost = rows.iter().filter(|(_, row)| row.kind == Kind::Unresolved);
+            unresolved += lost.count();
             if options.outputs.has_plot() {
                 drawn.extend(rows.into_iter().map(|(_, row)| row));
             }
         }
     }
-    let chart = Chart {
+    if unresolved > 0 {
+        say(&format!(
+            "{unresolved} ends were not found: their kind is unresolved"
+        ));
+    }
+    outputs.finish(|| Chart {
         title: scene.title.clone(),
         plots: vec![curves("", &drawn, AXES)],
         columns: 1,
-    };
-    outputs.finish(Some(&chart))
+    })
 }
 
 /// Writes the rows of some whiskers, with the leading columns only where the scene has an axis for them.
 fn write<R: Serialize>(
     scene: &Scene,
-    table: Option<&mut Table>,
+    outputs: &mut Opened,
     rows: &[(Morphology, R)],
-) -> io::Result<()> {
-    match table {
-        None => Ok(()),
-        Some(table) if scene.is_sweep() => table.rows(rows),
-        Some(table) => table.rows(rows.iter().map(|(_, row)| row)),
+) -> Result<(), Failure> {
+    if scene.is_sweep() {
+        outputs.rows(rows)
+    } else {
+        outputs.rows(rows.iter().map(|(_, row)| row))
     }
 }
 

@@ -4,6 +4,7 @@ use super::failure::Failure;
 use crate::render::{Chart, ChartFormat};
 use crate::store::Table;
 use clap::Args;
+use serde::Serialize;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
@@ -20,12 +21,10 @@ pub struct Outputs {
 
 /// The outputs of a run, found to be possible before any work.
 pub struct Opened {
-    /// The table.
-    pub table: Option<Table>,
-    /// The picture.
-    pub plot: Option<(PathBuf, ChartFormat)>,
-    /// Files to be named when they are done.
-    files: Vec<PathBuf>,
+    table: Option<Table>,
+    /// The table's file; standard output has none.
+    csv: Option<PathBuf>,
+    plot: Option<(PathBuf, ChartFormat)>,
 }
 
 impl Outputs {
@@ -44,7 +43,7 @@ impl Outputs {
             (None, Some(_)) => None,
         };
         if let (Some(csv), Some((plot, _))) = (csv, &plot)
-            && csv == plot
+            && same(csv, plot)
         {
             let csv = csv.display();
             return Err(Failure::Input(format!(
@@ -57,30 +56,57 @@ impl Outputs {
             }
             Table::create(csv).map_err(|error| refused("--csv", csv, &error))
         });
-        let files = [csv.filter(|csv| *csv != stdout), self.plot.as_deref()];
         Ok(Opened {
             table: table.transpose()?,
-            files: files.into_iter().flatten().map(Path::to_owned).collect(),
+            csv: csv.filter(|csv| *csv != stdout).map(Path::to_owned),
             plot,
         })
     }
 }
 
 impl Opened {
-    /// Finishes the table, draws the picture, and names the files unless standard output is taken by the table.
-    pub fn finish(self, chart: Option<&Chart>) -> Result<(), Failure> {
-        if let Some(table) = self.table {
-            table.finish()?;
-        }
-        if let (Some((path, format)), Some(chart)) = (&self.plot, chart) {
-            chart.save(path, *format)?;
+    /// Appends rows to the table, if there is one.
+    pub fn rows<R: Serialize>(&mut self, rows: impl IntoIterator<Item = R>) -> Result<(), Failure> {
+        let written = self.table.as_mut().map_or(Ok(()), |table| table.rows(rows));
+        written.map_err(|cause| self.unwritten(cause))
+    }
+
+    /// Finishes the table, draws the picture, and names the files.
+    pub fn finish(mut self, chart: impl FnOnce() -> Chart) -> Result<(), Failure> {
+        let finished = self.table.take().map_or(Ok(()), Table::finish);
+        finished.map_err(|cause| self.unwritten(cause))?;
+        if let Some((path, format)) = &self.plot {
+            chart().save(path, *format)?;
         }
         let mut out = io::stdout().lock();
-        for file in &self.files {
+        let files = [self.csv, self.plot.map(|(path, _)| path)];
+        for file in files.into_iter().flatten() {
             writeln!(out, "{}", file.display())?;
         }
         Ok(())
     }
+
+    fn unwritten(&self, cause: io::Error) -> Failure {
+        match &self.csv {
+            Some(path) => Failure::Write {
+                path: path.clone(),
+                cause,
+            },
+            None => Failure::Output(cause),
+        }
+    }
+}
+
+/// Whether two paths name one file, there or not.
+fn same(one: &Path, other: &Path) -> bool {
+    let place = |path: &Path| {
+        let folder = path
+            .parent()
+            .filter(|folder| !folder.as_os_str().is_empty());
+        let folder = folder.unwrap_or(Path::new(".")).canonicalize().ok();
+        (folder, path.file_name().map(ToOwned::to_owned))
+    };
+    place(one) == place(other)
 }
 
 /// The picture's file and format; its folder must be there.

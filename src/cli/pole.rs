@@ -12,7 +12,7 @@ pub struct Pole {
     /// Scene file; - reads it from standard input
     scene: PathBuf,
     /// Distance from the base to the contact at first touch
-    #[arg(long, value_name = "MM")]
+    #[arg(long, value_name = "MM", allow_hyphen_values = true)]
     pub distance: f64,
 }
 
@@ -42,11 +42,11 @@ impl Pole {
             }
         };
         let (nearest, farthest) = scene.distances_mm();
-        let distance = self.distance;
-        if !(nearest < distance && distance <= farthest) {
+        let (distance, radius) = (self.distance, scene.pole.radius_mm);
+        if !(nearest <= distance && distance <= farthest && distance > radius) {
             return Err(Failure::Input(format!(
-                "--distance {distance}: must be more than {nearest} (length_mm / 1000 or pole.radius_mm) and at most \
-                 {farthest} (10 * length_mm)"
+                "--distance {distance}: must be between {nearest} (length_mm / 1000) and {farthest} (10 * length_mm), \
+                 and more than {radius} (pole.radius_mm)"
             )));
         }
         Ok((scene, whisker))

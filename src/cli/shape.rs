@@ -16,15 +16,18 @@ Examples:
   whiskmap shape scenes/cone.toml --distance 15.66 --push-angle 10 --branch unstable --csv shape.csv
   whiskmap shape scenes/cone.toml --distance 15.66 --push-angle -20
 
-The origin is at the base and the first axis along the base's tangent at first touch. Since then the base has turned
-by the push angle, and the pole has stayed where it is. The column part says which places are loaded, which one is
-the contact, and which are free.")]
+The origin is at the base and the first axis along the base's tangent at first touch. Since then the base has \
+turned by the push angle, and the pole has stayed where it is. The column part says which places are loaded, \
+which one is the contact, and which are free.")]
 pub struct Options {
     #[command(flatten)]
     pole: Pole,
     /// Rotation of the base since first touch: positive CB, negative CF
-    #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
+    #[arg(long, value_name = "DEG", allow_hyphen_values = true)]
     push_angle: f64,
+    /// Side of the whisker that the pole is on [default: that of the push angle's sign]
+    #[arg(long, value_enum)]
+    side: Option<OneSide>,
     /// Which of the two states there are below the fold
     #[arg(long, value_enum, default_value = "stable")]
     branch: Part,
@@ -33,6 +36,15 @@ pub struct Options {
     points: u32,
     #[command(flatten)]
     outputs: Outputs,
+}
+
+/// Sides by name; unstable states reach push angles of the other sign.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum OneSide {
+    /// Concave backward: the pole is on the convex side
+    Cb,
+    /// Concave forward: the pole is on the concave side
+    Cf,
 }
 
 /// Parts of a branch by name.
@@ -54,7 +66,11 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         )));
     }
     let mut outputs = options.outputs.open()?;
-    let side = Side::of_push(push_deg);
+    let side = match options.side {
+        Some(OneSide::Cb) => Side::Cb,
+        Some(OneSide::Cf) => Side::Cf,
+        None => Side::of_push(push_deg),
+    };
     let stable = options.branch == Part::Stable;
     let refuse = |why| match why {
         NoState::OutOfReach { .. } | NoState::Lost { .. } => options.pole.refuse(why),
@@ -66,9 +82,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         .map_err(refuse)?;
     let count = options.points as usize;
     let shape = Shape::new(&branch, &state, count);
-    if let Some(table) = &mut outputs.table {
-        table.rows(&shape.points)?;
-    }
+    outputs.rows(&shape.points)?;
     let (stroke, name) = if stable {
         (Stroke::Solid, "stable")
     } else {
@@ -80,11 +94,9 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         stroke,
         name: format!("{name}, {push_deg} deg"),
     };
-    let at_rest = Shape::at_rest(&branch, count);
-    let chart = Chart {
+    outputs.finish(|| Chart {
         title: format!("{}, touched at {} mm", scene.title, options.pole.distance),
-        plots: vec![shapes("", at_rest, &[drawn])],
+        plots: vec![shapes("", Shape::at_rest(&branch, count), &[drawn])],
         columns: 1,
-    };
-    outputs.finish(Some(&chart))
+    })
 }

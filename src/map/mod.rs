@@ -1,6 +1,7 @@
 //! The stages in order, for a whole scene: sheets, guesses, shooting, refinement, regimes, panels.
 
 mod cells;
+mod doubt;
 mod panel;
 mod summary;
 

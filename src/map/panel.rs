@@ -1,6 +1,6 @@
 //! From settled cells to the panel of a whisker, in the units of the map.
 
-use super::{Face, cells::Cell};
+use super::{Face, cells::Cell, doubt};
 use crate::classify::{Regime, RowBoundary, Status};
 use crate::model::Units;
 use crate::refine::{State, TIP_TIE};
@@ -40,10 +40,27 @@ pub fn fill(
             let boundary = face.sheet.as_ref().map(|sheet| {
                 RowBoundary::new(sheet.touches(row[0].row), &sheet.crossings[row[0].row])
             });
-            row.iter().map(move |cell| {
-                let push = scene.grid.push_angle_deg[cell.column];
-                answer(cell, push, face.sheet.as_ref(), boundary.as_ref(), &units)
-            })
+            let push = |cell: &Cell| scene.grid.push_angle_deg[cell.column];
+            let answer = |cell: &Cell| {
+                let sheet = face.sheet.as_ref();
+                answer(cell, push(cell), sheet, boundary.as_ref(), &units)
+            };
+            let mut answers: Vec<Answer> = row.iter().map(answer).collect();
+            let in_doubt = |answer: &Answer| answer.regime == Regime::Unresolved;
+            if let (Some(sheet), Some(boundary)) = (&face.sheet, &boundary)
+                && answers.iter().any(in_doubt)
+            {
+                let mut again = row.to_vec();
+                let doubtful = again.iter_mut().zip(&answers);
+                let doubtful = doubtful.filter(|(_, answer)| in_doubt(answer));
+                let doubtful = doubtful.map(|(cell, _)| {
+                    let push = push(cell).to_radians();
+                    (cell, push)
+                });
+                doubt::settle(sheet, row[0].row, boundary, doubtful);
+                answers = again.iter().map(answer).collect();
+            }
+            answers
         })
         .collect();
     for (cell, answer) in cells.iter().zip(&answers) {

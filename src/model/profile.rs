@@ -32,12 +32,23 @@ pub fn profile(rod: &Rod, tau: f64, load: f64, resolution: Resolution, at: &[f64
         ([start.tangent.x, start.tangent.y, 0.0, 0.0], []),
     );
     let mut from = tau;
+    // Parts of a trajectory take their shares of the steps that the whole would take.
+    let part = |length: f64| {
+        let share = f64::from(resolution.steps(rod, tau)) * length / tau;
+        #[allow(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a share of a small number"
+        )]
+        let share = share.ceil() as u32;
+        share.max(1)
+    };
     let mut places: Vec<Place> = at[..deflected]
         .iter()
         .rev()
         .map(|s| {
             let to = rod.tau(*s);
-            state = advance(rod, start.force, resolution, (from, to), state);
+            state = advance(rod, start.force, part(from - to), (from, to), state);
             from = to;
             loaded(rod, *s, start.force, &state)
         })
@@ -51,23 +62,10 @@ pub fn profile(rod: &Rod, tau: f64, load: f64, resolution: Resolution, at: &[f64
 fn advance(
     rod: &Rod,
     force: f64,
-    resolution: Resolution,
+    steps: u32,
     (from, to): (f64, f64),
     state: State<f64, Bent<f64>, 0>,
 ) -> State<f64, Bent<f64>, 0> {
-    // A whole trajectory takes `least` steps at least; a part of one takes its share.
-    let share = ((from - to) / rod.tau_tip() * f64::from(resolution.least)).ceil();
-    #[allow(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "a share of `least`, at most some times as large"
-    )]
-    let least = (share as u32).max(1);
-    let steps = Resolution {
-        least,
-        ..resolution
-    }
-    .steps(rod, from - to);
     let h = (from - to) / f64::from(steps);
     let rho = rod.radius(from);
     let radius = Radius {

@@ -113,7 +113,7 @@ fn fig2() -> Result<Figure, NoState> {
                 (true, _) => "stable",
                 (false, _) => "unstable",
             };
-            let name = format!("{kind}, {push_deg:.1} deg");
+            let name = format!("{kind}, {push_deg:.2} deg");
             found.push((Shape::new(&branch, &state, BODY_POINTS), ink, stroke, name));
         }
         let drawn: Vec<Drawn> = found

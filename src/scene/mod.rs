@@ -140,12 +140,11 @@ impl Scene {
         self.grid.taper.is_some() || self.grid.curvature_per_mm.is_some()
     }
 
-    /// The distances that a pole may have: more than the first, and at most the second.
+    /// The smallest and the largest distance of first touch; it must be more than the pole's radius, too.
     #[must_use]
     pub fn distances_mm(&self) -> (f64, f64) {
         let length = self.whisker.length_mm;
-        let nearest = (length / NEAREST).max(self.pole.radius_mm);
-        (nearest, FARTHEST * length)
+        (length / NEAREST, FARTHEST * length)
     }
 }
 

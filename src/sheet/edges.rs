@@ -27,6 +27,17 @@ pub struct Crossing {
     pub residual: f64,
 }
 
+/// The largest error, relative to the distance of the pole, of a crossing that is taken for one.
+const SOUND: f64 = 1e-10;
+
+impl Crossing {
+    /// Whether Newton's method found it.
+    #[must_use]
+    pub fn is_sound(&self) -> bool {
+        self.residual <= SOUND
+    }
+}
+
 /// Samples along the tip edge; the distance has at most a few extrema there.
 const TIP_SAMPLES: usize = 64;
 
@@ -126,6 +137,12 @@ impl Edges {
             .collect();
         tip.extend(fold.last());
         Self { fold, tip }
+    }
+
+    /// Whether the distance grows along the fold from the base to the tip, so that no row crosses it twice.
+    #[must_use]
+    pub fn fold_grows(&self) -> bool {
+        self.fold.is_sorted_by(|a, b| a.ln_distance < b.ln_distance)
     }
 
     /// Whether a whisker at rest reaches the pole of this row.

@@ -5,7 +5,7 @@
 //! trajectory brings along; predictor along the tangent, corrector along the gradient. Its length is measured where
 //! people look at it: in push angle, contact angle (both in radians) and arclength of the contact (in whisker lengths).
 
-use super::Row;
+use super::{Crossing, Row};
 use crate::model::batch::{Launch, Method, land};
 use crate::model::{Dopri8, FirstAndEnergy, Full, Rod, Side, arclength, nearest_turn};
 use glam::{DVec2, DVec3};
@@ -52,6 +52,14 @@ impl LevelCurve {
             push: 0.0,
             ..self.node(at_touch, &full, 0.0, 0.0)
         })
+    }
+
+    /// The state at a crossing.
+    #[must_use]
+    pub fn at(&self, crossing: &Crossing) -> Option<Node> {
+        let at = DVec2::new(crossing.tau, crossing.load);
+        let (point, full) = self.settle(&[at], ON_CURVE).pop()??;
+        Some(self.node(point, &full, self.side.sign() * crossing.push, 0.0))
     }
 
     /// The state `full` at `point`, its angles continued from `push` and `angle`.

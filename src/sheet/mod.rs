@@ -8,9 +8,11 @@
 
 mod columns;
 mod edges;
+mod find;
 mod fold;
 mod lattice;
 mod level;
+mod pieces;
 mod polynomial;
 mod rows;
 mod seek;
@@ -49,8 +51,10 @@ pub struct Sheet {
     pub side: Side,
     /// The rows.
     pub rows: Vec<Row>,
-    /// Per row: where it leaves the sheet, sorted by push angle; but where a push from first touch ends comes first.
+    /// Per row: where it leaves and enters the sheet. The end of a push from first touch comes first, if there is one;
+    /// then the ends of each other piece of the row, in the direction of growing push angles.
     pub crossings: Vec<Vec<Crossing>>,
+    method: Method,
     columns: Columns,
     lattice: Lattice,
     edges: Edges,
@@ -75,14 +79,16 @@ impl Sheet {
         let edges = Edges::new(method, rod, &columns, &lattice);
         let mut crossings = edges::crossings(method, rod, side, &edges, &rows);
         for (row, crossings) in rows.iter().zip(&mut crossings) {
-            if crossings.len() > 1 && edges.touches(row) {
+            let touches = edges.touches(row);
+            let pair = edges.fold_grows() && usize::from(touches) + crossings.len() == 2;
+            if !(crossings.is_empty() || pair && crossings.iter().all(Crossing::is_sound)) {
                 let level = LevelCurve {
                     method,
                     rod: *rod,
                     side,
                     row: *row,
                 };
-                lead_with_the_end(&level, crossings);
+                *crossings = pieces::connect(&level, touches, crossings);
             }
         }
         Some(Self {
@@ -90,6 +96,7 @@ impl Sheet {
             side,
             rows,
             crossings,
+            method,
             columns,
             lattice,
             edges,
@@ -104,6 +111,17 @@ impl Sheet {
             resolution: FINE,
         };
         fold::first_folds(method, rod, side, &[rod.tau_tip()]).pop()?
+    }
+
+    /// The level curve of `row`.
+    #[must_use]
+    pub fn level(&self, row: usize) -> LevelCurve {
+        LevelCurve {
+            method: self.method,
+            rod: self.rod,
+            side: self.side,
+            row: self.rows[row],
+        }
     }
 
     /// Whether the whisker at rest reaches the pole of `row`.
@@ -127,21 +145,5 @@ impl Sheet {
         let scale = landing.by_tau.length() * landing.by_load.length();
         let before_fold = landing.det() > -1e-7 * scale;
         part > -UNLOADED && part < 1.0 + 1e-4 && before_fold
-    }
-}
-
-/// Moves the crossing where a push from first touch ends to the front. With several crossings the level curve of `D` is
-/// in several pieces (with friction, `D` can have a saddle on the sheet), and only walking along it tells which crossing
-/// belongs to first touch. Where the walk fails, none does.
-fn lead_with_the_end(level: &LevelCurve, crossings: &mut Vec<Crossing>) {
-    let end = walk(level, false).and_then(|walk| Some((walk.end, *walk.nodes.last()?)));
-    let ours = end.and_then(|(edge, node)| {
-        let candidates = crossings.iter().enumerate().filter(|(_, c)| c.edge == edge);
-        let away = |c: &Crossing| (c.tau - node.point.x).abs();
-        candidates.min_by(|(_, a), (_, b)| away(a).total_cmp(&away(b)))
-    });
-    match ours.map(|(index, _)| index) {
-        Some(index) => crossings[..=index].rotate_right(1),
-        None => crossings.clear(),
     }
 }

@@ -1,4 +1,4 @@
-//! From first touch through the fold to the end of the branch, in steps that suit the curve.
+//! Along a level curve, through the fold to the end of the branch, in steps that suit the curve.
 
 use super::level::{LevelCurve, Node, ON_CURVE};
 use super::seek::{Edge, Wanted, seek};
@@ -28,7 +28,7 @@ const FOUND: f64 = 1e-8;
 /// A branch as it was walked.
 #[derive(Clone, Debug)]
 pub struct Walk {
-    /// From first touch on.
+    /// From the start on.
     pub nodes: Vec<Node>,
     /// Index of the fold; `None` where the tip comes first.
     pub fold: Option<usize>,
@@ -36,10 +36,14 @@ pub struct Walk {
     pub end: Edge,
 }
 
-/// Walks along `level`, past the fold or only to it; `None` where the continuation gets lost.
+/// What `ln D` may miss at the tip, where moving the contact would do more harm.
+const TIP_MISS: f64 = 1e-11;
+
+/// Walks along `level` from `start` in the direction of growing push angles, past the fold or only to it; `None` where
+/// the continuation gets lost.
 #[must_use]
-pub fn walk(level: &LevelCurve, past_fold: bool) -> Option<Walk> {
-    let mut nodes = vec![level.touch()?];
+pub fn walk(level: &LevelCurve, start: Node, past_fold: bool) -> Option<Walk> {
+    let mut nodes = vec![start];
     let mut fold = None;
     let mut step = FIRST_STEP;
     while nodes.len() < MOST_NODES && step > SHORTEST_STEP {
@@ -140,8 +144,12 @@ fn edge(level: &LevelCurve, edge: Edge, from: &Node, to: &Node) -> Option<Node> 
         from: start,
     };
     let sought = *seek(level.method, &[wanted]).first()?;
-    // At a fold rounding can leave Newton's method a little beside the curve.
-    let (point, full) = level.settle(&[sought.point], ON_CURVE).pop()??;
+    // At a fold rounding can leave Newton's method a little beside the curve; at the tip it is on it.
+    let tolerance = match edge {
+        Edge::Fold => ON_CURVE,
+        Edge::Tip => TIP_MISS,
+    };
+    let (point, full) = level.settle(&[sought.point], tolerance).pop()??;
     let node = level.node(point, &full, from.push, from.angle);
     let reach = 2.0 * level.length(from, to) + f64::EPSILON;
     let near = level.length(from, &node).max(level.length(to, &node)) <= reach;

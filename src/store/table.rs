@@ -2,6 +2,7 @@
 
 use super::beside;
 use serde::Serialize;
+use std::fs::File;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
@@ -47,7 +48,15 @@ impl Table {
         if path.is_dir() {
             return Err(io::ErrorKind::IsADirectory.into());
         }
-        Ok(Self::of(Sink::File(beside(path, ".csv")?, path.to_owned())))
+        match path.canonicalize() {
+            // A device or a pipe is written to, not replaced; a link keeps pointing where it does.
+            Ok(real) if !real.is_file() => {
+                let device = File::options().write(true).open(real)?;
+                Ok(Self::stream(Box::new(device)))
+            }
+            Ok(real) => Ok(Self::of(Sink::File(beside(&real, ".csv")?, real))),
+            Err(_) => Ok(Self::of(Sink::File(beside(path, ".csv")?, path.to_owned()))),
+        }
     }
 
     fn of(sink: Sink) -> Self {

@@ -74,7 +74,10 @@ impl Branch {
         Ok(Self {
             level,
             units: Units::new(whisker),
-            walk: walk(&level, true).ok_or(NoState::Lost { push_deg: 0.0 })?,
+            walk: level
+                .touch()
+                .and_then(|touch| walk(&level, touch, true))
+                .ok_or(NoState::Lost { push_deg: 0.0 })?,
         })
     }
 

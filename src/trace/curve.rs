@@ -169,10 +169,11 @@ pub fn corner(whisker: &Whisker, pole: &Pole, side: Side) -> Corner {
             .filter(switches)
             .or_else(|| switch(&end, length, rod.pole.abs()))
     });
+    let push = distance.and_then(|distance| end(distance).push_angle_deg);
     Corner {
         side,
-        distance_mm: distance,
-        push_angle_deg: distance.and_then(|distance| end(distance).push_angle_deg),
+        distance_mm: distance.filter(|_| push.is_some()),
+        push_angle_deg: push,
     }
 }
 

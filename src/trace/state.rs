@@ -2,10 +2,7 @@
 
 use super::{Branch, NoState};
 use crate::model::Full;
-use crate::sheet::{Node, ON_CURVE, Walk};
-
-/// Rounds of the search between two nodes; bisection alone would need 50.
-const MOST_ROUNDS: usize = 100;
+use crate::sheet::Walk;
 
 /// A state found on a branch.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,12 +35,19 @@ impl Branch {
             }
         };
         let (first, last) = (&part[0], &part[part.len() - 1]);
-        let above = |node: &Node| self.level.side.sign() * (node.push - push) > 0.0;
-        let Some(k) = part.windows(2).position(|pair| {
-            above(&pair[0]) != above(&pair[1]) || pair[0].push == push || pair[1].push == push
-        }) else {
+        // A push angle that was printed in degrees may come back some roundings beyond the end.
+        let ends = [first.push.min(last.push), first.push.max(last.push)];
+        let inside = push.clamp(ends[0], ends[1]);
+        let push = if (inside - push).abs() <= 8.0 * f64::EPSILON * push.abs() {
+            inside
+        } else {
+            push
+        };
+        let Some(node) = self.level.find(part, push) else {
             let at_deg = last.push.to_degrees();
+            let within = (first.push - push) * (last.push - push) <= 0.0;
             return Err(match (stable, fold, end) {
+                _ if within => self.lost(),
                 (false, ..) => NoState::NotUnstable {
                     ends_deg: [first.push.to_degrees(), at_deg],
                 },
@@ -51,44 +55,11 @@ impl Branch {
                 (true, None, _) => NoState::PulledOff { at_deg },
             });
         };
-        let node = self.between(&part[k], &part[k + 1], push)?;
         Ok(Found {
             tau: node.point.x,
             load: node.point.y,
             push,
             full: node.full,
         })
-    }
-
-    /// The node at `push` between two others: regula falsi along the curve, with the Illinois weights, which needs no
-    /// Jacobian and so is as good at the fold as elsewhere.
-    fn between(&self, from: &Node, to: &Node, push: f64) -> Result<Node, NoState> {
-        let miss = |node: &Node| node.push - push;
-        let (mut low, mut at_low) = (0.0, miss(from));
-        let (mut high, mut at_high) = (1.0, miss(to));
-        let mut best = if at_low.abs() < at_high.abs() {
-            *from
-        } else {
-            *to
-        };
-        for _ in 0..MOST_ROUNDS {
-            if miss(&best).abs() <= f64::EPSILON * push.abs() || high - low <= f64::EPSILON {
-                break;
-            }
-            let t = (low * at_high - high * at_low) / (at_high - at_low);
-            let start = from.point.lerp(to.point, t.clamp(0.0, 1.0));
-            let settled = self.level.settle(&[start], ON_CURVE).pop().flatten();
-            let (point, full) = settled.ok_or_else(|| self.lost())?;
-            let node = self.level.node(point, &full, from.push, from.angle);
-            if miss(&node).abs() < miss(&best).abs() {
-                best = node;
-            }
-            if (miss(&node) > 0.0) == (at_high > 0.0) {
-                (high, at_high, at_low) = (t, miss(&node), 0.5 * at_low);
-            } else {
-                (low, at_low, at_high) = (t, miss(&node), 0.5 * at_high);
-            }
-        }
-        Ok(best)
     }
 }

@@ -193,6 +193,87 @@ fn a_shape_is_the_state_asked_for() {
     }
 }
 
+/// The push angle of the fold, as printed, is a state, whichever way degrees are rounded.
+#[test]
+fn the_fold_can_be_asked_for() {
+    let place = Place::with(SCENE);
+    for distance in ["5.5", "8", "11.3", "14.1", "15.66", "17.9"] {
+        for side in ["cb", "cf"] {
+            let run = good(
+                &place,
+                &[
+                    "branch",
+                    "scene.toml",
+                    "--distance",
+                    distance,
+                    "--side",
+                    side,
+                ],
+            );
+            let rows = cells(&run.out, BRANCH);
+            let fold = rows.iter().find(|row| row[9] == "fold").unwrap();
+            for branch in ["stable", "unstable"] {
+                let at = [
+                    "shape",
+                    "scene.toml",
+                    "--distance",
+                    distance,
+                    "--push-angle",
+                    fold[2],
+                ];
+                good(
+                    &place,
+                    &[&at[..], &["--branch", branch, "--points=2"]].concat(),
+                );
+            }
+        }
+    }
+    // Unstable states reach across first touch.
+    let at = [
+        "shape",
+        "scene.toml",
+        "--distance=15.66",
+        "--push-angle",
+        "-20",
+        "--branch=unstable",
+    ];
+    let run = good(&place, &[&at[..], &["--side", "cb"]].concat());
+    assert!(run.out.starts_with(SHAPE));
+    good(
+        &place,
+        &[
+            "shape",
+            "scene.toml",
+            "--distance=9",
+            "--push-angle",
+            "-1e-5",
+        ],
+    );
+}
+
+/// What is not a plain file is written to, not replaced.
+#[cfg(unix)]
+#[test]
+fn links_and_devices_stay_what_they_are() {
+    let place = Place::with(SCENE);
+    let run = good(&place, &["curve", "scene.toml", "--csv", "/dev/null"]);
+    assert_eq!(run.out, "/dev/null\n");
+    place.write("real.csv", "");
+    std::os::unix::fs::symlink("real.csv", place.path("link.csv")).unwrap();
+    good(&place, &["curve", "scene.toml", "--csv", "link.csv"]);
+    assert!(place.path("link.csv").is_symlink());
+    assert!(place.bytes("real.csv").starts_with(CURVE.as_bytes()));
+    let full = place.run(&["curve", "scene.toml", "--csv", "/dev/full"]);
+    assert_eq!(full.code, Some(1), "{full:?}");
+    assert!(
+        full.err.contains("cannot write /dev/full: No space left"),
+        "{full:?}"
+    );
+    place
+        .run(&["curve", "scene.toml", "--csv", "a.svg", "--plot", "./a.svg"])
+        .assert_refused(&["must be two files"]);
+}
+
 #[test]
 fn states_that_do_not_exist_have_a_reason() {
     let place = Place::with(SCENE);
@@ -229,8 +310,8 @@ fn wrong_arguments_are_refused_before_any_work() {
         let run = place.run(&["branch", "scene.toml", "--distance", distance]);
         let shown = if distance == "nan" { "NaN" } else { distance };
         run.assert_refused(&[
-            &format!("--distance {shown}: must be more than 0.25"),
-            "at most 200",
+            &format!("--distance {shown}: must be between 0.02"),
+            "and more than 0.25",
         ]);
     }
     let refused = |more: &[&str], parts: &[&str]| {

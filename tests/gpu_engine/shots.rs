@@ -51,7 +51,6 @@ pub fn rod(effects: Effects, random: &mut Random) -> Rod {
         slope: -2.0 * bend * random.between(-0.3, 0.3),
         pole: side * random.between(0.0, 0.03),
         friction: side * random.between(0.0, 0.5),
-        ..Rod::default()
     }
 }
 

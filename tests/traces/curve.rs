@@ -1,7 +1,9 @@
 //! Detachment curves and their corners.
 
 use crate::{POLE, everything, whisker};
-use whiskmap::model::Side;
+use whiskmap::model::{Effects, Rod, Side};
+use whiskmap::scene::Curvature;
+use whiskmap::sheet::Sheet;
 use whiskmap::trace::{Branch, Kind, corner, curve};
 
 /// 1e-8 mm before the corner a push ends at the fold, 1e-8 mm behind it at the tip.
@@ -83,4 +85,48 @@ fn rows_out_of_reach_have_no_values() {
         (ends[1].push_angle_deg, ends[1].force_un, ends[1].residual),
         (None, None, None)
     );
+}
+
+/// Strongly bent cylinders with their vertex along the way: level curves in several pieces, and folds at push angles
+/// of the other sign. The first edge on the branch decides.
+#[test]
+fn the_branch_decides_where_rows_leave_the_sheet_more_than_once() {
+    let (mut compared, mut several) = (0, 0);
+    for (a_length, vertex) in [(1.14, 0.71), (2.56, 0.47), (1.86, 0.5), (0.8, -1.0)] {
+        for tip in [30.0, 12.0, 1.5] {
+            let mut whisker = whisker(tip, a_length / 20.0);
+            whisker.curvature = Some(Curvature {
+                parabola_per_mm: a_length / 20.0,
+                vertex_mm: 20.0 * vertex,
+            });
+            let distances: Vec<f64> = (1..20).map(|i| 0.7 * f64::from(i)).collect();
+            for side in Side::BOTH {
+                for (distance, end) in distances
+                    .iter()
+                    .zip(curve(&whisker, &POLE, side, &distances))
+                {
+                    let Ok(branch) = Branch::new(&whisker, &POLE, side, *distance) else {
+                        continue;
+                    };
+                    let points = branch.points(12).unwrap();
+                    let last = points.iter().rfind(|point| point.stable).unwrap();
+                    let case =
+                        format!("tip {tip} A L {a_length} vertex {vertex} {side:?} at {distance}");
+                    let push = end
+                        .push_angle_deg
+                        .unwrap_or_else(|| panic!("{case}: {end:?}"));
+                    assert!(
+                        (push - last.push_angle_deg).abs() < 1e-8,
+                        "{case}: {push} {last:?}"
+                    );
+                    compared += 1;
+                    let rod = Rod::new(&whisker, &POLE, side);
+                    let sheet =
+                        Sheet::new(Effects::of([&rod]), &rod, side, &[distance / 20.0]).unwrap();
+                    several += usize::from(sheet.crossings[0].len() > 1);
+                }
+            }
+        }
+    }
+    assert!(compared > 300 && several > 5, "{compared} {several}");
 }

@@ -108,3 +108,23 @@ fn without_a_push_the_whisker_is_at_rest() {
         }
     }
 }
+
+/// However few places are asked for, and however near the contact.
+#[test]
+fn a_shape_is_exact_at_every_count() {
+    for (whisker, pole) in everything() {
+        let distance = 0.02 * whisker.length_mm + pole.radius_mm;
+        for side in Side::BOTH {
+            let branch = Branch::new(&whisker, &pole, side, distance).unwrap();
+            let state = branch.state(side.sign() * 1.2, true).unwrap();
+            for count in [2, 5, 20, 333] {
+                let base = Shape::new(&branch, &state, count).points[0];
+                let miss = base.x_mm.hypot(base.y_mm);
+                assert!(
+                    miss < 1e-10,
+                    "{whisker:?} {pole:?} {side:?} {count}: {base:?}"
+                );
+            }
+        }
+    }
+}

@@ -1,0 +1,88 @@
+//! Cells in doubt, settled once more by walking along the level curve of their row.
+//!
+//! The lattice follows a row from load to load. Where a level curve runs almost along a line of constant load, as near
+//! the tip of a perfect cone, or turns back, as with friction, its guesses can miss. A walk needs no guesses; it costs
+//! some hundred trajectories a row, so only rows with a cell in doubt are walked.
+
+use super::cells::Cell;
+use crate::classify::{RowBoundary, Status, TIE};
+use crate::refine::{State, TOLERANCE};
+use crate::sheet::{Edge, LevelCurve, Node, Sheet, walk};
+
+/// How far, in radians, the end of a walk may be from the boundary, which was computed apart from it.
+const SAME_END: f64 = 1e-9;
+
+/// Settles `cells` of `row`, each with its signed push angle in radians, again. Cells that a walk does not reach keep
+/// what they have.
+pub fn settle<'a>(
+    sheet: &Sheet,
+    row: usize,
+    boundary: &RowBoundary,
+    cells: impl Iterator<Item = (&'a mut Cell, f64)>,
+) {
+    let level = sheet.level(row);
+    let sign = sheet.side.sign();
+    let parts: Vec<Option<Vec<Node>>> = boundary
+        .spans()
+        .iter()
+        .enumerate()
+        .map(|(index, span)| {
+            let start = if sheet.touches(row) && index == 0 {
+                level.touch()?
+            } else {
+                let entry = sheet.crossings[row].iter().find(|c| c.push == span.from)?;
+                level.at(entry)?
+            };
+            let walked = walk(&level, start, false)?;
+            let end = walked.nodes.last()?;
+            let agrees = (sign * end.push - span.to).abs() < SAME_END && walked.end == span.edge;
+            agrees.then_some(walked.nodes)
+        })
+        .collect();
+    for (cell, push) in cells {
+        let within = boundary.spans().iter().position(|span| {
+            let magnitude = sign * push;
+            span.from - TIE <= magnitude && magnitude <= span.to + TIE
+        });
+        match within {
+            Some(index) => {
+                let Some(nodes) = &parts[index] else {
+                    continue;
+                };
+                let (first, last) = (nodes[0].push, nodes[nodes.len() - 1].push);
+                if sign * push > sign * last {
+                    cell.status = beyond(boundary.spans()[index].edge);
+                } else if let Some(node) = level.find(nodes, sign * (sign * push).max(sign * first))
+                {
+                    let state = state(&level, &node, push);
+                    if state.residual <= TOLERANCE {
+                        cell.status = Status::Solved;
+                        cell.state = Some(state);
+                    }
+                }
+            }
+            // Every piece of the level curve has been walked from end to end, and none has this push angle.
+            None if parts.iter().all(Option::is_some) => {
+                let end = boundary.detachment();
+                cell.status = end.map_or(Status::Outside, |span| beyond(span.edge));
+            }
+            None => {}
+        }
+    }
+}
+
+fn beyond(edge: Edge) -> Status {
+    match edge {
+        Edge::Fold => Status::BeyondFold,
+        Edge::Tip => Status::BeyondTip,
+    }
+}
+
+fn state(level: &LevelCurve, node: &Node, push: f64) -> State {
+    State {
+        tau: node.point.x,
+        load: node.point.y,
+        full: node.full,
+        residual: node.full.landing.pole.distance(level.row.pole(push)),
+    }
+}

@@ -1,0 +1,52 @@
+//! Which crossings of a row belong together.
+//!
+//! With friction or strong curvature `D` can have a saddle on the edge of the sheet. The level curve of a row is then in
+//! several pieces, whose push angles may overlap, and only walking along them tells which crossings they connect.
+
+use super::edges::Crossing;
+use super::level::{LevelCurve, Node};
+use super::walk::walk;
+
+/// How far apart, relative to contact and load, two crossings are at most if they are the same.
+const SAME: f64 = 1e-5;
+
+/// The `crossings` of a row in pairs, but for the first, where a push from first touch ends if the row `touches`. A piece
+/// that cannot be walked is left out; none are left if it is the one from first touch.
+pub fn connect(level: &LevelCurve, touches: bool, crossings: &[Crossing]) -> Vec<Crossing> {
+    let mut connected = Vec::new();
+    if touches {
+        let end = level.touch().and_then(|touch| follow(level, touch));
+        let Some(end) = end else {
+            return Vec::new();
+        };
+        connected.push(end);
+    }
+    for from in crossings {
+        let known = connected.iter().any(|other| same(from, other));
+        let end = level.at(from).and_then(|start| follow(level, start));
+        // From where a piece ends, the way on leads nowhere.
+        if let Some(end) = end.filter(|end| !known && !same(from, end)) {
+            connected.extend([*from, end]);
+        }
+    }
+    connected
+}
+
+/// Where the piece of the level curve that begins at `start` ends.
+fn follow(level: &LevelCurve, start: Node) -> Option<Crossing> {
+    let walk = walk(level, start, false)?;
+    let end = walk.nodes.last()?;
+    let distance = end.full.landing.pole.length();
+    Some(Crossing {
+        edge: walk.end,
+        tau: end.point.x,
+        load: end.point.y,
+        push: level.side.sign() * end.push,
+        residual: (level.row.pole_distance / distance).ln().abs(),
+    })
+}
+
+fn same(one: &Crossing, other: &Crossing) -> bool {
+    let load = (one.load - other.load).abs() / one.load.abs();
+    one.edge == other.edge && load + (one.tau / other.tau - 1.0).abs() < SAME
+}

@@ -1,0 +1,83 @@
+//! Maps of whiskers whose level curves run along lines of constant load, turn back, or come in pieces.
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use whiskmap::classify::Regime;
+use whiskmap::integrate::Cpu;
+use whiskmap::map::{self, Observer};
+use whiskmap::plan::Plan;
+use whiskmap::scene::Scene;
+use whiskmap::store::{Error, Panel};
+
+/// Keeps nothing but the regimes.
+struct Regimes(Vec<u32>);
+
+impl Observer for Regimes {
+    fn panel(&mut self, _: usize, panel: &Panel) -> Result<(), Error> {
+        self.0.extend(&panel.regime);
+        let contact = [Regime::Contact.code(), Regime::Unreachable.code()];
+        for (regime, residual) in panel.regime.iter().zip(&panel.residual) {
+            assert!(!contact.contains(regime) || *residual <= 1e-11);
+        }
+        Ok(())
+    }
+
+    fn settled(&mut self, _: usize) {}
+}
+
+/// A map of a whisker of 20 mm without a cell in doubt.
+fn certain(tip_um: f64, rest: &str) {
+    let text = format!(
+        "title = \"hard\"\n[whisker]\nlength_mm = 20\nbase_radius_um = 30\ntip_radius_um = {tip_um}\n\
+         youngs_modulus_gpa = 3\n{rest}"
+    );
+    let scene = Scene::parse(&text, "hard", "hard").unwrap();
+    let plan = Plan::new(&scene).unwrap();
+    let mut regimes = Regimes(Vec::new());
+    let summary = map::run(&scene, &plan, &mut Cpu, &mut regimes).unwrap();
+    let doubtful = regimes
+        .0
+        .iter()
+        .filter(|r| **r == Regime::Unresolved.code());
+    assert_eq!((doubtful.count(), summary.disagreements), (0, 0), "{text}");
+}
+
+const TIP: &str = "[grid]\npush_angle_deg = { from = -14, to = 14, count = 201 }\n\
+                   distance_mm = { from = 18, to = 20, count = 71 }";
+
+#[test]
+fn at_the_tip_of_a_perfect_cone() {
+    for pole in ["", "[pole]\nradius_mm = 0.25\n"] {
+        certain(0.0, &format!("{pole}{TIP}"));
+        certain(
+            0.0,
+            &format!("[whisker.curvature]\nparabola_per_mm = 0.02\n{pole}{TIP}"),
+        );
+    }
+}
+
+#[test]
+fn tiny_pushes_over_all_tapers_and_curvatures() {
+    certain(
+        1.5,
+        "[pole]\nradius_mm = 0.25\n[grid]\n\
+         push_angle_deg = [-0.1, -1e-3, -1e-5, -1e-7, 0, 1e-7, 1e-5, 1e-3, 0.1, 5, 60]\n\
+         distance_mm = { from = 0.5, to = 20, count = 40 }\n\
+         taper = [0, 1e-12, 1e-6, 0.9, 0.999, 0.999999, 1]\n\
+         curvature_per_mm = [0, 1e-9, 0.001, 0.05, 0.075]\n",
+    );
+}
+
+#[test]
+fn bent_cylinders_whose_rows_leave_the_sheet_more_than_once() {
+    let grid = "[grid]\npush_angle_deg = { from = -220, to = 220, count = 120 }\n\
+                distance_mm = { from = 0.5, to = 20, count = 100 }";
+    for friction in [0.0, 0.4, 1.0] {
+        let contact = format!("[pole]\nradius_mm = 0.25\n[contact]\nfriction = {friction}\n{grid}");
+        for a_per_mm in [0.04, 0.075] {
+            let bent = format!("[whisker.curvature]\nparabola_per_mm = {a_per_mm}\n{contact}");
+            certain(30.0, &bent);
+        }
+    }
+    let vertex = "[whisker.curvature]\nparabola_per_mm = 0.128\nvertex_mm = 9.42\n";
+    certain(30.0, &format!("{vertex}[pole]\nradius_mm = 0.25\n{grid}"));
+}
