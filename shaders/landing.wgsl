@@ -32,9 +32,9 @@ fn land(rod: Rod, tau: real, start: Start) -> Landing {
         vec3<real>(-curvature(rod, start), -start.tangent),
     );
     let y = integrate(
-        System(start.force, 2.0 * rod.bend),
+        System(start.force, 2.0 * rod.bend, rod.gradient),
         gains(rod.taper, h),
-        Radius(start.radius, inverse_cube),
+        Section(start.radius, inverse_cube, start.arclength),
         h,
         at_contact,
     );

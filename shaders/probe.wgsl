@@ -3,23 +3,23 @@
 @group(0) @binding(0) var<storage, read> cases: array<real>;
 @group(0) @binding(1) var<storage, read_write> answers: array<real>;
 
-// force, twice_bend, taper, h, rho, then the state; answers the state after STEPS steps.
+// force, twice_bend, taper, h, rho, gradient, arclength, then the state; answers the state after STEPS steps.
 @compute @workgroup_size(1)
 fn probe_steps(@builtin(global_invocation_id) id: vec3<u32>) {
-    let i = 17u * id.x;
-    let system = System(cases[i], cases[i + 1u]);
+    let i = 19u * id.x;
+    let system = System(cases[i], cases[i + 1u], cases[i + 5u]);
     let h = cases[i + 3u];
     let rho = cases[i + 4u];
     let y = integrate(
         system,
         gains(cases[i + 2u], h),
-        Radius(rho, 1.0 / (rho * rho * rho)),
+        Section(rho, 1.0 / (rho * rho * rho), cases[i + 6u]),
         h,
         State(
-            vec2<real>(cases[i + 5u], cases[i + 6u]),
-            vec4<real>(cases[i + 7u], cases[i + 8u], cases[i + 9u], cases[i + 10u]),
-            vec3<real>(cases[i + 11u], cases[i + 12u], cases[i + 13u]),
-            vec3<real>(cases[i + 14u], cases[i + 15u], cases[i + 16u]),
+            vec2<real>(cases[i + 7u], cases[i + 8u]),
+            vec4<real>(cases[i + 9u], cases[i + 10u], cases[i + 11u], cases[i + 12u]),
+            vec3<real>(cases[i + 13u], cases[i + 14u], cases[i + 15u]),
+            vec3<real>(cases[i + 16u], cases[i + 17u], cases[i + 18u]),
         ),
     );
     let o = 12u * id.x;
@@ -41,7 +41,7 @@ fn probe_steps(@builtin(global_invocation_id) id: vec3<u32>) {
 @compute @workgroup_size(1)
 fn probe_start(@builtin(global_invocation_id) id: vec3<u32>) {
     let i = 5u * id.x;
-    let rod = Rod(cases[i], cases[i + 1u], cases[i + 2u], 0.0, 0.0);
+    let rod = Rod(cases[i], cases[i + 1u], cases[i + 2u], 0.0, 0.0, 0.0);
     let start = start_at(rod, cases[i + 3u], cases[i + 4u]);
     answers[i] = start.radius;
     answers[i + 1u] = start.arclength;

@@ -1,8 +1,10 @@
 // The right-hand sides, in sigma = tau_contact - tau; the twin of `src/model/{rhs,order,vector}.rs`.
 
-struct Radius {
+struct Section {
     rho: real,
     inverse_cube: real,
+    // from the base; only where it is needed
+    arclength: real,
 }
 
 struct State {
@@ -19,12 +21,16 @@ struct State {
 struct System {
     force: real,
     twice_bend: real,
+    gradient: real,
 }
 
-fn rhs(system: System, radius: Radius, y: State) -> State {
+fn rhs(system: System, section: Section, y: State) -> State {
     let f = system.force;
-    let rho = radius.rho;
-    let w = radius.inverse_cube;
+    let rho = section.rho;
+    var w = section.inverse_cube;
+    if GRADIENT {
+        w = w / (1.0 + system.gradient * section.arclength);
+    }
     let c = y.rod.x;
     let s = y.rod.y;
     let x = y.rod.z;

@@ -7,6 +7,7 @@ struct Rod {
     slope: real,
     pole: real,
     friction: real,
+    gradient: real,
 }
 
 struct Start {

@@ -6,13 +6,14 @@ use num_dual::{DualNum, HyperDual64, second_partial_derivative};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 use whiskmap::model::batch::{Launch, Method, land};
 use whiskmap::model::{
-    Curved, Dopri8, Effects, First, Integrator, Landing, Planar, Radius, Real, Resolution, Rk4,
-    Rod, RodSystem, Scales, Second, Shape, Straight, integrate,
+    Curved, Dopri8, Effects, First, Graded, Integrator, Landing, Planar, Real, Resolution, Rk4,
+    Rod, RodSystem, Scales, Second, Section, Shape, Straight, integrate,
 };
 
 const EFFECTS: Effects = Effects {
     taper: true,
     curvature: true,
+    gradient: true,
 };
 
 fn steps(least: u32) -> Method {
@@ -35,6 +36,7 @@ fn rods() -> Vec<Launch> {
                     bend,
                     slope: -0.1 * bend,
                     pole,
+                    gradient: 0.4 + 50.0 * pole,
                     friction: 10.0 * pole,
                 };
                 launches.push(Launch {
@@ -117,7 +119,7 @@ impl Real for Dual {
     }
 }
 
-/// `(ln D, phi)` of a straight, tapered rod, differentiated by num-dual through the whole integration.
+/// `(ln D, phi)` of a straight, tapered, graded rod on a rough pole, differentiated by num-dual through the whole integration.
 fn ln_pole(rod: &Rod, tau: HyperDual64, load: HyperDual64) -> [HyperDual64; 2] {
     let rho = (tau * -rod.taper).exp();
     let steps = 256;
@@ -125,17 +127,22 @@ fn ln_pole(rod: &Rod, tau: HyperDual64, load: HyperDual64) -> [HyperDual64; 2] {
     let system = RodSystem {
         force: Dual(load * rho * rho),
         intrinsic: Straight,
+        material: Graded {
+            gradient: Dual::of(rod.gradient),
+        },
     };
-    let from = Radius {
+    let from = Section {
         rho: Dual(rho),
         inverse_cube: Dual((rho * rho * rho).recip()),
+        arclength: Dual((rho * -1.0 + 1.0) / rod.taper),
     };
     let scales = Scales::tapered::<Rk4>(Dual::of(rod.taper), h);
-    let contact: Planar<Dual> = [1.0, 0.0, 0.0, 0.0].map(Dual::of);
+    let DVec2 { x, y } = rod.contact_tangent();
+    let contact: Planar<Dual> = [x, y, 0.0, 0.0].map(Dual::of);
     let (_, (end, _)) =
-        integrate::<Rk4, _, _, Shape, 0>(&system, &scales, from, h, steps, ((), (contact, [])));
+        integrate::<Rk4, _, _, _, Shape, 0>(&system, &scales, from, h, steps, ((), (contact, [])));
     let [c, s, x, y] = end.map(|dual| dual.0);
-    let (wx, wy) = (-x, -y - rod.pole);
+    let (wx, wy) = (-x + rod.to_pole().x, -y + rod.to_pole().y);
     let ln_distance = (wx * wx + wy * wy).ln() * 0.5;
     [ln_distance, wy.atan2(wx) - s.atan2(c)]
 }
@@ -151,12 +158,14 @@ fn sensitivities_agree_with_num_dual() {
                 bend: 0.0,
                 slope: 0.0,
                 pole,
-                ..Rod::default()
+                gradient: 0.6 - 10.0 * pole,
+                friction: -6.0 * pole,
             };
             let tau = rod.tau(0.8);
             let effects = Effects {
                 taper: true,
                 curvature: false,
+                gradient: true,
             };
             let method = Method {
                 effects,

@@ -39,6 +39,7 @@ fn whisker(
             parabola_per_mm: a,
             vertex_mm,
         }),
+        modulus_tip_to_base: 1.0,
         arc_stretch: 1.0,
     }
 }
@@ -172,5 +173,47 @@ fn angles_do_not_depend_on_units() {
         scaled.youngs_modulus_gpa = 1.0;
         let (other, _) = detachment(&scaled, &Pole::smooth(0.25 * scale), Side::Cb, 14.0 * scale);
         assert!((other - push).abs() < 1e-10, "{other} {push}");
+    }
+}
+
+/// The cone of Fig. 2 with the moduli that were measured at base and tip (2.90 and 3.96, or 3.9 and 3.1 GPa).
+#[test]
+fn a_modulus_gradient_shifts_the_slip() {
+    for (ratio, expected) in [(3.96 / 2.90, 16.27), (3.1 / 3.9, 15.15)] {
+        let mut cone = whisker(20.0, 30.0, 1.5, 0.02, 0.0);
+        cone.modulus_tip_to_base = ratio;
+        let (push, crossing) =
+            detachment(&cone, &Pole::smooth(0.25), Side::Cb, 15.660_459_763_365_8);
+        assert_eq!(crossing.edge, Edge::Fold);
+        assert!(
+            (push - expected).abs() < 5e-3,
+            "{push}, expected {expected}"
+        );
+    }
+}
+
+/// An effect that vanishes changes an angle by less and less, to the first order in its size.
+#[test]
+fn effects_vanish_to_the_first_order() {
+    let push = |change: &dyn Fn(&mut Whisker, &mut Pole)| {
+        let mut whisker = whisker(20.0, 30.0, 1.5, 0.02, 0.0);
+        let mut pole = Pole::smooth(0.25);
+        change(&mut whisker, &mut pole);
+        detachment(&whisker, &pole, Side::Cb, 14.0).0
+    };
+    let none = push(&|_, _| {});
+    let effects: [(&str, &dyn Fn(f64) -> f64); 3] = [
+        ("friction", &|size| push(&|_, pole| pole.friction = size)),
+        ("gradient", &|size| {
+            push(&|w, _| w.modulus_tip_to_base = 1.0 + size)
+        }),
+        ("projection", &|size| {
+            push(&|w, _| w.arc_stretch = 1.0 + size)
+        }),
+    ];
+    for (name, effect) in effects {
+        let ratio = (effect(1e-3) - none) / (effect(1e-4) - none);
+        assert!((ratio - 10.0).abs() < 0.1, "{name}: {ratio}");
+        assert_eq!(effect(0.0), none, "{name}");
     }
 }

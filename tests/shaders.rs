@@ -15,9 +15,11 @@ const PRECISIONS: [Precision; 2] = [Precision::F32, Precision::F64];
 const PROBE: &str = include_str!("../shaders/probe.wgsl");
 
 fn effects() -> impl Iterator<Item = Effects> {
-    [false, true]
-        .into_iter()
-        .flat_map(|taper| [false, true].map(|curvature| Effects { taper, curvature }))
+    (0..8).map(|set| Effects {
+        taper: set & 1 != 0,
+        curvature: set & 2 != 0,
+        gradient: set & 4 != 0,
+    })
 }
 
 /// Parses and validates `text`, for every entry point and with the values of its constants put in.

@@ -7,13 +7,15 @@
 use super::integrator::{Integrator, Resolution, Scales, integrate};
 use super::landing::{Curved, Full, Landing};
 use super::order::{First, FirstAndEnergy, Order, Second};
-use super::rhs::{Bent, Intrinsic, Planar, Radius, RodSystem, State, Straight};
+use super::rhs::{
+    Bent, Even, Graded, Intrinsic, Material, Planar, RodSystem, Section, State, Straight,
+};
 #[cfg(not(target_arch = "x86_64"))]
 use super::simd::plain::Plain as Baseline;
 #[cfg(target_arch = "x86_64")]
 use super::simd::x86::{Avx2, Avx512, Sse2 as Baseline};
 use super::simd::{Lanes, WIDTH};
-use super::{Effects, Rod, Start};
+use super::{Effects, Rod, Start, arclength};
 use rayon::prelude::*;
 use std::fmt;
 
@@ -202,12 +204,46 @@ fn by_effects<M: Integrator, K: Kind<N>, T: Lanes, const N: usize>(
     steps: u32,
     launches: &[Launch; WIDTH],
 ) -> [K::Answer; WIDTH] {
-    let Effects { taper, curvature } = effects;
-    match (taper, curvature) {
-        (false, false) => block::<M, K, T, Straight, false, N>(steps, launches),
-        (false, true) => block::<M, K, T, Bent<_>, false, N>(steps, launches),
-        (true, false) => block::<M, K, T, Straight, true, N>(steps, launches),
-        (true, true) => block::<M, K, T, Bent<_>, true, N>(steps, launches),
+    if effects.curvature {
+        by_stiffness::<M, K, T, Bent<_>, N>(effects, steps, launches)
+    } else {
+        by_stiffness::<M, K, T, Straight, N>(effects, steps, launches)
+    }
+}
+
+/// The same for a rest shape.
+#[inline(always)]
+fn by_stiffness<M: Integrator, K: Kind<N>, T: Lanes, I: Gather<T>, const N: usize>(
+    effects: Effects,
+    steps: u32,
+    launches: &[Launch; WIDTH],
+) -> [K::Answer; WIDTH] {
+    match (effects.taper, effects.gradient) {
+        (false, false) => block::<M, K, T, I, Even, false, N>(steps, launches),
+        (true, false) => block::<M, K, T, I, Even, true, N>(steps, launches),
+        (false, true) => block::<M, K, T, I, Graded<_>, false, N>(steps, launches),
+        (true, true) => block::<M, K, T, I, Graded<_>, true, N>(steps, launches),
+    }
+}
+
+/// A material that can be gathered from the rods of a block, with the arclengths of the contacts if it needs them.
+trait GatherMaterial<T: Lanes>: Material<T> {
+    fn gather(launches: &[Launch; WIDTH]) -> (Self, T);
+}
+
+impl<T: Lanes> GatherMaterial<T> for Even {
+    #[inline(always)]
+    fn gather(_: &[Launch; WIDTH]) -> (Self, T) {
+        (Self, T::of(0.0))
+    }
+}
+
+impl<T: Lanes> GatherMaterial<T> for Graded<T> {
+    #[inline(always)]
+    fn gather(launches: &[Launch; WIDTH]) -> (Self, T) {
+        let gradient = T::pack(launches.map(|launch| launch.rod.gradient));
+        let at = T::pack(launches.map(|launch| arclength(&launch.rod, launch.tau)));
+        (Self { gradient }, at)
     }
 }
 
@@ -235,7 +271,7 @@ impl<T: Lanes> Gather<T> for Bent<T> {
 
 /// Integrates `WIDTH` trajectories in step.
 #[inline(always)]
-fn block<M, K, T, I, const TAPER: bool, const N: usize>(
+fn block<M, K, T, I, C, const TAPER: bool, const N: usize>(
     steps: u32,
     launches: &[Launch; WIDTH],
 ) -> [K::Answer; WIDTH]
@@ -244,6 +280,7 @@ where
     K: Kind<N>,
     T: Lanes,
     I: Gather<T>,
+    C: GatherMaterial<T>,
 {
     let rods = launches.map(|launch| launch.rod);
     let starts = launches.map(|launch| Start::new(&launch.rod, launch.tau, launch.load));
@@ -251,23 +288,26 @@ where
 
     let h = T::pack(starts.map(|start| start.tau / f64::from(steps)));
     let one = T::of(1.0);
-    let (scales, from) = if TAPER {
-        let rho = T::pack(starts.map(|start| start.radius));
+    let (material, arclength) = C::gather(launches);
+    let (scales, rho) = if TAPER {
         let taper = T::pack(rods.map(|rod| rod.taper));
-        let inverse_cube = one / (rho * rho * rho);
-        (Scales::tapered::<M>(taper, h), Radius { rho, inverse_cube })
+        let rho = T::pack(starts.map(|start| start.radius));
+        (Scales::tapered::<M>(taper, h), rho)
     } else {
-        (
-            Scales::cylinder(),
-            Radius {
-                rho: one,
-                inverse_cube: one,
-            },
-        )
+        (Scales::cylinder::<M>(h), one)
+    };
+    let from = Section {
+        rho,
+        inverse_cube: one / (rho * rho * rho),
+        arclength,
     };
     let (intrinsic, rest) = I::gather(&rods, &starts);
     let force = T::pack(starts.map(|start| start.force));
-    let system = RodSystem { force, intrinsic };
+    let system = RodSystem {
+        force,
+        intrinsic,
+        material,
+    };
     let zero = T::of(0.0);
     let mut sens = [zero; N];
     for (n, lane) in sens.iter_mut().enumerate() {
@@ -276,7 +316,7 @@ where
     let c = T::pack(starts.map(|start| start.tangent.x));
     let s = T::pack(starts.map(|start| start.tangent.y));
     let state: State<_, I, N> = (rest, ([c, s, zero, zero], sens));
-    let (_, (rod, sens)) = integrate::<M, _, I, K, N>(&system, &scales, from, h, steps, state);
+    let (_, (rod, sens)) = integrate::<M, _, I, C, K, N>(&system, &scales, from, h, steps, state);
     let (rod, sens) = (rod.map(T::unpack), sens.map(T::unpack));
     std::array::from_fn(|i| {
         K::answer(

@@ -5,8 +5,8 @@
 //! accuracy is measured against finer runs.
 
 use super::integrator::{Integrator, STAGES, Scales};
-use super::rhs::{Intrinsic, RodSystem, Sensitivity, State};
-use super::{Radius, Real, Vector};
+use super::rhs::{Intrinsic, Material, RodSystem, Sensitivity, State};
+use super::{Real, Section, Vector};
 
 /// Order 8, 12 stages.
 #[derive(Clone, Copy, Debug)]
@@ -39,10 +39,10 @@ impl Integrator for Dopri8 {
 
     #[inline(always)]
     #[rustfmt::skip]
-    fn step<T: Real, I: Intrinsic<T>, S: Sensitivity<N>, const N: usize>(
-        system: &RodSystem<T, I>,
+    fn step<T: Real, I: Intrinsic<T>, C: Material<T>, S: Sensitivity<N>, const N: usize>(
+        system: &RodSystem<T, I, C>,
         scales: &Scales<T>,
-        from: Radius<T>,
+        from: Section<T>,
         h: T,
         y: State<T, I, N>,
     ) -> State<T, I, N> {

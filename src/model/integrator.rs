@@ -1,16 +1,16 @@
 //! Fixed-step integration along the rod: what the Runge-Kutta methods share.
 
-use super::real::exp_small;
-use super::rhs::{Intrinsic, Planar, RodSystem, Sensitivity, State};
-use super::{Radius, Real, Rod};
+use super::real::expm1_over_small;
+use super::rhs::{Intrinsic, Material, Planar, RodSystem, Sensitivity, State};
+use super::{Real, Rod, Section};
 
 /// How finely trajectories are integrated: at least `least` steps, and none along which the radius changes by more than
-/// a factor `exp(longest)` or the resting whisker turns by more than `longest`.
+/// a factor `exp(longest)`, the modulus by more than `exp(2 longest)`, or the resting whisker turns by more than `longest`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Resolution {
     /// Fewest steps.
     pub least: u32,
-    /// Longest step in `beta tau` and in `2 A* tau`; at most 0.4, the range of the stages' radii.
+    /// Longest step in `beta tau`, in `2 A* tau` and in half the logarithm of the modulus; at most 0.4, the range of the stages' radii.
     pub longest: f64,
 }
 
@@ -23,7 +23,8 @@ impl Resolution {
         reason = "clamped to a range of small positive numbers; NaN becomes 0 and then the smallest"
     )]
     pub fn steps(&self, rod: &Rod, tau: f64) -> u32 {
-        let fastest = rod.taper.max(2.0 * rod.bend);
+        let modulus = rod.gradient.abs() / (1.0 + rod.gradient).min(1.0);
+        let fastest = rod.taper.max(2.0 * rod.bend).max(0.5 * modulus);
         let multiple = fastest * tau / (self.longest * f64::from(self.least));
         self.least * (multiple.ceil() as u32).clamp(1, MOST_MULTIPLES)
     }
@@ -35,12 +36,12 @@ const MOST_MULTIPLES: u32 = 256;
 
 /// An explicit Runge-Kutta method with fixed steps.
 pub trait Integrator: Copy + Send + Sync + 'static {
-    /// One step of length `h` from the radius `from`; `scales[i]` is the factor by which the radius has grown
+    /// One step of length `h` from the section `from`; `scales[i]` is the factor by which the radius has grown
     /// at stage `i`.
-    fn step<T: Real, I: Intrinsic<T>, S: Sensitivity<N>, const N: usize>(
-        system: &RodSystem<T, I>,
+    fn step<T: Real, I: Intrinsic<T>, C: Material<T>, S: Sensitivity<N>, const N: usize>(
+        system: &RodSystem<T, I, C>,
         scales: &Scales<T>,
-        from: Radius<T>,
+        from: Section<T>,
         h: T,
         state: State<T, I, N>,
     ) -> State<T, I, N>;
@@ -52,65 +53,78 @@ pub trait Integrator: Copy + Send + Sync + 'static {
 /// Stages of the largest method.
 pub const STAGES: usize = 12;
 
-/// The factors by which the radius, and its inverse cube, change from the start of a step to each stage; the
-/// last node of every method is the end of the step.
+/// How the section changes from the start of a step to each stage; the last node of every method is the end of the step.
 #[derive(Clone, Copy, Debug)]
 pub struct Scales<T> {
-    stages: Option<[Radius<T>; STAGES]>,
+    /// The factors of the radius and its inverse cube.
+    stages: Option<[(T, T); STAGES]>,
+    /// How much arclength the stages are nearer to the base, over the radius at the start of the step.
+    along: [T; STAGES],
 }
 
 impl<T: Real> Scales<T> {
-    /// The factors for steps of `h` on a rod of this `taper`.
+    /// Steps of `h` on a rod of this `taper`.
     #[inline(always)]
     pub fn tapered<M: Integrator>(taper: T, h: T) -> Self {
-        let mut stages = [Radius {
-            rho: T::of(1.0),
-            inverse_cube: T::of(1.0),
-        }; STAGES];
-        for (stage, node) in stages.iter_mut().zip(M::NODES) {
-            let rho = exp_small(taper * h * T::of(node));
-            stage.rho = rho;
-            stage.inverse_cube = T::of(1.0) / (rho * rho * rho);
+        let one = T::of(1.0);
+        let mut stages = [(one, one); STAGES];
+        let mut along = [one; STAGES];
+        for ((stage, along), node) in stages.iter_mut().zip(&mut along).zip(M::NODES) {
+            let length = h * T::of(node);
+            let growth = expm1_over_small(taper * length);
+            let rho = growth.mul_add(taper * length, one);
+            *stage = (rho, one / (rho * rho * rho));
+            *along = length * growth;
         }
         Self {
             stages: Some(stages),
+            along,
         }
     }
 
-    /// The factors of a cylinder.
+    /// Steps of `h` on a cylinder.
     #[inline(always)]
-    pub const fn cylinder() -> Self {
-        Self { stages: None }
+    pub fn cylinder<M: Integrator>(h: T) -> Self {
+        Self {
+            stages: None,
+            along: M::NODES.map(|node| h * T::of(node)),
+        }
     }
 
-    /// The radius at stage `i` of a step that starts at `from`.
+    /// The section at stage `i` of a step that starts at `from`.
     #[inline(always)]
-    pub fn at(&self, i: usize, from: Radius<T>) -> Radius<T> {
+    pub fn at(&self, i: usize, from: Section<T>) -> Section<T> {
+        let arclength = from.arclength - from.rho * self.along[i];
         match &self.stages {
-            Some(stages) => Radius {
-                rho: from.rho * stages[i].rho,
-                inverse_cube: from.inverse_cube * stages[i].inverse_cube,
+            Some(stages) => Section {
+                rho: from.rho * stages[i].0,
+                inverse_cube: from.inverse_cube * stages[i].1,
+                arclength,
             },
-            None => from,
+            None => Section { arclength, ..from },
         }
     }
 }
 
-/// Integrates `system` over `tau` in `steps` steps from the radius `from`.
+/// Integrates `system` over `tau` in `steps` steps from the section `from`.
 #[inline(always)]
-pub fn integrate<M: Integrator, T: Real, I: Intrinsic<T>, S: Sensitivity<N>, const N: usize>(
-    system: &RodSystem<T, I>,
+pub fn integrate<M: Integrator, T: Real, I, C, S: Sensitivity<N>, const N: usize>(
+    system: &RodSystem<T, I, C>,
     scales: &Scales<T>,
-    from: Radius<T>,
+    from: Section<T>,
     h: T,
     steps: u32,
     mut state: State<T, I, N>,
-) -> State<T, I, N> {
-    let mut radius = from;
+) -> State<T, I, N>
+where
+    I: Intrinsic<T>,
+    C: Material<T>,
+{
+    let mut section = from;
     for _ in 0..steps {
-        let (rest, (rod, sens)) = M::step::<T, I, S, N>(system, scales, radius, h, state);
+        let (rest, (rod, sens)) = M::step::<T, I, C, S, N>(system, scales, section, h, state);
         state = (rest, (upright(rod), sens));
-        radius = scales.at(STAGES - 1, radius);
+        section = scales.at(STAGES - 1, section);
     }
     state
 }

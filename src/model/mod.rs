@@ -31,7 +31,10 @@ pub use landing::{Base, Curved, Full, LONGEST_STEP, Landing, limited};
 pub use order::{First, FirstAndEnergy, Order, Second};
 pub use real::Real;
 pub use rest::Rest;
-pub use rhs::{Bent, Intrinsic, Planar, Radius, RodSystem, Sensitivity, Shape, State, Straight};
+pub use rhs::{
+    Bent, Even, Graded, Intrinsic, Material, Planar, RodSystem, Section, Sensitivity, Shape, State,
+    Straight,
+};
 pub use rk4::Rk4;
 pub use rod::{Effects, PERFECT_CONE_CUT, Rod, Side};
 pub use start::{Start, arclength};

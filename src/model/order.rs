@@ -3,7 +3,7 @@
 //! `f` and `s` in the names below are the force and the arclength of the contact. The start values follow from the rod
 //! being at the origin at the same tilt, whatever the contact: `y_s = -y'` there.
 
-use super::rhs::{Planar, Radius, Sensitivity};
+use super::rhs::{Planar, Sensitivity};
 use super::{Real, Rod, Start};
 use glam::DVec2;
 
@@ -27,12 +27,8 @@ pub trait Order<const N: usize>: Sensitivity<N> {
 
 impl Sensitivity<6> for First {
     #[inline(always)]
-    fn rhs<T: Real>(f: T, radius: Radius<T>, rod: &Planar<T>, state: &[T; 6]) -> [T; 6] {
+    fn rhs<T: Real>(f: T, rho: T, w: T, rod: &Planar<T>, state: &[T; 6]) -> [T; 6] {
         let [c, s, x, _] = *rod;
-        let Radius {
-            rho,
-            inverse_cube: w,
-        } = radius;
         let [theta_f, x_f, _, theta_s, x_s, _] = *state;
         [
             w * f.mul_add(x_f, x),
@@ -54,12 +50,12 @@ impl Order<6> for First {
 
 impl Sensitivity<7> for FirstAndEnergy {
     #[inline(always)]
-    fn rhs<T: Real>(f: T, radius: Radius<T>, rod: &Planar<T>, state: &[T; 7]) -> [T; 7] {
+    fn rhs<T: Real>(f: T, rho: T, w: T, rod: &Planar<T>, state: &[T; 7]) -> [T; 7] {
         let [a, b, c, d, e, g, _] = *state;
-        let first = First::rhs(f, radius, rod, &[a, b, c, d, e, g]);
+        let first = First::rhs(f, rho, w, rod, &[a, b, c, d, e, g]);
         let moment = f * rod[2];
         let [a, b, c, d, e, g] = first;
-        let energy = T::of(0.5) * moment * moment * radius.inverse_cube;
+        let energy = T::of(0.5) * moment * moment * w;
         [a, b, c, d, e, g, energy]
     }
 }
@@ -73,16 +69,12 @@ impl Order<7> for FirstAndEnergy {
 
 impl Sensitivity<15> for Second {
     #[inline(always)]
-    fn rhs<T: Real>(f: T, radius: Radius<T>, rod: &Planar<T>, state: &[T; 15]) -> [T; 15] {
+    fn rhs<T: Real>(f: T, rho: T, w: T, rod: &Planar<T>, state: &[T; 15]) -> [T; 15] {
         let [c, s, _, _] = *rod;
-        let Radius {
-            rho,
-            inverse_cube: w,
-        } = radius;
         let [theta_f, x_f, y_f, theta_s, x_s, y_s, second @ ..] = *state;
         let [theta_ff, x_ff, _, theta_fs, x_fs, _, theta_ss, x_ss, _] = second;
         let first = [theta_f, x_f, y_f, theta_s, x_s, y_s];
-        let [theta_f1, x_f1, y_f1, theta_s1, x_s1, y_s1] = First::rhs(f, radius, rod, &first);
+        let [theta_f1, x_f1, y_f1, theta_s1, x_s1, y_s1] = First::rhs(f, rho, w, rod, &first);
         let along = |turns, theta| rho * s.mul_add(theta, c * turns);
         let across = |turns: T, theta: T| rho * (s * turns - c * theta);
         let (ff, fs, ss) = (theta_f * theta_f, theta_f * theta_s, theta_s * theta_s);
@@ -111,7 +103,7 @@ impl Order<15> for Second {
         let [a, b, c, d, e, g] = First::start(rod, start);
         let kappa = start.curvature(rod);
         let lever = start.force * start.tangent.x;
-        let theta_ss = -start.curvature_slope(rod) - lever / start.radius.powi(4);
+        let theta_ss = -start.curvature_slope(rod) - lever / start.stiffness;
         let DVec2 { x, y } = kappa * start.tangent.perp();
         [
             a, b, c, d, e, g, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, theta_ss, x, y,

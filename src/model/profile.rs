@@ -1,6 +1,6 @@
 //! A trajectory seen at places along the whisker.
 
-use super::rhs::{Bent, Radius, RodSystem, Shape, State};
+use super::rhs::{Bent, Graded, RodSystem, Section, Shape, State};
 use super::{Dopri8, Resolution, Rest, Rod, Scales, Start, arclength, integrate};
 use glam::DVec2;
 
@@ -68,28 +68,33 @@ fn advance(
 ) -> State<f64, Bent<f64>, 0> {
     let h = (from - to) / f64::from(steps);
     let rho = rod.radius(from);
-    let radius = Radius {
+    let section = Section {
         rho,
         inverse_cube: 1.0 / (rho * rho * rho),
+        arclength: arclength(rod, from),
     };
     let system = RodSystem {
         force,
         intrinsic: Bent {
             twice_bend: 2.0 * rod.bend,
         },
+        material: Graded {
+            gradient: rod.gradient,
+        },
     };
     let scales = Scales::tapered::<Dopri8>(rod.taper, h);
-    integrate::<Dopri8, f64, Bent<f64>, Shape, 0>(&system, &scales, radius, h, steps, state)
+    integrate::<Dopri8, f64, _, _, Shape, 0>(&system, &scales, section, h, steps, state)
 }
 
 fn loaded(rod: &Rod, s: f64, force: f64, state: &State<f64, Bent<f64>, 0>) -> Place {
     let ([cos, _], ([c, sin, x, y], [])) = *state;
     let moment = -force * x;
+    let stiffness = rod.radius(rod.tau(s)).powi(4) * rod.modulus(s);
     Place {
         arclength: s,
         position: DVec2::new(x, y),
         tangent: DVec2::new(c, sin),
-        curvature: 2.0 * rod.bend * cos.powi(3) + moment / rod.radius(rod.tau(s)).powi(4),
+        curvature: 2.0 * rod.bend * cos.powi(3) + moment / stiffness,
         moment,
     }
 }

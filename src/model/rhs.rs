@@ -1,18 +1,51 @@
 //! The right-hand sides, in `sigma = tau_contact - tau`: from the contact (0) backward to the base.
 //!
-//! With `rho` the radius and `w = 1/rho^3`, `d/dsigma = -rho d/da` turns `dtheta/da = kappa_i - f X/rho^4`
-//! into `dtheta/dsigma = -(rho kappa_i - f X w)`. The unit tangent `(c, s)` stands for `theta`: no
+//! With `rho` the radius, `S` the stiffness and `w = rho/S`, `d/dsigma = -rho d/da` turns
+//! `dtheta/da = kappa_i - f X/S` into `dtheta/dsigma = -(rho kappa_i - f X w)`. The unit tangent `(c, s)` stands for `theta`: no
 //! trigonometry in the loop.
 
 use super::{Real, Vector};
 
-/// Radius of the rod at a stage.
+/// The rod at a stage.
 #[derive(Clone, Copy, Debug)]
-pub struct Radius<T> {
-    /// `rho`.
+pub struct Section<T> {
+    /// Radius over the base radius, `rho`.
     pub rho: T,
     /// `1/rho^3`.
     pub inverse_cube: T,
+    /// Arclength from the base; only kernels that need it carry it.
+    pub arclength: T,
+}
+
+/// How the material stiffens along the rod.
+pub trait Material<T: Real>: Copy {
+    /// `rho/S` at a section: what turns a moment into `dtheta/dtau`.
+    fn compliance(self, section: &Section<T>) -> T;
+}
+
+/// The same modulus everywhere: `S = rho^4`.
+#[derive(Clone, Copy, Debug)]
+pub struct Even;
+
+impl<T: Real> Material<T> for Even {
+    #[inline(always)]
+    fn compliance(self, section: &Section<T>) -> T {
+        section.inverse_cube
+    }
+}
+
+/// A modulus that is linear in the arclength: `S = rho^4 (1 + g s)`.
+#[derive(Clone, Copy, Debug)]
+pub struct Graded<T> {
+    /// `g`.
+    pub gradient: T,
+}
+
+impl<T: Real> Material<T> for Graded<T> {
+    #[inline(always)]
+    fn compliance(self, section: &Section<T>) -> T {
+        section.inverse_cube / self.gradient.mul_add(section.arclength, T::of(1.0))
+    }
 }
 
 /// Curvature at rest.
@@ -59,8 +92,8 @@ pub type Planar<T> = [T; 4];
 
 /// Derivatives carried beside the rod: `N` states.
 pub trait Sensitivity<const N: usize> {
-    /// Their right-hand sides at `rod` under the force `f`.
-    fn rhs<T: Real>(f: T, radius: Radius<T>, rod: &Planar<T>, state: &[T; N]) -> [T; N];
+    /// Their right-hand sides at `rod` under the force `f`, where the radius is `rho` and the compliance `w`.
+    fn rhs<T: Real>(f: T, rho: T, w: T, rod: &Planar<T>, state: &[T; N]) -> [T; N];
 }
 
 /// No derivatives.
@@ -69,7 +102,7 @@ pub struct Shape;
 
 impl Sensitivity<0> for Shape {
     #[inline(always)]
-    fn rhs<T: Real>(_: T, _: Radius<T>, _: &Planar<T>, _: &[T; 0]) -> [T; 0] {
+    fn rhs<T: Real>(_: T, _: T, _: T, _: &Planar<T>, _: &[T; 0]) -> [T; 0] {
         []
     }
 }
@@ -79,25 +112,29 @@ pub type State<T, I, const N: usize> = (<I as Intrinsic<T>>::State, (Planar<T>, 
 
 /// Rod, rest shape and sensitivities as one system of equations.
 #[derive(Clone, Copy, Debug)]
-pub struct RodSystem<T, I> {
+pub struct RodSystem<T, I, C> {
     /// Load `f`.
     pub force: T,
     /// Curvature at rest.
     pub intrinsic: I,
+    /// Stiffness of the material.
+    pub material: C,
 }
 
-impl<T: Real, I: Intrinsic<T>> RodSystem<T, I> {
+impl<T: Real, I: Intrinsic<T>, C: Material<T>> RodSystem<T, I, C> {
     /// `dstate/dsigma`.
     #[inline(always)]
     pub fn rhs<S: Sensitivity<N>, const N: usize>(
         &self,
-        radius: Radius<T>,
+        section: Section<T>,
         (rest, (rod, sens)): State<T, I, N>,
     ) -> State<T, I, N> {
         let [c, s, x, _] = rod;
-        let (turn_at_rest, rest_rhs) = self.intrinsic.rhs(radius.rho, rest);
-        let turn = turn_at_rest - self.force * x * radius.inverse_cube;
-        let rod_rhs = [turn * s, -turn * c, -radius.rho * c, -radius.rho * s];
-        (rest_rhs, (rod_rhs, S::rhs(self.force, radius, &rod, &sens)))
+        let rho = section.rho;
+        let w = self.material.compliance(&section);
+        let (turn_at_rest, rest_rhs) = self.intrinsic.rhs(rho, rest);
+        let turn = turn_at_rest - self.force * x * w;
+        let rod_rhs = [turn * s, -turn * c, -rho * c, -rho * s];
+        (rest_rhs, (rod_rhs, S::rhs(self.force, rho, w, &rod, &sens)))
     }
 }

@@ -1,8 +1,8 @@
 //! The classical Runge-Kutta method of order 4; the twin of `shaders/rk4.wgsl`.
 
 use super::integrator::{Integrator, STAGES, Scales};
-use super::rhs::{Intrinsic, RodSystem, Sensitivity, State};
-use super::{Radius, Real, Vector};
+use super::rhs::{Intrinsic, Material, RodSystem, Sensitivity, State};
+use super::{Real, Section, Vector};
 
 /// Order 4, 4 stages.
 #[derive(Clone, Copy, Debug)]
@@ -13,10 +13,10 @@ impl Integrator for Rk4 {
     const NODES: [f64; STAGES] = [0.0, 0.5, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0];
 
     #[inline(always)]
-    fn step<T: Real, I: Intrinsic<T>, S: Sensitivity<N>, const N: usize>(
-        system: &RodSystem<T, I>,
+    fn step<T: Real, I: Intrinsic<T>, C: Material<T>, S: Sensitivity<N>, const N: usize>(
+        system: &RodSystem<T, I, C>,
         scales: &Scales<T>,
-        from: Radius<T>,
+        from: Section<T>,
         h: T,
         y: State<T, I, N>,
     ) -> State<T, I, N> {

@@ -45,6 +45,8 @@ pub struct Rod {
     pub slope: f64,
     /// Pole radius with the sign of the side: the pole's centre is at `-pole e2` from the contact.
     pub pole: f64,
+    /// `g` of the modulus `E_base (1 + g s)`; more than -1.
+    pub gradient: f64,
     /// Coulomb's coefficient with the sign of the side: friction over normal force.
     pub friction: f64,
 }
@@ -65,8 +67,15 @@ impl Rod {
             bend: a * whisker.length_mm,
             slope: -2.0 * a * x0,
             pole: side.sign() * pole.radius_mm / whisker.length_mm,
+            gradient: whisker.modulus_tip_to_base - 1.0,
             friction: side.sign() * pole.friction,
         }
+    }
+
+    /// Modulus at arclength `s` over that at the base.
+    #[must_use]
+    pub fn modulus(&self, s: f64) -> f64 {
+        self.gradient.mul_add(s, 1.0)
     }
 
     /// The whisker's unit tangent at the contact, in axes whose second one is along the force.
@@ -116,6 +125,8 @@ pub struct Effects {
     pub taper: bool,
     /// The whisker is curved at rest.
     pub curvature: bool,
+    /// The modulus changes along the whisker.
+    pub gradient: bool,
 }
 
 impl Effects {
@@ -124,6 +135,7 @@ impl Effects {
         rods.into_iter().fold(Self::default(), |set, rod| Self {
             taper: set.taper || rod.taper != 0.0,
             curvature: set.curvature || rod.bend != 0.0,
+            gradient: set.gradient || rod.gradient != 0.0,
         })
     }
 }

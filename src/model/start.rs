@@ -10,6 +10,8 @@ pub struct Start {
     pub tau: f64,
     /// Radius at the contact over the base radius.
     pub radius: f64,
+    /// Stiffness at the contact over that at the base.
+    pub stiffness: f64,
     /// The whole force `F L_w^2/(E I_base)`, signed; without friction it is the normal force.
     pub force: f64,
     /// The whisker's tangent there, see [`Rod::contact_tangent`].
@@ -31,9 +33,15 @@ impl Start {
             Rest::new(rod).slope_at(arclength(rod, tau))
         };
         let cos = 1.0 / slope.hypot(1.0);
+        let modulus = if rod.gradient == 0.0 {
+            1.0
+        } else {
+            rod.modulus(arclength(rod, tau))
+        };
         Self {
             tau,
             radius,
+            stiffness: radius.powi(4) * modulus,
             force: load * radius * radius,
             tangent: rod.contact_tangent(),
             cos,

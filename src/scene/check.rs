@@ -20,6 +20,9 @@ const MOST_CELLS: u128 = 1 << 28;
 /// Rubber on concrete; the whiskers of rats on steel have about 0.5.
 const MOST_FRICTION: f64 = 2.0;
 
+/// Measured ratios lie between 0.7 and 1.4.
+const STIFFEST_TIP: f64 = 20.0;
+
 /// A whisker that is twice as long as it looks.
 const MOST_STRETCH: f64 = 2.0;
 
@@ -96,6 +99,13 @@ fn whisker(
         Some(table) => curvature(table, length_mm, steepest)?,
         None => None,
     };
+    let modulus_tip_to_base = match &table.modulus_gradient {
+        Some(gradient) => Limits::between(1.0 / STIFFEST_TIP, STIFFEST_TIP).check(
+            "whisker.modulus_gradient.tip_to_base",
+            &gradient.tip_to_base,
+        )?,
+        None => 1.0,
+    };
     let arc_stretch = match &table.projection {
         Some(projection) => {
             let taper = sharpest.unwrap_or(1.0 - tip_radius_um / base_radius_um);
@@ -116,6 +126,7 @@ fn whisker(
         tip_radius_um,
         youngs_modulus_gpa,
         curvature,
+        modulus_tip_to_base,
         arc_stretch,
     })
 }

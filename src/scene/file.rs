@@ -30,6 +30,14 @@ pub(super) struct WhiskerTable {
     pub youngs_modulus_gpa: Number,
     pub curvature: Option<CurvatureTable>,
     pub projection: Option<ProjectionTable>,
+    pub modulus_gradient: Option<GradientTable>,
+}
+
+/// `[whisker.modulus_gradient]`
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct GradientTable {
+    pub tip_to_base: Number,
 }
 
 /// `[whisker.projection]`

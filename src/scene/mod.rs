@@ -23,10 +23,12 @@ pub struct Whisker {
     pub base_radius_um: f64,
     /// Radius at the tip; 0 is a perfect cone.
     pub tip_radius_um: f64,
-    /// Young's modulus; it scales forces, moments and energies, never an angle.
+    /// Young's modulus at the base; it scales forces, moments and energies, never an angle.
     pub youngs_modulus_gpa: f64,
     /// Intrinsic curvature, `None` for a straight whisker.
     pub curvature: Option<Curvature>,
+    /// Young's modulus at the tip over that at the base; linear in between.
+    pub modulus_tip_to_base: f64,
     /// Real arclength over the arclength in the plane of contact: more than 1 where the whisker droops out of the
     /// plane. The radius is read at the real arclength.
     pub arc_stretch: f64,

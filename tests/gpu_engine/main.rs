@@ -70,7 +70,7 @@ fn every_engine_finds_what_was_hidden() {
     } in engines()
     {
         for (seed, effects) in (1..).zip(EFFECTS) {
-            let range = Range::new(effects, 5000, 6.5, seed);
+            let range = Range::new(effects, 5000, 6.0, seed);
             let hits = engine.shoot(effects, &range.rods, &range.shots).unwrap();
             assert_eq!(hits.len(), range.shots.len());
             assert!(hits.iter().all(|hit| hit.outcome == Outcome::Converged));

@@ -5,8 +5,8 @@ use bytemuck::Pod;
 use wgpu::util::DeviceExt;
 use whiskmap::integrate::gpu::{Precision, shaders};
 use whiskmap::model::{
-    Bent, Effects, First, Radius, Real, Rk4, Rod, RodSystem, Scales, Start, Straight, arclength,
-    integrate,
+    Bent, Effects, Even, First, Graded, Intrinsic, Material, Real, Rk4, Rod, RodSystem, Scales,
+    Section, Start, Straight, arclength, integrate,
 };
 
 const PROBE: &str = include_str!("../../shaders/probe.wgsl");
@@ -123,32 +123,73 @@ impl Number for f64 {
 
 /// The twin of `probe_steps`.
 fn steps<T: Number>(effects: Effects, steps: u32, case: &[T]) -> Vec<T> {
-    let [force, twice_bend, taper, h, rho] = case[..5] else {
-        unreachable!("a case has 17 numbers")
+    let [force, twice_bend, taper, h, rho, gradient, arclength] = case[..7] else {
+        unreachable!("a case has 19 numbers")
     };
-    let scales = if effects.taper {
+    let scales = if effects.taper || effects.gradient {
         Scales::tapered::<Rk4>(taper, h)
     } else {
-        Scales::cylinder()
+        Scales::cylinder::<Rk4>(h)
     };
-    let inverse_cube = T::of(1.0) / (rho * rho * rho);
-    let from = Radius { rho, inverse_cube };
-    let rest: [T; 2] = case[5..7].try_into().unwrap();
-    let state = (
-        case[7..11].try_into().unwrap(),
-        case[11..].try_into().unwrap(),
+    let from = Section {
+        rho,
+        inverse_cube: T::of(1.0) / (rho * rho * rho),
+        arclength,
+    };
+    let rest: [T; 2] = case[7..9].try_into().unwrap();
+    let state: Bare<T> = (
+        case[9..13].try_into().unwrap(),
+        case[13..].try_into().unwrap(),
     );
-    let (rest, (rod, first)) = if effects.curvature {
-        let intrinsic = Bent { twice_bend };
-        let system = RodSystem { force, intrinsic };
-        integrate::<Rk4, T, _, First, 6>(&system, &scales, from, h, steps, (rest, state))
-    } else {
-        let intrinsic = Straight;
-        let system = RodSystem { force, intrinsic };
-        let end = integrate::<Rk4, T, _, First, 6>(&system, &scales, from, h, steps, ((), state));
-        (rest, end.1)
+    let run = Run {
+        force,
+        scales,
+        from,
+        h,
+        steps,
+    };
+    let (rest, (rod, first)) = match (effects.curvature, effects.gradient) {
+        (true, false) => run.end(Bent { twice_bend }, Even, (rest, state)),
+        (true, true) => run.end(Bent { twice_bend }, Graded { gradient }, (rest, state)),
+        (false, false) => (rest, run.end(Straight, Even, ((), state)).1),
+        (false, true) => (rest, run.end(Straight, Graded { gradient }, ((), state)).1),
     };
     [&rest[..], &rod, &first].concat()
+}
+
+/// The rod and its first derivatives.
+type Bare<T> = ([T; 4], [T; 6]);
+
+/// Some steps, whatever the rest shape and the material.
+struct Run<T> {
+    force: T,
+    scales: Scales<T>,
+    from: Section<T>,
+    h: T,
+    steps: u32,
+}
+
+impl<T: Number> Run<T> {
+    fn end<I: Intrinsic<T>, C: Material<T>>(
+        &self,
+        intrinsic: I,
+        material: C,
+        start: (I::State, Bare<T>),
+    ) -> (I::State, Bare<T>) {
+        let system = RodSystem {
+            force: self.force,
+            intrinsic,
+            material,
+        };
+        integrate::<Rk4, T, I, C, First, 6>(
+            &system,
+            &self.scales,
+            self.from,
+            self.h,
+            self.steps,
+            start,
+        )
+    }
 }
 
 /// Cases for `probe_steps`: random states on random rods, `steps` steps away from the base at least.
@@ -157,10 +198,22 @@ fn cases<T: Number>(effects: Effects, count: u32) -> Vec<Vec<T>> {
     let mut case = || {
         let taper = random.between(0.0, 0.99);
         let tau = random.between(0.5, 4.0);
+        let taper = if effects.taper || !effects.gradient {
+            taper
+        } else {
+            0.0
+        };
         let rho = if effects.taper {
             f64::exp(-taper * tau)
         } else {
             1.0
+        };
+        let gradient = random.between(-0.2, 1.0);
+        // The base lies where the 64 steps end.
+        let arclength = if effects.taper {
+            (1.0 - rho) / taper
+        } else {
+            tau
         };
         let force = random.between(-6.0, 6.0) * rho * rho;
         let twice_bend = random.between(0.0, 1.6);
@@ -173,6 +226,8 @@ fn cases<T: Number>(effects: Effects, count: u32) -> Vec<Vec<T>> {
             taper,
             h,
             rho,
+            gradient,
+            arclength,
             at_rest.cos(),
             at_rest.sin(),
             tilt.cos(),
@@ -206,7 +261,7 @@ fn difference<T: Number>(bench: &Bench, text: &str, effects: Effects, count: u32
         for group in GROUPS {
             let size = |x: &[T]| x.iter().map(|&x| x.into().abs()).fold(0.0, f64::max);
             let apart: Vec<T> = group.clone().map(|i| shader[i] - rust[i]).collect();
-            let apart = size(&apart) / size(&rust[group.clone()]).max(size(&case[5..][group]));
+            let apart = size(&apart) / size(&rust[group.clone()]).max(size(&case[7..][group]));
             assert!(apart.is_finite());
             worst = worst.max(apart);
         }
@@ -228,7 +283,7 @@ fn a_step_is_the_twins<T: Number>(one: f64, whole: f64) {
         assert!(found_one < one && found_whole < whole);
     }
     // A wrong constant anywhere shows.
-    let all = EFFECTS[3];
+    let all = EFFECTS[7];
     for (good, bad) in [
         ("let third = h / 3.0;", "let third = h / 3.0001;"),
         ("let half = 0.5 * h;", "let half = 0.499 * h;"),
@@ -237,6 +292,10 @@ fn a_step_is_the_twins<T: Number>(one: f64, whole: f64) {
             "-3.0 * x * expm1_over(-2.99 * x)",
         ),
         ("w * (f * y.by_force.y + x)", "w * (f * y.by_force.y - x)"),
+        (
+            "system.gradient * section.arclength",
+            "system.gradient * section.rho",
+        ),
         (
             "at_rest * y.rest.y, -at_rest",
             "at_rest * y.rest.y, at_rest",

@@ -22,26 +22,28 @@ impl Random {
     }
 }
 
-pub const EFFECTS: [Effects; 4] = [
-    Effects {
+/// Every set of effects.
+pub const EFFECTS: [Effects; 8] = {
+    let none = Effects {
         taper: false,
         curvature: false,
-    },
-    Effects {
-        taper: false,
-        curvature: true,
-    },
-    Effects {
-        taper: true,
-        curvature: false,
-    },
-    Effects {
-        taper: true,
-        curvature: true,
-    },
-];
+        gradient: false,
+    };
+    let mut all = [none; 8];
+    let mut i = 0;
+    while i < 8 {
+        all[i] = Effects {
+            taper: i & 2 != 0,
+            curvature: i & 1 != 0,
+            gradient: i & 4 != 0,
+        };
+        i += 1;
+    }
+    all
+};
 
-/// A whisker of taper up to 0.99 and `A*` up to 0.8 on either side of a pole of radius up to 0.03 with friction up to 0.5.
+/// A whisker of taper up to 0.99 and `A*` up to 0.8 on either side of a pole of radius up to 0.03 with friction up to 0.5, up to twice as
+/// stiff at the tip as at the base.
 pub fn rod(effects: Effects, random: &mut Random) -> Rod {
     let bend = f64::from(effects.curvature) * random.between(0.0, 0.8);
     let side = if random.unit() < 0.5 { 1.0 } else { -1.0 };
@@ -50,6 +52,7 @@ pub fn rod(effects: Effects, random: &mut Random) -> Rod {
         bend,
         slope: -2.0 * bend * random.between(-0.3, 0.3),
         pole: side * random.between(0.0, 0.03),
+        gradient: f64::from(effects.gradient) * random.between(0.0, 1.0),
         friction: side * random.between(0.0, 0.5),
     }
 }

@@ -136,3 +136,52 @@ fn a_byte_order_mark_and_windows_line_ends_do_no_harm() {
         "{why}"
     );
 }
+
+/// The tables of the effects, which the base scene does not have.
+#[test]
+fn effects_have_their_ranges() {
+    for (table, key, bad, said) in [
+        (
+            "whisker.modulus_gradient",
+            "tip_to_base",
+            "0",
+            "must be between 0.05 and 20",
+        ),
+        (
+            "whisker.modulus_gradient",
+            "tip_to_base",
+            "nan",
+            "must be between 0.05 and 20",
+        ),
+        (
+            "whisker.projection",
+            "arc_stretch",
+            "0.9",
+            "must be between 1 and",
+        ),
+        (
+            "whisker.projection",
+            "arc_stretch",
+            "2.5",
+            "must be between 1 and",
+        ),
+        ("contact", "friction", "-0.1", "must be between 0 and 2"),
+        ("contact", "friction", "inf", "must be between 0 and 2"),
+    ] {
+        let text = format!("{BASE}\n[{table}]\n{key} = {bad}\n");
+        let message = parse(&text).unwrap_err();
+        let said = format!("{table}.{key} = {bad}: {said}");
+        assert!(message.contains(&said), "{said}: {message}");
+        let unknown = parse(&text.replace(key, "more")).unwrap_err();
+        assert!(unknown.contains("unknown field `more`"), "{unknown}");
+    }
+    // Its base scene sweeps to a perfect cone, whose radius is 0 at the tip already.
+    let pointed = parse(&format!(
+        "{BASE}\n[whisker.projection]\narc_stretch = 1.03\n"
+    ))
+    .unwrap_err();
+    assert!(
+        pointed.contains("1 / taper, where the radius at the tip is 0 (1)"),
+        "{pointed}"
+    );
+}

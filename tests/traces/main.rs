@@ -19,6 +19,7 @@ fn whisker(tip_radius_um: f64, a_per_mm: f64) -> Whisker {
             parabola_per_mm: a_per_mm,
             vertex_mm: 0.0,
         }),
+        modulus_tip_to_base: 1.0,
         arc_stretch: 1.0,
     }
 }
@@ -28,6 +29,10 @@ fn everything() -> impl Iterator<Item = (Whisker, Pole)> {
     [30.0, 20.0, 6.0, 1.5, 0.1, 0.0]
         .into_iter()
         .flat_map(|tip| [0.0, 0.02, 0.04, 0.07].map(|a| whisker(tip, a)))
+        .chain([0.1, 10.0].map(|ratio| Whisker {
+            modulus_tip_to_base: ratio,
+            ..whisker(1.5, 0.02)
+        }))
         .flat_map(|whisker| POLES.map(|pole| (whisker.clone(), pole)))
 }
 

@@ -68,6 +68,7 @@ macro_rules! layout {
                 pub slope: $real,
                 pub pole: $real,
                 pub friction: $real,
+                pub gradient: $real,
             }
 
             #[derive(Clone, Copy, Pod, Zeroable)]
@@ -99,6 +100,7 @@ macro_rules! layout {
                         slope: rod.slope as $real,
                         pole: rod.pole as $real,
                         friction: rod.friction as $real,
+                        gradient: rod.gradient as $real,
                     }
                 }
             }
@@ -188,7 +190,16 @@ mod tests {
         ($module:ident, $precision:expr) => {
             let shader = in_shader($precision);
             for rust in [
-                in_rust!($module::Rod, "Rod", taper, bend, slope, pole, friction),
+                in_rust!(
+                    $module::Rod,
+                    "Rod",
+                    taper,
+                    bend,
+                    slope,
+                    pole,
+                    friction,
+                    gradient
+                ),
                 in_rust!(
                     $module::Shot,
                     "Shot",

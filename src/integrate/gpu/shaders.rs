@@ -57,7 +57,8 @@ fn constants(precision: Precision) -> String {
          const TOLERANCE = real({tolerance:e});\n\
          override STEPS: u32;\n\
          override TAPER: bool;\n\
-         override CURVATURE: bool;\n"
+         override CURVATURE: bool;\n\
+         override GRADIENT: bool;\n"
     );
     for (code, (name, _)) in OUTCOMES.iter().enumerate() {
         // Writing to a String cannot fail.
@@ -80,10 +81,13 @@ pub fn shoot(precision: Precision) -> String {
 
 /// The values of the `override` constants.
 #[must_use]
-pub fn overrides(effects: Effects, steps: u32) -> [(&'static str, f64); 3] {
+pub fn overrides(effects: Effects, steps: u32) -> [(&'static str, f64); 4] {
+    let flag = |on: bool| f64::from(u8::from(on));
     [
         ("STEPS", f64::from(steps)),
-        ("TAPER", f64::from(u8::from(effects.taper))),
-        ("CURVATURE", f64::from(u8::from(effects.curvature))),
+        // Without taper sections are not advanced at all; a gradient needs their arclength.
+        ("TAPER", flag(effects.taper || effects.gradient)),
+        ("CURVATURE", flag(effects.curvature)),
+        ("GRADIENT", flag(effects.gradient)),
     ]
 }
