@@ -3,7 +3,7 @@
 use super::{Face, cells::Cell, doubt};
 use crate::classify::{Regime, RowBoundary, Status};
 use crate::model::Units;
-use crate::refine::{State, TIP_TIE};
+use crate::refine::State;
 use crate::scene::{Scene, Whisker};
 use crate::sheet::Sheet;
 use crate::store::{Panel, STATE_CHANNELS};
@@ -96,7 +96,7 @@ fn answer(
     let push = push_deg.to_radians();
     let at_tip = sheet
         .zip(cell.state)
-        .is_some_and(|(sheet, state)| (state.tau / sheet.rod.tau_tip() - 1.0).abs() <= TIP_TIE);
+        .is_some_and(|(sheet, state)| state.is_at_tip(&sheet.rod));
     let (regime, status) = match boundary {
         // At the tip both verdicts are right; the boundary's is taken.
         Some(boundary)

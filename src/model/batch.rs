@@ -69,7 +69,8 @@ pub struct Method {
     pub resolution: Resolution,
 }
 
-/// Blocks per piece of work that one thread takes: long enough to hide the hand-over, short enough to share.
+/// Blocks per piece of work that one thread takes: long enough to hide the hand-over, short enough to share. A batch
+/// that is one piece stays on the thread that asks for it.
 const BLOCKS_PER_TASK: usize = 16;
 
 /// Computes `K` for every launch with the integrator `M`, on all threads of the current pool.
@@ -90,15 +91,17 @@ pub fn land<M: Integrator, K: Kind<N>, const N: usize>(
         .chunk_by(|&i, &j| steps[i] == steps[j])
         .flat_map(|equal| equal.chunks(WIDTH))
         .collect();
-    let landed: Vec<[K::Answer; WIDTH]> = blocks
-        .par_iter()
-        .with_min_len(BLOCKS_PER_TASK)
-        .map(|block| {
-            let lane = |i: usize| launches[block[i.min(block.len() - 1)]];
-            let lanes: [Launch; WIDTH] = std::array::from_fn(lane);
-            unit.block::<M, K, N>(method.effects, steps[block[0]], &lanes)
-        })
-        .collect();
+    let run = |block: &&[usize]| {
+        let lane = |i: usize| launches[block[i.min(block.len() - 1)]];
+        let lanes: [Launch; WIDTH] = std::array::from_fn(lane);
+        unit.block::<M, K, N>(method.effects, steps[block[0]], &lanes)
+    };
+    let landed: Vec<[K::Answer; WIDTH]> = if blocks.len() <= BLOCKS_PER_TASK {
+        blocks.iter().map(run).collect()
+    } else {
+        let tasks = blocks.par_iter().with_min_len(BLOCKS_PER_TASK);
+        tasks.map(run).collect()
+    };
     let mut places = vec![(0, 0); launches.len()];
     for (b, block) in blocks.iter().enumerate() {
         for (lane, &i) in block.iter().enumerate() {

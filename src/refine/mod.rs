@@ -8,7 +8,7 @@ mod near_fold;
 
 use crate::integrate::Shot;
 use crate::model::batch::{Launch, Method, land};
-use crate::model::{Dopri8, Effects, FirstAndEnergy, Full, arclength};
+use crate::model::{Dopri8, Effects, FirstAndEnergy, Full, Rod, arclength};
 use crate::sheet::{FINE, Sheet};
 use near_fold::Verdict;
 
@@ -18,8 +18,8 @@ pub const GOAL: f64 = 1e-12;
 /// Residual, in whisker lengths, up to which a state is accepted when steps no longer help.
 pub const TOLERANCE: f64 = 1e-11;
 
-/// Contacts closer to the tip than this, relative to `tau` there, count as at the tip.
-pub const TIP_TIE: f64 = 1e-12;
+/// Contacts closer to the tip than this, relative to `tau` there, or than the residual, count as at the tip.
+const TIP_TIE: f64 = 1e-12;
 
 /// Newton steps before the fold is asked.
 const STEPS: u32 = 8;
@@ -49,6 +49,15 @@ pub struct State {
     pub full: Full,
     /// Distance of the pole from the wanted place, in whisker lengths.
     pub residual: f64,
+}
+
+impl State {
+    /// Whether the contact is at the tip of `rod`, as far as the residual tells.
+    #[must_use]
+    pub fn is_at_tip(&self, rod: &Rod) -> bool {
+        let tip = rod.tau_tip();
+        (self.tau - tip).abs() <= TIP_TIE * tip + self.residual / rod.radius(tip)
+    }
 }
 
 /// The verdict on a cell.
@@ -163,7 +172,7 @@ fn newton(
 fn verdict(sheet: &Sheet, state: &State) -> End {
     if !sheet.is_stable(state.tau, state.load, &state.full.landing) {
         End::NotConverged
-    } else if state.tau > sheet.rod.tau_tip() * (1.0 + TIP_TIE) {
+    } else if state.tau > sheet.rod.tau_tip() && !state.is_at_tip(&sheet.rod) {
         End::BeyondTip
     } else {
         End::Solved

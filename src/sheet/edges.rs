@@ -1,42 +1,10 @@
-//! Where each row of a map leaves the stable sheet: over the fold (slip-off) or over the tip (pull-off).
-//!
-//! The edges form one closed line, touch - tip - corner - fold; consecutive samples share their computed
-//! distance, and a row crosses between two samples when exactly one of them is at most its own distance. So
-//! the number of crossings has the right parity whatever the rounding.
+//! The edges of the stable sheet, sampled: the fold at every column, the tip from first touch to the corner.
 
 use super::columns::Columns;
 use super::lattice::Lattice;
 use super::rows::Row;
-use super::seek::{Edge, Wanted, seek};
 use crate::model::batch::{Launch, Method, land};
-use crate::model::{Dopri8, First, Landing, Rod, Second, Side, nearest_turn};
-use glam::DVec2;
-
-/// A row's crossing of an edge.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Crossing {
-    /// Which edge.
-    pub edge: Edge,
-    /// `tau` of the contact.
-    pub tau: f64,
-    /// Signed load.
-    pub load: f64,
-    /// Push angle since first touch, in radians, as a magnitude on the row's side.
-    pub push: f64,
-    /// Remaining error: distance in `ln D` and, at a fold, the last step taken, both relative.
-    pub residual: f64,
-}
-
-/// The largest error, relative to the distance of the pole, of a crossing that is taken for one.
-const SOUND: f64 = 1e-10;
-
-impl Crossing {
-    /// Whether Newton's method found it.
-    #[must_use]
-    pub fn is_sound(&self) -> bool {
-        self.residual <= SOUND
-    }
-}
+use crate::model::{Dopri8, First, Landing, Rod, Second, nearest_turn};
 
 /// Samples along the tip edge; the distance has at most a few extrema there.
 const TIP_SAMPLES: usize = 64;
@@ -45,67 +13,17 @@ const TIP_SAMPLES: usize = 64;
 /// the pole does touch it, whatever the rounding.
 pub const REACH_SLACK: f64 = 1e-12;
 
-/// A row and a place near its crossing.
-struct Candidate {
-    row: usize,
-    edge: Edge,
-    tau: f64,
-    load: f64,
-    /// Direction of the pole there, continuous from first touch.
-    phi: f64,
-}
-
-/// Every crossing of every row, sorted by push angle.
-pub fn crossings(
-    method: Method,
-    rod: &Rod,
-    side: Side,
-    edges: &Edges,
-    rows: &[Row],
-) -> Vec<Vec<Crossing>> {
-    let mut candidates = Vec::new();
-    for (edge, samples) in [(Edge::Fold, &edges.fold), (Edge::Tip, &edges.tip)] {
-        for pair in samples.windows(2) {
-            let (a, b) = (pair[0], pair[1]);
-            for (index, row) in rows.iter().enumerate() {
-                let target = row.pole_distance.ln() - REACH_SLACK;
-                if (a.ln_distance <= target) != (b.ln_distance <= target) {
-                    let t = (target - a.ln_distance) / (b.ln_distance - a.ln_distance);
-                    let scaled = |s: Sample| s.load * s.tau * s.tau;
-                    let tau = a.tau + t * (b.tau - a.tau);
-                    let load = (scaled(a) + t * (scaled(b) - scaled(a))) / (tau * tau);
-                    let phi = a.phi + t * (b.phi - a.phi);
-                    candidates.push(Candidate {
-                        row: index,
-                        edge,
-                        tau,
-                        load,
-                        phi,
-                    });
-                }
-            }
-        }
-    }
-    let mut found = vec![Vec::new(); rows.len()];
-    for (candidate, crossing) in candidates
-        .iter()
-        .zip(polish(method, rod, side, rows, &candidates))
-    {
-        found[candidate.row].push(crossing);
-    }
-    for row in &mut found {
-        row.sort_by(|a, b| a.push.total_cmp(&b.push));
-    }
-    found
-}
-
 /// A computed point of an edge.
 #[derive(Clone, Copy, Debug)]
-struct Sample {
-    tau: f64,
-    load: f64,
-    ln_distance: f64,
-    phi: f64,
+pub struct Sample {
+    /// `tau` of the contact.
+    pub tau: f64,
+    /// Signed load.
+    pub load: f64,
+    /// `ln D`.
+    pub ln_distance: f64,
+    /// Direction of the pole, continuous from first touch.
+    pub phi: f64,
 }
 
 impl Sample {
@@ -122,8 +40,10 @@ impl Sample {
 /// The sampled edges of a sheet.
 #[derive(Clone, Debug)]
 pub struct Edges {
-    fold: Vec<Sample>,
-    tip: Vec<Sample>,
+    /// From the base to the corner.
+    pub fold: Vec<Sample>,
+    /// From first touch to the corner.
+    pub tip: Vec<Sample>,
 }
 
 impl Edges {
@@ -217,36 +137,4 @@ fn extremum(method: Method, rod: &Rod, from: Launch, to: f64) -> f64 {
         load = next;
     }
     load
-}
-
-/// The crossings that the candidates lead to.
-fn polish(
-    method: Method,
-    rod: &Rod,
-    side: Side,
-    rows: &[Row],
-    candidates: &[Candidate],
-) -> Vec<Crossing> {
-    let wanted: Vec<Wanted> = candidates
-        .iter()
-        .map(|c| Wanted {
-            rod: *rod,
-            edge: c.edge,
-            pole_distance: rows[c.row].pole_distance,
-            from: DVec2::new(c.tau, c.load),
-        })
-        .collect();
-    let polished = seek(method, &wanted).into_iter().zip(candidates);
-    polished
-        .map(|(sought, c)| {
-            let phi = nearest_turn(sought.here.landing.pole.to_angle(), c.phi);
-            Crossing {
-                edge: c.edge,
-                tau: sought.point.x,
-                load: sought.point.y,
-                push: side.sign() * (phi - rows[c.row].touch),
-                residual: sought.miss.abs() + sought.step * sought.step,
-            }
-        })
-        .collect()
 }

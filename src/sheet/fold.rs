@@ -1,5 +1,6 @@
 //! The fold edge: the first load at which the Jacobian becomes singular, contact by contact.
 
+use super::COARSE;
 use crate::model::batch::{Launch, Method, land};
 use crate::model::{Curved, Dopri8, First, Rod, Second, Side, arclength};
 
@@ -21,6 +22,9 @@ const SAMPLES: usize = 16;
 /// the first than this.
 const FIRST_STEP: f64 = 0.5;
 
+/// How much wider a bracket is than the samples say, relatively: their signs come from the coarse resolution.
+const SLACK: f64 = 1e-2;
+
 /// Beyond this `q` the samples spread out. The largest first fold known lies at 24.15: the limit at the tip of a
 /// perfect cone that is slender against the pole.
 const EVEN_UP_TO: f64 = 64.0;
@@ -37,7 +41,11 @@ const ROUNDS: usize = 60;
 
 /// First folds of `rod` at the contacts `taus`; `None` where there is none up to [`LARGEST_Q`].
 pub fn first_folds(method: Method, rod: &Rod, side: Side, taus: &[f64]) -> Vec<Option<FoldPoint>> {
-    let brackets = bracket(method, rod, side, taus);
+    let coarse = Method {
+        resolution: COARSE,
+        ..method
+    };
+    let brackets = bracket(coarse, rod, side, taus);
     polish(method, rod, &brackets)
 }
 
@@ -88,10 +96,11 @@ fn bracket(method: Method, rod: &Rod, side: Side, taus: &[f64]) -> Vec<Option<Br
                 if let Some((stable, before)) = march.last
                     && before * det <= 0.0
                 {
+                    let slack = SLACK * (load - stable);
                     found[march.index] = Some(Bracket {
                         tau: taus[march.index],
-                        stable,
-                        beyond: load,
+                        stable: stable - slack,
+                        beyond: load + slack,
                         guess: stable + (load - stable) * before / (before - det),
                     });
                     return false;

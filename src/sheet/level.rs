@@ -40,6 +40,8 @@ pub struct LevelCurve {
     pub side: Side,
     /// Where the pole stands.
     pub row: Row,
+    /// Whether it is followed in the direction of growing push angles.
+    pub forward: bool,
 }
 
 impl LevelCurve {
@@ -82,7 +84,8 @@ impl LevelCurve {
         let scale = self.scale(from.point);
         let gradient = scale * gradient(from);
         // Along the curve the push angle changes by minus `det` times its direction (by_load, -by_tau).
-        let along = -self.side.sign() * DVec2::new(gradient.y, -gradient.x).normalize();
+        let heading = if self.forward { 1.0 } else { -1.0 };
+        let along = -heading * self.side.sign() * DVec2::new(gradient.y, -gradient.x).normalize();
         let predicted = from.point + step * scale * along;
         let (point, full) = self.settle(&[predicted], ON_CURVE).pop()??;
         let turned = (point - from.point) / scale;

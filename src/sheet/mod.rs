@@ -6,7 +6,9 @@
 //! rectangle gives every cell of the map a guess, or the certainty that it has no solution
 //! ([`Sheet::guesses`]). The two are computed independently of each other.
 
+mod bisect;
 mod columns;
+mod crossings;
 mod edges;
 mod find;
 mod fold;
@@ -18,7 +20,7 @@ mod rows;
 mod seek;
 mod walk;
 
-pub use edges::Crossing;
+pub use crossings::Crossing;
 pub use fold::FoldPoint;
 pub use lattice::Guess;
 pub use level::{LevelCurve, Node, ON_CURVE};
@@ -36,6 +38,12 @@ use lattice::Lattice;
 pub const FINE: Resolution = Resolution {
     least: 32,
     longest: 0.1,
+};
+
+/// The resolution that signs and guesses need. Over the stable sheet its states are off by less than 1e-6.
+const COARSE: Resolution = Resolution {
+    least: 8,
+    longest: 0.4,
 };
 
 /// How far below zero the load of an unloaded whisker may come out, relative to the fold's: at the soft tip of a
@@ -75,9 +83,13 @@ impl Sheet {
             .iter()
             .min_by(|a, b| a.pole_distance.total_cmp(&b.pole_distance))?;
         let columns = Columns::new(method, rod, side, nearest)?;
-        let lattice = Lattice::new(method, rod, side, &columns);
+        let coarse = Method {
+            resolution: COARSE,
+            ..method
+        };
+        let lattice = Lattice::new(coarse, rod, side, &columns);
         let edges = Edges::new(method, rod, &columns, &lattice);
-        let mut crossings = edges::crossings(method, rod, side, &edges, &rows);
+        let mut crossings = crossings::crossings(method, rod, side, &edges, &rows);
         for (row, crossings) in rows.iter().zip(&mut crossings) {
             let touches = edges.touches(row);
             let pair = edges.fold_grows() && usize::from(touches) + crossings.len() == 2;
@@ -87,6 +99,7 @@ impl Sheet {
                     rod: *rod,
                     side,
                     row: *row,
+                    forward: true,
                 };
                 *crossings = pieces::connect(&level, touches, crossings);
             }
@@ -121,6 +134,7 @@ impl Sheet {
             rod: self.rod,
             side: self.side,
             row: self.rows[row],
+            forward: true,
         }
     }
 

@@ -3,7 +3,7 @@
 //! With friction or strong curvature `D` can have a saddle on the edge of the sheet. The level curve of a row is then in
 //! several pieces, whose push angles may overlap, and only walking along them tells which crossings they connect.
 
-use super::edges::Crossing;
+use super::crossings::Crossing;
 use super::level::{LevelCurve, Node};
 use super::walk::walk;
 
@@ -22,14 +22,29 @@ pub fn connect(level: &LevelCurve, touches: bool, crossings: &[Crossing]) -> Vec
         connected.push(end);
     }
     for from in crossings {
-        let known = connected.iter().any(|other| same(from, other));
-        let end = level.at(from).and_then(|start| follow(level, start));
+        let known = |crossing: &Crossing| connected.iter().any(|other| same(crossing, other));
+        let Some(from) = entry(level, from).filter(|from| !known(from)) else {
+            continue;
+        };
+        let end = level.at(&from).and_then(|start| follow(level, start));
         // From where a piece ends, the way on leads nowhere.
-        if let Some(end) = end.filter(|end| !known && !same(from, end)) {
-            connected.extend([*from, end]);
+        if let Some(end) = end.filter(|end| !same(&from, end)) {
+            connected.extend([from, end]);
         }
     }
     connected
+}
+
+/// `crossing` itself, or, if it is only near the level curve, where the piece begins that it is near to.
+fn entry(level: &LevelCurve, crossing: &Crossing) -> Option<Crossing> {
+    if crossing.is_sound() {
+        return Some(*crossing);
+    }
+    let backward = LevelCurve {
+        forward: false,
+        ..*level
+    };
+    follow(&backward, level.at(crossing)?)
 }
 
 /// Where the piece of the level curve that begins at `start` ends.

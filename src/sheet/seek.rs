@@ -1,5 +1,6 @@
 //! Newton's method for the points in which a row leaves the sheet.
 
+use super::COARSE;
 use crate::model::batch::{Launch, Method, land};
 use crate::model::{Curved, Dopri8, Rod, Second, arclength, limited};
 use glam::DVec2;
@@ -39,7 +40,10 @@ pub struct Sought {
     pub step: f64,
 }
 
-/// Rounds of Newton's method; from a hundredth of a column away 4 are the rule.
+/// Rounds of Newton's method at the coarse resolution: from a hundredth of a column away they lead to its error.
+const COARSE_ROUNDS: usize = 2;
+
+/// Rounds at the method's own resolution; 2 are the rule.
 const ROUNDS: usize = 20;
 
 /// The step at which a point is as good as it gets.
@@ -51,7 +55,13 @@ pub fn seek(method: Method, wanted: &[Wanted]) -> Vec<Sought> {
     let mut points: Vec<DVec2> = wanted.iter().map(|w| w.from).collect();
     let mut found: Vec<Option<Sought>> = vec![None; wanted.len()];
     let mut open: Vec<usize> = (0..wanted.len()).collect();
-    for _ in 0..ROUNDS {
+    for round in 0..COARSE_ROUNDS + ROUNDS {
+        let is_coarse = round < COARSE_ROUNDS;
+        let resolution = if is_coarse { COARSE } else { method.resolution };
+        let method = Method {
+            resolution,
+            ..method
+        };
         let launches: Vec<Launch> = open
             .iter()
             .map(|&i| Launch {
@@ -79,7 +89,7 @@ pub fn seek(method: Method, wanted: &[Wanted]) -> Vec<Sought> {
                 step: length,
             });
             points[i] = point + step;
-            length > SMALLEST_STEP && step.is_finite() && points[i].x > 0.0
+            (is_coarse || length > SMALLEST_STEP) && step.is_finite() && points[i].x > 0.0
         });
     }
     found.into_iter().flatten().collect()

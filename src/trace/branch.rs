@@ -70,6 +70,7 @@ impl Branch {
             rod,
             side,
             row,
+            forward: true,
         };
         Ok(Self {
             level,

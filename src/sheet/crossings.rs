@@ -1,0 +1,159 @@
+//! Where each row of a map leaves the stable sheet: over the fold (slip-off) or over the tip (pull-off).
+//!
+//! The edges form one closed line, touch - tip - corner - fold; consecutive samples share their computed
+//! distance, and a row crosses between two samples when exactly one of them is at most its own distance. So
+//! the number of crossings has the right parity whatever the rounding.
+
+use super::bisect::bisect;
+use super::edges::{Edges, REACH_SLACK, Sample};
+use super::rows::Row;
+use super::seek::{Edge, Wanted, seek};
+use crate::model::batch::Method;
+use crate::model::{Landing, Rod, Side, nearest_turn};
+use glam::DVec2;
+
+/// A row's crossing of an edge.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Crossing {
+    /// Which edge.
+    pub edge: Edge,
+    /// `tau` of the contact.
+    pub tau: f64,
+    /// Signed load.
+    pub load: f64,
+    /// Push angle since first touch, in radians, as a magnitude on the row's side.
+    pub push: f64,
+    /// Remaining error: distance in `ln D` and, at a fold, the last step taken, both relative.
+    pub residual: f64,
+}
+
+/// The largest error, relative to the distance of the pole, of a crossing that is taken for one.
+const SOUND: f64 = 1e-10;
+
+impl Crossing {
+    /// Whether Newton's method found it.
+    #[must_use]
+    pub fn is_sound(&self) -> bool {
+        self.residual <= SOUND
+    }
+}
+
+/// A row and a place near its crossing.
+struct Candidate {
+    row: usize,
+    edge: Edge,
+    tau: f64,
+    load: f64,
+    /// Direction of the pole there, continuous from first touch.
+    phi: f64,
+    /// The samples on both sides of it.
+    between: [Sample; 2],
+}
+
+impl Candidate {
+    /// Whether `point` is between the samples, or next to them.
+    fn holds(&self, point: DVec2) -> bool {
+        let [a, b] = self.between;
+        let is_between = |x: f64, a: f64, b: f64| (x - a) * (x - b) <= NEXT_TO * (b - a).powi(2);
+        match self.edge {
+            Edge::Fold => is_between(point.x, a.tau, b.tau),
+            Edge::Tip => is_between(point.y, a.load, b.load),
+        }
+    }
+}
+
+/// How far, in parts of their distance, a crossing may be outside of the samples that it is between but for rounding.
+const NEXT_TO: f64 = 1e-9;
+
+/// Every crossing of every row, sorted by push angle.
+pub fn crossings(
+    method: Method,
+    rod: &Rod,
+    side: Side,
+    edges: &Edges,
+    rows: &[Row],
+) -> Vec<Vec<Crossing>> {
+    let mut candidates = Vec::new();
+    for (edge, samples) in [(Edge::Fold, &edges.fold), (Edge::Tip, &edges.tip)] {
+        for pair in samples.windows(2) {
+            let (a, b) = (pair[0], pair[1]);
+            for (index, row) in rows.iter().enumerate() {
+                let target = row.pole_distance.ln() - REACH_SLACK;
+                if (a.ln_distance <= target) != (b.ln_distance <= target) {
+                    let t = (target - a.ln_distance) / (b.ln_distance - a.ln_distance);
+                    let scaled = |s: Sample| s.load * s.tau * s.tau;
+                    let tau = a.tau + t * (b.tau - a.tau);
+                    let load = (scaled(a) + t * (scaled(b) - scaled(a))) / (tau * tau);
+                    let phi = a.phi + t * (b.phi - a.phi);
+                    candidates.push(Candidate {
+                        row: index,
+                        edge,
+                        tau,
+                        load,
+                        phi,
+                        between: [a, b],
+                    });
+                }
+            }
+        }
+    }
+    let mut found = vec![Vec::new(); rows.len()];
+    for (candidate, crossing) in candidates
+        .iter()
+        .zip(polish(method, rod, side, rows, &candidates))
+    {
+        found[candidate.row].push(crossing);
+    }
+    for row in &mut found {
+        row.sort_by(|a, b| a.push.total_cmp(&b.push));
+    }
+    found
+}
+
+/// The crossings that the candidates lead to.
+fn polish(
+    method: Method,
+    rod: &Rod,
+    side: Side,
+    rows: &[Row],
+    candidates: &[Candidate],
+) -> Vec<Crossing> {
+    let wanted: Vec<Wanted> = candidates
+        .iter()
+        .map(|c| Wanted {
+            rod: *rod,
+            edge: c.edge,
+            pole_distance: rows[c.row].pole_distance,
+            from: DVec2::new(c.tau, c.load),
+        })
+        .collect();
+    let polished = seek(method, &wanted).into_iter().zip(candidates);
+    polished
+        .map(|(sought, c)| {
+            let row = &rows[c.row];
+            let crossing = |point: DVec2, landing: &Landing, residual: f64| {
+                let phi = nearest_turn(landing.pole.to_angle(), c.phi);
+                Crossing {
+                    edge: c.edge,
+                    tau: point.x,
+                    load: point.y,
+                    push: side.sign() * (phi - row.touch),
+                    residual,
+                }
+            };
+            let residual = sought.miss.abs() + sought.step * sought.step;
+            let newton = crossing(sought.point, &sought.here.landing, residual);
+            if newton.is_sound() && c.holds(sought.point) {
+                return newton;
+            }
+            let bisected = bisect(method, rod, side, c.edge, row.pole_distance.ln(), c.between);
+            let bisected = bisected.map(|(point, here)| {
+                let distance = here.landing.pole.length();
+                let residual = (row.pole_distance / distance).ln().abs();
+                crossing(point, &here.landing, residual)
+            });
+            // The first fold can jump from contact to contact; then there is nothing between the samples.
+            bisected.filter(Crossing::is_sound).unwrap_or(newton)
+        })
+        .collect()
+}
