@@ -11,10 +11,11 @@
 #[path = "../tests/gpu_engine/shots.rs"]
 mod shots;
 
-use shots::{EFFECTS, Range};
+use shots::Range;
 use std::time::Instant;
 use whiskmap::integrate::gpu::{Gpu, Precision};
 use whiskmap::integrate::{Cpu, Engine, EngineError, Outcome};
+use whiskmap::model::Effects;
 
 fn main() -> Result<(), EngineError> {
     let count = std::env::args()
@@ -34,7 +35,7 @@ fn main() -> Result<(), EngineError> {
     println!(
         "taper  curv.  engine   Mtraj/s Mshots/s  converged  miss: median      99 %     worst"
     );
-    for effects in EFFECTS {
+    for effects in Effects::all() {
         let range = Range::new(effects, count, 6.5, 7);
         for engine in &mut engines {
             // The first dispatch compiles.

@@ -23,21 +23,13 @@ fn cross2(a: vec2<real>, b: vec2<real>) -> real {
 
 // One trajectory.
 fn land(rod: Rod, tau: real, start: Start) -> Landing {
-    let h = tau / real(STEPS);
-    let inverse_cube = 1.0 / (start.radius * start.radius * start.radius);
     let at_contact = State(
         vec2<real>(start.cos, start.sin),
         vec4<real>(start.tangent, 0.0, 0.0),
         vec3<real>(),
         vec3<real>(-curvature(rod, start), -start.tangent),
     );
-    let y = integrate(
-        System(start.force, 2.0 * rod.bend, rod.gradient),
-        gains(rod.taper, h),
-        Section(start.radius, inverse_cube, start.arclength),
-        h,
-        at_contact,
-    );
+    let y = travel(rod, tau, start, at_contact);
     let to_pole = rod.pole * vec2<real>(start.tangent.y, -start.tangent.x);
     let w = to_pole - y.rod.zw;
     let f = over(-y.by_force.yz, w) - vec2<real>(0.0, y.by_force.x);

@@ -7,7 +7,7 @@
 @compute @workgroup_size(1)
 fn probe_steps(@builtin(global_invocation_id) id: vec3<u32>) {
     let i = 19u * id.x;
-    let system = System(cases[i], cases[i + 1u], cases[i + 5u]);
+    let system = System(cases[i], cases[i + 1u], array<real, 2>(), Material(cases[i + 5u]));
     let h = cases[i + 3u];
     let rho = cases[i + 4u];
     let y = integrate(
@@ -41,7 +41,7 @@ fn probe_steps(@builtin(global_invocation_id) id: vec3<u32>) {
 @compute @workgroup_size(1)
 fn probe_start(@builtin(global_invocation_id) id: vec3<u32>) {
     let i = 5u * id.x;
-    let rod = Rod(cases[i], cases[i + 1u], cases[i + 2u], 0.0, 0.0, 0.0);
+    let rod = Rod(cases[i], cases[i + 1u], cases[i + 2u], 0.0, 0.0, 0.0, array<real, 2>());
     let start = start_at(rod, cases[i + 3u], cases[i + 4u]);
     answers[i] = start.radius;
     answers[i + 1u] = start.arclength;

@@ -21,16 +21,14 @@ struct State {
 struct System {
     force: real,
     twice_bend: real,
-    gradient: real,
+    spiral: array<real, 2>,
+    material: Material,
 }
 
 fn rhs(system: System, section: Section, y: State) -> State {
     let f = system.force;
     let rho = section.rho;
-    var w = section.inverse_cube;
-    if GRADIENT {
-        w = w / (1.0 + system.gradient * section.arclength);
-    }
+    let w = compliance(system.material, section);
     let c = y.rod.x;
     let s = y.rod.y;
     let x = y.rod.z;
@@ -40,6 +38,9 @@ fn rhs(system: System, section: Section, y: State) -> State {
         let at_rest = rho * system.twice_bend * y.rest.x * y.rest.x * y.rest.x;
         rest = vec2<real>(at_rest * y.rest.y, -at_rest * y.rest.x);
         turn += at_rest;
+    }
+    if SPIRAL {
+        turn += rho * (system.spiral[0] + system.spiral[1] * section.arclength);
     }
     let theta_f = y.by_force.x;
     let theta_s = y.by_arclength.x;

@@ -8,6 +8,8 @@ struct Rod {
     pole: real,
     friction: real,
     gradient: real,
+    // [k0, k1] of an Euler spiral
+    spiral: array<real, 2>,
 }
 
 struct Start {
@@ -24,11 +26,12 @@ fn arc(t: real) -> real {
     return t * sqrt(1.0 + t * t) + arsinh(t);
 }
 
-// Slope of the parabola at arclength s: three steps of Halley's method.
+// Slope of the parabola at arclength s: two steps of Halley's method.
 fn slope_at(rod: Rod, s: real) -> real {
     let z = 4.0 * rod.bend * s + arc(rod.slope);
-    var t = 0.5 * z / sqrt(sqrt(1.0 + z * z / 16.0));
-    for (var i = 0; i < 3; i++) {
+    let power = 1.0 + z * z * (0.253 + 0.0437 * abs(z) + z * z / 256.0);
+    var t = 0.5 * z / sqrt(sqrt(sqrt(power)));
+    for (var i = 0; i < 2; i++) {
         let root = sqrt(1.0 + t * t);
         let miss = arc(t) - z;
         t -= miss * root / (2.0 * root * root - 0.5 * miss * t / root);
@@ -57,7 +60,10 @@ fn start_at(rod: Rod, tau: real, load: real) -> Start {
     return start;
 }
 
-// Curvature at rest of a parabola at a contact.
+// Curvature at rest at a contact.
 fn curvature(rod: Rod, start: Start) -> real {
+    if SPIRAL {
+        return rod.spiral[0] + rod.spiral[1] * start.arclength;
+    }
     return 2.0 * rod.bend * start.cos * start.cos * start.cos;
 }

@@ -6,14 +6,16 @@ use num_dual::{DualNum, HyperDual64, second_partial_derivative};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 use whiskmap::model::batch::{Launch, Method, land};
 use whiskmap::model::{
-    Curved, Dopri8, Effects, First, Graded, Integrator, Landing, Planar, Real, Resolution, Rk4,
-    Rod, RodSystem, Scales, Second, Section, Shape, Straight, integrate,
+    Curved, Dopri8, Effects, Even, First, Graded, Integrator, Landing, Planar, Real, Resolution,
+    Rk4, Rod, RodSystem, Scales, Second, Section, Shape, Straight, integrate,
 };
 
 const EFFECTS: Effects = Effects {
     taper: true,
     curvature: true,
+    spiral: false,
     gradient: true,
+    profile: false,
 };
 
 fn steps(least: u32) -> Method {
@@ -38,6 +40,7 @@ fn rods() -> Vec<Launch> {
                     pole,
                     gradient: 0.4 + 50.0 * pole,
                     friction: 10.0 * pole,
+                    ..Rod::default()
                 };
                 launches.push(Launch {
                     rod,
@@ -50,24 +53,52 @@ fn rods() -> Vec<Launch> {
     launches
 }
 
-/// Largest difference of the poles from a run that is 16 times finer.
-fn error<M: Integrator>(least: u32) -> f64 {
-    let fine = land::<M, First, 6>(steps(2048), &rods());
-    let coarse = land::<M, First, 6>(steps(least), &rods());
-    fine.iter()
-        .zip(&coarse)
-        .map(|(a, b)| a.pole.distance(b.pole))
-        .fold(0.0, f64::max)
+/// Where the trajectory of a straight, smooth cylinder under `load` ends.
+fn end<M: Integrator>(load: f64, steps: u32) -> DVec2 {
+    let system = RodSystem {
+        force: load,
+        intrinsic: Straight,
+        material: Even,
+    };
+    let h = 0.9 / f64::from(steps);
+    let section = Section {
+        rho: 1.0,
+        inverse_cube: 1.0,
+        arclength: 0.9,
+    };
+    let contact = ((), ([1.0, 0.0, 0.0, 0.0], []));
+    let scales = Scales::cylinder::<M>(h);
+    let (_, ([_, _, x, y], [])) =
+        integrate::<M, f64, _, _, Shape, 0>(&system, &scales, section, h, steps, contact);
+    DVec2::new(x, y)
 }
 
 /// Halving the step divides the error by `2^order`; the factor is measured where the error is neither that of
 /// coarse steps nor rounding.
 #[test]
 fn integrators_have_their_order() {
-    let rk4 = (error::<Rk4>(64) / error::<Rk4>(128)).log2();
-    let dopri8 = (error::<Dopri8>(16) / error::<Dopri8>(32)).log2();
+    fn order<M: Integrator>(steps: u32) -> f64 {
+        let error = |steps| end::<M>(5.0, steps).distance(end::<M>(5.0, 2048));
+        (error(steps) / error(2 * steps)).log2()
+    }
+    let (rk4, dopri8) = (order::<Rk4>(32), order::<Dopri8>(2));
     assert!((3.7..4.8).contains(&rk4), "RK4 has order {rk4}");
     assert!((7.3..9.0).contains(&dopri8), "Dopri8 has order {dopri8}");
+}
+
+/// The same in a batch, with every effect that does not exclude another.
+#[test]
+fn batches_have_the_order() {
+    let poles = |least: u32| land::<Dopri8, First, 6>(steps(least), &rods());
+    let fine = poles(2048);
+    let error = |least: u32| {
+        let apart = fine.iter().zip(poles(least));
+        apart
+            .map(|(a, b)| a.pole.distance(b.pole))
+            .fold(0.0, f64::max)
+    };
+    let order = (error(16) / error(32)).log2();
+    assert!((7.3..9.0).contains(&order), "{order}");
 }
 
 /// The finest resolution in use is exact to 1e-11 up to taper 0.99.
@@ -160,12 +191,13 @@ fn sensitivities_agree_with_num_dual() {
                 pole,
                 gradient: 0.6 - 10.0 * pole,
                 friction: -6.0 * pole,
+                ..Rod::default()
             };
             let tau = rod.tau(0.8);
             let effects = Effects {
                 taper: true,
-                curvature: false,
                 gradient: true,
+                ..Effects::default()
             };
             let method = Method {
                 effects,

@@ -39,6 +39,8 @@ fn whisker(
             parabola_per_mm: a,
             vertex_mm,
         }),
+        euler_spiral: None,
+        profile: None,
         modulus_tip_to_base: 1.0,
         arc_stretch: 1.0,
     }

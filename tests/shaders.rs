@@ -14,16 +14,8 @@ use whiskmap::model::Effects;
 const PRECISIONS: [Precision; 2] = [Precision::F32, Precision::F64];
 const PROBE: &str = include_str!("../shaders/probe.wgsl");
 
-fn effects() -> impl Iterator<Item = Effects> {
-    (0..8).map(|set| Effects {
-        taper: set & 1 != 0,
-        curvature: set & 2 != 0,
-        gradient: set & 4 != 0,
-    })
-}
-
 /// Parses and validates `text`, for every entry point and with the values of its constants put in.
-fn validate(text: &str, precision: Precision) -> Result<(), String> {
+fn validate(text: &str, precision: Precision, effects: &[Effects]) -> Result<(), String> {
     let module = naga::front::wgsl::parse_str(text).map_err(|e| e.emit_to_string(text))?;
     let capabilities = match precision {
         Precision::F32 => Capabilities::empty(),
@@ -34,8 +26,8 @@ fn validate(text: &str, precision: Precision) -> Result<(), String> {
         .validate(&module)
         .map_err(|e| e.emit_to_string(text))?;
     for entry in &module.entry_points {
-        for effects in effects() {
-            let constants: PipelineConstants = shaders::overrides(effects, precision.steps())
+        for effects in effects {
+            let constants: PipelineConstants = shaders::overrides(*effects, precision.steps())
                 .map(|(name, value)| (name.to_owned(), value))
                 .into_iter()
                 .collect();
@@ -52,22 +44,29 @@ fn validate(text: &str, precision: Precision) -> Result<(), String> {
 #[test]
 fn every_text_is_valid() {
     for precision in PRECISIONS {
-        validate(&shaders::shoot(precision), precision).unwrap_or_else(|e| panic!("{e}"));
-        let probe = shaders::model(precision) + PROBE;
-        validate(&probe, precision).unwrap_or_else(|e| panic!("{e}"));
+        let (measured, linear): (Vec<Effects>, Vec<Effects>) =
+            Effects::all().partition(|effects| effects.profile);
+        for effects in [measured, linear.clone()] {
+            let text = shaders::shoot(precision, effects[0]);
+            validate(&text, precision, &effects).unwrap_or_else(|e| panic!("{e}"));
+        }
+        let probe = shaders::model(precision, linear[0]) + PROBE;
+        validate(&probe, precision, &linear).unwrap_or_else(|e| panic!("{e}"));
     }
 }
 
 #[test]
 fn a_broken_text_is_refused() {
-    let text = shaders::shoot(Precision::F32);
+    let none = [Effects::default()];
+    let text = shaders::shoot(Precision::F32, none[0]);
     for (good, bad) in [
         ("rods[shot.rod]", "rods[shot.tau]"),
         ("override STEPS: u32;", ""),
     ] {
         assert!(text.contains(good));
-        assert!(validate(&text.replace(good, bad), Precision::F32).is_err());
+        assert!(validate(&text.replace(good, bad), Precision::F32, &none).is_err());
     }
     // Double precision is a capability.
-    assert!(validate(&shaders::shoot(Precision::F64), Precision::F32).is_err());
+    let text = shaders::shoot(Precision::F64, none[0]);
+    assert!(validate(&text, Precision::F32, &none).is_err());
 }

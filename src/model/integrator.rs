@@ -16,6 +16,7 @@ pub struct Resolution {
 
 impl Resolution {
     /// Steps for a trajectory over `tau` on `rod`: a multiple of `least`, so that many trajectories take equally many.
+    /// With a profile, steps for every piece of it.
     #[must_use]
     #[allow(
         clippy::cast_possible_truncation,
@@ -24,11 +25,20 @@ impl Resolution {
     )]
     pub fn steps(&self, rod: &Rod, tau: f64) -> u32 {
         let modulus = rod.gradient.abs() / (1.0 + rod.gradient).min(1.0);
-        let fastest = rod.taper.max(2.0 * rod.bend).max(0.5 * modulus);
+        let fastest = rod.taper.max(rod.sharpest_bend()).max(0.5 * modulus);
+        if let Some(profile) = rod.profile {
+            let [change, length] = profile.change;
+            let whole = f64::from(self.least) * length / rod.tau_tip();
+            let needed = change.max(fastest * length) / self.longest;
+            return (whole.max(needed).ceil() as u32).clamp(FEWEST_PER_PIECE, MOST_MULTIPLES);
+        }
         let multiple = fastest * tau / (self.longest * f64::from(self.least));
         self.least * (multiple.ceil() as u32).clamp(1, MOST_MULTIPLES)
     }
 }
+
+/// A piece may be much shorter than what the rod needs as a step, but the load may change on the first one.
+const FEWEST_PER_PIECE: u32 = 2;
 
 /// Bounds the work on a trajectory that a lost Newton step has sent far away. `tau` is at most 25 on a whisker (a cone
 /// cut at 1e-9, and some) and `2 A*` at most 20.

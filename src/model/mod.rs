@@ -14,6 +14,7 @@ mod integrator;
 mod landing;
 mod order;
 pub mod profile;
+mod radius;
 mod real;
 mod rest;
 mod rhs;
@@ -29,11 +30,12 @@ pub use dopri8::Dopri8;
 pub use integrator::{Integrator, Resolution, Scales, integrate};
 pub use landing::{Base, Curved, Full, LONGEST_STEP, Landing, limited};
 pub use order::{First, FirstAndEnergy, Order, Second};
+pub use radius::{Piece, RadiusProfile};
 pub use real::Real;
 pub use rest::Rest;
 pub use rhs::{
-    Bent, Even, Graded, Intrinsic, Material, Planar, RodSystem, Section, Sensitivity, Shape, State,
-    Straight,
+    Bent, Even, Graded, Intrinsic, Material, Measured, Planar, RodSystem, Section, Sensitivity,
+    Shape, Spiral, State, Straight,
 };
 pub use rk4::Rk4;
 pub use rod::{Effects, PERFECT_CONE_CUT, Rod, Side};

@@ -4,7 +4,7 @@
 //! being at the origin at the same tilt, whatever the contact: `y_s = -y'` there.
 
 use super::rhs::{Planar, Sensitivity};
-use super::{Real, Rod, Start};
+use super::{Real, Start};
 use glam::DVec2;
 
 /// First derivatives: `theta_f, X_f, Y_f, theta_s, X_s, Y_s`.
@@ -22,7 +22,7 @@ pub struct Second;
 /// The start of a set of derivatives at the contact.
 pub trait Order<const N: usize>: Sensitivity<N> {
     /// Values at the contact.
-    fn start(rod: &Rod, start: &Start) -> [f64; N];
+    fn start(start: &Start) -> [f64; N];
 }
 
 impl Sensitivity<6> for First {
@@ -42,9 +42,9 @@ impl Sensitivity<6> for First {
 }
 
 impl Order<6> for First {
-    fn start(rod: &Rod, start: &Start) -> [f64; 6] {
+    fn start(start: &Start) -> [f64; 6] {
         let DVec2 { x, y } = -start.tangent;
-        [0.0, 0.0, 0.0, -start.curvature(rod), x, y]
+        [0.0, 0.0, 0.0, -start.curvature, x, y]
     }
 }
 
@@ -61,8 +61,8 @@ impl Sensitivity<7> for FirstAndEnergy {
 }
 
 impl Order<7> for FirstAndEnergy {
-    fn start(rod: &Rod, start: &Start) -> [f64; 7] {
-        let [a, b, c, d, e, g] = First::start(rod, start);
+    fn start(start: &Start) -> [f64; 7] {
+        let [a, b, c, d, e, g] = First::start(start);
         [a, b, c, d, e, g, 0.0]
     }
 }
@@ -99,11 +99,11 @@ impl Sensitivity<15> for Second {
 }
 
 impl Order<15> for Second {
-    fn start(rod: &Rod, start: &Start) -> [f64; 15] {
-        let [a, b, c, d, e, g] = First::start(rod, start);
-        let kappa = start.curvature(rod);
+    fn start(start: &Start) -> [f64; 15] {
+        let [a, b, c, d, e, g] = First::start(start);
+        let kappa = start.curvature;
         let lever = start.force * start.tangent.x;
-        let theta_ss = -start.curvature_slope(rod) - lever / start.stiffness;
+        let theta_ss = -start.curvature_slope - lever / start.stiffness;
         let DVec2 { x, y } = kappa * start.tangent.perp();
         [
             a, b, c, d, e, g, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, theta_ss, x, y,

@@ -1,6 +1,8 @@
 //! A trajectory seen at places along the whisker.
 
-use super::rhs::{Bent, Graded, RodSystem, Section, Shape, State};
+use super::rhs::{
+    Bent, Graded, Intrinsic, Material, Measured, RodSystem, Section, Shape, Spiral, State,
+};
 use super::{Dopri8, Resolution, Rest, Rod, Scales, Start, arclength, integrate};
 use glam::DVec2;
 
@@ -24,92 +26,133 @@ pub struct Place {
 /// its rest shape.
 #[must_use]
 pub fn profile(rod: &Rod, tau: f64, load: f64, resolution: Resolution, at: &[f64]) -> Vec<Place> {
-    let contact = arclength(rod, tau);
-    let deflected = at.partition_point(|s| *s < contact);
     let start = Start::new(rod, tau, load);
-    let mut state: State<f64, Bent<f64>, 0> = (
-        [start.cos, start.sin],
-        ([start.tangent.x, start.tangent.y, 0.0, 0.0], []),
-    );
-    let mut from = tau;
-    // Parts of a trajectory take their shares of the steps that the whole would take.
-    let part = |length: f64| {
-        let share = f64::from(resolution.steps(rod, tau)) * length / tau;
+    let way = Way {
+        rod,
+        start: &start,
+        steps: resolution.steps(rod, tau),
+    };
+    match rod.spiral {
+        Some([at_base, slope]) => way.places(Spiral { at_base, slope }, (), at),
+        None => {
+            let twice_bend = 2.0 * rod.bend;
+            way.places(Bent { twice_bend }, start.rest.to_array(), at)
+        }
+    }
+}
+
+/// The way from a contact to the base.
+struct Way<'a> {
+    rod: &'a Rod,
+    start: &'a Start,
+    /// Steps that the whole way would take, or a piece of a profile.
+    steps: u32,
+}
+
+impl Way<'_> {
+    fn places<I: Intrinsic<f64>>(&self, intrinsic: I, rest: I::State, at: &[f64]) -> Vec<Place> {
+        let contact = self.start.arclength;
+        let deflected = at.partition_point(|s| *s < contact);
+        let tangent = self.start.tangent;
+        let mut state: State<f64, I, 0> = (rest, ([tangent.x, tangent.y, 0.0, 0.0], []));
+        let mut from = self.start.tau;
+        let mut places: Vec<Place> = at[..deflected]
+            .iter()
+            .rev()
+            .map(|s| {
+                let to = self.rod.tau(*s);
+                state = self.advance(intrinsic, (from, to), state);
+                from = to;
+                let (_, (rod, [])) = state;
+                self.loaded(*s, rod)
+            })
+            .collect();
+        places.reverse();
+        places.extend(at[deflected..].iter().map(|s| self.free(*s)));
+        places
+    }
+
+    /// Integrates `state` from one `tau` back to a smaller one, piece by piece.
+    fn advance<I: Intrinsic<f64>>(
+        &self,
+        intrinsic: I,
+        (mut from, to): (f64, f64),
+        mut state: State<f64, I, 0>,
+    ) -> State<f64, I, 0> {
+        let gradient = self.rod.gradient;
+        let Some(profile) = self.rod.profile else {
+            let whole = self.start.tau;
+            return self.integrate(intrinsic, Graded { gradient }, whole, (from, to), state);
+        };
+        for piece in profile.pieces[..=self.rod.piece(from)].iter().rev() {
+            let end = self.rod.tau(piece.from).max(to);
+            if end < from {
+                let material = Measured {
+                    from: piece.from,
+                    cubic: piece.cubic,
+                    gradient,
+                };
+                state = self.integrate(intrinsic, material, profile.change[1], (from, end), state);
+                from = end;
+            }
+        }
+        state
+    }
+
+    /// Takes the share of the steps over `whole` that the part from `from` to `to` has.
+    fn integrate<I: Intrinsic<f64>, C: Material<f64>>(
+        &self,
+        intrinsic: I,
+        material: C,
+        whole: f64,
+        (from, to): (f64, f64),
+        state: State<f64, I, 0>,
+    ) -> State<f64, I, 0> {
+        let share = f64::from(self.steps) * (from - to) / whole;
         #[allow(
             clippy::cast_possible_truncation,
             clippy::cast_sign_loss,
             reason = "a share of a small number"
         )]
-        let share = share.ceil() as u32;
-        share.max(1)
-    };
-    let mut places: Vec<Place> = at[..deflected]
-        .iter()
-        .rev()
-        .map(|s| {
-            let to = rod.tau(*s);
-            state = advance(rod, start.force, part(from - to), (from, to), state);
-            from = to;
-            loaded(rod, *s, start.force, &state)
-        })
-        .collect();
-    places.reverse();
-    places.extend(at[deflected..].iter().map(|s| free(rod, contact, *s)));
-    places
-}
-
-/// Integrates `state` from one `tau` back to a smaller one.
-fn advance(
-    rod: &Rod,
-    force: f64,
-    steps: u32,
-    (from, to): (f64, f64),
-    state: State<f64, Bent<f64>, 0>,
-) -> State<f64, Bent<f64>, 0> {
-    let h = (from - to) / f64::from(steps);
-    let rho = rod.radius(from);
-    let section = Section {
-        rho,
-        inverse_cube: 1.0 / (rho * rho * rho),
-        arclength: arclength(rod, from),
-    };
-    let system = RodSystem {
-        force,
-        intrinsic: Bent {
-            twice_bend: 2.0 * rod.bend,
-        },
-        material: Graded {
-            gradient: rod.gradient,
-        },
-    };
-    let scales = Scales::tapered::<Dopri8>(rod.taper, h);
-    integrate::<Dopri8, f64, _, _, Shape, 0>(&system, &scales, section, h, steps, state)
-}
-
-fn loaded(rod: &Rod, s: f64, force: f64, state: &State<f64, Bent<f64>, 0>) -> Place {
-    let ([cos, _], ([c, sin, x, y], [])) = *state;
-    let moment = -force * x;
-    let stiffness = rod.radius(rod.tau(s)).powi(4) * rod.modulus(s);
-    Place {
-        arclength: s,
-        position: DVec2::new(x, y),
-        tangent: DVec2::new(c, sin),
-        curvature: 2.0 * rod.bend * cos.powi(3) + moment / stiffness,
-        moment,
+        let steps = (share.ceil() as u32).max(1);
+        let h = (from - to) / f64::from(steps);
+        let rho = self.rod.radius(from);
+        let section = Section {
+            rho,
+            inverse_cube: 1.0 / (rho * rho * rho),
+            arclength: arclength(self.rod, from),
+        };
+        let system = RodSystem {
+            force: self.start.force,
+            intrinsic,
+            material,
+        };
+        let scales = Scales::tapered::<Dopri8>(self.rod.taper, h);
+        integrate::<Dopri8, f64, _, _, Shape, 0>(&system, &scales, section, h, steps, state)
     }
-}
 
-fn free(rod: &Rod, contact: f64, s: f64) -> Place {
-    let rest = Rest::new(rod);
-    let (from, axis) = rest.at_arclength(contact);
-    let (to, tangent) = rest.at_arclength(s);
-    let turn = rod.contact_tangent().rotate(DVec2::new(axis.x, -axis.y));
-    let slope = rest.slope_at(s);
-    Place {
-        arclength: s,
-        position: turn.rotate(to - from),
-        tangent: turn.rotate(tangent),
-        curvature: 2.0 * rod.bend / slope.hypot(1.0).powi(3),
-        moment: 0.0,
+    fn loaded(&self, s: f64, [c, sin, x, y]: [f64; 4]) -> Place {
+        let moment = -self.start.force * x;
+        Place {
+            arclength: s,
+            position: DVec2::new(x, y),
+            tangent: DVec2::new(c, sin),
+            curvature: Rest::new(self.rod).curvature(s) + moment / self.rod.stiffness(s),
+            moment,
+        }
+    }
+
+    fn free(&self, s: f64) -> Place {
+        let rest = Rest::new(self.rod);
+        let (from, axis) = rest.at_arclength(self.start.arclength);
+        let (to, tangent) = rest.at_arclength(s);
+        let turn = self.start.tangent.rotate(DVec2::new(axis.x, -axis.y));
+        Place {
+            arclength: s,
+            position: turn.rotate(to - from),
+            tangent: turn.rotate(tangent),
+            curvature: rest.curvature(s),
+            moment: 0.0,
+        }
     }
 }

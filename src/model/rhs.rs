@@ -48,13 +48,35 @@ impl<T: Real> Material<T> for Graded<T> {
     }
 }
 
+/// Measured radii, and a modulus that is linear in the arclength: `S = r(s)^4 (1 + g s)` on one cubic piece of `r`.
+#[derive(Clone, Copy, Debug)]
+pub struct Measured<T> {
+    /// Arclength where the piece begins.
+    pub from: T,
+    /// Coefficients of the radius there.
+    pub cubic: [T; 4],
+    /// `g`.
+    pub gradient: T,
+}
+
+impl<T: Real> Material<T> for Measured<T> {
+    #[inline(always)]
+    fn compliance(self, section: &Section<T>) -> T {
+        let x = section.arclength - self.from;
+        let [c0, c1, c2, c3] = self.cubic;
+        let radius = x.mul_add(x.mul_add(x.mul_add(c3, c2), c1), c0);
+        let square = radius * radius;
+        section.rho / (square * square * self.gradient.mul_add(section.arclength, T::of(1.0)))
+    }
+}
+
 /// Curvature at rest.
 pub trait Intrinsic<T: Real>: Copy {
     /// What has to be carried along to know it.
     type State: Vector<T>;
 
     /// `(rho kappa_i, dstate/dsigma)`.
-    fn rhs(self, rho: T, state: Self::State) -> (T, Self::State);
+    fn rhs(self, section: &Section<T>, state: Self::State) -> (T, Self::State);
 }
 
 /// Straight at rest: nothing to carry.
@@ -65,7 +87,7 @@ impl<T: Real> Intrinsic<T> for Straight {
     type State = ();
 
     #[inline(always)]
-    fn rhs(self, _: T, (): ()) -> (T, ()) {
+    fn rhs(self, _: &Section<T>, (): ()) -> (T, ()) {
         (T::of(0.0), ())
     }
 }
@@ -81,9 +103,29 @@ impl<T: Real> Intrinsic<T> for Bent<T> {
     type State = [T; 2];
 
     #[inline(always)]
-    fn rhs(self, rho: T, [cos, sin]: [T; 2]) -> (T, [T; 2]) {
-        let turn = rho * self.twice_bend * cos * cos * cos;
+    fn rhs(self, section: &Section<T>, [cos, sin]: [T; 2]) -> (T, [T; 2]) {
+        let turn = section.rho * self.twice_bend * cos * cos * cos;
         (turn, [turn * sin, -turn * cos])
+    }
+}
+
+/// Euler spiral at rest, `kappa_i = k0 + k1 s` (E. L. Starostin et al., Science Advances 6, eaax5145, 2020): nothing to
+/// carry.
+#[derive(Clone, Copy, Debug)]
+pub struct Spiral<T> {
+    /// `k0`.
+    pub at_base: T,
+    /// `k1`.
+    pub slope: T,
+}
+
+impl<T: Real> Intrinsic<T> for Spiral<T> {
+    type State = ();
+
+    #[inline(always)]
+    fn rhs(self, section: &Section<T>, (): ()) -> (T, ()) {
+        let curvature = self.slope.mul_add(section.arclength, self.at_base);
+        (section.rho * curvature, ())
     }
 }
 
@@ -132,7 +174,7 @@ impl<T: Real, I: Intrinsic<T>, C: Material<T>> RodSystem<T, I, C> {
         let [c, s, x, _] = rod;
         let rho = section.rho;
         let w = self.material.compliance(&section);
-        let (turn_at_rest, rest_rhs) = self.intrinsic.rhs(rho, rest);
+        let (turn_at_rest, rest_rhs) = self.intrinsic.rhs(&section, rest);
         let turn = turn_at_rest - self.force * x * w;
         let rod_rhs = [turn * s, -turn * c, -rho * c, -rho * s];
         (rest_rhs, (rod_rhs, S::rhs(self.force, rho, w, &rod, &sens)))

@@ -1,5 +1,6 @@
 //! A whisker and its pole without dimensions.
 
+use super::{RadiusProfile, arclength};
 use crate::scene::{Pole, Whisker};
 use glam::DVec2;
 use serde::Serialize;
@@ -49,6 +50,10 @@ pub struct Rod {
     pub gradient: f64,
     /// Coulomb's coefficient with the sign of the side: friction over normal force.
     pub friction: f64,
+    /// `[k0, k1]` of an Euler spiral, whose curvature at rest is `k0 + k1 s`, in place of the parabola.
+    pub spiral: Option<[f64; 2]>,
+    /// Radii in place of those that fall linearly; `taper` is then only the scale of the coordinates.
+    pub profile: Option<&'static RadiusProfile>,
 }
 
 /// A perfect cone is cut where its radius is this part of the base radius: below, the contact is closer to
@@ -69,6 +74,40 @@ impl Rod {
             pole: side.sign() * pole.radius_mm / whisker.length_mm,
             gradient: whisker.modulus_tip_to_base - 1.0,
             friction: side.sign() * pole.friction,
+            spiral: whisker.euler_spiral.map(|spiral| {
+                let length = whisker.length_mm;
+                [spiral.per_mm * length, spiral.per_mm2 * length * length]
+            }),
+            profile: whisker
+                .profile
+                .as_ref()
+                .map(|rows| RadiusProfile::of(rows, whisker.arc_stretch)),
+        }
+    }
+
+    /// Bending stiffness at arclength `s` over that at the base.
+    #[must_use]
+    pub fn stiffness(&self, s: f64) -> f64 {
+        let radius = match self.profile {
+            Some(profile) => profile.radius(s),
+            None => 1.0 - self.taper * s,
+        };
+        radius.powi(4) * self.modulus(s)
+    }
+
+    /// Index of the piece of its profile on which `tau` lies; 0 without one.
+    #[must_use]
+    pub fn piece(&self, tau: f64) -> usize {
+        self.profile
+            .map_or(0, |profile| profile.piece(arclength(self, tau)))
+    }
+
+    /// The sharpest bend of the whisker at rest, in radians per whisker length.
+    #[must_use]
+    pub fn sharpest_bend(&self) -> f64 {
+        match self.spiral {
+            Some([k0, k1]) => k0.abs().max((k0 + k1).abs()),
+            None => 2.0 * self.bend,
         }
     }
 
@@ -111,7 +150,7 @@ impl Rod {
         self.tau(cut.min(1.0))
     }
 
-    /// Radius at `tau` over the base radius.
+    /// The scale of the coordinates at `tau`: without a profile the radius over the base radius.
     #[must_use]
     pub fn radius(&self, tau: f64) -> f64 {
         (-self.taper * tau).exp()
@@ -123,19 +162,56 @@ impl Rod {
 pub struct Effects {
     /// The stiffness falls toward the tip.
     pub taper: bool,
-    /// The whisker is curved at rest.
+    /// The whisker is curved at rest, as a parabola.
     pub curvature: bool,
+    /// It is an Euler spiral at rest; never together with `curvature`.
+    pub spiral: bool,
     /// The modulus changes along the whisker.
     pub gradient: bool,
+    /// The radii follow a measured profile, the same for all rods.
+    pub profile: bool,
 }
 
 impl Effects {
+    /// Every set of effects. A profile tapers, whatever `taper` says.
+    pub fn all() -> impl Iterator<Item = Self> {
+        let rest = [(false, false), (true, false), (false, true)];
+        let stiffness = [
+            (false, false, false),
+            (true, false, false),
+            (false, true, false),
+            (true, true, false),
+            (true, false, true),
+            (true, true, true),
+        ];
+        rest.into_iter().flat_map(move |(curvature, spiral)| {
+            stiffness
+                .into_iter()
+                .map(move |(taper, gradient, profile)| Self {
+                    taper,
+                    curvature,
+                    spiral,
+                    gradient,
+                    profile,
+                })
+        })
+    }
+
+    /// Whether something changes along the rod, so that a trajectory must know where it is. Without, a step does not
+    /// advance the section at all.
+    #[must_use]
+    pub fn advances(self) -> bool {
+        self.taper || self.spiral || self.gradient || self.profile
+    }
+
     /// The effects that at least one of `rods` has.
     pub fn of<'a>(rods: impl IntoIterator<Item = &'a Rod>) -> Self {
         rods.into_iter().fold(Self::default(), |set, rod| Self {
             taper: set.taper || rod.taper != 0.0,
             curvature: set.curvature || rod.bend != 0.0,
+            spiral: set.spiral || rod.spiral.is_some(),
             gradient: set.gradient || rod.gradient != 0.0,
+            profile: set.profile || rod.profile.is_some(),
         })
     }
 }

@@ -16,10 +16,14 @@ pub struct Start {
     pub force: f64,
     /// The whisker's tangent there, see [`Rod::contact_tangent`].
     pub tangent: DVec2,
-    /// cos of the intrinsic tangent in the frame of the parabola.
-    pub cos: f64,
-    /// sin of the same.
-    pub sin: f64,
+    /// Arclength of the contact from the base.
+    pub arclength: f64,
+    /// cos and sin of the intrinsic tangent in the frame of a parabola.
+    pub rest: DVec2,
+    /// Curvature at rest.
+    pub curvature: f64,
+    /// Its derivative by the arclength.
+    pub curvature_slope: f64,
 }
 
 impl Start {
@@ -27,39 +31,40 @@ impl Start {
     #[must_use]
     pub fn new(rod: &Rod, tau: f64, load: f64) -> Self {
         let radius = rod.radius(tau);
-        let slope = if rod.bend == 0.0 {
-            rod.slope
-        } else {
-            Rest::new(rod).slope_at(arclength(rod, tau))
+        let s = arclength(rod, tau);
+        let (rest, curvature, curvature_slope) = match rod.spiral {
+            Some([k0, k1]) => (DVec2::X, k1.mul_add(s, k0), k1),
+            None => parabola(rod, s),
         };
-        let cos = 1.0 / slope.hypot(1.0);
-        let modulus = if rod.gradient == 0.0 {
-            1.0
+        let stiffness = if rod.profile.is_some() {
+            rod.stiffness(s)
         } else {
-            rod.modulus(arclength(rod, tau))
+            radius.powi(4) * rod.modulus(s)
         };
         Self {
             tau,
             radius,
-            stiffness: radius.powi(4) * modulus,
+            stiffness,
             force: load * radius * radius,
             tangent: rod.contact_tangent(),
-            cos,
-            sin: slope * cos,
+            arclength: s,
+            rest,
+            curvature,
+            curvature_slope,
         }
     }
+}
 
-    /// Curvature at rest, `kappa_i = 2 A cos^3`.
-    #[must_use]
-    pub fn curvature(&self, rod: &Rod) -> f64 {
-        2.0 * rod.bend * self.cos.powi(3)
-    }
-
-    /// `dkappa_i/ds = -12 A^2 sin cos^5`.
-    #[must_use]
-    pub fn curvature_slope(&self, rod: &Rod) -> f64 {
-        -12.0 * rod.bend * rod.bend * self.sin * self.cos.powi(5)
-    }
+/// cos and sin of the tangent of a parabola at arclength `s`, `kappa_i = 2 A cos^3` and
+/// `dkappa_i/ds = -12 A^2 sin cos^5`.
+fn parabola(rod: &Rod, s: f64) -> (DVec2, f64, f64) {
+    let tangent = Rest::parabola_tangent(rod, s);
+    let DVec2 { x: cos, y: sin } = tangent;
+    (
+        tangent,
+        2.0 * rod.bend * cos.powi(3),
+        -12.0 * rod.bend * rod.bend * sin * cos.powi(5),
+    )
 }
 
 /// Arclength at `tau`: `(1 - exp(-beta tau))/beta`, without cancellation.

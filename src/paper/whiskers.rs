@@ -25,9 +25,10 @@ pub const FIG4_HAIR: Whisker = whisker([15.0, 30.0, 26.5], 0.017, 0.0);
 pub const FIG5_LEFT: Whisker = whisker([12.5, 35.0, 8.5], 0.02, 2.2);
 
 /// The slender whisker of Fig. 5, which droops out of the plane: it is 3 % longer than it looks.
-pub const FIG5_RIGHT: Whisker = Whisker {
-    arc_stretch: 1.03,
-    ..whisker([15.3, 33.5, 2.0], 0.02, 2.2)
+pub const FIG5_RIGHT: Whisker = {
+    let mut whisker = whisker([15.3, 33.5, 2.0], 0.02, 2.2);
+    whisker.arc_stretch = 1.03;
+    whisker
 };
 
 /// A whisker with length (mm), base and tip radius (um), parabola coefficient (1/mm) and its vertex (mm).
@@ -45,6 +46,8 @@ pub const fn whisker([length_mm, base, tip]: [f64; 3], a_per_mm: f64, vertex_mm:
         } else {
             None
         },
+        euler_spiral: None,
+        profile: None,
         modulus_tip_to_base: 1.0,
         arc_stretch: 1.0,
     }

@@ -3,16 +3,15 @@
 //! Ranges are wide; they keep units from being mixed up and f32 from overflowing, and they hold wherever
 //! the geometry of first touch is one-to-one. Lengths are measured in lengths of the whisker.
 
-use std::f64::consts::SQRT_2;
-use std::ops::Range;
-
 use toml::Spanned;
 
 use super::axis;
 use super::error::Fault;
-use super::file::{CurvatureTable, GridTable, Number, OutputTable, SceneTable, WhiskerTable};
+use super::file::{GridTable, Number, OutputTable, SceneTable, WhiskerTable};
 use super::limits::Limits;
-use super::{Curvature, FARTHEST, Grid, NEAREST, Pole, Scene, Whisker};
+use super::profile::{self, Radii};
+use super::shape::{self, Shape, refuse_faint};
+use super::{FARTHEST, Grid, NEAREST, Pole, Scene, Whisker};
 
 /// As many as 16,384 x 16,384; a stored cell takes about 60 bytes.
 const MOST_CELLS: u128 = 1 << 28;
@@ -37,6 +36,7 @@ pub(super) fn scene(table: &SceneTable, text: &str, default_name: &str) -> Resul
     let grid = grid(&table.grid, length_mm)?;
     let sharpest = grid.taper.as_ref().and_then(|axis| axis.last());
     let steepest = grid.curvature_per_mm.as_ref().and_then(|axis| axis.last());
+    refuse_two_of_a_kind(&table.whisker, &table.grid)?;
     let whisker = whisker(
         &table.whisker,
         length_mm,
@@ -45,9 +45,9 @@ pub(super) fn scene(table: &SceneTable, text: &str, default_name: &str) -> Resul
     )?;
     let radius_mm = match &table.pole {
         Some(pole) => {
-            let own = whisker.curvature.map_or(0.0, |own| own.parabola_per_mm);
-            let parabola_per_mm = steepest.copied().unwrap_or(own);
-            pole_radius(&pole.radius_mm, parabola_per_mm, &grid.distance_mm)?
+            let own = whisker.sharpest_bend_per_mm();
+            let sharpest_per_mm = steepest.map_or(own, |a| 2.0 * a);
+            pole_radius(&pole.radius_mm, sharpest_per_mm, &grid.distance_mm)?
         }
         None => 0.0,
     };
@@ -70,6 +70,24 @@ pub(super) fn scene(table: &SceneTable, text: &str, default_name: &str) -> Resul
     })
 }
 
+/// An axis may replace a linear taper or a parabola, not what stands in their place.
+fn refuse_two_of_a_kind(whisker: &WhiskerTable, grid: &Spanned<GridTable>) -> Result<(), Fault> {
+    let axes = grid.get_ref();
+    if let (Some(axis), Some(_)) = (&axes.taper, &whisker.profile) {
+        let must = "must be left out: the radii are those of whisker.profile";
+        return Err(Fault::new("grid.taper", axis.span(), must));
+    }
+    let spiral = whisker
+        .curvature
+        .as_ref()
+        .and_then(|curvature| curvature.get_ref().euler_spiral.as_ref());
+    if let (Some(axis), Some(_)) = (&axes.curvature_per_mm, spiral) {
+        let must = "must be left out: the whisker is an Euler spiral";
+        return Err(Fault::new("grid.curvature_per_mm", axis.span(), must));
+    }
+    Ok(())
+}
+
 fn title(title: &Spanned<String>) -> Result<String, Fault> {
     let text = title.get_ref();
     if text.trim().is_empty() || text.contains(char::is_control) {
@@ -89,15 +107,16 @@ fn whisker(
     steepest: Option<f64>,
     sharpest: Option<f64>,
 ) -> Result<Whisker, Fault> {
-    let base_radius_um =
-        Limits::between(1e-3, 1e5).check("whisker.base_radius_um", &table.base_radius_um)?;
-    let tip_radius_um = Limits::between(0.0, ("base_radius_um", base_radius_um))
-        .check("whisker.tip_radius_um", &table.tip_radius_um)?;
+    let Radii {
+        base_radius_um,
+        tip_radius_um,
+        profile,
+    } = profile::radii(table, length_mm)?;
     let youngs_modulus_gpa = Limits::between(1e-6, 1e4)
         .check("whisker.youngs_modulus_gpa", &table.youngs_modulus_gpa)?;
-    let curvature = match &table.curvature {
-        Some(table) => curvature(table, length_mm, steepest)?,
-        None => None,
+    let shape = match &table.curvature {
+        Some(table) => shape::shape(table, length_mm, steepest)?,
+        None => Shape::default(),
     };
     let modulus_tip_to_base = match &table.modulus_gradient {
         Some(gradient) => Limits::between(1.0 / STIFFEST_TIP, STIFFEST_TIP).check(
@@ -125,68 +144,12 @@ fn whisker(
         base_radius_um,
         tip_radius_um,
         youngs_modulus_gpa,
-        curvature,
+        curvature: shape.parabola,
+        euler_spiral: shape.euler_spiral,
+        profile,
         modulus_tip_to_base,
         arc_stretch,
     })
-}
-
-/// The chord from the base to a point of `y = A (x - v)^2` has `chord^2 = x^2 (1 + A^2 (x - 2v)^2)`. With
-/// `u = x - 2v` half its derivative is `x (1 + A^2 (2u^2 + 2uv))`, whose bracket is least, `1 - A^2 v^2 / 2`,
-/// at `x = 3v/2`. So the chord grows along the whole curve if `v <= 0` or `A v < sqrt 2`.
-fn curvature(
-    table: &CurvatureTable,
-    length_mm: f64,
-    steepest: Option<f64>,
-) -> Result<Option<Curvature>, Fault> {
-    let number = &table.parabola_per_mm;
-    let key = "whisker.curvature.parabola_per_mm";
-    let parabola_per_mm = parabola_limits(length_mm).check(key, number)?;
-    refuse_faint(&[parabola_per_mm], length_mm, key, number.span())?;
-
-    let vertex_mm = match &table.vertex_mm {
-        Some(number) => {
-            let turning = SQRT_2 / steepest.unwrap_or(parabola_per_mm);
-            let far = 10.0 * length_mm;
-            let end = if turning < far {
-                ("sqrt(2) / the largest parabola coefficient", turning)
-            } else {
-                ("10 * length_mm", far)
-            };
-            Limits::below(("-10 * length_mm", -far), end)
-                .remark("farther out, the chord from the base would not grow along the whisker")
-                .check("whisker.curvature.vertex_mm", number)?
-        }
-        None => 0.0,
-    };
-    // With an axis, a coefficient of 0 is replaced but its vertex is not.
-    let bent = parabola_per_mm > 0.0 || steepest.is_some();
-    Ok(bent.then_some(Curvature {
-        parabola_per_mm,
-        vertex_mm,
-    }))
-}
-
-fn parabola_limits(length_mm: f64) -> Limits {
-    Limits::between(0.0, ("10 / length_mm", 10.0 / length_mm))
-        .remark("a whisker bent toward the other side is the same one mirrored")
-}
-
-/// Coefficients next to 0 would underflow in f32 without bending anything.
-fn refuse_faint(
-    parabolas_per_mm: &[f64],
-    length_mm: f64,
-    key: &str,
-    span: Range<usize>,
-) -> Result<(), Fault> {
-    let least = 1e-9 / length_mm;
-    match parabolas_per_mm.iter().find(|a| **a > 0.0 && **a < least) {
-        Some(_) => {
-            let must = format!("must be 0 (straight) or at least 1e-9 / length_mm ({least:e})");
-            Err(Fault::new(key, span, must))
-        }
-        None => Ok(()),
-    }
 }
 
 fn grid(table: &Spanned<GridTable>, length_mm: f64) -> Result<Grid, Fault> {
@@ -214,7 +177,7 @@ fn grid(table: &Spanned<GridTable>, length_mm: f64) -> Result<Grid, Fault> {
     let curvature_per_mm = match &axes.curvature_per_mm {
         Some(axis) => {
             let key = "grid.curvature_per_mm";
-            let values = axis::values(axis, key, &parabola_limits(length_mm))?;
+            let values = axis::values(axis, key, &shape::parabola_limits(length_mm))?;
             refuse_faint(&values, length_mm, key, axis.span())?;
             Some(values)
         }
@@ -241,10 +204,10 @@ fn grid(table: &Spanned<GridTable>, length_mm: f64) -> Result<Grid, Fault> {
 }
 
 /// Where the pole's rim touches the whisker at rest, the centre is `D` away from the base, and `D^2` grows along the
-/// whisker `1 -+ r kappa` times as fast as the chord's square (the sign is the side). So with `r < 1 / 2A`, the
-/// sharpest bend of the parabola, first touch is one-to-one and the base stays outside the pole.
-fn pole_radius(number: &Number, parabola_per_mm: f64, distance_mm: &[f64]) -> Result<f64, Fault> {
-    let sharpest = 0.5 / parabola_per_mm;
+/// whisker `1 -+ r kappa` times as fast as the chord's square (the sign is the side). So with `r` below the
+/// whisker's smallest radius of curvature, first touch is one-to-one and the base stays outside the pole.
+fn pole_radius(number: &Number, sharpest_per_mm: f64, distance_mm: &[f64]) -> Result<f64, Fault> {
+    let sharpest = 1.0 / sharpest_per_mm;
     let nearest = distance_mm.first().copied().unwrap_or(f64::INFINITY);
     let end = if sharpest < nearest {
         ("the whisker's smallest radius of curvature", sharpest)

@@ -4,6 +4,7 @@ use serde::Deserialize;
 use toml::Spanned;
 
 use super::axis::Axis;
+use super::profile::Rows;
 
 /// A number and where the file has it. Integers are numbers too.
 pub(super) type Number = Spanned<f64>;
@@ -25,10 +26,11 @@ pub(super) struct SceneTable {
 #[serde(deny_unknown_fields)]
 pub(super) struct WhiskerTable {
     pub length_mm: Number,
-    pub base_radius_um: Number,
-    pub tip_radius_um: Number,
+    pub base_radius_um: Option<Number>,
+    pub tip_radius_um: Option<Number>,
     pub youngs_modulus_gpa: Number,
-    pub curvature: Option<CurvatureTable>,
+    pub profile: Option<ProfileTable>,
+    pub curvature: Option<Spanned<CurvatureTable>>,
     pub projection: Option<ProjectionTable>,
     pub modulus_gradient: Option<GradientTable>,
 }
@@ -58,8 +60,24 @@ pub(super) struct ContactTable {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct CurvatureTable {
-    pub parabola_per_mm: Number,
+    pub parabola_per_mm: Option<Number>,
     pub vertex_mm: Option<Number>,
+    pub euler_spiral: Option<SpiralTable>,
+}
+
+/// `[whisker.curvature.euler_spiral]`
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct SpiralTable {
+    pub per_mm: Number,
+    pub per_mm2: Number,
+}
+
+/// `[whisker.profile]`
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ProfileTable {
+    pub rows: Spanned<Rows>,
 }
 
 /// `[pole]`

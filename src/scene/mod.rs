@@ -8,7 +8,9 @@ mod check;
 mod error;
 mod file;
 mod limits;
+mod profile;
 mod read;
+mod shape;
 
 pub use error::SceneError;
 
@@ -25,13 +27,31 @@ pub struct Whisker {
     pub tip_radius_um: f64,
     /// Young's modulus at the base; it scales forces, moments and energies, never an angle.
     pub youngs_modulus_gpa: f64,
-    /// Intrinsic curvature, `None` for a straight whisker.
+    /// Intrinsic curvature as a parabola, `None` for a straight whisker.
     pub curvature: Option<Curvature>,
+    /// Intrinsic curvature as an Euler spiral, in place of the parabola.
+    pub euler_spiral: Option<EulerSpiral>,
+    /// Measured radii in place of those that fall linearly: rows of arclength and radius over the whisker's length and
+    /// base radius, from (0, 1) to (1, tip radius).
+    pub profile: Option<Vec<[f64; 2]>>,
     /// Young's modulus at the tip over that at the base; linear in between.
     pub modulus_tip_to_base: f64,
     /// Real arclength over the arclength in the plane of contact: more than 1 where the whisker droops out of the
     /// plane. The radius is read at the real arclength.
     pub arc_stretch: f64,
+}
+
+impl Whisker {
+    /// The largest curvature at rest, in radians per millimetre.
+    #[must_use]
+    pub fn sharpest_bend_per_mm(&self) -> f64 {
+        let parabola = self.curvature.map_or(0.0, |own| 2.0 * own.parabola_per_mm);
+        let spiral = self.euler_spiral.map_or(0.0, |own| {
+            let at_tip = own.per_mm + own.per_mm2 * self.length_mm;
+            own.per_mm.abs().max(at_tip.abs())
+        });
+        parabola.max(spiral)
+    }
 }
 
 /// What the whisker is pushed against.
@@ -61,6 +81,15 @@ pub struct Curvature {
     pub parabola_per_mm: f64,
     /// Where the vertex lies.
     pub vertex_mm: f64,
+}
+
+/// The undeflected shape whose curvature is linear in the arclength (Starostin et al. 2020).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EulerSpiral {
+    /// Curvature at the base; positive bends toward the CF side, as a parabola does.
+    pub per_mm: f64,
+    /// Its growth along the whisker.
+    pub per_mm2: f64,
 }
 
 /// The axes of the sweep; every list is strictly increasing and not empty.

@@ -4,7 +4,8 @@ use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
 
-use super::{Scene, SceneError, check};
+use super::file::SceneTable;
+use super::{Scene, SceneError, check, profile};
 
 /// A scene is a page of text; anything longer was picked by mistake.
 const MOST_BYTES: u64 = 1 << 20;
@@ -27,16 +28,20 @@ impl Scene {
     }
 
     /// Checks a scene. `origin` is what messages call the text, `default_name` the stem of the output files
-    /// where the scene does not give one.
+    /// where the scene does not give one. A CSV file that the scene names is looked for beside `origin`, and its rows
+    /// take the place of its name in [`Scene::text`].
     ///
     /// # Errors
     ///
     /// If the text is not TOML, has a key too many or too few, or a value that is out of its range or at odds
     /// with another one.
     pub fn parse(text: &str, origin: &str, default_name: &str) -> Result<Self, SceneError> {
-        let table = toml::from_str(text)
-            .map_err(|why| SceneError::at(origin, text, why.span(), why.message()))?;
-        check::scene(&table, text, default_name).map_err(|fault| fault.in_scene(origin, text))
+        let table = tables(text, origin)?;
+        let Some(inlined) = profile::inline(&table, text, origin)? else {
+            return check::scene(&table, text, default_name)
+                .map_err(|fault| fault.in_scene(origin, text));
+        };
+        Self::parse(&inlined, origin, default_name)
     }
 
     fn from_source(
@@ -70,6 +75,10 @@ impl Scene {
         })?;
         Self::parse(&text, origin, default_name)
     }
+}
+
+fn tables(text: &str, origin: &str) -> Result<SceneTable, SceneError> {
+    toml::from_str(text).map_err(|why| SceneError::at(origin, text, why.span(), why.message()))
 }
 
 fn unreadable(origin: &str, why: &io::Error) -> SceneError {

@@ -11,9 +11,10 @@
 mod probe;
 mod shots;
 
-use shots::{EFFECTS, Range};
+use shots::{Range, USUAL};
 use whiskmap::integrate::gpu::{Gpu, Precision, adapters, preferred};
 use whiskmap::integrate::{Cpu, Engine, EngineError, Hit, Outcome, Shot};
+use whiskmap::model::Effects;
 
 /// The GPU engine, or `None` (said aloud) where there is none.
 fn open(precision: Precision) -> Option<Gpu> {
@@ -69,7 +70,7 @@ fn every_engine_finds_what_was_hidden() {
         median,
     } in engines()
     {
-        for (seed, effects) in (1..).zip(EFFECTS) {
+        for (seed, effects) in (1..).zip(Effects::all()) {
             let range = Range::new(effects, 5000, 6.0, seed);
             let hits = engine.shoot(effects, &range.rods, &range.shots).unwrap();
             assert_eq!(hits.len(), range.shots.len());
@@ -97,7 +98,7 @@ fn in_groups(engine: &mut dyn Engine, range: &Range, size: usize) -> Vec<Hit> {
 
 #[test]
 fn company_changes_nothing() {
-    let range = Range::new(EFFECTS[3], 20_000, 6.5, 9);
+    let range = Range::new(USUAL, 20_000, 6.5, 9);
     for Candidate { mut engine, .. } in engines() {
         let together = in_groups(engine.as_mut(), &range, range.shots.len());
         for size in [63, 64, 65, 4096, 10_001] {
@@ -109,7 +110,7 @@ fn company_changes_nothing() {
 #[test]
 fn no_number_hurts_only_itself() {
     type Spoil = fn(&mut Shot);
-    let range = Range::new(EFFECTS[3], 1000, 6.5, 10);
+    let range = Range::new(USUAL, 1000, 6.5, 10);
     let spoil: [(usize, Spoil); 3] = [
         (100, |shot| shot.tau = f64::NAN),
         (333, |shot| shot.load = f64::INFINITY),
@@ -137,13 +138,13 @@ fn no_number_hurts_only_itself() {
 #[test]
 fn nothing_in_nothing_out() {
     for Candidate { mut engine, .. } in engines() {
-        assert_eq!(engine.shoot(EFFECTS[0], &[], &[]).unwrap(), []);
+        assert_eq!(engine.shoot(Effects::default(), &[], &[]).unwrap(), []);
     }
 }
 
 #[test]
 fn what_the_device_refuses_is_an_error_and_passes() {
-    let range = Range::new(EFFECTS[1], 100, 6.5, 12);
+    let range = Range::new(Effects::default(), 100, 6.5, 12);
     for precision in [Precision::F32, Precision::F64] {
         let Some(mut gpu) = open(precision) else {
             continue;

@@ -1,6 +1,6 @@
 //! The shaders' pieces against their twins in Rust: numbers in, numbers out.
 
-use crate::shots::{EFFECTS, Random};
+use crate::shots::{Random, USUAL};
 use bytemuck::Pod;
 use wgpu::util::DeviceExt;
 use whiskmap::integrate::gpu::{Precision, shaders};
@@ -273,8 +273,10 @@ fn a_step_is_the_twins<T: Number>(one: f64, whole: f64) {
     let Some(bench) = Bench::open(T::PRECISION) else {
         return;
     };
-    let text = shaders::model(T::PRECISION) + PROBE;
-    for effects in EFFECTS {
+    let text = shaders::model(T::PRECISION, Effects::default()) + PROBE;
+    // The others have other states.
+    let carried = |effects: &Effects| !effects.profile && !effects.spiral;
+    for effects in Effects::all().filter(carried) {
         let (found_one, found_whole) = (
             difference::<T>(&bench, &text, effects, 1),
             difference::<T>(&bench, &text, effects, 64),
@@ -283,7 +285,10 @@ fn a_step_is_the_twins<T: Number>(one: f64, whole: f64) {
         assert!(found_one < one && found_whole < whole);
     }
     // A wrong constant anywhere shows.
-    let all = EFFECTS[7];
+    let all = Effects {
+        gradient: true,
+        ..USUAL
+    };
     for (good, bad) in [
         ("let third = h / 3.0;", "let third = h / 3.0001;"),
         ("let half = 0.5 * h;", "let half = 0.499 * h;"),
@@ -293,8 +298,8 @@ fn a_step_is_the_twins<T: Number>(one: f64, whole: f64) {
         ),
         ("w * (f * y.by_force.y + x)", "w * (f * y.by_force.y - x)"),
         (
-            "system.gradient * section.arclength",
-            "system.gradient * section.rho",
+            "material.gradient * section.arclength",
+            "material.gradient * section.rho",
         ),
         (
             "at_rest * y.rest.y, -at_rest",
@@ -343,8 +348,8 @@ fn contacts_are_right<T: Number>(tolerance: f64) {
             }
         }
     }
-    let text = shaders::model(T::PRECISION) + PROBE;
-    let overrides = shaders::overrides(EFFECTS[3], 1);
+    let text = shaders::model(T::PRECISION, Effects::default()) + PROBE;
+    let overrides = shaders::overrides(USUAL, 1);
     let found = bench.run(&text, "probe_start", &overrides, &cases, 5);
     let mut worst = 0.0_f64;
     for (case, found) in cases.iter().zip(found) {
@@ -361,8 +366,8 @@ fn contacts_are_right<T: Number>(tolerance: f64) {
             start.radius,
             arclength(&rod, case[3]),
             start.force,
-            start.cos,
-            start.sin,
+            start.rest.x,
+            start.rest.y,
         ];
         // Radius, arclength and force by their own sizes, and by that of the exponent beta tau (21 at most),
         // whose rounding they magnify; cos and sin by 1.

@@ -3,7 +3,7 @@
 use glam::DVec2;
 use whiskmap::integrate::Shot;
 use whiskmap::model::batch::{Launch, Method, land};
-use whiskmap::model::{Dopri8, Effects, First, Landing, Rod, arclength};
+use whiskmap::model::{Dopri8, Effects, First, Landing, RadiusProfile, Rod, arclength};
 
 /// A reproducible stream of numbers in `[0, 1)` (splitmix64).
 pub struct Random(pub u64);
@@ -22,39 +22,51 @@ impl Random {
     }
 }
 
-/// Every set of effects.
-pub const EFFECTS: [Effects; 8] = {
-    let none = Effects {
-        taper: false,
-        curvature: false,
-        gradient: false,
-    };
-    let mut all = [none; 8];
-    let mut i = 0;
-    while i < 8 {
-        all[i] = Effects {
-            taper: i & 2 != 0,
-            curvature: i & 1 != 0,
-            gradient: i & 4 != 0,
-        };
-        i += 1;
-    }
-    all
+/// Taper and a parabola: what most whiskers have.
+pub const USUAL: Effects = Effects {
+    taper: true,
+    curvature: true,
+    spiral: false,
+    gradient: false,
+    profile: false,
 };
 
-/// A whisker of taper up to 0.99 and `A*` up to 0.8 on either side of a pole of radius up to 0.03 with friction up to 0.5, up to twice as
-/// stiff at the tip as at the base.
+/// Measured radii with a bulb at the base and a straight stretch in the middle.
+pub const ROWS: [[f64; 2]; 7] = [
+    [0.0, 1.0],
+    [0.05, 1.06],
+    [0.2, 0.85],
+    [0.45, 0.6],
+    [0.6, 0.6],
+    [0.85, 0.25],
+    [1.0, 0.08],
+];
+
+/// A whisker of taper up to 0.99 and `A*` up to 0.8, or a spiral that bends as much, or of measured radii, on either
+/// side of a pole of radius up to 0.03 with friction up to 0.5, up to twice as stiff at the tip as at the base.
 pub fn rod(effects: Effects, random: &mut Random) -> Rod {
     let bend = f64::from(effects.curvature) * random.between(0.0, 0.8);
     let side = if random.unit() < 0.5 { 1.0 } else { -1.0 };
-    Rod {
+    let rod = Rod {
         taper: f64::from(effects.taper) * random.between(0.0, 0.99),
         bend,
         slope: -2.0 * bend * random.between(-0.3, 0.3),
         pole: side * random.between(0.0, 0.03),
         gradient: f64::from(effects.gradient) * random.between(0.0, 1.0),
         friction: side * random.between(0.0, 0.5),
+        spiral: effects
+            .spiral
+            .then(|| [random.between(-0.8, 0.8), random.between(-0.8, 0.8)]),
+        profile: None,
+    };
+    if effects.profile {
+        return Rod {
+            taper: 1.0 - ROWS[ROWS.len() - 1][1],
+            profile: Some(RadiusProfile::of(&ROWS, 1.0)),
+            ..rod
+        };
     }
+    rod
 }
 
 /// A contact on `rod` under `q = |load| s^2` up to `most_q`, on the side of its pole.

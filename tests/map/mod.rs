@@ -33,6 +33,8 @@ pub fn scene(
             tip_radius_um: 2.0,
             youngs_modulus_gpa: 3.0,
             curvature: None,
+            euler_spiral: None,
+            profile: None,
             modulus_tip_to_base: 1.0,
             arc_stretch: 1.0,
         },

@@ -19,6 +19,8 @@ fn whisker(tip_radius_um: f64, a_per_mm: f64) -> Whisker {
             parabola_per_mm: a_per_mm,
             vertex_mm: 0.0,
         }),
+        euler_spiral: None,
+        profile: None,
         modulus_tip_to_base: 1.0,
         arc_stretch: 1.0,
     }
@@ -30,6 +32,8 @@ fn everything() -> impl Iterator<Item = (Whisker, Pole)> {
         .into_iter()
         .flat_map(|tip| [0.0, 0.02, 0.04, 0.07].map(|a| whisker(tip, a)))
         .chain([0.1, 10.0].map(|ratio| Whisker {
+            euler_spiral: None,
+            profile: None,
             modulus_tip_to_base: ratio,
             ..whisker(1.5, 0.02)
         }))

@@ -2,7 +2,7 @@
 
 use super::Precision;
 use crate::integrate::{Hit, Outcome, Shot};
-use crate::model::Rod;
+use crate::model::{Piece, Rod};
 use bytemuck::Pod;
 
 /// Sizes, and the ways in and out.
@@ -14,6 +14,8 @@ pub struct Layout {
     pub hit: usize,
     /// Rods to bytes.
     pub rods: fn(&[Rod]) -> Vec<u8>,
+    /// The pieces of a rod's profile to bytes.
+    pub pieces: fn(&[Stretch]) -> Vec<u8>,
     /// Shots to bytes.
     pub shots: fn(&[Shot]) -> Vec<u8>,
     /// Hits from bytes.
@@ -28,6 +30,13 @@ impl Layout {
             Precision::F64 => &double::LAYOUT,
         }
     }
+}
+
+/// A piece of a profile, and `tau` where it begins.
+#[derive(Clone, Copy, Debug)]
+pub struct Stretch {
+    pub tau: f64,
+    pub piece: Piece,
 }
 
 /// The codes that the shaders write.
@@ -69,6 +78,15 @@ macro_rules! layout {
                 pub pole: $real,
                 pub friction: $real,
                 pub gradient: $real,
+                pub spiral: [$real; 2],
+            }
+
+            #[derive(Clone, Copy, Pod, Zeroable)]
+            #[repr(C)]
+            pub struct Piece {
+                pub tau: $real,
+                pub begin: $real,
+                pub cubic: [$real; 4],
             }
 
             #[derive(Clone, Copy, Pod, Zeroable)]
@@ -101,6 +119,17 @@ macro_rules! layout {
                         pole: rod.pole as $real,
                         friction: rod.friction as $real,
                         gradient: rod.gradient as $real,
+                        spiral: rod.spiral.unwrap_or_default().map(|k| k as $real),
+                    }
+                }
+            }
+
+            impl From<&super::Stretch> for Piece {
+                fn from(stretch: &super::Stretch) -> Self {
+                    Self {
+                        tau: stretch.tau as $real,
+                        begin: stretch.piece.from as $real,
+                        cubic: stretch.piece.cubic.map(|c| c as $real),
                     }
                 }
             }
@@ -142,6 +171,7 @@ macro_rules! layout {
                 shot: size_of::<Shot>(),
                 hit: size_of::<Hit>(),
                 rods: write::<_, Rod>,
+                pieces: write::<_, Piece>,
                 shots: write::<_, Shot>,
                 hits: read::<_, Hit>,
             };
@@ -157,6 +187,7 @@ layout!(double, f64);
 mod tests {
     use super::*;
     use crate::integrate::gpu::shaders;
+    use crate::model::Effects;
     use naga::TypeInner;
     use std::mem::offset_of;
 
@@ -164,7 +195,12 @@ mod tests {
     type Struct = (String, usize, Vec<(String, usize)>);
 
     fn in_shader(precision: Precision) -> Vec<Struct> {
-        let module = naga::front::wgsl::parse_str(&shaders::shoot(precision)).unwrap();
+        let effects = Effects {
+            profile: true,
+            ..Effects::default()
+        };
+        let text = shaders::shoot(precision, effects);
+        let module = naga::front::wgsl::parse_str(&text).unwrap();
         let structs = module.types.iter().filter_map(|(_, found)| {
             let TypeInner::Struct { members, span } = &found.inner else {
                 return None;
@@ -198,8 +234,10 @@ mod tests {
                     slope,
                     pole,
                     friction,
-                    gradient
+                    gradient,
+                    spiral
                 ),
+                in_rust!($module::Piece, "Piece", tau, begin, cubic),
                 in_rust!(
                     $module::Shot,
                     "Shot",

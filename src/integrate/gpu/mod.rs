@@ -17,11 +17,11 @@ mod slot;
 pub use adapters::{AdapterReport, Kind, adapters, preferred};
 
 use super::{Description, Engine, EngineError, Hit, Shot};
-use crate::model::{Effects, Rod};
+use crate::model::{Effects, Piece, Rod};
 use device::Device;
-use layout::Layout;
+use layout::{Layout, Stretch};
 use pipeline::Pipeline;
-use slot::{Flight, Slot};
+use slot::{Flight, Shared, Slot};
 use std::collections::hash_map::Entry;
 use std::collections::{HashMap, VecDeque};
 use std::fmt;
@@ -52,8 +52,9 @@ pub struct Gpu {
     layout: &'static Layout,
     device: Device,
     rods: Option<wgpu::Buffer>,
+    pieces: Option<wgpu::Buffer>,
     slots: Vec<Slot>,
-    pipelines: HashMap<Effects, Pipeline>,
+    pipelines: HashMap<(Effects, u32), Pipeline>,
 }
 
 /// Dispatches in flight: one runs while the answers of the other are read.
@@ -71,32 +72,56 @@ impl Gpu {
             layout: Layout::of(precision),
             device: Device::open(precision)?,
             rods: None,
+            pieces: None,
             slots: Vec::new(),
             pipelines: HashMap::new(),
         })
     }
 
-    /// Uploads the rods, in a buffer that grows when it must.
-    fn upload(&mut self, rods: &[Rod]) -> Result<wgpu::Buffer, EngineError> {
-        let bytes = (self.layout.rods)(rods);
+    /// Uploads `bytes`, `what` they are, in a buffer that grows when it must.
+    fn upload(
+        &self,
+        what: &'static str,
+        last: Option<wgpu::Buffer>,
+        bytes: &[u8],
+    ) -> Result<wgpu::Buffer, EngineError> {
         let size = bytes.len() as u64;
         let most = self.device.most_bytes();
         if size > most {
             return Err(EngineError::Unsupported {
                 adapter: self.device.report.name.clone(),
-                what: format!("hold {} rods: {size} bytes, at most {most}", rods.len()),
+                what: format!("hold {size} bytes of {what}, at most {most}"),
             });
         }
-        let buffer = match self.rods.take() {
+        let buffer = match last {
             Some(buffer) if buffer.size() >= size => buffer,
             _ => {
                 let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST;
-                self.device.buffer("rods", size, usage)?
+                self.device.buffer(what, size, usage)?
             }
         };
-        self.device.queue.write_buffer(&buffer, 0, &bytes);
-        self.rods = Some(buffer.clone());
+        self.device.queue.write_buffer(&buffer, 0, bytes);
         Ok(buffer)
+    }
+
+    /// Uploads the pieces of the profile that all rods share, and tells how many bytes they are.
+    fn upload_pieces(&mut self, rod: &Rod) -> Result<(wgpu::Buffer, u64), EngineError> {
+        let pieces = match rod.profile {
+            Some(profile) => &profile.pieces[..],
+            None => &[Piece::cone(rod.taper)],
+        };
+        let stretches: Vec<Stretch> = pieces
+            .iter()
+            .map(|piece| Stretch {
+                tau: rod.tau(piece.from),
+                piece: *piece,
+            })
+            .collect();
+        let bytes = (self.layout.pieces)(&stretches);
+        let last = self.pieces.take();
+        let buffer = self.upload("pieces of a profile", last, &bytes)?;
+        self.pieces = Some(buffer.clone());
+        Ok((buffer, bytes.len() as u64))
     }
 
     fn run(
@@ -105,15 +130,28 @@ impl Gpu {
         rods: &[Rod],
         shots: &[Shot],
     ) -> Result<Vec<Hit>, EngineError> {
-        let rods = self.upload(rods)?;
-        let pipeline = match self.pipelines.entry(effects) {
+        let mut steps = self.precision.steps();
+        let mut pieces = None;
+        if let Some(rod) = rods.first().filter(|_| effects.profile) {
+            steps = self.precision.resolution().steps(rod, rod.tau_tip());
+            pieces = Some(self.upload_pieces(rod)?);
+        }
+        let last = self.rods.take();
+        let rods = self.upload("rods", last, &(self.layout.rods)(rods))?;
+        self.rods = Some(rods.clone());
+        let pipeline = match self.pipelines.entry((effects, steps)) {
             Entry::Occupied(known) => known.into_mut(),
             Entry::Vacant(new) => new.insert(Pipeline::new(
                 &self.device,
                 self.precision,
                 self.layout,
                 effects,
+                steps,
             )?),
+        };
+        let shared = Shared {
+            rods: &rods,
+            pieces: pieces.as_ref(),
         };
         let mut hits = Vec::with_capacity(shots.len());
         let mut waiting = shots;
@@ -125,7 +163,7 @@ impl Gpu {
                 waiting = later;
                 let slot = self.slots.pop().unwrap_or_default();
                 let (device, layout) = (&self.device, self.layout);
-                flights.push_back(slot.launch(device, layout, pipeline, &rods, now)?);
+                flights.push_back(slot.launch(device, layout, pipeline, &shared, now)?);
             } else if let Some(flight) = flights.pop_front() {
                 let (count, started) = (flight.shots, flight.submitted.max(idle_since));
                 self.slots

@@ -20,8 +20,9 @@ impl Pipeline {
         precision: Precision,
         layout: &Layout,
         effects: Effects,
+        steps: u32,
     ) -> Result<Self, EngineError> {
-        let source = shoot(precision);
+        let source = shoot(precision, effects);
         let module = device
             .handle
             .create_shader_module(wgpu::ShaderModuleDescriptor {
@@ -37,7 +38,7 @@ impl Pipeline {
                 module: &module,
                 entry_point: Some("shoot"),
                 compilation_options: wgpu::PipelineCompilationOptions {
-                    constants: &overrides(effects, precision.steps()),
+                    constants: &overrides(effects, steps),
                     ..Default::default()
                 },
                 cache: None,

@@ -3,7 +3,7 @@
 use super::Precision;
 use super::layout::OUTCOMES;
 use crate::integrate::MOST_STEPS;
-use crate::model::{Effects, LONGEST_STEP};
+use crate::model::{Effects, LONGEST_STEP, Resolution};
 use std::fmt::Write;
 
 /// Invocations per workgroup; every device allows this many.
@@ -18,6 +18,10 @@ const MODEL: [&str; 5] = [
     include_str!("../../../shaders/landing.wgsl"),
 ];
 
+/// The material, and the way along it.
+const LINEAR: &str = include_str!("../../../shaders/linear.wgsl");
+const MEASURED: &str = include_str!("../../../shaders/measured.wgsl");
+
 impl Precision {
     /// Steps of [`Rk4`](crate::model::Rk4) per trajectory.
     ///
@@ -29,6 +33,16 @@ impl Precision {
         match self {
             Self::F32 => 64,
             Self::F64 => 96,
+        }
+    }
+
+    /// The resolution of whiskers with a profile, which take steps piece by piece: no coarser than that of a cone of
+    /// taper 0.99 in as many steps as the others.
+    #[must_use]
+    pub fn resolution(self) -> Resolution {
+        Resolution {
+            least: self.steps(),
+            longest: LARGEST_TAPER_TAU / f64::from(self.steps()),
         }
     }
 
@@ -46,6 +60,9 @@ impl Precision {
     }
 }
 
+/// `beta tau` at the tip of a cone of taper 0.99, `ln 100`.
+const LARGEST_TAPER_TAU: f64 = 4.605;
+
 /// The numbers and names that the pieces share with Rust.
 fn constants(precision: Precision) -> String {
     let tolerance = precision.tolerance();
@@ -58,6 +75,7 @@ fn constants(precision: Precision) -> String {
          override STEPS: u32;\n\
          override TAPER: bool;\n\
          override CURVATURE: bool;\n\
+         override SPIRAL: bool;\n\
          override GRADIENT: bool;\n"
     );
     for (code, (name, _)) in OUTCOMES.iter().enumerate() {
@@ -67,27 +85,28 @@ fn constants(precision: Precision) -> String {
     text
 }
 
-/// The pieces that compute a trajectory, without an entry point.
+/// The pieces that compute a trajectory with these effects, without an entry point.
 #[must_use]
-pub fn model(precision: Precision) -> String {
-    constants(precision) + &MODEL.concat()
+pub fn model(precision: Precision, effects: Effects) -> String {
+    let material = if effects.profile { MEASURED } else { LINEAR };
+    constants(precision) + &MODEL.concat() + material
 }
 
 /// The engine's shader; its entry point is `shoot`.
 #[must_use]
-pub fn shoot(precision: Precision) -> String {
-    model(precision) + include_str!("../../../shaders/shoot.wgsl")
+pub fn shoot(precision: Precision, effects: Effects) -> String {
+    model(precision, effects) + include_str!("../../../shaders/shoot.wgsl")
 }
 
 /// The values of the `override` constants.
 #[must_use]
-pub fn overrides(effects: Effects, steps: u32) -> [(&'static str, f64); 4] {
+pub fn overrides(effects: Effects, steps: u32) -> [(&'static str, f64); 5] {
     let flag = |on: bool| f64::from(u8::from(on));
     [
         ("STEPS", f64::from(steps)),
-        // Without taper sections are not advanced at all; a gradient needs their arclength.
-        ("TAPER", flag(effects.taper || effects.gradient)),
+        ("TAPER", flag(effects.advances())),
         ("CURVATURE", flag(effects.curvature)),
+        ("SPIRAL", flag(effects.spiral)),
         ("GRADIENT", flag(effects.gradient)),
     ]
 }

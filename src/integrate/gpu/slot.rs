@@ -9,6 +9,15 @@ use crate::integrate::{Hit, Shot};
 use std::time::Instant;
 use wgpu::BufferUsages as Usage;
 
+/// What all dispatches of a call read.
+#[derive(Clone, Copy, Debug)]
+pub struct Shared<'a> {
+    /// The rods.
+    pub rods: &'a wgpu::Buffer,
+    /// The pieces of their profile, and how many bytes they are.
+    pub pieces: Option<&'a (wgpu::Buffer, u64)>,
+}
+
 /// Room for a number of shots and their hits.
 #[derive(Debug, Default)]
 pub struct Slot {
@@ -66,7 +75,7 @@ impl Slot {
         device: &Device,
         layout: &Layout,
         pipeline: &Pipeline,
-        rods: &wgpu::Buffer,
+        shared: &Shared,
         shots: &[Shot],
     ) -> Result<Flight, EngineError> {
         let buffers = match self.buffers {
@@ -78,14 +87,16 @@ impl Slot {
         device
             .queue
             .write_buffer(&buffers.shots, 0, &(layout.shots)(shots));
+        let mut entries = vec![
+            part(0, shared.rods, shared.rods.size()),
+            part(1, &buffers.shots, shots_size),
+            part(2, &buffers.hits, hits_size),
+        ];
+        entries.extend(shared.pieces.map(|(pieces, size)| part(3, pieces, *size)));
         let bindings = device.handle.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("shoot"),
             layout: &pipeline.handle.get_bind_group_layout(0),
-            entries: &[
-                part(0, rods, rods.size()),
-                part(1, &buffers.shots, shots_size),
-                part(2, &buffers.hits, hits_size),
-            ],
+            entries: &entries,
         });
         let mut commands = device.handle.create_command_encoder(&Default::default());
         {

@@ -1,7 +1,6 @@
-//! The whisker at rest: the parabola `y = A (x - x0)^2` (paper, Eqs 7 and 10) by arclength, by chord, and
-//! the pole at first touch. Continued beyond the tip where a distance asks for it.
+//! The parabola `y = A (x - x0)^2` (paper, Eqs 7 and 10), or a straight line.
 
-use super::Rod;
+use crate::model::Rod;
 use glam::DVec2;
 
 /// `t sqrt(1 + t^2) + asinh(t)`: four times `A` times the arclength from the vertex to the slope `t`.
@@ -13,30 +12,26 @@ fn arc(t: f64) -> f64 {
     t * root + asinh.copysign(t)
 }
 
-/// The undeflected shape of a [`Rod`], in the frame of the base: origin at the base, first axis its tangent.
+/// A parabola in the frame of the base.
 #[derive(Clone, Copy, Debug)]
-pub struct Rest {
+pub struct Parabola {
     bend: f64,
     slope: f64,
-    pole: f64,
     /// cos and sin of the base's tangent in the frame of the parabola.
     base: DVec2,
 }
 
-impl Rest {
-    /// The rest shape of `rod`.
-    #[must_use]
+impl Parabola {
+    /// The parabola of `rod`.
     pub fn new(rod: &Rod) -> Self {
         Self {
             bend: rod.bend,
             slope: rod.slope,
-            pole: rod.pole,
             base: DVec2::new(1.0, rod.slope).normalize(),
         }
     }
 
     /// Slope of the parabola at arclength `s`.
-    #[must_use]
     pub fn slope_at(&self, s: f64) -> f64 {
         if self.bend == 0.0 {
             return self.slope;
@@ -55,8 +50,13 @@ impl Rest {
         t
     }
 
+    /// Curvature at arclength `s`, `2 A cos^3`.
+    pub fn curvature(&self, s: f64) -> f64 {
+        2.0 * self.bend / self.slope_at(s).hypot(1.0).powi(3)
+    }
+
     /// Arclength where the parabola has gone `x` along its own axis.
-    fn arclength_at(&self, x: f64) -> f64 {
+    pub fn arclength_at(&self, x: f64) -> f64 {
         if self.bend == 0.0 {
             return x * self.slope.hypot(1.0);
         }
@@ -65,7 +65,7 @@ impl Rest {
     }
 
     /// Point and unit tangent where the parabola has gone `x` along its own axis.
-    fn at(&self, x: f64) -> (DVec2, DVec2) {
+    pub fn at(&self, x: f64) -> (DVec2, DVec2) {
         let t = (2.0 * self.bend).mul_add(x, self.slope);
         let point = DVec2::new(x, x * self.bend.mul_add(x, self.slope));
         let tangent = DVec2::new(1.0, t).normalize();
@@ -74,7 +74,6 @@ impl Rest {
     }
 
     /// Point and unit tangent at arclength `s`.
-    #[must_use]
     pub fn at_arclength(&self, s: f64) -> (DVec2, DVec2) {
         let x = if self.bend == 0.0 {
             s / self.slope.hypot(1.0)
@@ -86,7 +85,7 @@ impl Rest {
 
     /// How far along the parabola's axis the chord from the base is `chord`: the root of
     /// `x^2 (1 + (A x + t0)^2) = chord^2`, whose left side grows with `x` (the scene made sure).
-    fn x_of_chord(&self, chord: f64) -> f64 {
+    pub fn x_of_chord(&self, chord: f64) -> f64 {
         let (mut low, mut high) = (0.0, chord);
         let mut x = chord;
         for _ in 0..200 {
@@ -110,44 +109,5 @@ impl Rest {
             x = next;
         }
         x
-    }
-
-    /// Arclength at which the whisker at rest is `distance` from its base.
-    #[must_use]
-    pub fn arclength_at_distance(&self, distance: f64) -> f64 {
-        self.arclength_at(self.x_of_chord(distance))
-    }
-
-    /// Direction of the point at `distance` from the base, as an angle from the base's tangent.
-    #[must_use]
-    pub fn direction_at_distance(&self, distance: f64) -> f64 {
-        self.at(self.x_of_chord(distance)).0.to_angle()
-    }
-
-    /// Centre of the pole when it first touches the whisker at `distance` from the base.
-    #[must_use]
-    pub fn pole_at_distance(&self, distance: f64) -> DVec2 {
-        let (point, tangent) = self.at(self.x_of_chord(distance));
-        point - self.pole * tangent.perp()
-    }
-
-    /// The distance from the base at which the pole first touches the whisker when its centre is `pole_distance` from
-    /// the base: the inverse of [`Rest::pole_at_distance`], which grows with the distance (the scene made sure).
-    #[must_use]
-    pub fn distance_of_pole(&self, pole_distance: f64) -> f64 {
-        let radius = self.pole.abs();
-        let mut low = (pole_distance - radius).max(0.0);
-        let mut high = pole_distance + radius;
-        loop {
-            let middle = 0.5 * (low + high);
-            if middle <= low || middle >= high {
-                return middle;
-            }
-            if self.pole_at_distance(middle).length() < pole_distance {
-                low = middle;
-            } else {
-                high = middle;
-            }
-        }
     }
 }

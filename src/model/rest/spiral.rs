@@ -1,0 +1,99 @@
+//! The Euler spiral `kappa = k0 + k1 s`, straight on beyond the tip.
+
+use glam::DVec2;
+
+/// Nodes and weights of the Gauss-Legendre rule of order 16 on `[-1, 1]`, positive half.
+const GAUSS: [(f64, f64); 8] = [
+    (0.095_012_509_837_637_44, 0.189_450_610_455_068_5),
+    (0.281_603_550_779_258_9, 0.182_603_415_044_923_58),
+    (0.458_016_777_657_227_37, 0.169_156_519_395_002_54),
+    (0.617_876_244_402_643_8, 0.149_595_988_816_576_74),
+    (0.755_404_408_355_003, 0.124_628_971_255_533_88),
+    (0.865_631_202_387_831_8, 0.095_158_511_682_492_79),
+    (0.944_575_023_073_232_6, 0.062_253_523_938_647_894),
+    (0.989_400_934_991_649_9, 0.027_152_459_411_754_096),
+];
+
+/// The spiral turns by at most this, in radians, per panel of the rule: it is then exact to rounding.
+const TURN_PER_PANEL: f64 = 1.0;
+
+/// An Euler spiral in the frame of the base.
+#[derive(Clone, Copy, Debug)]
+pub struct EulerSpiral {
+    k0: f64,
+    k1: f64,
+}
+
+impl EulerSpiral {
+    /// The spiral whose curvature is `k0 + k1 s`.
+    pub fn new([k0, k1]: [f64; 2]) -> Self {
+        Self { k0, k1 }
+    }
+
+    /// Curvature at arclength `s`.
+    pub fn curvature(&self, s: f64) -> f64 {
+        if s > 1.0 {
+            0.0
+        } else {
+            self.k1.mul_add(s, self.k0)
+        }
+    }
+
+    /// Angle of the tangent at arclength `s`, from the base's.
+    fn angle(&self, s: f64) -> f64 {
+        s * (0.5 * self.k1).mul_add(s, self.k0)
+    }
+
+    /// Point and unit tangent at arclength `s`.
+    pub fn at_arclength(&self, s: f64) -> (DVec2, DVec2) {
+        let bent = s.min(1.0);
+        let most = self.k0.abs().max((self.k0 + self.k1).abs());
+        #[allow(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a small positive number"
+        )]
+        let panels = (most * bent / TURN_PER_PANEL).ceil().max(1.0) as u32;
+        let half = 0.5 * bent / f64::from(panels);
+        let point: DVec2 = (0..panels)
+            .map(|panel| {
+                let middle = f64::from(2 * panel + 1) * half;
+                let pairs = GAUSS.map(|(node, weight)| {
+                    let [before, after] = [-node, node]
+                        .map(|node| DVec2::from_angle(self.angle(half.mul_add(node, middle))));
+                    weight * (before + after)
+                });
+                half * pairs.into_iter().sum::<DVec2>()
+            })
+            .sum();
+        let tangent = DVec2::from_angle(self.angle(bent));
+        (point + (s - bent) * tangent, tangent)
+    }
+
+    /// Arclength at which the chord from the base is `chord`, which grows along the spiral (the scene made sure).
+    pub fn arclength_of_chord(&self, chord: f64) -> f64 {
+        let reach = self.at_arclength(1.0).0.length();
+        let (mut low, mut high) = (chord, if chord < reach { 1.0 } else { chord + 1.0 });
+        let mut s = chord;
+        for _ in 0..200 {
+            let (point, tangent) = self.at_arclength(s);
+            let length = point.length();
+            if length > chord {
+                high = s;
+            } else {
+                low = s;
+            }
+            let newton = s - (length - chord) * length / point.dot(tangent);
+            let next = if newton > low && newton < high {
+                newton
+            } else {
+                0.5 * (low + high)
+            };
+            if (next - s).abs() <= 2.0 * f64::EPSILON * s {
+                return next;
+            }
+            s = next;
+        }
+        s
+    }
+}

@@ -1,0 +1,246 @@
+//! Euler spirals and measured radii against plain equations, differences, and the shapes that they contain.
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use glam::DVec2;
+use whiskmap::model::batch::{Launch, Method, land};
+use whiskmap::model::{
+    Dopri8, Effects, First, FirstAndEnergy, RadiusProfile, Resolution, Second, arclength,
+};
+use whiskmap::sheet::FINE;
+
+#[allow(dead_code, reason = "the engines' tests use the rest")]
+#[path = "gpu_engine/shots.rs"]
+mod shots;
+
+use shots::{ROWS, Random, launch, rod};
+
+fn with(effects: Effects, resolution: Resolution) -> Method {
+    Method {
+        effects,
+        resolution,
+    }
+}
+
+fn launches(effects: Effects, count: usize) -> Vec<Launch> {
+    let mut random = Random(21);
+    (0..count)
+        .map(|_| launch(rod(effects, &mut random), 6.5, &mut random))
+        .collect()
+}
+
+/// The pole as the base sees it, by the classical Runge-Kutta method on the equations as they are usually written: by
+/// arclength, from the contact to the base, with angles. Steps end at the rows of the profile.
+fn plainly(launch: &Launch, steps: u32) -> DVec2 {
+    let Launch { rod, tau, load } = launch;
+    let force = load * rod.radius(*tau).powi(2);
+    let at_rest = |s: f64| match rod.spiral {
+        Some([k0, k1]) => k0 + k1 * s,
+        None => 0.0,
+    };
+    let slope = |s: f64, [theta, x, _]: [f64; 3]| {
+        let _ = theta;
+        [
+            at_rest(s) - force * x / rod.stiffness(s),
+            theta.cos(),
+            theta.sin(),
+        ]
+    };
+    let mut y = [rod.friction.atan(), 0.0, 0.0];
+    let mut from = arclength(rod, *tau);
+    let rows = ROWS.iter().rev().map(|row| row[0]);
+    let first = from;
+    for to in rows.filter(|row| *row < first) {
+        let h = (to - from) / f64::from(steps);
+        for i in 0..steps {
+            let s = from + h * f64::from(i);
+            let add = |k: [f64; 3], h: f64| std::array::from_fn(|j| h.mul_add(k[j], y[j]));
+            let k1 = slope(s, y);
+            let k2 = slope(s + 0.5 * h, add(k1, 0.5 * h));
+            let k3 = slope(s + 0.5 * h, add(k2, 0.5 * h));
+            // A row belongs to the piece that it ends, so the end of a step may not be asked for its radius there.
+            let k4 = slope(s + h * (1.0 - 1e-13), add(k3, h));
+            for j in 0..3 {
+                y[j] += h / 6.0 * (k1[j] + 2.0 * k2[j] + 2.0 * k3[j] + k4[j]);
+            }
+        }
+        from = to;
+    }
+    let [theta, x, y] = y;
+    DVec2::from_angle(-theta).rotate(rod.to_pole() - DVec2::new(x, y))
+}
+
+/// Measured: 6e-12, the truncation of 2000 steps of order 4.
+#[test]
+fn the_pole_is_where_plain_equations_see_it() {
+    for effects in Effects::all().filter(|e| e.profile && !e.curvature) {
+        let launches = launches(effects, 100);
+        let landings = land::<Dopri8, First, 6>(with(effects, FINE), &launches);
+        for (launch, landing) in launches.iter().zip(landings) {
+            let apart = plainly(launch, 2000).distance(landing.pole);
+            assert!(apart < 1e-10, "{apart:e} {launch:?}");
+        }
+    }
+}
+
+/// Central differences of the landing; with steps of 1e-5 they are right to 1e-8 relative or so.
+#[test]
+fn derivatives_agree_with_differences_in_every_set() {
+    const STEP: f64 = 1e-5;
+    for effects in Effects::all() {
+        let method = with(effects, FINE);
+        for launch in launches(effects, 40) {
+            let scale = [launch.tau, launch.load.abs() + 1.0 / launch.tau.powi(2)];
+            let moved = |axis: usize, sign: f64| {
+                let mut moved = launch;
+                [&mut moved.tau, &mut moved.load]
+                    .into_iter()
+                    .nth(axis)
+                    .map(|value| *value += sign * STEP * scale[axis])
+                    .unwrap();
+                land::<Dopri8, First, 6>(method, &[moved])[0]
+            };
+            let here = land::<Dopri8, Second, 15>(method, &[launch])[0];
+            for (axis, first, second) in [
+                (0, here.landing.by_tau, [here.by_tau_tau, here.by_tau_load]),
+                (
+                    1,
+                    here.landing.by_load,
+                    [here.by_tau_load, here.by_load_load],
+                ),
+            ] {
+                let (after, before) = (moved(axis, 1.0), moved(axis, -1.0));
+                let width = 2.0 * STEP * scale[axis];
+                let ratio = DVec2::new(before.pole.x, -before.pole.y).rotate(after.pole);
+                let ln = DVec2::new(
+                    (after.pole.length() / before.pole.length()).ln(),
+                    ratio.to_angle(),
+                );
+                let close = |a: DVec2, b: DVec2, unit: f64| a.distance(b) * unit < 1e-6;
+                let size = scale[axis] / (1.0 + first.length() * scale[axis]);
+                assert!(close(ln / width, first, size), "{effects:?} {launch:?}");
+                let by = [
+                    (after.by_tau, before.by_tau),
+                    (after.by_load, before.by_load),
+                ];
+                for (other, ((after, before), second)) in by.into_iter().zip(second).enumerate() {
+                    let size = scale[axis] * scale[other];
+                    let size = size / (1.0 + second.length() * size);
+                    let found = (after - before) / width;
+                    assert!(
+                        close(found, second, size),
+                        "{effects:?} {axis} {other} {launch:?}"
+                    );
+                }
+            }
+        }
+    }
+}
+
+fn farthest(one: Effects, other: Effects, pairs: &[(Launch, Launch)]) -> f64 {
+    let ends = |effects: Effects, launches: Vec<Launch>| {
+        land::<Dopri8, FirstAndEnergy, 7>(with(effects, FINE), &launches)
+    };
+    let ones = ends(one, pairs.iter().map(|pair| pair.0).collect());
+    let others = ends(other, pairs.iter().map(|pair| pair.1).collect());
+    let apart = ones.iter().zip(&others).map(|(one, other)| {
+        let energy = (one.energy - other.energy).abs() / (1.0 + one.energy);
+        one.landing.pole.distance(other.landing.pole) + energy
+    });
+    apart.fold(0.0, f64::max)
+}
+
+/// What a spiral without curvature, a parabola without curvature and a table of a cone are; to rounding, and
+/// to 6e-12 (measured) the truncation of a cone of taper 0.99.
+#[test]
+fn neutral_values_are_absence() {
+    let tapered = Effects {
+        taper: true,
+        ..Effects::default()
+    };
+    let usual = launches(tapered, 200);
+    let spiral = Effects {
+        spiral: true,
+        ..tapered
+    };
+    let unbent: Vec<(Launch, Launch)> = usual
+        .iter()
+        .map(|launch| {
+            let mut straight = *launch;
+            straight.rod.spiral = Some([0.0, 0.0]);
+            (*launch, straight)
+        })
+        .collect();
+    assert!(farthest(tapered, spiral, &unbent) < 1e-14);
+
+    let profile = Effects {
+        profile: true,
+        ..tapered
+    };
+    let measured: Vec<(Launch, Launch)> = usual
+        .iter()
+        .map(|launch| {
+            let mut cone = *launch;
+            let rows = [0.0, 0.1, 0.4, 0.75, 1.0].map(|s| [s, 1.0 - cone.rod.taper * s]);
+            cone.rod.profile = Some(RadiusProfile::of(&rows, 1.0));
+            (*launch, cone)
+        })
+        .collect();
+    let apart = farthest(tapered, profile, &measured);
+    assert!(apart < 5e-11, "{apart:e}");
+}
+
+/// The curvature of the parabola is `2 A (1 - 6 A^2 s^2 + ...)`: a circular arc differs in the third order.
+#[test]
+fn a_faint_parabola_is_a_circular_arc_to_third_order() {
+    let bent = Effects {
+        taper: true,
+        curvature: true,
+        ..Effects::default()
+    };
+    let arc = Effects {
+        spiral: true,
+        curvature: false,
+        ..bent
+    };
+    let apart = |bend: f64| {
+        let pairs: Vec<(Launch, Launch)> = launches(bent, 100)
+            .iter()
+            .map(|launch| {
+                let (mut parabola, mut circle) = (*launch, *launch);
+                (parabola.rod.bend, parabola.rod.slope) = (bend, 0.0);
+                (circle.rod.bend, circle.rod.slope) = (0.0, 0.0);
+                circle.rod.spiral = Some([2.0 * bend, 0.0]);
+                (parabola, circle)
+            })
+            .collect();
+        farthest(bent, arc, &pairs)
+    };
+    let order = (apart(0.02) / apart(0.01)).log2();
+    assert!((2.8..3.2).contains(&order), "{order}");
+}
+
+/// Halving the steps divides the error by 2^8 though the profile has jumps in its second derivative.
+#[test]
+fn rows_do_not_cost_the_order() {
+    for effects in Effects::all().filter(|effects| effects.profile) {
+        let launches = launches(effects, 200);
+        let poles = |longest: f64| -> Vec<DVec2> {
+            let resolution = Resolution { least: 1, longest };
+            land::<Dopri8, First, 6>(with(effects, resolution), &launches)
+                .iter()
+                .map(|landing| landing.pole)
+                .collect()
+        };
+        let exact = poles(0.01);
+        let error = |longest: f64| {
+            let apart = poles(longest).into_iter().zip(&exact);
+            apart.map(|(a, b)| a.distance(*b)).fold(0.0, f64::max)
+        };
+        let order = (error(0.4) / error(0.2)).log2();
+        assert!(
+            (6.5..10.0).contains(&order),
+            "{effects:?}: {order}, {:e}",
+            error(0.2)
+        );
+    }
+}
