@@ -1,0 +1,162 @@
+//! What each effect costs: `cargo bench --bench effects -- [trajectories]`.
+//!
+//! Per set of effects the instructions of one trajectory's shader (naga's expressions and statements that are reached,
+//! each loop counted once), and the time per trajectory with first derivatives on one thread of the CPU, at the
+//! resolution of the maps; medians of seven runs, in turn.
+#![allow(
+    clippy::print_stdout,
+    reason = "a table on the screen is what this program is for"
+)]
+#![allow(clippy::expect_used, reason = "a bench that cannot start should stop")]
+
+use naga::back::pipeline_constants::process_overrides;
+use naga::valid::{Capabilities, ValidationFlags, Validator};
+use naga::{Block, Expression, Function, Handle, Literal, Module, Statement};
+use std::time::Instant;
+use whiskmap::integrate::gpu::{Precision, shaders};
+use whiskmap::model::batch::{Launch, Method, land};
+use whiskmap::model::{Dopri8, Effects, First};
+use whiskmap::sheet::FINE;
+
+#[allow(dead_code, reason = "the tests use the rest")]
+#[path = "../tests/gpu_engine/shots.rs"]
+mod shots;
+
+use shots::{Random, launch, rod};
+
+const RUNS: usize = 7;
+
+fn main() {
+    let count = std::env::args()
+        .nth(1)
+        .and_then(|text| text.parse().ok())
+        .unwrap_or(20_000);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1);
+    pool.build_global().expect("no pool is there yet");
+
+    let sets: Vec<(Effects, Vec<Launch>)> = Effects::all()
+        .map(|effects| {
+            let mut random = Random(31);
+            let launches = (0..count).map(|_| launch(rod(effects, &mut random), 6.5, &mut random));
+            (effects, launches.collect())
+        })
+        .collect();
+    let mut times = vec![Vec::new(); sets.len()];
+    for _ in 0..RUNS {
+        for ((effects, launches), times) in sets.iter().zip(&mut times) {
+            times.push(microseconds(*effects, launches));
+        }
+    }
+    let medians: Vec<f64> = times
+        .iter_mut()
+        .map(|times| {
+            times.sort_by(f64::total_cmp);
+            times[RUNS / 2]
+        })
+        .collect();
+    println!("instructions  us/trajectory  ratio  spread  effects");
+    for (i, (effects, _)) in sets.iter().enumerate() {
+        println!(
+            "{:12}  {:13.3}  {:5.2}  {:5.0} %  {}",
+            instructions(*effects),
+            medians[i],
+            medians[i] / medians[0],
+            100.0 * (times[i][RUNS - 1] / times[i][0] - 1.0),
+            name(*effects),
+        );
+    }
+}
+
+fn microseconds(effects: Effects, launches: &[Launch]) -> f64 {
+    let method = Method {
+        effects,
+        resolution: FINE,
+    };
+    let start = Instant::now();
+    let landings = land::<Dopri8, First, 6>(method, launches);
+    let micros = start.elapsed().as_secs_f64() * 1e6;
+    assert!(landings.iter().all(|landing| landing.pole.is_finite()));
+    micros / launches.len() as f64
+}
+
+fn name(effects: Effects) -> String {
+    let names = [
+        (effects.taper && !effects.profile, "taper"),
+        (effects.profile, "profile"),
+        (effects.curvature, "parabola"),
+        (effects.spiral, "euler spiral"),
+        (effects.gradient, "modulus gradient"),
+    ];
+    let on: Vec<&str> = names
+        .iter()
+        .filter(|(on, _)| *on)
+        .map(|(_, name)| *name)
+        .collect();
+    if on.is_empty() {
+        "none: a straight cylinder".to_owned()
+    } else {
+        on.join(", ")
+    }
+}
+
+/// Instructions that `shoot` reaches with these effects.
+fn instructions(effects: Effects) -> usize {
+    let text = shaders::shoot(Precision::F32, effects);
+    let module = naga::front::wgsl::parse_str(&text).expect("the tests hold the text valid");
+    let mut validator = Validator::new(ValidationFlags::all(), Capabilities::empty());
+    let info = validator.validate(&module).expect("it is valid");
+    let entry = &module.entry_points[0];
+    let constants = shaders::overrides(effects, Precision::F32.steps())
+        .map(|(name, value)| (name.to_owned(), value))
+        .into_iter()
+        .collect();
+    let entry_point = Some((entry.stage, entry.name.as_str()));
+    let (module, _) = process_overrides(&module, &info, entry_point, &constants)
+        .expect("every constant is given");
+    let entry = &module.entry_points[0].function;
+    in_block(&module, entry, &entry.body)
+}
+
+/// Expressions and statements of a block, with the functions that it calls, without branches that are never taken.
+fn in_block(module: &Module, function: &Function, block: &Block) -> usize {
+    block
+        .iter()
+        .map(|statement| match statement {
+            Statement::Emit(range) => range.clone().count(),
+            Statement::Block(block) => in_block(module, function, block),
+            Statement::If {
+                condition,
+                accept,
+                reject,
+            } => match known(module, function, *condition) {
+                Some(true) => in_block(module, function, accept),
+                Some(false) => in_block(module, function, reject),
+                None => 1 + in_block(module, function, accept) + in_block(module, function, reject),
+            },
+            Statement::Loop {
+                body, continuing, ..
+            } => in_block(module, function, body) + in_block(module, function, continuing),
+            Statement::Call {
+                function: callee, ..
+            } => {
+                let callee = &module.functions[*callee];
+                1 + in_block(module, callee, &callee.body)
+            }
+            _ => 1,
+        })
+        .sum()
+}
+
+/// The value of a condition that is a constant.
+fn known(module: &Module, function: &Function, condition: Handle<Expression>) -> Option<bool> {
+    match function.expressions[condition] {
+        Expression::Literal(Literal::Bool(value)) => Some(value),
+        Expression::Constant(constant) => {
+            match module.global_expressions[module.constants[constant].init] {
+                Expression::Literal(Literal::Bool(value)) => Some(value),
+                _ => None,
+            }
+        }
+        _ => None,
+    }
+}
