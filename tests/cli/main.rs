@@ -4,9 +4,13 @@
     reason = "a test that cannot set up its files should stop"
 )]
 
+mod branch;
+mod curve;
 mod map;
 mod other;
+mod paper;
 mod refused;
+mod shape;
 mod sweep;
 mod traces;
 
