@@ -9,6 +9,7 @@ mod curve;
 mod map;
 mod other;
 mod paper;
+mod plan;
 mod refused;
 mod shape;
 mod sweep;
