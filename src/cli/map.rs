@@ -81,9 +81,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         },
     )
     .map_err(|error| Failure::Input(error.to_string()))?;
-    let cells =
-        scene.grid.push_angle_deg.len() * scene.grid.distance_mm.len() * plan.whiskers.len();
-    let bar = progress::bar(cells as u64);
+    let bar = progress::bar(plan.cells as u64);
     let mut keeper = Keeper { writer, bar };
     let result = map::run(&scene, &plan, engine.as_mut(), &mut keeper);
     keeper.bar.finish_and_clear();

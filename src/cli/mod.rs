@@ -7,9 +7,11 @@ mod branch;
 mod curve;
 mod devices;
 mod engine;
+mod estimate;
 mod failure;
 mod map;
 mod outputs;
+mod plan;
 mod pole;
 mod progress;
 mod render;
@@ -32,6 +34,7 @@ const EXAMPLES: &str = "\
 Examples:
   whiskmap map scenes/cone.toml                    regime map as outputs/cone.exr and outputs/cone.png
   whiskmap map scenes/cone.toml --engine gpu       the same, shot by the GPU
+  whiskmap plan scenes/cone.toml                   what that would take, without doing it
   whiskmap render outputs/cone.exr --channel force_un
   whiskmap curve scenes/cone.toml --plot curve.png where the whisker detaches, distance by distance
   whiskmap branch scenes/cone.toml --distance 15.66 stable and unstable states in front of one pole
@@ -44,6 +47,8 @@ Examples:
 enum Command {
     /// Compute the regime map of a scene, as EXR and PNG
     Map(map::Options),
+    /// Say what a map of a scene would take: effects, cells, memory, seconds
+    Plan(plan::Options),
     /// Draw a stored map again, its regimes or any channel
     Render(render::Options),
     /// Compute the exact detachment curve of a scene, as CSV, PNG or SVG
@@ -66,6 +71,7 @@ pub fn main() -> ExitCode {
     let arguments = Arguments::parse();
     let result = match &arguments.command {
         Command::Map(options) => map::run(options),
+        Command::Plan(options) => plan::run(options),
         Command::Render(options) => render::run(options),
         Command::Curve(options) => curve::run(options),
         Command::Branch(options) => branch::run(options),

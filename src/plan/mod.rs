@@ -1,5 +1,11 @@
 //! What will be computed, decided before anything is: pure, no device, no disk, no clock.
 
+mod effects;
+mod sample;
+
+pub use effects::{Cost, Effect, effects};
+pub use sample::sample;
+
 use crate::model::{Effects, Rod, Side};
 use crate::scene::{Scene, Whisker};
 
@@ -18,6 +24,12 @@ const CELLS_IN_FLIGHT: usize = 1 << 17;
 /// Most panels computed together: each has two sheets of some 100 KiB.
 const MOST_PANELS: usize = 64;
 
+/// States of a trajectory for the rod itself: cos and sin of its tilt, two coordinates.
+pub const ROD_STATES: usize = 4;
+
+/// States of a trajectory for the first derivatives by contact and load.
+pub const DERIVATIVE_STATES: usize = 6;
+
 /// A run.
 #[derive(Clone, Debug)]
 pub struct Plan {
@@ -25,10 +37,18 @@ pub struct Plan {
     pub whiskers: Vec<Whisker>,
     /// The effects that the scene calls for.
     pub effects: Effects,
+    /// The sides that the push angles ask for; first touch itself belongs to CB.
+    pub sides: Vec<Side>,
+    /// Cells of all panels.
+    pub cells: usize,
     /// Panels computed together, so that small panels fill an engine too.
     pub panels_at_once: usize,
     /// Rows of a panel handed to an engine at once.
     pub rows_at_once: usize,
+    /// Calls of an engine, each with the rows of some whiskers and sides.
+    pub engine_calls: usize,
+    /// Most bytes that panels and cells in flight take.
+    pub bytes: u64,
 }
 
 /// A run that is too large.
@@ -73,11 +93,27 @@ impl Plan {
             .iter()
             .map(|whisker| Rod::new(whisker, &scene.pole, Side::Cb))
             .collect();
+        let pushes = &scene.grid.push_angle_deg;
+        let asked = |side: &Side| pushes.iter().any(|push| Side::of_push(*push) == *side);
+        let sides: Vec<Side> = Side::BOTH.into_iter().filter(asked).collect();
+        let rows_at_once = (CELLS_IN_FLIGHT / push_angles).max(1);
+        let calls =
+            |group: &[Whisker]| (group.len() * sides.len() * distances).div_ceil(rows_at_once);
         Ok(Self {
             effects: Effects::of(&rods),
+            engine_calls: whiskers.chunks(panels_at_once).map(calls).sum(),
+            cells: cells * whiskers.len(),
+            sides,
             panels_at_once,
-            rows_at_once: (CELLS_IN_FLIGHT / push_angles).max(1),
+            rows_at_once,
+            bytes,
             whiskers,
         })
+    }
+
+    /// States of a trajectory for the rest shape: cos and sin of its tangent, if it is curved.
+    #[must_use]
+    pub const fn rest_states(&self) -> usize {
+        if self.effects.curvature { 2 } else { 0 }
     }
 }

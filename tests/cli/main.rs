@@ -4,9 +4,14 @@
     reason = "a test that cannot set up its files should stop"
 )]
 
+mod branch;
+mod curve;
 mod map;
 mod other;
+mod paper;
+mod plan;
 mod refused;
+mod shape;
 mod sweep;
 mod traces;
 

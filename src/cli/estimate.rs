@@ -1,0 +1,53 @@
+//! What a map would take, measured: a sample of it is computed on the CPU engine and thrown away.
+
+use super::failure::Failure;
+use crate::integrate::Cpu;
+use crate::map::{self, Observer};
+use crate::plan::{Plan, sample};
+use crate::scene::Scene;
+use crate::store::{Error, Panel};
+
+/// What a map would take.
+pub struct Estimate {
+    /// Seconds on the CPU engine, without the files.
+    pub seconds: f64,
+    /// Threads that this holds for.
+    pub threads: usize,
+    /// Newton steps per cell, each one trajectory.
+    pub steps_per_cell: f64,
+}
+
+/// Measures a sample of `scene` and scales it to `plan`: sheets by whiskers, sides and distances, the rest by cells.
+pub fn estimate(scene: &Scene, plan: &Plan) -> Result<Estimate, Failure> {
+    let small = sample(scene);
+    let small_plan = Plan {
+        effects: plan.effects,
+        ..Plan::new(&small)?
+    };
+    let summary = map::run(&small, &small_plan, &mut Cpu, &mut Nothing)?;
+    let rows = |scene: &Scene, plan: &Plan| {
+        (plan.whiskers.len() * plan.sides.len() * scene.grid.distance_mm.len()) as f64
+    };
+    let by_rows = rows(scene, plan) / rows(&small, &small_plan);
+    let by_cells = plan.cells as f64 / small_plan.cells as f64;
+    let seconds = summary.seconds().map(|(stage, seconds)| match stage {
+        "sheets" => seconds * by_rows,
+        _ => seconds * by_cells,
+    });
+    Ok(Estimate {
+        seconds: seconds.sum(),
+        threads: rayon::current_num_threads(),
+        steps_per_cell: summary.steps as f64 / summary.cells() as f64,
+    })
+}
+
+/// Keeps nothing.
+struct Nothing;
+
+impl Observer for Nothing {
+    fn panel(&mut self, _: usize, _: &Panel) -> Result<(), Error> {
+        Ok(())
+    }
+
+    fn settled(&mut self, _: usize) {}
+}

@@ -1,0 +1,128 @@
+//! `whiskmap plan`.
+
+use super::estimate::{Estimate, estimate};
+use super::failure::Failure;
+use crate::plan::{Cost, DERIVATIVE_STATES, Plan, ROD_STATES, effects};
+use crate::scene::Scene;
+use clap::Args;
+use std::io::Write;
+use std::path::PathBuf;
+
+/// Options of `plan`.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  whiskmap plan scenes/cone.toml
+  whiskmap plan - < my_whisker.toml
+
+Sets of effects with kernels of their own cost work at every step of the integration. The others are free: pole \
+radius and friction only change where a trajectory starts, and projection is a faster taper. A GPU divides an engine \
+call into dispatches, as many as its speed asks for. Trajectories are those of the cells. They and the seconds are \
+scaled up from a sample of at most 128 x 128 cells and two values per sweep axis, computed on this machine's CPU and \
+thrown away; nothing is written and no GPU is opened.")]
+pub struct Options {
+    /// Scene file; - reads it from standard input
+    scene: PathBuf,
+}
+
+/// Runs `plan`.
+pub fn run(options: &Options) -> Result<(), Failure> {
+    let scene = Scene::read(&options.scene)?;
+    let plan = Plan::new(&scene)?;
+    let estimate = estimate(&scene, &plan)?;
+    print(&scene, &plan, &estimate)?;
+    Ok(())
+}
+
+fn print(scene: &Scene, plan: &Plan, estimate: &Estimate) -> std::io::Result<()> {
+    let mut out = std::io::stdout().lock();
+    writeln!(out, "{}\n", scene.title)?;
+    writeln!(out, "{:16}  {:3}  {:12}  why", "effect", "", "cost when on")?;
+    for effect in effects(scene, plan.effects) {
+        let on = if effect.on { "on" } else { "off" };
+        let cost = match effect.cost {
+            Cost::Kernel => "own kernel",
+            Cost::Start => "free: start",
+            Cost::Taper => "free: taper",
+        };
+        let name = effect.name;
+        writeln!(out, "{name:16}  {on:3}  {cost:12}  {}", effect.why)?;
+    }
+    writeln!(out)?;
+    for (name, text) in facts(scene, plan, estimate) {
+        writeln!(out, "{name:12}  {text}")?;
+    }
+    Ok(())
+}
+
+/// The lines below the effects, by name.
+fn facts(scene: &Scene, plan: &Plan, estimate: &Estimate) -> [(&'static str, String); 6] {
+    let rest = plan.rest_states();
+    let states = rest + ROD_STATES + DERIVATIVE_STATES;
+    let distances = scene.grid.distance_mm.len();
+    let most = (estimate.steps_per_cell + 1.0) * plan.cells as f64;
+    [
+        (
+            "states",
+            format!(
+                "{states}: {rest} rest shape, {ROD_STATES} rod, {DERIVATIVE_STATES} derivatives; \
+                 at last {} with energy",
+                states + 1
+            ),
+        ),
+        (
+            "cells",
+            format!(
+                "{}: {} x {} x {}",
+                plan.cells,
+                counted(scene.grid.push_angle_deg.len(), "push angle"),
+                counted(distances, "distance"),
+                counted(plan.whiskers.len(), "whisker")
+            ),
+        ),
+        (
+            "trajectories",
+            format!(
+                "about {most:.0} at most: {:.2} Newton steps a cell and 1 to confirm",
+                estimate.steps_per_cell
+            ),
+        ),
+        (
+            "engine calls",
+            format!(
+                "{}: groups of {}, {} of {}, {} a call",
+                plan.engine_calls,
+                counted(plan.panels_at_once, "whisker"),
+                counted(plan.sides.len(), "side"),
+                counted(distances, "row"),
+                counted(plan.rows_at_once, "row")
+            ),
+        ),
+        (
+            "memory",
+            format!(
+                "at most {} MiB for panels and cells in flight",
+                plan.bytes.div_ceil(1 << 20)
+            ),
+        ),
+        (
+            "time",
+            format!(
+                "about {} s on {} of the CPU engine, without the files",
+                two_digits(estimate.seconds),
+                counted(estimate.threads, "thread")
+            ),
+        ),
+    ]
+}
+
+fn counted(count: usize, what: &str) -> String {
+    let ending = if count == 1 { "" } else { "s" };
+    format!("{count} {what}{ending}")
+}
+
+/// A positive number to two digits, at most four of them behind the point.
+fn two_digits(x: f64) -> String {
+    let digits = (1.0 - x.log10().floor()).clamp(0.0, 4.0);
+    format!("{x:.*}", digits as usize)
+}

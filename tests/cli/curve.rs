@@ -1,0 +1,91 @@
+//! `whiskmap curve`.
+
+use crate::traces::{CURVE, cells, good};
+use crate::{Place, SCENE};
+use whiskmap::model::Side;
+use whiskmap::scene::Scene;
+use whiskmap::trace::curve;
+
+/// Every number comes back with its last bit.
+#[test]
+fn a_curve_is_a_table_of_exact_numbers() {
+    let place = Place::with(SCENE);
+    let run = good(&place, &["curve", "scene.toml"]);
+    let rows = cells(&run.out, CURVE);
+    let scene = Scene::parse(SCENE, "scene", "scene").unwrap();
+    let whisker = scene.whisker_at(None, None);
+    let expected: Vec<_> = Side::BOTH
+        .into_iter()
+        .flat_map(|side| curve(&whisker, &scene.pole, side, &scene.grid.distance_mm))
+        .collect();
+    assert_eq!(rows.len(), expected.len());
+    for (row, end) in rows.iter().zip(&expected) {
+        assert_eq!(row[0], if end.side == Side::Cb { "cb" } else { "cf" });
+        assert!(
+            ["slip-off", "pull-off", "out-of-reach"].contains(&row[3]),
+            "{row:?}"
+        );
+        let number = |i: usize| (!row[i].is_empty()).then(|| row[i].parse::<f64>().unwrap());
+        assert_eq!(number(1), Some(end.distance_mm));
+        assert_eq!(number(4), end.push_angle_deg);
+        assert_eq!(number(11), end.base_moment_nnm);
+        assert_eq!(number(13), end.residual);
+        assert_eq!(
+            row[3] == "out-of-reach",
+            row[4..].iter().all(|cell| cell.is_empty())
+        );
+    }
+}
+
+#[test]
+fn a_sweep_leads_with_the_whisker() {
+    let sweep = format!("{SCENE}taper = [0, 0.3, 1]\ncurvature_per_mm = [0.0, 0.03]\n");
+    let place = Place::with(&sweep);
+    let run = good(&place, &["curve", "scene.toml"]);
+    let rows = cells(&run.out, &format!("taper,curvature_per_mm,{CURVE}"));
+    assert_eq!(rows.len(), 6 * 2 * 24);
+    let whiskers: Vec<&[&str]> = rows.chunks(48).map(|rows| &rows[0][..2]).collect();
+    let expected = [
+        ["0.0", "0.0"],
+        ["0.3", "0.0"],
+        ["1.0", "0.0"],
+        ["0.0", "0.03"],
+        ["0.3", "0.03"],
+        ["1.0", "0.03"],
+    ];
+    assert_eq!(whiskers, expected);
+
+    let run = good(&place, &["curve", "scene.toml", "--corner"]);
+    let rows = cells(
+        &run.out,
+        "taper,curvature_per_mm,side,distance_mm,push_angle_deg",
+    );
+    assert_eq!(rows.len(), 12);
+    // A perfect cone is never pulled off.
+    for row in rows.iter().filter(|row| row[0] == "1.0") {
+        assert_eq!(row[3..], ["", ""]);
+    }
+
+    place
+        .run(&["curve", "scene.toml", "--plot", "p.png"])
+        .assert_refused(&["--plot: the scene sweeps 6 whiskers"]);
+    for command in ["branch", "shape"] {
+        let arguments = [command, "scene.toml", "--distance", "9"];
+        let push = ["--push-angle", "1"];
+        let arguments = [&arguments[..], if command == "shape" { &push } else { &[] }].concat();
+        place
+            .run(&arguments)
+            .assert_refused(&["grid.taper: the scene sweeps 6 whiskers", command]);
+    }
+}
+
+#[test]
+fn the_corner_of_the_cone() {
+    let place = Place::with(SCENE);
+    let run = good(&place, &["curve", "scene.toml", "--corner"]);
+    let rows = cells(&run.out, "side,distance_mm,push_angle_deg");
+    assert_eq!(rows[0], ["cf", "", ""]);
+    let distance: f64 = rows[1][1].parse().unwrap();
+    assert_eq!(rows[1][0], "cb");
+    assert!((distance - 19.09).abs() < 5e-3, "{distance}");
+}

@@ -1,0 +1,143 @@
+//! `whiskmap plan`.
+
+use crate::{Place, Run, SCENE, names};
+
+const STRAIGHT: &str = r#"title = "A straight cylinder"
+[whisker]
+length_mm = 20
+base_radius_um = 30
+tip_radius_um = 30
+youngs_modulus_gpa = 3
+[grid]
+push_angle_deg = { from = 5, to = 70, count = 8 }
+distance_mm = [5.0, 10.0]
+"#;
+
+/// Runs `plan`, which must succeed, say nothing else, fit a terminal, and leave nothing behind.
+fn plan(place: &Place, scene: &str) -> Run {
+    let before = names(&place.path(""));
+    let run = place.run(&["plan", scene]);
+    assert_eq!((run.code, &*run.err), (Some(0), ""), "{run:?}");
+    let wide = run.out.lines().find(|line| line.chars().count() > 80);
+    assert_eq!(wide, None);
+    assert_eq!(names(&place.path("")), before);
+    run
+}
+
+/// The effects as `name on cost: why`.
+fn effects(run: &Run) -> Vec<String> {
+    let lines = run.out.split("\n\n").nth(1).unwrap().lines().skip(1);
+    let squeezed = lines.map(|line| {
+        let words: Vec<&str> = line.split("  ").map(str::trim).collect();
+        let words: Vec<&str> = words.into_iter().filter(|word| !word.is_empty()).collect();
+        words.join(" | ")
+    });
+    squeezed.collect()
+}
+
+/// The line below the effects that begins with `name`.
+fn fact<'a>(run: &'a Run, name: &str) -> &'a str {
+    let facts = run.out.split("\n\n").nth(2).unwrap();
+    let line = facts.lines().find_map(|line| line.strip_prefix(name));
+    line.unwrap_or_else(|| panic!("no {name}: {run:?}")).trim()
+}
+
+#[test]
+fn a_straight_cylinder_has_no_effects() {
+    let run = plan(&Place::with(STRAIGHT), "scene.toml");
+    assert!(run.out.starts_with("A straight cylinder\n\neffect "));
+    let expected = [
+        "taper | off | own kernel | tip_radius_um 30 = base_radius_um 30",
+        "curvature | off | own kernel | parabola_per_mm is 0 or left out",
+        "modulus gradient | off | own kernel | tip_to_base is 1 or left out",
+        "pole radius | off | free: start | radius_mm is 0 or left out",
+        "friction | off | free: start | friction is 0 or left out",
+        "projection | off | free: taper | arc_stretch is 1 or left out",
+    ];
+    assert_eq!(effects(&run), expected);
+    let states = "10: 0 rest shape, 4 rod, 6 derivatives; at last 11 with energy";
+    assert_eq!(fact(&run, "states"), states);
+    let cells = "16: 8 push angles x 2 distances x 1 whisker";
+    assert_eq!(fact(&run, "cells"), cells);
+    let calls = "1: groups of 1 whisker, 1 side of 2 rows, 16384 rows a call";
+    assert_eq!(fact(&run, "engine calls"), calls);
+    let memory = "at most 129 MiB for panels and cells in flight";
+    assert_eq!(fact(&run, "memory"), memory);
+}
+
+#[test]
+fn the_cone_scene() {
+    let place = Place::with(include_str!("../../scenes/cone.toml"));
+    let run = plan(&place, "scene.toml");
+    let expected = [
+        "taper | on | own kernel | tip_radius_um 1.5 < base_radius_um 30",
+        "curvature | on | own kernel | parabola_per_mm 0.02",
+        "modulus gradient | off | own kernel | tip_to_base is 1 or left out",
+        "pole radius | on | free: start | radius_mm 0.25",
+        "friction | off | free: start | friction is 0 or left out",
+        "projection | off | free: taper | arc_stretch is 1 or left out",
+    ];
+    assert_eq!(effects(&run), expected);
+    assert!(fact(&run, "states").starts_with("12: 2 rest shape"));
+    let cells = "262144: 512 push angles x 512 distances x 1 whisker";
+    assert_eq!(fact(&run, "cells"), cells);
+    let calls = "4: groups of 1 whisker, 2 sides of 512 rows, 256 rows a call";
+    assert_eq!(fact(&run, "engine calls"), calls);
+
+    // Only the seconds change, and they are a time.
+    let same = |run: &Run| run.out.lines().take(14).collect::<Vec<_>>().join("\n");
+    let again = plan(&place, "scene.toml");
+    assert_eq!(same(&run), same(&again));
+    let words: Vec<&str> = fact(&run, "time").split(' ').collect();
+    let seconds: f64 = words[1].parse().unwrap();
+    assert!(
+        words[0] == "about" && words[2] == "s" && seconds > 0.0,
+        "{run:?}"
+    );
+}
+
+#[test]
+fn everything_on() {
+    let more = "[whisker.modulus_gradient]\ntip_to_base = 1.4\n[whisker.projection]\narc_stretch = 1.03\n\
+                [contact]\nfriction = 0.2\n[pole]";
+    let run = plan(&Place::with(&SCENE.replace("[pole]", more)), "scene.toml");
+    let listed = effects(&run);
+    assert_eq!(listed.len(), 6, "{run:?}");
+    assert!(
+        listed.iter().all(|line| line.contains(" | on | ")),
+        "{run:?}"
+    );
+}
+
+#[test]
+fn a_sweep_names_its_axes() {
+    let axes = "taper = { from = 0, to = 1, count = 4 }\ncurvature_per_mm = [0, 0.02, 0.04]\n";
+    let run = plan(&Place::with(&format!("{STRAIGHT}{axes}")), "scene.toml");
+    let listed = effects(&run);
+    assert_eq!(listed[0], "taper | on | own kernel | grid.taper 0 to 1");
+    let curvature = "curvature | on | own kernel | grid.curvature_per_mm 0 to 0.04";
+    assert_eq!(listed[1], curvature);
+    let cells = "192: 8 push angles x 2 distances x 12 whiskers";
+    assert_eq!(fact(&run, "cells"), cells);
+}
+
+#[test]
+fn standard_input_and_refused_scenes() {
+    let place = Place::with(&STRAIGHT.replace("length_mm = 20", "length_mm = -20"));
+    place
+        .run(&["plan", "scene.toml"])
+        .assert_refused(&["whisker.length_mm = -20: must be between"]);
+    place
+        .run(&["plan", "nowhere.toml"])
+        .assert_refused(&["nowhere.toml: cannot be read"]);
+    let large = STRAIGHT.replace("count = 8", "count = 60000");
+    let large = large.replace("[5.0, 10.0]", "{ from = 2, to = 20, count = 1000 }");
+    place.write("large.toml", &large);
+    place
+        .run(&["plan", "large.toml"])
+        .assert_refused(&["60000 push angles x 1000 distances", "4096 MiB"]);
+    let mut piped = place.command(&["plan", "-"]);
+    let run = Run::of(&piped.write_stdin(STRAIGHT).output().unwrap());
+    assert_eq!(run.code, Some(0), "{run:?}");
+    assert!(run.out.starts_with("A straight cylinder\n"), "{run:?}");
+}

@@ -1,0 +1,61 @@
+//! `whiskmap shape`.
+
+use crate::traces::{SHAPE, cells, good};
+use crate::{Place, SCENE, names};
+use whiskmap::model::Side;
+use whiskmap::scene::Scene;
+use whiskmap::trace::Branch;
+
+#[test]
+fn a_shape_is_the_state_asked_for() {
+    let place = Place::with(SCENE);
+    let at = [
+        "shape",
+        "scene.toml",
+        "--distance=15.66",
+        "--push-angle=10",
+        "--points=11",
+    ];
+    let stable = good(&place, &at);
+    let unstable = good(&place, &[&at[..], &["--branch", "unstable"]].concat());
+    let scene = Scene::parse(SCENE, "scene", "scene").unwrap();
+    let branch = Branch::new(&scene.whisker, &scene.pole, Side::Cb, 15.66).unwrap();
+    for (run, part) in [(stable, true), (unstable, false)] {
+        let rows = cells(&run.out, SHAPE);
+        assert_eq!(rows.len(), 12);
+        let contact = rows.iter().find(|row| row[6] == "contact").unwrap();
+        let state = branch.state(10_f64.to_radians(), part).unwrap();
+        let arc = branch.read(&state).arc_length_mm;
+        assert_eq!(contact[0].parse::<f64>().unwrap(), arc);
+        assert_eq!(rows.last().unwrap()[0], "20.0");
+    }
+}
+
+#[test]
+fn states_that_do_not_exist_have_a_reason() {
+    let place = Place::with(SCENE);
+    let shape = |distance: &str, push: &str, more: &[&str]| {
+        let arguments = [
+            "shape",
+            "scene.toml",
+            "--distance",
+            distance,
+            "--push-angle",
+            push,
+        ];
+        place.run(&[&arguments[..], more].concat())
+    };
+    shape("15.66", "20", &[]).assert_refused(&["--push-angle 20: slipped off at 15.6094"]);
+    shape("19.5", "4", &[]).assert_refused(&["--push-angle 4: pulled off at 2."]);
+    shape("19.5", "1", &["--branch=unstable"])
+        .assert_refused(&["no unstable state: pulled off at 2."]);
+    shape("15.66", "-80", &["--branch=unstable"])
+        .assert_refused(&["the unstable states lie between -24.9"]);
+    let reach = "out of reach: the tip of the resting whisker is 19.657";
+    shape("19.9", "1", &[]).assert_refused(&["--distance 19.9", reach]);
+    let branch = ["branch", "scene.toml", "--distance", "19.9"];
+    place
+        .run(&branch)
+        .assert_refused(&["--distance 19.9", reach]);
+    assert_eq!(names(&place.path("")), ["scene.toml"]);
+}
