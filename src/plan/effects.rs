@@ -33,13 +33,24 @@ pub fn effects(scene: &Scene, kernels: Effects) -> Vec<Effect> {
     let Scene { whisker, pole, .. } = scene;
     let stretch = given("arc_stretch", whisker.arc_stretch, 1.0);
     let stretched = whisker.arc_stretch != 1.0;
+    let tapers = kernels.taper || kernels.profile;
     vec![
         Effect {
             name: "taper",
-            on: kernels.taper,
-            why: match &scene.grid.taper {
-                Some(axis) => swept("grid.taper", axis),
-                None => radii(whisker),
+            on: kernels.taper && !kernels.profile,
+            why: match (&scene.grid.taper, &whisker.profile) {
+                (_, Some(_)) => "the radii are measured".to_owned(),
+                (Some(axis), None) => swept("grid.taper", axis),
+                (None, None) => radii(whisker),
+            },
+            cost: Cost::Kernel,
+        },
+        Effect {
+            name: "measured radii",
+            on: kernels.profile,
+            why: match &whisker.profile {
+                Some(rows) => format!("{} rows of whisker.profile", rows.len()),
+                None => "no whisker.profile".to_owned(),
             },
             cost: Cost::Kernel,
         },
@@ -52,6 +63,15 @@ pub fn effects(scene: &Scene, kernels: Effects) -> Vec<Effect> {
                     let own = whisker.curvature.map_or(0.0, |own| own.parabola_per_mm);
                     given("parabola_per_mm", own, 0.0)
                 }
+            },
+            cost: Cost::Kernel,
+        },
+        Effect {
+            name: "euler spiral",
+            on: kernels.spiral,
+            why: match whisker.euler_spiral {
+                Some(own) => format!("per_mm {}, per_mm2 {}", own.per_mm, own.per_mm2),
+                None => "euler_spiral is 0 or left out".to_owned(),
             },
             cost: Cost::Kernel,
         },
@@ -75,8 +95,8 @@ pub fn effects(scene: &Scene, kernels: Effects) -> Vec<Effect> {
         },
         Effect {
             name: "projection",
-            on: stretched && kernels.taper,
-            why: if stretched && !kernels.taper {
+            on: stretched && tapers,
+            why: if stretched && !tapers {
                 format!("{stretch} does nothing without taper")
             } else {
                 stretch
@@ -144,7 +164,9 @@ mod tests {
         for more in ["", neutral] {
             let expected = [
                 "-taper: tip_radius_um 30 = base_radius_um 30",
+                "-measured radii: no whisker.profile",
                 "-curvature: parabola_per_mm is 0 or left out",
+                "-euler spiral: euler_spiral is 0 or left out",
                 "-modulus gradient: tip_to_base is 1 or left out",
                 "-pole radius: radius_mm is 0 or left out",
                 "-friction: friction is 0 or left out",
@@ -159,19 +181,24 @@ mod tests {
         let lines = [
             (
                 "whisker.curvature.parabola_per_mm = 0.02",
-                1,
+                2,
                 "parabola_per_mm 0.02",
             ),
             (
+                "whisker.curvature.euler_spiral = { per_mm = 0.02, per_mm2 = -0.001 }",
+                3,
+                "per_mm 0.02, per_mm2 -0.001",
+            ),
+            (
                 "whisker.modulus_gradient.tip_to_base = 1.5",
-                2,
+                4,
                 "tip_to_base 1.5",
             ),
-            ("pole.radius_mm = 0.25", 3, "radius_mm 0.25"),
-            ("contact.friction = 0.2", 4, "friction 0.2"),
+            ("pole.radius_mm = 0.25", 5, "radius_mm 0.25"),
+            ("contact.friction = 0.2", 6, "friction 0.2"),
             (
                 "whisker.projection.arc_stretch = 1.03",
-                5,
+                7,
                 "arc_stretch 1.03",
             ),
         ];
@@ -195,7 +222,7 @@ mod tests {
         assert_eq!(axis("grid.taper = [0]")[0], "-taper: grid.taper 0");
         let curvature = "+curvature: grid.curvature_per_mm 0 to 0.04";
         assert_eq!(
-            axis("grid.curvature_per_mm = [0, 0.01, 0.04]")[1],
+            axis("grid.curvature_per_mm = [0, 0.01, 0.04]")[2],
             curvature
         );
     }
@@ -204,7 +231,7 @@ mod tests {
     fn a_projected_cylinder_is_a_cylinder() {
         let projection = "-projection: arc_stretch 1.03 does nothing without taper";
         assert_eq!(
-            listed(30.0, "whisker.projection.arc_stretch = 1.03")[5],
+            listed(30.0, "whisker.projection.arc_stretch = 1.03")[7],
             projection
         );
     }

@@ -48,7 +48,9 @@ fn a_straight_cylinder_has_no_effects() {
     assert!(run.out.starts_with("A straight cylinder\n\neffect "));
     let expected = [
         "taper | off | own kernel | tip_radius_um 30 = base_radius_um 30",
+        "measured radii | off | own kernel | no whisker.profile",
         "curvature | off | own kernel | parabola_per_mm is 0 or left out",
+        "euler spiral | off | own kernel | euler_spiral is 0 or left out",
         "modulus gradient | off | own kernel | tip_to_base is 1 or left out",
         "pole radius | off | free: start | radius_mm is 0 or left out",
         "friction | off | free: start | friction is 0 or left out",
@@ -71,7 +73,9 @@ fn the_cone_scene() {
     let run = plan(&place, "scene.toml");
     let expected = [
         "taper | on | own kernel | tip_radius_um 1.5 < base_radius_um 30",
+        "measured radii | off | own kernel | no whisker.profile",
         "curvature | on | own kernel | parabola_per_mm 0.02",
+        "euler spiral | off | own kernel | euler_spiral is 0 or left out",
         "modulus gradient | off | own kernel | tip_to_base is 1 or left out",
         "pole radius | on | free: start | radius_mm 0.25",
         "friction | off | free: start | friction is 0 or left out",
@@ -85,7 +89,7 @@ fn the_cone_scene() {
     assert_eq!(fact(&run, "engine calls"), calls);
 
     // Only the seconds change, and they are a time.
-    let same = |run: &Run| run.out.lines().take(14).collect::<Vec<_>>().join("\n");
+    let same = |run: &Run| run.out.lines().take(16).collect::<Vec<_>>().join("\n");
     let again = plan(&place, "scene.toml");
     assert_eq!(same(&run), same(&again));
     let words: Vec<&str> = fact(&run, "time").split(' ').collect();
@@ -102,11 +106,13 @@ fn everything_on() {
                 [contact]\nfriction = 0.2\n[pole]";
     let run = plan(&Place::with(&SCENE.replace("[pole]", more)), "scene.toml");
     let listed = effects(&run);
-    assert_eq!(listed.len(), 6, "{run:?}");
-    assert!(
-        listed.iter().all(|line| line.contains(" | on | ")),
-        "{run:?}"
-    );
+    let off: Vec<&str> = listed
+        .iter()
+        .filter(|line| !line.contains(" | on | "))
+        .map(|line| line.split(" | ").next().unwrap())
+        .collect();
+    // They stand in for taper and parabola.
+    assert_eq!(off, ["measured radii", "euler spiral"], "{run:?}");
 }
 
 #[test]
@@ -116,7 +122,7 @@ fn a_sweep_names_its_axes() {
     let listed = effects(&run);
     assert_eq!(listed[0], "taper | on | own kernel | grid.taper 0 to 1");
     let curvature = "curvature | on | own kernel | grid.curvature_per_mm 0 to 0.04";
-    assert_eq!(listed[1], curvature);
+    assert_eq!(listed[2], curvature);
     let cells = "192: 8 push angles x 2 distances x 12 whiskers";
     assert_eq!(fact(&run, "cells"), cells);
 }

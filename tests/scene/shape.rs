@@ -1,0 +1,191 @@
+//! Euler spirals and measured radii: what is accepted, and what is refused.
+
+use std::fs;
+
+use whiskmap::scene::{EulerSpiral, Scene};
+
+use crate::{BASE, parse};
+
+/// The base scene with `whisker` in place of its radii, and `curvature` in place of its parabola.
+fn scene(whisker: &str, curvature: &str) -> String {
+    let mut lines: Vec<&str> = BASE.lines().collect();
+    let replaced = ["parabola_per_mm", "vertex_mm", "taper", "curvature_per_mm"];
+    lines.retain(|line| !replaced.iter().any(|key| line.starts_with(key)));
+    let text = lines.join("\n").replace("[whisker.curvature]", curvature);
+    if whisker.is_empty() {
+        return text;
+    }
+    let radii = |line: &&str| !line.starts_with("base_radius") && !line.starts_with("tip_radius");
+    let text: Vec<&str> = text.lines().filter(radii).collect();
+    text.join("\n")
+        .replace("[pole]", &format!("{whisker}\n[pole]"))
+}
+
+fn refusal(text: &str) -> String {
+    parse(text).expect_err(text)
+}
+
+#[test]
+fn a_spiral_bends_both_ways() {
+    let text = scene(
+        "",
+        "[whisker.curvature]\neuler_spiral = { per_mm = -0.05, per_mm2 = 0.004 }",
+    );
+    let whisker = parse(&text).unwrap().whisker;
+    let spiral = EulerSpiral {
+        per_mm: -0.05,
+        per_mm2: 0.004,
+    };
+    assert_eq!(
+        (whisker.euler_spiral, whisker.curvature),
+        (Some(spiral), None)
+    );
+    assert!((whisker.sharpest_bend_per_mm() - 0.05).abs() < 1e-15);
+    let none = scene(
+        "",
+        "[whisker.curvature]\neuler_spiral = { per_mm = 0, per_mm2 = 0 }",
+    );
+    assert_eq!(parse(&none).unwrap().whisker.euler_spiral, None);
+}
+
+#[test]
+fn spirals_that_are_refused() {
+    for (curvature, why) in [
+        ("", "must have either parabola_per_mm"),
+        (
+            "parabola_per_mm = 0.02\neuler_spiral = { per_mm = 0, per_mm2 = 0 }",
+            "must have either",
+        ),
+        (
+            "vertex_mm = 1\neuler_spiral = { per_mm = 0.1, per_mm2 = 0 }",
+            "must have either",
+        ),
+        ("euler_spiral = { per_mm = 0.1 }", "missing field `per_mm2`"),
+        (
+            "euler_spiral = { per_mm = nan, per_mm2 = 0 }",
+            "per_mm = nan: must be between",
+        ),
+        (
+            "euler_spiral = { per_mm = 1.1, per_mm2 = 0 }",
+            "20 / length_mm (1)",
+        ),
+        (
+            "euler_spiral = { per_mm = 0.5, per_mm2 = -0.1 }",
+            "bends it by 20 / length_mm",
+        ),
+        // A full circle and more: the distance from the base does not grow.
+        (
+            "euler_spiral = { per_mm = 0.32, per_mm2 = 0 }",
+            "must bend the whisker less",
+        ),
+        (
+            "euler_spiral = { per_mm = 0, per_mm2 = 0.02 }",
+            "must bend the whisker less",
+        ),
+    ] {
+        let message = refusal(&scene("", &format!("[whisker.curvature]\n{curvature}")));
+        assert!(message.contains(why), "{curvature}: {message}");
+    }
+    let spiral = "[whisker.curvature]\neuler_spiral = { per_mm = 0.1, per_mm2 = 0 }";
+    let axis = scene("", spiral).replace("[grid]", "[grid]\ncurvature_per_mm = [0, 0.1]");
+    assert!(refusal(&axis).contains("must be left out: the whisker is an Euler spiral"));
+    // Thicker than what it bends round.
+    let bulky = scene("", spiral)
+        .replace("radius_mm = 0.25", "radius_mm = 10")
+        .replace("[2.0, 7.5, 20.0]", "[11, 20]");
+    assert!(
+        refusal(&bulky).contains("smallest radius of curvature (10)"),
+        "{}",
+        refusal(&bulky)
+    );
+}
+
+const ROWS: &str = "[whisker.profile]\nrows = [[0, 30], [5, 31], [12.5, 10], [20, 1.5]]";
+
+#[test]
+fn radii_are_read_from_the_scene_and_from_a_file() {
+    let listed = parse(&scene(ROWS, "")).unwrap();
+    let whisker = &listed.whisker;
+    assert_eq!((whisker.base_radius_um, whisker.tip_radius_um), (30.0, 1.5));
+    let rows = [
+        [0.0, 1.0],
+        [0.25, 31.0 / 30.0],
+        [0.625, 1.0 / 3.0],
+        [1.0, 0.05],
+    ];
+    assert_eq!(whisker.profile.as_deref(), Some(&rows[..]));
+
+    let folder = tempfile::tempdir().unwrap();
+    let csv =
+        "# a remark\nwhisker, arc_length_mm ,radius_um\nC2, 0,30\nC2,5,31\nC2,12.5,10\nC2,20,1.5\n";
+    fs::write(folder.path().join("radii.csv"), csv).unwrap();
+    let path = folder.path().join("scene.toml");
+    fs::write(&path, scene("[whisker.profile]\nrows = \"radii.csv\"", "")).unwrap();
+    let read = Scene::read(&path).unwrap();
+    assert_eq!(read.whisker, *whisker);
+
+    // What is kept with a map stands for itself.
+    fs::remove_dir_all(folder.path()).unwrap();
+    assert_eq!(parse(&read.text).unwrap().whisker, *whisker);
+}
+
+#[test]
+fn radii_that_are_refused() {
+    for (rows, why) in [
+        ("\"no.csv\"", "rows = \"no.csv\": No such file"),
+        ("5", "expected the name of a CSV file or a list"),
+        ("[]", "must be 2 to 256 rows, are 0"),
+        ("[[0, 30], [20]]", "expected"),
+        ("[[0, 30], [20, 0]]", "rows[1]: the radius must be between"),
+        (
+            "[[0, 30], [20, nan]]",
+            "rows[1]: the radius must be between",
+        ),
+        (
+            "[[0, 30], [0, 20], [20, 1]]",
+            "rows[1]: the arclength must grow",
+        ),
+        (
+            "[[0, 30], [nan, 20], [20, 1]]",
+            "rows[1]: the arclength must grow",
+        ),
+        ("[[0, 30], [21, 1]]", "rows[1]: the arclength must grow"),
+        (
+            "[[1, 30], [20, 1]]",
+            "must begin at the base, at 0, and end at the tip",
+        ),
+        ("[[0, 30], [19, 1]]", "end at the tip, at length_mm (20)"),
+        ("[[0, 30], [20, 31]]", "the radius at the tip must be"),
+        ("[[0, 30], [20, 0.02]]", "the radius at the tip must be"),
+    ] {
+        let message = refusal(&scene(&format!("[whisker.profile]\nrows = {rows}"), ""));
+        assert!(message.contains(why), "{rows}: {message}");
+    }
+    let both = scene("", "").replace("[pole]", &format!("{ROWS}\n[pole]"));
+    assert!(
+        refusal(&both).contains("base_radius_um = 30.0: must be left out"),
+        "{}",
+        refusal(&both)
+    );
+    let neither = scene(ROWS, "").replace(ROWS, "");
+    assert!(refusal(&neither).contains("whisker.base_radius_um: is left out"));
+    let axis = scene(ROWS, "").replace("[grid]", "[grid]\ntaper = [0, 0.5]");
+    assert!(refusal(&axis).contains("grid.taper: must be left out"));
+}
+
+#[test]
+fn a_bad_csv_file_is_named_with_its_line() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("scene.toml");
+    fs::write(&path, scene("[whisker.profile]\nrows = \"radii.csv\"", "")).unwrap();
+    for (csv, why) in [
+        ("arc_length_mm,radius\n0,30\n", "missing field `radius_um`"),
+        ("arc_length_mm,radius_um\n0,30\n1,thin\n", "line: 3"),
+        ("arc_length_mm,radius_um\n0,30\n1\n", "line: 3"),
+        ("", "must be 2 to 256 rows, are 0"),
+    ] {
+        fs::write(folder.path().join("radii.csv"), csv).unwrap();
+        let message = Scene::read(&path).unwrap_err().to_string();
+        assert!(message.contains(why), "{csv}: {message}");
+    }
+}
