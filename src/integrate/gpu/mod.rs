@@ -4,10 +4,11 @@
 //! effects has a pipeline of its own, made from `override` constants. Work goes out in dispatches short
 //! enough for any watchdog, at most two in flight; nothing here panics when a device fails.
 //!
-//! Absent on purpose: a second try on a lost device. The caller has the CPU engine for that.
+//! Absent on purpose: a second try on a lost device. [`Fallback`](super::Fallback) has the CPU engine for that.
 
 mod adapters;
 mod device;
+mod guard;
 mod layout;
 mod pace;
 mod pipeline;
@@ -49,6 +50,7 @@ impl fmt::Display for Precision {
 #[derive(Debug)]
 pub struct Gpu {
     precision: Precision,
+    shader: String,
     layout: &'static Layout,
     device: Device,
     rods: Option<wgpu::Buffer>,
@@ -66,14 +68,29 @@ impl Gpu {
     /// [`EngineError::NoAdapter`] without a driver, [`EngineError::Unsupported`] where the adapter has no
     /// `f64`, [`EngineError::Device`] when the driver refuses a device.
     pub fn new(precision: Precision) -> Result<Self, EngineError> {
+        Self::with_shader(precision, shaders::shoot(precision))
+    }
+
+    /// Opens the adapter for a shader other than [`shaders::shoot`]: a seam for tests, which spoil it.
+    ///
+    /// # Errors
+    /// Those of [`Gpu::new`].
+    pub fn with_shader(precision: Precision, shader: String) -> Result<Self, EngineError> {
         Ok(Self {
             precision,
+            shader,
             layout: Layout::of(precision),
             device: Device::open(precision)?,
             rods: None,
             slots: Vec::new(),
             pipelines: HashMap::new(),
         })
+    }
+
+    /// The device: a seam for tests, which destroy it.
+    #[must_use]
+    pub const fn device(&self) -> &wgpu::Device {
+        &self.device.handle
     }
 
     /// Uploads the rods, in a buffer that grows when it must.
@@ -111,6 +128,7 @@ impl Gpu {
             Entry::Vacant(new) => new.insert(Pipeline::new(
                 &self.device,
                 self.precision,
+                &self.shader,
                 self.layout,
                 effects,
             )?),

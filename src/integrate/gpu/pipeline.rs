@@ -3,7 +3,7 @@
 use super::device::Device;
 use super::layout::Layout;
 use super::pace::Pace;
-use super::shaders::{WORKGROUP, overrides, shoot};
+use super::shaders::{WORKGROUP, overrides};
 use super::{EngineError, Precision};
 use crate::model::Effects;
 
@@ -18,15 +18,15 @@ impl Pipeline {
     pub fn new(
         device: &Device,
         precision: Precision,
+        shader: &str,
         layout: &Layout,
         effects: Effects,
     ) -> Result<Self, EngineError> {
-        let source = shoot(precision);
         let module = device
             .handle
             .create_shader_module(wgpu::ShaderModuleDescriptor {
                 label: Some("shoot"),
-                source: wgpu::ShaderSource::Wgsl(source.into()),
+                source: wgpu::ShaderSource::Wgsl(shader.into()),
             });
         device.check()?;
         let handle = device
