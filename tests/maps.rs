@@ -6,35 +6,17 @@
     reason = "a test fails by panicking, and says aloud what it skipped"
 )]
 
+mod compute;
+
+use compute::{compute, difference, thin};
 use std::path::Path;
 use whiskmap::integrate::gpu::{Gpu, Precision};
 use whiskmap::integrate::{Cpu, Engine, EngineError, Outcome, Shot};
-use whiskmap::map::{self, Observer, Summary};
 use whiskmap::model::{Effects, Rod, Side};
-use whiskmap::plan::Plan;
 use whiskmap::refine::{End, TOLERANCE, refine};
 use whiskmap::scene::Scene;
 use whiskmap::sheet::Sheet;
 use whiskmap::store::{self, Panel};
-
-#[derive(Default)]
-struct Panels(Vec<Panel>);
-
-impl Observer for Panels {
-    fn panel(&mut self, index: usize, panel: &Panel) -> Result<(), store::Error> {
-        assert_eq!(index, self.0.len());
-        self.0.push(panel.clone());
-        Ok(())
-    }
-    fn settled(&mut self, _: usize) {}
-}
-
-fn compute(scene: &Scene, engine: &mut dyn Engine) -> (Summary, Vec<Panel>) {
-    let mut panels = Panels::default();
-    let plan = Plan::new(scene).unwrap();
-    let summary = map::run(scene, &plan, engine, &mut panels).unwrap();
-    (summary, panels.0)
-}
 
 fn shipped() -> Vec<Scene> {
     let mut paths: Vec<_> = Path::new("scenes")
@@ -48,12 +30,6 @@ fn shipped() -> Vec<Scene> {
         .iter()
         .map(|path| Scene::read(path).unwrap())
         .collect()
-}
-
-/// Every `n`-th value of an axis, both ends included where they fall on it.
-fn thin(axis: &mut Vec<f64>, count: usize) {
-    let last = axis.len() - 1;
-    *axis = (0..count).map(|i| axis[i * last / (count - 1)]).collect();
 }
 
 /// GPU engines of this machine; their absence is loud, and a failure where they are required.
@@ -100,24 +76,6 @@ fn shipped_scenes_have_no_doubtful_cell() {
     }
 }
 
-/// Largest difference of two stored channels, relative to the largest value; infinite where only one is NaN.
-/// Two roundings to f32 are 1.2e-7.
-fn difference(a: &[f32], b: &[f32]) -> f32 {
-    let largest = a
-        .iter()
-        .filter(|x| x.is_finite())
-        .fold(0.0_f32, |m, x| m.max(x.abs()));
-    let misses = a
-        .iter()
-        .zip(b)
-        .map(|(x, y)| match (x.is_nan(), y.is_nan()) {
-            (true, true) => 0.0,
-            (false, false) => (x - y).abs() / largest,
-            _ => f32::INFINITY,
-        });
-    misses.fold(0.0, f32::max)
-}
-
 #[test]
 fn engines_agree_on_every_cell() {
     for mut scene in shipped() {
@@ -134,6 +92,8 @@ fn engines_agree_on_every_cell() {
             let name = gpu.describe().engine;
             let (summary, panels) = compute(&scene, &mut gpu);
             assert_eq!(summary.unresolved(), 0, "{} on {name}", scene.title);
+            let failure = summary.engine_failure;
+            assert!(failure.is_none(), "{} on {name}: {failure:?}", scene.title);
             for (a, b) in cpu.iter().zip(&panels) {
                 assert!(a.regime == b.regime, "{} on {name}", scene.title);
                 for (channel, (x, y)) in store::STATE_CHANNELS

@@ -12,7 +12,7 @@ use std::collections::BTreeMap;
 use std::fs::{self, File};
 use std::path::Path;
 use whiskmap::scene::Scene;
-use whiskmap::store::{MapWriter, Panel, StoredMap};
+use whiskmap::store::{MapWriter, Panel, Shots, StoredMap};
 use whiskmap::{render, store};
 
 const CONTACT: [u8; 3] = [0x8c, 0xcb, 0xae];
@@ -68,7 +68,7 @@ fn draw(scene: &Scene, panels: &[Panel], channel: Option<&str>) -> Picture {
     for (index, panel) in panels.iter().enumerate() {
         writer.write_panel(index, panel).unwrap();
     }
-    writer.finish().unwrap();
+    writer.finish(Shots::default()).unwrap();
     let map = StoredMap::open(&file).unwrap();
     match channel {
         Some(name) => render::channel(&map, name, &out).unwrap(),

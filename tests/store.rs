@@ -10,7 +10,7 @@ use map::{STATUS_NAMES, panel, scene, write};
 use serde_json::json;
 use std::fs;
 use std::path::Path;
-use whiskmap::store::{Error, Layout, MapWriter, Panel, STATE_CHANNELS, Samples, StoredMap};
+use whiskmap::store::{Error, Layout, MapWriter, Panel, STATE_CHANNELS, Samples, Shots, StoredMap};
 
 type Swept = Option<Vec<f64>>;
 
@@ -251,7 +251,7 @@ fn a_map_appears_only_when_it_is_finished() {
 
     let mut short = MapWriter::create(&path, &about).unwrap();
     short.write_panel(0, &panel(&scene, 0)).unwrap();
-    let error = short.finish().unwrap_err().to_string();
+    let error = short.finish(Shots::default()).unwrap_err().to_string();
     assert_eq!(error, "the map was finished after 1 of 2 panels");
     assert!(listing(folder.path()).is_empty());
 

@@ -1,7 +1,6 @@
 //! What ends a command early, and the exit code for it.
 
 use crate::integrate::EngineError;
-use crate::map::MapError;
 use crate::plan::PlanError;
 use crate::scene::SceneError;
 use crate::trace::NoState;
@@ -21,12 +20,9 @@ pub enum Failure {
     /// Arguments that cannot be right together with this machine or these files.
     #[error("{0}")]
     Input(String),
-    /// The engine failed.
+    /// The engine cannot be had.
     #[error(transparent)]
     Engine(#[from] EngineError),
-    /// The map failed.
-    #[error(transparent)]
-    Map(#[from] MapError),
     /// A stored map could not be read or written.
     #[error(transparent)]
     Store(#[from] crate::store::Error),

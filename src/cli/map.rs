@@ -86,7 +86,10 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     let result = map::run(&scene, &plan, engine.as_mut(), &mut keeper);
     keeper.bar.finish_and_clear();
     let summary = result?;
-    keeper.writer.finish()?;
+    keeper.writer.finish(summary.shots)?;
+    if let Some(failure) = &summary.engine_failure {
+        say(&format!("warning: {failure}; the CPU went on in its stead"));
+    }
     if let Some(picture) = &picture {
         render::regimes(&store::StoredMap::open(&file)?, picture)?;
     }
@@ -150,6 +153,20 @@ fn print(scene: &Scene, summary: &Summary, seconds: f64, files: &[PathBuf]) -> s
         summary.steps as f64 / summary.refined.max(1) as f64,
         summary.worst_residual
     )?;
+    for (shots, what) in [
+        (
+            summary.shots.restarted,
+            "shots without a solution from the engine, restarted in f64",
+        ),
+        (
+            summary.shots.on_cpu_instead,
+            "shots by the CPU, after the engine had failed",
+        ),
+    ] {
+        if shots > 0 {
+            writeln!(out, "{shots:>12}  {what}")?;
+        }
+    }
     writeln!(
         out,
         "{:>12}  disagreements between cells and boundaries",

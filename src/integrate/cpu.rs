@@ -18,20 +18,10 @@ const TOLERANCE: f64 = 1e-6;
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Cpu;
 
-impl Engine for Cpu {
-    fn describe(&self) -> Description {
-        Description {
-            engine: "cpu f64".to_owned(),
-            adapter: Unit::detect().to_string(),
-        }
-    }
-
-    fn shoot(
-        &mut self,
-        effects: Effects,
-        rods: &[Rod],
-        shots: &[Shot],
-    ) -> Result<Vec<Hit>, EngineError> {
+impl Cpu {
+    /// [`Engine::shoot`], which here cannot fail.
+    #[must_use]
+    pub fn solve(self, effects: Effects, rods: &[Rod], shots: &[Shot]) -> Vec<Hit> {
         let method = Method {
             effects,
             resolution: RESOLUTION,
@@ -67,7 +57,25 @@ impl Engine for Cpu {
             }
             open = next;
         }
-        Ok(hits)
+        hits
+    }
+}
+
+impl Engine for Cpu {
+    fn describe(&self) -> Description {
+        Description {
+            engine: "cpu f64".to_owned(),
+            adapter: Unit::detect().to_string(),
+        }
+    }
+
+    fn shoot(
+        &mut self,
+        effects: Effects,
+        rods: &[Rod],
+        shots: &[Shot],
+    ) -> Result<Vec<Hit>, EngineError> {
+        Ok(self.solve(effects, rods, shots))
     }
 }
 

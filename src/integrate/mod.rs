@@ -5,9 +5,11 @@
 //! `f64`, which alone decides what is a solution: an engine can be fast, but it cannot make a map wrong.
 
 mod cpu;
+mod fallback;
 pub mod gpu;
 
 pub use cpu::Cpu;
+pub use fallback::Fallback;
 
 use crate::model::{Effects, Rod};
 use glam::DVec2;
@@ -82,7 +84,7 @@ pub trait Engine {
 }
 
 /// A device that failed.
-#[derive(Debug, thiserror::Error)]
+#[derive(Clone, Debug, thiserror::Error)]
 pub enum EngineError {
     /// There is no adapter.
     #[error("no GPU adapter found: {0}")]

@@ -2,11 +2,12 @@
 
 use super::{Face, Summary, summary::Stage};
 use crate::classify::Status;
-use crate::integrate::{Engine, EngineError, Outcome, Shot};
+use crate::integrate::{Fallback, Hit, Outcome, Shot};
 use crate::model::{Effects, Side};
 use crate::refine::{self, End, Refined, State};
 use crate::scene::Scene;
 use crate::sheet::{Guess, Sheet};
+use crate::store::Shots;
 use rayon::prelude::*;
 
 /// Rows of some faces, settled together.
@@ -54,9 +55,9 @@ pub fn settle(
     effects: Effects,
     faces: &[Face],
     strip: &Strip,
-    engine: &mut dyn Engine,
+    engine: &mut Fallback<'_>,
     summary: &mut Summary,
-) -> Result<Vec<Cell>, EngineError> {
+) -> Vec<Cell> {
     let mut cells: Vec<Cell> = Vec::new();
     let mut shots: Vec<Shot> = Vec::new();
     let mut targets: Vec<usize> = Vec::new();
@@ -86,7 +87,8 @@ pub fn settle(
         }
     });
     let rods: Vec<_> = sheets.iter().map(|sheet| sheet.rod).collect();
-    let hits = summary.time(Stage::Shooting, || engine.shoot(effects, &rods, &shots))?;
+    let hits = summary.time(Stage::Shooting, || engine.shoot(effects, &rods, &shots));
+    count(&hits, engine.failure().is_some(), &mut summary.shots);
     let refined = summary.time(Stage::Refinement, || {
         // What an engine could not finish starts again from the lattice's guess.
         let starts: Vec<(f64, f64)> = hits
@@ -111,7 +113,17 @@ pub fn settle(
             End::NotConverged => Status::NotConverged,
         };
     }
-    Ok(cells)
+    cells
+}
+
+/// Adds the shots of one call to what is known of those before.
+fn count(hits: &[Hit], on_cpu_instead: bool, shots: &mut Shots) {
+    let restarted = hits.iter().filter(|hit| hit.outcome != Outcome::Converged);
+    shots.all += hits.len() as u64;
+    shots.restarted += restarted.count() as u64;
+    if on_cpu_instead {
+        shots.on_cpu_instead += hits.len() as u64;
+    }
 }
 
 /// The cells of one row of one face, with the shots of those that may have a state.

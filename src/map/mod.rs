@@ -7,7 +7,7 @@ mod summary;
 
 pub use summary::Summary;
 
-use crate::integrate::{Engine, EngineError};
+use crate::integrate::{Engine, Fallback};
 use crate::model::{Effects, Rod, Side};
 use crate::plan::Plan;
 use crate::scene::{Scene, Whisker};
@@ -27,17 +27,6 @@ pub trait Observer {
 
     /// `cells` more cells are settled.
     fn settled(&mut self, cells: usize);
-}
-
-/// A run that stopped.
-#[derive(Debug, thiserror::Error)]
-pub enum MapError {
-    /// The engine failed.
-    #[error(transparent)]
-    Engine(#[from] EngineError),
-    /// A panel could not be kept.
-    #[error(transparent)]
-    Store(#[from] crate::store::Error),
 }
 
 /// One side of one whisker.
@@ -60,16 +49,17 @@ impl Face {
     }
 }
 
-/// Computes every panel of `scene` as `plan` says.
+/// Computes every panel of `scene` as `plan` says. Where the engine fails the CPU goes on in its stead.
 ///
 /// # Errors
-/// When the engine fails or the observer refuses a panel; a cell without an answer is no error.
+/// When the observer refuses a panel; a cell without an answer is no error.
 pub fn run(
     scene: &Scene,
     plan: &Plan,
     engine: &mut dyn Engine,
     observer: &mut dyn Observer,
-) -> Result<Summary, MapError> {
+) -> Result<Summary, crate::store::Error> {
+    let mut engine = Fallback::new(engine);
     let mut summary = Summary::default();
     let sides = sides(scene);
     for (group, whiskers) in plan.whiskers.chunks(plan.panels_at_once).enumerate() {
@@ -85,7 +75,14 @@ pub fn run(
         });
         let mut panels: Vec<Panel> = whiskers.iter().map(|_| panel::blank(scene)).collect();
         for strip in Strip::all(faces.len(), scene.grid.distance_mm.len(), plan.rows_at_once) {
-            let cells = cells::settle(scene, plan.effects, &faces, &strip, engine, &mut summary)?;
+            let cells = cells::settle(
+                scene,
+                plan.effects,
+                &faces,
+                &strip,
+                &mut engine,
+                &mut summary,
+            );
             summary.time(Stage::Regimes, || {
                 panel::fill(scene, whiskers, &faces, sides.len(), &cells, &mut panels);
             });
@@ -97,6 +94,7 @@ pub fn run(
             summary.time(Stage::Files, || observer.panel(index, panel))?;
         }
     }
+    summary.engine_failure = engine.failure().cloned();
     Ok(summary)
 }
 

@@ -1,7 +1,8 @@
 //! What a run says about itself when it is done.
 
 use crate::classify::{Regime, Status};
-use crate::store::Panel;
+use crate::integrate::EngineError;
+use crate::store::{Panel, Shots};
 use std::time::{Duration, Instant};
 
 /// The stages of a run.
@@ -46,6 +47,10 @@ pub struct Summary {
     pub worst_residual: f64,
     /// Cells whose own verdict contradicts the boundary of their row.
     pub disagreements: u64,
+    /// What became of the engine's shots.
+    pub shots: Shots,
+    /// Why the CPU went on in the engine's stead, if it did.
+    pub engine_failure: Option<EngineError>,
     times: [Duration; Stage::ALL.len()],
 }
 

@@ -1,7 +1,7 @@
 //! The attributes: ASCII JSON, every one of them.
 
 use super::layout::Layout;
-use super::tally::{Counts, Tally};
+use super::tally::{Counts, Shots, Tally};
 use crate::scene::{Grid, Scene};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
@@ -85,6 +85,11 @@ pub(super) fn counts_width(about: &Description<'_>, regimes: &[(u32, &str)]) -> 
         regimes: longest(regimes),
         statuses: longest(about.status_names),
         worst_residual: Some(-f64::MIN_POSITIVE),
+        shots: Shots {
+            all: u64::MAX,
+            restarted: u64::MAX,
+            on_cpu_instead: u64::MAX,
+        },
     };
     ascii_json(&json!(counts)).len()
 }

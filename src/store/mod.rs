@@ -24,7 +24,7 @@ pub(crate) use fresh::beside;
 pub use layout::Layout;
 pub use reader::{Samples, StoredMap};
 pub use table::Table;
-pub use tally::Counts;
+pub use tally::{Counts, Shots};
 pub use writer::MapWriter;
 
 /// The channels of the part `state`, in the order of [`Panel::state`].

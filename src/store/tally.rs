@@ -12,6 +12,20 @@ pub struct Counts {
     pub statuses: BTreeMap<String, u64>,
     /// The greatest residual, relative to the whisker's length; `None` where no cell is in contact.
     pub worst_residual: Option<f64>,
+    /// What the engine did for them.
+    pub shots: Shots,
+}
+
+/// What became of the shots of a run, one for each cell with a guess.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Shots {
+    /// How many there were.
+    pub all: u64,
+    /// Those that ended without a solution, or with numbers that are not finite: the refinement in `f64` started them
+    /// again from their guess.
+    pub restarted: u64,
+    /// Those that the CPU engine solved because the engine of the run had failed.
+    pub on_cpu_instead: u64,
 }
 
 /// Counts the codes of one channel.

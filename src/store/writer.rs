@@ -2,7 +2,7 @@
 
 use super::attributes::{self, Description};
 use super::layout::{self, Layout, SAMPLE_BYTES};
-use super::tally::{Counts, Tally};
+use super::tally::{Counts, Shots, Tally};
 use super::{Error, Panel, fresh, header};
 use crate::classify::Regime;
 use exr::block::UncompressedBlock;
@@ -111,7 +111,7 @@ impl MapWriter {
     /// # Errors
     ///
     /// A panel is missing, or the file cannot be written or renamed; then no map appears.
-    pub fn finish(mut self) -> Result<Counts, Error> {
+    pub fn finish(mut self, shots: Shots) -> Result<Counts, Error> {
         if self.written != self.layout.panels() {
             return Err(Error::Incomplete {
                 written: self.written,
@@ -122,6 +122,7 @@ impl MapWriter {
             regimes: self.regimes.by_name(),
             statuses: self.statuses.by_name(),
             worst_residual: self.worst_residual,
+            shots,
         };
         let text = attributes::encode_counts(&counts, self.counts_width);
         for header in &mut self.headers {

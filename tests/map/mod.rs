@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 use std::path::Path;
 use whiskmap::classify::Regime;
 use whiskmap::scene::{Grid, Pole, Scene, Whisker};
-use whiskmap::store::{Counts, Description, MapWriter, Panel, STATE_CHANNELS};
+use whiskmap::store::{Counts, Description, MapWriter, Panel, STATE_CHANNELS, Shots};
 
 pub const STATUS_NAMES: [(u32, &str); 3] =
     [(0, "solved"), (1, "beyond an edge"), (7, "refined twice")];
@@ -122,5 +122,5 @@ pub fn write(path: &Path, scene: &Scene) -> Counts {
     for index in 0..tapers * curvatures {
         writer.write_panel(index, &panel(scene, index)).unwrap();
     }
-    writer.finish().unwrap()
+    writer.finish(Shots::default()).unwrap()
 }

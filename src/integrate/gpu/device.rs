@@ -1,6 +1,7 @@
 //! A device whose errors are values.
 
 use super::adapters::{AdapterReport, enumerate, preferred};
+use super::guard::guarded;
 use super::{EngineError, Precision};
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -19,9 +20,11 @@ pub struct Device {
 struct Fault(Arc<Mutex<Option<String>>>);
 
 impl Fault {
-    fn note(&self, what: String) {
+    /// In one line, whatever the device says.
+    fn note(&self, what: &str) {
+        let line = what.split_whitespace().collect::<Vec<_>>().join(" ");
         let mut slot = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        slot.get_or_insert(what);
+        slot.get_or_insert(line);
     }
 
     fn take(&self) -> Option<String> {
@@ -50,22 +53,22 @@ impl Device {
             Precision::F32 => wgpu::Features::empty(),
             Precision::F64 => wgpu::Features::SHADER_F64,
         };
-        let (handle, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
+        let wanted = wgpu::DeviceDescriptor {
             required_features,
             required_limits: adapter.limits(),
             ..Default::default()
-        }))
-        .map_err(|error| EngineError::Device(error.to_string()))?;
+        };
+        let (handle, queue) = guarded(|| pollster::block_on(adapter.request_device(&wanted)))
+            .map_err(EngineError::Device)?
+            .map_err(|error| EngineError::Device(error.to_string()))?;
         let fault = Fault::default();
         let noted = fault.clone();
         handle.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
-            noted.note(error.to_string());
+            noted.note(&error.to_string());
         }));
         let noted = fault.clone();
         handle.set_device_lost_callback(move |reason, message| {
-            if reason != wgpu::DeviceLostReason::Destroyed {
-                noted.note(format!("device lost: {message}"));
-            }
+            noted.note(&format!("device lost ({reason:?}) {message}"));
         });
         Ok(Self {
             report,
@@ -80,6 +83,21 @@ impl Device {
         self.fault
             .take()
             .map_or(Ok(()), |what| Err(EngineError::Device(what)))
+    }
+
+    /// Waits until everything up to `submission` is done.
+    pub fn wait(&self, submission: wgpu::SubmissionIndex) -> Result<(), EngineError> {
+        let waiting = wgpu::PollType::Wait {
+            submission_index: Some(submission),
+            timeout: None,
+        };
+        let waited = guarded(|| self.handle.poll(waiting));
+        self.check()?;
+        match waited {
+            Ok(Ok(_)) => Ok(()),
+            Ok(Err(error)) => Err(EngineError::Device(error.to_string())),
+            Err(panic) => Err(EngineError::Device(panic)),
+        }
     }
 
     /// Largest storage buffer of this device, in bytes.

@@ -4,10 +4,11 @@
 //! effects has a pipeline of its own, made from `override` constants. Work goes out in dispatches short
 //! enough for any watchdog, at most two in flight; nothing here panics when a device fails.
 //!
-//! Absent on purpose: a second try on a lost device. The caller has the CPU engine for that.
+//! Absent on purpose: a second try on a lost device. [`Fallback`](super::Fallback) has the CPU engine for that.
 
 mod adapters;
 mod device;
+mod guard;
 mod layout;
 mod pace;
 mod pipeline;
@@ -49,6 +50,8 @@ impl fmt::Display for Precision {
 #[derive(Debug)]
 pub struct Gpu {
     precision: Precision,
+    /// In place of [`shaders::shoot`].
+    shader: Option<String>,
     layout: &'static Layout,
     device: Device,
     rods: Option<wgpu::Buffer>,
@@ -69,6 +72,7 @@ impl Gpu {
     pub fn new(precision: Precision) -> Result<Self, EngineError> {
         Ok(Self {
             precision,
+            shader: None,
             layout: Layout::of(precision),
             device: Device::open(precision)?,
             rods: None,
@@ -76,6 +80,23 @@ impl Gpu {
             slots: Vec::new(),
             pipelines: HashMap::new(),
         })
+    }
+
+    /// Opens the adapter for a shader other than [`shaders::shoot`]: a seam for tests, which spoil it.
+    ///
+    /// # Errors
+    /// Those of [`Gpu::new`].
+    pub fn with_shader(precision: Precision, shader: String) -> Result<Self, EngineError> {
+        Ok(Self {
+            shader: Some(shader),
+            ..Self::new(precision)?
+        })
+    }
+
+    /// The device: a seam for tests, which destroy it.
+    #[must_use]
+    pub const fn device(&self) -> &wgpu::Device {
+        &self.device.handle
     }
 
     /// Uploads `bytes`, `what` they are, in a buffer that grows when it must.
@@ -139,11 +160,12 @@ impl Gpu {
         let last = self.rods.take();
         let rods = self.upload("rods", last, &(self.layout.rods)(rods))?;
         self.rods = Some(rods.clone());
+        let shader = || shaders::shoot(self.precision, effects);
         let pipeline = match self.pipelines.entry((effects, steps)) {
             Entry::Occupied(known) => known.into_mut(),
             Entry::Vacant(new) => new.insert(Pipeline::new(
                 &self.device,
-                self.precision,
+                &self.shader.clone().unwrap_or_else(shader),
                 self.layout,
                 effects,
                 steps,

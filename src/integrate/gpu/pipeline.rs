@@ -1,10 +1,10 @@
 //! The compiled shader of one set of effects.
 
+use super::EngineError;
 use super::device::Device;
 use super::layout::Layout;
 use super::pace::Pace;
-use super::shaders::{WORKGROUP, overrides, shoot};
-use super::{EngineError, Precision};
+use super::shaders::{WORKGROUP, overrides};
 use crate::model::Effects;
 
 /// A pipeline, and what has been learnt about its speed.
@@ -17,17 +17,16 @@ pub struct Pipeline {
 impl Pipeline {
     pub fn new(
         device: &Device,
-        precision: Precision,
+        shader: &str,
         layout: &Layout,
         effects: Effects,
         steps: u32,
     ) -> Result<Self, EngineError> {
-        let source = shoot(precision, effects);
         let module = device
             .handle
             .create_shader_module(wgpu::ShaderModuleDescriptor {
                 label: Some("shoot"),
-                source: wgpu::ShaderSource::Wgsl(source.into()),
+                source: wgpu::ShaderSource::Wgsl(shader.into()),
             });
         device.check()?;
         let handle = device

@@ -131,18 +131,12 @@ impl Flight {
         layout: &Layout,
         hits: &mut Vec<Hit>,
     ) -> Result<Slot, EngineError> {
-        let failed = |what: &dyn std::fmt::Display| EngineError::Device(what.to_string());
-        let waited = device.handle.poll(wgpu::PollType::Wait {
-            submission_index: Some(self.index),
-            timeout: None,
-        });
-        device.check()?;
-        waited.map_err(|error| failed(&error))?;
+        device.wait(self.index)?;
         let size = (self.shots * layout.hit) as u64;
         let readback = &self.buffers.readback;
         let bytes = readback
             .get_mapped_range(..size)
-            .map_err(|error| failed(&error))?;
+            .map_err(|error| EngineError::Device(error.to_string()))?;
         (layout.hits)(&bytes, hits);
         drop(bytes);
         readback.unmap();

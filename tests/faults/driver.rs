@@ -1,0 +1,171 @@
+//! The program on a driver that fails: `icd.rs` in front of the real one.
+
+use crate::cone;
+use assert_cmd::Command;
+use std::env;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Output;
+use tempfile::TempDir;
+use whiskmap::store::{STATE_CHANNELS, Samples, StoredMap};
+
+/// The library of a Vulkan driver of this machine, lavapipe's if it is there; `None` (said aloud) without any.
+fn real_driver() -> Option<String> {
+    let folders = ["/usr/share/vulkan/icd.d", "/etc/vulkan/icd.d"];
+    let files = folders
+        .iter()
+        .filter_map(|folder| fs::read_dir(folder).ok());
+    let mut manifests: Vec<PathBuf> = files.flatten().map(|file| file.unwrap().path()).collect();
+    manifests.sort_by_key(|path| !path.to_string_lossy().contains("lvp"));
+    if manifests.is_empty() {
+        let required = env::var_os("WHISKMAP_REQUIRE_GPU").is_some_and(|x| x == "1");
+        assert!(
+            !required,
+            "WHISKMAP_REQUIRE_GPU=1, but no driver in {folders:?}"
+        );
+        eprintln!("SKIPPED, NOT TESTED: no Vulkan driver in {folders:?}");
+        return None;
+    }
+    let manifest: serde_json::Value =
+        serde_json::from_str(&fs::read_to_string(&manifests[0]).unwrap()).unwrap();
+    Some(manifest["ICD"]["library_path"].as_str().unwrap().to_owned())
+}
+
+/// A folder with the faulty driver and a scene of several dispatches in it.
+struct Place {
+    folder: TempDir,
+    real_driver: String,
+}
+
+impl Place {
+    fn new() -> Option<Self> {
+        let real_driver = real_driver()?;
+        let folder = tempfile::tempdir().unwrap();
+        let library = folder.path().join("libfaulty.so");
+        Command::new("rustc")
+            .args(["--edition", "2024", "--crate-type", "cdylib", "-o"])
+            .args([&library, Path::new("tests/faults/icd.rs")])
+            .assert()
+            .success();
+        let manifest = serde_json::json!({
+            "file_format_version": "1.0.0",
+            "ICD": { "library_path": library, "api_version": "1.1.0" },
+        });
+        fs::write(folder.path().join("icd.json"), manifest.to_string()).unwrap();
+        let text = cone(2).text.replace("count = 512", "count = 128");
+        fs::write(folder.path().join("scene.toml"), text).unwrap();
+        Some(Self {
+            folder,
+            real_driver,
+        })
+    }
+
+    /// Runs `map` with this engine on the driver with this fault.
+    fn map(&self, engine: &str, fault: &str) -> Output {
+        let manifest = self.folder.path().join("icd.json");
+        Command::new(env!("CARGO_BIN_EXE_whiskmap"))
+            .args(["map", "scene.toml", "--no-png", "--output", "."])
+            .args(["--engine", engine])
+            .current_dir(self.folder.path())
+            .env("XDG_RUNTIME_DIR", self.folder.path())
+            .env("VK_DRIVER_FILES", &manifest)
+            .env("VK_ICD_FILENAMES", &manifest)
+            .env("REAL_DRIVER", &self.real_driver)
+            .env("FAULT", fault)
+            .output()
+            .unwrap()
+    }
+
+    fn stored(&self) -> StoredMap {
+        StoredMap::open(&self.folder.path().join("cone.exr")).unwrap()
+    }
+}
+
+/// The pixels of channels that do not depend on who shot.
+fn verdicts(map: &StoredMap) -> [Vec<u32>; 2] {
+    ["regime", "status"].map(|name| match map.read_channel(name).unwrap() {
+        Samples::U32(codes) => codes,
+        Samples::F32(_) => panic!("{name} is u32"),
+    })
+}
+
+/// The bits of all channels that are NaN or a state.
+fn states(map: &StoredMap) -> [Vec<u64>; STATE_CHANNELS.len()] {
+    STATE_CHANNELS.map(|name| {
+        let samples = map.read_channel(name).unwrap();
+        samples.values().map(f64::to_bits).collect()
+    })
+}
+
+const LOST: i32 = -4;
+const OUT_OF_DEVICE_MEMORY: i32 = -2;
+const OUT_OF_HOST_MEMORY: i32 = -1;
+
+#[test]
+fn the_map_is_completed_whatever_fails_while_it_runs() {
+    let Some(place) = Place::new() else {
+        return;
+    };
+    assert!(place.map("cpu", "nothing 0 0").status.success());
+    let cpu = place.stored();
+    let shots = cpu.counts().shots;
+    assert!(shots.all > 8192 && shots.on_cpu_instead == 0, "{shots:?}");
+    let (wanted, wanted_states) = (verdicts(&cpu), states(&cpu));
+
+    let sound = place.map("gpu", "nothing 0 0");
+    assert!(sound.status.success(), "{sound:?}");
+    assert_eq!(place.stored().counts().shots.on_cpu_instead, 0);
+    assert!(!String::from_utf8_lossy(&sound.stderr).contains("warning"));
+    assert!(verdicts(&place.stored()) == wanted);
+
+    for (function, calls, result) in [
+        ("vkQueueSubmit", 1, LOST),
+        ("vkQueueSubmit", 2, LOST),
+        ("vkQueueSubmit", 1, OUT_OF_DEVICE_MEMORY),
+        ("vkWaitSemaphores", 0, LOST),
+        ("vkWaitSemaphores", 1, LOST),
+        ("vkWaitSemaphores", 1, OUT_OF_HOST_MEMORY),
+        ("vkGetSemaphoreCounterValue", 3, LOST),
+        ("vkBeginCommandBuffer", 1, OUT_OF_HOST_MEMORY),
+        ("vkEndCommandBuffer", 1, OUT_OF_HOST_MEMORY),
+    ] {
+        let fault = format!("{function} {calls} {result}");
+        let output = place.map("gpu", &fault);
+        let [out, err] = [&output.stdout, &output.stderr].map(|s| String::from_utf8_lossy(s));
+        assert!(output.status.success(), "{fault}: {output:?}");
+        assert!(!err.contains("panicked"), "{fault}: {err}");
+        let warning = err
+            .lines()
+            .find(|line| line.starts_with("warning: GPU: device lost"));
+        assert!(warning.is_some(), "{fault}: {err}");
+        let line = format!(
+            "{:>12}  shots by the CPU, after the engine had failed",
+            shots.all
+        );
+        assert!(out.contains(&line), "{fault}: {out}");
+
+        let map = place.stored();
+        assert_eq!(map.counts().shots.on_cpu_instead, shots.all, "{fault}");
+        assert_eq!(map.attribute("engine").unwrap(), "gpu f32");
+        assert!(verdicts(&map) == wanted, "{fault}");
+        assert!(states(&map) == wanted_states, "{fault}");
+    }
+}
+
+#[test]
+fn a_gpu_that_was_asked_for_and_cannot_start_is_an_error() {
+    let Some(place) = Place::new() else {
+        return;
+    };
+    for fault in [
+        "vkCreateDevice 0 -3",
+        "vkCreateBuffer 0 -2",
+        "vkCreateShaderModule 0 -1",
+    ] {
+        let output = place.map("gpu", fault);
+        let err = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(1), "{fault}: {err}");
+        assert!(err.starts_with("error: GPU: "), "{fault}: {err}");
+        assert!(!place.folder.path().join("cone.exr").exists());
+    }
+}
