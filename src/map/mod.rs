@@ -61,7 +61,7 @@ pub fn run(
 ) -> Result<Summary, crate::store::Error> {
     let mut engine = Fallback::new(engine);
     let mut summary = Summary::default();
-    let sides = sides(scene);
+    let sides = &plan.sides;
     for (group, whiskers) in plan.whiskers.chunks(plan.panels_at_once).enumerate() {
         let faces: Vec<Face> = summary.time(Stage::Sheets, || {
             let pairs: Vec<(&Whisker, Side)> = whiskers
@@ -96,13 +96,4 @@ pub fn run(
     }
     summary.engine_failure = engine.failure().cloned();
     Ok(summary)
-}
-
-/// The sides that the push angles of `scene` ask for; first touch itself belongs to CB.
-fn sides(scene: &Scene) -> Vec<Side> {
-    let pushes = &scene.grid.push_angle_deg;
-    Side::BOTH
-        .into_iter()
-        .filter(|side| pushes.iter().any(|push| Side::of_push(*push) == *side))
-        .collect()
 }
