@@ -1,6 +1,6 @@
 //! Where along the whisker the sheet is sampled.
 //!
-//! Columns are evenly spaced in `u = ln tau + tau`: toward the base the sheet depends on the contact through
+//! Columns are evenly spaced in `u = ln tau + tau`, but for a modulus that falls toward the tip: toward the base the sheet depends on the contact through
 //! its logarithm (everything scales), toward a slender tip through `tau`. One column lies exactly at the tip;
 //! a few lie beyond it, because a trajectory does not know where the whisker ends, so that interpolation is
 //! as good at the tip as elsewhere.
@@ -9,7 +9,7 @@ use super::fold::{FoldPoint, first_folds};
 use super::polynomial::{NODES, Polynomial, stencil};
 use super::rows::Row;
 use crate::model::batch::Method;
-use crate::model::{Rod, Side};
+use crate::model::{Rod, Side, arclength};
 
 /// Distance of the columns in `u`.
 const SPACING: f64 = 0.15;
@@ -31,17 +31,42 @@ pub struct Columns {
     /// Index of the column at the tip.
     pub tip: usize,
     first_u: f64,
+    rod: Rod,
 }
 
-fn u_of(tau: f64) -> f64 {
-    tau.ln() + tau
+/// `ln tau + tau`, and minus the logarithm of the modulus where that falls toward the tip: continued beyond the tip, it
+/// would become 0.
+fn u_of(rod: &Rod, tau: f64) -> f64 {
+    let modulus = rod.modulus(arclength(rod, tau)).min(1.0);
+    tau.ln() + tau - modulus.ln()
 }
 
-/// Inverse of [`u_of`] by Newton's method on the increasing, concave function.
-fn tau_of(u: f64) -> f64 {
-    let mut tau = if u < 1.0 { u.exp() } else { u };
-    for _ in 0..50 {
-        let next = tau * (1.0 - (u_of(tau) - u) / (1.0 + tau)).max(0.1);
+/// Inverse of [`u_of`] by Newton's method, bisecting where a step would leave the bracket.
+fn tau_of(rod: &Rod, u: f64) -> f64 {
+    let softening = (-rod.gradient).max(0.0);
+    let end = if softening > rod.taper {
+        rod.tau(1.0 / softening)
+    } else {
+        f64::INFINITY
+    };
+    let most = if u < 1.0 { u.exp() } else { u };
+    let (mut low, mut high) = (0.0, most.min(end));
+    let mut tau = most.min(0.5 * end);
+    for _ in 0..100 {
+        let miss = u_of(rod, tau) - u;
+        if miss > 0.0 {
+            high = tau;
+        } else {
+            low = tau;
+        }
+        let modulus = 1.0 - softening * arclength(rod, tau);
+        let slope = 1.0 / tau + 1.0 + softening * rod.radius(tau) / modulus;
+        let newton = tau - miss / slope;
+        let next = if low < newton && newton < high {
+            newton
+        } else {
+            0.5 * (low + high)
+        };
         if (next - tau).abs() <= 2.0 * f64::EPSILON * tau {
             return next;
         }
@@ -54,8 +79,8 @@ impl Columns {
     /// Columns from the tip of `rod` down to some beyond `nearest`, the row nearest to the base: at the last
     /// ones the pole is nearer than that at first touch and at the fold. `None` where a fold is missing.
     pub fn new(method: Method, rod: &Rod, side: Side, nearest: &Row) -> Option<Self> {
-        let u_tip = u_of(rod.tau_tip());
-        let tau = |below_tip: f64| tau_of(u_tip - SPACING * below_tip);
+        let u_tip = u_of(rod, rod.tau_tip());
+        let tau = |below_tip: f64| tau_of(rod, u_tip - SPACING * below_tip);
         let beyond = (1..=BEYOND_TIP).rev().map(|i| tau(-(i as f64)));
         let mut taus: Vec<f64> = beyond.chain([rod.tau_tip()]).collect();
         let mut folds = Vec::new();
@@ -79,19 +104,20 @@ impl Columns {
             first_u: u_tip - SPACING * tip as f64,
             tip,
             folds,
+            rod: *rod,
         })
     }
 
     /// Contact at the fractional column `k + t`.
     #[must_use]
     pub fn tau(&self, k: usize, t: f64) -> f64 {
-        tau_of(self.first_u + SPACING * (k as f64 + t))
+        tau_of(&self.rod, self.first_u + SPACING * (k as f64 + t))
     }
 
     /// `|load|` at the fold for the contact at `tau`, by interpolation.
     #[must_use]
     pub fn fold_load(&self, tau: f64) -> f64 {
-        let place = (u_of(tau) - self.first_u) / SPACING;
+        let place = (u_of(&self.rod, tau) - self.first_u) / SPACING;
         let last = self.folds.len() - 2;
         #[allow(
             clippy::cast_possible_truncation,

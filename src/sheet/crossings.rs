@@ -152,8 +152,18 @@ fn polish(
                 let residual = (row.pole_distance / distance).ln().abs();
                 crossing(point, &here.landing, residual)
             });
-            // The first fold can jump from contact to contact; then there is nothing between the samples.
-            bisected.filter(Crossing::is_sound).unwrap_or(newton)
+            if let Some(bisected) = bisected.filter(Crossing::is_sound) {
+                return bisected;
+            }
+            // The first fold jumps from contact to contact, and there is nothing between the samples. What Newton's
+            // method has found may be on another sheet: the row must be walked.
+            Crossing {
+                edge: c.edge,
+                tau: c.tau,
+                load: c.load,
+                push: side.sign() * (c.phi - row.touch),
+                residual: f64::INFINITY,
+            }
         })
         .collect()
 }

@@ -45,8 +45,15 @@ pub fn first_folds(method: Method, rod: &Rod, side: Side, taus: &[f64]) -> Vec<O
         resolution: COARSE,
         ..method
     };
-    let brackets = bracket(coarse, rod, side, taus);
-    polish(method, rod, &brackets)
+    let mut folds = polish(method, rod, &bracket(coarse, rod, side, taus));
+    // With friction and a stiff tip the first fold can lie at `q` of 1000, where the coarse resolution is lost.
+    let lost: Vec<usize> = (0..taus.len()).filter(|&i| folds[i].is_none()).collect();
+    let again: Vec<f64> = lost.iter().map(|&i| taus[i]).collect();
+    let fine = polish(method, rod, &bracket(method, rod, side, &again));
+    for (i, fold) in lost.into_iter().zip(fine) {
+        folds[i] = fold;
+    }
+    folds
 }
 
 /// A stretch of load over which `det` changes its sign for the first time.

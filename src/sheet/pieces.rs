@@ -26,10 +26,17 @@ pub fn connect(level: &LevelCurve, touches: bool, crossings: &[Crossing]) -> Vec
         let Some(from) = entry(level, from).filter(|from| !known(from)) else {
             continue;
         };
-        let end = level.at(&from).and_then(|start| follow(level, start));
-        // From where a piece ends, the way on leads nowhere.
-        if let Some(end) = end.filter(|end| !same(&from, end)) {
+        let Some(start) = level.at(&from) else {
+            continue;
+        };
+        // From where a piece ends, the way on leads nowhere, and the way back to where it begins.
+        let leads = |end: &Crossing| !same(&from, end);
+        if let Some(end) = follow(level, start).filter(leads) {
             connected.extend([from, end]);
+        } else if let Some(begin) = follow(&backward(level), start).filter(leads)
+            && !connected.iter().any(|other| same(&begin, other))
+        {
+            connected.extend([begin, from]);
         }
     }
     connected
@@ -40,11 +47,14 @@ fn entry(level: &LevelCurve, crossing: &Crossing) -> Option<Crossing> {
     if crossing.is_sound() {
         return Some(*crossing);
     }
-    let backward = LevelCurve {
+    follow(&backward(level), level.at(crossing)?)
+}
+
+fn backward(level: &LevelCurve) -> LevelCurve {
+    LevelCurve {
         forward: false,
         ..*level
-    };
-    follow(&backward, level.at(crossing)?)
+    }
 }
 
 /// Where the piece of the level curve that begins at `start` ends.

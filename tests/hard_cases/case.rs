@@ -1,0 +1,98 @@
+//! One whisker in front of a few poles; lengths in whisker lengths.
+
+use std::fmt::Write;
+use whiskmap::integrate::gpu::{Gpu, Precision};
+use whiskmap::integrate::{Engine, EngineError};
+use whiskmap::map::{self, Observer, Summary};
+use whiskmap::plan::Plan;
+use whiskmap::scene::Scene;
+use whiskmap::store::{self, Panel};
+
+/// A scene, but for its text.
+#[derive(Clone, Debug)]
+pub struct Case {
+    pub length_mm: f64,
+    pub taper: f64,
+    /// `A*`.
+    pub bend: f64,
+    pub pole: f64,
+    pub friction: f64,
+    pub tip_to_base: f64,
+    pub pushes_deg: Vec<f64>,
+    pub distances: Vec<f64>,
+}
+
+impl Case {
+    /// The scene file.
+    pub fn text(&self) -> String {
+        let length = self.length_mm;
+        let base_um = 1.5 * length;
+        let tip_um = base_um * (1.0 - self.taper);
+        let mut text = format!(
+            "title = \"hard\"\n[whisker]\nlength_mm = {length:?}\nbase_radius_um = {base_um:?}\n\
+             tip_radius_um = {tip_um:?}\nyoungs_modulus_gpa = 3\n"
+        );
+        if self.bend > 0.0 {
+            let a = self.bend / length;
+            let _ = writeln!(text, "[whisker.curvature]\nparabola_per_mm = {a:?}");
+        }
+        if self.tip_to_base != 1.0 {
+            let ratio = self.tip_to_base;
+            let _ = writeln!(text, "[whisker.modulus_gradient]\ntip_to_base = {ratio:?}");
+        }
+        if self.pole > 0.0 {
+            let radius = self.pole * length;
+            let _ = writeln!(text, "[pole]\nradius_mm = {radius:?}");
+        }
+        if self.friction > 0.0 {
+            let _ = writeln!(text, "[contact]\nfriction = {:?}", self.friction);
+        }
+        let distances: Vec<f64> = self.distances.iter().map(|d| d * length).collect();
+        let _ = writeln!(
+            text,
+            "[grid]\npush_angle_deg = {:?}\ndistance_mm = {distances:?}",
+            self.pushes_deg
+        );
+        text
+    }
+
+    pub fn scene(&self) -> Scene {
+        let text = self.text();
+        Scene::parse(&text, "hard", "hard").unwrap_or_else(|error| panic!("{text}\n{error}"))
+    }
+}
+
+/// The only panel of a scene.
+#[derive(Default)]
+struct Kept(Option<Panel>);
+
+impl Observer for Kept {
+    fn panel(&mut self, _: usize, panel: &Panel) -> Result<(), store::Error> {
+        self.0 = Some(panel.clone());
+        Ok(())
+    }
+
+    fn settled(&mut self, _: usize) {}
+}
+
+/// The map of a scene without sweep.
+pub fn compute(scene: &Scene, engine: &mut dyn Engine) -> (Summary, Panel) {
+    let mut kept = Kept::default();
+    let plan = Plan::new(scene).unwrap();
+    let summary = map::run(scene, &plan, engine, &mut kept).unwrap();
+    (summary, kept.0.unwrap())
+}
+
+/// The GPU engine; its absence is loud, and a failure where it is required.
+pub fn open(precision: Precision) -> Option<Gpu> {
+    match Gpu::new(precision) {
+        Ok(gpu) => Some(gpu),
+        Err(error) => {
+            let required = std::env::var_os("WHISKMAP_REQUIRE_GPU").is_some_and(|x| x == "1");
+            let optional = matches!(error, EngineError::Unsupported { .. });
+            assert!(optional || !required, "WHISKMAP_REQUIRE_GPU=1, but {error}");
+            eprintln!("SKIPPED, NOT TESTED: gpu {precision}: {error}");
+            None
+        }
+    }
+}

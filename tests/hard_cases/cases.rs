@@ -1,0 +1,153 @@
+//! The named hard cases: whole maps of them, and cells exactly at their edges.
+
+use crate::case::{Case, compute, open};
+use crate::named::named;
+use whiskmap::classify::Regime;
+use whiskmap::integrate::gpu::{Gpu, Precision};
+use whiskmap::integrate::{Cpu, Engine};
+use whiskmap::model::Side;
+use whiskmap::refine::TOLERANCE;
+use whiskmap::scene::Scene;
+use whiskmap::store::Panel;
+use whiskmap::trace::{Kind, corner, curve};
+
+/// Every cell has all its numbers or none.
+pub fn is_complete(panel: &Panel) -> bool {
+    panel.regime.iter().enumerate().all(|(cell, regime)| {
+        let finite = panel.state.iter().all(|channel| channel[cell].is_finite());
+        let sound = f64::from(panel.residual[cell]) <= TOLERANCE && panel.margin_deg[cell] >= 0.0;
+        matches!(regime, 1 | 4) == (finite && sound)
+    })
+}
+
+/// The map of `case` without a doubtful cell.
+fn certain(name: &str, case: &Case, engine: &mut dyn Engine) -> Panel {
+    let (summary, panel) = compute(&case.scene(), engine);
+    let doubt = (summary.unresolved(), summary.disagreements);
+    assert_eq!(doubt, (0, 0), "{name}: {case:?}\n{:?}", panel.status);
+    assert!(is_complete(&panel), "{name}");
+    panel
+}
+
+#[test]
+fn engines_agree_on_every_named_case() {
+    let mut gpus: Vec<Gpu> = [Precision::F32, Precision::F64]
+        .into_iter()
+        .filter_map(open)
+        .collect();
+    for (name, case) in named() {
+        let panel = certain(name, &case, &mut Cpu);
+        for gpu in &mut gpus {
+            assert_eq!(certain(name, &case, gpu).regime, panel.regime, "{name}");
+        }
+    }
+}
+
+/// How far before and beyond an end, in degrees, its cells are: the ends are known to 1e-8.
+const BESIDE: [f64; 2] = [1e-5, 1e-7];
+
+/// The map of one row next to `end_deg`: contact before it, detached by `kind` beyond it, and certain exactly there. With
+/// friction two branches can swap their ends, and what is beyond the one end is a state of the other branch.
+fn ends_at(name: &str, case: &Case, distance: f64, end_deg: f64, kind: Kind) {
+    let detached = if kind == Kind::SlipOff {
+        Regime::SlipOff
+    } else {
+        Regime::PullOff
+    };
+    let beside = BESIDE.iter().flat_map(|by| [end_deg - by, end_deg + by]);
+    let mut pushes: Vec<f64> = beside.chain([end_deg]).collect();
+    pushes.sort_by(f64::total_cmp);
+    let row = Case {
+        pushes_deg: pushes.clone(),
+        distances: vec![distance],
+        ..case.clone()
+    };
+    let panel = certain(name, &row, &mut Cpu);
+    for (push, regime) in pushes.iter().zip(&panel.regime) {
+        let swapped = case.friction > 0.0 && *regime == Regime::Unreachable.code();
+        let right = if push.abs() < end_deg.abs() {
+            *regime == Regime::Contact.code()
+        } else {
+            *push == end_deg || swapped || *regime == detached.code()
+        };
+        assert!(right, "{name} at {distance}: {push}: {regime}");
+    }
+}
+
+#[test]
+fn pushes_up_to_the_edge_and_past_it() {
+    let mut ends = 0;
+    for (name, case) in named() {
+        let scene = case.scene();
+        for side in Side::BOTH {
+            for end in curve(&scene.whisker, &scene.pole, side, &scene.grid.distance_mm) {
+                assert_ne!(end.kind, Kind::Unresolved, "{name}");
+                let Some(push) = end
+                    .push_angle_deg
+                    .filter(|push| (0.1..359.0).contains(&push.abs()))
+                else {
+                    continue;
+                };
+                ends += 1;
+                ends_at(
+                    name,
+                    &case,
+                    end.distance_mm / case.length_mm,
+                    push,
+                    end.kind,
+                );
+            }
+        }
+    }
+    eprintln!("{ends} ends");
+}
+
+/// Just before the corner of fold and tip a whisker slips off, just beyond it is pulled off. A straight cylinder does so
+/// at 0.558538 of its length, and slip-off and pull-off are next to each other all around.
+#[test]
+fn both_sides_of_the_corner() {
+    let mut corners = 0;
+    for (name, case) in named() {
+        let scene = case.scene();
+        for side in Side::BOTH {
+            let Some(distance) = corner(&scene.whisker, &scene.pole, side).distance_mm else {
+                continue;
+            };
+            corners += 1;
+            for (by, kind) in [
+                (-1e-6, Kind::SlipOff),
+                (-1e-8, Kind::SlipOff),
+                (1e-8, Kind::PullOff),
+                (1e-6, Kind::PullOff),
+            ] {
+                let distance = distance + by * case.length_mm;
+                let end = curve(&scene.whisker, &scene.pole, side, &[distance])[0];
+                assert_eq!(end.kind, kind, "{name}");
+                if end.push_angle_deg.unwrap().abs() < 359.0 {
+                    ends_at(
+                        name,
+                        &case,
+                        distance / case.length_mm,
+                        end.push_angle_deg.unwrap(),
+                        kind,
+                    );
+                }
+            }
+        }
+    }
+    eprintln!("{corners} corners");
+}
+
+/// A bend between 0 and 1e-9 of a whisker's length would underflow in `f32`.
+#[test]
+fn fainter_bends_are_refused() {
+    let case = &named()[0].1;
+    for (bend, fits) in [(1e-12, false), (0.99e-9, false), (1e-9, true)] {
+        let text = Case {
+            bend,
+            ..case.clone()
+        }
+        .text();
+        assert_eq!(Scene::parse(&text, "hard", "hard").is_ok(), fits, "{bend}");
+    }
+}

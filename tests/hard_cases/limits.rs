@@ -1,0 +1,149 @@
+//! Limits checked against each other, each with its order: the detachment angle as one number tends to 0.
+
+use whiskmap::model::Side;
+use whiskmap::scene::{Curvature, Pole, Whisker};
+use whiskmap::trace::{Detachment, Kind, corner, curve};
+
+/// Distance of first touch in whisker lengths: every whisker here slips off there, on both sides.
+const DISTANCE: f64 = 0.4;
+
+/// A whisker of 1 mm and its pole, away from the limits by as much as the numbers say.
+#[derive(Clone, Copy, Default)]
+struct Away {
+    taper: f64,
+    bend: f64,
+    pole: f64,
+}
+
+impl Away {
+    fn whisker(self) -> Whisker {
+        Whisker {
+            length_mm: 1.0,
+            base_radius_um: 1.0,
+            tip_radius_um: 1.0 - self.taper,
+            youngs_modulus_gpa: 3.0,
+            curvature: (self.bend > 0.0).then_some(Curvature {
+                parabola_per_mm: self.bend,
+                vertex_mm: 0.0,
+            }),
+            modulus_tip_to_base: 1.0,
+            arc_stretch: 1.0,
+        }
+    }
+
+    fn end(self, side: Side, distance: f64) -> Detachment {
+        curve(&self.whisker(), &Pole::smooth(self.pole), side, &[distance])[0]
+    }
+
+    /// Push angle of slip-off, as a magnitude, in degrees.
+    fn slip(self, side: Side) -> f64 {
+        let end = self.end(side, DISTANCE);
+        assert_eq!(end.kind, Kind::SlipOff);
+        end.push_angle_deg.unwrap() * side.sign()
+    }
+}
+
+/// Sizes over three decades: below, the 1e-8 degrees of the solution show.
+const SIZES: [f64; 4] = [1e-2, 1e-3, 1e-4, 1e-5];
+
+/// The orders of `miss` from decade to decade.
+fn orders(name: &str, miss: impl Fn(f64) -> f64) -> [f64; 3] {
+    let misses = SIZES.map(|size| miss(size).abs());
+    let orders = [0, 1, 2].map(|i| (misses[i] / misses[i + 1]).log10());
+    eprintln!("{name}: {misses:?}, orders {orders:.4?}");
+    orders
+}
+
+/// The farthest measured is 0.0041 off, for the thickest poles; the next term of the series is that small.
+fn is(order: f64, orders: &[f64]) -> bool {
+    orders.iter().all(|found| (found - order).abs() < 0.01)
+}
+
+#[test]
+fn small_tapers_are_cylinders() {
+    for side in Side::BOTH {
+        let cylinder = Away::default().slip(side);
+        let miss = |taper| {
+            Away {
+                taper,
+                ..Away::default()
+            }
+            .slip(side)
+                - cylinder
+        };
+        assert!(is(1.0, &orders("taper", miss)));
+        assert!(miss(1e-12).abs() < 1e-8);
+    }
+}
+
+#[test]
+fn faint_bends_are_straight() {
+    for taper in [0.0, 0.95] {
+        let straight = Away {
+            taper,
+            ..Away::default()
+        };
+        let slip = |bend, side| Away { bend, ..straight }.slip(side);
+        let rest = straight.slip(Side::Cb);
+        for side in Side::BOTH {
+            let miss = |bend| slip(bend, side) - rest;
+            assert!(is(1.0, &orders("bend", miss)));
+            assert!(miss(1e-9).abs() < 1e-6);
+        }
+        let mean = |bend| 0.5 * (slip(bend, Side::Cb) + slip(bend, Side::Cf)) - rest;
+        let found = orders("mean of both sides", mean);
+        // The last of them is 2e-10 degrees, which rounding can tell.
+        assert!(is(2.0, &found[..2]));
+    }
+}
+
+#[test]
+fn thin_poles_are_points() {
+    for (taper, bend) in [(0.0, 0.0), (0.95, 0.4)] {
+        for side in Side::BOTH {
+            let whisker = Away {
+                taper,
+                bend,
+                pole: 0.0,
+            };
+            let point = whisker.slip(side);
+            let miss = |pole| Away { pole, ..whisker }.slip(side) - point;
+            assert!(is(1.0, &orders("pole", miss)));
+        }
+    }
+}
+
+#[test]
+fn blunt_cones_are_perfect_ones_that_are_never_pulled_off() {
+    for side in Side::BOTH {
+        let cone = |tip: f64| Away {
+            taper: 1.0 - tip,
+            bend: 0.4,
+            pole: 0.01,
+        };
+        let perfect = cone(0.0).slip(side);
+        let miss = |tip| cone(tip).slip(side) - perfect;
+        assert!(is(1.0, &orders("tip", miss)));
+        let tip = cone(0.0);
+        for distance in [0.5, 0.9, 0.93] {
+            assert_eq!(tip.end(side, distance).kind, Kind::SlipOff);
+        }
+        assert!(
+            corner(&tip.whisker(), &Pole::smooth(0.01), side)
+                .distance_mm
+                .is_none()
+        );
+    }
+    // The straight cone's pull-off retreats into its tip.
+    let from_tip = |tip: f64| {
+        let cone = Away {
+            taper: 1.0 - tip,
+            bend: 0.0,
+            pole: 0.0,
+        };
+        1.0 - corner(&cone.whisker(), &Pole::smooth(0.0), Side::Cb)
+            .distance_mm
+            .unwrap()
+    };
+    assert!(is(1.0, &orders("corner", from_tip)));
+}

@@ -1,0 +1,17 @@
+//! Whiskers and grids at the ends of every range: no NaN, no doubtful cell, the same answer from every engine, at every
+//! resolution and in every unit, and the limits of each other where they must be.
+#![allow(
+    clippy::unwrap_used,
+    clippy::panic,
+    clippy::print_stderr,
+    reason = "a test fails by panicking, and says aloud what it measured and skipped"
+)]
+
+mod case;
+mod cases;
+mod limits;
+mod named;
+mod random;
+mod single;
+mod states;
+mod units;
