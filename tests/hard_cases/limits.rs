@@ -26,6 +26,8 @@ impl Away {
                 parabola_per_mm: self.bend,
                 vertex_mm: 0.0,
             }),
+            euler_spiral: None,
+            profile: None,
             modulus_tip_to_base: 1.0,
             arc_stretch: 1.0,
         }
