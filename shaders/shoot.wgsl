@@ -32,7 +32,8 @@ fn solve(rod: Rod, shot: Shot) -> Hit {
             hit.outcome = NOT_FINITE;
             break;
         }
-        if hit.residual <= TOLERANCE {
+        let q = abs(hit.load) * start.arclength * start.arclength;
+        if hit.residual <= TOLERANCE && q <= MOST_Q {
             hit.outcome = CONVERGED;
         }
         if round < MOST_STEPS {

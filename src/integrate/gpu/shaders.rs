@@ -9,6 +9,10 @@ use std::fmt::Write;
 /// Invocations per workgroup; every device allows this many.
 pub const WORKGROUP: u32 = 64;
 
+/// The largest `|load| s^2` under which the steps of the shaders do. Friction on a whisker with a stiff tip lets it coil
+/// up under more, and the residual would not tell that the trajectory is wrong (by up to 8e-4 whisker lengths, measured).
+pub const MOST_Q: f64 = 100.0;
+
 /// A trajectory and Newton's step from it.
 const MODEL: [&str; 5] = [
     include_str!("../../../shaders/numbers.wgsl"),
@@ -72,6 +76,7 @@ fn constants(precision: Precision) -> String {
          const MOST_STEPS = {MOST_STEPS}u;\n\
          const LONGEST_STEP = real({LONGEST_STEP:e});\n\
          const TOLERANCE = real({tolerance:e});\n\
+         const MOST_Q = real({MOST_Q:e});\n\
          override STEPS: u32;\n\
          override TAPER: bool;\n\
          override CURVATURE: bool;\n\
