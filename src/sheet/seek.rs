@@ -52,11 +52,21 @@ const SMALLEST_STEP: f64 = 1e-12;
 /// Newton's method for all `wanted` at once; the caller judges what is left in `miss` and `step`.
 #[must_use]
 pub fn seek(method: Method, wanted: &[Wanted]) -> Vec<Sought> {
+    newton(method, wanted, COARSE_ROUNDS)
+}
+
+/// The same at the method's own resolution throughout. Where friction lets a whisker coil up, the coarse one leads astray.
+#[must_use]
+pub fn seek_finely(method: Method, wanted: &[Wanted]) -> Vec<Sought> {
+    newton(method, wanted, 0)
+}
+
+fn newton(method: Method, wanted: &[Wanted], coarse_rounds: usize) -> Vec<Sought> {
     let mut points: Vec<DVec2> = wanted.iter().map(|w| w.from).collect();
     let mut found: Vec<Option<Sought>> = vec![None; wanted.len()];
     let mut open: Vec<usize> = (0..wanted.len()).collect();
-    for round in 0..COARSE_ROUNDS + ROUNDS {
-        let is_coarse = round < COARSE_ROUNDS;
+    for round in 0..coarse_rounds + ROUNDS {
+        let is_coarse = round < coarse_rounds;
         let resolution = if is_coarse { COARSE } else { method.resolution };
         let method = Method {
             resolution,

@@ -1,7 +1,7 @@
 //! Along a level curve, through the fold to the end of the branch, in steps that suit the curve.
 
 use super::level::{LevelCurve, Node, ON_CURVE};
-use super::seek::{Edge, Wanted, seek};
+use super::seek::{Edge, Wanted, seek_finely};
 use glam::DVec2;
 
 /// Nodes are about this far apart.
@@ -143,7 +143,7 @@ fn edge(level: &LevelCurve, edge: Edge, from: &Node, to: &Node) -> Option<Node> 
         pole_distance: level.row.pole_distance,
         from: start,
     };
-    let sought = *seek(level.method, &[wanted]).first()?;
+    let sought = *seek_finely(level.method, &[wanted]).first()?;
     // At a fold rounding can leave Newton's method a little beside the curve; at the tip it is on it.
     let tolerance = match edge {
         Edge::Fold => ON_CURVE,
