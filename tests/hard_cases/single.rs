@@ -12,7 +12,7 @@ use whiskmap::refine::End;
 /// How far off, in whisker lengths, a pole or a contact may be, and a load in the median. Measured: 4.5e-5 for a cylinder
 /// that a stiff tip and friction let coil up, else 9.3e-6; 1.1e-5; 1.9e-5. Next to the fold, where the state goes with the
 /// square root of the push angle left, loads are off by up to 7e-3.
-const STABLE: f64 = 1e-4;
+pub const STABLE: f64 = 1e-4;
 
 #[test]
 fn single_precision_is_stable_or_handed_over() {
