@@ -9,9 +9,10 @@ use std::fmt::Write;
 /// Invocations per workgroup; every device allows this many.
 pub const WORKGROUP: u32 = 64;
 
-/// The largest `|load| s^2` under which the steps of the shaders do. Friction on a whisker with a stiff tip lets it coil
-/// up under more, and the residual would not tell that the trajectory is wrong (by up to 8e-4 whisker lengths, measured).
-pub const MOST_Q: f64 = 100.0;
+/// The largest `|load| s^2` under which the steps of the shaders do; without friction and gradient no fold lies beyond.
+/// Under more a whisker coils up, and the residual would not tell that the trajectory is wrong (by 1e-4 whisker lengths
+/// beyond 30, 8e-4 beyond 100, measured).
+pub const MOST_Q: f64 = 30.0;
 
 /// A trajectory and Newton's step from it.
 const MODEL: [&str; 5] = [
