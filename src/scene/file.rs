@@ -4,7 +4,7 @@ use serde::Deserialize;
 use toml::Spanned;
 
 use super::axis::Axis;
-use super::profile::Rows;
+use super::rows::Rows;
 
 /// A number and where the file has it. Integers are numbers too.
 pub(super) type Number = Spanned<f64>;

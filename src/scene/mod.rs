@@ -10,6 +10,7 @@ mod file;
 mod limits;
 mod profile;
 mod read;
+mod rows;
 mod shape;
 
 pub use error::SceneError;

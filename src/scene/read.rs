@@ -5,9 +5,9 @@ use std::io::{self, Read};
 use std::path::Path;
 
 use super::file::SceneTable;
-use super::{Scene, SceneError, check, profile};
+use super::{Scene, SceneError, check, rows};
 
-/// A scene is a page of text; anything longer was picked by mistake.
+/// A scene is a page of text, radii are a short table; anything longer was picked by mistake.
 const MOST_BYTES: u64 = 1 << 20;
 
 impl Scene {
@@ -19,12 +19,12 @@ impl Scene {
     /// If the file cannot be read, is longer than 1 MiB, is not UTF-8, or for the reasons of [`Scene::parse`].
     pub fn read(path: &Path) -> Result<Self, SceneError> {
         if path == Path::new("-") {
-            return Self::from_source(io::stdin().lock(), "<stdin>", "scene");
+            return Self::from_source(io::stdin().lock(), "<stdin>", Path::new(""), "scene");
         }
         let origin = path.to_string_lossy();
         let stem = path.file_stem().unwrap_or_default().to_string_lossy();
         let file = File::open(path).map_err(|why| unreadable(&origin, &why))?;
-        Self::from_source(file, &origin, &stem)
+        Self::from_source(file, &origin, folder_of(path), &stem)
     }
 
     /// Checks a scene. `origin` is what messages call the text, `default_name` the stem of the output files
@@ -36,30 +36,30 @@ impl Scene {
     /// If the text is not TOML, has a key too many or too few, or a value that is out of its range or at odds
     /// with another one.
     pub fn parse(text: &str, origin: &str, default_name: &str) -> Result<Self, SceneError> {
-        let table = tables(text, origin)?;
-        let Some(inlined) = profile::inline(&table, text, origin)? else {
-            return check::scene(&table, text, default_name)
-                .map_err(|fault| fault.in_scene(origin, text));
-        };
-        Self::parse(&inlined, origin, default_name)
+        Self::checked(text, origin, folder_of(Path::new(origin)), default_name)
+    }
+
+    fn checked(
+        text: &str,
+        origin: &str,
+        folder: &Path,
+        default_name: &str,
+    ) -> Result<Self, SceneError> {
+        let mut table: SceneTable = toml::from_str(text)
+            .map_err(|why| SceneError::at(origin, text, why.span(), why.message()))?;
+        let scene = rows::read(&mut table, text, folder).and_then(|inlined| {
+            check::scene(&table, inlined.as_deref().unwrap_or(text), default_name)
+        });
+        scene.map_err(|fault| fault.in_scene(origin, text))
     }
 
     fn from_source(
         source: impl Read,
         origin: &str,
+        folder: &Path,
         default_name: &str,
     ) -> Result<Self, SceneError> {
-        let mut bytes = Vec::new();
-        source
-            .take(MOST_BYTES + 1)
-            .read_to_end(&mut bytes)
-            .map_err(|why| unreadable(origin, &why))?;
-        if bytes.len() as u64 > MOST_BYTES {
-            return Err(SceneError::whole(
-                origin,
-                "longer than 1 MiB: no scene file",
-            ));
-        }
+        let bytes = bounded(source).map_err(|why| unreadable(origin, &why))?;
         let text = String::from_utf8(bytes).map_err(|why| {
             let start = why.utf8_error().valid_up_to();
             let byte = why.as_bytes()[start];
@@ -73,12 +73,25 @@ impl Scene {
                 format!("not UTF-8 text: byte 0x{byte:02X}"),
             )
         })?;
-        Self::parse(&text, origin, default_name)
+        Self::checked(&text, origin, folder, default_name)
     }
 }
 
-fn tables(text: &str, origin: &str) -> Result<SceneTable, SceneError> {
-    toml::from_str(text).map_err(|why| SceneError::at(origin, text, why.span(), why.message()))
+fn folder_of(path: &Path) -> &Path {
+    path.parent().unwrap_or(Path::new(""))
+}
+
+/// All of a source that is no longer than a page or a table is.
+pub(super) fn bounded(source: impl Read) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    source.take(MOST_BYTES + 1).read_to_end(&mut bytes)?;
+    if bytes.len() as u64 > MOST_BYTES {
+        return Err(io::Error::new(
+            io::ErrorKind::FileTooLarge,
+            "longer than 1 MiB",
+        ));
+    }
+    Ok(bytes)
 }
 
 fn unreadable(origin: &str, why: &io::Error) -> SceneError {

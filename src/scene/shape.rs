@@ -116,10 +116,10 @@ fn euler_spiral(table: &SpiralTable, length_mm: f64) -> Result<Option<EulerSpira
     let sharpest = SHARPEST / length_mm;
     let per_mm = Limits::between(("-20 / length_mm", -sharpest), ("20 / length_mm", sharpest))
         .check(&format!("{key}.per_mm"), &table.per_mm)?;
-    let at_tip = sharpest - per_mm.abs();
+    let until = |at_tip: f64| (at_tip - per_mm) / length_mm;
     let per_mm2 = Limits::between(
-        ("what bends the tip by -20 / length_mm", -at_tip / length_mm),
-        ("what bends it by 20 / length_mm", at_tip / length_mm),
+        ("what bends the tip by -20 / length_mm", until(-sharpest)),
+        ("what bends it by 20 / length_mm", until(sharpest)),
     )
     .check(&format!("{key}.per_mm2"), &table.per_mm2)?;
     if per_mm == 0.0 && per_mm2 == 0.0 {

@@ -41,6 +41,11 @@ fn a_spiral_bends_both_ways() {
         (Some(spiral), None)
     );
     assert!((whisker.sharpest_bend_per_mm() - 0.05).abs() < 1e-15);
+    let s_shape = scene(
+        "",
+        "[whisker.curvature]\neuler_spiral = { per_mm = 0.4, per_mm2 = -0.04 }",
+    );
+    assert!((parse(&s_shape).unwrap().whisker.sharpest_bend_per_mm() - 0.4).abs() < 1e-15);
     let none = scene(
         "",
         "[whisker.curvature]\neuler_spiral = { per_mm = 0, per_mm2 = 0 }",
@@ -151,6 +156,10 @@ fn radii_that_are_refused() {
         ),
         ("[[0, 30], [21, 1]]", "rows[1]: the arclength must grow"),
         (
+            "[[0, 30], [1e-200, 20], [20, 1]]",
+            "rows[1]: must be farther from the row before it",
+        ),
+        (
             "[[1, 30], [20, 1]]",
             "must begin at the base, at 0, and end at the tip",
         ),
@@ -180,12 +189,52 @@ fn a_bad_csv_file_is_named_with_its_line() {
     fs::write(&path, scene("[whisker.profile]\nrows = \"radii.csv\"", "")).unwrap();
     for (csv, why) in [
         ("arc_length_mm,radius\n0,30\n", "missing field `radius_um`"),
-        ("arc_length_mm,radius_um\n0,30\n1,thin\n", "line: 3"),
+        (
+            "arc_length_mm,radius_um\n0,30\n1,thin\n",
+            "line 3: field 1: invalid float",
+        ),
         ("arc_length_mm,radius_um\n0,30\n1\n", "line: 3"),
+        (
+            "arc_length_mm,radius_um\n# a remark\n0,30\n20,nan\n",
+            "line 4: the radius must be",
+        ),
+        (
+            "arc_length_mm,radius_um\n0,30\n20,0.001\n",
+            "line 3: the radius at the tip",
+        ),
+        (
+            "arc_length_mm,radius_um\n0,30\n21,1\n",
+            "line 3: the arclength",
+        ),
         ("", "must be 2 to 256 rows, are 0"),
+        (&"0,1\n".repeat(300_000), "longer than 1 MiB"),
+        (
+            &format!("arc_length_mm,radius_um\n{}", "0,1\n".repeat(300)),
+            "are more",
+        ),
     ] {
         fs::write(folder.path().join("radii.csv"), csv).unwrap();
         let message = Scene::read(&path).unwrap_err().to_string();
-        assert!(message.contains(why), "{csv}: {message}");
+        assert!(message.contains(why), "{csv:.100}: {message}");
+        assert!(message.contains("rows = \"radii.csv\""), "{message}");
     }
+
+    // What is wrong elsewhere is shown where the scene's own text has it.
+    fs::write(
+        folder.path().join("radii.csv"),
+        "arc_length_mm,radius_um\n0,30\n5,20\n20,1\n",
+    )
+    .unwrap();
+    let text = fs::read_to_string(&path).unwrap();
+    let text = text.replace("radius_mm = 0.25", "radius_mm = -1");
+    fs::write(&path, &text).unwrap();
+    let line = 1 + text
+        .lines()
+        .position(|l| l.starts_with("radius_mm"))
+        .unwrap();
+    let message = Scene::read(&path).unwrap_err().to_string();
+    assert!(
+        message.contains(&format!("scene.toml:{line}:")),
+        "{message}"
+    );
 }

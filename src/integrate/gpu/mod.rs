@@ -154,7 +154,9 @@ impl Gpu {
         let mut steps = self.precision.steps();
         let mut pieces = None;
         if let Some(rod) = rods.first().filter(|_| effects.profile) {
-            steps = self.precision.resolution().steps(rod, rod.tau_tip());
+            let resolution = self.precision.resolution();
+            let needed = rods.iter().map(|rod| resolution.steps(rod, rod.tau_tip()));
+            steps = needed.max().unwrap_or(steps);
             pieces = Some(self.upload_pieces(rod)?);
         }
         let last = self.rods.take();

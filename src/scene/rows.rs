@@ -1,0 +1,161 @@
+//! Rows of radii, as the scene lists them or as a CSV file that it names has them.
+
+use std::fmt::{self, Write};
+use std::fs::File;
+use std::ops::Range;
+use std::path::Path;
+
+use serde::Deserialize;
+use serde::de::value::SeqAccessDeserializer;
+use serde::de::{Deserializer, SeqAccess, Visitor};
+use toml::Spanned;
+
+use super::error::Fault;
+use super::file::SceneTable;
+use super::read::bounded;
+
+/// How messages call the rows.
+pub(super) const KEY: &str = "whisker.profile.rows";
+
+/// Rows of a profile. A trajectory takes at least two steps from row to row.
+const MOST: usize = 256;
+
+/// `rows` of `[whisker.profile]`: `[arc_length_mm, radius_um]` each, or the name of a CSV file with these columns.
+pub(super) enum Rows {
+    Named(String),
+    Read(Vec<CsvRow>),
+    Listed(Vec<Spanned<[f64; 2]>>),
+}
+
+/// A row and its line in the file.
+pub(super) struct CsvRow {
+    line: u64,
+    values: [f64; 2],
+}
+
+impl Rows {
+    /// Arclength in millimetres and radius in micrometres of every row.
+    pub fn values(&self) -> Vec<[f64; 2]> {
+        match self {
+            Self::Named(_) => Vec::new(),
+            Self::Read(rows) => rows.iter().map(|row| row.values).collect(),
+            Self::Listed(rows) => rows.iter().map(|row| *row.get_ref()).collect(),
+        }
+    }
+
+    /// Row `i` does not do what it must; `whole` is where the scene has the rows.
+    pub fn refuse(&self, i: usize, whole: Range<usize>, must: &str) -> Fault {
+        match self {
+            Self::Listed(rows) => Fault::new(format!("{KEY}[{i}]"), rows[i].span(), must),
+            Self::Read(rows) => Fault::new(KEY, whole, format!("line {}: {must}", rows[i].line)),
+            Self::Named(_) => Fault::new(KEY, whole, must),
+        }
+    }
+
+    /// Refuses too few rows and too many.
+    pub fn check_count(&self, whole: Range<usize>) -> Result<(), Fault> {
+        match self.values().len() {
+            2..=MOST => Ok(()),
+            count => {
+                let more = if count > MOST {
+                    "more"
+                } else {
+                    &count.to_string()
+                };
+                let must = format!("must be 2 to {MOST} rows, are {more}");
+                Err(Fault::new(KEY, whole, must))
+            }
+        }
+    }
+}
+
+/// Reads the CSV file that the scene names, if it names one, from `folder` into its table. Returns the scene's text with
+/// the rows in place of the name, so that it stands for itself.
+pub(super) fn read(
+    table: &mut SceneTable,
+    text: &str,
+    folder: &Path,
+) -> Result<Option<String>, Fault> {
+    let Some(profile) = &mut table.whisker.profile else {
+        return Ok(None);
+    };
+    let span = profile.rows.span();
+    let Rows::Named(name) = profile.rows.get_ref() else {
+        return Ok(None);
+    };
+    let rows = from_csv(&folder.join(name)).map_err(|why| Fault::new(KEY, span.clone(), why))?;
+    let mut list = String::from("[\n");
+    for [arc_length_mm, radius_um] in rows.iter().map(|row| row.values) {
+        // Writing to a String cannot fail.
+        let _ = writeln!(list, "    [{arc_length_mm:?}, {radius_um:?}],");
+    }
+    list.push(']');
+    *profile.rows.get_mut() = Rows::Read(rows);
+    let mut inlined = text.to_owned();
+    inlined.replace_range(span, &list);
+    Ok(Some(inlined))
+}
+
+/// The columns of the CSV file that count; others are left alone.
+#[derive(Deserialize)]
+struct Columns {
+    arc_length_mm: f64,
+    radius_um: f64,
+}
+
+/// The rows of a file, one more than allowed at most, or what is wrong with it.
+fn from_csv(path: &Path) -> Result<Vec<CsvRow>, String> {
+    let bytes = File::open(path)
+        .and_then(bounded)
+        .map_err(|why| why.to_string())?;
+    let mut reader = csv::ReaderBuilder::new()
+        .trim(csv::Trim::All)
+        .comment(Some(b'#'))
+        .from_reader(&*bytes);
+    let headers = reader.headers().map_err(|why| why.to_string())?.clone();
+    let row = |record: csv::Result<csv::StringRecord>| {
+        let record = record.map_err(|why| why.to_string())?;
+        let line = record.position().map_or(0, csv::Position::line);
+        let Columns {
+            arc_length_mm,
+            radius_um,
+        } = record
+            .deserialize(Some(&headers))
+            .map_err(|why| format!("line {line}: {}", said(&why)))?;
+        let values = [arc_length_mm, radius_um];
+        Ok(CsvRow { line, values })
+    };
+    reader.records().take(MOST + 1).map(row).collect()
+}
+
+/// What a row's error says, without the place, which is said already.
+fn said(why: &csv::Error) -> String {
+    match why.kind() {
+        csv::ErrorKind::Deserialize { err, .. } => err.to_string(),
+        _ => why.to_string(),
+    }
+}
+
+impl<'de> Deserialize<'de> for Rows {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Either;
+
+        impl<'de> Visitor<'de> for Either {
+            type Value = Rows;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("the name of a CSV file or a list of [arc_length_mm, radius_um]")
+            }
+
+            fn visit_str<E>(self, name: &str) -> Result<Rows, E> {
+                Ok(Rows::Named(name.to_owned()))
+            }
+
+            fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<Rows, A::Error> {
+                Vec::deserialize(SeqAccessDeserializer::new(seq)).map(Rows::Listed)
+            }
+        }
+
+        deserializer.deserialize_any(Either)
+    }
+}
