@@ -106,7 +106,7 @@ fn instructions(effects: Effects) -> usize {
     let mut validator = Validator::new(ValidationFlags::all(), Capabilities::empty());
     let info = validator.validate(&module).expect("it is valid");
     let entry = &module.entry_points[0];
-    let constants = shaders::overrides(effects, Precision::F32.steps())
+    let constants = shaders::overrides(effects)
         .map(|(name, value)| (name.to_owned(), value))
         .into_iter()
         .collect();

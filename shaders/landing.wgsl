@@ -21,15 +21,15 @@ fn cross2(a: vec2<real>, b: vec2<real>) -> real {
     return a.x * b.y - a.y * b.x;
 }
 
-// One trajectory.
-fn land(rod: Rod, tau: real, start: Start) -> Landing {
+// One trajectory, in `steps` steps, or as many for every piece of a profile.
+fn land(rod: Rod, tau: real, start: Start, steps: u32) -> Landing {
     let at_contact = State(
         vec2<real>(start.cos, start.sin),
         vec4<real>(start.tangent, 0.0, 0.0),
         vec3<real>(),
         vec3<real>(-curvature(rod, start), -start.tangent),
     );
-    let y = travel(rod, tau, start, at_contact);
+    let y = travel(rod, tau, start, steps, at_contact);
     let to_pole = rod.pole * vec2<real>(start.tangent.y, -start.tangent.x);
     let w = to_pole - y.rod.zw;
     let f = over(-y.by_force.yz, w) - vec2<real>(0.0, y.by_force.x);

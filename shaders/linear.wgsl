@@ -14,14 +14,15 @@ fn compliance(material: Material, section: Section) -> real {
 }
 
 // From the contact at tau to the base.
-fn travel(rod: Rod, tau: real, start: Start, at_contact: State) -> State {
-    let h = tau / real(STEPS);
+fn travel(rod: Rod, tau: real, start: Start, steps: u32, at_contact: State) -> State {
+    let h = tau / real(steps);
     let rho = start.radius;
     return integrate(
         System(start.force, 2.0 * rod.bend, rod.spiral, Material(rod.gradient)),
         gains(rod.taper, h),
         Section(rho, 1.0 / (rho * rho * rho), start.arclength),
         h,
+        steps,
         at_contact,
     );
 }

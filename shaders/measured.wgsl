@@ -24,8 +24,8 @@ fn compliance(material: Material, section: Section) -> real {
     return section.rho / (square * square * (1.0 + material.gradient * section.arclength));
 }
 
-// From the contact at tau to the base, in STEPS steps a piece.
-fn travel(rod: Rod, tau: real, start: Start, at_contact: State) -> State {
+// From the contact at tau to the base, in as many steps for every piece.
+fn travel(rod: Rod, tau: real, start: Start, steps: u32, at_contact: State) -> State {
     var k = arrayLength(&pieces);
     var y = at_contact;
     var here = tau;
@@ -34,9 +34,9 @@ fn travel(rod: Rod, tau: real, start: Start, at_contact: State) -> State {
         k--;
         let piece = pieces[k];
         if piece.begin < section.arclength {
-            let h = (here - piece.tau) / real(STEPS);
+            let h = (here - piece.tau) / real(steps);
             let system = System(start.force, 2.0 * rod.bend, rod.spiral, Material(piece, rod.gradient));
-            y = integrate(system, gains(rod.taper, h), section, h, y);
+            y = integrate(system, gains(rod.taper, h), section, h, steps, y);
             here = piece.tau;
             section = Section(1.0 - rod.taper * piece.begin, 0.0, piece.begin);
         }

@@ -3,10 +3,10 @@
 @group(0) @binding(0) var<storage, read> cases: array<real>;
 @group(0) @binding(1) var<storage, read_write> answers: array<real>;
 
-// force, twice_bend, taper, h, rho, gradient, arclength, then the state; answers the state after STEPS steps.
+// force, twice_bend, taper, h, rho, gradient, arclength, then the state, then the steps; answers the state after them.
 @compute @workgroup_size(1)
 fn probe_steps(@builtin(global_invocation_id) id: vec3<u32>) {
-    let i = 19u * id.x;
+    let i = 20u * id.x;
     let system = System(cases[i], cases[i + 1u], array<real, 2>(), Material(cases[i + 5u]));
     let h = cases[i + 3u];
     let rho = cases[i + 4u];
@@ -15,6 +15,7 @@ fn probe_steps(@builtin(global_invocation_id) id: vec3<u32>) {
         gains(cases[i + 2u], h),
         Section(rho, 1.0 / (rho * rho * rho), cases[i + 6u]),
         h,
+        u32(cases[i + 19u]),
         State(
             vec2<real>(cases[i + 7u], cases[i + 8u]),
             vec4<real>(cases[i + 9u], cases[i + 10u], cases[i + 11u], cases[i + 12u]),

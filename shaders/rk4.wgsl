@@ -49,10 +49,10 @@ fn upright(rod: vec4<real>) -> vec4<real> {
     return vec4<real>(scale * rod.xy, rod.zw);
 }
 
-fn integrate(system: System, gains: Gains, start: Section, h: real, at_start: State) -> State {
+fn integrate(system: System, gains: Gains, start: Section, h: real, steps: u32, at_start: State) -> State {
     var section = start;
     var y = at_start;
-    for (var i = 0u; i < STEPS; i++) {
+    for (var i = 0u; i < steps; i++) {
         y = step(system, gains, section, h, y);
         y.rod = upright(y.rod);
         section = at(gains.end, section);

@@ -6,7 +6,7 @@ struct Shot {
     pole_x: real,
     pole_y: real,
     rod: u32,
-    padding: u32,
+    steps: u32,
 }
 
 struct Hit {
@@ -26,14 +26,13 @@ fn solve(rod: Rod, shot: Shot) -> Hit {
     var hit = Hit(shot.tau, shot.load, 0.0, 0u, STALLED);
     for (var round = 0u; round <= MOST_STEPS; round++) {
         let start = start_at(rod, hit.tau, hit.load);
-        let landing = land(rod, hit.tau, start);
+        let landing = land(rod, hit.tau, start, shot.steps);
         hit.residual = length(landing.pole - wanted);
         if !is_finite(hit.residual) {
             hit.outcome = NOT_FINITE;
             break;
         }
-        let q = abs(hit.load) * start.arclength * start.arclength;
-        if hit.residual <= TOLERANCE && q <= MOST_Q {
+        if hit.residual <= TOLERANCE {
             hit.outcome = CONVERGED;
         }
         if round < MOST_STEPS {

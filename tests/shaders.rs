@@ -27,7 +27,7 @@ fn validate(text: &str, precision: Precision, effects: &[Effects]) -> Result<(),
         .map_err(|e| e.emit_to_string(text))?;
     for entry in &module.entry_points {
         for effects in effects {
-            let constants: PipelineConstants = shaders::overrides(*effects, precision.steps())
+            let constants: PipelineConstants = shaders::overrides(*effects)
                 .map(|(name, value)| (name.to_owned(), value))
                 .into_iter()
                 .collect();

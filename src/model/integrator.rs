@@ -2,7 +2,7 @@
 
 use super::real::expm1_over_small;
 use super::rhs::{Intrinsic, Material, Planar, RodSystem, Sensitivity, State};
-use super::{Real, Rod, Section};
+use super::{Real, Rod, Section, arclength};
 
 /// How finely trajectories are integrated: at least `least` steps, and none along which the radius changes by more than
 /// a factor `exp(longest)`, the modulus by more than `exp(2 longest)`, or the resting whisker turns by more than `longest`.
@@ -16,7 +16,8 @@ pub struct Resolution {
 
 impl Resolution {
     /// Steps for a trajectory over `tau` on `rod`: a multiple of `least`, so that many trajectories take equally many.
-    /// With a profile, steps for every piece of it.
+    /// With a profile, steps for every piece of it: as many of `least`, twice, as the piece that
+    /// bends the most has in the bend.
     #[must_use]
     #[allow(
         clippy::cast_possible_truncation,
@@ -27,8 +28,9 @@ impl Resolution {
         let modulus = rod.gradient.abs() / (1.0 + rod.gradient).min(1.0);
         let fastest = rod.taper.max(rod.sharpest_bend()).max(0.5 * modulus);
         if let Some(profile) = rod.profile {
-            let [change, length] = profile.change;
-            let whole = f64::from(self.least) * length / rod.tau_tip();
+            let s = arclength(rod, tau);
+            let [change, length] = profile.changes[profile.piece(s)];
+            let whole = CONCENTRATED * f64::from(self.least) * profile.largest_share(s);
             let needed = change.max(fastest * length) / self.longest;
             return (whole.max(needed).ceil() as u32).clamp(FEWEST_PER_PIECE, MOST_MULTIPLES);
         }
@@ -36,6 +38,9 @@ impl Resolution {
         self.least * (multiple.ceil() as u32).clamp(1, MOST_MULTIPLES)
     }
 }
+
+/// Under more than a small load the bend gathers in the softest piece.
+const CONCENTRATED: f64 = 2.0;
 
 /// A piece may be much shorter than what the rod needs as a step, but the load may change on the first one.
 const FEWEST_PER_PIECE: u32 = 2;

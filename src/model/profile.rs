@@ -84,15 +84,18 @@ impl Way<'_> {
             let whole = self.start.tau;
             return self.integrate(intrinsic, Graded { gradient }, whole, (from, to), state);
         };
-        for piece in profile.pieces[..=self.rod.piece(from)].iter().rev() {
-            let end = self.rod.tau(piece.from).max(to);
+        let mut ahead = self.start.tau;
+        for piece in profile.pieces[..=self.rod.piece(ahead)].iter().rev() {
+            let begin = self.rod.tau(piece.from);
+            let (whole, end) = (ahead - begin, begin.max(to));
+            ahead = begin;
             if end < from {
                 let material = Measured {
                     from: piece.from,
                     cubic: piece.cubic,
                     gradient,
                 };
-                state = self.integrate(intrinsic, material, profile.change[1], (from, end), state);
+                state = self.integrate(intrinsic, material, whole, (from, end), state);
                 from = end;
             }
         }

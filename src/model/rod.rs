@@ -60,6 +60,29 @@ pub struct Rod {
 /// the tip than any length that `f64` millimetres of a whisker can tell apart from it in practice.
 pub const PERFECT_CONE_CUT: f64 = 1e-9;
 
+/// Arclength at the tip, in whisker lengths, of a whisker of this taper: 1, but for a perfect cone.
+pub(super) fn pointed(taper: f64) -> f64 {
+    ((1.0 - PERFECT_CONE_CUT) / taper).min(1.0)
+}
+
+/// See [`Rod::tau`].
+pub(super) fn tau_at(taper: f64, s: f64) -> f64 {
+    if taper == 0.0 {
+        s
+    } else {
+        -(-taper * s).ln_1p() / taper
+    }
+}
+
+/// The inverse, without cancellation.
+pub(super) fn arclength_at(taper: f64, tau: f64) -> f64 {
+    if taper == 0.0 {
+        tau
+    } else {
+        -(-taper * tau).exp_m1() / taper
+    }
+}
+
 impl Rod {
     /// `whisker` with `pole` on `side`.
     #[must_use]
@@ -136,18 +159,25 @@ impl Rod {
     /// `tau` at arclength `s`: `-ln(1 - beta s)/beta`, the variable in which a tapered rod is smooth.
     #[must_use]
     pub fn tau(&self, s: f64) -> f64 {
-        if self.taper == 0.0 {
-            s
-        } else {
-            -(-self.taper * s).ln_1p() / self.taper
-        }
+        tau_at(self.taper, s)
     }
 
     /// `tau` at the tip; a perfect cone ends at [`PERFECT_CONE_CUT`].
     #[must_use]
     pub fn tau_tip(&self) -> f64 {
-        let cut = (1.0 - PERFECT_CONE_CUT) / self.taper;
-        self.tau(cut.min(1.0))
+        self.tau(pointed(self.taper))
+    }
+
+    /// How far a small load at `tau` turns the whisker there, over what it does on the cone with the same base and tip: 1
+    /// without a profile. Folds of all whiskers lie at similar `|load| s^2 softness`.
+    #[must_use]
+    pub fn softness(&self, tau: f64) -> f64 {
+        self.profile.map_or(1.0, |profile| {
+            let s = arclength(self, tau);
+            let scale = self.radius(tau);
+            let cone = s * s * (1.0 + 2.0 * scale) / (6.0 * scale * scale);
+            profile.compliance(s) / cone
+        })
     }
 
     /// The scale of the coordinates at `tau`: without a profile the radius over the base radius.

@@ -1,5 +1,6 @@
 //! The contact, where every trajectory starts.
 
+use super::rod::arclength_at;
 use super::{Rest, Rod};
 use glam::DVec2;
 
@@ -70,9 +71,5 @@ fn parabola(rod: &Rod, s: f64) -> (DVec2, f64, f64) {
 /// Arclength at `tau`: `(1 - exp(-beta tau))/beta`, without cancellation.
 #[must_use]
 pub fn arclength(rod: &Rod, tau: f64) -> f64 {
-    if rod.taper == 0.0 {
-        tau
-    } else {
-        -(-rod.taper * tau).exp_m1() / rod.taper
-    }
+    arclength_at(rod.taper, tau)
 }

@@ -15,18 +15,18 @@ pub struct FoldPoint {
     pub landing: Curved,
 }
 
-/// Samples of `q = |load| s^2` per round of the search.
+/// Samples of `q = |load| s^2` per round of the search; measured radii add their softness as a factor.
 const SAMPLES: usize = 16;
 
-/// Distance of the first samples. The sheet is at least 6.8 wide in `q`, and the second fold is farther from
-/// the first than this.
+/// Distance of the first samples. Without measured radii the sheet is at least 6.8 wide in `q`, and the second fold is
+/// farther from the first than this.
 const FIRST_STEP: f64 = 0.5;
 
 /// How much wider a bracket is than the samples say, relatively: their signs come from the coarse resolution.
 const SLACK: f64 = 1e-2;
 
-/// Beyond this `q` the samples spread out. The largest first fold known lies at 24.15: the limit at the tip of a
-/// perfect cone that is slender against the pole.
+/// Beyond this `q` the samples spread out. The largest first fold known of a cone lies at 24.15: the limit at the tip of a
+/// perfect one that is slender against the pole.
 const EVEN_UP_TO: f64 = 64.0;
 
 /// The largest Newton step left, relative to the load, at a point that counts as a fold. At the tip of a perfect
@@ -76,7 +76,7 @@ fn bracket(method: Method, rod: &Rod, side: Side, taus: &[f64]) -> Vec<Option<Br
     let mut open: Vec<March> = (0..taus.len())
         .map(|index| March {
             index,
-            scale: side.sign() / arclength(rod, taus[index]).powi(2),
+            scale: side.sign() / (arclength(rod, taus[index]).powi(2) * rod.softness(taus[index])),
             last: None,
         })
         .collect();

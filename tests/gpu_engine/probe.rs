@@ -124,7 +124,7 @@ impl Number for f64 {
 /// The twin of `probe_steps`.
 fn steps<T: Number>(effects: Effects, steps: u32, case: &[T]) -> Vec<T> {
     let [force, twice_bend, taper, h, rho, gradient, arclength] = case[..7] else {
-        unreachable!("a case has 19 numbers")
+        unreachable!("a case has 20 numbers")
     };
     let scales = if effects.taper || effects.gradient {
         Scales::tapered::<Rk4>(taper, h)
@@ -139,7 +139,7 @@ fn steps<T: Number>(effects: Effects, steps: u32, case: &[T]) -> Vec<T> {
     let rest: [T; 2] = case[7..9].try_into().unwrap();
     let state: Bare<T> = (
         case[9..13].try_into().unwrap(),
-        case[13..].try_into().unwrap(),
+        case[13..19].try_into().unwrap(),
     );
     let run = Run {
         force,
@@ -193,7 +193,7 @@ impl<T: Number> Run<T> {
 }
 
 /// Cases for `probe_steps`: random states on random rods, `steps` steps away from the base at least.
-fn cases<T: Number>(effects: Effects, count: u32) -> Vec<Vec<T>> {
+fn cases<T: Number>(effects: Effects, count: u32, steps: u32) -> Vec<Vec<T>> {
     let mut random = Random(11);
     let mut case = || {
         let taper = random.between(0.0, 0.99);
@@ -240,6 +240,7 @@ fn cases<T: Number>(effects: Effects, count: u32) -> Vec<Vec<T>> {
             near(),
             -1.0,
             near(),
+            f64::from(steps),
         ]
     };
     (0..count)
@@ -252,8 +253,8 @@ const GROUPS: [std::ops::Range<usize>; 5] = [0..2, 2..4, 4..6, 6..9, 9..12];
 
 /// The worst difference between a shader's text and the twin, each group of numbers by its own size.
 fn difference<T: Number>(bench: &Bench, text: &str, effects: Effects, count: u32) -> f64 {
-    let cases = cases::<T>(effects, 2000);
-    let overrides = shaders::overrides(effects, count);
+    let cases = cases::<T>(effects, 2000, count);
+    let overrides = shaders::overrides(effects);
     let shader = bench.run(text, "probe_steps", &overrides, &cases, 12);
     let mut worst = 0.0_f64;
     for (case, shader) in cases.iter().zip(shader) {
@@ -349,7 +350,7 @@ fn contacts_are_right<T: Number>(tolerance: f64) {
         }
     }
     let text = shaders::model(T::PRECISION, Effects::default()) + PROBE;
-    let overrides = shaders::overrides(USUAL, 1);
+    let overrides = shaders::overrides(USUAL);
     let found = bench.run(&text, "probe_start", &overrides, &cases, 5);
     let mut worst = 0.0_f64;
     for (case, found) in cases.iter().zip(found) {

@@ -18,6 +18,9 @@ pub struct Case {
     pub pole: f64,
     pub friction: f64,
     pub tip_to_base: f64,
+    pub stretch: f64,
+    /// Measured radii in place of the taper: parts of the length and of the base radius; none for a cone.
+    pub rows: Vec<[f64; 2]>,
     pub pushes_deg: Vec<f64>,
     pub distances: Vec<f64>,
 }
@@ -29,9 +32,25 @@ impl Case {
         let base_um = 1.5 * length;
         let tip_um = base_um * (1.0 - self.taper);
         let mut text = format!(
-            "title = \"hard\"\n[whisker]\nlength_mm = {length:?}\nbase_radius_um = {base_um:?}\n\
-             tip_radius_um = {tip_um:?}\nyoungs_modulus_gpa = 3\n"
+            "title = \"hard\"\n[whisker]\nlength_mm = {length:?}\nyoungs_modulus_gpa = 3\n"
         );
+        let rows: Vec<[f64; 2]> = self
+            .rows
+            .iter()
+            .map(|[s, r]| [s * length, r * base_um])
+            .collect();
+        let _ = if rows.is_empty() {
+            writeln!(
+                text,
+                "base_radius_um = {base_um:?}\ntip_radius_um = {tip_um:?}"
+            )
+        } else {
+            writeln!(text, "[whisker.profile]\nrows = {rows:?}")
+        };
+        if self.stretch != 1.0 {
+            let stretch = self.stretch;
+            let _ = writeln!(text, "[whisker.projection]\narc_stretch = {stretch:?}");
+        }
         if self.bend > 0.0 {
             let a = self.bend / length;
             let _ = writeln!(text, "[whisker.curvature]\nparabola_per_mm = {a:?}");

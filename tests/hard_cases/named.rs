@@ -10,6 +10,8 @@ const PLAIN: Case = Case {
     pole: 0.0,
     friction: 0.0,
     tip_to_base: 1.0,
+    stretch: 1.0,
+    rows: Vec::new(),
     pushes_deg: Vec::new(),
     distances: Vec::new(),
 };
@@ -154,6 +156,33 @@ pub fn named() -> Vec<(&'static str, Case)> {
                 tip_to_base: 10.0,
                 friction: 0.5,
                 ..PLAIN
+            },
+        ),
+        (
+            "thin shaft",
+            Case {
+                rows: vec![
+                    [0.0, 1.0],
+                    [0.25, 0.33],
+                    [0.5, 0.13],
+                    [0.75, 0.07],
+                    [1.0, 0.03],
+                ],
+                ..cone.clone()
+            },
+        ),
+        (
+            "thick shaft, stretch 1.03",
+            Case {
+                rows: vec![
+                    [0.0, 1.0],
+                    [0.25, 1.5],
+                    [0.5, 1.3],
+                    [0.75, 0.8],
+                    [1.0, 0.05],
+                ],
+                stretch: 1.03,
+                ..cone.clone()
             },
         ),
     ];

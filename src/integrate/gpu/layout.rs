@@ -17,7 +17,7 @@ pub struct Layout {
     /// The pieces of a rod's profile to bytes.
     pub pieces: fn(&[Stretch]) -> Vec<u8>,
     /// Shots to bytes.
-    pub shots: fn(&[Shot]) -> Vec<u8>,
+    pub shots: fn(&[Task]) -> Vec<u8>,
     /// Hits from bytes.
     pub hits: fn(&[u8], &mut Vec<Hit>),
 }
@@ -37,6 +37,13 @@ impl Layout {
 pub struct Stretch {
     pub tau: f64,
     pub piece: Piece,
+}
+
+/// A shot, and in how many steps its trajectories are integrated; with a profile, steps for every piece.
+#[derive(Clone, Copy, Debug)]
+pub struct Task {
+    pub shot: Shot,
+    pub steps: u32,
 }
 
 /// The codes that the shaders write.
@@ -97,7 +104,7 @@ macro_rules! layout {
                 pub pole_x: $real,
                 pub pole_y: $real,
                 pub rod: u32,
-                pub padding: u32,
+                pub steps: u32,
             }
 
             #[derive(Clone, Copy, Pod, Zeroable)]
@@ -134,15 +141,15 @@ macro_rules! layout {
                 }
             }
 
-            impl From<&host::Shot> for Shot {
-                fn from(shot: &host::Shot) -> Self {
+            impl From<&super::Task> for Shot {
+                fn from(super::Task { shot, steps }: &super::Task) -> Self {
                     Self {
                         tau: shot.tau as $real,
                         load: shot.load as $real,
                         pole_x: shot.pole.x as $real,
                         pole_y: shot.pole.y as $real,
                         rod: shot.rod,
-                        padding: 0,
+                        steps: *steps,
                     }
                 }
             }
@@ -238,16 +245,7 @@ mod tests {
                     spiral
                 ),
                 in_rust!($module::Piece, "Piece", tau, begin, cubic),
-                in_rust!(
-                    $module::Shot,
-                    "Shot",
-                    tau,
-                    load,
-                    pole_x,
-                    pole_y,
-                    rod,
-                    padding
-                ),
+                in_rust!($module::Shot, "Shot", tau, load, pole_x, pole_y, rod, steps),
                 in_rust!($module::Hit, "Hit", tau, load, residual, steps, outcome),
             ] {
                 assert_eq!(shader.iter().find(|s| s.0 == rust.0), Some(&rust));

@@ -20,7 +20,6 @@ impl Pipeline {
         shader: &str,
         layout: &Layout,
         effects: Effects,
-        steps: u32,
     ) -> Result<Self, EngineError> {
         let module = device
             .handle
@@ -37,7 +36,7 @@ impl Pipeline {
                 module: &module,
                 entry_point: Some("shoot"),
                 compilation_options: wgpu::PipelineCompilationOptions {
-                    constants: &overrides(effects, steps),
+                    constants: &overrides(effects),
                     ..Default::default()
                 },
                 cache: None,

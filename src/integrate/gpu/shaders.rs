@@ -3,16 +3,11 @@
 use super::Precision;
 use super::layout::OUTCOMES;
 use crate::integrate::MOST_STEPS;
-use crate::model::{Effects, LONGEST_STEP, Resolution};
+use crate::model::{Effects, LONGEST_STEP, Resolution, Rod};
 use std::fmt::Write;
 
 /// Invocations per workgroup; every device allows this many.
 pub const WORKGROUP: u32 = 64;
-
-/// The largest `|load| s^2` under which the steps of the shaders do; without friction and gradient no fold lies beyond.
-/// Under more a whisker coils up, and the residual would not tell that the trajectory is wrong (by 1e-4 whisker lengths
-/// beyond 30, 8e-4 beyond 100, measured).
-pub const MOST_Q: f64 = 30.0;
 
 /// A trajectory and Newton's step from it.
 const MODEL: [&str; 5] = [
@@ -34,20 +29,30 @@ impl Precision {
     /// pole from where `f64` finds it: in `f32` 3.6e-5, 7e-6, 4e-6 and 9e-6 whisker lengths for 32, 48, 64 and
     /// 128 steps (beyond 64 rounding grows); in `f64` 2.4e-6, 4.8e-7 and 1.5e-7 for 64, 96 and 128.
     #[must_use]
-    pub const fn steps(self) -> u32 {
+    pub const fn least_steps(self) -> u32 {
         match self {
             Self::F32 => 64,
             Self::F64 => 96,
         }
     }
 
+    /// Steps of a trajectory from `tau`; with a profile, steps for every piece of it.
+    #[must_use]
+    pub fn steps(self, effects: Effects, rod: &Rod, tau: f64) -> u32 {
+        if effects.profile {
+            self.resolution().steps(rod, tau)
+        } else {
+            self.least_steps()
+        }
+    }
+
     /// The resolution of whiskers with a profile, which take steps piece by piece: no coarser than that of a cone of
     /// taper 0.99 in as many steps as the others.
     #[must_use]
-    pub fn resolution(self) -> Resolution {
+    fn resolution(self) -> Resolution {
         Resolution {
-            least: self.steps(),
-            longest: LARGEST_TAPER_TAU / f64::from(self.steps()),
+            least: self.least_steps(),
+            longest: LARGEST_TAPER_TAU / f64::from(self.least_steps()),
         }
     }
 
@@ -77,8 +82,6 @@ fn constants(precision: Precision) -> String {
          const MOST_STEPS = {MOST_STEPS}u;\n\
          const LONGEST_STEP = real({LONGEST_STEP:e});\n\
          const TOLERANCE = real({tolerance:e});\n\
-         const MOST_Q = real({MOST_Q:e});\n\
-         override STEPS: u32;\n\
          override TAPER: bool;\n\
          override CURVATURE: bool;\n\
          override SPIRAL: bool;\n\
@@ -106,10 +109,9 @@ pub fn shoot(precision: Precision, effects: Effects) -> String {
 
 /// The values of the `override` constants.
 #[must_use]
-pub fn overrides(effects: Effects, steps: u32) -> [(&'static str, f64); 5] {
+pub fn overrides(effects: Effects) -> [(&'static str, f64); 4] {
     let flag = |on: bool| f64::from(u8::from(on));
     [
-        ("STEPS", f64::from(steps)),
         ("TAPER", flag(effects.advances())),
         ("CURVATURE", flag(effects.curvature)),
         ("SPIRAL", flag(effects.spiral)),

@@ -2,10 +2,10 @@
 
 use super::EngineError;
 use super::device::Device;
-use super::layout::Layout;
+use super::layout::{Layout, Task};
 use super::pipeline::Pipeline;
 use super::shaders::WORKGROUP;
-use crate::integrate::{Hit, Shot};
+use crate::integrate::Hit;
 use std::time::Instant;
 use wgpu::BufferUsages as Usage;
 
@@ -69,24 +69,25 @@ fn part(binding: u32, buffer: &wgpu::Buffer, size: u64) -> wgpu::BindGroupEntry<
 }
 
 impl Slot {
-    /// Sends `shots` on their way.
+    /// Sends shots on their way.
     pub fn launch(
         self,
         device: &Device,
         layout: &Layout,
         pipeline: &Pipeline,
         shared: &Shared,
-        shots: &[Shot],
+        tasks: &[Task],
     ) -> Result<Flight, EngineError> {
+        let count = tasks.len();
         let buffers = match self.buffers {
-            Some(buffers) if buffers.capacity >= shots.len() => buffers,
-            _ => Buffers::new(device, layout, shots.len())?,
+            Some(buffers) if buffers.capacity >= count => buffers,
+            _ => Buffers::new(device, layout, count)?,
         };
-        let shots_size = (shots.len() * layout.shot) as u64;
-        let hits_size = (shots.len() * layout.hit) as u64;
+        let shots_size = (count * layout.shot) as u64;
+        let hits_size = (count * layout.hit) as u64;
         device
             .queue
-            .write_buffer(&buffers.shots, 0, &(layout.shots)(shots));
+            .write_buffer(&buffers.shots, 0, &(layout.shots)(tasks));
         let mut entries = vec![
             part(0, shared.rods, shared.rods.size()),
             part(1, &buffers.shots, shots_size),
@@ -104,7 +105,7 @@ impl Slot {
             pass.set_pipeline(&pipeline.handle);
             pass.set_bind_group(0, &bindings, &[]);
             // The pace keeps the shots below what `u32` can count.
-            pass.dispatch_workgroups((shots.len() as u32).div_ceil(WORKGROUP), 1, 1);
+            pass.dispatch_workgroups((count as u32).div_ceil(WORKGROUP), 1, 1);
         }
         commands.copy_buffer_to_buffer(&buffers.hits, 0, &buffers.readback, 0, hits_size);
         let submitted = Instant::now();
@@ -115,7 +116,7 @@ impl Slot {
             .map_async(wgpu::MapMode::Read, ..hits_size, |_| ());
         device.check()?;
         Ok(Flight {
-            shots: shots.len(),
+            shots: count,
             submitted,
             index,
             buffers,
