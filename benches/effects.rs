@@ -16,7 +16,6 @@ use std::time::Instant;
 use whiskmap::integrate::gpu::{Precision, shaders};
 use whiskmap::model::batch::{Launch, Method, land};
 use whiskmap::model::{Dopri8, Effects, First};
-use whiskmap::sheet::FINE;
 
 #[allow(dead_code, reason = "the tests use the rest")]
 #[path = "../tests/gpu_engine/shots.rs"]
@@ -68,10 +67,7 @@ fn main() {
 }
 
 fn microseconds(effects: Effects, launches: &[Launch]) -> f64 {
-    let method = Method {
-        effects,
-        resolution: FINE,
-    };
+    let method = Method::fine(effects);
     let start = Instant::now();
     let landings = land::<Dopri8, First, 6>(method, launches);
     let micros = start.elapsed().as_secs_f64() * 1e6;

@@ -6,7 +6,6 @@ use whiskmap::model::batch::{Launch, Method, land};
 use whiskmap::model::{
     Dopri8, Effects, First, FirstAndEnergy, RadiusProfile, Resolution, Rod, Second, arclength,
 };
-use whiskmap::sheet::FINE;
 
 #[allow(dead_code, reason = "the engines' tests use the rest")]
 #[path = "gpu_engine/shots.rs"]
@@ -74,7 +73,7 @@ fn plainly(launch: &Launch, steps: u32) -> DVec2 {
 fn the_pole_is_where_plain_equations_see_it() {
     for effects in Effects::all().filter(|e| e.profile && !e.curvature) {
         let launches = launches(effects, 100);
-        let landings = land::<Dopri8, First, 6>(with(effects, FINE), &launches);
+        let landings = land::<Dopri8, First, 6>(with(effects, Resolution::FINE), &launches);
         for (launch, landing) in launches.iter().zip(landings) {
             let apart = plainly(launch, 2000).distance(landing.pole);
             assert!(apart < 1e-10, "{apart:e} {launch:?}");
@@ -87,7 +86,7 @@ fn the_pole_is_where_plain_equations_see_it() {
 fn derivatives_agree_with_differences_in_every_set() {
     const STEP: f64 = 1e-5;
     for effects in Effects::all() {
-        let method = with(effects, FINE);
+        let method = with(effects, Resolution::FINE);
         for launch in launches(effects, 40) {
             let scale = [launch.tau, launch.load.abs() + 1.0 / launch.tau.powi(2)];
             let moved = |axis: usize, sign: f64| {
@@ -138,7 +137,7 @@ fn derivatives_agree_with_differences_in_every_set() {
 
 fn farthest(one: Effects, other: Effects, pairs: &[(Launch, Launch)]) -> f64 {
     let ends = |effects: Effects, launches: Vec<Launch>| {
-        land::<Dopri8, FirstAndEnergy, 7>(with(effects, FINE), &launches)
+        land::<Dopri8, FirstAndEnergy, 7>(with(effects, Resolution::FINE), &launches)
     };
     let ones = ends(one, pairs.iter().map(|pair| pair.0).collect());
     let others = ends(other, pairs.iter().map(|pair| pair.1).collect());
@@ -224,23 +223,23 @@ fn a_faint_parabola_is_a_circular_arc_to_third_order() {
 fn rows_do_not_cost_the_order() {
     for effects in Effects::all().filter(|effects| effects.profile) {
         let launches = launches(effects, 200);
-        let poles = |longest: f64| -> Vec<DVec2> {
-            let resolution = Resolution { least: 1, longest };
+        let poles = |least: u32| -> Vec<DVec2> {
+            let resolution = Resolution::of(least);
             land::<Dopri8, First, 6>(with(effects, resolution), &launches)
                 .iter()
                 .map(|landing| landing.pole)
                 .collect()
         };
-        let exact = poles(0.01);
-        let error = |longest: f64| {
-            let apart = poles(longest).into_iter().zip(&exact);
+        let exact = poles(320);
+        let error = |least: u32| {
+            let apart = poles(least).into_iter().zip(&exact);
             apart.map(|(a, b)| a.distance(*b)).fold(0.0, f64::max)
         };
-        let order = (error(0.4) / error(0.2)).log2();
+        let order = (error(8) / error(16)).log2();
         assert!(
             (6.5..10.0).contains(&order),
             "{effects:?}: {order}, {:e}",
-            error(0.2)
+            error(16)
         );
     }
 }
@@ -263,15 +262,16 @@ fn many_rows_are_fine_at_every_contact() {
     };
     for s in [0.002, 0.004, 0.0075, 0.03, 0.3, 0.9, 0.999] {
         for q in [1.0, 6.0, 12.0] {
-            let pole = |rod: Rod| {
+            let pole = |rod: Rod, resolution: Resolution| {
                 let launch = Launch {
                     rod,
                     tau: cone.tau(s),
                     load: q / (s * s),
                 };
-                land::<Dopri8, First, 6>(with(Effects::of([&rod]), FINE), &[launch])[0].pole
+                land::<Dopri8, First, 6>(with(Effects::of([&rod]), resolution), &[launch])[0].pole
             };
-            let apart = pole(cone).distance(pole(measured));
+            let apart =
+                pole(cone, Resolution::FINE.doubled()).distance(pole(measured, Resolution::FINE));
             assert!(apart < 1e-12 * s, "{apart:e} at {s}, q {q}");
         }
     }

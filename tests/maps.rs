@@ -12,6 +12,7 @@ use compute::{compute, difference, thin};
 use std::path::Path;
 use whiskmap::integrate::gpu::{Gpu, Precision};
 use whiskmap::integrate::{Cpu, Engine, EngineError, Outcome, Shot};
+use whiskmap::model::batch::Method;
 use whiskmap::model::{Effects, Rod, Side};
 use whiskmap::refine::{End, TOLERANCE, refine};
 use whiskmap::scene::Scene;
@@ -123,7 +124,7 @@ fn engines_agree_on_every_field() {
         let rod = Rod::new(&scene.whisker, &scene.pole, side);
         let effects = Effects::of([&rod]);
         let distances: Vec<f64> = scene.grid.distance_mm.iter().map(|d| d / 20.0).collect();
-        let sheet = Sheet::new(effects, &rod, side, &distances).unwrap();
+        let sheet = Sheet::new(Method::fine(effects), &rod, side, &distances).unwrap();
         let mut pushes: Vec<f64> = scene
             .grid
             .push_angle_deg
@@ -148,7 +149,7 @@ fn engines_agree_on_every_field() {
             let hits = engine.shoot(effects, &[rod], &shots).unwrap();
             assert!(hits.iter().all(|hit| hit.outcome != Outcome::NotFinite));
             let starts: Vec<(f64, f64)> = hits.iter().map(|hit| (hit.tau, hit.load)).collect();
-            refine(effects, &[&sheet], &shots, &starts)
+            refine(Method::fine(effects), &[&sheet], &shots, &starts)
         };
         let cpu = states(&mut Cpu);
         assert!(cpu.iter().filter(|cell| cell.end == End::Solved).count() > 3000);

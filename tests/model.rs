@@ -105,7 +105,7 @@ fn batches_have_the_order() {
 #[test]
 fn the_fine_resolution_is_exact() {
     let fine = Method {
-        resolution: whiskmap::sheet::FINE,
+        resolution: whiskmap::model::Resolution::FINE,
         ..steps(1)
     };
     let exact = land::<Dopri8, First, 6>(steps(512), &rods());

@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use whiskmap::classify::{RowBoundary, Span};
+use whiskmap::model::batch::Method;
 use whiskmap::model::{Effects, Rest, Rod, Side, arclength};
 use whiskmap::scene::{Curvature, Pole, Whisker};
 use whiskmap::sheet::{Crossing, Edge, Sheet};
@@ -10,7 +11,7 @@ use whiskmap::sheet::{Crossing, Edge, Sheet};
 fn detachment(whisker: &Whisker, pole: &Pole, side: Side, distance_mm: f64) -> (f64, Crossing) {
     let rod = Rod::new(whisker, pole, side);
     let sheet = Sheet::new(
-        Effects::of([&rod]),
+        Method::fine(Effects::of([&rod])),
         &rod,
         side,
         &[distance_mm / whisker.length_mm],

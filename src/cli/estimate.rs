@@ -21,7 +21,7 @@ pub struct Estimate {
 pub fn estimate(scene: &Scene, plan: &Plan) -> Result<Estimate, Failure> {
     let small = sample(scene);
     let small_plan = Plan {
-        effects: plan.effects,
+        method: plan.method,
         ..Plan::new(&small)?
     };
     let summary = map::run(&small, &small_plan, &mut Cpu, &mut Nothing)?;

@@ -3,7 +3,8 @@
 use super::{Face, Summary, summary::Stage};
 use crate::classify::Status;
 use crate::integrate::{Fallback, Hit, Outcome, Shot};
-use crate::model::{Effects, Side};
+use crate::model::Side;
+use crate::model::batch::Method;
 use crate::refine::{self, End, Refined, State};
 use crate::scene::Scene;
 use crate::sheet::{Guess, Sheet};
@@ -52,7 +53,7 @@ pub struct Cell {
 /// Settles the cells of `strip`.
 pub fn settle(
     scene: &Scene,
-    effects: Effects,
+    method: Method,
     faces: &[Face],
     strip: &Strip,
     engine: &mut Fallback<'_>,
@@ -87,7 +88,9 @@ pub fn settle(
         }
     });
     let rods: Vec<_> = sheets.iter().map(|sheet| sheet.rod).collect();
-    let hits = summary.time(Stage::Shooting, || engine.shoot(effects, &rods, &shots));
+    let hits = summary.time(Stage::Shooting, || {
+        engine.shoot(method.effects, &rods, &shots)
+    });
     count(&hits, engine.failure().is_some(), &mut summary.shots);
     let refined = summary.time(Stage::Refinement, || {
         // What an engine could not finish starts again from the lattice's guess.
@@ -99,7 +102,7 @@ pub fn settle(
                 Outcome::Stalled | Outcome::NotFinite => (shot.tau, shot.load),
             })
             .collect();
-        refine::refine(effects, &sheets, &shots, &starts)
+        refine::refine(method, &sheets, &shots, &starts)
     });
     for ((&target, hit), refined) in targets.iter().zip(&hits).zip(refined) {
         let Refined { state, steps, end } = refined;

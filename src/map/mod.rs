@@ -8,7 +8,8 @@ mod summary;
 pub use summary::Summary;
 
 use crate::integrate::{Engine, Fallback};
-use crate::model::{Effects, Rod, Side};
+use crate::model::batch::Method;
+use crate::model::{Rod, Side};
 use crate::plan::Plan;
 use crate::scene::{Scene, Whisker};
 use crate::sheet::Sheet;
@@ -36,7 +37,7 @@ struct Face {
 }
 
 impl Face {
-    fn new(scene: &Scene, effects: Effects, whisker: &Whisker, side: Side) -> Self {
+    fn new(scene: &Scene, method: Method, whisker: &Whisker, side: Side) -> Self {
         let rod = Rod::new(whisker, &scene.pole, side);
         let distances: Vec<f64> = scene
             .grid
@@ -44,7 +45,7 @@ impl Face {
             .iter()
             .map(|d| d / whisker.length_mm)
             .collect();
-        let sheet = Sheet::new(effects, &rod, side, &distances);
+        let sheet = Sheet::new(method, &rod, side, &distances);
         Self { side, sheet }
     }
 }
@@ -70,14 +71,14 @@ pub fn run(
                 .collect();
             pairs
                 .par_iter()
-                .map(|(whisker, side)| Face::new(scene, plan.effects, whisker, *side))
+                .map(|(whisker, side)| Face::new(scene, plan.method, whisker, *side))
                 .collect()
         });
         let mut panels: Vec<Panel> = whiskers.iter().map(|_| panel::blank(scene)).collect();
         for strip in Strip::all(faces.len(), scene.grid.distance_mm.len(), plan.rows_at_once) {
             let cells = cells::settle(
                 scene,
-                plan.effects,
+                plan.method,
                 &faces,
                 &strip,
                 &mut engine,

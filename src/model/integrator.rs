@@ -15,6 +15,44 @@ pub struct Resolution {
 }
 
 impl Resolution {
+    /// What maps and lines take unless told otherwise: states are exact to rounding for taper up to 0.95, and to 2e-12 up
+    /// to 0.99.
+    pub const FINE: Self = Self::of(32);
+
+    /// What signs and guesses need. Over the stable sheet states are off by less than 1e-6.
+    pub const COARSE: Self = Self::of(8);
+
+    /// From cheap to exact, about a factor of 30 in the error apart.
+    pub const LADDER: [Self; 8] = [
+        Self::of(4),
+        Self::of(6),
+        Self::of(8),
+        Self::of(12),
+        Self::of(16),
+        Self::of(24),
+        Self::FINE,
+        Self::of(48),
+    ];
+
+    /// At least so many steps, and none longer than a cone of taper 0.96 takes on average in as many.
+    #[must_use]
+    pub const fn of(least: u32) -> Self {
+        let longest = 3.2 / least as f64;
+        Self {
+            least,
+            longest: if longest < 0.4 { longest } else { 0.4 },
+        }
+    }
+
+    /// Twice as fine.
+    #[must_use]
+    pub const fn doubled(self) -> Self {
+        Self {
+            least: 2 * self.least,
+            longest: 0.5 * self.longest,
+        }
+    }
+
     /// Steps for a trajectory over `tau` on `rod`: a multiple of `least`, so that many trajectories take equally many.
     /// With a profile, steps for every piece of it: as many of `least`, twice, as the piece that
     /// bends the most has in the bend.

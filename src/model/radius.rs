@@ -307,7 +307,7 @@ mod tests {
             .map(|s| [s, 1.0 - 0.8 * s])
             .collect();
         let profile = RadiusProfile::through(&rows);
-        for s in [0.01, 0.3, 0.72, 1.0] {
+        for s in [0.01_f64, 0.3, 0.72, 1.0] {
             // Two integrations of (1 - 0.8 s)^-4.
             let radius = 1.0 - 0.8 * s;
             let exact = (radius.powi(-2) - 1.0 - 1.6 * s) / (6.0 * 0.64);

@@ -6,6 +6,7 @@ mod sample;
 pub use effects::{Cost, Effect, effects};
 pub use sample::sample;
 
+use crate::model::batch::Method;
 use crate::model::{Effects, Rod, Side};
 use crate::scene::{Scene, Whisker};
 
@@ -35,8 +36,8 @@ pub const DERIVATIVE_STATES: usize = 6;
 pub struct Plan {
     /// The whiskers, in atlas order.
     pub whiskers: Vec<Whisker>,
-    /// The effects that the scene calls for.
-    pub effects: Effects,
+    /// The effects that the scene calls for, and the resolution of the refinement.
+    pub method: Method,
     /// The sides that the push angles ask for; first touch itself belongs to CB.
     pub sides: Vec<Side>,
     /// Cells of all panels.
@@ -100,7 +101,7 @@ impl Plan {
         let calls =
             |group: &[Whisker]| (group.len() * sides.len() * distances).div_ceil(rows_at_once);
         Ok(Self {
-            effects: Effects::of(&rods),
+            method: Method::fine(Effects::of(&rods)),
             engine_calls: whiskers.chunks(panels_at_once).map(calls).sum(),
             cells: cells * whiskers.len(),
             sides,
@@ -114,6 +115,6 @@ impl Plan {
     /// States of a trajectory for the rest shape: cos and sin of its tangent, if it is curved.
     #[must_use]
     pub const fn rest_states(&self) -> usize {
-        if self.effects.curvature { 2 } else { 0 }
+        if self.method.effects.curvature { 2 } else { 0 }
     }
 }

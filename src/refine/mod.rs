@@ -8,8 +8,8 @@ mod near_fold;
 
 use crate::integrate::Shot;
 use crate::model::batch::{Launch, Method, land};
-use crate::model::{Dopri8, Effects, FirstAndEnergy, Full, Rod, arclength};
-use crate::sheet::{FINE, Sheet};
+use crate::model::{Dopri8, FirstAndEnergy, Full, Rod, arclength};
+use crate::sheet::Sheet;
 use near_fold::Verdict;
 
 /// Residual, in whisker lengths, at which a state is accepted without another step.
@@ -73,18 +73,14 @@ pub enum End {
     NotConverged,
 }
 
-/// Refines `starts` toward `shots`, each on the sheet `sheets[shot.rod]`.
+/// Refines `starts` by `method` toward `shots`, each on the sheet `sheets[shot.rod]`.
 #[must_use]
 pub fn refine(
-    effects: Effects,
+    method: Method,
     sheets: &[&Sheet],
     shots: &[Shot],
     starts: &[(f64, f64)],
 ) -> Vec<Refined> {
-    let method = Method {
-        effects,
-        resolution: FINE,
-    };
     let mut cells = newton(method, sheets, shots, starts, STEPS);
     let lost: Vec<usize> = (0..cells.len())
         .filter(|&i| cells[i].end == End::NotConverged)

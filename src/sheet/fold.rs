@@ -1,6 +1,5 @@
 //! The fold edge: the first load at which the Jacobian becomes singular, contact by contact.
 
-use super::COARSE;
 use crate::model::batch::{Launch, Method, land};
 use crate::model::{Curved, Dopri8, First, Rod, Second, Side, arclength};
 
@@ -41,11 +40,7 @@ const ROUNDS: usize = 60;
 
 /// First folds of `rod` at the contacts `taus`; `None` where there is none up to [`LARGEST_Q`].
 pub fn first_folds(method: Method, rod: &Rod, side: Side, taus: &[f64]) -> Vec<Option<FoldPoint>> {
-    let coarse = Method {
-        resolution: COARSE,
-        ..method
-    };
-    let mut folds = polish(method, rod, &bracket(coarse, rod, side, taus));
+    let mut folds = polish(method, rod, &bracket(method.coarsely(), rod, side, taus));
     // With friction and a stiff tip the first fold can lie at `q` of 1000, where the coarse resolution is lost.
     let lost: Vec<usize> = (0..taus.len()).filter(|&i| folds[i].is_none()).collect();
     let again: Vec<f64> = lost.iter().map(|&i| taus[i]).collect();

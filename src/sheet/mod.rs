@@ -29,22 +29,10 @@ pub use seek::{Edge, Sought, Wanted, seek};
 pub use walk::{Walk, walk};
 
 use crate::model::batch::Method;
-use crate::model::{Effects, Landing, Resolution, Rest, Rod, Side};
+use crate::model::{Landing, Rest, Rod, Side};
 use columns::Columns;
 use edges::Edges;
 use lattice::Lattice;
-
-/// The resolution at which a state is exact to rounding for taper up to 0.95, and to 2e-12 up to 0.99.
-pub const FINE: Resolution = Resolution {
-    least: 32,
-    longest: 0.1,
-};
-
-/// The resolution that signs and guesses need. Over the stable sheet its states are off by less than 1e-6.
-const COARSE: Resolution = Resolution {
-    least: 8,
-    longest: 0.4,
-};
 
 /// How far below zero the load of an unloaded whisker may come out, relative to the fold's: at the soft tip of a
 /// strongly curved cone the rounding of first touch (1e-13 of the length) is a load of 1e-8.
@@ -69,25 +57,17 @@ pub struct Sheet {
 }
 
 impl Sheet {
-    /// The sheet of `rod` for rows at these distances (first touch, in whisker lengths); `None` if some
+    /// The sheet of `rod`, computed by `method`, for rows at these distances (first touch, in whisker lengths); `None` if some
     /// contact has no fold, which no whisker is known for.
     #[must_use]
-    pub fn new(effects: Effects, rod: &Rod, side: Side, distances: &[f64]) -> Option<Self> {
-        let method = Method {
-            effects,
-            resolution: FINE,
-        };
+    pub fn new(method: Method, rod: &Rod, side: Side, distances: &[f64]) -> Option<Self> {
         let rest = Rest::new(rod);
         let rows: Vec<Row> = distances.iter().map(|d| Row::new(&rest, *d)).collect();
         let nearest = rows
             .iter()
             .min_by(|a, b| a.pole_distance.total_cmp(&b.pole_distance))?;
         let columns = Columns::new(method, rod, side, nearest)?;
-        let coarse = Method {
-            resolution: COARSE,
-            ..method
-        };
-        let lattice = Lattice::new(coarse, rod, side, &columns);
+        let lattice = Lattice::new(method.coarsely(), rod, side, &columns);
         let edges = Edges::new(method, rod, &columns, &lattice);
         let mut crossings = crossings::crossings(method, rod, side, &edges, &rows);
         for (row, crossings) in rows.iter().zip(&mut crossings) {
@@ -118,11 +98,7 @@ impl Sheet {
 
     /// The fold with the contact at the tip, where slip-off turns into pull-off; `None` if it is not found.
     #[must_use]
-    pub fn fold_at_tip(effects: Effects, rod: &Rod, side: Side) -> Option<FoldPoint> {
-        let method = Method {
-            effects,
-            resolution: FINE,
-        };
+    pub fn fold_at_tip(method: Method, rod: &Rod, side: Side) -> Option<FoldPoint> {
         fold::first_folds(method, rod, side, &[rod.tau_tip()]).pop()?
     }
 

@@ -1,6 +1,5 @@
 //! Newton's method for the points in which a row leaves the sheet.
 
-use super::COARSE;
 use crate::model::batch::{Launch, Method, land};
 use crate::model::{Curved, Dopri8, Rod, Second, arclength, limited};
 use glam::DVec2;
@@ -67,11 +66,7 @@ fn newton(method: Method, wanted: &[Wanted], coarse_rounds: usize) -> Vec<Sought
     let mut open: Vec<usize> = (0..wanted.len()).collect();
     for round in 0..coarse_rounds + ROUNDS {
         let is_coarse = round < coarse_rounds;
-        let resolution = if is_coarse { COARSE } else { method.resolution };
-        let method = Method {
-            resolution,
-            ..method
-        };
+        let method = if is_coarse { method.coarsely() } else { method };
         let launches: Vec<Launch> = open
             .iter()
             .map(|&i| Launch {

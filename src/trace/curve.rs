@@ -2,9 +2,9 @@
 
 use crate::classify::RowBoundary;
 use crate::model::batch::{Launch, Method, land};
-use crate::model::{Dopri8, Effects, FirstAndEnergy, Rest, Rod, Side, Units};
+use crate::model::{Dopri8, Effects, FirstAndEnergy, Resolution, Rest, Rod, Side, Units};
 use crate::scene::{Pole, Whisker};
-use crate::sheet::{Edge, FINE, Sheet};
+use crate::sheet::{Edge, Sheet};
 use serde::Serialize;
 
 /// How a push from first touch ends.
@@ -68,12 +68,27 @@ pub struct Corner {
 /// The detachment curve of `whisker` on one side of `pole`, at growing `distances_mm`.
 #[must_use]
 pub fn curve(whisker: &Whisker, pole: &Pole, side: Side, distances_mm: &[f64]) -> Vec<Detachment> {
+    curve_at(Resolution::FINE, whisker, pole, side, distances_mm)
+}
+
+/// The same at another resolution.
+#[must_use]
+pub fn curve_at(
+    resolution: Resolution,
+    whisker: &Whisker,
+    pole: &Pole,
+    side: Side,
+    distances_mm: &[f64],
+) -> Vec<Detachment> {
     let rod = Rod::new(whisker, pole, side);
-    let effects = Effects::of([&rod]);
+    let method = Method {
+        effects: Effects::of([&rod]),
+        resolution,
+    };
     let units = Units::new(whisker);
     let rest = Rest::new(&rod);
     let distances: Vec<f64> = distances_mm.iter().map(|d| d / whisker.length_mm).collect();
-    let sheet = Sheet::new(effects, &rod, side, &distances);
+    let sheet = Sheet::new(method, &rod, side, &distances);
     let mut rows: Vec<Detachment> = distances_mm
         .iter()
         .zip(&distances)
@@ -102,10 +117,6 @@ pub fn curve(whisker: &Whisker, pole: &Pole, side: Side, distances_mm: &[f64]) -
             load: end.load,
         })
         .collect();
-    let method = Method {
-        effects,
-        resolution: FINE,
-    };
     let states = land::<Dopri8, FirstAndEnergy, 7>(method, &launches);
     for ((i, end), full) in ends.into_iter().zip(&states) {
         let push = side.sign() * end.push;
@@ -161,7 +172,8 @@ pub fn corner(whisker: &Whisker, pole: &Pole, side: Side) -> Corner {
         let kinds = [-1.0, 1.0].map(|sign| end(distance + sign * CORNER_TOLERANCE * length).kind);
         kinds == [Kind::SlipOff, Kind::PullOff]
     };
-    let tip = (rod.taper < 1.0).then(|| Sheet::fold_at_tip(Effects::of([&rod]), &rod, side));
+    let tip = (rod.taper < 1.0)
+        .then(|| Sheet::fold_at_tip(Method::fine(Effects::of([&rod])), &rod, side));
     let distance = tip.flatten().and_then(|fold| {
         let pole = fold.landing.landing.pole.length();
         let at_tip = Rest::new(&rod).distance_of_pole(pole) * length;

@@ -10,19 +10,16 @@ mod shape;
 mod state;
 
 pub use branch::{Branch, BranchPoint};
-pub use curve::{Corner, Detachment, Kind, corner, curve};
+pub use curve::{Corner, Detachment, Kind, corner, curve, curve_at};
 pub use shape::{Part, Shape, ShapePoint};
 pub use state::Found;
 
 use crate::model::Resolution;
 use serde::Serialize;
 
-/// Twice as fine as [`crate::sheet::FINE`]: unstable states carry larger loads. On branches of twelve whiskers, from
+/// Twice as fine as [`Resolution::FINE`]: unstable states carry larger loads. On branches of twelve whiskers, from
 /// cylinder to perfect cone, it leaves at most 3e-12 of the pole's distance, where `FINE` leaves 2e-9.
-const FINER: Resolution = Resolution {
-    least: 64,
-    longest: 0.05,
-};
+const FINER: Resolution = Resolution::FINE.doubled();
 
 /// What is special about a point of a branch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]

@@ -81,7 +81,7 @@ pub fn launch(rod: Rod, most_q: f64, random: &mut Random) -> Launch {
 pub fn landings(effects: Effects, launches: &[Launch]) -> Vec<Landing> {
     let method = Method {
         effects,
-        resolution: whiskmap::sheet::FINE,
+        resolution: whiskmap::model::Resolution::FINE,
     };
     land::<Dopri8, First, 6>(method, launches)
 }

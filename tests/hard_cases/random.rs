@@ -12,13 +12,9 @@ use whiskmap::integrate::gpu::Precision;
 use whiskmap::model::batch::Launch;
 use whiskmap::model::{Resolution, arclength};
 use whiskmap::refine::End;
-use whiskmap::sheet::FINE;
 
-/// Half as many steps as [`FINE`].
-const HALF: Resolution = Resolution {
-    least: FINE.least / 2,
-    longest: 2.0 * FINE.longest,
-};
+/// Half as many steps as [`Resolution::FINE`].
+const HALF: Resolution = Resolution::of(16);
 
 /// Loads `q = |load| s^2` up to those of whiskers that do not coil up: only strong friction holds such a whisker, up to
 /// `q` of 1000 with a stiff tip.
@@ -157,7 +153,7 @@ fn scan(count: u32, whiskers: &impl Strategy<Value = Case>) -> Seen {
         let shots = Shots::new(&scene);
         let cells = shots.refined(&shots.shoot(&mut Cpu));
         let states = shots.launches(&cells);
-        let fine = halving(shots.effects, &states, FINE);
+        let fine = halving(shots.effects, &states, Resolution::FINE);
         let half = halving(shots.effects, &states, HALF);
         seen.states += states.len();
         for ((fine, half), state) in fine.iter().zip(half).zip(&states) {

@@ -7,7 +7,7 @@ use whiskmap::model::batch::{Launch, Method, land};
 use whiskmap::model::{Dopri8, Effects, First, Landing, Resolution, Rod, Side};
 use whiskmap::refine::{End, Refined, refine};
 use whiskmap::scene::Scene;
-use whiskmap::sheet::{FINE, Sheet};
+use whiskmap::sheet::Sheet;
 
 /// The cells of one whisker that have a guess, on both sides.
 pub struct Shots {
@@ -25,7 +25,7 @@ impl Shots {
         let pairs: Vec<(Side, Rod)> = Side::BOTH.into_iter().zip(rods).collect();
         let sheets: Vec<Sheet> = pairs
             .par_iter()
-            .map(|(side, rod)| Sheet::new(effects, rod, *side, &distances).unwrap())
+            .map(|(side, rod)| Sheet::new(Method::fine(effects), rod, *side, &distances).unwrap())
             .collect();
         let mut shots = Vec::new();
         for (index, sheet) in (0..).zip(&sheets) {
@@ -72,7 +72,7 @@ impl Shots {
         });
         let starts: Vec<(f64, f64)> = starts.collect();
         let sheets: Vec<&Sheet> = self.sheets.iter().collect();
-        refine(self.effects, &sheets, &self.shots, &starts)
+        refine(Method::fine(self.effects), &sheets, &self.shots, &starts)
     }
 
     /// The trajectories that end at these states.
@@ -99,10 +99,7 @@ impl Shots {
                 (shot.pole, Launch { rod, tau, load })
             })
             .unzip();
-        let method = Method {
-            effects: self.effects,
-            resolution: FINE,
-        };
+        let method = Method::fine(self.effects);
         let landed = land::<Dopri8, First, 6>(method, &launches);
         let missed = landed.iter().zip(wanted);
         let missed = missed.map(|(landing, pole)| landing.pole.distance(pole));
@@ -119,10 +116,9 @@ pub fn halving(effects: Effects, launches: &[Launch], resolution: Resolution) ->
         };
         land::<Dopri8, First, 6>(method, launches).into_iter()
     };
-    let finer = Resolution {
-        least: 2 * resolution.least,
-        longest: 0.5 * resolution.longest,
-    };
     let moved = |(a, b): (Landing, Landing)| a.pole.distance(b.pole);
-    poles(resolution).zip(poles(finer)).map(moved).collect()
+    poles(resolution)
+        .zip(poles(resolution.doubled()))
+        .map(moved)
+        .collect()
 }

@@ -1,6 +1,7 @@
 //! Detachment curves and their corners.
 
 use crate::{POLE, everything, whisker};
+use whiskmap::model::batch::Method;
 use whiskmap::model::{Effects, Rod, Side};
 use whiskmap::scene::Curvature;
 use whiskmap::sheet::Sheet;
@@ -121,8 +122,13 @@ fn the_branch_decides_where_rows_leave_the_sheet_more_than_once() {
                     );
                     compared += 1;
                     let rod = Rod::new(&whisker, &POLE, side);
-                    let sheet =
-                        Sheet::new(Effects::of([&rod]), &rod, side, &[distance / 20.0]).unwrap();
+                    let sheet = Sheet::new(
+                        Method::fine(Effects::of([&rod])),
+                        &rod,
+                        side,
+                        &[distance / 20.0],
+                    )
+                    .unwrap();
                     several += usize::from(sheet.crossings[0].len() > 1);
                 }
             }

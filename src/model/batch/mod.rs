@@ -68,6 +68,26 @@ pub struct Method {
     pub resolution: Resolution,
 }
 
+impl Method {
+    /// At [`Resolution::FINE`].
+    #[must_use]
+    pub const fn fine(effects: Effects) -> Self {
+        Self {
+            effects,
+            resolution: Resolution::FINE,
+        }
+    }
+
+    /// The same at [`Resolution::COARSE`].
+    #[must_use]
+    pub const fn coarsely(self) -> Self {
+        Self {
+            resolution: Resolution::COARSE,
+            ..self
+        }
+    }
+}
+
 /// Blocks per piece of work that one thread takes: long enough to hide the hand-over, short enough to share. A batch
 /// that is one piece stays on the thread that asks for it.
 const BLOCKS_PER_TASK: usize = 16;
