@@ -5,6 +5,7 @@
 //! active tactile sensation", eLife 2:e01350. `ARCHITECTURE.md` names the rooms and the way data takes
 //! through them.
 
+pub mod accuracy;
 pub mod classify;
 pub mod cli;
 pub mod integrate;

@@ -61,7 +61,7 @@ fn a_broken_text_is_refused() {
     let text = shaders::shoot(Precision::F32, none[0]);
     for (good, bad) in [
         ("rods[shot.rod]", "rods[shot.tau]"),
-        ("override STEPS: u32;", ""),
+        ("override TAPER: bool;", ""),
     ] {
         assert!(text.contains(good));
         assert!(validate(&text.replace(good, bad), Precision::F32, &none).is_err());

@@ -2,7 +2,8 @@
 
 use super::failure::{Failure, say};
 use super::outputs::{Opened, Outputs};
-use crate::model::Side;
+use super::tolerance::Tolerance;
+use crate::model::{Resolution, Side};
 use crate::render::{Chart, CurveAxis, curves};
 use crate::scene::{Morphology, Scene, Whisker};
 use crate::trace::{self, Corner, Detachment, Kind};
@@ -17,6 +18,7 @@ use std::path::PathBuf;
 Examples:
   whiskmap curve scenes/cone.toml | head
   whiskmap curve scenes/cone.toml --csv curve.csv --plot curve.svg
+  whiskmap curve scenes/cone.toml --tolerance 1e-4deg
   whiskmap curve scenes/cone.toml --corner
 
 One line per side and distance of the scene, CF before CB; angles are positive for CB and negative for CF. The kind \
@@ -27,8 +29,10 @@ pub struct Options {
     /// Scene file; - reads it from standard input
     scene: PathBuf,
     /// Tell only where slip-off turns into pull-off
-    #[arg(long, conflicts_with = "plot")]
+    #[arg(long, conflicts_with_all = ["plot", "tolerance"])]
     corner: bool,
+    #[command(flatten)]
+    tolerance: Tolerance,
     #[command(flatten)]
     outputs: Outputs,
 }
@@ -47,6 +51,8 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         )));
     }
     let mut outputs = options.outputs.open()?;
+    let accuracy = options.tolerance.choose(&scene, &Side::BOTH)?;
+    let resolution = accuracy.map_or(Resolution::FINE, |accuracy| accuracy.resolution);
     let mut drawn = Vec::new();
     let mut unresolved = 0;
     for group in whiskers.chunks(AT_ONCE) {
@@ -67,7 +73,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
             let rows: Vec<(Morphology, Detachment)> = sides()
                 .flat_map_iter(|((morphology, whisker), side)| {
                     let distances = &scene.grid.distance_mm;
-                    let curve = trace::curve(whisker, &scene.pole, side, distances);
+                    let curve = trace::curve_at(resolution, whisker, &scene.pole, side, distances);
                     curve.into_iter().map(|row| (*morphology, row))
                 })
                 .collect();

@@ -3,6 +3,8 @@
 use super::engine::{self, Choice, Shaders};
 use super::failure::{Failure, say};
 use super::progress;
+use super::tolerance::Tolerance;
+use crate::accuracy::Accuracy;
 use crate::classify::{Regime, Status};
 use crate::map::{self, Observer, Summary};
 use crate::plan::Plan;
@@ -22,6 +24,7 @@ use std::time::Instant;
 Examples:
   whiskmap map scenes/cone.toml
   whiskmap map scenes/morphology.toml -o /tmp --engine cpu --threads 1
+  whiskmap map scenes/morphology.toml --tolerance 1e-3deg
   whiskmap map - < my_whisker.toml")]
 pub struct Options {
     /// Scene file; - reads it from standard input
@@ -38,6 +41,8 @@ pub struct Options {
     /// Threads of the CPU [default: all cores]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
+    #[command(flatten)]
+    tolerance: Tolerance,
     /// Write no picture
     #[arg(long)]
     no_png: bool,
@@ -46,12 +51,16 @@ pub struct Options {
 /// Runs `map`.
 pub fn run(options: &Options) -> Result<(), Failure> {
     let scene = Scene::read(&options.scene)?;
-    let plan = Plan::new(&scene)?;
+    let mut plan = Plan::new(&scene)?;
     if let Some(threads) = options.threads {
         rayon::ThreadPoolBuilder::new()
             .num_threads(threads.into())
             .build_global()
             .map_err(|error| Failure::Input(format!("--threads {threads}: {error}")))?;
+    }
+    let accuracy = options.tolerance.choose(&scene, &plan.sides)?;
+    if let Some(accuracy) = &accuracy {
+        plan.method.resolution = accuracy.resolution;
     }
     let (mut engine, why) = engine::open(options.engine, options.precision)?;
     let description = engine.describe();
@@ -73,10 +82,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
             scene: &scene,
             engine: &description.engine,
             adapter: &description.adapter,
-            tolerances: &serde_json::json!({
-                "residual_goal_whisker_lengths": GOAL,
-                "residual_accepted_whisker_lengths": TOLERANCE,
-            }),
+            tolerances: &tolerances(accuracy),
             status_names: &Status::ALL.map(|status| (status.code(), status.name())),
         },
     )
@@ -96,6 +102,18 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     let written: Vec<PathBuf> = [Some(file), picture].into_iter().flatten().collect();
     print(&scene, &summary, start.elapsed().as_secs_f64(), &written)?;
     Ok(())
+}
+
+/// What the file says of its accuracy.
+fn tolerances(accuracy: Option<Accuracy>) -> serde_json::Value {
+    let mut tolerances = serde_json::json!({
+        "residual_goal_whisker_lengths": GOAL,
+        "residual_accepted_whisker_lengths": TOLERANCE,
+    });
+    if let Some(accuracy) = accuracy {
+        tolerances["angle_error_estimated_deg"] = accuracy.error_deg.into();
+    }
+    tolerances
 }
 
 /// Keeps panels in the file and moves the bar.

@@ -17,6 +17,7 @@ mod progress;
 mod render;
 mod reproduce;
 mod shape;
+mod tolerance;
 mod verify;
 
 use clap::{Parser, Subcommand};

@@ -13,12 +13,29 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 /// Lanes of every bundle.
 pub const WIDTH: usize = 8;
 
-/// Eight numbers worked on in step.
+/// Eight numbers worked on in step, or one for comparison.
 pub trait Lanes: Real {
+    /// How many.
+    const LANES: usize = WIDTH;
+
     /// From an array.
     fn pack(lanes: [f64; WIDTH]) -> Self;
     /// To an array.
     fn unpack(self) -> [f64; WIDTH];
+}
+
+impl Lanes for f64 {
+    const LANES: usize = 1;
+
+    #[inline(always)]
+    fn pack(lanes: [f64; WIDTH]) -> Self {
+        lanes[0]
+    }
+
+    #[inline(always)]
+    fn unpack(self) -> [f64; WIDTH] {
+        [self; WIDTH]
+    }
 }
 
 /// Implements the arithmetic of `Lanes` for a tuple struct of registers, register by register.

@@ -156,7 +156,10 @@ impl Gpu {
         let precision = self.precision;
         let task = |shot: &Shot| Task {
             shot: *shot,
-            steps: precision.steps(effects, &rods[shot.rod as usize], shot.tau),
+            steps: precision.steps(
+                rods.get(shot.rod as usize).filter(|_| effects.profile),
+                shot.tau,
+            ),
         };
         let last = self.rods.take();
         let buffer = self.upload("rods", last, &(self.layout.rods)(rods))?;
@@ -233,7 +236,8 @@ impl Engine for Gpu {
         }
         let mut hits = self.run(effects, rods, shots)?;
         for (hit, shot) in hits.iter_mut().zip(shots) {
-            if hit.outcome == Outcome::Converged && coils_up(&rods[shot.rod as usize], hit) {
+            let rod = rods.get(shot.rod as usize);
+            if hit.outcome == Outcome::Converged && rod.is_some_and(|rod| coils_up(rod, hit)) {
                 hit.outcome = Outcome::Stalled;
             }
         }

@@ -36,14 +36,10 @@ impl Precision {
         }
     }
 
-    /// Steps of a trajectory from `tau`; with a profile, steps for every piece of it.
+    /// Steps of a trajectory from `tau`; on a rod `measured`, steps for every piece of its profile.
     #[must_use]
-    pub fn steps(self, effects: Effects, rod: &Rod, tau: f64) -> u32 {
-        if effects.profile {
-            self.resolution().steps(rod, tau)
-        } else {
-            self.least_steps()
-        }
+    pub fn steps(self, measured: Option<&Rod>, tau: f64) -> u32 {
+        measured.map_or(self.least_steps(), |rod| self.resolution().steps(rod, tau))
     }
 
     /// The resolution of whiskers with a profile, which take steps piece by piece: no coarser than that of a cone of
@@ -51,7 +47,7 @@ impl Precision {
     #[must_use]
     fn resolution(self) -> Resolution {
         Resolution {
-            least: self.least_steps(),
+            least: self.least_steps() / 2,
             longest: LARGEST_TAPER_TAU / f64::from(self.least_steps()),
         }
     }

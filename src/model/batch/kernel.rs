@@ -52,8 +52,11 @@ where
     C: GatherMaterial<T>,
 {
     let rods = launches.map(|launch| launch.rod);
-    let starts = launches.map(|launch| Start::new(&launch.rod, launch.tau, launch.load));
-    let at_start: [[f64; N]; WIDTH] = std::array::from_fn(|i| K::start(&starts[i]));
+    let starts = lanes::<T, _>(|i| {
+        let Launch { rod, tau, load } = &launches[i];
+        Start::new(rod, *tau, *load)
+    });
+    let at_start = lanes::<T, _>(|i| K::start(&starts[i]));
 
     let (intrinsic, rest) = I::gather(&rods, &starts);
     let force = T::pack(starts.map(|start| start.force));
@@ -108,12 +111,25 @@ where
     }
     let (_, (rod, sens)) = state;
     let (rod, sens) = (rod.map(T::unpack), sens.map(T::unpack));
-    std::array::from_fn(|i| {
+    lanes::<T, _>(|i| {
         K::answer(
             &rods[i],
             &starts[i],
             &rod.map(|x| x[i]),
             &sens.map(|x| x[i]),
         )
+    })
+}
+
+/// Something for every lane that `T` has; the others repeat the first.
+#[inline(always)]
+fn lanes<T: Lanes, A: Copy>(each: impl Fn(usize) -> A) -> [A; WIDTH] {
+    let first = each(0);
+    std::array::from_fn(|i| {
+        if i == 0 || i >= T::LANES {
+            first
+        } else {
+            each(i)
+        }
     })
 }

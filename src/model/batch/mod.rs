@@ -98,7 +98,16 @@ pub fn land<M: Integrator, K: Kernel<M, N>, const N: usize>(
     method: Method,
     launches: &[Launch],
 ) -> Vec<K::Answer> {
-    let unit = Unit::detect();
+    land_on::<M, K, N>(Unit::detect(), method, launches)
+}
+
+/// The same on a given unit.
+#[must_use]
+pub fn land_on<M: Integrator, K: Kernel<M, N>, const N: usize>(
+    unit: Unit,
+    method: Method,
+    launches: &[Launch],
+) -> Vec<K::Answer> {
     // Lanes step together, so only trajectories of equally many steps share a block: company changes nothing.
     let work: Vec<(u32, usize)> = launches
         .iter()

@@ -14,9 +14,12 @@ use crate::model::simd::x86::{Avx2, Avx512, Sse2 as Baseline};
 use crate::model::{Dopri8, Effects};
 use std::fmt;
 
-/// A SIMD unit.
+/// A SIMD unit that this processor has.
 #[derive(Clone, Copy, Debug)]
-pub enum Unit {
+pub struct Unit(Instructions);
+
+#[derive(Clone, Copy, Debug)]
+enum Instructions {
     /// AVX-512.
     #[cfg(target_arch = "x86_64")]
     Avx512,
@@ -25,16 +28,19 @@ pub enum Unit {
     Avx2,
     /// What every processor of this architecture has.
     Baseline,
+    /// One trajectory at a time.
+    Scalar,
 }
 
 impl fmt::Display for Unit {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
+        f.write_str(match self.0 {
             #[cfg(target_arch = "x86_64")]
-            Self::Avx512 => "AVX-512",
+            Instructions::Avx512 => "AVX-512",
             #[cfg(target_arch = "x86_64")]
-            Self::Avx2 => "AVX2",
-            Self::Baseline => "baseline SIMD",
+            Instructions::Avx2 => "AVX2",
+            Instructions::Baseline => "baseline SIMD",
+            Instructions::Scalar => "scalar",
         })
     }
 }
@@ -49,13 +55,19 @@ impl Unit {
                 && is_x86_feature_detected!("avx512dq")
                 && is_x86_feature_detected!("avx512vl")
             {
-                return Self::Avx512;
+                return Self(Instructions::Avx512);
             }
             if is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma") {
-                return Self::Avx2;
+                return Self(Instructions::Avx2);
             }
         }
-        Self::Baseline
+        Self(Instructions::Baseline)
+    }
+
+    /// No unit at all, as the compiler's default target does arithmetic: what vectors are compared with.
+    #[must_use]
+    pub const fn scalar() -> Self {
+        Self(Instructions::Scalar)
     }
 }
 
@@ -83,20 +95,24 @@ macro_rules! kernel {
                 steps: u32,
                 launches: &[Launch; WIDTH],
             ) -> [Self::Answer; WIDTH] {
-                match unit {
+                match unit.0 {
                     #[cfg(target_arch = "x86_64")]
-                    // SAFETY: `detect` has seen every feature that the function enables.
-                    Unit::Avx512 => unsafe {
+                    // SAFETY: only `detect` makes such a unit, and it has seen every feature that the function enables.
+                    Instructions::Avx512 => unsafe {
                         avx512::<$integrator, $kind, $n>(effects, steps, launches)
                     },
                     #[cfg(target_arch = "x86_64")]
                     // SAFETY: as above.
-                    Unit::Avx2 => unsafe {
+                    Instructions::Avx2 => unsafe {
                         avx2::<$integrator, $kind, $n>(effects, steps, launches)
                     },
-                    Unit::Baseline => {
+                    Instructions::Baseline => {
                         by_effects::<$integrator, $kind, Baseline, $n>(effects, steps, launches)
                     }
+                    Instructions::Scalar => launches.map(|launch| {
+                        by_effects::<$integrator, $kind, f64, $n>(effects, steps, &[launch; WIDTH])
+                            [0]
+                    }),
                 }
             }
         }

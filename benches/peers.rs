@@ -1,0 +1,238 @@
+//! The side of `benches/peers/run.sh` that is ours: `cargo bench --bench peers -- --json FILE --ensemble FILE`.
+//!
+//! Trajectories with first derivatives by number of steps and threads, detachment points, and cells of a map; and the
+//! ensemble of trajectories with its exact answers, for the peers to solve too. Times are medians.
+#![allow(
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    reason = "a bench that cannot go on should stop, and a line on the screen is what it is for"
+)]
+
+#[allow(dead_code, reason = "the tests use the rest")]
+#[path = "../tests/gpu_engine/shots.rs"]
+mod shots;
+
+use rayon::ThreadPool;
+use serde_json::{Value, json};
+use shots::Random;
+use std::fmt::Write;
+use std::time::Instant;
+use whiskmap::integrate::Cpu;
+use whiskmap::map::{self, Observer};
+use whiskmap::model::batch::{Launch, Method, Unit, land_on};
+use whiskmap::model::{Dopri8, Effects, First, Landing, Resolution, Rod, Side, arclength};
+use whiskmap::plan::Plan;
+use whiskmap::scene::Scene;
+use whiskmap::store;
+use whiskmap::trace::curve_at;
+
+const TRAJECTORIES: usize = 20_000;
+const RUNS: usize = 7;
+
+fn main() {
+    let arguments: Vec<String> = std::env::args().collect();
+    let value = |name: &str| {
+        let place = arguments.iter().position(|argument| argument == name);
+        place.and_then(|place| arguments.get(place + 1))
+    };
+    let launches = ensemble();
+    let exact = land(Unit::detect(), Resolution::of(128), &launches);
+    if let Some(path) = value("--ensemble") {
+        std::fs::write(path, table(&launches, &exact)).unwrap();
+    }
+    let threads = std::thread::available_parallelism()
+        .map_or(1, usize::from)
+        .min(2);
+    let [one, two] = [1, threads].map(|threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+        pool.build().unwrap()
+    });
+    let answer = json!({
+        "unit": Unit::detect().to_string(),
+        "threads": threads,
+        "trajectories": trajectories(&one, &two, &launches, &exact),
+        "detachment": detachment(&one),
+        "cell": cell(&one),
+    });
+    let text = serde_json::to_string_pretty(&answer).unwrap();
+    match value("--json") {
+        Some(path) => std::fs::write(path, text).unwrap(),
+        None => println!("{text}"),
+    }
+}
+
+/// Taper up to 0.95, contacts from 0.05 of the length to next to the tip, straight or `A*` of 0.4, `q` up to 9.
+fn ensemble() -> Vec<Launch> {
+    let mut random = Random(1);
+    (0..TRAJECTORIES)
+        .map(|i| {
+            let rod = Rod {
+                taper: random.between(0.0, 0.95),
+                bend: if i % 2 == 0 { 0.0 } else { 0.4 },
+                ..Rod::default()
+            };
+            let s = random.between(0.05, 0.999);
+            let load = random.between(0.0, 9.0) / (s * s);
+            let tau = rod.tau(s);
+            Launch { rod, tau, load }
+        })
+        .collect()
+}
+
+fn land(unit: Unit, resolution: Resolution, launches: &[Launch]) -> Vec<Landing> {
+    let effects = Effects::of(launches.iter().map(|launch| &launch.rod));
+    let method = Method {
+        effects,
+        resolution,
+    };
+    land_on::<Dopri8, First, 6>(unit, method, launches)
+}
+
+/// Place of the pole, and the derivatives of the logarithm of its distance and of its direction by the contact's arclength
+/// at a fixed force, and by the force.
+fn observables(launch: &Launch, landing: &Landing) -> [f64; 6] {
+    let Launch { rod, tau, load } = launch;
+    let rho = rod.radius(*tau);
+    let by_f = landing.by_load / (rho * rho);
+    let by_s = (landing.by_tau + 2.0 * rod.taper * load * rho * rho * by_f) / rho;
+    let pole = landing.pole;
+    [pole.x, pole.y, by_s.x, by_s.y, by_f.x, by_f.y]
+}
+
+/// The ensemble as CSV.
+fn table(launches: &[Launch], exact: &[Landing]) -> String {
+    let mut text =
+        String::from("taper,bend,arclength,force,x,y,ln_d_by_s,phi_by_s,ln_d_by_f,phi_by_f\n");
+    for (launch, landing) in launches.iter().zip(exact) {
+        let Launch { rod, tau, load } = launch;
+        let rho = rod.radius(*tau);
+        let (s, force) = (arclength(rod, *tau), load * rho * rho);
+        let _ = write!(text, "{},{},{s},{force}", rod.taper, rod.bend);
+        for number in observables(launch, landing) {
+            let _ = write!(text, ",{number}");
+        }
+        text.push('\n');
+    }
+    text
+}
+
+/// The largest difference of the observables, each by its own size.
+fn error(launch: &Launch, found: &Landing, exact: &Landing) -> f64 {
+    let rho = launch.rod.radius(launch.tau);
+    let s = arclength(&launch.rod, launch.tau);
+    let by_force = rho * rho / (s * s);
+    let sizes = [1.0 / s, 1.0 / s, s, s, by_force, by_force];
+    let (found, exact) = (observables(launch, found), observables(launch, exact));
+    (0..6).fold(0.0, |worst, i| {
+        f64::max(worst, sizes[i] * (found[i] - exact[i]).abs())
+    })
+}
+
+/// Median of the seconds that `work` takes in `pool`, after a first time that does not count.
+fn seconds(pool: &ThreadPool, mut work: impl FnMut() + Send) -> f64 {
+    let mut times: Vec<f64> = (0..=RUNS)
+        .map(|_| {
+            let start = Instant::now();
+            pool.install(&mut work);
+            start.elapsed().as_secs_f64()
+        })
+        .skip(1)
+        .collect();
+    times.sort_by(f64::total_cmp);
+    times[RUNS / 2]
+}
+
+fn trajectories(
+    one: &ThreadPool,
+    two: &ThreadPool,
+    launches: &[Launch],
+    exact: &[Landing],
+) -> Vec<Value> {
+    let vectors = Unit::detect();
+    let kernels = [
+        ("simd", vectors, one),
+        ("simd", vectors, two),
+        ("scalar", Unit::scalar(), one),
+    ];
+    let mut rows = Vec::new();
+    for (kernel, unit, pool) in kernels {
+        for least in [4, 6, 8, 10, 12, 14, 16, 20, 24, 32, 48] {
+            let resolution = Resolution::of(least);
+            let seconds = seconds(pool, || {
+                std::hint::black_box(land(unit, resolution, launches));
+            });
+            let found = land(unit, resolution, launches);
+            let mut errors: Vec<f64> = (0..launches.len())
+                .map(|i| error(&launches[i], &found[i], &exact[i]))
+                .collect();
+            errors.sort_by(f64::total_cmp);
+            rows.push(json!({
+                "kernel": kernel,
+                "threads": pool.current_num_threads(),
+                "steps": least,
+                "microseconds": 1e6 * seconds / launches.len() as f64,
+                "error_max": errors[errors.len() - 1],
+                "error_99": errors[errors.len() * 99 / 100],
+            }));
+        }
+    }
+    rows
+}
+
+fn scene() -> Scene {
+    let text = include_str!("../scenes/cone.toml");
+    Scene::parse(text, "cone.toml", "cone").unwrap()
+}
+
+/// Detachment points of the cone, both sides, 1024 distances each.
+fn detachment(pool: &ThreadPool) -> Value {
+    const POINTS: usize = 1024;
+    let scene = scene();
+    let distances: Vec<f64> = (0..POINTS)
+        .map(|i| 2.0 + 18.0 * i as f64 / (POINTS - 1) as f64)
+        .collect();
+    let curves = |resolution| {
+        Side::BOTH.map(|side| curve_at(resolution, &scene.whisker, &scene.pole, side, &distances))
+    };
+    let seconds = seconds(pool, || {
+        std::hint::black_box(curves(Resolution::FINE));
+    });
+    let (found, exact) = (curves(Resolution::FINE), curves(Resolution::of(128)));
+    let pairs = found.iter().flatten().zip(exact.iter().flatten());
+    let apart = pairs.filter_map(|(a, b)| Some((a.push_angle_deg? - b.push_angle_deg?).abs()));
+    json!({
+        "microseconds": 1e6 * seconds / (2 * POINTS) as f64,
+        "error_deg": apart.fold(0.0, f64::max),
+        "points": 2 * POINTS,
+    })
+}
+
+/// Cells of the cone's map, by those with a state.
+fn cell(pool: &ThreadPool) -> Value {
+    let scene = scene();
+    let plan = Plan::new(&scene).unwrap();
+    let mut summary = None;
+    let seconds = seconds(pool, || {
+        summary = Some(map::run(&scene, &plan, &mut Cpu, &mut Nothing).unwrap());
+    });
+    let summary = summary.unwrap();
+    json!({
+        "microseconds": 1e6 * seconds / summary.cells() as f64,
+        "microseconds_by_state": 1e6 * seconds / summary.refined as f64,
+        "residual": summary.worst_residual,
+        "cells": summary.cells(),
+        "states": summary.refined,
+        "seconds": summary.seconds().map(|(stage, s)| json!({stage: s})).collect::<Vec<_>>(),
+    })
+}
+
+/// Keeps nothing.
+struct Nothing;
+
+impl Observer for Nothing {
+    fn panel(&mut self, _: usize, _: &store::Panel) -> Result<(), store::Error> {
+        Ok(())
+    }
+
+    fn settled(&mut self, _: usize) {}
+}

@@ -1,0 +1,128 @@
+//! States and detachments from all over a scene, its corners among them.
+
+use crate::model::batch::{Launch, Method, land};
+use crate::model::{Dopri8, Effects, First, Landing, Resolution, Rod, Side};
+use crate::scene::{Scene, Whisker};
+use crate::sheet::{Crossing, Edge, Sheet};
+use rayon::prelude::*;
+
+/// Values of an axis that take part: its ends, and some between. The ends of pushes get better with more distances, near
+/// the reach of the whisker above all.
+const PUSHES: usize = 12;
+const DISTANCES: usize = 64;
+const WHISKERS: usize = 4;
+
+/// States to integrate once and again.
+pub struct Sample {
+    effects: Effects,
+    states: Vec<Launch>,
+    /// Where pushes end.
+    ends: Vec<(Launch, Edge)>,
+}
+
+impl Sample {
+    /// A sample of `scene`; its states are known as well as lattices and coarse steps know them.
+    pub fn new(scene: &Scene, sides: &[Side]) -> Self {
+        let whiskers = whiskers(scene);
+        let pairs: Vec<_> = whiskers
+            .iter()
+            .flat_map(|whisker| sides.iter().map(move |side| (whisker, *side)))
+            .map(|(whisker, side)| (Rod::new(whisker, &scene.pole, side), side))
+            .collect();
+        let effects = Effects::of(pairs.iter().map(|(rod, _)| rod));
+        let distances: Vec<f64> = spread(&scene.grid.distance_mm, DISTANCES)
+            .iter()
+            .map(|d| d / scene.whisker.length_mm)
+            .collect();
+        let pushes = spread(&scene.grid.push_angle_deg, PUSHES);
+        let sampled: Vec<(Vec<Launch>, Vec<(Launch, Edge)>)> = pairs
+            .par_iter()
+            .filter_map(|&(rod, side)| {
+                let method = Method::fine(effects).coarsely();
+                let sheet = Sheet::new(method, &rod, side, &distances)?;
+                let mut pushes: Vec<f64> = pushes
+                    .iter()
+                    .map(|push| push * side.sign())
+                    .filter(|push| *push >= 0.0)
+                    .map(f64::to_radians)
+                    .collect();
+                pushes.sort_by(f64::total_cmp);
+                let launch = |tau, load| Launch { rod, tau, load };
+                let guesses = (0..distances.len())
+                    .flat_map(|row| sheet.guesses(row, pushes.iter().copied()))
+                    .flatten();
+                let crossings = sheet.crossings.iter().flatten();
+                let ends = crossings.map(|end: &Crossing| (launch(end.tau, end.load), end.edge));
+                Some((
+                    guesses.map(|guess| launch(guess.tau, guess.load)).collect(),
+                    ends.collect(),
+                ))
+            })
+            .collect();
+        let (states, ends): (Vec<_>, Vec<_>) = sampled.into_iter().unzip();
+        Self {
+            effects,
+            states: states.concat(),
+            ends: ends.concat(),
+        }
+    }
+
+    /// The largest error at `resolution`, in radians, as twice as many steps see it.
+    pub fn error(&self, resolution: Resolution) -> f64 {
+        let landed = |resolution, launches: &[Launch]| {
+            let effects = self.effects;
+            let method = Method {
+                effects,
+                resolution,
+            };
+            land::<Dopri8, First, 6>(method, launches)
+        };
+        let pairs = |launches: &[Launch]| {
+            let finer = landed(resolution.doubled(), launches);
+            landed(resolution, launches).into_iter().zip(finer)
+        };
+        let states = pairs(&self.states).map(|(rough, fine)| rough.residual(fine.pole).length());
+        let launches: Vec<Launch> = self.ends.iter().map(|(launch, _)| *launch).collect();
+        let ends = pairs(&launches)
+            .zip(&self.ends)
+            .map(|((rough, fine), (launch, edge))| shift(&rough, &fine, launch, *edge));
+        states.chain(ends).fold(0.0, worse)
+    }
+}
+
+/// How far the end of a push moves along its edge, where the distance is held: the direction of the pole, less what it
+/// changes with the distance. On a fold contact and load change both in the same proportion.
+fn shift(rough: &Landing, fine: &Landing, launch: &Launch, edge: Edge) -> f64 {
+    let moved = rough.residual(fine.pole);
+    let by_contact = rough.by_tau * launch.tau;
+    let by_load = rough.by_load * launch.load;
+    let along = if edge == Edge::Tip || by_load.x.abs() > by_contact.x.abs() {
+        by_load
+    } else {
+        by_contact
+    };
+    (moved.y - moved.x * along.y / along.x).abs()
+}
+
+/// The larger; a number that is none is worse than any.
+fn worse(a: f64, b: f64) -> f64 {
+    if b.is_nan() { f64::INFINITY } else { a.max(b) }
+}
+
+/// The whiskers at some values of the sweep's axes.
+fn whiskers(scene: &Scene) -> Vec<Whisker> {
+    let mut few = scene.clone();
+    let axes = [&mut few.grid.taper, &mut few.grid.curvature_per_mm];
+    for values in axes.into_iter().flatten() {
+        *values = spread(values, WHISKERS);
+    }
+    few.whiskers().map(|(_, whisker)| whisker).collect()
+}
+
+/// At most `most` values, the first and the last among them.
+fn spread(values: &[f64], most: usize) -> Vec<f64> {
+    let (last, count) = (values.len() - 1, values.len().min(most));
+    (0..count)
+        .map(|i| values[i * last / (count - 1).max(1)])
+        .collect()
+}

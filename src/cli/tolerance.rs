@@ -1,0 +1,48 @@
+//! `--tolerance`: how exact is exact enough.
+
+use super::failure::{Failure, say};
+use crate::accuracy::{Accuracy, cheapest};
+use crate::model::Side;
+use crate::scene::Scene;
+use clap::Args;
+
+/// The option.
+#[derive(Debug, Args)]
+pub struct Tolerance {
+    /// Error of angles that is small enough, in degrees, such as 1e-6deg; the program takes the cheapest steps that its
+    /// own estimate allows [default: the finest steps, without an estimate]
+    #[arg(long, value_name = "ANGLE", value_parser = degrees)]
+    tolerance: Option<f64>,
+}
+
+/// Below, rounding is all that is left; above, a map says nothing.
+const RANGE: std::ops::RangeInclusive<f64> = 1e-10..=1.0;
+
+fn degrees(text: &str) -> Result<f64, String> {
+    let number = text.strip_suffix("deg").unwrap_or(text).trim_end();
+    number
+        .parse()
+        .ok()
+        .filter(|degrees| RANGE.contains(degrees))
+        .ok_or_else(|| "must be between 1e-10deg and 1deg".to_owned())
+}
+
+impl Tolerance {
+    /// What is enough for `sides` of the scene, if that was asked; said on standard error.
+    pub fn choose(&self, scene: &Scene, sides: &[Side]) -> Result<Option<Accuracy>, Failure> {
+        let Some(tolerance_deg) = self.tolerance else {
+            return Ok(None);
+        };
+        let found = cheapest(scene, sides, tolerance_deg).map_err(|finest| {
+            Failure::Input(format!(
+                "--tolerance {tolerance_deg:e}deg: must be at least {:.1e}deg, the estimated error of the finest steps",
+                finest.error_deg
+            ))
+        })?;
+        say(&format!(
+            "accuracy: {} steps or more, order 8; estimated error {:.1e} deg of {tolerance_deg:.1e} allowed",
+            found.resolution.least, found.error_deg
+        ));
+        Ok(Some(found))
+    }
+}

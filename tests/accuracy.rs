@@ -1,0 +1,151 @@
+//! `--tolerance`: the estimate bounds the true error on every shipped scene.
+#![allow(
+    clippy::unwrap_used,
+    clippy::print_stderr,
+    reason = "a test fails by panicking, and says aloud what it measured"
+)]
+
+use std::path::PathBuf;
+use whiskmap::accuracy::cheapest;
+use whiskmap::integrate::Shot;
+use whiskmap::model::batch::{Launch, Method, land};
+use whiskmap::model::{Dopri8, Effects, First, Resolution, Rod, Side};
+use whiskmap::refine::{End, refine};
+use whiskmap::scene::{Scene, Whisker};
+use whiskmap::sheet::Sheet;
+use whiskmap::trace::curve_at;
+
+/// Its own error, 1e-11 degrees at most, is far below every tolerance here.
+const EXACT: Resolution = Resolution::FINE.doubled();
+
+fn scenes() -> Vec<PathBuf> {
+    let files = std::fs::read_dir("scenes").unwrap();
+    let files = files.map(|file| file.unwrap().path());
+    let mut scenes: Vec<PathBuf> = files
+        .filter(|path| path.extension().is_some_and(|end| end == "toml"))
+        .collect();
+    scenes.sort();
+    assert!(scenes.len() >= 9);
+    scenes
+}
+
+/// Every `n`th value, so that at most `most` are left.
+fn thin(values: &mut Vec<f64>, most: usize) {
+    let step = values.len().div_ceil(most);
+    *values = values.iter().copied().step_by(step).collect();
+}
+
+fn thinned(scene: &Scene) -> Scene {
+    let mut scene = scene.clone();
+    thin(&mut scene.grid.push_angle_deg, 24);
+    thin(&mut scene.grid.distance_mm, 48);
+    let axes = [&mut scene.grid.taper, &mut scene.grid.curvature_per_mm];
+    for axis in axes.into_iter().flatten() {
+        thin(axis, 4);
+    }
+    scene
+}
+
+/// The largest error of detachment angles, in degrees.
+fn ends(scene: &Scene, whisker: &Whisker, side: Side, resolution: Resolution) -> f64 {
+    let curve = |resolution| {
+        let distances = &scene.grid.distance_mm;
+        curve_at(resolution, whisker, &scene.pole, side, distances)
+    };
+    let pairs = curve(resolution).into_iter().zip(curve(EXACT));
+    let apart = pairs.map(|(rough, exact)| {
+        assert_eq!(rough.kind, exact.kind);
+        let angles = rough.push_angle_deg.zip(exact.push_angle_deg);
+        angles.map_or(0.0, |(rough, exact)| (rough - exact).abs())
+    });
+    apart.fold(0.0, f64::max)
+}
+
+/// The largest error of the cells, in degrees: where a state that the resolution calls solved has its pole.
+fn cells(scene: &Scene, whisker: &Whisker, side: Side, resolution: Resolution) -> f64 {
+    let rod = Rod::new(whisker, &scene.pole, side);
+    let effects = Effects::of([&rod]);
+    let method = Method {
+        effects,
+        resolution,
+    };
+    let distances = &scene.grid.distance_mm;
+    let distances: Vec<f64> = distances.iter().map(|d| d / whisker.length_mm).collect();
+    let sheet = Sheet::new(method, &rod, side, &distances).unwrap();
+    let pushes = scene.grid.push_angle_deg.iter().map(|p| p * side.sign());
+    let mut pushes: Vec<f64> = pushes.filter(|p| *p >= 0.0).map(f64::to_radians).collect();
+    pushes.sort_by(f64::total_cmp);
+    let mut shots = Vec::new();
+    for (row, place) in sheet.rows.iter().enumerate() {
+        let guesses = sheet.guesses(row, pushes.iter().copied());
+        for (guess, push) in guesses.iter().zip(&pushes) {
+            shots.extend(guess.map(|guess| Shot {
+                rod: 0,
+                tau: guess.tau,
+                load: guess.load,
+                pole: place.pole(side.sign() * push),
+            }));
+        }
+    }
+    let starts: Vec<(f64, f64)> = shots.iter().map(|shot| (shot.tau, shot.load)).collect();
+    let refined = refine(method, &[&sheet], &shots, &starts);
+    let solved = refined.iter().zip(&shots);
+    let solved = solved.filter(|(cell, _)| cell.end == End::Solved);
+    let (launches, poles): (Vec<Launch>, Vec<_>) = solved
+        .map(|(cell, shot)| {
+            let (tau, load) = (cell.state.tau, cell.state.load);
+            (Launch { rod, tau, load }, shot.pole)
+        })
+        .unzip();
+    let exact = Method {
+        effects,
+        resolution: EXACT,
+    };
+    let landed = land::<Dopri8, First, 6>(exact, &launches);
+    let missed = landed.iter().zip(poles);
+    let missed = missed.map(|(landing, pole)| landing.residual(pole).length().to_degrees());
+    missed.fold(0.0, f64::max)
+}
+
+#[test]
+fn the_estimate_bounds_the_error_of_every_scene() {
+    let mut closest = f64::INFINITY;
+    for path in scenes() {
+        let whole = Scene::read(&path).unwrap();
+        let scene = thinned(&whole);
+        let mut last = 0;
+        for tolerance_deg in [1e-2, 1e-4, 1e-6, 1e-8] {
+            let found = cheapest(&whole, &Side::BOTH, tolerance_deg).unwrap();
+            assert!(found.error_deg <= tolerance_deg);
+            assert!(found.resolution.least >= last);
+            last = found.resolution.least;
+            let (mut at_ends, mut in_cells) = (0.0_f64, 0.0_f64);
+            for (_, whisker) in scene.whiskers() {
+                for side in Side::BOTH {
+                    let ends = ends(&scene, &whisker, side, found.resolution);
+                    let cells = cells(&scene, &whisker, side, found.resolution);
+                    at_ends = at_ends.max(ends);
+                    in_cells = in_cells.max(cells);
+                }
+            }
+            let truth = at_ends.max(in_cells);
+            eprintln!(
+                "{:14} {tolerance_deg:.0e}: {last:2} steps, estimate {:.1e}, true {at_ends:.1e} and {in_cells:.1e}",
+                whole.name, found.error_deg
+            );
+            assert!(truth <= found.error_deg, "{}", whole.name);
+            closest = closest.min(found.error_deg / truth);
+        }
+        // The ladder is used.
+        assert!(last >= 8);
+    }
+    eprintln!("the estimate is at least {closest:.1} times the error");
+}
+
+#[test]
+fn what_no_steps_reach_is_said() {
+    let scene = Scene::read("scenes/cone.toml".as_ref()).unwrap();
+    let finest = cheapest(&scene, &Side::BOTH, 1e-15).unwrap_err();
+    assert!(finest.error_deg < 1e-9 && finest.error_deg > 1e-15);
+    assert_eq!(finest.resolution, Resolution::LADDER[7]);
+}
