@@ -6,6 +6,7 @@
 //! through them.
 
 pub mod accuracy;
+pub mod bench;
 pub mod classify;
 pub mod cli;
 pub mod integrate;

@@ -50,6 +50,7 @@ fn every_text_is_valid() {
             let text = shaders::shoot(precision, effects[0]);
             validate(&text, precision, &effects).unwrap_or_else(|e| panic!("{e}"));
         }
+        validate(&shaders::peak(precision), precision, &[]).unwrap_or_else(|e| panic!("{e}"));
         let probe = shaders::model(precision, linear[0]) + PROBE;
         validate(&probe, precision, &linear).unwrap_or_else(|e| panic!("{e}"));
     }

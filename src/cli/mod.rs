@@ -3,6 +3,7 @@
 //! Answers go to standard output, everything said along the way to standard error. Exit code 2 is for input
 //! that cannot be right, 1 for what fails while running.
 
+mod bench;
 mod branch;
 mod curve;
 mod devices;
@@ -42,6 +43,7 @@ Examples:
   whiskmap shape scenes/cone.toml --distance 15.66 --push-angle 10 --plot shape.svg
   whiskmap reproduce                               the theory lines of the paper's figures
   whiskmap verify                                  every number that is known otherwise
+  whiskmap bench scenes/cone.toml                  what accuracy costs in time, engine by engine
   whiskmap devices                                 adapters, and which one `auto` takes";
 
 #[derive(Debug, Subcommand)]
@@ -62,6 +64,8 @@ enum Command {
     Reproduce(reproduce::Options),
     /// Compare with every number that is published, exact, or from an independent solver
     Verify,
+    /// Measure what accuracy costs in time on every engine of this machine
+    Bench(bench::Options),
     /// List the GPU adapters
     Devices,
 }
@@ -79,6 +83,7 @@ pub fn main() -> ExitCode {
         Command::Shape(options) => shape::run(options),
         Command::Reproduce(options) => reproduce::run(options),
         Command::Verify => verify::run(),
+        Command::Bench(options) => bench::run(options),
         Command::Devices => devices::run(),
     };
     match result {

@@ -110,7 +110,7 @@ fn same(one: &Path, other: &Path) -> bool {
 }
 
 /// The picture's file and format; its folder must be there.
-fn picture(path: &Path) -> Result<(PathBuf, ChartFormat), Failure> {
+pub fn picture(path: &Path) -> Result<(PathBuf, ChartFormat), Failure> {
     let Some(format) = ChartFormat::of(path) else {
         let path = path.display();
         return Err(Failure::Input(format!(
@@ -128,7 +128,8 @@ fn picture(path: &Path) -> Result<(PathBuf, ChartFormat), Failure> {
     Ok((path.to_owned(), format))
 }
 
-fn refused(option: &str, path: &Path, error: &io::Error) -> Failure {
+/// A file that cannot be made.
+pub fn refused(option: &str, path: &Path, error: &io::Error) -> Failure {
     let path = path.display();
     Failure::Input(format!(
         "{option} {path}: {error}; name a file in a folder that can be written"

@@ -1,7 +1,7 @@
 //! The CPU engine: `f64`, SIMD lanes, all threads of the current pool.
 
 use super::{Description, Engine, EngineError, Hit, MOST_STEPS, Outcome, Shot};
-use crate::model::batch::{Launch, Method, Unit, land};
+use crate::model::batch::{Launch, Method, Unit, land_on};
 use crate::model::{Dopri8, Effects, First, Landing, Resolution, Rod, arclength};
 use glam::DVec2;
 
@@ -22,9 +22,33 @@ impl Cpu {
     /// [`Engine::shoot`], which here cannot fail.
     #[must_use]
     pub fn solve(self, effects: Effects, rods: &[Rod], shots: &[Shot]) -> Vec<Hit> {
+        let solver = Solver {
+            unit: Unit::detect(),
+            resolution: RESOLUTION,
+            tolerance: TOLERANCE,
+        };
+        solver.solve(effects, rods, shots)
+    }
+}
+
+/// Newton's method as the CPU engine does it, on any unit, at any resolution, to any tolerance.
+#[derive(Clone, Copy, Debug)]
+pub struct Solver {
+    /// What integrates.
+    pub unit: Unit,
+    /// How finely.
+    pub resolution: Resolution,
+    /// Residual, in whisker lengths, after which one more step is the last.
+    pub tolerance: f64,
+}
+
+impl Solver {
+    /// Solves `shots`, each on one of `rods`; answers in the same order.
+    #[must_use]
+    pub fn solve(self, effects: Effects, rods: &[Rod], shots: &[Shot]) -> Vec<Hit> {
         let method = Method {
             effects,
-            resolution: RESOLUTION,
+            resolution: self.resolution,
         };
         let mut hits: Vec<Hit> = shots
             .iter()
@@ -46,11 +70,11 @@ impl Cpu {
                     load: hits[i].load,
                 })
                 .collect();
-            let landings = land::<Dopri8, First, 6>(method, &launches);
+            let landings = land_on::<Dopri8, First, 6>(self.unit, method, &launches);
             let mut next = Vec::new();
             for ((&i, launch), landing) in open.iter().zip(&launches).zip(&landings) {
                 let hit = &mut hits[i];
-                step(&launch.rod, hit, landing, shots[i].pole, round < MOST_STEPS);
+                self.step(&launch.rod, hit, landing, shots[i].pole, round < MOST_STEPS);
                 if hit.outcome == Outcome::Stalled {
                     next.push(i);
                 }
@@ -58,6 +82,24 @@ impl Cpu {
             open = next;
         }
         hits
+    }
+
+    /// Judges a landing and, unless it is the last, takes a Newton step from it.
+    fn step(&self, rod: &Rod, hit: &mut Hit, landing: &Landing, wanted: DVec2, more: bool) {
+        hit.residual = landing.pole.distance(wanted);
+        if !hit.residual.is_finite() {
+            hit.outcome = Outcome::NotFinite;
+            return;
+        }
+        if hit.residual <= self.tolerance {
+            hit.outcome = Outcome::Converged;
+        }
+        if more {
+            let step = landing.newton_step(wanted, arclength(rod, hit.tau), hit.load);
+            hit.tau += step.x;
+            hit.load += step.y;
+            hit.steps += 1;
+        }
     }
 }
 
@@ -76,23 +118,5 @@ impl Engine for Cpu {
         shots: &[Shot],
     ) -> Result<Vec<Hit>, EngineError> {
         Ok(self.solve(effects, rods, shots))
-    }
-}
-
-/// Judges a landing and, unless it is the last, takes a Newton step from it.
-fn step(rod: &Rod, hit: &mut Hit, landing: &Landing, wanted: DVec2, more: bool) {
-    hit.residual = landing.pole.distance(wanted);
-    if !hit.residual.is_finite() {
-        hit.outcome = Outcome::NotFinite;
-        return;
-    }
-    if hit.residual <= TOLERANCE {
-        hit.outcome = Outcome::Converged;
-    }
-    if more {
-        let step = landing.newton_step(wanted, arclength(rod, hit.tau), hit.load);
-        hit.tau += step.x;
-        hit.load += step.y;
-        hit.steps += 1;
     }
 }

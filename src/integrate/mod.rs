@@ -8,7 +8,7 @@ mod cpu;
 mod fallback;
 pub mod gpu;
 
-pub use cpu::Cpu;
+pub use cpu::{Cpu, Solver};
 pub use fallback::Fallback;
 
 use crate::model::{Effects, Rod};

@@ -4,7 +4,7 @@ mod effects;
 mod sample;
 
 pub use effects::{Cost, Effect, effects};
-pub use sample::sample;
+pub use sample::{SAMPLE_LINES, sample};
 
 use crate::model::batch::Method;
 use crate::model::{Effects, Rod, Side};
@@ -94,9 +94,7 @@ impl Plan {
             .iter()
             .map(|whisker| Rod::new(whisker, &scene.pole, Side::Cb))
             .collect();
-        let pushes = &scene.grid.push_angle_deg;
-        let asked = |side: &Side| pushes.iter().any(|push| Side::of_push(*push) == *side);
-        let sides: Vec<Side> = Side::BOTH.into_iter().filter(asked).collect();
+        let sides = Self::sides(scene);
         let rows_at_once = (CELLS_IN_FLIGHT / push_angles).max(1);
         let calls =
             |group: &[Whisker]| (group.len() * sides.len() * distances).div_ceil(rows_at_once);
@@ -110,6 +108,14 @@ impl Plan {
             bytes,
             whiskers,
         })
+    }
+
+    /// The sides that the push angles of `scene` ask for.
+    #[must_use]
+    pub fn sides(scene: &Scene) -> Vec<Side> {
+        let pushes = &scene.grid.push_angle_deg;
+        let asked = |side: &Side| pushes.iter().any(|push| Side::of_push(*push) == *side);
+        Side::BOTH.into_iter().filter(asked).collect()
     }
 
     /// States of a trajectory for the rest shape: cos and sin of its tangent, if it is curved.

@@ -5,18 +5,18 @@ use crate::scene::Scene;
 /// Push angles, and distances, of the sample: 16384 cells per whisker. Twelve estimates of shipped scenes were 0.9 to 1.9
 /// times what their runs took right after, on two cores busy with other work. Estimates of the cone repeated in one
 /// process differed by a factor of 1.25; with 32 lines, of 2.6.
-const MOST_LINES: usize = 128;
+pub const SAMPLE_LINES: usize = 128;
 
 /// Values of a sweep's axis in the sample: four whiskers where there are two axes.
 const MOST_VALUES: usize = 2;
 
-/// `scene` with every axis thinned out, its range kept.
+/// `scene` with every axis thinned out, its range kept, and at most `lines` push angles and distances.
 #[must_use]
-pub fn sample(scene: &Scene) -> Scene {
+pub fn sample(scene: &Scene, lines: usize) -> Scene {
     let mut sample = scene.clone();
     let grid = &mut sample.grid;
-    thin(&mut grid.push_angle_deg, MOST_LINES);
-    thin(&mut grid.distance_mm, MOST_LINES);
+    thin(&mut grid.push_angle_deg, lines);
+    thin(&mut grid.distance_mm, lines);
     let axes = [&mut grid.taper, &mut grid.curvature_per_mm];
     for values in axes.into_iter().flatten() {
         thin(values, MOST_VALUES);

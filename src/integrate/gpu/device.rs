@@ -36,7 +36,7 @@ impl Fault {
 impl Device {
     /// Opens the preferred adapter for shaders of this precision.
     pub fn open(precision: Precision) -> Result<Self, EngineError> {
-        let mut found = enumerate();
+        let found = enumerate();
         let reports: Vec<_> = found.iter().map(AdapterReport::new).collect();
         let Some(best) = preferred(&reports, Precision::F32) else {
             let tried = "no driver of Vulkan, Metal or DirectX 12 answered".to_owned();
@@ -48,10 +48,24 @@ impl Device {
                 what: "compute in f64 (no SHADER_F64)".to_owned(),
             });
         };
-        let (adapter, report) = (found.swap_remove(chosen), reports[chosen].clone());
+        Self::on(&found[chosen], precision)
+    }
+
+    /// Opens the adapter that is at `index` of [`adapters`](super::adapters).
+    pub fn at(index: usize, precision: Precision) -> Result<Self, EngineError> {
+        let found = enumerate();
+        let adapter = found.get(index).ok_or_else(|| {
+            EngineError::NoAdapter(format!("there are {}, not one at {index}", found.len()))
+        })?;
+        Self::on(adapter, precision)
+    }
+
+    fn on(adapter: &wgpu::Adapter, precision: Precision) -> Result<Self, EngineError> {
+        let report = AdapterReport::new(adapter);
+        let clock = adapter.features() & wgpu::Features::TIMESTAMP_QUERY;
         let required_features = match precision {
-            Precision::F32 => wgpu::Features::empty(),
-            Precision::F64 => wgpu::Features::SHADER_F64,
+            Precision::F32 => clock,
+            Precision::F64 => clock | wgpu::Features::SHADER_F64,
         };
         let wanted = wgpu::DeviceDescriptor {
             required_features,
@@ -98,6 +112,12 @@ impl Device {
             Ok(Err(error)) => Err(EngineError::Device(error.to_string())),
             Err(panic) => Err(EngineError::Device(panic)),
         }
+    }
+
+    /// Whether the device can tell how long a dispatch took.
+    pub fn has_clock(&self) -> bool {
+        let features = self.handle.features();
+        features.contains(wgpu::Features::TIMESTAMP_QUERY)
     }
 
     /// Largest storage buffer of this device, in bytes.

@@ -11,9 +11,11 @@ mod device;
 mod guard;
 mod layout;
 mod pace;
+mod peak;
 mod pipeline;
 pub mod shaders;
 mod slot;
+mod stamps;
 
 pub use adapters::{AdapterReport, Kind, adapters, preferred};
 
@@ -22,6 +24,7 @@ use crate::model::{Effects, Piece, Rod, arclength};
 use device::Device;
 use layout::{Layout, Stretch, Task};
 use pipeline::Pipeline;
+pub use slot::Times;
 use slot::{Flight, Shared, Slot};
 use std::collections::hash_map::Entry;
 use std::collections::{HashMap, VecDeque};
@@ -58,6 +61,8 @@ pub struct Gpu {
     pieces: Option<wgpu::Buffer>,
     slots: Vec<Slot>,
     pipelines: HashMap<Effects, Pipeline>,
+    /// The stages of the last call, for those who ask.
+    times: Option<Times>,
 }
 
 /// Dispatches in flight: one runs while the answers of the other are read.
@@ -70,16 +75,38 @@ impl Gpu {
     /// [`EngineError::NoAdapter`] without a driver, [`EngineError::Unsupported`] where the adapter has no
     /// `f64`, [`EngineError::Device`] when the driver refuses a device.
     pub fn new(precision: Precision) -> Result<Self, EngineError> {
+        Device::open(precision).map(|device| Self::with_device(precision, device))
+    }
+
+    /// Opens the adapter that is at `index` of [`adapters`], to have it timed stage by stage.
+    ///
+    /// # Errors
+    /// [`EngineError::Device`] when the driver refuses a device.
+    pub fn timed(index: usize, precision: Precision) -> Result<Self, EngineError> {
         Ok(Self {
+            times: Some(Times::default()),
+            ..Self::with_device(precision, Device::at(index, precision)?)
+        })
+    }
+
+    fn with_device(precision: Precision, device: Device) -> Self {
+        Self {
             precision,
             shader: None,
             layout: Layout::of(precision),
-            device: Device::open(precision)?,
+            device,
             rods: None,
             pieces: None,
             slots: Vec::new(),
             pipelines: HashMap::new(),
-        })
+            times: None,
+        }
+    }
+
+    /// What the stages of the last call took, of an engine that is timed.
+    #[must_use]
+    pub const fn times(&self) -> Option<Times> {
+        self.times
     }
 
     /// Opens the adapter for a shader other than [`shaders::shoot`]: a seam for tests, which spoil it.
@@ -177,7 +204,9 @@ impl Gpu {
         let shared = Shared {
             rods: &buffer,
             pieces: pieces.as_ref(),
+            timed: self.times.is_some(),
         };
+        let mut times = Times::default();
         let mut hits = Vec::with_capacity(shots.len());
         let mut waiting = shots;
         let mut flights: VecDeque<Flight> = VecDeque::new();
@@ -188,15 +217,18 @@ impl Gpu {
                 waiting = later;
                 let slot = self.slots.pop().unwrap_or_default();
                 let (device, layout) = (&self.device, self.layout);
+                let begun = Instant::now();
                 let tasks: Vec<Task> = now.iter().map(task).collect();
                 flights.push_back(slot.launch(device, layout, pipeline, &shared, &tasks)?);
+                times.upload += begun.elapsed();
             } else if let Some(flight) = flights.pop_front() {
                 let (count, started) = (flight.shots, flight.submitted.max(idle_since));
                 self.slots
-                    .push(flight.land(&self.device, self.layout, &mut hits)?);
+                    .push(flight.land(&self.device, self.layout, &mut hits, &mut times)?);
                 idle_since = Instant::now();
                 pipeline.pace.learn(count, idle_since - started);
             } else {
+                self.times = self.times.map(|_| times);
                 return Ok(hits);
             }
         }

@@ -103,6 +103,13 @@ pub fn shoot(precision: Precision, effects: Effects) -> String {
     model(precision, effects) + include_str!("../../../shaders/shoot.wgsl")
 }
 
+/// A kernel that only multiplies and adds; its entry point is `peak`.
+#[must_use]
+pub fn peak(precision: Precision) -> String {
+    format!("alias real = {precision};\nconst WORKGROUP = {WORKGROUP}u;\n")
+        + include_str!("../../../shaders/peak.wgsl")
+}
+
 /// The values of the `override` constants.
 #[must_use]
 pub fn overrides(effects: Effects) -> [(&'static str, f64); 4] {

@@ -5,8 +5,9 @@ use super::device::Device;
 use super::layout::{Layout, Task};
 use super::pipeline::Pipeline;
 use super::shaders::WORKGROUP;
+use super::stamps::Stamps;
 use crate::integrate::Hit;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 use wgpu::BufferUsages as Usage;
 
 /// What all dispatches of a call read.
@@ -16,6 +17,19 @@ pub struct Shared<'a> {
     pub rods: &'a wgpu::Buffer,
     /// The pieces of their profile, and how many bytes they are.
     pub pieces: Option<&'a (wgpu::Buffer, u64)>,
+    /// Whether dispatches are timed by the device.
+    pub timed: bool,
+}
+
+/// What the stages of a call took.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Times {
+    /// Packing and handing over.
+    pub upload: Duration,
+    /// The shader, by the device's own clock; 0 where it has none.
+    pub dispatch: Duration,
+    /// Unpacking, after the wait.
+    pub readback: Duration,
 }
 
 /// Room for a number of shots and their hits.
@@ -26,6 +40,7 @@ pub struct Slot {
 
 #[derive(Debug)]
 struct Buffers {
+    stamps: Option<Stamps>,
     capacity: usize,
     shots: wgpu::Buffer,
     hits: wgpu::Buffer,
@@ -33,10 +48,17 @@ struct Buffers {
 }
 
 impl Buffers {
-    fn new(device: &Device, layout: &Layout, capacity: usize) -> Result<Self, EngineError> {
+    fn new(
+        device: &Device,
+        layout: &Layout,
+        capacity: usize,
+        timed: bool,
+    ) -> Result<Self, EngineError> {
         let bytes = |each: usize| (capacity * each) as u64;
         let (shots, hits) = (bytes(layout.shot), bytes(layout.hit));
+        let stamps = if timed { Stamps::new(device)? } else { None };
         Ok(Self {
+            stamps,
             capacity,
             shots: device.buffer("shots", shots, Usage::STORAGE | Usage::COPY_DST)?,
             hits: device.buffer("hits", hits, Usage::STORAGE | Usage::COPY_SRC)?,
@@ -81,7 +103,7 @@ impl Slot {
         let count = tasks.len();
         let buffers = match self.buffers {
             Some(buffers) if buffers.capacity >= count => buffers,
-            _ => Buffers::new(device, layout, count)?,
+            _ => Buffers::new(device, layout, count, shared.timed)?,
         };
         let shots_size = (count * layout.shot) as u64;
         let hits_size = (count * layout.hit) as u64;
@@ -101,19 +123,28 @@ impl Slot {
         });
         let mut commands = device.handle.create_command_encoder(&Default::default());
         {
-            let mut pass = commands.begin_compute_pass(&Default::default());
+            let mut pass = commands.begin_compute_pass(&wgpu::ComputePassDescriptor {
+                label: Some("shoot"),
+                timestamp_writes: buffers.stamps.as_ref().map(Stamps::writes),
+            });
             pass.set_pipeline(&pipeline.handle);
             pass.set_bind_group(0, &bindings, &[]);
             // The pace keeps the shots below what `u32` can count.
             pass.dispatch_workgroups((count as u32).div_ceil(WORKGROUP), 1, 1);
         }
         commands.copy_buffer_to_buffer(&buffers.hits, 0, &buffers.readback, 0, hits_size);
+        if let Some(stamps) = &buffers.stamps {
+            stamps.resolve(&mut commands);
+        }
         let submitted = Instant::now();
         let index = device.queue.submit([commands.finish()]);
         // Whether it worked is told by `get_mapped_range`.
         buffers
             .readback
             .map_async(wgpu::MapMode::Read, ..hits_size, |_| ());
+        if let Some(stamps) = &buffers.stamps {
+            stamps.request();
+        }
         device.check()?;
         Ok(Flight {
             shots: count,
@@ -131,8 +162,10 @@ impl Flight {
         device: &Device,
         layout: &Layout,
         hits: &mut Vec<Hit>,
+        times: &mut Times,
     ) -> Result<Slot, EngineError> {
         device.wait(self.index)?;
+        let arrived = Instant::now();
         let size = (self.shots * layout.hit) as u64;
         let readback = &self.buffers.readback;
         let bytes = readback
@@ -141,6 +174,10 @@ impl Flight {
         (layout.hits)(&bytes, hits);
         drop(bytes);
         readback.unmap();
+        times.readback += arrived.elapsed();
+        if let Some(stamps) = &self.buffers.stamps {
+            times.dispatch += stamps.read(device)?;
+        }
         Ok(Slot {
             buffers: Some(self.buffers),
         })

@@ -4,10 +4,13 @@
 //! and for the target's baseline (`unit`); which one runs is decided once per call from the processor's features.
 //! Results do not depend on the number of threads: every trajectory is computed by itself.
 
+mod flops;
 mod gather;
 mod kernel;
+mod peak;
 mod unit;
 
+pub use flops::flops;
 pub use unit::{Kernel, Unit};
 
 use super::integrator::{Integrator, Resolution};

@@ -3,6 +3,7 @@
 //! Kernels are compiled here, once, and not where they are called: there are many of them, and each is long.
 
 use super::kernel::by_effects;
+use super::peak::multiply_and_add;
 use super::{Kind, Launch};
 use crate::model::integrator::Integrator;
 use crate::model::order::{First, FirstAndEnergy, Second};
@@ -69,6 +70,26 @@ impl Unit {
     pub const fn scalar() -> Self {
         Self(Instructions::Scalar)
     }
+
+    /// Does nothing but multiply and add for `rounds` rounds, and tells how many operations that were: with a clock, the
+    /// peak of one thread.
+    #[must_use]
+    #[allow(
+        unsafe_code,
+        reason = "a function compiled for a SIMD unit may be called where `detect` has found that unit"
+    )]
+    pub fn exhaust(self, rounds: u32) -> u64 {
+        match self.0 {
+            #[cfg(target_arch = "x86_64")]
+            // SAFETY: only `detect` makes such a unit, and it has seen every feature that the function enables.
+            Instructions::Avx512 => unsafe { exhaust_avx512(rounds) },
+            #[cfg(target_arch = "x86_64")]
+            // SAFETY: as above.
+            Instructions::Avx2 => unsafe { exhaust_avx2(rounds) },
+            Instructions::Baseline => multiply_and_add::<Baseline>(rounds),
+            Instructions::Scalar => multiply_and_add::<f64>(rounds),
+        }
+    }
 }
 
 /// What can be computed in batches with the integrator `M`.
@@ -122,6 +143,18 @@ macro_rules! kernel {
 kernel!(Dopri8, First, 6);
 kernel!(Dopri8, FirstAndEnergy, 7);
 kernel!(Dopri8, Second, 15);
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx512f,avx512dq,avx512vl,fma")]
+fn exhaust_avx512(rounds: u32) -> u64 {
+    multiply_and_add::<Avx512>(rounds)
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2,fma")]
+fn exhaust_avx2(rounds: u32) -> u64 {
+    multiply_and_add::<Avx2>(rounds)
+}
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx512f,avx512dq,avx512vl,fma")]

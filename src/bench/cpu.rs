@@ -1,0 +1,130 @@
+//! The CPU: scalar, vectors on one thread, vectors on all.
+
+use super::task::Task;
+use super::watch::watch;
+use super::{Engine, Report, Row, Rung, Stages};
+use crate::integrate::{EngineError, Hit, Solver};
+use crate::model::batch::{Launch, Unit, flops};
+use crate::model::{Dopri8, First, Resolution};
+use std::convert::Infallible;
+use std::time::Instant;
+
+/// After a residual below this, in whisker lengths, one more Newton step reaches the rounding.
+const TOLERANCE: f64 = 1e-7;
+
+/// Rounds of the peak's kernel: milliseconds.
+const ROUNDS: u32 = 1 << 20;
+
+/// Adds the rows of the CPU engine to `report`.
+pub fn measure(
+    task: &Task,
+    runs: usize,
+    report: &mut Report,
+    said: &mut dyn FnMut(&str),
+) -> Result<(), EngineError> {
+    let all = rayon::current_num_threads();
+    let vectors = Unit::detect();
+    let mut engines = vec![(Unit::scalar(), 1), (vectors, 1)];
+    if all > 1 {
+        engines.push((vectors, all));
+    }
+    for (unit, threads) in engines {
+        let name = format!("cpu {unit}");
+        said(&format!("{name}, {threads} threads"));
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .map_err(|error| EngineError::Device(error.to_string()))?;
+        let solver = |resolution| Solver {
+            unit,
+            resolution,
+            tolerance: TOLERANCE,
+        };
+        let start = Instant::now();
+        pool.install(|| {
+            let shots = task.shots.get(..1).unwrap_or_default();
+            solver(Resolution::FINE).solve(task.effects, &task.rods, shots)
+        });
+        let first_result_s = start.elapsed().as_secs_f64();
+        let peak_gflops = pool.install(|| peak(unit, runs));
+        report.engines.push(Engine {
+            name: name.clone(),
+            threads: Some(threads),
+            adapter: unit.to_string(),
+            peak_gflops,
+            first_result_s,
+        });
+        for resolution in Resolution::LADDER {
+            let solve = || solver(resolution).solve(task.effects, &task.rods, &task.shots);
+            let Ok((seconds, hits)) =
+                watch(runs, || Ok::<Vec<Hit>, Infallible>(pool.install(solve)));
+            let rung = Rung {
+                integrator: "dopri8",
+                steps: resolution.least,
+                newton_f64: 0,
+            };
+            let work = operations(task, &hits, |launch| {
+                let steps = resolution.steps(&launch.rod, launch.tau);
+                flops::<Dopri8, First, 6>(task.effects, steps, launch)
+            });
+            let points: Vec<(f64, f64)> = hits.iter().map(|hit| (hit.tau, hit.load)).collect();
+            report.rows.push(Row::new(
+                &name,
+                Some(threads),
+                rung,
+                seconds,
+                Stages {
+                    dispatch: 1e3 * seconds.median,
+                    ..Stages::default()
+                },
+                Work {
+                    trajectories: trajectories(&hits),
+                    operations: work,
+                    peak_gflops,
+                },
+                task.errors(&points),
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// What a row's seconds were spent on.
+pub struct Work {
+    pub trajectories: f64,
+    pub operations: f64,
+    pub peak_gflops: f64,
+}
+
+/// Trajectories that the engine integrated.
+pub fn trajectories(hits: &[Hit]) -> f64 {
+    hits.iter().map(|hit| f64::from(hit.steps)).sum()
+}
+
+/// Operations of these trajectories, counted on every 64th shot.
+pub fn operations(task: &Task, hits: &[Hit], count: impl Fn(&Launch) -> u64) -> f64 {
+    const EVERY: usize = 64;
+    let pairs = || hits.iter().zip(&task.shots).step_by(EVERY);
+    let counted: f64 = pairs()
+        .map(|(hit, shot)| {
+            let launch = Launch {
+                rod: task.rods[shot.rod as usize],
+                tau: shot.tau,
+                load: shot.load,
+            };
+            count(&launch) as f64 * f64::from(hit.steps)
+        })
+        .sum();
+    let sampled: f64 = pairs().map(|(hit, _)| f64::from(hit.steps)).sum();
+    counted / sampled.max(1.0) * trajectories(hits)
+}
+
+/// Billions of operations per second of all threads of the pool at once.
+fn peak(unit: Unit, runs: usize) -> f64 {
+    let work = || {
+        let each = rayon::broadcast(|_| unit.exhaust(ROUNDS));
+        Ok::<u64, Infallible>(each.iter().sum())
+    };
+    let Ok((seconds, operations)) = watch(runs, work);
+    1e-9 * operations as f64 / seconds.median
+}

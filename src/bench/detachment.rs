@@ -1,0 +1,67 @@
+//! The curve of detachment, from coarse to exact.
+
+use super::task::{EXACT, Spread};
+use super::watch::{Timing, watch};
+use crate::model::Resolution;
+use crate::plan::Plan;
+use crate::scene::Scene;
+use crate::trace::{Detachment, curve_at};
+use rayon::prelude::*;
+use serde::Serialize;
+use std::convert::Infallible;
+
+/// The detachments of a scene at one resolution, on all threads.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Detachments {
+    /// Fewest steps per trajectory.
+    pub steps: u32,
+    /// Points of the curves.
+    pub points: usize,
+    /// Seconds for all of them.
+    pub seconds: Timing,
+    /// Microseconds per point.
+    pub us_per_point: f64,
+    /// Error of the push angle, in degrees.
+    pub angle_deg: Spread,
+}
+
+/// Every rung of the ladder.
+pub fn measure(scene: &Scene, runs: usize) -> Vec<Detachments> {
+    let whiskers: Vec<_> = scene.whiskers().map(|(_, whisker)| whisker).collect();
+    let pairs: Vec<_> = whiskers
+        .iter()
+        .flat_map(|whisker| {
+            Plan::sides(scene)
+                .into_iter()
+                .map(move |side| (whisker, side))
+        })
+        .collect();
+    let curves = |resolution: Resolution| -> Vec<Detachment> {
+        pairs
+            .par_iter()
+            .flat_map_iter(|(whisker, side)| {
+                let distances = &scene.grid.distance_mm;
+                curve_at(resolution, whisker, &scene.pole, *side, distances)
+            })
+            .collect()
+    };
+    let exact = curves(EXACT);
+    Resolution::LADDER
+        .iter()
+        .map(|resolution| {
+            let Ok((seconds, found)) = watch(runs, || Ok::<_, Infallible>(curves(*resolution)));
+            let pairs = found.iter().zip(&exact);
+            let apart = pairs.filter_map(|(found, exact)| match exact.push_angle_deg {
+                Some(exact) => Some((found.push_angle_deg.unwrap_or(f64::NAN) - exact).abs()),
+                None => None,
+            });
+            Detachments {
+                steps: resolution.least,
+                points: found.len(),
+                seconds,
+                us_per_point: 1e6 * seconds.median / found.len() as f64,
+                angle_deg: Spread::of(apart.collect()),
+            }
+        })
+        .collect()
+}

@@ -1,0 +1,138 @@
+//! Every GPU adapter, in `f32` and, where it can, in `f64`, alone and with Newton steps in `f64` after it.
+
+use super::cpu::{Work, operations, trajectories};
+use super::task::Task;
+use super::watch::watch;
+use super::{Engine, Report, Row, Rung, Stages};
+use crate::integrate::gpu::{Gpu, Precision, adapters};
+use crate::integrate::{Engine as _, EngineError};
+use crate::model::batch::{Launch, Method, flops, land};
+use crate::model::{Dopri8, First, Rk4, arclength};
+use std::time::Instant;
+
+/// Most Newton steps in `f64` after the shader's.
+const NEWTON: usize = 2;
+
+/// Adds the rows of every adapter to `report`; one that fails is named with its reason.
+pub fn measure(task: &Task, runs: usize, report: &mut Report, said: &mut dyn FnMut(&str)) {
+    for (index, adapter) in adapters().iter().enumerate() {
+        for precision in [Precision::F32, Precision::F64] {
+            if precision == Precision::F64 && !adapter.shader_f64 {
+                report
+                    .failures
+                    .push(format!("{}: no f64 in shaders", adapter.name));
+                continue;
+            }
+            said(&format!("gpu {precision}, {}", adapter.name));
+            if let Err(error) = engine(task, runs, report, index, precision) {
+                let name = &adapter.name;
+                report
+                    .failures
+                    .push(format!("{name}, {precision}: {error}"));
+            }
+        }
+    }
+}
+
+fn engine(
+    task: &Task,
+    runs: usize,
+    report: &mut Report,
+    index: usize,
+    precision: Precision,
+) -> Result<(), EngineError> {
+    let start = Instant::now();
+    let mut gpu = Gpu::timed(index, precision)?;
+    gpu.shoot(
+        task.effects,
+        &task.rods,
+        task.shots.get(..1).unwrap_or_default(),
+    )?;
+    let first_result_s = start.elapsed().as_secs_f64();
+    let about = gpu.describe();
+    let peak_gflops = 1e-9 * gpu.peak()?;
+    report.engines.push(Engine {
+        name: about.engine.clone(),
+        threads: None,
+        adapter: about.adapter,
+        peak_gflops,
+        first_result_s,
+    });
+    for newton_f64 in 0..=NEWTON {
+        let (seconds, (hits, points, stages)) = watch(runs, || {
+            let hits = gpu.shoot(task.effects, &task.rods, &task.shots)?;
+            let times = gpu.times().unwrap_or_default();
+            let start = Instant::now();
+            let mut points: Vec<(f64, f64)> = hits.iter().map(|hit| (hit.tau, hit.load)).collect();
+            for _ in 0..newton_f64 {
+                newton(task, &mut points);
+            }
+            let ms = |duration: std::time::Duration| 1e3 * duration.as_secs_f64();
+            let stages = Stages {
+                upload: ms(times.upload),
+                dispatch: ms(times.dispatch),
+                readback: ms(times.readback),
+                refine: ms(start.elapsed()),
+            };
+            Ok::<_, EngineError>((hits, points, stages))
+        })?;
+        let steps = |launch: &Launch| {
+            let measured = Some(&launch.rod).filter(|_| task.effects.profile);
+            precision.steps(measured, launch.tau)
+        };
+        let rung = Rung {
+            integrator: "rk4",
+            steps: precision.least_steps(),
+            newton_f64,
+        };
+        let work = operations(task, &hits, |launch| {
+            flops::<Rk4, First, 6>(task.effects, steps(launch), launch)
+        });
+        // Only the shader's work counts against the shader's peak.
+        let on_device = if stages.dispatch > 0.0 {
+            1e-3 * stages.dispatch
+        } else {
+            seconds.median - 1e-3 * stages.refine
+        };
+        let mut row = Row::new(
+            &about.engine,
+            None,
+            rung,
+            seconds,
+            stages,
+            Work {
+                trajectories: trajectories(&hits),
+                operations: work * seconds.median / on_device,
+                peak_gflops,
+            },
+            task.errors(&points),
+        );
+        row.trajectories_per_s += (newton_f64 * points.len()) as f64 / seconds.median;
+        report.rows.push(row);
+    }
+    Ok(())
+}
+
+/// A Newton step in `f64` for every state.
+fn newton(task: &Task, points: &mut [(f64, f64)]) {
+    let launches: Vec<Launch> = points
+        .iter()
+        .zip(&task.shots)
+        .map(|(&(tau, load), shot)| Launch {
+            rod: task.rods[shot.rod as usize],
+            tau,
+            load,
+        })
+        .collect();
+    let landed = land::<Dopri8, First, 6>(Method::fine(task.effects), &launches);
+    for (((point, landing), launch), shot) in points
+        .iter_mut()
+        .zip(landed)
+        .zip(&launches)
+        .zip(&task.shots)
+    {
+        let s = arclength(&launch.rod, launch.tau);
+        let step = landing.newton_step(shot.pole, s, launch.load);
+        *point = (launch.tau + step.x, launch.load + step.y);
+    }
+}

@@ -1,0 +1,168 @@
+//! What accuracy costs in time: every engine of this machine, from coarse to exact, on the states of a scene.
+//!
+//! Engines are given the same shots and start from the same guesses, those of the lattice. Errors are those of the engine's
+//! answers as far finer steps see them; times are medians, without the first run, which warms up.
+
+mod cpu;
+mod detachment;
+mod gpu;
+mod pareto;
+mod task;
+mod watch;
+
+pub use detachment::Detachments;
+pub use task::{Errors, Spread};
+pub use watch::Timing;
+
+use crate::integrate::EngineError;
+use crate::plan::sample;
+use crate::scene::Scene;
+use serde::Serialize;
+use std::fmt;
+use task::Task;
+
+/// One engine at one accuracy.
+#[derive(Clone, Debug, Serialize)]
+pub struct Row {
+    /// Which engine.
+    pub engine: String,
+    /// Threads of the CPU engine.
+    pub threads: Option<usize>,
+    /// How accurate it was asked to be.
+    pub rung: Rung,
+    /// Seconds for all states.
+    pub seconds: Timing,
+    /// Milliseconds of the stages.
+    pub stages_ms: Stages,
+    /// Microseconds per state.
+    pub us_per_state: f64,
+    /// States per second.
+    pub states_per_s: f64,
+    /// Trajectories with first derivatives per second.
+    pub trajectories_per_s: f64,
+    /// Billions of floating-point operations per second in the integration.
+    pub gflops: f64,
+    /// The same as a part of the device's measured peak.
+    pub of_peak: f64,
+    /// How far off the answers are.
+    pub errors: Errors,
+    /// Whether no other row is both faster and closer.
+    pub pareto: bool,
+}
+
+/// How accurate a row was asked to be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct Rung {
+    /// The integrator of the engine.
+    pub integrator: &'static str,
+    /// Its fewest steps per trajectory.
+    pub steps: u32,
+    /// Newton steps in `f64` after the engine.
+    pub newton_f64: usize,
+}
+
+impl fmt::Display for Rung {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} x{}", self.integrator, self.steps)?;
+        if self.newton_f64 > 0 {
+            write!(f, " + {} f64", self.newton_f64)?;
+        }
+        Ok(())
+    }
+}
+
+/// Milliseconds per stage; 0 where an engine has no such stage.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub struct Stages {
+    /// Packing and handing to the device.
+    pub upload: f64,
+    /// Shooting: by the device's own clock on a GPU that has one.
+    pub dispatch: f64,
+    /// Unpacking.
+    pub readback: f64,
+    /// Newton steps in `f64` after the engine.
+    pub refine: f64,
+}
+
+/// An engine by itself.
+#[derive(Clone, Debug, Serialize)]
+pub struct Engine {
+    /// Its name in the rows.
+    pub name: String,
+    /// Threads of the CPU engine.
+    pub threads: Option<usize>,
+    /// Processor or adapter, with driver.
+    pub adapter: String,
+    /// Billions of multiplications and additions per second, measured.
+    pub peak_gflops: f64,
+    /// Seconds from nothing to the first answer: opening, compiling, one shot.
+    pub first_result_s: f64,
+}
+
+/// Everything that was measured.
+#[derive(Clone, Debug, Serialize)]
+pub struct Report {
+    /// Title of the scene.
+    pub scene: String,
+    /// States that every engine solved.
+    pub states: usize,
+    /// Timed runs of each row.
+    pub runs: usize,
+    /// The engines.
+    pub engines: Vec<Engine>,
+    /// The rows, engine by engine.
+    pub rows: Vec<Row>,
+    /// The curve of detachment, from coarse to exact.
+    pub detachments: Vec<Detachments>,
+    /// Engines that could not be measured, and why.
+    pub failures: Vec<String>,
+}
+
+/// How much is measured.
+#[derive(Clone, Copy, Debug)]
+pub struct Effort {
+    /// Push angles, and distances, of the sample.
+    pub lines: usize,
+    /// Timed runs of each row.
+    pub runs: usize,
+}
+
+impl Effort {
+    /// For numbers to be quoted.
+    pub const FULL: Self = Self {
+        lines: 128,
+        runs: 7,
+    };
+
+    /// For a first look.
+    pub const QUICK: Self = Self { lines: 48, runs: 5 };
+}
+
+/// Measures every engine on a sample of `scene`; `said` is told what comes next.
+///
+/// # Errors
+/// When not even the CPU's threads can be had.
+pub fn run(
+    scene: &Scene,
+    effort: Effort,
+    said: &mut dyn FnMut(&str),
+) -> Result<Report, EngineError> {
+    let scene = sample(scene, effort.lines);
+    said("the exact answers");
+    let task = Task::new(&scene);
+    let mut report = Report {
+        scene: scene.title.clone(),
+        states: task.shots.len(),
+        runs: effort.runs,
+        engines: Vec::new(),
+        rows: Vec::new(),
+        detachments: Vec::new(),
+        failures: Vec::new(),
+    };
+    cpu::measure(&task, effort.runs, &mut report, said)?;
+    gpu::measure(&task, effort.runs, &mut report, said);
+    said("detachments");
+    report.detachments = detachment::measure(&scene, effort.runs);
+    pareto::mark(&mut report.rows);
+    Ok(report)
+}

@@ -1,0 +1,184 @@
+//! The states of a scene, with exact answers.
+
+use crate::integrate::{Shot, Solver};
+use crate::model::batch::{Launch, Method, Unit, land};
+use crate::model::{Dopri8, Effects, First, Resolution, Rod, arclength};
+use crate::plan::Plan;
+use crate::refine::{End, refine};
+use crate::scene::{Scene, Whisker};
+use crate::sheet::Sheet;
+use rayon::prelude::*;
+use serde::Serialize;
+
+/// Four times as many steps as [`Resolution::FINE`]: with order 8, errors that are 65,536 times smaller.
+pub const EXACT: Resolution = Resolution::of(128);
+
+/// Shots that have an answer.
+pub struct Task {
+    pub effects: Effects,
+    pub rods: Vec<Rod>,
+    pub shots: Vec<Shot>,
+    /// The answers.
+    exact: Vec<Launch>,
+}
+
+/// A number over all states.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Spread {
+    /// The largest.
+    pub worst: f64,
+    /// The largest of the best 99 %.
+    pub p99: f64,
+}
+
+impl Spread {
+    /// Of `values`; a number that is none is worse than any.
+    pub fn of(mut values: Vec<f64>) -> Self {
+        for value in &mut values {
+            if value.is_nan() {
+                *value = f64::INFINITY;
+            }
+        }
+        values.sort_by(f64::total_cmp);
+        let at = |part: f64| {
+            #[allow(
+                clippy::cast_possible_truncation,
+                clippy::cast_sign_loss,
+                reason = "a place in the list"
+            )]
+            let place = (part * values.len().saturating_sub(1) as f64) as usize;
+            values.get(place).copied().unwrap_or(0.0)
+        };
+        Self {
+            worst: at(1.0),
+            p99: at(0.99),
+        }
+    }
+}
+
+/// How far off states are.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Errors {
+    /// Over how many states.
+    pub states: usize,
+    /// The push angle, and the distance in radians, for which the state would be right, from the wanted one; in degrees.
+    pub angle_deg: Spread,
+    /// Arclength of the contact, in whisker lengths. Next to the fold it is the square root of the angle's.
+    pub arc_length: Spread,
+    /// Force, relative to itself plus that of `q = 1`.
+    pub force: Spread,
+}
+
+impl Task {
+    /// The states of every cell of `scene` that has one.
+    pub fn new(scene: &Scene) -> Self {
+        let whiskers: Vec<Whisker> = scene.whiskers().map(|(_, whisker)| whisker).collect();
+        let sides = Plan::sides(scene);
+        let pairs: Vec<_> = whiskers
+            .iter()
+            .flat_map(|whisker| sides.iter().map(move |side| (whisker, *side)))
+            .map(|(whisker, side)| (Rod::new(whisker, &scene.pole, side), side))
+            .collect();
+        let rods: Vec<Rod> = pairs.iter().map(|(rod, _)| *rod).collect();
+        let effects = Effects::of(&rods);
+        let length = scene.whisker.length_mm;
+        let distances: Vec<f64> = scene.grid.distance_mm.iter().map(|d| d / length).collect();
+        let solved: Vec<Vec<(Shot, (f64, f64))>> = pairs
+            .par_iter()
+            .enumerate()
+            .map(|(index, (rod, side))| {
+                let method = Method::fine(effects);
+                let Some(sheet) = Sheet::new(method, rod, *side, &distances) else {
+                    return Vec::new();
+                };
+                let pushes = scene.grid.push_angle_deg.iter().map(|p| p * side.sign());
+                let mut pushes: Vec<f64> =
+                    pushes.filter(|p| *p >= 0.0).map(f64::to_radians).collect();
+                pushes.sort_by(f64::total_cmp);
+                let mut shots = Vec::new();
+                for (row, place) in sheet.rows.iter().enumerate() {
+                    let guesses = sheet.guesses(row, pushes.iter().copied());
+                    for (guess, push) in guesses.iter().zip(&pushes) {
+                        shots.extend(guess.map(|guess| Shot {
+                            rod: 0,
+                            tau: guess.tau,
+                            load: guess.load,
+                            pole: place.pole(side.sign() * push),
+                        }));
+                    }
+                }
+                let starts: Vec<_> = shots.iter().map(|shot| (shot.tau, shot.load)).collect();
+                let cells = refine(method, &[&sheet], &shots, &starts);
+                let solved = shots.iter().zip(cells);
+                let solved = solved.filter(|(_, cell)| cell.end == End::Solved);
+                solved
+                    .map(|(shot, cell)| {
+                        #[allow(clippy::cast_possible_truncation, reason = "a sample has few rods")]
+                        let shot = Shot {
+                            rod: index as u32,
+                            ..*shot
+                        };
+                        (shot, (cell.state.tau, cell.state.load))
+                    })
+                    .collect()
+            })
+            .collect();
+        let (shots, fine): (Vec<Shot>, Vec<(f64, f64)>) = solved.into_iter().flatten().unzip();
+        let starts: Vec<Shot> = shots
+            .iter()
+            .zip(&fine)
+            .map(|(shot, &(tau, load))| Shot { tau, load, ..*shot })
+            .collect();
+        let solver = Solver {
+            unit: Unit::detect(),
+            resolution: EXACT,
+            tolerance: 1e-13,
+        };
+        let exact = solver.solve(effects, &rods, &starts);
+        let exact = exact.iter().zip(&shots).map(|(hit, shot)| Launch {
+            rod: rods[shot.rod as usize],
+            tau: hit.tau,
+            load: hit.load,
+        });
+        Self {
+            effects,
+            exact: exact.collect(),
+            rods,
+            shots,
+        }
+    }
+
+    /// How far off the answers `points`, `(tau, load)` of every shot, are.
+    pub fn errors(&self, points: &[(f64, f64)]) -> Errors {
+        let found: Vec<Launch> = points
+            .iter()
+            .zip(&self.exact)
+            .map(|(&(tau, load), exact)| Launch {
+                rod: exact.rod,
+                tau,
+                load,
+            })
+            .collect();
+        let method = Method {
+            effects: self.effects,
+            resolution: EXACT,
+        };
+        let landed = land::<Dopri8, First, 6>(method, &found);
+        let angle = |i: usize| landed[i].residual(self.shots[i].pole).length().to_degrees();
+        let place = |launch: &Launch| arclength(&launch.rod, launch.tau);
+        let arc = |i: usize| (place(&found[i]) - place(&self.exact[i])).abs();
+        let force = |launch: &Launch| launch.load * launch.rod.radius(launch.tau).powi(2);
+        let off = |i: usize| {
+            let exact = &self.exact[i];
+            let unit = (exact.rod.radius(exact.tau) / place(exact)).powi(2);
+            (force(&found[i]) - force(exact)).abs() / (force(exact).abs() + unit)
+        };
+        let over = |error: &dyn Fn(usize) -> f64| Spread::of((0..found.len()).map(error).collect());
+        Errors {
+            states: found.len(),
+            angle_deg: over(&angle),
+            arc_length: over(&arc),
+            force: over(&off),
+        }
+    }
+}

@@ -1,0 +1,212 @@
+//! `whiskmap bench`.
+
+use super::failure::{Failure, say};
+use super::outputs::{picture, refused};
+use crate::bench::{self, Detachments, Effort, Report, Row};
+use crate::render::{Chart, Dot, Ink, Line, Plot, Stroke};
+use crate::scene::Scene;
+use crate::store::beside;
+use clap::Args;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+/// Options of `bench`.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  whiskmap bench scenes/cone.toml
+  whiskmap bench scenes/cone.toml --quick --json bench.json --plot bench.svg
+
+A sample of the scene's states, at most 128 x 128 cells and two values per sweep axis, is solved by every engine: the CPU \
+with one number at a time, with vectors on one thread and on all, from 4 to 48 steps of order 8; each GPU adapter in f32 \
+and, where it can, in f64, alone and with one and two Newton steps in f64 after it. All start from the same guesses. \
+Errors are judged with four times the finest default steps: the push angle that a state really belongs to, the arc length \
+of its contact in whisker lengths, and its force. * marks the rows that no other beats in time and in the worst error of \
+the angle. Times are medians of at least 5 runs after one that does not count; +- is the slowest less the fastest run.")]
+pub struct Options {
+    /// Scene file; - reads it from standard input
+    scene: PathBuf,
+    /// Everything measured, as JSON; - is standard output, in place of the tables
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+    /// Picture of error against time, PNG or SVG by its ending
+    #[arg(long, value_name = "FILE")]
+    plot: Option<PathBuf>,
+    /// A smaller sample and fewer runs
+    #[arg(long)]
+    quick: bool,
+}
+
+/// Runs `bench`.
+pub fn run(options: &Options) -> Result<(), Failure> {
+    let scene = Scene::read(&options.scene)?;
+    let plot = options.plot.as_deref().map(picture).transpose()?;
+    let stdout = Path::new("-");
+    let file = options.json.as_deref().filter(|path| *path != stdout);
+    let file = file.map(|path| match beside(path, ".json") {
+        Ok(file) => Ok((file, path)),
+        Err(error) => Err(refused("--json", path, &error)),
+    });
+    let file = file.transpose()?;
+    let effort = if options.quick {
+        Effort::QUICK
+    } else {
+        Effort::FULL
+    };
+    let report = bench::run(&scene, effort, &mut |next| {
+        say(&format!("measuring {next}"))
+    })?;
+    for failure in &report.failures {
+        say(&format!("not measured: {failure}"));
+    }
+    let json = || serde_json::to_string_pretty(&report).unwrap_or_default() + "\n";
+    if let Some((mut file, path)) = file {
+        let written = file.write_all(json().as_bytes());
+        written
+            .and_then(|()| Ok(file.persist(path)?))
+            .map_err(|cause| Failure::Write {
+                path: path.to_owned(),
+                cause,
+            })?;
+    }
+    if options.json.as_deref() == Some(stdout) {
+        io::stdout().lock().write_all(json().as_bytes())?;
+    } else {
+        tables(&report)?;
+    }
+    if let Some((path, format)) = &plot {
+        chart(&report).save(path, *format)?;
+    }
+    Ok(())
+}
+
+/// At most 80 columns.
+fn tables(report: &Report) -> io::Result<()> {
+    let mut out = io::stdout().lock();
+    writeln!(out, "{}: {} states\n", report.scene, report.states)?;
+    for engine in &report.engines {
+        let name = named(&engine.name, engine.threads);
+        writeln!(
+            out,
+            "{name:20} peak {:.1} GFLOP/s, first result after {:.1e} s",
+            engine.peak_gflops, engine.first_result_s
+        )?;
+        if engine.threads.is_none() {
+            writeln!(out, "{:20} {}", "", engine.adapter)?;
+        }
+    }
+    writeln!(
+        out,
+        "\n                                              angle, deg     arc    force   of\n  \
+         engine              steps          us  +-%   worst    99 %   worst    worst peak"
+    )?;
+    for row in &report.rows {
+        let errors = &row.errors;
+        writeln!(
+            out,
+            "{} {:19} {:12} {:5.2} {:4.0} {:7.0e} {:7.0e} {:7.0e}  {:7.0e} {:3.0}%",
+            if row.pareto { "*" } else { " " },
+            named(&row.engine, row.threads),
+            row.rung.to_string(),
+            row.us_per_state,
+            100.0 * row.seconds.spread,
+            errors.angle_deg.worst,
+            errors.angle_deg.p99,
+            errors.arc_length.worst,
+            errors.force.worst,
+            100.0 * row.of_peak,
+        )?;
+    }
+    let staged = || report.rows.iter().filter(|row| row.threads.is_none());
+    if staged().next().is_some() {
+        writeln!(
+            out,
+            "\nms                  steps          upload dispatch readback   refine"
+        )?;
+    }
+    for row in staged() {
+        let stages = &row.stages_ms;
+        writeln!(
+            out,
+            "{:19} {:12}  {:8.2} {:8.2} {:8.2} {:8.2}",
+            row.engine,
+            row.rung.to_string(),
+            stages.upload,
+            stages.dispatch,
+            stages.readback,
+            stages.refine
+        )?;
+    }
+    writeln!(
+        out,
+        "\ndetachments, all threads    us a point  +-%   angle, deg: worst    99 %"
+    )?;
+    for Detachments {
+        steps,
+        seconds,
+        us_per_point,
+        angle_deg,
+        ..
+    } in &report.detachments
+    {
+        writeln!(
+            out,
+            "dopri8 x{steps:<3} {us_per_point:25.1} {:5.0} {:19.0e} {:7.0e}",
+            100.0 * seconds.spread,
+            angle_deg.worst,
+            angle_deg.p99
+        )?;
+    }
+    Ok(())
+}
+
+/// An engine with its threads.
+fn named(engine: &str, threads: Option<usize>) -> String {
+    match threads {
+        Some(threads) => format!("{engine} x {threads}"),
+        None => engine.to_owned(),
+    }
+}
+
+/// Error against time, a line per engine.
+fn chart(report: &Report) -> Chart {
+    let place = |row: &Row| {
+        let error = row.errors.angle_deg.worst;
+        [row.us_per_state.log10(), error.log10()]
+    };
+    let looks = [
+        (Ink::Grey, Stroke::Solid),
+        (Ink::Black, Stroke::Solid),
+        (Ink::Black, Stroke::Dashed),
+        (Ink::Blue, Stroke::Solid),
+        (Ink::Blue, Stroke::Dashed),
+        (Ink::Grey, Stroke::Dashed),
+    ];
+    let engines = report
+        .rows
+        .chunk_by(|a, b| (&a.engine, a.threads) == (&b.engine, b.threads));
+    let lines = engines.zip(looks.iter().cycle());
+    let lines = lines.map(|(rows, &(ink, stroke))| Line {
+        points: rows.iter().map(place).collect(),
+        ink,
+        stroke,
+        name: Some(named(&rows[0].engine, rows[0].threads)),
+    });
+    let front = report.rows.iter().filter(|row| row.pareto);
+    let front = front.map(|row| Dot {
+        at: place(row),
+        ink: Ink::Black,
+        name: Some("no other is faster and closer".to_owned()),
+    });
+    Chart {
+        title: format!("What accuracy costs: {}", report.scene),
+        plots: vec![Plot {
+            x_label: "log10 of microseconds per state".to_owned(),
+            y_label: "log10 of the worst error of the push angle (deg)".to_owned(),
+            lines: lines.collect(),
+            dots: front.collect(),
+            ..Plot::default()
+        }],
+        columns: 1,
+    }
+}

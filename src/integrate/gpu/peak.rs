@@ -1,0 +1,67 @@
+//! What the device could do at best.
+
+use super::shaders::WORKGROUP;
+use super::{EngineError, Gpu, shaders};
+use std::time::Instant;
+
+/// Workgroups of a dispatch.
+const GROUPS: u32 = 1024;
+
+/// Operations of an invocation of `shaders/peak.wgsl`: four chains of vectors of four, 512 rounds.
+const OPERATIONS: u64 = 4 * 4 * 2 * 512;
+
+/// Dispatches before and on the clock.
+const RUNS: u32 = 5;
+
+impl Gpu {
+    /// Floating-point operations per second, in the engine's precision, of a kernel that only multiplies and adds: the best
+    /// of a few dispatches.
+    ///
+    /// # Errors
+    /// When the device fails.
+    pub fn peak(&self) -> Result<f64, EngineError> {
+        let device = &self.device;
+        let text = shaders::peak(self.precision);
+        let module = device
+            .handle
+            .create_shader_module(wgpu::ShaderModuleDescriptor {
+                label: Some("peak"),
+                source: wgpu::ShaderSource::Wgsl(text.into()),
+            });
+        let pipeline = device
+            .handle
+            .create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+                label: Some("peak"),
+                layout: None,
+                module: &module,
+                entry_point: Some("peak"),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                cache: None,
+            });
+        let invocations = u64::from(GROUPS * WORKGROUP);
+        let usage = wgpu::BufferUsages::STORAGE;
+        let ends = device.buffer("ends", 8 * invocations, usage)?;
+        let bindings = device.handle.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("peak"),
+            layout: &pipeline.get_bind_group_layout(0),
+            entries: &[wgpu::BindGroupEntry {
+                binding: 0,
+                resource: ends.as_entire_binding(),
+            }],
+        });
+        let mut best = f64::INFINITY;
+        for _ in 0..RUNS {
+            let start = Instant::now();
+            let mut commands = device.handle.create_command_encoder(&Default::default());
+            {
+                let mut pass = commands.begin_compute_pass(&Default::default());
+                pass.set_pipeline(&pipeline);
+                pass.set_bind_group(0, &bindings, &[]);
+                pass.dispatch_workgroups(GROUPS, 1, 1);
+            }
+            device.wait(device.queue.submit([commands.finish()]))?;
+            best = best.min(start.elapsed().as_secs_f64());
+        }
+        Ok((invocations * OPERATIONS) as f64 / best)
+    }
+}

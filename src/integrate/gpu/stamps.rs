@@ -1,0 +1,72 @@
+//! The device's own clock around a dispatch.
+
+use super::EngineError;
+use super::device::Device;
+use std::time::Duration;
+use wgpu::BufferUsages as Usage;
+
+/// Bytes of two time stamps.
+const BYTES: u64 = 16;
+
+/// Where the times of one dispatch go.
+#[derive(Debug)]
+pub struct Stamps {
+    set: wgpu::QuerySet,
+    resolved: wgpu::Buffer,
+    readback: wgpu::Buffer,
+}
+
+impl Stamps {
+    /// `None` where the device has no such clock.
+    pub fn new(device: &Device) -> Result<Option<Self>, EngineError> {
+        if !device.has_clock() {
+            return Ok(None);
+        }
+        let set = device.handle.create_query_set(&wgpu::QuerySetDescriptor {
+            label: Some("stamps"),
+            ty: wgpu::QueryType::Timestamp,
+            count: 2,
+        });
+        let usage = Usage::QUERY_RESOLVE | Usage::COPY_SRC;
+        Ok(Some(Self {
+            set,
+            resolved: device.buffer("stamps", BYTES, usage)?,
+            readback: device.buffer("stamps", BYTES, Usage::MAP_READ | Usage::COPY_DST)?,
+        }))
+    }
+
+    /// Before and after a pass.
+    pub fn writes(&self) -> wgpu::ComputePassTimestampWrites<'_> {
+        wgpu::ComputePassTimestampWrites {
+            query_set: &self.set,
+            beginning_of_pass_write_index: Some(0),
+            end_of_pass_write_index: Some(1),
+        }
+    }
+
+    /// Sends the times after the pass on their way.
+    pub fn resolve(&self, commands: &mut wgpu::CommandEncoder) {
+        commands.resolve_query_set(&self.set, 0..2, &self.resolved, 0);
+        commands.copy_buffer_to_buffer(&self.resolved, 0, &self.readback, 0, BYTES);
+    }
+
+    /// Asks for the times of what was submitted.
+    pub fn request(&self) {
+        self.readback.map_async(wgpu::MapMode::Read, .., |_| ());
+    }
+
+    /// How long the dispatch took, once it is done.
+    pub fn read(&self, device: &Device) -> Result<Duration, EngineError> {
+        let mapped = self
+            .readback
+            .get_mapped_range(..)
+            .map_err(|error| EngineError::Device(error.to_string()))?;
+        let [start, end] =
+            [0, 8].map(|at| bytemuck::pod_read_unaligned::<u64>(&mapped[at..at + 8]));
+        drop(mapped);
+        self.readback.unmap();
+        let nanoseconds =
+            end.saturating_sub(start) as f64 * f64::from(device.queue.get_timestamp_period());
+        Ok(Duration::from_secs_f64(1e-9 * nanoseconds))
+    }
+}
