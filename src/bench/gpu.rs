@@ -78,7 +78,7 @@ fn engine(
         })?;
         let steps = |launch: &Launch| {
             let measured = Some(&launch.rod).filter(|_| task.effects.profile);
-            precision.steps(measured, launch.tau)
+            precision.steps(measured, launch.tau, launch.load)
         };
         let rung = Rung {
             integrator: "rk4",

@@ -4,11 +4,11 @@ use super::real::expm1_over_small;
 use super::rhs::{Intrinsic, Material, Planar, RodSystem, Sensitivity, State};
 use super::{Real, Rod, Section, arclength};
 
-/// How finely trajectories are integrated: at least `least` steps, and none along which the radius changes by more than
+/// How finely trajectories are integrated: `least` steps under the load of a cylinder's fold, and no step along which the radius changes by more than
 /// a factor `exp(longest)`, the modulus by more than `exp(2 longest)`, or the resting whisker turns by more than `longest`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Resolution {
-    /// Fewest steps.
+    /// Steps under `q = 8` with `beta tau = 1`.
     pub least: u32,
     /// Longest step in `beta tau`, in `2 A* tau` and in half the logarithm of the modulus; at most 0.4, the range of the stages' radii.
     pub longest: f64,
@@ -34,7 +34,7 @@ impl Resolution {
         Self::of(48),
     ];
 
-    /// At least so many steps, and none longer than a cone of taper 0.96 takes on average in as many.
+    /// So many steps, and none longer than a cone of taper 0.96 takes on average in as many.
     #[must_use]
     pub const fn of(least: u32) -> Self {
         let longest = 3.2 / least as f64;
@@ -53,39 +53,57 @@ impl Resolution {
         }
     }
 
-    /// Steps for a trajectory over `tau` on `rod`: a multiple of `least`, so that many trajectories take equally many.
-    /// With a profile, steps for every piece of it: as many of `least`, twice, as the piece that
-    /// bends the most has in the bend.
+    /// Steps for a trajectory from `tau` under `load` on `rod`; with a profile, steps for every piece of it.
+    ///
+    /// Errors grow with the load above all, so that a whisker that hardly bends takes a quarter of the steps. The weights
+    /// are those of 20,000 random trajectories that had to reach 1e-8 and 1e-10 (`benches/NOTES.md`).
     #[must_use]
-    #[allow(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "clamped to a range of small positive numbers; NaN becomes 0 and then the smallest"
-    )]
-    pub fn steps(&self, rod: &Rod, tau: f64) -> u32 {
+    pub fn steps(&self, rod: &Rod, tau: f64, load: f64) -> u32 {
+        let s = arclength(rod, tau);
+        let bending = (load.abs() * s * s * rod.softness(tau)) / rod.modulus(s).min(1.0);
+        let bending = if bending <= EVEN_UP_TO {
+            bending
+        } else {
+            (bending * EVEN_UP_TO).sqrt()
+        };
         let modulus = rod.gradient.abs() / (1.0 + rod.gradient).min(1.0);
         let fastest = rod.taper.max(rod.sharpest_bend()).max(0.5 * modulus);
-        if let Some(profile) = rod.profile {
-            let s = arclength(rod, tau);
-            let [change, length] = profile.changes[profile.piece(s)];
-            let whole = CONCENTRATED * f64::from(self.least) * profile.largest_share(s);
-            let needed = change.max(fastest * length) / self.longest;
-            return (whole.max(needed).ceil() as u32).clamp(FEWEST_PER_PIECE, MOST_MULTIPLES);
-        }
-        let multiple = fastest * tau / (self.longest * f64::from(self.least));
-        self.least * (multiple.ceil() as u32).clamp(1, MOST_MULTIPLES)
+        let weight = 0.26 + 0.074 * bending;
+        let shape = 0.16 * rod.taper + 0.05 * rod.sharpest_bend();
+        let (weight, needed) = match rod.profile {
+            Some(profile) => {
+                let [change, length] = profile.changes[profile.piece(s)];
+                let share = CONCENTRATED * profile.largest_share(s);
+                (share * (weight + 0.16), change.max(fastest * length))
+            }
+            None => (weight + shape * tau, fastest * tau),
+        };
+        rounded((f64::from(self.least) * weight).max(needed / self.longest))
     }
 }
+
+/// Load `q` up to which steps grow in proportion; beyond, a whisker coils up.
+const EVEN_UP_TO: f64 = 9.0;
 
 /// Under more than a small load the bend gathers in the softest piece.
 const CONCENTRATED: f64 = 2.0;
 
-/// A piece may be much shorter than what the rod needs as a step, but the load may change on the first one.
-const FEWEST_PER_PIECE: u32 = 2;
+/// At least so many steps, up to a number that many trajectories share: two significant bits and some.
+#[allow(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "clamped to a range of small positive numbers; NaN becomes the smallest"
+)]
+fn rounded(steps: f64) -> u32 {
+    let steps = steps.clamp(FEWEST, MOST).ceil() as u32;
+    steps.next_multiple_of((steps.next_power_of_two() / 8).max(1))
+}
 
-/// Bounds the work on a trajectory that a lost Newton step has sent far away. `tau` is at most 25 on a whisker (a cone
-/// cut at 1e-9, and some) and `2 A*` at most 20.
-const MOST_MULTIPLES: u32 = 256;
+/// A piece may be much shorter than what the rod needs as a step, but the load may change on the first one.
+const FEWEST: f64 = 2.0;
+
+/// Bounds the work on a trajectory that a lost Newton step has sent far away.
+const MOST: f64 = 8192.0;
 
 /// An explicit Runge-Kutta method with fixed steps.
 pub trait Integrator: Copy + Send + Sync + 'static {

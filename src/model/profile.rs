@@ -30,7 +30,7 @@ pub fn profile(rod: &Rod, tau: f64, load: f64, resolution: Resolution, at: &[f64
     let way = Way {
         rod,
         start: &start,
-        steps: resolution.steps(rod, tau),
+        steps: resolution.steps(rod, tau, load),
     };
     match rod.spiral {
         Some([at_base, slope]) => way.places(Spiral { at_base, slope }, (), at),

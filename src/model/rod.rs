@@ -137,7 +137,7 @@ impl Rod {
     /// Modulus at arclength `s` over that at the base.
     #[must_use]
     pub fn modulus(&self, s: f64) -> f64 {
-        self.gradient.mul_add(s, 1.0)
+        1.0 + self.gradient * s
     }
 
     /// The whisker's unit tangent at the contact, in axes whose second one is along the force.

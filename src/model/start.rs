@@ -30,6 +30,7 @@ pub struct Start {
 impl Start {
     /// The contact of `rod` at `tau` with `load = f/radius^2`.
     #[must_use]
+    #[inline(always)]
     pub fn new(rod: &Rod, tau: f64, load: f64) -> Self {
         let radius = rod.radius(tau);
         let s = arclength(rod, tau);
@@ -58,6 +59,7 @@ impl Start {
 
 /// cos and sin of the tangent of a parabola at arclength `s`, `kappa_i = 2 A cos^3` and
 /// `dkappa_i/ds = -12 A^2 sin cos^5`.
+#[inline(always)]
 fn parabola(rod: &Rod, s: f64) -> (DVec2, f64, f64) {
     let tangent = Rest::parabola_tangent(rod, s);
     let DVec2 { x: cos, y: sin } = tangent;

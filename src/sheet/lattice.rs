@@ -100,7 +100,7 @@ impl Lattice {
             let local =
                 |values: &[f64]| Polynomial::through(values[start..].iter().take(NODES).copied());
             let offset = (k - start) as f64;
-            let t = local(ln_distance).solve(target, offset, offset + 1.0);
+            let t = local(ln_distance).solve(target, offset + 0.5, offset, offset + 1.0);
             let tau = columns.tau(start, t);
             let phi = local(&self.phi[m]).at(t).0;
             level.nodes.push(Node {
@@ -142,82 +142,89 @@ impl Level {
         // The fold is the node at load step `LOADS`; intervals beyond it belong to the unstable sheet.
         let last = (LOADS - self.first.min(LOADS - 1)).min(n - 1);
         let mut interval = 0;
-        let mut piece = Piece::new(self, 0);
+        let mut piece = Piece::new(self, 0, last == 1);
         pushes
             .map(|push| {
                 while interval + 1 < last && push > self.nodes[interval + 1].push {
                     interval += 1;
-                    piece = Piece::new(self, interval);
+                    piece = Piece::new(self, interval, interval + 1 == last);
                 }
-                piece.guess(push, interval == 0, interval + 1 == last)
+                piece.guess(push)
             })
             .collect()
     }
 }
 
-/// The level curve between two nodes.
+/// The level curve between two nodes. The first piece and the last one reach one step farther, the last one up to the
+/// largest push angle of its polynomial.
 struct Piece {
-    offset: f64,
+    is_first: bool,
     push: Polynomial,
     tau: Polynomial,
     load: Polynomial,
+    /// Where it begins and ends, and the push angles there.
+    ends: [f64; 2],
+    pushes: [f64; 2],
+    /// Where the last guess was.
+    near: f64,
 }
 
 impl Piece {
-    fn new(level: &Level, interval: usize) -> Self {
+    fn new(level: &Level, interval: usize, is_last: bool) -> Self {
         let start = stencil(interval, 0, level.nodes.len());
         let local = |f: fn(&Node) -> f64| {
             Polynomial::through(level.nodes[start..].iter().take(NODES).map(f))
         };
+        let push = local(|node| node.push);
+        let offset = (interval - start) as f64;
+        let is_first = interval == 0;
+        let low = if is_first { offset - 1.0 } else { offset };
+        let high = if is_last {
+            summit(&push, offset)
+        } else {
+            offset + 1.0
+        };
         Self {
-            offset: (interval - start) as f64,
-            push: local(|node| node.push),
+            is_first,
             tau: local(|node| node.tau),
             load: local(|node| node.load),
+            ends: [low, high],
+            pushes: [push.at(low).0, push.at(high).0],
+            near: offset,
+            push,
         }
     }
 
-    /// The guess at `push`; the first and the last interval reach one step farther, the last one up to the
-    /// largest push angle of its polynomial.
-    fn guess(&self, push: f64, first: bool, last: bool) -> Option<Guess> {
-        let low = if first {
-            self.offset - 1.0
-        } else {
-            self.offset
-        };
-        let high = if last {
-            self.summit()
-        } else {
-            self.offset + 1.0
-        };
-        let (from, to) = (self.push.at(low).0, self.push.at(high).0);
+    fn guess(&mut self, push: f64) -> Option<Guess> {
+        let ([low, high], [from, to]) = (self.ends, self.pushes);
         let t = if push < from {
-            (first && push > from - MARGIN).then_some(low)?
+            (self.is_first && push > from - MARGIN).then_some(low)?
         } else if push > to {
             (push < to + MARGIN).then_some(high)?
         } else {
-            self.push.solve(push, low, high)
+            self.push.solve(push, self.near, low, high)
         };
+        self.near = t;
         Some(Guess {
             tau: self.tau.at(t).0,
             load: self.load.at(t).0,
         })
     }
+}
 
-    /// Where the push angle is largest, within one step of the interval's end.
-    fn summit(&self) -> f64 {
-        let (mut low, mut high) = (self.offset, self.offset + 2.0);
-        if self.push.at(high).1 > 0.0 {
-            return high;
-        }
-        for _ in 0..50 {
-            let middle = 0.5 * (low + high);
-            if self.push.at(middle).1 > 0.0 {
-                low = middle;
-            } else {
-                high = middle;
-            }
-        }
-        low
+/// Where the push angle is largest, within one step of the interval that begins at `offset`.
+fn summit(push: &Polynomial, offset: f64) -> f64 {
+    let (mut low, mut high) = (offset, offset + 2.0);
+    if push.at(high).1 > 0.0 {
+        return high;
     }
+    for _ in 0..50 {
+        let middle = 0.5 * (low + high);
+        if push.at(middle).1 > 0.0 {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    low
 }

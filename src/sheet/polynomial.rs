@@ -3,6 +3,9 @@
 /// Nodes of a polynomial.
 pub const NODES: usize = 6;
 
+/// How well a place on a polynomial is known, in its spacings: interpolation leaves more than that.
+const ENOUGH: f64 = 1e-9;
+
 /// A polynomial through up to [`NODES`] values at `0, 1, 2, ...`.
 #[derive(Clone, Copy, Debug)]
 pub struct Polynomial {
@@ -40,11 +43,11 @@ impl Polynomial {
     }
 
     /// Where the polynomial is `target` between `low` and `high`, at which it lies on different sides of it:
-    /// Newton's method, bisecting where a step would leave the bracket.
+    /// Newton's method from `near`, bisecting where a step would leave the bracket.
     #[must_use]
-    pub fn solve(&self, target: f64, mut low: f64, mut high: f64) -> f64 {
+    pub fn solve(&self, target: f64, near: f64, mut low: f64, mut high: f64) -> f64 {
         let rising = self.at(high).0 > self.at(low).0;
-        let mut t = 0.5 * (low + high);
+        let mut t = near;
         for _ in 0..60 {
             let (value, slope) = self.at(t);
             if (value < target) == rising {
@@ -58,7 +61,7 @@ impl Polynomial {
             } else {
                 0.5 * (low + high)
             };
-            if (next - t).abs() < 1e-12 {
+            if (next - t).abs() < ENOUGH {
                 return next;
             }
             t = next;

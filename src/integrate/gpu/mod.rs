@@ -186,6 +186,7 @@ impl Gpu {
             steps: precision.steps(
                 rods.get(shot.rod as usize).filter(|_| effects.profile),
                 shot.tau,
+                shot.load,
             ),
         };
         let last = self.rods.take();

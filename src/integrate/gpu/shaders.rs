@@ -38,8 +38,10 @@ impl Precision {
 
     /// Steps of a trajectory from `tau`; on a rod `measured`, steps for every piece of its profile.
     #[must_use]
-    pub fn steps(self, measured: Option<&Rod>, tau: f64) -> u32 {
-        measured.map_or(self.least_steps(), |rod| self.resolution().steps(rod, tau))
+    pub fn steps(self, measured: Option<&Rod>, tau: f64, load: f64) -> u32 {
+        measured.map_or(self.least_steps(), |rod| {
+            self.resolution().steps(rod, tau, load)
+        })
     }
 
     /// The resolution of whiskers with a profile, which take steps piece by piece: no coarser than that of a cone of

@@ -91,9 +91,12 @@ impl Method {
     }
 }
 
-/// Blocks per piece of work that one thread takes: long enough to hide the hand-over, short enough to share. A batch
-/// that is one piece stays on the thread that asks for it.
-const BLOCKS_PER_TASK: usize = 16;
+/// Launches that are sorted into blocks together: enough for full blocks, few enough to stay in the cache.
+const FEWEST_TOGETHER: usize = 512;
+const MOST_TOGETHER: usize = 4096;
+
+/// Parts of a batch for each thread, so that threads end together.
+const PARTS: usize = 4;
 
 /// Computes `K` for every launch with the integrator `M`, on all threads of the current pool.
 #[must_use]
@@ -111,36 +114,44 @@ pub fn land_on<M: Integrator, K: Kernel<M, N>, const N: usize>(
     method: Method,
     launches: &[Launch],
 ) -> Vec<K::Answer> {
-    // Lanes step together, so only trajectories of equally many steps share a block: company changes nothing.
-    let work: Vec<(u32, usize)> = launches
-        .iter()
-        .map(|Launch { rod, tau, .. }| (method.resolution.steps(rod, *tau), rod.piece(*tau)))
-        .collect();
-    let mut order: Vec<usize> = (0..launches.len()).collect();
-    order.sort_by_key(|&i| work[i]);
-    let blocks: Vec<&[usize]> = order
-        .chunk_by(|&i, &j| work[i] == work[j])
-        .flat_map(|equal| equal.chunks(WIDTH))
-        .collect();
-    let run = |block: &&[usize]| {
-        let lane = |i: usize| launches[block[i.min(block.len() - 1)]];
-        let lanes: [Launch; WIDTH] = std::array::from_fn(lane);
-        K::block(unit, method.effects, work[block[0]].0, &lanes)
-    };
-    let landed: Vec<[K::Answer; WIDTH]> = if blocks.len() <= BLOCKS_PER_TASK {
-        blocks.iter().map(run).collect()
-    } else {
-        let tasks = blocks.par_iter().with_min_len(BLOCKS_PER_TASK);
-        tasks.map(run).collect()
-    };
-    let mut places = vec![(0, 0); launches.len()];
-    for (b, block) in blocks.iter().enumerate() {
-        for (lane, &i) in block.iter().enumerate() {
-            places[i] = (b, lane);
-        }
+    let parts = PARTS * rayon::current_num_threads();
+    let together = (launches.len() / parts).clamp(FEWEST_TOGETHER, MOST_TOGETHER);
+    if launches.len() <= together {
+        return part::<M, K, N>(unit, method, launches);
     }
-    places
-        .into_iter()
-        .map(|(b, lane)| landed[b][lane])
+    launches
+        .par_chunks(together)
+        .flat_map_iter(|launches| part::<M, K, N>(unit, method, launches))
         .collect()
+}
+
+/// The same on this thread.
+fn part<M: Integrator, K: Kernel<M, N>, const N: usize>(
+    unit: Unit,
+    method: Method,
+    launches: &[Launch],
+) -> Vec<K::Answer> {
+    // Lanes step together, so only trajectories of equally many steps share a block: company changes nothing.
+    let mut order: Vec<(u64, u32)> = (0..)
+        .zip(launches)
+        .map(|(i, Launch { rod, tau, load })| {
+            let steps = method.resolution.steps(rod, *tau, *load);
+            (u64::from(steps) << 32 | rod.piece(*tau) as u64, i)
+        })
+        .collect();
+    order.sort_unstable();
+    let mut landed = Vec::with_capacity(launches.len() / WIDTH + 16);
+    let mut slots = vec![0; launches.len()];
+    let equal = order.chunk_by(|a, b| a.0 == b.0);
+    for block in equal.flat_map(|equal| equal.chunks(WIDTH)) {
+        for (lane, &(_, i)) in block.iter().enumerate() {
+            slots[i as usize] = WIDTH * landed.len() + lane;
+        }
+        let launch = |lane: usize| launches[block[lane.min(block.len() - 1)].1 as usize];
+        let lanes: [Launch; WIDTH] = std::array::from_fn(launch);
+        let steps = (block[0].0 >> 32) as u32;
+        landed.push(K::block(unit, method.effects, steps, &lanes));
+    }
+    let landed = landed.as_flattened();
+    slots.into_iter().map(|slot| landed[slot]).collect()
 }

@@ -37,13 +37,14 @@ impl Rest {
 
     /// cos and sin of the tangent of the parabola of `rod` at arclength `s`, in the frame of the parabola.
     #[must_use]
+    #[inline(always)]
     pub fn parabola_tangent(rod: &Rod, s: f64) -> DVec2 {
         let slope = if rod.bend == 0.0 {
             rod.slope
         } else {
             Parabola::new(rod).slope_at(s)
         };
-        let cos = 1.0 / slope.hypot(1.0);
+        let cos = 1.0 / (1.0 + slope * slope).sqrt();
         DVec2::new(cos, slope * cos)
     }
 

@@ -1,0 +1,54 @@
+#!/usr/bin/env bash
+# What whiskmap's trajectories, detachment points and cells cost, beside heyoka, AUTO-07p and scipy's solve_bvp on the
+# same machine: prints the costs, errors and ratios, and writes outputs/peers.json. Installs the peers, AUTO on Debian
+# and Ubuntu only; a peer that cannot be installed is named and left out.
+set -euo pipefail
+here="$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)"
+root="$here/../.."
+# Peers are measured one by one, each on as many threads as it says; no library may start more.
+export OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1
+
+as_root() { if [ "$(id -u)" = 0 ]; then "$@"; else sudo -n "$@"; fi; }
+has_auto() { command -v auto-07p && command -v gfortran && dpkg -L auto-07p; } >/dev/null 2>&1
+has_python() { python3 -c 'import sys, venv, ensurepip; sys.exit(sys.version_info < (3, 11))'; } >/dev/null 2>&1
+install() {
+    command -v apt-get >/dev/null &&
+        as_root apt-get update -q &&
+        as_root apt-get install -y -q --no-install-recommends "$@"
+}
+has_python || install python3 python3-venv || true
+if ! has_python; then
+    echo "Python 3.11 or later cannot be installed here: NO peer is measured"
+    exit 0
+fi
+has_auto || install auto-07p gfortran || true
+
+venv="$root/target/peers/venv"
+python="$venv/bin/python"
+[ -x "$python" ] || python3 -m venv "$venv"
+while read -r requirement; do
+    "$python" -m pip install --quiet --disable-pip-version-check "$requirement" </dev/null ||
+        echo "pip cannot install $requirement"
+done <"$here/requirements.txt"
+
+scratch="$(mktemp -d)"
+trap 'rm -rf "$scratch"' EXIT
+(cd "$root" && cargo bench --locked --bench peers -- --json "$scratch/whiskmap.json" --ensemble "$scratch/ensemble.csv")
+
+measure() {
+    echo "measuring $1 ..."
+    "$python" -B "$here/$1_peer.py" "${@:2}" >"$scratch/$1.json"
+}
+can_import() { "$python" -I -c "import numpy, $1" 2>/dev/null; }
+left_out() { echo "$1 cannot be installed here: it is NOT measured and left out below"; }
+if can_import heyoka; then measure heyoka "$scratch/ensemble.csv"; else left_out heyoka; fi
+if can_import scipy.integrate; then measure bvp; else left_out "scipy's solve_bvp"; fi
+if has_auto; then
+    mapfile -t objects < <(dpkg -L auto-07p | grep '/lib/[^/]*\.o$')
+    (cd "$scratch" &&
+        gfortran -O3 -march=native -fopenmp -o whisker "$root/tests/peers/auto/whisker.f90" "${objects[@]}")
+    measure auto "$scratch/whisker"
+else
+    left_out AUTO-07p
+fi
+"$python" -B "$here/compare.py" "$scratch" "$root/outputs/peers.json"

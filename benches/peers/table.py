@@ -1,0 +1,35 @@
+"""The ratios as a table of 80 columns."""
+
+NOTES = """\
+Microseconds each, and the largest error. Both sides of a line with an error in
+its name: the cheapest run whose largest error is at most that. heyoka: one
+trajectory with first derivatives; compilation and Python's loop not counted.
+AUTO: one point by mesh size (NTST), error in radians of a push angle of which
+it prints 11 digits.
+solve_bvp: one cell, the cheapest mesh with an error of at most 1e-9 of the
+contact's arclength. whiskmap beside them: a detachment point, error in radians,
+or a cell of a map, with its residual. AUTO, solve_bvp, these two: one thread."""
+
+
+def lines(whiskmap, versions, ratios):
+    yield f"{whiskmap['machine']}, {whiskmap['unit']}"
+    for name, version in versions.items():
+        yield f"{name} {version}" if version else f"{name} is NOT measured here"
+    yield ""
+    yield f"{'':26}{'peer':>17}{'whiskmap':>17}{'ratio':>8}{'asked':>6}"
+    for name, each in ratios.items():
+        sides = "".join(
+            number(each[f"{side}_microseconds"], "9.4g") + number(each[f"{side}_error"], "8.0e")
+            for side in ("peer", "whiskmap")
+        )
+        asked, verdict = "", ""
+        if each["required"] is not None and each["ratio"] is not None:
+            asked, verdict = each["required"], "met" if each["ratio"] >= each["required"] else "short"
+        yield f"{name:26}{sides}{number(each['ratio'], '8.4g')}{asked:>6} {verdict}".rstrip()
+    yield ""
+    yield from NOTES.splitlines()
+
+
+def number(value, form):
+    """`value`, or a dash where there is none."""
+    return f"{value:{form}}" if value is not None else f"{'-':>{form.split('.')[0]}}"
