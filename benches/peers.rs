@@ -48,6 +48,7 @@ fn main() {
         pool.build().unwrap()
     });
     let answer = json!({
+        "machine": processor(),
         "unit": Unit::detect().to_string(),
         "threads": threads,
         "trajectories": trajectories(&one, &two, &launches, &exact),
@@ -59,6 +60,17 @@ fn main() {
         Some(path) => std::fs::write(path, text).unwrap(),
         None => println!("{text}"),
     }
+}
+
+/// What the processor calls itself.
+fn processor() -> String {
+    let info = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+    let model = info.lines().find(|line| line.starts_with("model name"));
+    let name = model.and_then(|line| line.split_once(':'));
+    name.map_or_else(
+        || std::env::consts::ARCH.to_owned(),
+        |(_, name)| name.trim().to_owned(),
+    )
 }
 
 /// Taper up to 0.95, contacts from 0.05 of the length to next to the tip, straight or `A*` of 0.4, `q` up to 9.

@@ -35,7 +35,7 @@ impl Sample {
             .map(|d| d / scene.whisker.length_mm)
             .collect();
         let pushes = spread(&scene.grid.push_angle_deg, PUSHES);
-        let sampled: Vec<(Vec<Launch>, Vec<(Launch, Edge)>)> = pairs
+        let (states, ends): (Vec<_>, Vec<_>) = pairs
             .par_iter()
             .filter_map(|&(rod, side)| {
                 let method = Method::fine(effects).coarsely();
@@ -53,13 +53,10 @@ impl Sample {
                     .flatten();
                 let crossings = sheet.crossings.iter().flatten();
                 let ends = crossings.map(|end: &Crossing| (launch(end.tau, end.load), end.edge));
-                Some((
-                    guesses.map(|guess| launch(guess.tau, guess.load)).collect(),
-                    ends.collect(),
-                ))
+                let states = guesses.map(|guess| launch(guess.tau, guess.load));
+                Some((states.collect::<Vec<_>>(), ends.collect::<Vec<_>>()))
             })
-            .collect();
-        let (states, ends): (Vec<_>, Vec<_>) = sampled.into_iter().unzip();
+            .unzip();
         Self {
             effects,
             states: states.concat(),

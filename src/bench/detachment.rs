@@ -51,9 +51,9 @@ pub fn measure(scene: &Scene, runs: usize) -> Vec<Detachments> {
         .map(|resolution| {
             let Ok((seconds, found)) = watch(runs, || Ok::<_, Infallible>(curves(*resolution)));
             let pairs = found.iter().zip(&exact);
-            let apart = pairs.filter_map(|(found, exact)| match exact.push_angle_deg {
-                Some(exact) => Some((found.push_angle_deg.unwrap_or(f64::NAN) - exact).abs()),
-                None => None,
+            let apart = pairs.filter_map(|(found, exact)| {
+                let exact = exact.push_angle_deg?;
+                Some((found.push_angle_deg.unwrap_or(f64::NAN) - exact).abs())
             });
             Detachments {
                 steps: resolution.least,

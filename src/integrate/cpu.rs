@@ -5,11 +5,8 @@ use crate::model::batch::{Launch, Method, Unit, land_on};
 use crate::model::{Dopri8, Effects, First, Landing, Resolution, Rod, arclength};
 use glam::DVec2;
 
-/// Accurate to 5e-10 over taper up to 0.99, far below the tolerance.
-const RESOLUTION: Resolution = Resolution {
-    least: 16,
-    longest: 0.3,
-};
+/// Accurate to 1e-11: what the last step finds, the refinement mostly has to confirm only.
+const RESOLUTION: Resolution = Resolution::of(24);
 
 /// Residual at which the refinement takes over, in whisker lengths: one Newton step away from 1e-12.
 const TOLERANCE: f64 = 1e-6;

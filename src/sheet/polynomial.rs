@@ -1,7 +1,7 @@
-//! Interpolation on evenly spaced samples: polynomials of degree 5, in Newton's form.
+//! Interpolation on evenly spaced samples: polynomials of degree 7, in Newton's form.
 
 /// Nodes of a polynomial.
-pub const NODES: usize = 6;
+pub const NODES: usize = 8;
 
 /// How well a place on a polynomial is known, in its spacings: interpolation leaves more than that.
 const ENOUGH: f64 = 1e-9;
