@@ -1,65 +1,171 @@
-//! Speed and accuracy of every engine on this machine: `cargo bench --bench engines -- [shots]`.
-//!
-//! A trajectory is one integration with first derivatives; a shot takes three or four. The miss is the
-//! distance, in whisker lengths, of the pole from where it should be, as `f64` sees it.
-#![allow(
-    clippy::print_stdout,
-    reason = "a table on the screen is what this program is for"
-)]
+//! The parts of a map one by one: `cargo bench --bench engines -- [filter]`. What they cost together, and at which accuracy,
+//! `whiskmap bench` tells.
+#![allow(missing_docs, reason = "criterion's macros make public functions")]
+#![allow(clippy::expect_used, reason = "a bench that cannot start should stop")]
 
 #[allow(dead_code, reason = "the tests use the rest")]
 #[path = "../tests/gpu_engine/shots.rs"]
 mod shots;
 
-use shots::Range;
-use std::time::Instant;
+use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use shots::{Range, USUAL};
+use std::hint::black_box;
+use std::path::Path;
 use whiskmap::integrate::gpu::{Gpu, Precision};
-use whiskmap::integrate::{Cpu, Engine, EngineError, Outcome};
-use whiskmap::model::Effects;
+use whiskmap::integrate::{Cpu, Engine};
+use whiskmap::map::{self, Observer};
+use whiskmap::model::batch::{Launch, Method, Unit, land, land_on};
+use whiskmap::model::{Dopri8, Effects, First, FirstAndEnergy, Resolution, Rod, Second, Side};
+use whiskmap::plan::Plan;
+use whiskmap::refine::refine;
+use whiskmap::scene::Scene;
+use whiskmap::sheet::Sheet;
+use whiskmap::store::{Description, Error, MapWriter, Panel, Shots};
 
-fn main() -> Result<(), EngineError> {
-    let count = std::env::args()
-        .nth(1)
-        .and_then(|text| text.parse().ok())
-        .unwrap_or(200_000);
+const TRAJECTORIES: usize = 16_384;
+
+/// Trajectories by number of steps, and by the derivatives that they carry; one at a time and in vectors.
+fn integrators(criterion: &mut Criterion) {
+    let launches: Vec<Launch> = Range::new(USUAL, TRAJECTORIES, 6.5, 1).truth;
+    let mut group = criterion.benchmark_group("integrators");
+    group.throughput(Throughput::Elements(TRAJECTORIES as u64));
+    for resolution in Resolution::LADDER {
+        let method = Method {
+            effects: USUAL,
+            resolution,
+        };
+        let steps = resolution.least;
+        group.bench_function(BenchmarkId::new("dopri8, first derivatives", steps), |b| {
+            b.iter(|| land::<Dopri8, First, 6>(method, black_box(&launches)));
+        });
+    }
+    let fine = Method::fine(USUAL);
+    group.bench_function("dopri8, first derivatives and energy", |b| {
+        b.iter(|| land::<Dopri8, FirstAndEnergy, 7>(fine, black_box(&launches)));
+    });
+    group.bench_function("dopri8, second derivatives", |b| {
+        b.iter(|| land::<Dopri8, Second, 15>(fine, black_box(&launches)));
+    });
+    group.bench_function("dopri8, first derivatives, scalar", |b| {
+        b.iter(|| land_on::<Dopri8, First, 6>(Unit::scalar(), fine, black_box(&launches)));
+    });
+    group.finish();
+}
+
+/// Every engine by the number of shots in a call.
+fn engines(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("engines");
     let mut engines: Vec<Box<dyn Engine>> = vec![Box::new(Cpu)];
     for precision in [Precision::F32, Precision::F64] {
-        match Gpu::new(precision) {
-            Ok(gpu) => engines.push(Box::new(gpu)),
-            Err(error) => println!("no gpu {precision}: {error}"),
-        }
+        // Without a driver the CPU is measured alone.
+        engines.extend(Gpu::new(precision).map(|gpu| Box::new(gpu) as Box<dyn Engine>));
     }
-    for engine in &engines {
-        println!("{:?}", engine.describe());
-    }
-    println!(
-        "taper  curv.  engine   Mtraj/s Mshots/s  converged  miss: median      99 %     worst"
-    );
-    for effects in Effects::all() {
-        let range = Range::new(effects, count, 6.5, 7);
+    for size in [64, 1024, 16_384, 131_072] {
+        let range = Range::new(USUAL, size, 6.5, 2);
+        group.throughput(Throughput::Elements(size as u64));
         for engine in &mut engines {
-            // The first dispatch compiles.
-            engine.shoot(effects, &range.rods, &range.shots)?;
-            let start = Instant::now();
-            let hits = engine.shoot(effects, &range.rods, &range.shots)?;
-            let micros = start.elapsed().as_secs_f64() * 1e6;
-            let converged = hits.iter().filter(|hit| hit.outcome == Outcome::Converged);
-            let trajectories: f64 = hits.iter().map(|hit| f64::from(hit.steps)).sum();
-            let mut misses = range.misses(hits.iter().map(|hit| (hit.tau, hit.load)));
-            misses.sort_by(f64::total_cmp);
-            println!(
-                "{:5}  {:5}  {:8} {:7.2} {:8.2} {:10} {:13.1e} {:9.1e} {:9.1e}",
-                effects.taper,
-                effects.curvature,
-                engine.describe().engine,
-                trajectories / micros,
-                count as f64 / micros,
-                converged.count(),
-                misses[count / 2],
-                misses[count * 99 / 100],
-                misses[count - 1],
-            );
+            let name = engine.describe().engine;
+            group.bench_function(BenchmarkId::new(name, size), |b| {
+                b.iter(|| {
+                    let hits = engine.shoot(USUAL, &range.rods, black_box(&range.shots));
+                    hits.expect("the device does not fail")
+                });
+            });
         }
     }
-    Ok(())
+    group.finish();
 }
+
+fn scene() -> Scene {
+    let text = include_str!("../scenes/cone.toml");
+    Scene::parse(text, "cone.toml", "cone").expect("the scene is good")
+}
+
+/// Folds, lattice and crossings of a sheet; and its cells, refined from the lattice's guesses.
+fn sheets(criterion: &mut Criterion) {
+    let scene = scene();
+    let rod = Rod::new(&scene.whisker, &scene.pole, Side::Cb);
+    let method = Method::fine(Effects::of([&rod]));
+    let length = scene.whisker.length_mm;
+    let distances: Vec<f64> = scene.grid.distance_mm.iter().map(|d| d / length).collect();
+    let mut group = criterion.benchmark_group("sheets");
+    group.bench_function("fold at the tip", |b| {
+        b.iter(|| Sheet::fold_at_tip(method, black_box(&rod), Side::Cb));
+    });
+    for rows in [1, 32, 512] {
+        let distances: Vec<f64> = distances.iter().copied().step_by(512 / rows).collect();
+        group.bench_function(BenchmarkId::new("folds and crossings, rows", rows), |b| {
+            b.iter(|| Sheet::new(method, black_box(&rod), Side::Cb, &distances));
+        });
+    }
+    let sheet = Sheet::new(method, &rod, Side::Cb, &distances).expect("the cone has folds");
+    let pushes: Vec<f64> = (0..64).map(|i| 0.01 * f64::from(i)).collect();
+    let mut shots = Vec::new();
+    for (row, place) in sheet.rows.iter().enumerate() {
+        let guesses = sheet.guesses(row, pushes.iter().copied());
+        for (guess, push) in guesses.iter().zip(&pushes) {
+            shots.extend(guess.map(|guess| whiskmap::integrate::Shot {
+                rod: 0,
+                tau: guess.tau,
+                load: guess.load,
+                pole: place.pole(*push),
+            }));
+        }
+    }
+    let starts: Vec<(f64, f64)> = shots.iter().map(|shot| (shot.tau, shot.load)).collect();
+    group.throughput(Throughput::Elements(shots.len() as u64));
+    group.bench_function("refinement", |b| {
+        b.iter(|| refine(method, &[&sheet], black_box(&shots), &starts));
+    });
+    group.finish();
+}
+
+/// Keeps the panel.
+#[derive(Default)]
+struct Kept(Option<Panel>);
+
+impl Observer for Kept {
+    fn panel(&mut self, _: usize, panel: &Panel) -> Result<(), Error> {
+        self.0 = Some(panel.clone());
+        Ok(())
+    }
+
+    fn settled(&mut self, _: usize) {}
+}
+
+/// The file of a map.
+fn files(criterion: &mut Criterion) {
+    let scene = scene();
+    let plan = Plan::new(&scene).expect("the scene is small");
+    let mut kept = Kept::default();
+    map::run(&scene, &plan, &mut Cpu, &mut kept).expect("nothing is written");
+    let panel = kept.0.expect("the scene has a panel");
+    let folder = tempfile::tempdir().expect("there is a folder for temporary files");
+    let about = Description {
+        scene: &scene,
+        engine: "cpu f64",
+        adapter: "a bench",
+        tolerances: &serde_json::json!({}),
+        status_names: &[],
+    };
+    let write = |path: &Path| -> Result<(), Error> {
+        let mut writer = MapWriter::create(path, &about)?;
+        writer.write_panel(0, &panel)?;
+        writer.finish(Shots::default())?;
+        Ok(())
+    };
+    let mut group = criterion.benchmark_group("files");
+    group.throughput(Throughput::Elements(panel.regime.len() as u64));
+    group.bench_function("exr, 512 x 512 cells", |b| {
+        let path = folder.path().join("map.exr");
+        b.iter(|| write(&path).expect("the folder can be written"));
+    });
+    group.finish();
+}
+
+criterion_group! {
+    name = benches;
+    config = Criterion::default().sample_size(20);
+    targets = integrators, engines, sheets, files
+}
+criterion_main!(benches);

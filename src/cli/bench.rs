@@ -7,7 +7,7 @@ use crate::render::{Chart, Dot, Ink, Line, Plot, Stroke};
 use crate::scene::Scene;
 use crate::store::beside;
 use clap::Args;
-use std::io::{self, Write};
+use std::io::{self, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
 /// Options of `bench`.
@@ -53,12 +53,12 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     } else {
         Effort::FULL
     };
+    let watched = io::stderr().is_terminal();
     let report = bench::run(&scene, effort, &mut |next| {
-        say(&format!("measuring {next}"))
+        if watched {
+            say(&format!("measuring {next}"));
+        }
     })?;
-    for failure in &report.failures {
-        say(&format!("not measured: {failure}"));
-    }
     let json = || serde_json::to_string_pretty(&report).unwrap_or_default() + "\n";
     if let Some((mut file, path)) = file {
         let written = file.write_all(json().as_bytes());
@@ -116,6 +116,9 @@ fn tables(report: &Report) -> io::Result<()> {
             errors.force.worst,
             100.0 * row.of_peak,
         )?;
+    }
+    for failure in &report.failures {
+        writeln!(out, "not measured: {failure}")?;
     }
     let staged = || report.rows.iter().filter(|row| row.threads.is_none());
     if staged().next().is_some() {

@@ -92,10 +92,11 @@ const CONCENTRATED: f64 = 2.0;
 #[allow(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
-    reason = "clamped to a range of small positive numbers; NaN becomes the smallest"
+    clippy::manual_clamp,
+    reason = "a small positive number; NaN becomes the smallest, which `clamp` would let through"
 )]
 fn rounded(steps: f64) -> u32 {
-    let steps = steps.clamp(FEWEST, MOST).ceil() as u32;
+    let steps = steps.max(FEWEST).min(MOST).ceil() as u32;
     steps.next_multiple_of((steps.next_power_of_two() / 8).max(1))
 }
 

@@ -4,6 +4,7 @@
     reason = "a test that cannot set up its files should stop"
 )]
 
+mod bench;
 mod branch;
 mod curve;
 mod map;
@@ -13,6 +14,7 @@ mod plan;
 mod refused;
 mod shape;
 mod sweep;
+mod tolerance;
 mod traces;
 
 use assert_cmd::Command;

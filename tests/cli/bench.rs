@@ -1,0 +1,97 @@
+//! `whiskmap bench`: what it says must hang together; what it measures is the machine's.
+
+use crate::traces::good;
+use crate::{Place, SCENE};
+use serde_json::Value;
+
+fn numbers(rows: &[Value], key: &str) -> Vec<f64> {
+    let number = |row: &Value| row.pointer(key).and_then(Value::as_f64).unwrap();
+    rows.iter().map(number).collect()
+}
+
+#[test]
+fn errors_fall_from_rung_to_rung() {
+    let place = Place::with(SCENE);
+    let run = good(&place, &["bench", "scene.toml", "--quick", "--json", "-"]);
+    let report: Value = serde_json::from_str(&run.out).unwrap();
+    assert!(report["states"].as_u64().unwrap() > 200);
+    assert!(report["runs"].as_u64().unwrap() >= 5);
+    let rows = report["rows"].as_array().unwrap();
+    let engines = report["engines"].as_array().unwrap();
+    assert!(engines.len() >= 2);
+    for engine in engines {
+        let own: Vec<Value> = rows
+            .iter()
+            .filter(|row| row["engine"] == engine["name"] && row["threads"] == engine["threads"])
+            .cloned()
+            .collect();
+        let is_cpu = engine["threads"].is_u64();
+        assert_eq!(own.len(), if is_cpu { 8 } else { 3 });
+        let errors = numbers(&own, "/errors/angle_deg/worst");
+        // The last two rungs are at the rounding.
+        let falling = if is_cpu { &errors[..6] } else { &errors[..2] };
+        assert!(falling.is_sorted_by(|a, b| a > b), "{engine}: {errors:?}");
+        assert!(errors[errors.len() - 1] < 1e-9, "{engine}: {errors:?}");
+        for key in [
+            "/us_per_state",
+            "/trajectories_per_s",
+            "/gflops",
+            "/of_peak",
+        ] {
+            assert!(numbers(&own, key).iter().all(|number| *number > 0.0));
+        }
+        let p99 = numbers(&own, "/errors/angle_deg/p99");
+        assert!(p99.iter().zip(&errors).all(|(most, worst)| most <= worst));
+    }
+    let places: Vec<(f64, f64, bool)> = numbers(rows, "/us_per_state")
+        .into_iter()
+        .zip(numbers(rows, "/errors/angle_deg/worst"))
+        .zip(rows)
+        .map(|((time, error), row)| (time, error, row["pareto"].as_bool().unwrap()))
+        .collect();
+    for (time, error, pareto) in &places {
+        let is_beaten = places
+            .iter()
+            .any(|(t, e, _)| t <= time && e <= error && (t, e) != (time, error));
+        assert_eq!(*pareto, !is_beaten);
+    }
+    let ends = report["detachments"].as_array().unwrap();
+    let errors = numbers(ends, "/angle_deg/worst");
+    assert!(errors[..6].is_sorted_by(|a, b| a > b), "{errors:?}");
+}
+
+#[test]
+fn tables_fit_a_terminal_and_pictures_are_drawn() {
+    let place = Place::with(SCENE);
+    let run = good(
+        &place,
+        &[
+            "bench",
+            "scene.toml",
+            "--quick",
+            "--json",
+            "b.json",
+            "--plot",
+            "b.svg",
+        ],
+    );
+    let widest = run.out.lines().map(|line| line.chars().count()).max();
+    assert!(widest <= Some(100), "{}", run.out);
+    assert!(run.out.contains("\n* "), "{}", run.out);
+    let json: Value = serde_json::from_slice(&place.bytes("b.json")).unwrap();
+    assert_eq!(json["scene"], "A small map");
+    let picture = String::from_utf8(place.bytes("b.svg")).unwrap();
+    assert!(picture.contains("What accuracy costs"));
+}
+
+#[test]
+fn what_cannot_be_written_is_said_before_any_work() {
+    let place = Place::with(SCENE);
+    for (arguments, why) in [
+        (["--plot", "b.jpg"], "must end in .png or .svg"),
+        (["--json", "no/b.json"], "--json no/b.json"),
+    ] {
+        let run = place.run(&[&["bench", "scene.toml", "--quick"][..], &arguments].concat());
+        run.assert_refused(&[why]);
+    }
+}

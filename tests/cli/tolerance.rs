@@ -1,0 +1,53 @@
+//! `--tolerance` of `map` and `curve`.
+
+use crate::{Place, SCENE};
+
+#[test]
+fn it_says_what_it_picked_and_keeps_it_with_the_map() {
+    let place = Place::with(SCENE);
+    let run = place.map(&["scene.toml", "--tolerance", "1e-6deg", "--no-png"]);
+    assert!(run.err.contains("steps or more"), "{}", run.err);
+    let map = whiskmap::store::StoredMap::open(&place.path("outputs/scene.exr")).unwrap();
+    let tolerances = map.attribute("tolerances").unwrap();
+    let estimate = tolerances["angle_error_estimated_deg"].as_f64().unwrap();
+    assert!(estimate > 1e-12 && estimate <= 1e-6, "{tolerances}");
+}
+
+/// Coarser steps, other numbers; not by more than was allowed.
+#[test]
+fn a_curve_is_as_exact_as_asked() {
+    let place = Place::with(SCENE);
+    let angles = |arguments: &[&str]| -> Vec<f64> {
+        let run = place.run(&[&["curve", "scene.toml"][..], arguments].concat());
+        assert_eq!(run.code, Some(0), "{run:?}");
+        let rows = run.out.lines().skip(1);
+        rows.filter_map(|row| row.split(',').nth(4).unwrap().parse().ok())
+            .collect()
+    };
+    let exact = angles(&[]);
+    for tolerance in [1e-2, 1e-5] {
+        let found = angles(&["--tolerance", &format!("{tolerance:e}deg")]);
+        assert_eq!(found.len(), exact.len());
+        let apart = found.iter().zip(&exact).map(|(a, b)| (a - b).abs());
+        let apart = apart.fold(0.0, f64::max);
+        assert!(apart > 0.0 && apart < tolerance, "{tolerance}: {apart}");
+    }
+}
+
+#[test]
+fn what_is_no_tolerance_is_refused() {
+    let place = Place::with(SCENE);
+    for (text, why) in [
+        ("0", "between 1e-10deg and 1deg"),
+        ("1e-11deg", "between 1e-10deg and 1deg"),
+        ("nan", "between 1e-10deg and 1deg"),
+        ("1e-6rad", "between 1e-10deg and 1deg"),
+        ("-1", "--tolerance"),
+    ] {
+        let run = place.run(&["curve", "scene.toml", "--tolerance", text]);
+        assert_eq!(run.code, Some(2), "{text}: {run:?}");
+        assert!(run.err.contains(why), "{text}: {}", run.err);
+    }
+    let run = place.run(&["curve", "scene.toml", "--tolerance", "1e-10deg"]);
+    assert!(run.code == Some(0) || run.err.contains("estimated error of the finest steps"));
+}
