@@ -148,6 +148,9 @@ impl Real for Dual {
     fn mul_add(self, a: Self, b: Self) -> Self {
         self * a + b
     }
+    fn sqrt(self) -> Self {
+        Self(self.0.sqrt())
+    }
 }
 
 /// `(ln D, phi)` of a straight, tapered, graded rod on a rough pole, differentiated by num-dual through the whole integration.

@@ -96,8 +96,11 @@ const CONCENTRATED: f64 = 2.0;
     reason = "a small positive number; NaN becomes the smallest, which `clamp` would let through"
 )]
 fn rounded(steps: f64) -> u32 {
-    let steps = steps.max(FEWEST).min(MOST).ceil() as u32;
-    steps.next_multiple_of((steps.next_power_of_two() / 8).max(1))
+    let steps = steps.max(FEWEST).min(MOST);
+    // `ceil` is a call where the target has no instruction for it.
+    let steps = steps as u32 + u32::from(steps > f64::from(steps as u32));
+    let unit = (steps.next_power_of_two() / 8).max(1);
+    (steps + unit - 1) & !(unit - 1)
 }
 
 /// A piece may be much shorter than what the rod needs as a step, but the load may change on the first one.

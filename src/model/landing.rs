@@ -6,7 +6,7 @@
 //! `G_i = w_i/w - i theta_i`, `G_ij = w_ij/w - w_i w_j/w^2 - i theta_ij`.
 //! The coordinates of the sheet are `tau` of the contact and `load = f/rho^2` there.
 
-use super::{Planar, Rod, Start};
+use super::{Planar, Rod};
 use glam::DVec2;
 
 /// The longest Newton step, relative to the arclength of the contact and to the load (plus 1/s^2, the load's
@@ -22,13 +22,24 @@ pub fn limited(step: DVec2, s: f64, load: f64) -> (DVec2, f64) {
 }
 
 /// Product of complex numbers.
+#[inline(always)]
 fn times(a: DVec2, b: DVec2) -> DVec2 {
     a.rotate(b)
 }
 
 /// Quotient of complex numbers.
+#[inline(always)]
 fn over(a: DVec2, b: DVec2) -> DVec2 {
     DVec2::new(b.x, -b.y).rotate(a) / b.length_squared()
+}
+
+/// A contact under load.
+#[derive(Clone, Copy, Debug)]
+pub struct Pressed {
+    /// Radius over the base radius.
+    pub radius: f64,
+    /// The whole force.
+    pub force: f64,
 }
 
 /// The pole's centre `w` seen from the base, in the axes of the contact.
@@ -38,6 +49,7 @@ struct Centre {
 }
 
 impl Centre {
+    #[inline(always)]
     fn new(rod: &Rod, [c, s, x, y]: &Planar<f64>) -> Self {
         let w = rod.to_pole() - DVec2::new(*x, *y);
         Self {
@@ -47,17 +59,19 @@ impl Centre {
     }
 
     /// `G_f` and `G_s`.
+    #[inline(always)]
     fn first(&self, sens: &[f64]) -> [DVec2; 2] {
         [0, 3]
             .map(|i| over(-DVec2::new(sens[i + 1], sens[i + 2]), self.w) - DVec2::new(0.0, sens[i]))
     }
 
-    fn landing(&self, rod: &Rod, start: &Start, sens: &[f64]) -> Landing {
+    #[inline(always)]
+    fn landing(&self, rod: &Rod, pressed: Pressed, sens: &[f64]) -> Landing {
         let [f, s] = self.first(sens);
-        let rho = start.radius;
+        let rho = pressed.radius;
         Landing {
             pole: self.pole,
-            by_tau: rho * s - 2.0 * rod.taper * start.force * f,
+            by_tau: rho * s - 2.0 * rod.taper * pressed.force * f,
             by_load: rho * rho * f,
         }
     }
@@ -113,8 +127,9 @@ impl Landing {
         over(wanted - self.pole, self.pole)
     }
 
-    pub(super) fn new(rod: &Rod, start: &Start, state: &Planar<f64>, first: &[f64]) -> Self {
-        Centre::new(rod, state).landing(rod, start, first)
+    #[inline(always)]
+    pub(super) fn new(rod: &Rod, pressed: Pressed, state: &Planar<f64>, first: &[f64]) -> Self {
+        Centre::new(rod, state).landing(rod, pressed, first)
     }
 }
 
@@ -130,14 +145,15 @@ pub struct Full {
 }
 
 impl Full {
-    pub(super) fn new(rod: &Rod, start: &Start, state: &Planar<f64>, first: &[f64; 7]) -> Self {
+    #[inline(always)]
+    pub(super) fn new(rod: &Rod, pressed: Pressed, state: &Planar<f64>, first: &[f64; 7]) -> Self {
         let [c, s, x, y] = *state;
         Self {
-            landing: Landing::new(rod, start, state, first),
+            landing: Landing::new(rod, pressed, state, first),
             base: Base {
                 tangent: DVec2::new(c, s),
                 position: DVec2::new(x, y),
-                force: start.force,
+                force: pressed.force,
             },
             energy: first[6],
         }
@@ -170,7 +186,8 @@ impl Curved {
         )
     }
 
-    pub(super) fn new(rod: &Rod, start: &Start, state: &Planar<f64>, sens: &[f64; 15]) -> Self {
+    #[inline(always)]
+    pub(super) fn new(rod: &Rod, pressed: Pressed, state: &Planar<f64>, sens: &[f64; 15]) -> Self {
         let centre = Centre::new(rod, state);
         let [f, s] = centre.first(sens);
         let second = |i: usize, wa: DVec2, wb: DVec2| {
@@ -180,14 +197,14 @@ impl Curved {
         let wf = over(-DVec2::new(sens[1], sens[2]), centre.w);
         let ws = over(-DVec2::new(sens[4], sens[5]), centre.w);
         let (ff, fs, ss) = (second(6, wf, wf), second(9, wf, ws), second(12, ws, ws));
-        let (rho, beta) = (start.radius, rod.taper);
-        let (f_load, f_tau) = (rho * rho, -2.0 * beta * start.force);
+        let (rho, beta) = (pressed.radius, rod.taper);
+        let (f_load, f_tau) = (rho * rho, -2.0 * beta * pressed.force);
         Self {
-            landing: centre.landing(rod, start, sens),
+            landing: centre.landing(rod, pressed, sens),
             by_tau_tau: f_tau * f_tau * ff
                 + 2.0 * f_tau * rho * fs
                 + rho * rho * ss
-                + 4.0 * beta * beta * start.force * f
+                + 4.0 * beta * beta * pressed.force * f
                 - beta * rho * s,
             by_tau_load: f_load * (f_tau * ff + rho * fs - 2.0 * beta * f),
             by_load_load: f_load * f_load * ff,

@@ -9,6 +9,7 @@
 //! and `f32`, in which it is the twin of `shaders/`.
 
 pub mod batch;
+mod contact;
 mod dopri8;
 mod integrator;
 mod landing;

@@ -3,9 +3,9 @@
 //! `f` and `s` in the names below are the force and the arclength of the contact. The start values follow from the rod
 //! being at the origin at the same tilt, whatever the contact: `y_s = -y'` there.
 
+use super::Real;
+use super::contact::Contact;
 use super::rhs::{Planar, Sensitivity};
-use super::{Real, Start};
-use glam::DVec2;
 
 /// First derivatives: `theta_f, X_f, Y_f, theta_s, X_s, Y_s`.
 #[derive(Clone, Copy, Debug)]
@@ -22,7 +22,7 @@ pub struct Second;
 /// The start of a set of derivatives at the contact.
 pub trait Order<const N: usize>: Sensitivity<N> {
     /// Values at the contact.
-    fn start(start: &Start) -> [f64; N];
+    fn start<T: Real>(contact: &Contact<T>) -> [T; N];
 }
 
 impl Sensitivity<6> for First {
@@ -42,9 +42,10 @@ impl Sensitivity<6> for First {
 }
 
 impl Order<6> for First {
-    fn start(start: &Start) -> [f64; 6] {
-        let DVec2 { x, y } = -start.tangent;
-        [0.0, 0.0, 0.0, -start.curvature, x, y]
+    #[inline(always)]
+    fn start<T: Real>(contact: &Contact<T>) -> [T; 6] {
+        let ([x, y], zero) = (contact.tangent, T::of(0.0));
+        [zero, zero, zero, -contact.curvature, -x, -y]
     }
 }
 
@@ -61,9 +62,10 @@ impl Sensitivity<7> for FirstAndEnergy {
 }
 
 impl Order<7> for FirstAndEnergy {
-    fn start(start: &Start) -> [f64; 7] {
-        let [a, b, c, d, e, g] = First::start(start);
-        [a, b, c, d, e, g, 0.0]
+    #[inline(always)]
+    fn start<T: Real>(contact: &Contact<T>) -> [T; 7] {
+        let [a, b, c, d, e, g] = First::start(contact);
+        [a, b, c, d, e, g, T::of(0.0)]
     }
 }
 
@@ -99,14 +101,14 @@ impl Sensitivity<15> for Second {
 }
 
 impl Order<15> for Second {
-    fn start(start: &Start) -> [f64; 15] {
-        let [a, b, c, d, e, g] = First::start(start);
-        let kappa = start.curvature;
-        let lever = start.force * start.tangent.x;
-        let theta_ss = -start.curvature_slope - lever / start.stiffness;
-        let DVec2 { x, y } = kappa * start.tangent.perp();
-        [
-            a, b, c, d, e, g, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, theta_ss, x, y,
-        ]
+    #[inline(always)]
+    fn start<T: Real>(contact: &Contact<T>) -> [T; 15] {
+        let [a, b, c, d, e, g] = First::start(contact);
+        let [x, y] = contact.tangent;
+        let kappa = contact.curvature;
+        let theta_ss = -contact.curvature_slope - contact.force * x / contact.stiffness;
+        let o = T::of(0.0);
+        let (x_ss, y_ss) = (-kappa * y, kappa * x);
+        [a, b, c, d, e, g, o, o, o, o, o, o, theta_ss, x_ss, y_ss]
     }
 }

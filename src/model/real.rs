@@ -16,6 +16,9 @@ pub trait Real:
 
     /// `self * a + b`, fused where the machine fuses it at no cost.
     fn mul_add(self, a: Self, b: Self) -> Self;
+
+    /// The square root.
+    fn sqrt(self) -> Self;
 }
 
 macro_rules! scalar {
@@ -36,6 +39,11 @@ macro_rules! scalar {
             #[inline(always)]
             fn mul_add(self, a: Self, b: Self) -> Self {
                 self * a + b
+            }
+
+            #[inline(always)]
+            fn sqrt(self) -> Self {
+                <$t>::sqrt(self)
             }
         }
     };

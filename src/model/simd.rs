@@ -50,7 +50,7 @@ macro_rules! arithmetic {
             }
         }
     };
-    ($name:ident, [$($i:tt)+]; $add:expr, $sub:expr, $mul:expr, $div:expr, $fma:expr, $splat:expr) => {
+    ($name:ident, [$($i:tt)+]; $add:expr, $sub:expr, $mul:expr, $div:expr, $fma:expr, $splat:expr, $sqrt:expr) => {
         arithmetic!(@op $name, Add, add, $add, [$($i)+]);
         arithmetic!(@op $name, Sub, sub, $sub, [$($i)+]);
         arithmetic!(@op $name, Mul, mul, $mul, [$($i)+]);
@@ -76,6 +76,12 @@ macro_rules! arithmetic {
                 // SAFETY: see the module.
                 unsafe { Self($($fma(self.$i, a.$i, b.$i)),+) }
             }
+
+            #[inline(always)]
+            fn sqrt(self) -> Self {
+                // SAFETY: see the module.
+                unsafe { Self($($sqrt(self.$i)),+) }
+            }
         }
     };
 }
@@ -96,7 +102,7 @@ pub mod x86 {
         unsafe { _mm_add_pd(_mm_mul_pd(a, b), c) }
     }
 
-    arithmetic!(Sse2, [0 1 2 3]; _mm_add_pd, _mm_sub_pd, _mm_mul_pd, _mm_div_pd, multiply_then_add, _mm_set1_pd);
+    arithmetic!(Sse2, [0 1 2 3]; _mm_add_pd, _mm_sub_pd, _mm_mul_pd, _mm_div_pd, multiply_then_add, _mm_set1_pd, _mm_sqrt_pd);
 
     impl Lanes for Sse2 {
         #[inline(always)]
@@ -123,7 +129,7 @@ pub mod x86 {
     #[derive(Clone, Copy, Debug)]
     pub struct Avx512(__m512d);
 
-    arithmetic!(Avx512, [0]; _mm512_add_pd, _mm512_sub_pd, _mm512_mul_pd, _mm512_div_pd, _mm512_fmadd_pd, _mm512_set1_pd);
+    arithmetic!(Avx512, [0]; _mm512_add_pd, _mm512_sub_pd, _mm512_mul_pd, _mm512_div_pd, _mm512_fmadd_pd, _mm512_set1_pd, _mm512_sqrt_pd);
 
     impl Lanes for Avx512 {
         #[inline(always)]
@@ -145,7 +151,7 @@ pub mod x86 {
     #[derive(Clone, Copy, Debug)]
     pub struct Avx2(__m256d, __m256d);
 
-    arithmetic!(Avx2, [0 1]; _mm256_add_pd, _mm256_sub_pd, _mm256_mul_pd, _mm256_div_pd, _mm256_fmadd_pd, _mm256_set1_pd);
+    arithmetic!(Avx2, [0 1]; _mm256_add_pd, _mm256_sub_pd, _mm256_mul_pd, _mm256_div_pd, _mm256_fmadd_pd, _mm256_set1_pd, _mm256_sqrt_pd);
 
     impl Lanes for Avx2 {
         #[inline(always)]
@@ -220,6 +226,11 @@ pub mod plain {
         #[inline(always)]
         fn mul_add(self, a: Self, b: Self) -> Self {
             self * a + b
+        }
+
+        #[inline(always)]
+        fn sqrt(self) -> Self {
+            Self(self.0.map(f64::sqrt))
         }
     }
 

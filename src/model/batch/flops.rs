@@ -12,7 +12,7 @@ thread_local! {
     static COUNT: Cell<u64> = const { Cell::new(0) };
 }
 
-/// A number that counts what is done with it: 1 for an addition, multiplication or division, 2 for a fused multiply-add.
+/// A number that counts what is done with it: 1 for an addition, multiplication, division or root, 2 for a fused multiply-add.
 #[derive(Clone, Copy, Debug)]
 struct Counted(f64);
 
@@ -51,6 +51,10 @@ impl Real for Counted {
 
     fn mul_add(self, a: Self, b: Self) -> Self {
         counted(2, self.0 * a.0 + b.0)
+    }
+
+    fn sqrt(self) -> Self {
+        counted(1, self.0.sqrt())
     }
 }
 

@@ -2,12 +2,14 @@
 
 use super::gather::{Gather, GatherMaterial};
 use super::{Kind, Launch};
+use crate::model::Effects;
+use crate::model::contact::{Contact, radius_and_arclength};
 use crate::model::integrator::{Integrator, Scales, integrate};
+use crate::model::landing::Pressed;
 use crate::model::rhs::{
     Bent, Even, Graded, Measured, RodSystem, Section, Spiral, State, Straight,
 };
 use crate::model::simd::{Lanes, WIDTH};
-use crate::model::{Effects, Start};
 
 /// One specialised kernel per set of effects.
 #[inline(always)]
@@ -51,31 +53,28 @@ where
     I: Gather<T>,
     C: GatherMaterial<T>,
 {
-    let rods = launches.map(|launch| launch.rod);
-    let starts = lanes::<T, _>(|i| {
-        let Launch { rod, tau, load } = &launches[i];
-        Start::new(rod, *tau, *load)
-    });
-    let at_start = lanes::<T, _>(|i| K::start(&starts[i]));
-
-    let (intrinsic, rest) = I::gather(&rods, &starts);
-    let force = T::pack(starts.map(|start| start.force));
-    let zero = T::of(0.0);
-    let mut sens = [zero; N];
-    for (n, lane) in sens.iter_mut().enumerate() {
-        *lane = T::pack(at_start.map(|values| values[n]));
-    }
-    let c = T::pack(starts.map(|start| start.tangent.x));
-    let s = T::pack(starts.map(|start| start.tangent.y));
-    let mut state: State<_, I, N> = (rest, ([c, s, zero, zero], sens));
-    let mut from = starts.map(
-        |Start {
-             tau,
-             radius,
-             arclength,
-             ..
-         }| (tau, radius, arclength),
-    );
+    let rods = launches.each_ref().map(|launch| &launch.rod);
+    let tau = launches.map(|launch| launch.tau);
+    let load = T::pack(launches.map(|launch| launch.load));
+    let taper = T::pack(rods.map(|rod| rod.taper));
+    let [radius, s] = radius_and_arclength(taper, T::pack(tau));
+    let (intrinsic, at_rest) = I::gather(&rods, s);
+    let (zero, one) = (T::of(0.0), T::of(1.0));
+    // The contact's tangent is that of the angle of friction.
+    let friction = T::pack(rods.map(|rod| rod.friction));
+    let cos = one / friction.mul_add(friction, one).sqrt();
+    let contact = Contact {
+        force: load * radius * radius,
+        tangent: [cos, friction * cos],
+        stiffness: C::stiffness(launches, radius, s),
+        curvature: at_rest.curvature,
+        curvature_slope: at_rest.slope,
+    };
+    let force = contact.force;
+    let [c, sin] = contact.tangent;
+    let mut state: State<_, I, N> = (at_rest.state, ([c, sin, zero, zero], K::start(&contact)));
+    let (radius, force_at, s) = (radius.unpack(), force.unpack(), s.unpack());
+    let mut from: [_; WIDTH] = std::array::from_fn(|i| (tau[i], radius[i], s[i]));
     for piece in (0..C::pieces(launches)).rev() {
         let to = rods.map(|rod| {
             let s = rod
@@ -91,9 +90,7 @@ where
             intrinsic,
             material: C::gather(launches, piece),
         };
-        let one = T::of(1.0);
         let (scales, rho) = if TAPER {
-            let taper = T::pack(rods.map(|rod| rod.taper));
             (
                 Scales::tapered::<M>(taper, h),
                 T::pack(from.map(|(_, rho, _)| rho)),
@@ -112,12 +109,11 @@ where
     let (_, (rod, sens)) = state;
     let (rod, sens) = (rod.map(T::unpack), sens.map(T::unpack));
     lanes::<T, _>(|i| {
-        K::answer(
-            &rods[i],
-            &starts[i],
-            &rod.map(|x| x[i]),
-            &sens.map(|x| x[i]),
-        )
+        let pressed = Pressed {
+            radius: radius[i],
+            force: force_at[i],
+        };
+        K::answer(rods[i], pressed, &rod.map(|x| x[i]), &sens.map(|x| x[i]))
     })
 }
 

@@ -14,11 +14,11 @@ pub use flops::flops;
 pub use unit::{Kernel, Unit};
 
 use super::integrator::{Integrator, Resolution};
-use super::landing::{Curved, Full, Landing};
+use super::landing::{Curved, Full, Landing, Pressed};
 use super::order::{First, FirstAndEnergy, Order, Second};
 use super::rhs::Planar;
 use super::simd::WIDTH;
-use super::{Effects, Rod, Start};
+use super::{Effects, Rod};
 use rayon::prelude::*;
 
 /// One trajectory: from the contact at `tau` under `load = f/radius^2` to the base.
@@ -38,27 +38,27 @@ pub trait Kind<const N: usize>: Order<N> + 'static {
     type Answer: Copy + Send;
 
     /// The answer from the final state.
-    fn answer(rod: &Rod, start: &Start, state: &Planar<f64>, sens: &[f64; N]) -> Self::Answer;
+    fn answer(rod: &Rod, pressed: Pressed, state: &Planar<f64>, sens: &[f64; N]) -> Self::Answer;
 }
 
 impl Kind<6> for First {
     type Answer = Landing;
-    fn answer(rod: &Rod, start: &Start, state: &Planar<f64>, sens: &[f64; 6]) -> Landing {
-        Landing::new(rod, start, state, sens)
+    fn answer(rod: &Rod, pressed: Pressed, state: &Planar<f64>, sens: &[f64; 6]) -> Landing {
+        Landing::new(rod, pressed, state, sens)
     }
 }
 
 impl Kind<7> for FirstAndEnergy {
     type Answer = Full;
-    fn answer(rod: &Rod, start: &Start, state: &Planar<f64>, sens: &[f64; 7]) -> Full {
-        Full::new(rod, start, state, sens)
+    fn answer(rod: &Rod, pressed: Pressed, state: &Planar<f64>, sens: &[f64; 7]) -> Full {
+        Full::new(rod, pressed, state, sens)
     }
 }
 
 impl Kind<15> for Second {
     type Answer = Curved;
-    fn answer(rod: &Rod, start: &Start, state: &Planar<f64>, sens: &[f64; 15]) -> Curved {
-        Curved::new(rod, start, state, sens)
+    fn answer(rod: &Rod, pressed: Pressed, state: &Planar<f64>, sens: &[f64; 15]) -> Curved {
+        Curved::new(rod, pressed, state, sens)
     }
 }
 
