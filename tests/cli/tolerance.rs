@@ -42,9 +42,9 @@ fn what_is_no_tolerance_is_refused() {
         ("1e-11deg", "between 1e-10deg and 1deg"),
         ("nan", "between 1e-10deg and 1deg"),
         ("1e-6rad", "between 1e-10deg and 1deg"),
-        ("-1", "--tolerance"),
+        ("-1", "between 1e-10deg and 1deg"),
     ] {
-        let run = place.run(&["curve", "scene.toml", "--tolerance", text]);
+        let run = place.run(&["curve", "scene.toml", &format!("--tolerance={text}")]);
         assert_eq!(run.code, Some(2), "{text}: {run:?}");
         assert!(run.err.contains(why), "{text}: {}", run.err);
     }

@@ -13,11 +13,13 @@ mod layout;
 mod pace;
 mod peak;
 mod pipeline;
+mod precision;
 pub mod shaders;
 mod slot;
 mod stamps;
 
 pub use adapters::{AdapterReport, Kind, adapters, preferred};
+pub use precision::Precision;
 
 use super::{Description, Engine, EngineError, Hit, Outcome, Shot};
 use crate::model::{Effects, Piece, Rod, arclength};
@@ -28,26 +30,7 @@ pub use slot::Times;
 use slot::{Flight, Shared, Slot};
 use std::collections::hash_map::Entry;
 use std::collections::{HashMap, VecDeque};
-use std::fmt;
 use std::time::Instant;
-
-/// The shaders' scalar.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Precision {
-    /// 32 bits: every GPU.
-    F32,
-    /// 64 bits: Vulkan adapters with `shaderFloat64`.
-    F64,
-}
-
-impl fmt::Display for Precision {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::F32 => "f32",
-            Self::F64 => "f64",
-        })
-    }
-}
 
 /// The GPU engine on the [`preferred`] adapter.
 #[derive(Debug)]
