@@ -59,9 +59,8 @@ pub fn settle(
     engine: &mut Fallback<'_>,
     summary: &mut Summary,
 ) -> Vec<Cell> {
-    let mut cells: Vec<Cell> = Vec::new();
+    let mut places: Vec<Place> = Vec::new();
     let mut shots: Vec<Shot> = Vec::new();
-    let mut targets: Vec<usize> = Vec::new();
     // Only faces with a sheet take part; `sheets[shot.rod]` is the sheet of a shot.
     let used: Vec<usize> = (0..faces.len())
         .filter(|&i| faces[i].sheet.is_some() && strip.rows.iter().any(|(face, _)| *face == i))
@@ -71,7 +70,7 @@ pub fn settle(
         .filter_map(|&i| faces[i].sheet.as_ref())
         .collect();
     summary.time(Stage::Guesses, || {
-        let guessed: Vec<Vec<(Cell, Option<Shot>)>> = strip
+        let guessed: Vec<Vec<(Place, Option<Shot>)>> = strip
             .rows
             .par_iter()
             .map(|&(face, row)| {
@@ -79,12 +78,13 @@ pub fn settle(
                 guess_row(scene, &faces[face], face, row, rod)
             })
             .collect();
-        for (cell, shot) in guessed.into_iter().flatten() {
-            if let Some(shot) = shot {
-                targets.push(cells.len());
-                shots.push(shot);
-            }
-            cells.push(cell);
+        for (place, shot) in guessed.into_iter().flatten() {
+            let index = shot.is_some().then_some(shots.len());
+            shots.extend(shot);
+            places.push(Place {
+                shot: index,
+                ..place
+            });
         }
     });
     let rods: Vec<_> = sheets.iter().map(|sheet| sheet.rod).collect();
@@ -104,19 +104,49 @@ pub fn settle(
             .collect();
         refine::refine(method, &sheets, &shots, &starts)
     });
-    for ((&target, hit), refined) in targets.iter().zip(&hits).zip(refined) {
-        let Refined { state, steps, end } = refined;
-        let cell = &mut cells[target];
-        cell.steps = hit.steps + steps;
-        cell.state = Some(state);
-        cell.status = match end {
-            End::Solved => Status::Solved,
-            End::BeyondTip => Status::BeyondTip,
-            End::BeyondFold => Status::BeyondFold,
-            End::NotConverged => Status::NotConverged,
-        };
+    let settled = |place: &Place| match place.shot {
+        Some(i) => place.settled(&hits[i], &refined[i]),
+        None => place.without_state(),
+    };
+    places.par_iter().map(settled).collect()
+}
+
+/// A cell that is not settled yet, and which shot is for it.
+#[derive(Clone, Copy)]
+struct Place {
+    face: usize,
+    row: usize,
+    column: usize,
+    /// How the cell is settled if there is no shot for it.
+    status: Status,
+    shot: Option<usize>,
+}
+
+impl Place {
+    fn without_state(&self) -> Cell {
+        Cell {
+            face: self.face,
+            row: self.row,
+            column: self.column,
+            status: self.status,
+            state: None,
+            steps: 0,
+        }
     }
-    cells
+
+    fn settled(&self, hit: &Hit, refined: &Refined) -> Cell {
+        Cell {
+            status: match refined.end {
+                End::Solved => Status::Solved,
+                End::BeyondTip => Status::BeyondTip,
+                End::BeyondFold => Status::BeyondFold,
+                End::NotConverged => Status::NotConverged,
+            },
+            state: Some(refined.state),
+            steps: hit.steps + refined.steps,
+            ..self.without_state()
+        }
+    }
 }
 
 /// Adds the shots of one call to what is known of those before.
@@ -136,7 +166,7 @@ fn guess_row(
     index: usize,
     row: usize,
     rod: usize,
-) -> Vec<(Cell, Option<Shot>)> {
+) -> Vec<(Place, Option<Shot>)> {
     let pushes = &scene.grid.push_angle_deg;
     let mut columns: Vec<usize> = (0..pushes.len())
         .filter(|&column| Side::of_push(pushes[column]) == face.side)
@@ -158,13 +188,12 @@ fn guess_row(
         .into_iter()
         .zip(guesses)
         .map(|(column, guess)| {
-            let cell = Cell {
+            let place = Place {
                 face: index,
                 row,
                 column,
                 status,
-                state: None,
-                steps: 0,
+                shot: None,
             };
             let shot = guess
                 .zip(face.sheet.as_ref())
@@ -175,7 +204,7 @@ fn guess_row(
                     load,
                     pole: sheet.rows[row].pole(face.side.sign() * magnitude(column)),
                 });
-            (cell, shot)
+            (place, shot)
         })
         .collect()
 }
