@@ -142,6 +142,26 @@ fn the_estimate_bounds_the_error_of_every_scene() {
     eprintln!("the estimate is at least {closest:.1} times the error");
 }
 
+/// A cylinder that a stiff tip and friction let coil up; its lattice has guesses that are no states.
+#[test]
+fn whiskers_that_coil_up_have_an_estimate() {
+    let text = "title = \"coiled\"\n[whisker]\nlength_mm = 20\nbase_radius_um = 30\ntip_radius_um = 30\n\
+                youngs_modulus_gpa = 3\n[whisker.curvature]\nparabola_per_mm = 0.075\n[whisker.modulus_gradient]\n\
+                tip_to_base = 10\n[contact]\nfriction = 1\n[pole]\nradius_mm = 1\n[grid]\n\
+                push_angle_deg = { from = -90, to = 90, count = 12 }\n\
+                distance_mm = { from = 1.5, to = 19.9, count = 24 }\n";
+    let scene = Scene::parse(text, "coiled", "coiled").unwrap();
+    for tolerance_deg in [1e-1, 1e-4] {
+        let found = cheapest(&scene, &Side::BOTH, tolerance_deg).unwrap();
+        let whisker = scene.whisker_at(None, None);
+        let errors = Side::BOTH.map(|side| cells(&scene, &whisker, side, found.resolution));
+        assert!(
+            errors.iter().all(|error| *error <= found.error_deg),
+            "{errors:?} {found:?}"
+        );
+    }
+}
+
 #[test]
 fn what_no_steps_reach_is_said() {
     let scene = Scene::read("scenes/cone.toml".as_ref()).unwrap();

@@ -1,9 +1,11 @@
 //! States and detachments from all over a scene, its corners among them.
 
+use crate::integrate::Shot;
 use crate::model::batch::{Launch, Method, land};
 use crate::model::{Dopri8, Effects, First, Landing, Resolution, Rod, Side};
+use crate::refine::{End, refine};
 use crate::scene::{Scene, Whisker};
-use crate::sheet::{Crossing, Edge, Sheet};
+use crate::sheet::{Crossing, Edge, Guess, Sheet};
 use rayon::prelude::*;
 
 /// Values of an axis that take part: its ends, and some between. The ends of pushes get better with more distances, near
@@ -21,7 +23,7 @@ pub struct Sample {
 }
 
 impl Sample {
-    /// A sample of `scene`; its states are known as well as lattices and coarse steps know them.
+    /// A sample of `scene`; its states are known as well as coarse steps know them.
     pub fn new(scene: &Scene, sides: &[Side]) -> Self {
         let whiskers = whiskers(scene);
         let pairs: Vec<_> = whiskers
@@ -39,7 +41,9 @@ impl Sample {
             .par_iter()
             .filter_map(|&(rod, side)| {
                 let method = Method::fine(effects).coarsely();
-                let sheet = Sheet::new(method, &rod, side, &distances)?;
+                // Where the coarse steps find no fold, the fine ones may.
+                let sheet = Sheet::new(method, &rod, side, &distances)
+                    .or_else(|| Sheet::new(Method::fine(effects), &rod, side, &distances))?;
                 let mut pushes: Vec<f64> = pushes
                     .iter()
                     .map(|push| push * side.sign())
@@ -48,12 +52,31 @@ impl Sample {
                     .collect();
                 pushes.sort_by(f64::total_cmp);
                 let launch = |tau, load| Launch { rod, tau, load };
-                let guesses = (0..distances.len())
-                    .flat_map(|row| sheet.guesses(row, pushes.iter().copied()))
-                    .flatten();
+                let shots: Vec<Shot> = sheet
+                    .rows
+                    .iter()
+                    .enumerate()
+                    .flat_map(|(row, place)| {
+                        let guesses = sheet.guesses(row, pushes.iter().copied());
+                        let aimed = guesses.into_iter().zip(&pushes);
+                        aimed.filter_map(|(guess, push)| {
+                            let Guess { tau, load } = guess?;
+                            let pole = place.pole(side.sign() * push);
+                            Some(Shot {
+                                rod: 0,
+                                tau,
+                                load,
+                                pole,
+                            })
+                        })
+                    })
+                    .collect();
+                let starts: Vec<_> = shots.iter().map(|shot| (shot.tau, shot.load)).collect();
+                let cells = refine(method, &[&sheet], &shots, &starts);
+                let solved = cells.iter().filter(|cell| cell.end == End::Solved);
                 let crossings = sheet.crossings.iter().flatten();
                 let ends = crossings.map(|end: &Crossing| (launch(end.tau, end.load), end.edge));
-                let states = guesses.map(|guess| launch(guess.tau, guess.load));
+                let states = solved.map(|cell| launch(cell.state.tau, cell.state.load));
                 Some((states.collect::<Vec<_>>(), ends.collect::<Vec<_>>()))
             })
             .unzip();

@@ -13,7 +13,7 @@ use std::convert::Infallible;
 /// The detachments of a scene at one resolution, on all threads.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Detachments {
-    /// Fewest steps per trajectory.
+    /// Steps per trajectory at the fold of a cylinder.
     pub steps: u32,
     /// Points of the curves.
     pub points: usize,

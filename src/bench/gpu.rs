@@ -15,7 +15,8 @@ const NEWTON: usize = 2;
 
 /// Adds the rows of every adapter to `report`; one that fails is named with its reason.
 pub fn measure(task: &Task, runs: usize, report: &mut Report, said: &mut dyn FnMut(&str)) {
-    for (index, adapter) in adapters().iter().enumerate() {
+    let all = adapters();
+    for (index, adapter) in all.iter().enumerate() {
         for precision in [Precision::F32, Precision::F64] {
             if precision == Precision::F64 && !adapter.shader_f64 {
                 report
@@ -24,7 +25,11 @@ pub fn measure(task: &Task, runs: usize, report: &mut Report, said: &mut dyn FnM
                 continue;
             }
             said(&format!("gpu {precision}, {}", adapter.name));
-            if let Err(error) = engine(task, runs, report, index, precision) {
+            let name = match all.len() {
+                1 => format!("gpu {precision}"),
+                _ => format!("gpu {index} {precision}"),
+            };
+            if let Err(error) = engine(task, runs, report, &name, index, precision) {
                 let name = &adapter.name;
                 report
                     .failures
@@ -38,6 +43,7 @@ fn engine(
     task: &Task,
     runs: usize,
     report: &mut Report,
+    name: &str,
     index: usize,
     precision: Precision,
 ) -> Result<(), EngineError> {
@@ -52,7 +58,7 @@ fn engine(
     let about = gpu.describe();
     let peak_gflops = 1e-9 * gpu.peak()?;
     report.engines.push(Engine {
-        name: about.engine.clone(),
+        name: name.to_owned(),
         threads: None,
         adapter: about.adapter,
         peak_gflops,
@@ -95,7 +101,7 @@ fn engine(
             seconds.median - 1e-3 * stages.refine
         };
         let mut row = Row::new(
-            &about.engine,
+            name,
             None,
             rung,
             seconds,

@@ -1,7 +1,7 @@
 //! `whiskmap bench`.
 
 use super::failure::{Failure, say};
-use super::outputs::{picture, refused};
+use super::outputs::{picture, refused, same};
 use crate::bench::{self, Detachments, Effort, Report, Row};
 use crate::render::{Chart, Dot, Ink, Line, Plot, Stroke};
 use crate::scene::Scene;
@@ -18,11 +18,12 @@ Examples:
   whiskmap bench scenes/cone.toml --quick --json bench.json --plot bench.svg
 
 A sample of the scene's states, at most 128 x 128 cells and two values per sweep axis, is solved by every engine: the CPU \
-with one number at a time, with vectors on one thread and on all, from 4 to 48 steps of order 8; each GPU adapter in f32 \
+with one number at a time, with vectors on one thread and on all, from 4 to 48 steps of order 8 at the fold, fewer below; each GPU adapter in f32 \
 and, where it can, in f64, alone and with one and two Newton steps in f64 after it. All start from the same guesses. \
 Errors are judged with four times the finest default steps: the push angle that a state really belongs to, the arc length \
 of its contact in whisker lengths, and its force. * marks the rows that no other beats in time and in the worst error of \
-the angle. Times are medians of at least 5 runs after one that does not count; +- is the slowest less the fastest run.")]
+the angle. Times are medians of at least 5 runs after one that does not count; +- is the slowest less the fastest run; stages are \
+those of the last run.")]
 pub struct Options {
     /// Scene file; - reads it from standard input
     scene: PathBuf,
@@ -42,6 +43,14 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     let scene = Scene::read(&options.scene)?;
     let plot = options.plot.as_deref().map(picture).transpose()?;
     let stdout = Path::new("-");
+    if let (Some(json), Some(plot)) = (&options.json, &options.plot)
+        && same(json, plot)
+    {
+        let json = json.display();
+        return Err(Failure::Input(format!(
+            "--json {json} and --plot {json}: must be two files"
+        )));
+    }
     let file = options.json.as_deref().filter(|path| *path != stdout);
     let file = file.map(|path| match beside(path, ".json") {
         Ok(file) => Ok((file, path)),
@@ -59,6 +68,11 @@ pub fn run(options: &Options) -> Result<(), Failure> {
             say(&format!("measuring {next}"));
         }
     })?;
+    let report = report.ok_or_else(|| {
+        Failure::Input(
+            "grid: no cell of the sample has a state; give push angles and distances that keep the contact".to_owned(),
+        )
+    })?;
     let json = || serde_json::to_string_pretty(&report).unwrap_or_default() + "\n";
     if let Some((mut file, path)) = file {
         let written = file.write_all(json().as_bytes());
@@ -69,18 +83,18 @@ pub fn run(options: &Options) -> Result<(), Failure> {
                 cause,
             })?;
     }
+    if let Some((path, format)) = &plot {
+        chart(&report).save(path, *format)?;
+    }
     if options.json.as_deref() == Some(stdout) {
         io::stdout().lock().write_all(json().as_bytes())?;
     } else {
         tables(&report)?;
     }
-    if let Some((path, format)) = &plot {
-        chart(&report).save(path, *format)?;
-    }
     Ok(())
 }
 
-/// At most 80 columns.
+/// At most 80 columns, but for the adapters' names.
 fn tables(report: &Report) -> io::Result<()> {
     let mut out = io::stdout().lock();
     writeln!(out, "{}: {} states\n", report.scene, report.states)?;
@@ -97,14 +111,15 @@ fn tables(report: &Report) -> io::Result<()> {
     }
     writeln!(
         out,
-        "\n                                              angle, deg     arc    force   of\n  \
-         engine              steps          us  +-%   worst    99 %   worst    worst peak"
+        "\n{:46}angle, deg     arc  force   of\n  \
+         engine          steps               us  +-%  worst   99 %  worst  worst peak",
+        ""
     )?;
     for row in &report.rows {
         let errors = &row.errors;
         writeln!(
             out,
-            "{} {:19} {:12} {:5.2} {:4.0} {:7.0e} {:7.0e} {:7.0e}  {:7.0e} {:3.0}%",
+            "{} {:15} {:16} {:5.2} {:4.0} {:6.0e} {:6.0e} {:6.0e} {:6.0e} {:3.0}%",
             if row.pareto { "*" } else { " " },
             named(&row.engine, row.threads),
             row.rung.to_string(),
@@ -124,14 +139,14 @@ fn tables(report: &Report) -> io::Result<()> {
     if staged().next().is_some() {
         writeln!(
             out,
-            "\nms                  steps          upload dispatch readback   refine"
+            "\nms              steps              upload dispatch readback   refine"
         )?;
     }
     for row in staged() {
         let stages = &row.stages_ms;
         writeln!(
             out,
-            "{:19} {:12}  {:8.2} {:8.2} {:8.2} {:8.2}",
+            "{:15} {:16}  {:8.2} {:8.2} {:8.2} {:8.2}",
             row.engine,
             row.rung.to_string(),
             stages.upload,

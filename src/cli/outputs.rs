@@ -98,7 +98,7 @@ impl Opened {
 }
 
 /// Whether two paths name one file, there or not.
-fn same(one: &Path, other: &Path) -> bool {
+pub fn same(one: &Path, other: &Path) -> bool {
     let place = |path: &Path| {
         let folder = path
             .parent()

@@ -18,6 +18,9 @@ pub struct Tolerance {
 /// Below, rounding is all that is left; above, a map says nothing.
 const RANGE: std::ops::RangeInclusive<f64> = 1e-10..=1.0;
 
+/// Makes two digits no less than the number.
+const ROUNDED_UP: f64 = 1.06;
+
 fn degrees(text: &str) -> Result<f64, String> {
     let number = text.strip_suffix("deg").unwrap_or(text).trim_end();
     number
@@ -35,12 +38,13 @@ impl Tolerance {
         };
         let found = cheapest(scene, sides, tolerance_deg).map_err(|finest| {
             Failure::Input(format!(
-                "--tolerance {tolerance_deg:e}deg: must be at least {:.1e}deg, the estimated error of the finest steps",
-                finest.error_deg
+                "--tolerance {tolerance_deg:e}deg: must be at least {:.1e}deg, which the finest steps and the residual of \
+                 Newton's method leave by the program's own estimate",
+                ROUNDED_UP * finest.error_deg
             ))
         })?;
         say(&format!(
-            "accuracy: {} steps or more, order 8; estimated error {:.1e} deg of {tolerance_deg:.1e} allowed",
+            "accuracy: {} steps of order 8 at the fold, fewer below; estimated error {:.1e} deg of {tolerance_deg:.1e} allowed",
             found.resolution.least, found.error_deg
         ));
         Ok(Some(found))

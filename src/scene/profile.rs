@@ -56,6 +56,7 @@ fn measured(rows: &Spanned<Rows>, length_mm: f64) -> Result<Radii, Fault> {
     let refused = |i, must: &str| Err(rows.get_ref().refuse(i, rows.span(), must));
     let mut profile = rows.get_ref().values();
     let (first, last) = (profile[0], profile[profile.len() - 1]);
+    let thinnest = first[1] / SHARPEST_TIP;
     let mut before = f64::NEG_INFINITY;
     for (i, &[s, radius]) in profile.iter().enumerate() {
         if !(s > before && s <= length_mm * (1.0 + END_SLACK)) {
@@ -74,6 +75,14 @@ fn measured(rows: &Spanned<Rows>, length_mm: f64) -> Result<Radii, Fault> {
         if !(1e-3..=1e5).contains(&radius) {
             return refused(i, "the radius must be between 0.001 and 100000 um");
         }
+        if !(thinnest..=SHARPEST_TIP * first[1]).contains(&radius) {
+            return refused(
+                i,
+                &format!(
+                    "the radius must be between a thousandth of that at the base ({thinnest}) and a thousand times it"
+                ),
+            );
+        }
         before = s;
     }
     if first[0] != 0.0 || (last[0] - length_mm).abs() > END_SLACK * length_mm {
@@ -85,11 +94,9 @@ fn measured(rows: &Spanned<Rows>, length_mm: f64) -> Result<Radii, Fault> {
         return Err(Fault::new(rows::KEY, rows.span(), must));
     }
     let (base_radius_um, tip_radius_um) = (first[1], last[1]);
-    if !(base_radius_um / SHARPEST_TIP <= tip_radius_um && tip_radius_um <= base_radius_um) {
-        let must = format!(
-            "the radius at the tip must be between a thousandth of that at the base and that at the base \
-             ({base_radius_um})"
-        );
+    if tip_radius_um > base_radius_um {
+        let must =
+            format!("the radius at the tip must be at most that at the base ({base_radius_um})");
         return refused(profile.len() - 1, &must);
     }
     for [s, radius] in &mut profile {

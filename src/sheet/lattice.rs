@@ -158,7 +158,6 @@ impl Level {
 /// The level curve between two nodes. The first piece and the last one reach one step farther, the last one up to the
 /// largest push angle of its polynomial.
 struct Piece {
-    is_first: bool,
     push: Polynomial,
     tau: Polynomial,
     load: Polynomial,
@@ -177,15 +176,13 @@ impl Piece {
         };
         let push = local(|node| node.push);
         let offset = (interval - start) as f64;
-        let is_first = interval == 0;
-        let low = if is_first { offset - 1.0 } else { offset };
+        let low = if interval == 0 { offset - 1.0 } else { offset };
         let high = if is_last {
             summit(&push, offset)
         } else {
             offset + 1.0
         };
         Self {
-            is_first,
             tau: local(|node| node.tau),
             load: local(|node| node.load),
             ends: [low, high],
@@ -198,7 +195,7 @@ impl Piece {
     fn guess(&mut self, push: f64) -> Option<Guess> {
         let ([low, high], [from, to]) = (self.ends, self.pushes);
         let t = if push < from {
-            (self.is_first && push > from - MARGIN).then_some(low)?
+            (push > from - MARGIN).then_some(low)?
         } else if push > to {
             (push < to + MARGIN).then_some(high)?
         } else {

@@ -165,7 +165,14 @@ fn radii_that_are_refused() {
         ),
         ("[[0, 30], [19, 1]]", "end at the tip, at length_mm (20)"),
         ("[[0, 30], [20, 31]]", "the radius at the tip must be"),
-        ("[[0, 30], [20, 0.02]]", "the radius at the tip must be"),
+        (
+            "[[0, 30], [20, 0.02]]",
+            "rows[1]: the radius must be between a thousandth",
+        ),
+        (
+            "[[0, 1], [5, 0.0009], [20, 1]]",
+            "rows[1]: the radius must be",
+        ),
     ] {
         let message = refusal(&scene(&format!("[whisker.profile]\nrows = {rows}"), ""));
         assert!(message.contains(why), "{rows}: {message}");
@@ -200,7 +207,7 @@ fn a_bad_csv_file_is_named_with_its_line() {
         ),
         (
             "arc_length_mm,radius_um\n0,30\n20,0.001\n",
-            "line 3: the radius at the tip",
+            "line 3: the radius must be between a thousandth",
         ),
         (
             "arc_length_mm,radius_um\n0,30\n21,1\n",

@@ -70,7 +70,7 @@ impl Lanes for Counted {
     }
 }
 
-/// Operations of one trajectory in `steps` steps, without its start and its answer. Stages whose results nothing needs are
+/// Operations of one trajectory in `steps` steps, with what lanes compute of its contact, without its answer. Stages whose results nothing needs are
 /// counted too; a compiler leaves them out.
 #[must_use]
 pub fn flops<M: Integrator, K: Kind<N>, const N: usize>(

@@ -86,8 +86,8 @@ impl Unit {
             #[cfg(target_arch = "x86_64")]
             // SAFETY: as above.
             Instructions::Avx2 => unsafe { exhaust_avx2(rounds) },
-            Instructions::Baseline => multiply_and_add::<Baseline>(rounds),
-            Instructions::Scalar => multiply_and_add::<f64>(rounds),
+            Instructions::Baseline => multiply_and_add::<Baseline, 3>(rounds),
+            Instructions::Scalar => multiply_and_add::<f64, 12>(rounds),
         }
     }
 }
@@ -147,13 +147,13 @@ kernel!(Dopri8, Second, 15);
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx512f,avx512dq,avx512vl,fma")]
 fn exhaust_avx512(rounds: u32) -> u64 {
-    multiply_and_add::<Avx512>(rounds)
+    multiply_and_add::<Avx512, 16>(rounds)
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,fma")]
 fn exhaust_avx2(rounds: u32) -> u64 {
-    multiply_and_add::<Avx2>(rounds)
+    multiply_and_add::<Avx2, 6>(rounds)
 }
 
 #[cfg(target_arch = "x86_64")]
