@@ -87,7 +87,7 @@ impl Unit {
             // SAFETY: as above.
             Instructions::Avx2 => unsafe { exhaust_avx2(rounds) },
             Instructions::Baseline => multiply_and_add::<Baseline, 3>(rounds),
-            Instructions::Scalar => multiply_and_add::<f64, 12>(rounds),
+            Instructions::Scalar => multiply_and_add::<f64, 16>(rounds),
         }
     }
 }
