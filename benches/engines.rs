@@ -11,6 +11,7 @@ use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_m
 use shots::{Range, USUAL};
 use std::hint::black_box;
 use std::path::Path;
+use whiskmap::classify::Status;
 use whiskmap::integrate::gpu::{Gpu, Precision};
 use whiskmap::integrate::{Cpu, Engine};
 use whiskmap::map::{self, Observer};
@@ -146,7 +147,7 @@ fn files(criterion: &mut Criterion) {
         engine: "cpu f64",
         adapter: "a bench",
         tolerances: &serde_json::json!({}),
-        status_names: &[],
+        status_names: &Status::ALL.map(|status| (status.code(), status.name())),
     };
     let write = |path: &Path| -> Result<(), Error> {
         let mut writer = MapWriter::create(path, &about)?;
