@@ -7,10 +7,9 @@
 
 use std::path::PathBuf;
 use whiskmap::accuracy::cheapest;
-use whiskmap::integrate::Shot;
 use whiskmap::model::batch::{Launch, Method, land};
 use whiskmap::model::{Dopri8, Effects, First, Resolution, Rod, Side};
-use whiskmap::refine::{End, refine};
+use whiskmap::refine::states;
 use whiskmap::scene::{Scene, Whisker};
 use whiskmap::sheet::Sheet;
 use whiskmap::trace::curve_at;
@@ -72,31 +71,14 @@ fn cells(scene: &Scene, whisker: &Whisker, side: Side, resolution: Resolution) -
     let distances = &scene.grid.distance_mm;
     let distances: Vec<f64> = distances.iter().map(|d| d / whisker.length_mm).collect();
     let sheet = Sheet::new(method, &rod, side, &distances).unwrap();
-    let pushes = scene.grid.push_angle_deg.iter().map(|p| p * side.sign());
-    let mut pushes: Vec<f64> = pushes.filter(|p| *p >= 0.0).map(f64::to_radians).collect();
-    pushes.sort_by(f64::total_cmp);
-    let mut shots = Vec::new();
-    for (row, place) in sheet.rows.iter().enumerate() {
-        let guesses = sheet.guesses(row, pushes.iter().copied());
-        for (guess, push) in guesses.iter().zip(&pushes) {
-            shots.extend(guess.map(|guess| Shot {
-                rod: 0,
-                tau: guess.tau,
-                load: guess.load,
-                pole: place.pole(side.sign() * push),
-            }));
-        }
-    }
-    let starts: Vec<(f64, f64)> = shots.iter().map(|shot| (shot.tau, shot.load)).collect();
-    let refined = refine(method, &[&sheet], &shots, &starts);
-    let solved = refined.iter().zip(&shots);
-    let solved = solved.filter(|(cell, _)| cell.end == End::Solved);
-    let (launches, poles): (Vec<Launch>, Vec<_>) = solved
-        .map(|(cell, shot)| {
-            let (tau, load) = (cell.state.tau, cell.state.load);
-            (Launch { rod, tau, load }, shot.pole)
-        })
-        .unzip();
+    let (launches, poles): (Vec<Launch>, Vec<_>) =
+        states(method, &sheet, &scene.grid.push_angle_deg)
+            .into_iter()
+            .map(|(shot, state)| {
+                let (tau, load) = (state.tau, state.load);
+                (Launch { rod, tau, load }, shot.pole)
+            })
+            .unzip();
     let exact = Method {
         effects,
         resolution: EXACT,

@@ -1,11 +1,10 @@
 //! States and detachments from all over a scene, its corners among them.
 
-use crate::integrate::Shot;
 use crate::model::batch::{Launch, Method, land};
 use crate::model::{Dopri8, Effects, First, Landing, Resolution, Rod, Side};
-use crate::refine::{End, refine};
+use crate::refine::states;
 use crate::scene::{Scene, Whisker};
-use crate::sheet::{Crossing, Edge, Guess, Sheet};
+use crate::sheet::{Crossing, Edge, Sheet};
 use rayon::prelude::*;
 
 /// Values of an axis that take part: its ends, and some between. The ends of pushes get better with more distances, near
@@ -44,39 +43,11 @@ impl Sample {
                 // Where the coarse steps find no fold, the fine ones may.
                 let sheet = Sheet::new(method, &rod, side, &distances)
                     .or_else(|| Sheet::new(Method::fine(effects), &rod, side, &distances))?;
-                let mut pushes: Vec<f64> = pushes
-                    .iter()
-                    .map(|push| push * side.sign())
-                    .filter(|push| *push >= 0.0)
-                    .map(f64::to_radians)
-                    .collect();
-                pushes.sort_by(f64::total_cmp);
                 let launch = |tau, load| Launch { rod, tau, load };
-                let shots: Vec<Shot> = sheet
-                    .rows
-                    .iter()
-                    .enumerate()
-                    .flat_map(|(row, place)| {
-                        let guesses = sheet.guesses(row, pushes.iter().copied());
-                        let aimed = guesses.into_iter().zip(&pushes);
-                        aimed.filter_map(|(guess, push)| {
-                            let Guess { tau, load } = guess?;
-                            let pole = place.pole(side.sign() * push);
-                            Some(Shot {
-                                rod: 0,
-                                tau,
-                                load,
-                                pole,
-                            })
-                        })
-                    })
-                    .collect();
-                let starts: Vec<_> = shots.iter().map(|shot| (shot.tau, shot.load)).collect();
-                let cells = refine(method, &[&sheet], &shots, &starts);
-                let solved = cells.iter().filter(|cell| cell.end == End::Solved);
+                let solved = states(method, &sheet, &pushes).into_iter();
                 let crossings = sheet.crossings.iter().flatten();
                 let ends = crossings.map(|end: &Crossing| (launch(end.tau, end.load), end.edge));
-                let states = solved.map(|cell| launch(cell.state.tau, cell.state.load));
+                let states = solved.map(|(_, state)| launch(state.tau, state.load));
                 Some((states.collect::<Vec<_>>(), ends.collect::<Vec<_>>()))
             })
             .unzip();

@@ -4,7 +4,7 @@ use crate::integrate::{Shot, Solver};
 use crate::model::batch::{Launch, Method, Unit, land};
 use crate::model::{Dopri8, Effects, First, Resolution, Rod, arclength};
 use crate::plan::Plan;
-use crate::refine::{End, refine};
+use crate::refine::states;
 use crate::scene::{Scene, Whisker};
 use crate::sheet::Sheet;
 use rayon::prelude::*;
@@ -91,34 +91,12 @@ impl Task {
                 let Some(sheet) = Sheet::new(method, rod, *side, &distances) else {
                     return Vec::new();
                 };
-                let pushes = scene.grid.push_angle_deg.iter().map(|p| p * side.sign());
-                let mut pushes: Vec<f64> =
-                    pushes.filter(|p| *p >= 0.0).map(f64::to_radians).collect();
-                pushes.sort_by(f64::total_cmp);
-                let mut shots = Vec::new();
-                for (row, place) in sheet.rows.iter().enumerate() {
-                    let guesses = sheet.guesses(row, pushes.iter().copied());
-                    for (guess, push) in guesses.iter().zip(&pushes) {
-                        shots.extend(guess.map(|guess| Shot {
-                            rod: 0,
-                            tau: guess.tau,
-                            load: guess.load,
-                            pole: place.pole(side.sign() * push),
-                        }));
-                    }
-                }
-                let starts: Vec<_> = shots.iter().map(|shot| (shot.tau, shot.load)).collect();
-                let cells = refine(method, &[&sheet], &shots, &starts);
-                let solved = shots.iter().zip(cells);
-                let solved = solved.filter(|(_, cell)| cell.end == End::Solved);
+                let solved = states(method, &sheet, &scene.grid.push_angle_deg).into_iter();
                 solved
-                    .map(|(shot, cell)| {
+                    .map(|(shot, state)| {
                         #[allow(clippy::cast_possible_truncation, reason = "a sample has few rods")]
-                        let shot = Shot {
-                            rod: index as u32,
-                            ..*shot
-                        };
-                        (shot, (cell.state.tau, cell.state.load))
+                        let rod = index as u32;
+                        (Shot { rod, ..shot }, (state.tau, state.load))
                     })
                     .collect()
             })

@@ -110,6 +110,33 @@ pub fn refine(
     cells
 }
 
+/// The states of `sheet` at those of the signed push angles that are on its side, from the lattice's guesses, with what
+/// they were aimed at.
+#[must_use]
+pub fn states(method: Method, sheet: &Sheet, pushes_deg: &[f64]) -> Vec<(Shot, State)> {
+    let sign = sheet.side.sign();
+    let pushes = pushes_deg.iter().map(|push| push * sign);
+    let mut pushes: Vec<f64> = pushes.filter(|p| *p >= 0.0).map(f64::to_radians).collect();
+    pushes.sort_by(f64::total_cmp);
+    let mut shots = Vec::new();
+    for (row, place) in sheet.rows.iter().enumerate() {
+        let guesses = sheet.guesses(row, pushes.iter().copied());
+        for (guess, push) in guesses.iter().zip(&pushes) {
+            shots.extend(guess.map(|guess| Shot {
+                rod: 0,
+                tau: guess.tau,
+                load: guess.load,
+                pole: place.pole(sign * push),
+            }));
+        }
+    }
+    let starts: Vec<_> = shots.iter().map(|shot| (shot.tau, shot.load)).collect();
+    let cells = refine(method, &[sheet], &shots, &starts);
+    let solved = shots.into_iter().zip(cells);
+    let solved = solved.filter(|(_, cell)| cell.end == End::Solved);
+    solved.map(|(shot, cell)| (shot, cell.state)).collect()
+}
+
 /// Newton's method with at most `most` steps per cell.
 fn newton(
     method: Method,

@@ -340,7 +340,6 @@ fn contacts_are_right<T: Number>(tolerance: f64) {
                     taper,
                     bend,
                     slope,
-                    pole: 0.0,
                     ..Rod::default()
                 };
                 let tau = reach * rod.tau_tip();
@@ -359,7 +358,6 @@ fn contacts_are_right<T: Number>(tolerance: f64) {
             taper: case[0],
             bend: case[1],
             slope: case[2],
-            pole: 0.0,
             ..Rod::default()
         };
         let start = Start::new(&rod, case[3], case[4]);
