@@ -69,7 +69,7 @@ fn main() {
 fn microseconds(effects: Effects, launches: &[Launch]) -> f64 {
     let method = Method::fine(effects);
     let start = Instant::now();
-    let landings = land::<Dopri8, First, 6>(method, launches);
+    let landings = land::<Dopri8, First>(method, launches);
     let micros = start.elapsed().as_secs_f64() * 1e6;
     assert!(landings.iter().all(|landing| landing.pole.is_finite()));
     micros / launches.len() as f64

@@ -97,7 +97,7 @@ fn land(unit: Unit, resolution: Resolution, launches: &[Launch]) -> Vec<Landing>
         effects,
         resolution,
     };
-    land_on::<Dopri8, First, 6>(unit, method, launches)
+    land_on::<Dopri8, First>(unit, method, launches)
 }
 
 /// Place of the pole, and the derivatives of the logarithm of its distance and of its direction by the contact's arclength

@@ -1,4 +1,4 @@
-// The pole as the base sees it, and Newton's step; the twin of `src/model/landing.rs`.
+// The pole as the base sees it, and Newton's step; the twin of `src/model/landing.rs` and `src/model/batch/answer.rs`.
 
 struct Landing {
     pole: vec2<real>,
@@ -21,24 +21,50 @@ fn cross2(a: vec2<real>, b: vec2<real>) -> real {
     return a.x * b.y - a.y * b.x;
 }
 
+// d(theta, X, Y) at the base by tau at fixed load, and by the load.
+struct Slopes {
+    by_tau: vec3<real>,
+    by_load: vec3<real>,
+}
+
+// The twin of `Order::known`.
+fn slopes(rod: Rod, start: Start, y: State) -> Slopes {
+    let f = start.force;
+    let x = y.rod.z;
+    let by_load = start.radius * start.radius * y.by_force;
+    if SIMILAR {
+        return Slopes(vec3<real>(f * x, -rod.taper * y.rod.zw - y.rod.xy), by_load);
+    }
+    let theta_s = y.by_arclength.x;
+    let x_s = y.by_arclength.y;
+    let y_s = theta_s * (f * y.by_force.y + x) - f * y.by_force.x * x_s - start.tangent.y;
+    return Slopes(
+        start.radius * vec3<real>(theta_s, x_s, y_s) - 2.0 * rod.taper * f * y.by_force,
+        by_load,
+    );
+}
+
+// Derivatives of (ln D, phi), from those of theta, X and Y.
+fn turned(by: vec3<real>, w: vec2<real>) -> vec2<real> {
+    return over(-by.yz, w) - vec2<real>(0.0, by.x);
+}
+
 // One trajectory, in `steps` steps, or as many for every piece of a profile.
 fn land(rod: Rod, tau: real, start: Start, steps: u32) -> Landing {
     let at_contact = State(
         vec2<real>(start.cos, start.sin),
         vec4<real>(start.tangent, 0.0, 0.0),
         vec3<real>(),
-        vec3<real>(-curvature(rod, start), -start.tangent),
+        vec2<real>(-curvature(rod, start), -start.tangent.x),
     );
     let y = travel(rod, tau, start, steps, at_contact);
     let to_pole = rod.pole * vec2<real>(start.tangent.y, -start.tangent.x);
     let w = to_pole - y.rod.zw;
-    let f = over(-y.by_force.yz, w) - vec2<real>(0.0, y.by_force.x);
-    let s = over(-y.by_arclength.yz, w) - vec2<real>(0.0, y.by_arclength.x);
-    let rho = start.radius;
+    let by = slopes(rod, start, y);
     return Landing(
         times(vec2<real>(y.rod.x, -y.rod.y), w),
-        rho * s - 2.0 * rod.taper * start.force * f,
-        rho * rho * f,
+        turned(by.by_tau, w),
+        turned(by.by_load, w),
     );
 }
 

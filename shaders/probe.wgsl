@@ -6,7 +6,7 @@
 // force, twice_bend, taper, h, rho, gradient, arclength, then the state, then the steps; answers the state after them.
 @compute @workgroup_size(1)
 fn probe_steps(@builtin(global_invocation_id) id: vec3<u32>) {
-    let i = 20u * id.x;
+    let i = 19u * id.x;
     let system = System(cases[i], cases[i + 1u], array<real, 2>(), Material(cases[i + 5u]));
     let h = cases[i + 3u];
     let rho = cases[i + 4u];
@@ -15,15 +15,15 @@ fn probe_steps(@builtin(global_invocation_id) id: vec3<u32>) {
         gains(cases[i + 2u], h),
         Section(rho, 1.0 / (rho * rho * rho), cases[i + 6u]),
         h,
-        u32(cases[i + 19u]),
+        u32(cases[i + 18u]),
         State(
             vec2<real>(cases[i + 7u], cases[i + 8u]),
             vec4<real>(cases[i + 9u], cases[i + 10u], cases[i + 11u], cases[i + 12u]),
             vec3<real>(cases[i + 13u], cases[i + 14u], cases[i + 15u]),
-            vec3<real>(cases[i + 16u], cases[i + 17u], cases[i + 18u]),
+            vec2<real>(cases[i + 16u], cases[i + 17u]),
         ),
     );
-    let o = 12u * id.x;
+    let o = 11u * id.x;
     answers[o] = y.rest.x;
     answers[o + 1u] = y.rest.y;
     answers[o + 2u] = y.rod.x;
@@ -35,7 +35,6 @@ fn probe_steps(@builtin(global_invocation_id) id: vec3<u32>) {
     answers[o + 8u] = y.by_force.z;
     answers[o + 9u] = y.by_arclength.x;
     answers[o + 10u] = y.by_arclength.y;
-    answers[o + 11u] = y.by_arclength.z;
 }
 
 // taper, bend, slope, tau, load; answers radius, arclength, force, cos, sin.

@@ -1,4 +1,4 @@
-// The right-hand sides, in sigma = tau_contact - tau; the twin of `src/model/{rhs,order,vector}.rs`.
+// The right-hand sides, in sigma = tau_contact - tau; the twin of `src/model/{rhs,vector}.rs` and `src/model/order/`.
 
 struct Section {
     rho: real,
@@ -14,8 +14,8 @@ struct State {
     rod: vec4<real>,
     // d(theta, X, Y) by the force
     by_force: vec3<real>,
-    // and by the arclength of the contact
-    by_arclength: vec3<real>,
+    // d(theta, X) by the arclength of the contact; not where the rod is similar
+    by_arclength: vec2<real>,
 }
 
 struct System {
@@ -43,12 +43,15 @@ fn rhs(system: System, section: Section, y: State) -> State {
         turn += rho * (system.spiral[0] + system.spiral[1] * section.arclength);
     }
     let theta_f = y.by_force.x;
-    let theta_s = y.by_arclength.x;
+    var by_arclength = vec2<real>();
+    if !SIMILAR {
+        by_arclength = vec2<real>(w * f * y.by_arclength.y, rho * s * y.by_arclength.x);
+    }
     return State(
         rest,
         vec4<real>(turn * s, -turn * c, -rho * c, -rho * s),
         vec3<real>(w * (f * y.by_force.y + x), rho * s * theta_f, -rho * c * theta_f),
-        vec3<real>(w * f * y.by_arclength.y, rho * s * theta_s, -rho * c * theta_s),
+        by_arclength,
     );
 }
 

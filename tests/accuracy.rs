@@ -83,7 +83,7 @@ fn cells(scene: &Scene, whisker: &Whisker, side: Side, resolution: Resolution) -
         effects,
         resolution: EXACT,
     };
-    let landed = land::<Dopri8, First, 6>(exact, &launches);
+    let landed = land::<Dopri8, First>(exact, &launches);
     let missed = landed.iter().zip(poles);
     let missed = missed.map(|(landing, pole)| landing.residual(pole).length().to_degrees());
     missed.fold(0.0, f64::max)

@@ -66,10 +66,10 @@ fn end<M: Integrator>(load: f64, steps: u32) -> DVec2 {
         inverse_cube: 1.0,
         arclength: 0.9,
     };
-    let contact = ((), ([1.0, 0.0, 0.0, 0.0], []));
+    let contact = ((), ([1.0, 0.0, 0.0, 0.0], ()));
     let scales = Scales::cylinder::<M>(h);
-    let (_, ([_, _, x, y], [])) =
-        integrate::<M, f64, _, _, Shape, 0>(&system, &scales, section, h, steps, contact);
+    let (_, ([_, _, x, y], ())) =
+        integrate::<M, f64, _, _, Shape>(&system, &scales, section, h, steps, contact);
     DVec2::new(x, y)
 }
 
@@ -89,7 +89,7 @@ fn integrators_have_their_order() {
 /// The same in a batch, with every effect that does not exclude another.
 #[test]
 fn batches_have_the_order() {
-    let poles = |least: u32| land::<Dopri8, First, 6>(steps(least), &rods());
+    let poles = |least: u32| land::<Dopri8, First>(steps(least), &rods());
     let fine = poles(2048);
     let error = |least: u32| {
         let apart = fine.iter().zip(poles(least));
@@ -108,8 +108,8 @@ fn the_fine_resolution_is_exact() {
         resolution: whiskmap::model::Resolution::FINE,
         ..steps(1)
     };
-    let exact = land::<Dopri8, First, 6>(steps(512), &rods());
-    for (a, b) in exact.iter().zip(land::<Dopri8, First, 6>(fine, &rods())) {
+    let exact = land::<Dopri8, First>(steps(512), &rods());
+    for (a, b) in exact.iter().zip(land::<Dopri8, First>(fine, &rods())) {
         assert!(a.pole.distance(b.pole) < 1e-11, "{} {}", a.pole, b.pole);
     }
 }
@@ -174,7 +174,7 @@ fn ln_pole(rod: &Rod, tau: HyperDual64, load: HyperDual64) -> [HyperDual64; 2] {
     let DVec2 { x, y } = rod.contact_tangent();
     let contact: Planar<Dual> = [x, y, 0.0, 0.0].map(Dual::of);
     let (_, (end, _)) =
-        integrate::<Rk4, _, _, _, Shape, 0>(&system, &scales, from, h, steps, ((), (contact, [])));
+        integrate::<Rk4, _, _, _, Shape>(&system, &scales, from, h, steps, ((), (contact, ())));
     let [c, s, x, y] = end.map(|dual| dual.0);
     let (wx, wy) = (-x + rod.to_pole().x, -y + rod.to_pole().y);
     let ln_distance = (wx * wx + wy * wy).ln() * 0.5;
@@ -206,7 +206,7 @@ fn sensitivities_agree_with_num_dual() {
                 effects,
                 ..steps(128)
             };
-            let hand = land::<Dopri8, Second, 15>(method, &[Launch { rod, tau, load }])[0];
+            let hand = land::<Dopri8, Second>(method, &[Launch { rod, tau, load }])[0];
             for (i, (name, pick)) in PICKS.iter().enumerate() {
                 for axis in 0..2 {
                     let dual = second(&rod, tau, load, axis, i);
@@ -252,7 +252,7 @@ fn second(rod: &Rod, tau: f64, load: f64, axis: usize, which: usize) -> f64 {
 fn sensitivities_of_curved_rods_agree_with_differences() {
     for launch in rods().iter().filter(|launch| launch.rod.bend > 0.0) {
         let at = |tau: f64, load: f64| {
-            land::<Dopri8, Second, 15>(
+            land::<Dopri8, Second>(
                 steps(128),
                 &[Launch {
                     rod: launch.rod,

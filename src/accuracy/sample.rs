@@ -66,7 +66,7 @@ impl Sample {
                 effects,
                 resolution,
             };
-            land::<Dopri8, First, 6>(method, launches)
+            land::<Dopri8, First>(method, launches)
         };
         let pairs = |launches: &[Launch]| {
             let finer = landed(resolution.doubled(), launches);

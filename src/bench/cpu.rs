@@ -65,7 +65,7 @@ pub fn measure(
             };
             let work = operations(task, &hits, |launch| {
                 let steps = resolution.steps(&launch.rod, launch.tau, launch.load);
-                flops::<Dopri8, First, 6>(task.effects, steps, launch)
+                flops::<Dopri8, First>(task.effects, steps, launch)
             });
             let points: Vec<(f64, f64)> = hits.iter().map(|hit| (hit.tau, hit.load)).collect();
             report.rows.push(Row::new(

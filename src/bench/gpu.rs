@@ -92,7 +92,7 @@ fn engine(
             newton_f64,
         };
         let work = operations(task, &hits, |launch| {
-            flops::<Rk4, First, 6>(task.effects, steps(launch), launch)
+            flops::<Rk4, First>(task.effects, steps(launch), launch)
         });
         // Only the shader's work counts against the shader's peak.
         let on_device = if stages.dispatch > 0.0 {
@@ -130,7 +130,7 @@ fn newton(task: &Task, points: &mut [(f64, f64)]) {
             load,
         })
         .collect();
-    let landed = land::<Dopri8, First, 6>(Method::fine(task.effects), &launches);
+    let landed = land::<Dopri8, First>(Method::fine(task.effects), &launches);
     for (((point, landing), launch), shot) in points
         .iter_mut()
         .zip(landed)

@@ -141,7 +141,7 @@ impl Task {
             effects: self.effects,
             resolution: EXACT,
         };
-        let landed = land::<Dopri8, First, 6>(method, &found);
+        let landed = land::<Dopri8, First>(method, &found);
         let angle = |i: usize| landed[i].residual(self.shots[i].pole).length().to_degrees();
         let place = |launch: &Launch| arclength(&launch.rod, launch.tau);
         let arc = |i: usize| (place(&found[i]) - place(&self.exact[i])).abs();

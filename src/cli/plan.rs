@@ -2,7 +2,7 @@
 
 use super::estimate::{Estimate, estimate};
 use super::failure::Failure;
-use crate::plan::{Cost, DERIVATIVE_STATES, Plan, ROD_STATES, effects};
+use crate::plan::{Cost, Plan, ROD_STATES, effects};
 use crate::scene::Scene;
 use clap::Args;
 use std::io::Write;
@@ -58,14 +58,15 @@ fn print(scene: &Scene, plan: &Plan, estimate: &Estimate) -> std::io::Result<()>
 /// The lines below the effects, by name.
 fn facts(scene: &Scene, plan: &Plan, estimate: &Estimate) -> [(&'static str, String); 6] {
     let rest = plan.rest_states();
-    let states = rest + ROD_STATES + DERIVATIVE_STATES;
+    let derivatives = plan.derivative_states();
+    let states = rest + ROD_STATES + derivatives;
     let distances = scene.grid.distance_mm.len();
     let most = (estimate.steps_per_cell + 1.0) * plan.cells as f64;
     [
         (
             "states",
             format!(
-                "{states}: {rest} rest shape, {ROD_STATES} rod, {DERIVATIVE_STATES} derivatives; \
+                "{states}: {rest} rest shape, {ROD_STATES} rod, {derivatives} derivatives; \
                  at last {} with energy",
                 states + 1
             ),

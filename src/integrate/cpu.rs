@@ -67,7 +67,7 @@ impl Solver {
                     load: hits[i].load,
                 })
                 .collect();
-            let landings = land_on::<Dopri8, First, 6>(self.unit, method, &launches);
+            let landings = land_on::<Dopri8, First>(self.unit, method, &launches);
             let mut next = Vec::new();
             for ((&i, launch), landing) in open.iter().zip(&launches).zip(&landings) {
                 let hit = &mut hits[i];

@@ -7,6 +7,8 @@ use super::real::expm1_over_small;
 /// What the integration needs to know of the contact.
 #[derive(Clone, Copy, Debug)]
 pub struct Contact<T> {
+    /// Radius over the base radius.
+    pub radius: T,
     /// The whole force `F L_w^2/(E I_base)`, signed; without friction it is the normal force.
     pub force: T,
     /// The whisker's tangent there, see [`Rod::contact_tangent`](super::Rod::contact_tangent).

@@ -39,16 +39,16 @@ impl Integrator for Dopri8 {
 
     #[inline(always)]
     #[rustfmt::skip]
-    fn step<T: Real, I: Intrinsic<T>, C: Material<T>, S: Sensitivity<N>, const N: usize>(
+    fn step<T: Real, I: Intrinsic<T>, C: Material<T>, S: Sensitivity<T>>(
         system: &RodSystem<T, I, C>,
         scales: &Scales<T>,
         from: Section<T>,
         h: T,
-        y: State<T, I, N>,
-    ) -> State<T, I, N> {
+        y: State<T, I, S>,
+    ) -> State<T, I, S> {
         macro_rules! rhs {
             ($stage:expr, $state:expr) => {
-                system.rhs::<S, N>(scales.at($stage, from), $state)
+                system.rhs::<S>(scales.at($stage, from), $state)
             };
         }
         let k1 = rhs!(0, y);

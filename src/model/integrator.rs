@@ -1,6 +1,6 @@
 //! Fixed-step integration along the rod: what the Runge-Kutta methods share.
 
-use super::real::expm1_over_small;
+use super::real::hyperbolic_small;
 use super::rhs::{Intrinsic, Material, Planar, RodSystem, Sensitivity, State};
 use super::{Real, Rod, Section, arclength};
 
@@ -59,7 +59,12 @@ impl Resolution {
     /// are those of 20,000 random trajectories that had to reach 1e-8 and 1e-10 (`benches/NOTES.md`).
     #[must_use]
     pub fn steps(&self, rod: &Rod, tau: f64, load: f64) -> u32 {
-        let s = arclength(rod, tau);
+        self.steps_from(rod, tau, load, arclength(rod, tau))
+    }
+
+    /// The same where the arclength `s` of the contact is known already.
+    #[inline]
+    pub(super) fn steps_from(&self, rod: &Rod, tau: f64, load: f64, s: f64) -> u32 {
         let bending = (load.abs() * s * s * rod.softness(tau)) / rod.modulus(s).min(1.0);
         let bending = if bending <= EVEN_UP_TO {
             bending
@@ -113,13 +118,13 @@ const MOST: f64 = 8192.0;
 pub trait Integrator: Copy + Send + Sync + 'static {
     /// One step of length `h` from the section `from`; `scales[i]` is the factor by which the radius has grown
     /// at stage `i`.
-    fn step<T: Real, I: Intrinsic<T>, C: Material<T>, S: Sensitivity<N>, const N: usize>(
+    fn step<T: Real, I: Intrinsic<T>, C: Material<T>, S: Sensitivity<T>>(
         system: &RodSystem<T, I, C>,
         scales: &Scales<T>,
         from: Section<T>,
         h: T,
-        state: State<T, I, N>,
-    ) -> State<T, I, N>;
+        state: State<T, I, S>,
+    ) -> State<T, I, S>;
 
     /// Where the stages lie in the unit step.
     const NODES: [f64; STAGES];
@@ -146,10 +151,12 @@ impl<T: Real> Scales<T> {
         let mut along = [one; STAGES];
         for ((stage, along), node) in stages.iter_mut().zip(&mut along).zip(M::NODES) {
             let length = h * T::of(node);
-            let growth = expm1_over_small(taper * length);
-            let rho = growth.mul_add(taper * length, one);
-            *stage = (rho, one / (rho * rho * rho));
-            *along = length * growth;
+            let x = taper * length;
+            let [odd, even] = hyperbolic_small(x);
+            let (grown, shrunk) = (x.mul_add(even, odd), (-x).mul_add(even, odd));
+            let inverse = (-x).mul_add(shrunk, one);
+            *stage = (x.mul_add(grown, one), inverse * inverse * inverse);
+            *along = length * grown;
         }
         Self {
             stages: Some(stages),
@@ -183,21 +190,21 @@ impl<T: Real> Scales<T> {
 
 /// Integrates `system` over `tau` in `steps` steps from the section `from`.
 #[inline(always)]
-pub fn integrate<M: Integrator, T: Real, I, C, S: Sensitivity<N>, const N: usize>(
+pub fn integrate<M: Integrator, T: Real, I, C, S: Sensitivity<T>>(
     system: &RodSystem<T, I, C>,
     scales: &Scales<T>,
     from: Section<T>,
     h: T,
     steps: u32,
-    mut state: State<T, I, N>,
-) -> State<T, I, N>
+    mut state: State<T, I, S>,
+) -> State<T, I, S>
 where
     I: Intrinsic<T>,
     C: Material<T>,
 {
     let mut section = from;
     for _ in 0..steps {
-        let (rest, (rod, sens)) = M::step::<T, I, C, S, N>(system, scales, section, h, state);
+        let (rest, (rod, sens)) = M::step::<T, I, C, S>(system, scales, section, h, state);
         state = (rest, (upright(rod), sens));
         section = scales.at(STAGES - 1, section);
     }

@@ -1,12 +1,7 @@
-//! What a trajectory says when it lands on the base: the pole as the base sees it.
+//! What a trajectory says when it lands on the base: the pole as the base sees it, in distance `D` and direction `phi`.
 //!
-//! With `w` the pole's centre seen from the base in the axes of the contact, and `theta` the base's tangent
-//! there, `G = ln w - i theta` (complex) has the real part `ln D` and the imaginary part `phi`, the two
-//! coordinates of a whisker in front of a pole. Its derivatives need no trigonometry:
-//! `G_i = w_i/w - i theta_i`, `G_ij = w_ij/w - w_i w_j/w^2 - i theta_ij`.
 //! The coordinates of the sheet are `tau` of the contact and `load = f/rho^2` there.
 
-use super::{Planar, Rod};
 use glam::DVec2;
 
 /// The longest Newton step, relative to the arclength of the contact and to the load (plus 1/s^2, the load's
@@ -21,64 +16,13 @@ pub fn limited(step: DVec2, s: f64, load: f64) -> (DVec2, f64) {
     (step * (LONGEST_STEP / length).min(1.0), length)
 }
 
-/// Product of complex numbers.
-#[inline(always)]
-fn times(a: DVec2, b: DVec2) -> DVec2 {
-    a.rotate(b)
-}
-
 /// Quotient of complex numbers.
-#[inline(always)]
 fn over(a: DVec2, b: DVec2) -> DVec2 {
     DVec2::new(b.x, -b.y).rotate(a) / b.length_squared()
 }
 
-/// A contact under load.
-#[derive(Clone, Copy, Debug)]
-pub struct Pressed {
-    /// Radius over the base radius.
-    pub radius: f64,
-    /// The whole force.
-    pub force: f64,
-}
-
-/// The pole's centre `w` seen from the base, in the axes of the contact.
-struct Centre {
-    w: DVec2,
-    pole: DVec2,
-}
-
-impl Centre {
-    #[inline(always)]
-    fn new(rod: &Rod, [c, s, x, y]: &Planar<f64>) -> Self {
-        let w = rod.to_pole() - DVec2::new(*x, *y);
-        Self {
-            w,
-            pole: DVec2::new(*c, -s).rotate(w),
-        }
-    }
-
-    /// `G_f` and `G_s`.
-    #[inline(always)]
-    fn first(&self, sens: &[f64]) -> [DVec2; 2] {
-        [0, 3]
-            .map(|i| over(-DVec2::new(sens[i + 1], sens[i + 2]), self.w) - DVec2::new(0.0, sens[i]))
-    }
-
-    #[inline(always)]
-    fn landing(&self, rod: &Rod, pressed: Pressed, sens: &[f64]) -> Landing {
-        let [f, s] = self.first(sens);
-        let rho = pressed.radius;
-        Landing {
-            pole: self.pole,
-            by_tau: rho * s - 2.0 * rod.taper * pressed.force * f,
-            by_load: rho * rho * f,
-        }
-    }
-}
-
 /// The base as seen from the contact, in axes whose second one is along the force.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Base {
     /// Unit tangent.
     pub tangent: DVec2,
@@ -89,7 +33,7 @@ pub struct Base {
 }
 
 /// Where the pole is, and how that changes with the contact and the load.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Landing {
     /// Centre of the pole in the frame of the base.
     pub pole: DVec2,
@@ -126,15 +70,10 @@ impl Landing {
     pub fn residual(&self, wanted: DVec2) -> DVec2 {
         over(wanted - self.pole, self.pole)
     }
-
-    #[inline(always)]
-    pub(super) fn new(rod: &Rod, pressed: Pressed, state: &Planar<f64>, first: &[f64]) -> Self {
-        Centre::new(rod, state).landing(rod, pressed, first)
-    }
 }
 
 /// A state with everything that a map tells about it.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Full {
     /// Pole and derivatives.
     pub landing: Landing,
@@ -144,24 +83,8 @@ pub struct Full {
     pub energy: f64,
 }
 
-impl Full {
-    #[inline(always)]
-    pub(super) fn new(rod: &Rod, pressed: Pressed, state: &Planar<f64>, first: &[f64; 7]) -> Self {
-        let [c, s, x, y] = *state;
-        Self {
-            landing: Landing::new(rod, pressed, state, first),
-            base: Base {
-                tangent: DVec2::new(c, s),
-                position: DVec2::new(x, y),
-                force: pressed.force,
-            },
-            energy: first[6],
-        }
-    }
-}
-
 /// A landing with the second derivatives of `(ln D, phi)`.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Curved {
     /// Pole and first derivatives.
     pub landing: Landing,
@@ -174,6 +97,29 @@ pub struct Curved {
 }
 
 impl Curved {
+    /// What a trajectory would say `step` further on in `(tau, load)`: the pole to second order, its first derivatives to
+    /// first.
+    #[must_use]
+    pub fn moved(&self, step: DVec2) -> Self {
+        let Landing {
+            pole,
+            by_tau,
+            by_load,
+        } = self.landing;
+        let turned_tau = self.by_tau_tau * step.x + self.by_tau_load * step.y;
+        let turned_load = self.by_tau_load * step.x + self.by_load_load * step.y;
+        let [tau, load] = [by_tau + 0.5 * turned_tau, by_load + 0.5 * turned_load];
+        let ln_pole = tau * step.x + load * step.y;
+        Self {
+            landing: Landing {
+                pole: (DVec2::from_angle(ln_pole.y) * ln_pole.x.exp()).rotate(pole),
+                by_tau: by_tau + turned_tau,
+                by_load: by_load + turned_load,
+            },
+            ..*self
+        }
+    }
+
     /// Gradient of [`Landing::det`] in `(tau, load)`.
     #[must_use]
     pub fn det_gradient(&self) -> DVec2 {
@@ -184,30 +130,5 @@ impl Curved {
             self.by_tau_tau.perp_dot(by_load) + by_tau.perp_dot(self.by_tau_load),
             self.by_tau_load.perp_dot(by_load) + by_tau.perp_dot(self.by_load_load),
         )
-    }
-
-    #[inline(always)]
-    pub(super) fn new(rod: &Rod, pressed: Pressed, state: &Planar<f64>, sens: &[f64; 15]) -> Self {
-        let centre = Centre::new(rod, state);
-        let [f, s] = centre.first(sens);
-        let second = |i: usize, wa: DVec2, wb: DVec2| {
-            let w = -DVec2::new(sens[i + 1], sens[i + 2]);
-            over(w, centre.w) - times(wa, wb) - DVec2::new(0.0, sens[i])
-        };
-        let wf = over(-DVec2::new(sens[1], sens[2]), centre.w);
-        let ws = over(-DVec2::new(sens[4], sens[5]), centre.w);
-        let (ff, fs, ss) = (second(6, wf, wf), second(9, wf, ws), second(12, ws, ws));
-        let (rho, beta) = (pressed.radius, rod.taper);
-        let (f_load, f_tau) = (rho * rho, -2.0 * beta * pressed.force);
-        Self {
-            landing: centre.landing(rod, pressed, sens),
-            by_tau_tau: f_tau * f_tau * ff
-                + 2.0 * f_tau * rho * fs
-                + rho * rho * ss
-                + 4.0 * beta * beta * pressed.force * f
-                - beta * rho * s,
-            by_tau_load: f_load * (f_tau * ff + rho * fs - 2.0 * beta * f),
-            by_load_load: f_load * f_load * ff,
-        }
     }
 }

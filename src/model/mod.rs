@@ -9,11 +9,12 @@
 //! and `f32`, in which it is the twin of `shaders/`.
 
 pub mod batch;
+mod complex;
 mod contact;
 mod dopri8;
 mod integrator;
 mod landing;
-mod order;
+pub mod order;
 pub mod profile;
 mod radius;
 mod real;
@@ -27,10 +28,10 @@ mod turn;
 mod units;
 mod vector;
 
+pub use batch::{First, FirstAndEnergy, Second};
 pub use dopri8::Dopri8;
 pub use integrator::{Integrator, Resolution, Scales, integrate};
 pub use landing::{Base, Curved, Full, LONGEST_STEP, Landing, limited};
-pub use order::{First, FirstAndEnergy, Order, Second};
 pub use radius::{Piece, RadiusProfile};
 pub use real::Real;
 pub use rest::Rest;

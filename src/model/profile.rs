@@ -54,7 +54,7 @@ impl Way<'_> {
         let contact = self.start.arclength;
         let deflected = at.partition_point(|s| *s < contact);
         let tangent = self.start.tangent;
-        let mut state: State<f64, I, 0> = (rest, ([tangent.x, tangent.y, 0.0, 0.0], []));
+        let mut state: State<f64, I, Shape> = (rest, ([tangent.x, tangent.y, 0.0, 0.0], ()));
         let mut from = self.start.tau;
         let mut places: Vec<Place> = at[..deflected]
             .iter()
@@ -63,7 +63,7 @@ impl Way<'_> {
                 let to = self.rod.tau(*s);
                 state = self.advance(intrinsic, (from, to), state);
                 from = to;
-                let (_, (rod, [])) = state;
+                let (_, (rod, ())) = state;
                 self.loaded(*s, rod)
             })
             .collect();
@@ -77,8 +77,8 @@ impl Way<'_> {
         &self,
         intrinsic: I,
         (mut from, to): (f64, f64),
-        mut state: State<f64, I, 0>,
-    ) -> State<f64, I, 0> {
+        mut state: State<f64, I, Shape>,
+    ) -> State<f64, I, Shape> {
         let gradient = self.rod.gradient;
         let Some(profile) = self.rod.profile else {
             let whole = self.start.tau;
@@ -109,8 +109,8 @@ impl Way<'_> {
         material: C,
         whole: f64,
         (from, to): (f64, f64),
-        state: State<f64, I, 0>,
-    ) -> State<f64, I, 0> {
+        state: State<f64, I, Shape>,
+    ) -> State<f64, I, Shape> {
         let share = f64::from(self.steps) * (from - to) / whole;
         #[allow(
             clippy::cast_possible_truncation,
@@ -131,7 +131,7 @@ impl Way<'_> {
             material,
         };
         let scales = Scales::tapered::<Dopri8>(self.rod.taper, h);
-        integrate::<Dopri8, f64, _, _, Shape, 0>(&system, &scales, section, h, steps, state)
+        integrate::<Dopri8, f64, _, _, Shape>(&system, &scales, section, h, steps, state)
     }
 
     fn loaded(&self, s: f64, [c, sin, x, y]: [f64; 4]) -> Place {

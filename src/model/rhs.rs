@@ -132,25 +132,31 @@ impl<T: Real> Intrinsic<T> for Spiral<T> {
 /// The rod itself: `c, s, X, Y`.
 pub type Planar<T> = [T; 4];
 
-/// Derivatives carried beside the rod: `N` states.
-pub trait Sensitivity<const N: usize> {
+/// Derivatives carried beside the rod.
+pub trait Sensitivity<T: Real>: 'static {
+    /// Their values.
+    type State: Vector<T>;
+
     /// Their right-hand sides at `rod` under the force `f`, where the radius is `rho` and the compliance `w`.
-    fn rhs<T: Real>(f: T, rho: T, w: T, rod: &Planar<T>, state: &[T; N]) -> [T; N];
+    fn rhs(f: T, rho: T, w: T, rod: &Planar<T>, state: Self::State) -> Self::State;
 }
 
 /// No derivatives.
 #[derive(Clone, Copy, Debug)]
 pub struct Shape;
 
-impl Sensitivity<0> for Shape {
+impl<T: Real> Sensitivity<T> for Shape {
+    type State = ();
+
     #[inline(always)]
-    fn rhs<T: Real>(_: T, _: T, _: T, _: &Planar<T>, _: &[T; 0]) -> [T; 0] {
-        []
-    }
+    fn rhs(_: T, _: T, _: T, _: &Planar<T>, (): ()) {}
 }
 
 /// A trajectory's whole state: rest shape, rod, sensitivities.
-pub type State<T, I, const N: usize> = (<I as Intrinsic<T>>::State, (Planar<T>, [T; N]));
+pub type State<T, I, S> = (
+    <I as Intrinsic<T>>::State,
+    (Planar<T>, <S as Sensitivity<T>>::State),
+);
 
 /// Rod, rest shape and sensitivities as one system of equations.
 #[derive(Clone, Copy, Debug)]
@@ -166,17 +172,17 @@ pub struct RodSystem<T, I, C> {
 impl<T: Real, I: Intrinsic<T>, C: Material<T>> RodSystem<T, I, C> {
     /// `dstate/dsigma`.
     #[inline(always)]
-    pub fn rhs<S: Sensitivity<N>, const N: usize>(
+    pub fn rhs<S: Sensitivity<T>>(
         &self,
         section: Section<T>,
-        (rest, (rod, sens)): State<T, I, N>,
-    ) -> State<T, I, N> {
+        (rest, (rod, sens)): State<T, I, S>,
+    ) -> State<T, I, S> {
         let [c, s, x, _] = rod;
         let rho = section.rho;
         let w = self.material.compliance(&section);
         let (turn_at_rest, rest_rhs) = self.intrinsic.rhs(&section, rest);
         let turn = turn_at_rest - self.force * x * w;
         let rod_rhs = [turn * s, -turn * c, -rho * c, -rho * s];
-        (rest_rhs, (rod_rhs, S::rhs(self.force, rho, w, &rod, &sens)))
+        (rest_rhs, (rod_rhs, S::rhs(self.force, rho, w, &rod, sens)))
     }
 }

@@ -13,19 +13,19 @@ impl Integrator for Rk4 {
     const NODES: [f64; STAGES] = [0.0, 0.5, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0];
 
     #[inline(always)]
-    fn step<T: Real, I: Intrinsic<T>, C: Material<T>, S: Sensitivity<N>, const N: usize>(
+    fn step<T: Real, I: Intrinsic<T>, C: Material<T>, S: Sensitivity<T>>(
         system: &RodSystem<T, I, C>,
         scales: &Scales<T>,
         from: Section<T>,
         h: T,
-        y: State<T, I, N>,
-    ) -> State<T, I, N> {
+        y: State<T, I, S>,
+    ) -> State<T, I, S> {
         let half = T::of(0.5) * h;
         let (middle, end) = (scales.at(1, from), scales.at(2, from));
-        let k1 = system.rhs::<S, N>(from, y);
-        let k2 = system.rhs::<S, N>(middle, y.plus(half, k1));
-        let k3 = system.rhs::<S, N>(middle, y.plus(half, k2));
-        let k4 = system.rhs::<S, N>(end, y.plus(h, k3));
+        let k1 = system.rhs::<S>(from, y);
+        let k2 = system.rhs::<S>(middle, y.plus(half, k1));
+        let k3 = system.rhs::<S>(middle, y.plus(half, k2));
+        let k4 = system.rhs::<S>(end, y.plus(h, k3));
         let sixth = T::of(1.0 / 6.0) * h;
         let third = T::of(1.0 / 3.0) * h;
         y.plus(sixth, k1)

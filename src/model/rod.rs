@@ -118,11 +118,10 @@ impl Rod {
         radius.powi(4) * self.modulus(s)
     }
 
-    /// Index of the piece of its profile on which `tau` lies; 0 without one.
+    /// Index of the piece of its profile on which the arclength `s` lies; 0 without one.
     #[must_use]
-    pub fn piece(&self, tau: f64) -> usize {
-        self.profile
-            .map_or(0, |profile| profile.piece(arclength(self, tau)))
+    pub fn piece(&self, s: f64) -> usize {
+        self.profile.map_or(0, |profile| profile.piece(s))
     }
 
     /// The sharpest bend of the whisker at rest, in radians per whisker length.
@@ -232,6 +231,12 @@ impl Effects {
     #[must_use]
     pub fn advances(self) -> bool {
         self.taper || self.spiral || self.gradient || self.profile
+    }
+
+    /// Whether the rod looks the same from each of its points, but for its size: see [`order::similar`](super::order::similar).
+    #[must_use]
+    pub const fn similar(self) -> bool {
+        !(self.curvature || self.spiral || self.gradient || self.profile)
     }
 
     /// The effects that at least one of `rods` has.

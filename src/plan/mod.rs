@@ -28,9 +28,6 @@ const MOST_PANELS: usize = 64;
 /// States of a trajectory for the rod itself: cos and sin of its tilt, two coordinates.
 pub const ROD_STATES: usize = 4;
 
-/// States of a trajectory for the first derivatives by contact and load.
-pub const DERIVATIVE_STATES: usize = 6;
-
 /// A run.
 #[derive(Clone, Debug)]
 pub struct Plan {
@@ -116,6 +113,12 @@ impl Plan {
         let pushes = &scene.grid.push_angle_deg;
         let asked = |side: &Side| pushes.iter().any(|push| Side::of_push(*push) == *side);
         Side::BOTH.into_iter().filter(asked).collect()
+    }
+
+    /// States of a trajectory for the derivatives of the rod: those by the force, and where they do not follow, two by the contact.
+    #[must_use]
+    pub const fn derivative_states(&self) -> usize {
+        if self.method.effects.similar() { 3 } else { 5 }
     }
 
     /// States of a trajectory for the rest shape: cos and sin of its tangent, if it is curved.

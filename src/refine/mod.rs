@@ -157,7 +157,7 @@ fn newton(
                 load: points[i].1,
             })
             .collect();
-        let mut answers = land::<Dopri8, FirstAndEnergy, 7>(method, &launches).into_iter();
+        let mut answers = land::<Dopri8, FirstAndEnergy>(method, &launches).into_iter();
         let mut launches = launches.iter();
         open.retain(|&i| {
             let (Some(full), Some(launch)) = (answers.next(), launches.next()) else {

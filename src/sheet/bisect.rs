@@ -28,7 +28,7 @@ pub fn bisect(
         }
         let load = from.load + part * (to.load - from.load);
         let rod = *rod;
-        let landed = land::<Dopri8, Second, 15>(method, &[Launch { rod, tau, load }]);
+        let landed = land::<Dopri8, Second>(method, &[Launch { rod, tau, load }]);
         Some((DVec2::new(tau, load), *landed.first()?))
     };
     let is_nearer = |ln_distance: f64| ln_distance <= target;

@@ -6,8 +6,9 @@
 
 use super::bisect::bisect;
 use super::edges::{Edges, REACH_SLACK, Sample};
+use super::polynomial::{NODES, Places, stencil};
 use super::rows::Row;
-use super::seek::{Edge, Wanted, seek};
+use super::seek::{Edge, Wanted, seek_finely};
 use crate::model::batch::Method;
 use crate::model::{Landing, Rod, Side, nearest_turn};
 use glam::DVec2;
@@ -65,6 +66,60 @@ impl Candidate {
 /// How far, in parts of their distance, a crossing may be outside of the samples that it is between but for rounding.
 const NEXT_TO: f64 = 1e-9;
 
+/// An edge near two neighbouring samples, as a function of `ln D`.
+struct Line {
+    edge: Edge,
+    pair: [Sample; 2],
+    /// The samples around, where `ln D` grows or falls throughout.
+    around: Option<(Places, [Sample; NODES])>,
+}
+
+impl Line {
+    fn new(edge: Edge, samples: &[Sample], i: usize) -> Self {
+        let start = stencil(i, 0, samples.len());
+        let around = samples[start..].first_chunk::<NODES>().and_then(|around| {
+            let places = Places::new(around.iter().map(|sample| sample.ln_distance))?;
+            Some((places, *around))
+        });
+        Self {
+            edge,
+            pair: [samples[i], samples[i + 1]],
+            around,
+        }
+    }
+
+    /// Contact, load and direction of the pole where `ln D` is `target`: by all samples if that leads between the two, else
+    /// by the two.
+    fn at(&self, target: f64) -> (f64, f64, f64) {
+        let [a, b] = self.pair;
+        if let Some((places, around)) = &self.around {
+            let shares = places.shares(target);
+            let sum = |f: fn(&Sample) -> f64| -> f64 {
+                shares
+                    .iter()
+                    .zip(around)
+                    .map(|(share, sample)| share * f(sample))
+                    .sum()
+            };
+            let (tau, load) = match self.edge {
+                Edge::Fold => {
+                    let tau = sum(|s| s.tau.ln()).exp();
+                    (tau, sum(|s| s.load * s.tau * s.tau) / (tau * tau))
+                }
+                Edge::Tip => (a.tau, sum(|s| s.load)),
+            };
+            if (tau - a.tau) * (tau - b.tau) <= 0.0 && (load - a.load) * (load - b.load) <= 0.0 {
+                return (tau, load, sum(|s| s.phi));
+            }
+        }
+        let t = (target - a.ln_distance) / (b.ln_distance - a.ln_distance);
+        let scaled = |s: Sample| s.load * s.tau * s.tau;
+        let tau = a.tau + t * (b.tau - a.tau);
+        let load = (scaled(a) + t * (scaled(b) - scaled(a))) / (tau * tau);
+        (tau, load, a.phi + t * (b.phi - a.phi))
+    }
+}
+
 /// Every crossing of every row, sorted by push angle.
 pub fn crossings(
     method: Method,
@@ -73,28 +128,32 @@ pub fn crossings(
     edges: &Edges,
     rows: &[Row],
 ) -> Vec<Vec<Crossing>> {
+    let targets: Vec<f64> = rows
+        .iter()
+        .map(|row| row.pole_distance.ln() - REACH_SLACK)
+        .collect();
     let mut candidates = Vec::new();
     for (edge, samples) in [(Edge::Fold, &edges.fold), (Edge::Tip, &edges.tip)] {
-        for pair in samples.windows(2) {
+        for (i, pair) in samples.windows(2).enumerate() {
             let (a, b) = (pair[0], pair[1]);
-            for (index, row) in rows.iter().enumerate() {
-                let target = row.pole_distance.ln() - REACH_SLACK;
-                if (a.ln_distance <= target) != (b.ln_distance <= target) {
-                    let t = (target - a.ln_distance) / (b.ln_distance - a.ln_distance);
-                    let scaled = |s: Sample| s.load * s.tau * s.tau;
-                    let tau = a.tau + t * (b.tau - a.tau);
-                    let load = (scaled(a) + t * (scaled(b) - scaled(a))) / (tau * tau);
-                    let phi = a.phi + t * (b.phi - a.phi);
-                    candidates.push(Candidate {
-                        row: index,
-                        edge,
-                        tau,
-                        load,
-                        phi,
-                        between: [a, b],
-                    });
+            let crossed = |target: &f64| (a.ln_distance <= *target) != (b.ln_distance <= *target);
+            let between = targets
+                .iter()
+                .enumerate()
+                .filter(|(_, target)| crossed(target));
+            let mut line = None;
+            candidates.extend(between.map(|(row, target)| {
+                let line = line.get_or_insert_with(|| Line::new(edge, samples, i));
+                let (tau, load, phi) = line.at(*target);
+                Candidate {
+                    row,
+                    edge,
+                    tau,
+                    load,
+                    phi,
+                    between: [a, b],
                 }
-            }
+            }));
         }
     }
     let mut found = vec![Vec::new(); rows.len()];
@@ -127,7 +186,7 @@ fn polish(
             from: DVec2::new(c.tau, c.load),
         })
         .collect();
-    let polished = seek(method, &wanted).into_iter().zip(candidates);
+    let polished = seek_finely(method, &wanted).into_iter().zip(candidates);
     polished
         .map(|(sought, c)| {
             let row = &rows[c.row];

@@ -91,7 +91,7 @@ fn tip_samples(method: Method, rod: &Rod, columns: &Columns) -> Vec<Sample> {
     let launches: Vec<Launch> = (0..TIP_SAMPLES)
         .map(|i| launch(corner.load * i as f64 / TIP_SAMPLES as f64))
         .collect();
-    let landings = land::<Dopri8, First, 6>(method, &launches);
+    let landings = land::<Dopri8, First>(method, &launches);
     let mut samples: Vec<Sample> = Vec::new();
     let mut push = |launch: &Launch, landing: &Landing| {
         let near = samples.last().map_or(0.0, |sample| sample.phi);
@@ -105,7 +105,7 @@ fn tip_samples(method: Method, rod: &Rod, columns: &Columns) -> Vec<Sample> {
         if (landings[i].by_load.x < 0.0) != (next.by_load.x < 0.0) {
             let load = extremum(method, rod, launches[i], launches[i + 1].load);
             let launch = launch(load);
-            let landing = land::<Dopri8, Second, 15>(method, &[launch])[0].landing;
+            let landing = land::<Dopri8, Second>(method, &[launch])[0].landing;
             push(&launch, &landing);
         }
     }
@@ -116,13 +116,9 @@ fn tip_samples(method: Method, rod: &Rod, columns: &Columns) -> Vec<Sample> {
 fn extremum(method: Method, rod: &Rod, from: Launch, to: f64) -> f64 {
     let (mut low, mut high) = (from.load, to);
     let mut load = 0.5 * (low + high);
-    let falling_at_low = land::<Dopri8, Second, 15>(method, &[from])[0]
-        .landing
-        .by_load
-        .x
-        < 0.0;
+    let falling_at_low = land::<Dopri8, Second>(method, &[from])[0].landing.by_load.x < 0.0;
     for _ in 0..60 {
-        let here = land::<Dopri8, Second, 15>(
+        let here = land::<Dopri8, Second>(
             method,
             &[Launch {
                 rod: *rod,

@@ -1,7 +1,9 @@
 //! The fold edge: the first load at which the Jacobian becomes singular, contact by contact.
 
+use super::polynomial::{NODES, Polynomial, stencil};
 use crate::model::batch::{Launch, Method, land};
-use crate::model::{Curved, Dopri8, First, Rod, Second, Side, arclength};
+use crate::model::{Curved, Dopri8, First, Landing, Rod, Second, Side, arclength};
+use glam::DVec2;
 
 /// A point of the fold edge.
 #[derive(Clone, Copy, Debug)]
@@ -15,7 +17,7 @@ pub struct FoldPoint {
 }
 
 /// Samples of `q = |load| s^2` per round of the search; measured radii add their softness as a factor.
-const SAMPLES: usize = 16;
+const SAMPLES: usize = 24;
 
 /// Distance of the first samples. Without measured radii the sheet is at least 6.8 wide in `q`, and the second fold is
 /// farther from the first than this.
@@ -31,6 +33,9 @@ const EVEN_UP_TO: f64 = 64.0;
 /// The largest Newton step left, relative to the load, at a point that counts as a fold. At the tip of a perfect
 /// cone rounding of `det` leaves 2e-7; elsewhere it is below 1e-13.
 const STEP_LEFT: f64 = 1e-5;
+
+/// The Newton step, relative to the load, that needs no trajectory at its end: its square is left.
+const LAST_STEP: f64 = 1e-6;
 
 /// Where the search is given up.
 const LARGEST_Q: f64 = 1e6;
@@ -65,58 +70,71 @@ fn bracket(method: Method, rod: &Rod, side: Side, taus: &[f64]) -> Vec<Option<Br
     struct March {
         index: usize,
         scale: f64,
-        last: Option<(f64, f64)>,
+        dets: Vec<f64>,
     }
     let mut found = vec![None; taus.len()];
     let mut open: Vec<March> = (0..taus.len())
         .map(|index| March {
             index,
             scale: side.sign() / (arclength(rod, taus[index]).powi(2) * rod.softness(taus[index])),
-            last: None,
+            dets: Vec::new(),
         })
         .collect();
-    let (mut q, mut step) = (0.0, FIRST_STEP);
-    while !open.is_empty() && q < LARGEST_Q {
-        let samples: Vec<f64> = (0..SAMPLES).map(|i| step.mul_add(i as f64, q)).collect();
+    let (mut samples, mut step) = (Vec::new(), FIRST_STEP);
+    while !open.is_empty() && samples.last().is_none_or(|q| *q < LARGEST_Q) {
+        let from = samples.len();
+        let first = samples.last().map_or(0.0, |q| q + step);
+        samples.extend((0..SAMPLES).map(|i| step.mul_add(i as f64, first)));
         let launches: Vec<Launch> = open
             .iter()
-            .flat_map(|m| samples.iter().map(|q| (taus[m.index], q * m.scale)))
+            .flat_map(|m| samples[from..].iter().map(|q| (taus[m.index], q * m.scale)))
             .map(|(tau, load)| Launch {
                 rod: *rod,
                 tau,
                 load,
             })
             .collect();
-        let dets: Vec<f64> = land::<Dopri8, First, 6>(method, &launches)
-            .iter()
-            .map(crate::model::Landing::det)
-            .collect();
-        let mut dets = dets.chunks(SAMPLES);
+        let landings = land::<Dopri8, First>(method, &launches);
+        let mut landings = landings.chunks(SAMPLES);
         open.retain_mut(|march| {
-            for (q, det) in samples.iter().zip(dets.next().unwrap_or_default()) {
-                let load = q * march.scale;
-                if let Some((stable, before)) = march.last
-                    && before * det <= 0.0
-                {
-                    let slack = SLACK * (load - stable);
-                    found[march.index] = Some(Bracket {
-                        tau: taus[march.index],
-                        stable: stable - slack,
-                        beyond: load + slack,
-                        guess: stable + (load - stable) * before / (before - det),
-                    });
-                    return false;
-                }
-                march.last = Some((load, *det));
-            }
-            true
+            let landed = landings.next().unwrap_or_default();
+            march.dets.extend(landed.iter().map(Landing::det));
+            // The sample before the first one of the batch is looked at again.
+            let pairs = march.dets.windows(2).enumerate().skip(from.max(1) - 1);
+            let changed = |(_, pair): &(usize, &[f64])| pair[0] * pair[1] <= 0.0;
+            let Some((at, _)) = pairs.into_iter().find(changed) else {
+                return true;
+            };
+            let slack = SLACK * (samples[at + 1] - samples[at]);
+            found[march.index] = Some(Bracket {
+                tau: taus[march.index],
+                stable: (samples[at] - slack) * march.scale,
+                beyond: (samples[at + 1] + slack) * march.scale,
+                guess: root(&samples, &march.dets, at) * march.scale,
+            });
+            false
         });
-        q += step * SAMPLES as f64;
-        if q >= EVEN_UP_TO {
-            step = q / SAMPLES as f64;
+        if samples[samples.len() - 1] >= EVEN_UP_TO {
+            step = samples[samples.len() - 1] / SAMPLES as f64;
         }
     }
     found
+}
+
+/// Where `dets` vanishes between the sample `at` and the next one.
+fn root(samples: &[f64], dets: &[f64], at: usize) -> f64 {
+    let [low, high] = [dets[at], dets[at + 1]];
+    let secant = low / (low - high);
+    let start = stencil(at, 0, dets.len());
+    let is_even = samples[(start + NODES).min(samples.len()) - 1] <= EVEN_UP_TO;
+    let part = if is_even {
+        let offset = (at - start) as f64;
+        let around = Polynomial::through(dets[start..].iter().take(NODES).copied());
+        around.solve(0.0, offset + secant, offset, offset + 1.0) - offset
+    } else {
+        secant
+    };
+    samples[at] + part * (samples[at + 1] - samples[at])
 }
 
 /// Newton's method on `det(load) = 0` inside the brackets.
@@ -136,30 +154,40 @@ fn polish(method: Method, rod: &Rod, brackets: &[Option<Bracket>]) -> Vec<Option
                 load: b.guess,
             })
             .collect();
-        let mut landings = land::<Dopri8, Second, 15>(method, &launches).into_iter();
+        let mut landings = land::<Dopri8, Second>(method, &launches).into_iter();
         open.retain_mut(|(i, b)| {
             let Some(landing) = landings.next() else {
                 return false;
             };
             let (det, slope) = (landing.landing.det(), landing.det_gradient().y);
-            points[*i] = Some(FoldPoint {
-                tau: b.tau,
-                load: b.guess,
-                landing,
+            let newton = b.guess - det / slope;
+            let step = newton - b.guess;
+            let is_last = step.abs() <= LAST_STEP * b.guess.abs();
+            points[*i] = Some(if is_last {
+                FoldPoint {
+                    tau: b.tau,
+                    load: newton,
+                    landing: landing.moved(DVec2::new(0.0, step)),
+                }
+            } else {
+                FoldPoint {
+                    tau: b.tau,
+                    load: b.guess,
+                    landing,
+                }
             });
             if det > 0.0 {
                 b.stable = b.guess;
             } else {
                 b.beyond = b.guess;
             }
-            let newton = b.guess - det / slope;
             let inside = (newton - b.stable) * (newton - b.beyond) < 0.0;
             let next = if inside {
                 newton
             } else {
                 0.5 * (b.stable + b.beyond)
             };
-            let done = (newton - b.guess).abs() <= 1e-14 * b.guess.abs() || next == b.guess;
+            let done = is_last || next == b.guess;
             b.guess = next;
             !done
         });

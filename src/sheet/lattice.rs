@@ -47,7 +47,7 @@ impl Lattice {
                 })
             })
             .collect();
-        let landings = land::<Dopri8, First, 6>(method, &launches);
+        let landings = land::<Dopri8, First>(method, &launches);
         let rows = || landings.chunks(columns.folds.len());
         let ln_distance = rows()
             .map(|row| row.iter().map(|l| l.pole.length().ln()).collect())

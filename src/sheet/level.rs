@@ -132,7 +132,7 @@ impl LevelCurve {
                 load: point.y,
             })
             .collect();
-        land::<Dopri8, FirstAndEnergy, 7>(self.method, &launches)
+        land::<Dopri8, FirstAndEnergy>(self.method, &launches)
     }
 
     /// How much `tau` and load can change before the state changes by about as much as it is.

@@ -1,4 +1,4 @@
-//! Interpolation on evenly spaced samples: polynomials of degree 7, in Newton's form.
+//! Interpolation by polynomials of degree 7: in Newton's form on evenly spaced samples, else barycentric.
 
 /// Nodes of a polynomial.
 pub const NODES: usize = 8;
@@ -75,4 +75,51 @@ impl Polynomial {
 pub fn stencil(at: usize, from: usize, to: usize) -> usize {
     let last = to.saturating_sub(NODES).max(from);
     at.saturating_sub(NODES / 2 - 1).clamp(from, last)
+}
+
+/// Places of samples, in growing or falling order, that polynomials go through.
+#[derive(Clone, Copy, Debug)]
+pub struct Places {
+    places: [f64; NODES],
+    weights: [f64; NODES],
+}
+
+impl Places {
+    /// `None` where the order changes, or for other than [`NODES`] places.
+    pub fn new(places: impl IntoIterator<Item = f64>) -> Option<Self> {
+        let places: Vec<f64> = places.into_iter().collect();
+        let places: [f64; NODES] = places.try_into().ok()?;
+        let rising = places[1] > places[0];
+        let in_order = |pair: &[f64]| {
+            if rising {
+                pair[0] < pair[1]
+            } else {
+                pair[0] > pair[1]
+            }
+        };
+        let weight = |i: usize| {
+            let others = (0..NODES).filter(|j| *j != i);
+            1.0 / others.map(|j| places[i] - places[j]).product::<f64>()
+        };
+        places.windows(2).all(in_order).then(|| Self {
+            weights: std::array::from_fn(weight),
+            places,
+        })
+    }
+
+    /// By how much each sample counts `at` a place.
+    #[must_use]
+    pub fn shares(&self, at: f64) -> [f64; NODES] {
+        let mut shares = [0.0; NODES];
+        let mut sum = 0.0;
+        for ((share, place), weight) in shares.iter_mut().zip(self.places).zip(self.weights) {
+            if at == place {
+                let hit = |other: f64| if other == place { 1.0 } else { 0.0 };
+                return self.places.map(hit);
+            }
+            *share = weight / (at - place);
+            sum += *share;
+        }
+        shares.map(|share| share / sum)
+    }
 }

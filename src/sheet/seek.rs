@@ -26,7 +26,7 @@ pub struct Wanted {
     pub from: DVec2,
 }
 
-/// The last point computed on the way to a [`Wanted`].
+/// Where Newton's method has led on the way to a [`Wanted`].
 #[derive(Clone, Copy, Debug)]
 pub struct Sought {
     /// `(tau, load)`.
@@ -35,18 +35,20 @@ pub struct Sought {
     pub here: Curved,
     /// What is missing in `ln D`.
     pub miss: f64,
-    /// Length of the step that Newton's method would take from here, as [`limited`] measures it.
+    /// Length of the step that Newton's method would take from here, as [`limited`] measures it; its size, where the last step
+    /// was so short that the way on from it is known.
     pub step: f64,
 }
 
 /// Rounds of Newton's method at the coarse resolution: from a hundredth of a column away they lead to its error.
 const COARSE_ROUNDS: usize = 2;
 
-/// Rounds at the method's own resolution; 2 are the rule.
+/// Rounds at the method's own resolution; 1 or 2 are the rule.
 const ROUNDS: usize = 20;
 
-/// The step at which a point is as good as it gets.
-const SMALLEST_STEP: f64 = 1e-12;
+/// The length of a step that needs no trajectory at its end: what is left after it is its square, and second derivatives
+/// tell the rest to its cube.
+const LAST_STEP: f64 = 1e-7;
 
 /// Newton's method for all `wanted` at once; the caller judges what is left in `miss` and `step`.
 #[must_use]
@@ -75,7 +77,7 @@ fn newton(method: Method, wanted: &[Wanted], coarse_rounds: usize) -> Vec<Sought
                 load: points[i].y,
             })
             .collect();
-        let mut landings = land::<Dopri8, Second, 15>(method, &launches).into_iter();
+        let mut landings = land::<Dopri8, Second>(method, &launches).into_iter();
         open.retain(|&i| {
             let Some(here) = landings.next() else {
                 return false;
@@ -87,14 +89,25 @@ fn newton(method: Method, wanted: &[Wanted], coarse_rounds: usize) -> Vec<Sought
                 Edge::Tip => DVec2::new(0.0, miss / here.landing.by_load.x),
             };
             let (step, length) = limited(step, arclength(&goal.rod, point.x), point.y);
-            found[i] = Some(Sought {
-                point,
-                here,
-                miss,
-                step: length,
-            });
             points[i] = point + step;
-            (is_coarse || length > SMALLEST_STEP) && step.is_finite() && points[i].x > 0.0
+            let is_last = !is_coarse && length <= LAST_STEP;
+            found[i] = Some(if is_last {
+                let here = here.moved(step);
+                Sought {
+                    point: points[i],
+                    here,
+                    miss: (goal.pole_distance / here.landing.pole.length()).ln(),
+                    step: length * length,
+                }
+            } else {
+                Sought {
+                    point,
+                    here,
+                    miss,
+                    step: length,
+                }
+            });
+            !is_last && step.is_finite() && points[i].x > 0.0
         });
     }
     found.into_iter().flatten().collect()

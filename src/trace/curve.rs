@@ -117,7 +117,7 @@ pub fn curve_at(
             load: end.load,
         })
         .collect();
-    let states = land::<Dopri8, FirstAndEnergy, 7>(method, &launches);
+    let states = land::<Dopri8, FirstAndEnergy>(method, &launches);
     for ((i, end), full) in ends.into_iter().zip(&states) {
         let push = side.sign() * end.push;
         let reading = units.read(&rod, end.tau, full, sheet.rows[i].touch, push);

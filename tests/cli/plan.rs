@@ -57,7 +57,7 @@ fn a_straight_cylinder_has_no_effects() {
         "projection | off | free: taper | arc_stretch is 1 or left out",
     ];
     assert_eq!(effects(&run), expected);
-    let states = "10: 0 rest shape, 4 rod, 6 derivatives; at last 11 with energy";
+    let states = "7: 0 rest shape, 4 rod, 3 derivatives; at last 8 with energy";
     assert_eq!(fact(&run, "states"), states);
     let cells = "16: 8 push angles x 2 distances x 1 whisker";
     assert_eq!(fact(&run, "cells"), cells);
@@ -82,7 +82,7 @@ fn the_cone_scene() {
         "projection | off | free: taper | arc_stretch is 1 or left out",
     ];
     assert_eq!(effects(&run), expected);
-    assert!(fact(&run, "states").starts_with("12: 2 rest shape"));
+    assert!(fact(&run, "states").starts_with("11: 2 rest shape"));
     let cells = "262144: 512 push angles x 512 distances x 1 whisker";
     assert_eq!(fact(&run, "cells"), cells);
     let calls = "4: groups of 1 whisker, 2 sides of 512 rows, 256 rows a call";

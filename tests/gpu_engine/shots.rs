@@ -83,7 +83,7 @@ pub fn landings(effects: Effects, launches: &[Launch]) -> Vec<Landing> {
         effects,
         resolution: whiskmap::model::Resolution::FINE,
     };
-    land::<Dopri8, First, 6>(method, launches)
+    land::<Dopri8, First>(method, launches)
 }
 
 /// Shots at the poles of random states, with guesses off by 1 to 3 %.

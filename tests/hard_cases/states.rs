@@ -100,7 +100,7 @@ impl Shots {
             })
             .unzip();
         let method = Method::fine(self.effects);
-        let landed = land::<Dopri8, First, 6>(method, &launches);
+        let landed = land::<Dopri8, First>(method, &launches);
         let missed = landed.iter().zip(wanted);
         let missed = missed.map(|(landing, pole)| landing.pole.distance(pole));
         launches.iter().copied().zip(missed).collect()
@@ -114,7 +114,7 @@ pub fn halving(effects: Effects, launches: &[Launch], resolution: Resolution) ->
             effects,
             resolution,
         };
-        land::<Dopri8, First, 6>(method, launches).into_iter()
+        land::<Dopri8, First>(method, launches).into_iter()
     };
     let moved = |(a, b): (Landing, Landing)| a.pole.distance(b.pole);
     poles(resolution)

@@ -34,7 +34,8 @@ fn constants(precision: Precision) -> String {
          override TAPER: bool;\n\
          override CURVATURE: bool;\n\
          override SPIRAL: bool;\n\
-         override GRADIENT: bool;\n"
+         override GRADIENT: bool;\n\
+         override SIMILAR: bool;\n"
     );
     for (code, (name, _)) in OUTCOMES.iter().enumerate() {
         // Writing to a String cannot fail.
@@ -65,12 +66,13 @@ pub fn peak(precision: Precision) -> String {
 
 /// The values of the `override` constants.
 #[must_use]
-pub fn overrides(effects: Effects) -> [(&'static str, f64); 4] {
+pub fn overrides(effects: Effects) -> [(&'static str, f64); 5] {
     let flag = |on: bool| f64::from(u8::from(on));
     [
         ("TAPER", flag(effects.advances())),
         ("CURVATURE", flag(effects.curvature)),
         ("SPIRAL", flag(effects.spiral)),
         ("GRADIENT", flag(effects.gradient)),
+        ("SIMILAR", flag(effects.similar())),
     ]
 }

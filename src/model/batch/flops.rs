@@ -1,7 +1,8 @@
 //! How many floating-point operations a trajectory takes: the kernels themselves, run with numbers that count.
 
+use super::Launch;
+use super::answer::Derived;
 use super::kernel::by_effects;
-use super::{Kind, Launch};
 use crate::model::integrator::Integrator;
 use crate::model::simd::{Lanes, WIDTH};
 use crate::model::{Effects, Real};
@@ -14,7 +15,7 @@ thread_local! {
 
 /// A number that counts what is done with it: 1 for an addition, multiplication, division or root, 2 for a fused multiply-add.
 #[derive(Clone, Copy, Debug)]
-struct Counted(f64);
+pub struct Counted(f64);
 
 fn counted(operations: u64, x: f64) -> Counted {
     COUNT.set(COUNT.get() + operations);
@@ -73,12 +74,12 @@ impl Lanes for Counted {
 /// Operations of one trajectory in `steps` steps, with what lanes compute of its contact, without its answer. Stages whose results nothing needs are
 /// counted too; a compiler leaves them out.
 #[must_use]
-pub fn flops<M: Integrator, K: Kind<N>, const N: usize>(
+pub fn flops<M: Integrator, K: Derived<Counted>>(
     effects: Effects,
     steps: u32,
     launch: &Launch,
 ) -> u64 {
     COUNT.set(0);
-    let _ = by_effects::<M, K, Counted, N>(effects, steps, &[*launch; WIDTH]);
+    let _ = by_effects::<M, K, Counted>(effects, steps, &[launch; WIDTH]);
     COUNT.get()
 }

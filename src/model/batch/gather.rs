@@ -1,63 +1,109 @@
 //! Rest shapes and materials of the rods of a block, side by side in lanes.
 
 use super::Launch;
+use super::kernel::Block;
 use crate::model::Rod;
 use crate::model::contact::parabola_tangent;
 use crate::model::radius::Piece;
 use crate::model::rhs::{Bent, Even, Graded, Intrinsic, Material, Measured, Spiral, Straight};
 use crate::model::simd::{Lanes, WIDTH};
 
+/// What `number` tells of each launch. (`map` of an array is not inlined into functions for a SIMD unit.)
+#[inline(always)]
+pub fn lanes<T: Lanes>(launches: &Block, number: impl Fn(&Launch) -> f64) -> T {
+    let mut lanes = [0.0; WIDTH];
+    for (lane, launch) in lanes.iter_mut().zip(launches) {
+        *lane = number(launch);
+    }
+    T::pack(lanes)
+}
+
+/// A place on each rod of a block.
+pub struct Place<T> {
+    /// `tau` there.
+    pub tau: T,
+    /// Scale of the coordinates.
+    pub radius: T,
+    /// Arclength from the base.
+    pub s: T,
+}
+
+impl<T: Lanes> Place<T> {
+    #[inline(always)]
+    fn base() -> Self {
+        let zero = T::of(0.0);
+        Self {
+            tau: zero,
+            radius: T::of(1.0),
+            s: zero,
+        }
+    }
+}
+
 /// A material that can be gathered from the rods of a block, and the way along it.
 pub trait GatherMaterial<T: Lanes>: Material<T> {
     /// The material on piece `piece` of a profile.
-    fn gather(launches: &[Launch; WIDTH], piece: usize) -> Self;
+    fn gather(launches: &Block, piece: usize) -> Self;
 
     /// Stiffness at the contacts, over that at the base; `radius` and `s` are those there.
-    fn stiffness(launches: &[Launch; WIDTH], radius: T, s: T) -> T;
+    fn stiffness(launches: &Block, radius: T, s: T) -> T;
 
-    /// How many pieces the way from the contacts to the base has.
-    fn pieces(launches: &[Launch; WIDTH]) -> usize;
+    /// Where piece `piece` begins; the base for the first one.
+    fn begin(launches: &Block, piece: usize) -> Place<T>;
+
+    /// How many pieces the way from the contacts at the arclengths `s` to the base has.
+    fn pieces(launches: &Block, s: T) -> usize;
 }
 
 impl<T: Lanes> GatherMaterial<T> for Even {
     #[inline(always)]
-    fn gather(_: &[Launch; WIDTH], _: usize) -> Self {
+    fn gather(_: &Block, _: usize) -> Self {
         Self
     }
 
     #[inline(always)]
-    fn stiffness(_: &[Launch; WIDTH], radius: T, _: T) -> T {
+    fn stiffness(_: &Block, radius: T, _: T) -> T {
         radius * radius * (radius * radius)
     }
 
     #[inline(always)]
-    fn pieces(_: &[Launch; WIDTH]) -> usize {
+    fn begin(_: &Block, _: usize) -> Place<T> {
+        Place::base()
+    }
+
+    #[inline(always)]
+    fn pieces(_: &Block, _: T) -> usize {
         1
     }
 }
 
 impl<T: Lanes> GatherMaterial<T> for Graded<T> {
     #[inline(always)]
-    fn gather(launches: &[Launch; WIDTH], _: usize) -> Self {
-        let gradient = T::pack(launches.map(|launch| launch.rod.gradient));
+    fn gather(launches: &Block, _: usize) -> Self {
+        let gradient: T = lanes(launches, |launch| launch.rod.gradient);
         Self { gradient }
     }
 
     #[inline(always)]
-    fn stiffness(launches: &[Launch; WIDTH], radius: T, s: T) -> T {
-        let gradient = T::pack(launches.map(|launch| launch.rod.gradient));
+    fn stiffness(launches: &Block, radius: T, s: T) -> T {
+        let gradient: T = lanes(launches, |launch| launch.rod.gradient);
         radius * radius * (radius * radius) * gradient.mul_add(s, T::of(1.0))
     }
 
     #[inline(always)]
-    fn pieces(_: &[Launch; WIDTH]) -> usize {
+    fn begin(_: &Block, _: usize) -> Place<T> {
+        Place::base()
+    }
+
+    #[inline(always)]
+    fn pieces(_: &Block, _: T) -> usize {
         1
     }
 }
 
 impl<T: Lanes> GatherMaterial<T> for Measured<T> {
     #[inline(always)]
-    fn gather(launches: &[Launch; WIDTH], piece: usize) -> Self {
+    fn gather(launches: &Block, piece: usize) -> Self {
         // A rod without a profile has no business in this kernel; its piece is its own cone.
         let pieces = launches.map(|launch| match launch.rod.profile {
             Some(profile) => profile.pieces[piece],
@@ -66,26 +112,39 @@ impl<T: Lanes> GatherMaterial<T> for Measured<T> {
         Self {
             from: T::pack(pieces.map(|piece| piece.from)),
             cubic: std::array::from_fn(|i| T::pack(pieces.map(|piece| piece.cubic[i]))),
-            gradient: T::pack(launches.map(|launch| launch.rod.gradient)),
+            gradient: lanes(launches, |launch| launch.rod.gradient),
         }
     }
 
     #[inline(always)]
-    fn stiffness(launches: &[Launch; WIDTH], _: T, s: T) -> T {
+    fn stiffness(launches: &Block, _: T, s: T) -> T {
         let s = s.unpack();
         T::pack(std::array::from_fn(|i| launches[i].rod.stiffness(s[i])))
     }
 
     #[inline(always)]
-    fn pieces(launches: &[Launch; WIDTH]) -> usize {
-        launches[0].rod.piece(launches[0].tau) + 1
+    fn begin(launches: &Block, piece: usize) -> Place<T> {
+        let begin = |rod: &Rod| {
+            rod.profile
+                .map_or(0.0, |profile| profile.pieces[piece].from)
+        };
+        Place {
+            tau: lanes(launches, |Launch { rod, .. }| rod.tau(begin(rod))),
+            radius: lanes(launches, |Launch { rod, .. }| 1.0 - rod.taper * begin(rod)),
+            s: lanes(launches, |Launch { rod, .. }| begin(rod)),
+        }
+    }
+
+    #[inline(always)]
+    fn pieces(launches: &Block, s: T) -> usize {
+        launches[0].rod.piece(s.unpack()[0]) + 1
     }
 }
 
 /// A rest shape that can be gathered from the rods of a block.
 pub trait Gather<T: Lanes>: Intrinsic<T> {
     /// The rest shape, and what is known of it at the arclengths `s`.
-    fn gather(rods: &[&Rod; WIDTH], s: T) -> (Self, AtRest<T, Self::State>);
+    fn gather(launches: &Block, s: T) -> (Self, AtRest<T, Self::State>);
 }
 
 /// The whisker at rest where the contact is.
@@ -100,7 +159,7 @@ pub struct AtRest<T, S> {
 
 impl<T: Lanes> Gather<T> for Straight {
     #[inline(always)]
-    fn gather(_: &[&Rod; WIDTH], _: T) -> (Self, AtRest<T, ()>) {
+    fn gather(_: &Block, _: T) -> (Self, AtRest<T, ()>) {
         let zero = T::of(0.0);
         let at_rest = AtRest {
             state: (),
@@ -113,10 +172,10 @@ impl<T: Lanes> Gather<T> for Straight {
 
 impl<T: Lanes> Gather<T> for Bent<T> {
     #[inline(always)]
-    fn gather(rods: &[&Rod; WIDTH], s: T) -> (Self, AtRest<T, [T; 2]>) {
-        let bend = T::pack(rods.map(|rod| rod.bend));
+    fn gather(launches: &Block, s: T) -> (Self, AtRest<T, [T; 2]>) {
+        let bend = lanes(launches, |launch| launch.rod.bend);
         let twice_bend = bend + bend;
-        let slope = T::pack(rods.map(|rod| rod.slope));
+        let slope = lanes(launches, |launch| launch.rod.slope);
         let [cos, sin] = parabola_tangent(bend, slope, s);
         let curvature = twice_bend * cos * cos * cos;
         let at_rest = AtRest {
@@ -130,11 +189,12 @@ impl<T: Lanes> Gather<T> for Bent<T> {
 
 impl<T: Lanes> Gather<T> for Spiral<T> {
     #[inline(always)]
-    fn gather(rods: &[&Rod; WIDTH], s: T) -> (Self, AtRest<T, ()>) {
-        let coefficients = rods.map(|rod| rod.spiral.unwrap_or_default());
+    fn gather(launches: &Block, s: T) -> (Self, AtRest<T, ()>) {
+        let coefficient =
+            |i: usize| move |launch: &Launch| launch.rod.spiral.unwrap_or_default()[i];
         let spiral = Self {
-            at_base: T::pack(coefficients.map(|[k0, _]| k0)),
-            slope: T::pack(coefficients.map(|[_, k1]| k1)),
+            at_base: lanes(launches, coefficient(0)),
+            slope: lanes(launches, coefficient(1)),
         };
         let at_rest = AtRest {
             state: (),

@@ -4,19 +4,18 @@
 //! and for the target's baseline (`unit`); which one runs is decided once per call from the processor's features.
 //! Results do not depend on the number of threads: every trajectory is computed by itself.
 
+mod answer;
 mod flops;
 mod gather;
 mod kernel;
 mod peak;
 mod unit;
 
+pub use answer::{First, FirstAndEnergy, Kind, Second};
 pub use flops::flops;
 pub use unit::{Kernel, Unit};
 
 use super::integrator::{Integrator, Resolution};
-use super::landing::{Curved, Full, Landing, Pressed};
-use super::order::{First, FirstAndEnergy, Order, Second};
-use super::rhs::Planar;
 use super::simd::WIDTH;
 use super::{Effects, Rod};
 use rayon::prelude::*;
@@ -30,36 +29,6 @@ pub struct Launch {
     pub tau: f64,
     /// Signed load.
     pub load: f64,
-}
-
-/// What a batch computes per trajectory, and the derivatives it carries for that.
-pub trait Kind<const N: usize>: Order<N> + 'static {
-    /// The answer.
-    type Answer: Copy + Send;
-
-    /// The answer from the final state.
-    fn answer(rod: &Rod, pressed: Pressed, state: &Planar<f64>, sens: &[f64; N]) -> Self::Answer;
-}
-
-impl Kind<6> for First {
-    type Answer = Landing;
-    fn answer(rod: &Rod, pressed: Pressed, state: &Planar<f64>, sens: &[f64; 6]) -> Landing {
-        Landing::new(rod, pressed, state, sens)
-    }
-}
-
-impl Kind<7> for FirstAndEnergy {
-    type Answer = Full;
-    fn answer(rod: &Rod, pressed: Pressed, state: &Planar<f64>, sens: &[f64; 7]) -> Full {
-        Full::new(rod, pressed, state, sens)
-    }
-}
-
-impl Kind<15> for Second {
-    type Answer = Curved;
-    fn answer(rod: &Rod, pressed: Pressed, state: &Planar<f64>, sens: &[f64; 15]) -> Curved {
-        Curved::new(rod, pressed, state, sens)
-    }
 }
 
 /// How a batch integrates.
@@ -91,67 +60,103 @@ impl Method {
     }
 }
 
-/// Launches that are sorted into blocks together: enough for full blocks, few enough to stay in the cache.
+/// The fewest launches for a thread, so that most of its blocks are full.
 const FEWEST_TOGETHER: usize = 512;
-const MOST_TOGETHER: usize = 4096;
+
+/// `beta tau` from which on derivatives by `tau` are carried even where they follow from the base: toward the tip of a cone
+/// they vanish with the radius, and what follows is a small difference. The kernel for a gradient carries them.
+const SLENDER: f64 = 3.0;
 
 /// Parts of a batch for each thread, so that threads end together.
 const PARTS: usize = 4;
 
 /// Computes `K` for every launch with the integrator `M`, on all threads of the current pool.
 #[must_use]
-pub fn land<M: Integrator, K: Kernel<M, N>, const N: usize>(
-    method: Method,
-    launches: &[Launch],
-) -> Vec<K::Answer> {
-    land_on::<M, K, N>(Unit::detect(), method, launches)
+pub fn land<M: Integrator, K: Kernel<M>>(method: Method, launches: &[Launch]) -> Vec<K::Answer> {
+    land_on::<M, K>(Unit::detect(), method, launches)
 }
 
 /// The same on a given unit.
 #[must_use]
-pub fn land_on<M: Integrator, K: Kernel<M, N>, const N: usize>(
+pub fn land_on<M: Integrator, K: Kernel<M>>(
     unit: Unit,
     method: Method,
     launches: &[Launch],
 ) -> Vec<K::Answer> {
-    let parts = PARTS * rayon::current_num_threads();
-    let together = (launches.len() / parts).clamp(FEWEST_TOGETHER, MOST_TOGETHER);
+    let mut answers = vec![K::Answer::default(); launches.len()];
+    let threads = rayon::current_num_threads();
+    let parts = if threads == 1 { 1 } else { PARTS * threads };
+    let together = launches.len().div_ceil(parts).max(FEWEST_TOGETHER);
     if launches.len() <= together {
-        return part::<M, K, N>(unit, method, launches);
+        part::<M, K>(unit, method, launches, &mut answers);
+    } else {
+        answers
+            .par_chunks_mut(together)
+            .zip(launches.par_chunks(together))
+            .for_each(|(answers, launches)| part::<M, K>(unit, method, launches, answers));
     }
-    launches
-        .par_chunks(together)
-        .flat_map_iter(|launches| part::<M, K, N>(unit, method, launches))
-        .collect()
+    answers
 }
 
 /// The same on this thread.
-fn part<M: Integrator, K: Kernel<M, N>, const N: usize>(
+fn part<M: Integrator, K: Kernel<M>>(
     unit: Unit,
     method: Method,
     launches: &[Launch],
-) -> Vec<K::Answer> {
-    // Lanes step together, so only trajectories of equally many steps share a block: company changes nothing.
-    let mut order: Vec<(u64, u32)> = (0..)
-        .zip(launches)
-        .map(|(i, Launch { rod, tau, load })| {
-            let steps = method.resolution.steps(rod, *tau, *load);
-            (u64::from(steps) << 32 | rod.piece(*tau) as u64, i)
-        })
-        .collect();
-    order.sort_unstable();
-    let mut landed = Vec::with_capacity(launches.len() / WIDTH + 16);
-    let mut slots = vec![0; launches.len()];
-    let equal = order.chunk_by(|a, b| a.0 == b.0);
-    for block in equal.flat_map(|equal| equal.chunks(WIDTH)) {
-        for (lane, &(_, i)) in block.iter().enumerate() {
-            slots[i as usize] = WIDTH * landed.len() + lane;
+    answers: &mut [K::Answer],
+) {
+    let mut compute = |steps: u32, is_slender: bool, members: &[usize]| {
+        let lanes = std::array::from_fn(|lane| &launches[members[lane.min(members.len() - 1)]]);
+        let effects = Effects {
+            gradient: method.effects.gradient || is_slender,
+            ..method.effects
+        };
+        let block = K::block(unit, effects, steps, &lanes);
+        for (&i, answer) in members.iter().zip(block) {
+            answers[i] = answer;
         }
-        let launch = |lane: usize| launches[block[lane.min(block.len() - 1)].1 as usize];
-        let lanes: [Launch; WIDTH] = std::array::from_fn(launch);
-        let steps = (block[0].0 >> 32) as u32;
-        landed.push(K::block(unit, method.effects, steps, &lanes));
+    };
+    // Lanes step together, so only trajectories of equally many steps share a block: company changes nothing.
+    let mut open: Vec<Open> = Vec::new();
+    let mut arclengths = [0.0; WIDTH];
+    for (i, Launch { rod, tau, load }) in launches.iter().enumerate() {
+        if i % WIDTH == 0 {
+            let next = |lane: usize| &launches[(i + lane).min(launches.len() - 1)];
+            arclengths = unit.arclengths(&std::array::from_fn(next));
+        }
+        let s = arclengths[i % WIDTH];
+        let kind = (
+            method.resolution.steps_from(rod, *tau, *load, s),
+            method.effects.similar() && rod.taper * tau > SLENDER,
+            rod.piece(s),
+        );
+        let place = open.iter().position(|block| block.kind == kind);
+        let block = match place {
+            Some(place) => &mut open[place],
+            None => {
+                open.push(Open {
+                    kind,
+                    members: [0; WIDTH],
+                    count: 0,
+                });
+                open.last_mut().expect("one was pushed")
+            }
+        };
+        block.members[block.count] = i;
+        block.count += 1;
+        if block.count == WIDTH {
+            compute(kind.0, kind.1, &block.members);
+            block.count = 0;
+        }
     }
-    let landed = landed.as_flattened();
-    slots.into_iter().map(|slot| landed[slot]).collect()
+    for block in open.iter().filter(|block| block.count > 0) {
+        compute(block.kind.0, block.kind.1, &block.members[..block.count]);
+    }
+}
+
+/// A block that waits for more trajectories of its kind: steps, whether it is slender, and the piece of a profile.
+struct Open {
+    kind: (u32, bool, usize),
+    members: [usize; WIDTH],
+    count: usize,
 }

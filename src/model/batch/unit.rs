@@ -2,11 +2,10 @@
 //!
 //! Kernels are compiled here, once, and not where they are called: there are many of them, and each is long.
 
-use super::kernel::by_effects;
+use super::answer::{Derived, First, FirstAndEnergy, Kind, Second};
+use super::kernel::{Block, arclengths, by_effects};
 use super::peak::multiply_and_add;
-use super::{Kind, Launch};
 use crate::model::integrator::Integrator;
-use crate::model::order::{First, FirstAndEnergy, Second};
 use crate::model::simd::WIDTH;
 #[cfg(not(target_arch = "x86_64"))]
 use crate::model::simd::plain::Plain as Baseline;
@@ -71,6 +70,23 @@ impl Unit {
         Self(Instructions::Scalar)
     }
 
+    /// Arclengths of the contacts of a block.
+    #[allow(
+        unsafe_code,
+        reason = "a function compiled for a SIMD unit may be called where `detect` has found that unit"
+    )]
+    pub(super) fn arclengths(self, launches: &Block) -> [f64; WIDTH] {
+        match self.0 {
+            #[cfg(target_arch = "x86_64")]
+            // SAFETY: only `detect` makes such a unit, and it has seen every feature that the function enables.
+            Instructions::Avx512 => unsafe { arclengths_avx512(launches) },
+            #[cfg(target_arch = "x86_64")]
+            // SAFETY: as above.
+            Instructions::Avx2 => unsafe { arclengths_avx2(launches) },
+            Instructions::Baseline | Instructions::Scalar => arclengths::<Baseline>(launches),
+        }
+    }
+
     /// Does nothing but multiply and add for `rounds` rounds, and tells how many operations that were: with a clock, the
     /// peak of one thread.
     #[must_use]
@@ -93,19 +109,14 @@ impl Unit {
 }
 
 /// What can be computed in batches with the integrator `M`.
-pub trait Kernel<M: Integrator, const N: usize>: Kind<N> {
+pub trait Kernel<M: Integrator>: Kind {
     /// Computes one block on `unit`, in `steps` steps per trajectory, or per piece of a profile.
-    fn block(
-        unit: Unit,
-        effects: Effects,
-        steps: u32,
-        launches: &[Launch; WIDTH],
-    ) -> [Self::Answer; WIDTH];
+    fn block(unit: Unit, effects: Effects, steps: u32, launches: &Block) -> [Self::Answer; WIDTH];
 }
 
 macro_rules! kernel {
-    ($integrator:ty, $kind:ty, $n:literal) => {
-        impl Kernel<$integrator, $n> for $kind {
+    ($integrator:ty, $kind:ty) => {
+        impl Kernel<$integrator> for $kind {
             #[allow(
                 unsafe_code,
                 reason = "a function compiled for a SIMD unit may be called where `detect` has found that unit"
@@ -114,24 +125,24 @@ macro_rules! kernel {
                 unit: Unit,
                 effects: Effects,
                 steps: u32,
-                launches: &[Launch; WIDTH],
+                launches: &Block,
             ) -> [Self::Answer; WIDTH] {
                 match unit.0 {
                     #[cfg(target_arch = "x86_64")]
                     // SAFETY: only `detect` makes such a unit, and it has seen every feature that the function enables.
                     Instructions::Avx512 => unsafe {
-                        avx512::<$integrator, $kind, $n>(effects, steps, launches)
+                        avx512::<$integrator, $kind>(effects, steps, launches)
                     },
                     #[cfg(target_arch = "x86_64")]
                     // SAFETY: as above.
                     Instructions::Avx2 => unsafe {
-                        avx2::<$integrator, $kind, $n>(effects, steps, launches)
+                        avx2::<$integrator, $kind>(effects, steps, launches)
                     },
                     Instructions::Baseline => {
-                        by_effects::<$integrator, $kind, Baseline, $n>(effects, steps, launches)
+                        by_effects::<$integrator, $kind, Baseline>(effects, steps, launches)
                     }
                     Instructions::Scalar => launches.map(|launch| {
-                        by_effects::<$integrator, $kind, f64, $n>(effects, steps, &[launch; WIDTH])
+                        by_effects::<$integrator, $kind, f64>(effects, steps, &[launch; WIDTH])
                             [0]
                     }),
                 }
@@ -140,9 +151,21 @@ macro_rules! kernel {
     };
 }
 
-kernel!(Dopri8, First, 6);
-kernel!(Dopri8, FirstAndEnergy, 7);
-kernel!(Dopri8, Second, 15);
+kernel!(Dopri8, First);
+kernel!(Dopri8, FirstAndEnergy);
+kernel!(Dopri8, Second);
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx512f,avx512dq,avx512vl,fma")]
+fn arclengths_avx512(launches: &Block) -> [f64; WIDTH] {
+    arclengths::<Avx512>(launches)
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2,fma")]
+fn arclengths_avx2(launches: &Block) -> [f64; WIDTH] {
+    arclengths::<Avx2>(launches)
+}
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx512f,avx512dq,avx512vl,fma")]
@@ -158,20 +181,20 @@ fn exhaust_avx2(rounds: u32) -> u64 {
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx512f,avx512dq,avx512vl,fma")]
-fn avx512<M: Integrator, K: Kind<N>, const N: usize>(
+fn avx512<M: Integrator, K: Derived<Avx512>>(
     effects: Effects,
     steps: u32,
-    launches: &[Launch; WIDTH],
+    launches: &Block,
 ) -> [K::Answer; WIDTH] {
-    by_effects::<M, K, Avx512, N>(effects, steps, launches)
+    by_effects::<M, K, Avx512>(effects, steps, launches)
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,fma")]
-fn avx2<M: Integrator, K: Kind<N>, const N: usize>(
+fn avx2<M: Integrator, K: Derived<Avx2>>(
     effects: Effects,
     steps: u32,
-    launches: &[Launch; WIDTH],
+    launches: &Block,
 ) -> [K::Answer; WIDTH] {
-    by_effects::<M, K, Avx2, N>(effects, steps, launches)
+    by_effects::<M, K, Avx2>(effects, steps, launches)
 }

@@ -1,0 +1,205 @@
+//! What a batch answers for each trajectory, worked out in lanes.
+//!
+//! With `w` the pole's centre seen from the base in the axes of the contact, and `theta` the base's tangent
+//! there, `G = ln w - i theta` (complex) has the real part `ln D` and the imaginary part `phi`, the two
+//! coordinates of a whisker in front of a pole. Its derivatives need no trigonometry:
+//! `G_i = w_i/w - i theta_i`, `G_ij = w_ij/w - w_i w_j/w^2 - i theta_ij`.
+
+use crate::model::complex::Complex;
+use crate::model::landing::{Base, Curved, Full, Landing};
+use crate::model::order::{
+    Arrival, Curvatures, Energetic, Order, Slopes, Triple, general, similar,
+};
+use crate::model::simd::{Lanes, WIDTH};
+use glam::DVec2;
+
+/// What a batch computes for each trajectory.
+pub trait Kind: 'static {
+    /// The answer.
+    type Answer: Copy + Default + Send;
+}
+
+/// The derivatives carried for it, and the answer from their values at the base.
+pub trait Derived<T: Lanes>: Kind {
+    /// On any rod.
+    type General: Order<T>;
+    /// On rods that look the same from each of their points.
+    type Similar: Order<T, Known = <Self::General as Order<T>>::Known>;
+
+    /// The answers; `pole` is where its centre lies, seen from the contact.
+    fn answers(
+        arrival: &Arrival<T>,
+        pole: [T; 2],
+        known: <Self::General as Order<T>>::Known,
+    ) -> [Self::Answer; WIDTH];
+}
+
+/// The pole, with the first derivatives of its place.
+#[derive(Clone, Copy, Debug)]
+pub struct First;
+
+/// The same, the base and the bending energy.
+#[derive(Clone, Copy, Debug)]
+pub struct FirstAndEnergy;
+
+/// The pole, with the first and second derivatives of its place.
+#[derive(Clone, Copy, Debug)]
+pub struct Second;
+
+impl Kind for First {
+    type Answer = Landing;
+}
+
+impl<T: Lanes> Derived<T> for First {
+    type General = general::First;
+    type Similar = similar::First;
+
+    #[inline(always)]
+    fn answers(arrival: &Arrival<T>, pole: [T; 2], slopes: Slopes<T>) -> [Landing; WIDTH] {
+        let numbers = Centre::new(arrival, pole).landing(&slopes);
+        spread(numbers).map(landing)
+    }
+}
+
+impl Kind for FirstAndEnergy {
+    type Answer = Full;
+}
+
+impl<T: Lanes> Derived<T> for FirstAndEnergy {
+    type General = Energetic<general::First>;
+    type Similar = Energetic<similar::First>;
+
+    #[inline(always)]
+    fn answers(
+        arrival: &Arrival<T>,
+        pole: [T; 2],
+        (slopes, energy): (Slopes<T>, T),
+    ) -> [Full; WIDTH] {
+        let [a, b, c, d, e, g] = Centre::new(arrival, pole).landing(&slopes);
+        let [cos, sin, x, y] = arrival.rod;
+        let force = arrival.contact.force;
+        let numbers = [a, b, c, d, e, g, cos, sin, x, y, force, energy];
+        spread(numbers).map(|numbers| {
+            let [a, b, c, d, e, g, cos, sin, x, y, force, energy] = numbers;
+            Full {
+                landing: landing([a, b, c, d, e, g]),
+                base: Base {
+                    tangent: DVec2::new(cos, sin),
+                    position: DVec2::new(x, y),
+                    force,
+                },
+                energy,
+            }
+        })
+    }
+}
+
+impl Kind for Second {
+    type Answer = Curved;
+}
+
+impl<T: Lanes> Derived<T> for Second {
+    type General = general::Second;
+    type Similar = similar::Second;
+
+    #[inline(always)]
+    fn answers(arrival: &Arrival<T>, pole: [T; 2], known: Curvatures<T>) -> [Curved; WIDTH] {
+        let centre = Centre::new(arrival, pole);
+        let [a, b, c, d, e, g] = centre.landing(&known.slopes);
+        let (by_tau, by_load) = (
+            centre.moved(known.slopes.by_tau),
+            centre.moved(known.slopes.by_load),
+        );
+        let tau_tau = centre.twice(known.by_tau_tau, by_tau, by_tau);
+        let tau_load = centre.twice(known.by_tau_load, by_tau, by_load);
+        let load_load = centre.twice(known.by_load_load, by_load, by_load);
+        let numbers = [
+            a,
+            b,
+            c,
+            d,
+            e,
+            g,
+            tau_tau.re,
+            tau_tau.im,
+            tau_load.re,
+            tau_load.im,
+            load_load.re,
+            load_load.im,
+        ];
+        spread(numbers).map(|numbers| {
+            let [a, b, c, d, e, g, second @ ..] = numbers;
+            let pair = |i: usize| DVec2::new(second[i], second[i + 1]);
+            Curved {
+                landing: landing([a, b, c, d, e, g]),
+                by_tau_tau: pair(0),
+                by_tau_load: pair(2),
+                by_load_load: pair(4),
+            }
+        })
+    }
+}
+
+fn landing([x, y, ln_d_tau, phi_tau, ln_d_load, phi_load]: [f64; 6]) -> Landing {
+    Landing {
+        pole: DVec2::new(x, y),
+        by_tau: DVec2::new(ln_d_tau, phi_tau),
+        by_load: DVec2::new(ln_d_load, phi_load),
+    }
+}
+
+/// The pole's centre `w` seen from the base, in the axes of the contact.
+struct Centre<T> {
+    pole: Complex<T>,
+    inverse: Complex<T>,
+}
+
+impl<T: Lanes> Centre<T> {
+    #[inline(always)]
+    fn new(arrival: &Arrival<T>, [to_x, to_y]: [T; 2]) -> Self {
+        let [c, s, x, y] = arrival.rod;
+        let w = Complex::new(to_x - x, to_y - y);
+        Self {
+            pole: Complex::new(c, -s).times(w),
+            inverse: w.inverse(),
+        }
+    }
+
+    /// `w_i/w`.
+    #[inline(always)]
+    fn moved(&self, [_, x, y]: Triple<T>) -> Complex<T> {
+        Complex::new(-x, -y).times(self.inverse)
+    }
+
+    /// `G_i`.
+    #[inline(always)]
+    fn once(&self, of: Triple<T>) -> Complex<T> {
+        let moved = self.moved(of);
+        Complex::new(moved.re, moved.im - of[0])
+    }
+
+    /// `G_ij`; `by` are `w_i/w` and `w_j/w`.
+    #[inline(always)]
+    fn twice(&self, of: Triple<T>, by: Complex<T>, and: Complex<T>) -> Complex<T> {
+        self.once(of).minus(by.times(and))
+    }
+
+    /// The numbers of a [`Landing`].
+    #[inline(always)]
+    fn landing(&self, slopes: &Slopes<T>) -> [T; 6] {
+        let (tau, load) = (self.once(slopes.by_tau), self.once(slopes.by_load));
+        [self.pole.re, self.pole.im, tau.re, tau.im, load.re, load.im]
+    }
+}
+
+/// The numbers of each lane.
+#[inline(always)]
+fn spread<T: Lanes, const N: usize>(numbers: [T; N]) -> [[f64; N]; WIDTH] {
+    let mut lanes = [[0.0; N]; WIDTH];
+    for (i, number) in numbers.into_iter().enumerate() {
+        for (lane, number) in lanes.iter_mut().zip(number.unpack()) {
+            lane[i] = number;
+        }
+    }
+    lanes
+}

@@ -1,0 +1,147 @@
+//! Derivatives on any rod.
+//!
+//! The rod is a Hamiltonian system, `theta` with the moment `f X` and `Y` with the force, so the symplectic product of the
+//! derivatives by force and by arclength is the same at the base as at the contact:
+//! `Y_s = theta_s (X + f X_f) - f theta_f X_s + const`. `Y_s` and its derivatives therefore need not be carried.
+
+use super::{Arrival, Curvatures, Order, Slopes, Triple, by_force, scaled, twice_by_force};
+use crate::model::Real;
+use crate::model::contact::Contact;
+use crate::model::rhs::{Planar, Sensitivity};
+
+/// First derivatives; carries `theta_f, X_f, Y_f, theta_s, X_s`.
+#[derive(Clone, Copy, Debug)]
+pub struct First;
+
+/// First and second derivatives; carries `ff` of `theta, X, Y` and `fs` and `ss` of `theta, X`, too.
+#[derive(Clone, Copy, Debug)]
+pub struct Second;
+
+impl<T: Real> Sensitivity<T> for First {
+    type State = [T; 5];
+
+    #[inline(always)]
+    fn rhs(f: T, rho: T, w: T, rod: &Planar<T>, state: [T; 5]) -> [T; 5] {
+        let [theta_f, x_f, _, theta_s, x_s] = state;
+        let [a, b, c] = by_force(f, rho, w, *rod, theta_f, x_f);
+        [a, b, c, w * f * x_s, rho * rod[1] * theta_s]
+    }
+}
+
+/// Derivatives by the force from those by the force, those by `tau` from both.
+#[inline(always)]
+fn slopes<T: Real>(
+    arrival: &Arrival<T>,
+    by_force: Triple<T>,
+    by_arclength: Triple<T>,
+) -> Slopes<T> {
+    let (rho, load) = (arrival.contact.radius, load(arrival));
+    Slopes {
+        by_tau: sum(scaled(rho, by_arclength), scaled(load, by_force)),
+        by_load: scaled(rho * rho, by_force),
+    }
+}
+
+#[inline(always)]
+fn sum<T: Real>([a, b, c]: Triple<T>, [d, e, f]: Triple<T>) -> Triple<T> {
+    [a + d, b + e, c + f]
+}
+
+/// How the force changes with `tau` at fixed load.
+#[inline(always)]
+fn load<T: Real>(arrival: &Arrival<T>) -> T {
+    T::of(-2.0) * arrival.taper * arrival.contact.force
+}
+
+impl<T: Real> Order<T> for First {
+    type Known = Slopes<T>;
+
+    #[inline(always)]
+    fn start(contact: &Contact<T>) -> [T; 5] {
+        let ([x, _], zero) = (contact.tangent, T::of(0.0));
+        [zero, zero, zero, -contact.curvature, -x]
+    }
+
+    #[inline(always)]
+    fn known(arrival: &Arrival<T>, state: [T; 5]) -> Slopes<T> {
+        let [theta_f, x_f, y_f, theta_s, x_s] = state;
+        let (f, x) = (arrival.contact.force, arrival.rod[2]);
+        let [_, from] = arrival.contact.tangent;
+        let y_s = theta_s * f.mul_add(x_f, x) - f * theta_f * x_s - from;
+        slopes(arrival, [theta_f, x_f, y_f], [theta_s, x_s, y_s])
+    }
+}
+
+impl<T: Real> Sensitivity<T> for Second {
+    type State = ([T; 5], [T; 7]);
+
+    #[inline(always)]
+    fn rhs(f: T, rho: T, w: T, rod: &Planar<T>, (first, second): Self::State) -> Self::State {
+        let [c, s, _, _] = *rod;
+        let [theta_f, x_f, _, theta_s, x_s] = first;
+        let [theta_ff, x_ff, _, theta_fs, x_fs, theta_ss, x_ss] = second;
+        let [a, b, d] = twice_by_force(f, rho, w, *rod, [theta_f, x_f], [theta_ff, x_ff]);
+        let along = |turns, theta| rho * s.mul_add(theta, c * turns);
+        let second = [
+            a,
+            b,
+            d,
+            w * f.mul_add(x_fs, x_s),
+            along(theta_f * theta_s, theta_fs),
+            w * f * x_ss,
+            along(theta_s * theta_s, theta_ss),
+        ];
+        (First::rhs(f, rho, w, rod, first), second)
+    }
+}
+
+impl<T: Real> Order<T> for Second {
+    type Known = Curvatures<T>;
+
+    #[inline(always)]
+    fn start(contact: &Contact<T>) -> Self::State {
+        let [x, y] = contact.tangent;
+        let kappa = contact.curvature;
+        let theta_ss = -contact.curvature_slope - contact.force * x / contact.stiffness;
+        let zero = T::of(0.0);
+        let second = [zero, zero, zero, zero, zero, theta_ss, -kappa * y];
+        (First::start(contact), second)
+    }
+
+    #[inline(always)]
+    fn known(arrival: &Arrival<T>, (first, second): Self::State) -> Curvatures<T> {
+        let [theta_f, x_f, y_f, theta_s, x_s] = first;
+        let [theta_ff, x_ff, y_ff, theta_fs, x_fs, theta_ss, x_ss] = second;
+        let (f, x) = (arrival.contact.force, arrival.rod[2]);
+        let [_, from] = arrival.contact.tangent;
+        // The lever and its derivatives.
+        let (m_f, m_ff) = (f.mul_add(x_f, x), f.mul_add(x_ff, x_f + x_f));
+        let m_fs = f.mul_add(x_fs, x_s);
+        let y_s = theta_s * m_f - f * theta_f * x_s - from;
+        let y_fs =
+            theta_fs * m_f + theta_s * m_ff - (theta_f + f * theta_ff) * x_s - f * theta_f * x_fs;
+        let y_ss = theta_ss * m_f + theta_s * m_fs - f * (theta_fs * x_s + theta_f * x_ss);
+        let by_force = [theta_f, x_f, y_f];
+        let by_arclength = [theta_s, x_s, y_s];
+        let ff = [theta_ff, x_ff, y_ff];
+        let fs = [theta_fs, x_fs, y_fs];
+        let ss = [theta_ss, x_ss, y_ss];
+        let (rho, load, taper) = (arrival.contact.radius, load(arrival), arrival.taper);
+        let two = T::of(2.0);
+        let by_tau_tau = sum(
+            sum(scaled(load * load, ff), scaled(two * load * rho, fs)),
+            scaled(rho * rho, ss),
+        );
+        let slanted = sum(scaled(two * load, by_force), scaled(rho, by_arclength));
+        let by_tau_load = sum(
+            sum(scaled(load, ff), scaled(rho, fs)),
+            scaled(-two * taper, by_force),
+        );
+        Curvatures {
+            slopes: slopes(arrival, by_force, by_arclength),
+            by_tau_tau: sum(by_tau_tau, scaled(-taper, slanted)),
+            by_tau_load: scaled(rho * rho, by_tau_load),
+            by_load_load: scaled(rho * rho * (rho * rho), ff),
+        }
+    }
+}
