@@ -143,6 +143,7 @@ fn farthest(one: Effects, other: Effects, pairs: &[(Launch, Launch)]) -> f64 {
     let ones = ends(one, pairs.iter().map(|pair| pair.0).collect());
     let others = ends(other, pairs.iter().map(|pair| pair.1).collect());
     let apart = ones.iter().zip(&others).map(|(one, other)| {
+        let (one, other) = (one.full, other.full);
         let energy = (one.energy - other.energy).abs() / (1.0 + one.energy);
         one.landing.pole.distance(other.landing.pole) + energy
     });

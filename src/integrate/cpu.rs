@@ -5,8 +5,11 @@ use crate::model::batch::{Launch, Method, Unit, land_on};
 use crate::model::{Dopri8, Effects, First, Landing, Resolution, Rod, arclength};
 use glam::DVec2;
 
-/// Accurate to 1e-11: what the last step finds, the refinement mostly has to confirm only.
-const RESOLUTION: Resolution = Resolution::of(24);
+/// Accurate to 1e-7: the refinement then needs no second trajectory.
+const RESOLUTION: Resolution = Resolution::COARSE;
+
+/// Shots of one thread whose cells stay in its cache on their way through all stages.
+const SHOTS_IN_CACHE: usize = 4096;
 
 /// Residual at which the refinement takes over, in whisker lengths: one Newton step away from 1e-12.
 const TOLERANCE: f64 = 1e-6;
@@ -106,6 +109,10 @@ impl Engine for Cpu {
             engine: "cpu f64".to_owned(),
             adapter: Unit::detect().to_string(),
         }
+    }
+
+    fn shots_at_once(&self) -> usize {
+        SHOTS_IN_CACHE * rayon::current_num_threads()
     }
 
     fn shoot(

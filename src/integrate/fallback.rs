@@ -26,6 +26,12 @@ impl<'a> Fallback<'a> {
         self.failure.as_ref()
     }
 
+    /// [`Engine::shots_at_once`].
+    #[must_use]
+    pub fn shots_at_once(&self) -> usize {
+        self.engine.shots_at_once()
+    }
+
     /// [`Engine::shoot`]. Shots are solved by one engine or the other, all of a call by the same.
     pub fn shoot(&mut self, effects: Effects, rods: &[Rod], shots: &[Shot]) -> Vec<Hit> {
         if self.failure.is_none() {

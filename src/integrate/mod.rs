@@ -70,6 +70,11 @@ pub trait Engine {
     /// Which engine this is.
     fn describe(&self) -> Description;
 
+    /// How many shots it needs at once to be as fast as it gets; more only take more memory.
+    fn shots_at_once(&self) -> usize {
+        usize::MAX
+    }
+
     /// Solves `shots`, each on one of `rods`; answers in the same order. `effects` are those of the scene, a
     /// superset of every rod's own.
     ///

@@ -63,6 +63,8 @@ pub fn run(
     let mut engine = Fallback::new(engine);
     let mut summary = Summary::default();
     let sides = &plan.sides;
+    let rows_at_once = engine.shots_at_once() / scene.grid.push_angle_deg.len();
+    let rows_at_once = rows_at_once.clamp(1, plan.rows_at_once);
     for (group, whiskers) in plan.whiskers.chunks(plan.panels_at_once).enumerate() {
         let faces: Vec<Face> = summary.time(Stage::Sheets, || {
             let pairs: Vec<(&Whisker, Side)> = whiskers
@@ -75,7 +77,7 @@ pub fn run(
                 .collect()
         });
         let mut panels: Vec<Panel> = whiskers.iter().map(|_| panel::blank(scene)).collect();
-        for strip in Strip::all(faces.len(), scene.grid.distance_mm.len(), plan.rows_at_once) {
+        for strip in Strip::all(faces.len(), scene.grid.distance_mm.len(), rows_at_once) {
             let cells = cells::settle(
                 scene,
                 plan.method,

@@ -83,6 +83,57 @@ pub struct Full {
     pub energy: f64,
 }
 
+/// How a state changes with a coordinate of the sheet.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Change {
+    /// Of the base's tangent, as an angle.
+    pub angle: f64,
+    /// Of its position.
+    pub position: DVec2,
+    /// Of the force.
+    pub force: f64,
+    /// Of the energy.
+    pub energy: f64,
+}
+
+/// A state, and how it changes with the contact and the load.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Moving {
+    /// The state.
+    pub full: Full,
+    /// By `tau` at fixed load.
+    pub by_tau: Change,
+    /// By the load.
+    pub by_load: Change,
+}
+
+impl Moving {
+    /// The state `step` further on in `(tau, load)`, to first order.
+    #[must_use]
+    pub fn moved(&self, step: DVec2) -> Full {
+        let Full {
+            landing,
+            base,
+            energy,
+        } = self.full;
+        let (tau, load) = (self.by_tau, self.by_load);
+        let ln_pole = landing.by_tau * step.x + landing.by_load * step.y;
+        let angle = tau.angle * step.x + load.angle * step.y;
+        Full {
+            landing: Landing {
+                pole: landing.pole + ln_pole.rotate(landing.pole),
+                ..landing
+            },
+            base: Base {
+                tangent: base.tangent + angle * base.tangent.perp(),
+                position: base.position + tau.position * step.x + load.position * step.y,
+                force: base.force + tau.force * step.x + load.force * step.y,
+            },
+            energy: energy + tau.energy * step.x + load.energy * step.y,
+        }
+    }
+}
+
 /// A landing with the second derivatives of `(ln D, phi)`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Curved {

@@ -31,7 +31,7 @@ mod vector;
 pub use batch::{First, FirstAndEnergy, Second};
 pub use dopri8::Dopri8;
 pub use integrator::{Integrator, Resolution, Scales, integrate};
-pub use landing::{Base, Curved, Full, LONGEST_STEP, Landing, limited};
+pub use landing::{Base, Change, Curved, Full, LONGEST_STEP, Landing, Moving, limited};
 pub use radius::{Piece, RadiusProfile};
 pub use real::Real;
 pub use rest::Rest;

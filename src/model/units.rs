@@ -62,7 +62,9 @@ impl Units {
         let contact = to_base.rotate(-base.position);
         let to_pole = rod.to_pole() - base.position;
         let tangent = rod.contact_tangent();
-        let chord = contact.to_angle() - Rest::new(rod).direction_at_distance(contact.length());
+        let distance = contact.length();
+        let resting = Rest::new(rod).point_at_distance(distance);
+        let chord = DVec2::new(resting.x, -resting.y).rotate(contact).to_angle();
         Reading {
             arc_length_mm: arclength(rod, tau) * self.length_mm,
             contact_angle_deg: (touch + push - to_pole.to_angle() + tangent.to_angle())
@@ -71,7 +73,7 @@ impl Units {
             base_force_un: base.force * DVec2::new(base.tangent.y, base.tangent.x) * self.force_un,
             base_moment_nnm: -base.force * base.position.x * self.moment_nnm,
             push_chord_deg: nearest_turn(chord, push).to_degrees(),
-            contact_distance_mm: contact.length() * self.length_mm,
+            contact_distance_mm: distance * self.length_mm,
             energy_nj: full.energy * self.moment_nnm,
         }
     }

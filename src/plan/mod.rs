@@ -41,9 +41,9 @@ pub struct Plan {
     pub cells: usize,
     /// Panels computed together, so that small panels fill an engine too.
     pub panels_at_once: usize,
-    /// Rows of a panel handed to an engine at once.
+    /// Most rows of a panel handed to an engine at once.
     pub rows_at_once: usize,
-    /// Calls of an engine, each with the rows of some whiskers and sides.
+    /// Calls of an engine that takes so many, each with the rows of some whiskers and sides.
     pub engine_calls: usize,
     /// Most bytes that panels and cells in flight take.
     pub bytes: u64,

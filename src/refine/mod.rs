@@ -8,7 +8,7 @@ mod near_fold;
 
 use crate::integrate::Shot;
 use crate::model::batch::{Launch, Method, land};
-use crate::model::{Dopri8, FirstAndEnergy, Full, Rod, arclength};
+use crate::model::{Dopri8, FirstAndEnergy, Full, Rod, arclength, limited};
 use crate::sheet::Sheet;
 use near_fold::Verdict;
 
@@ -17,6 +17,13 @@ pub const GOAL: f64 = 1e-12;
 
 /// Residual, in whisker lengths, up to which a state is accepted when steps no longer help.
 pub const TOLERANCE: f64 = 1e-11;
+
+/// The length of a Newton step, as [`limited`] measures it, that needs no trajectory at its end.
+const LAST_STEP: f64 = 2e-7;
+
+/// The residual after such a step, in squares of its length and in distances of the pole, at most: of 40,000 random states with
+/// friction, gradient and taper up to 0.995 none left more than 19, 99 % at most 8.2.
+const LEFT_BY_STEP: f64 = 20.0;
 
 /// Contacts closer to the tip than this, relative to `tau` there, or than the residual, count as at the tip.
 const TIP_TIE: f64 = 1e-12;
@@ -149,6 +156,9 @@ fn newton(
     let mut points = starts.to_vec();
     let mut open: Vec<usize> = (0..shots.len()).collect();
     for steps in 0..=most {
+        if open.is_empty() {
+            break;
+        }
         let launches: Vec<Launch> = open
             .iter()
             .map(|&i| Launch {
@@ -160,9 +170,10 @@ fn newton(
         let mut answers = land::<Dopri8, FirstAndEnergy>(method, &launches).into_iter();
         let mut launches = launches.iter();
         open.retain(|&i| {
-            let (Some(full), Some(launch)) = (answers.next(), launches.next()) else {
+            let (Some(moving), Some(launch)) = (answers.next(), launches.next()) else {
                 return false;
             };
+            let full = moving.full;
             let residual = full.landing.pole.distance(shots[i].pole);
             let state = State {
                 tau: launch.tau,
@@ -170,6 +181,23 @@ fn newton(
                 full,
                 residual,
             };
+            let s = arclength(&launch.rod, launch.tau);
+            let step = full.landing.solve(full.landing.residual(shots[i].pole));
+            let (step, length) = limited(step, s, launch.load);
+            if residual > GOAL && length <= LAST_STEP {
+                let state = State {
+                    tau: launch.tau + step.x,
+                    load: launch.load + step.y,
+                    full: moving.moved(step),
+                    residual: LEFT_BY_STEP * length * length * full.landing.pole.length(),
+                };
+                let (end, steps) = (verdict(sheets[shots[i].rod as usize], &state), steps + 1);
+                // Next to the fold only a trajectory tells on which side of it the state is.
+                if end != End::NotConverged {
+                    cells[i] = Some(Refined { state, steps, end });
+                    return false;
+                }
+            }
             let before = cells[i].map_or(f64::INFINITY, |cell| cell.state.residual);
             let stuck = residual <= TOLERANCE && residual > 0.5 * before;
             if residual <= GOAL || stuck {
@@ -182,8 +210,6 @@ fn newton(
                 steps,
                 end: End::NotConverged,
             });
-            let s = arclength(&launch.rod, launch.tau);
-            let step = full.landing.newton_step(shots[i].pole, s, launch.load);
             points[i] = (launch.tau + step.x, launch.load + step.y);
             step.is_finite() && points[i].0 > 0.0
         });

@@ -12,13 +12,16 @@ use crate::model::batch::Method;
 use crate::model::{Rod, Side, arclength};
 
 /// Distance of the columns in `u`.
-const SPACING: f64 = 0.15;
+const SPACING: f64 = 0.25;
 
 /// Columns beyond the tip.
 pub const BEYOND_TIP: usize = 3;
 
 /// Columns between the row nearest to the base and the end of the lattice.
 const BEYOND_NEAREST: usize = 4;
+
+/// Columns of a further batch.
+const WIDTH: usize = 8;
 
 /// Most columns: the smallest `tau` is then below 1e-12 of the tip's.
 const MOST: usize = 400;
@@ -32,13 +35,19 @@ pub struct Columns {
     pub tip: usize,
     first_u: f64,
     rod: Rod,
+    /// `ln tau` and `ln(|load| tau^2)` of the folds, by the first column of the stencil.
+    stencils: Vec<[Polynomial; 2]>,
 }
 
 /// `ln tau + tau`, and minus the logarithm of the modulus where that falls toward the tip: continued beyond the tip, it
 /// would become 0.
 fn u_of(rod: &Rod, tau: f64) -> f64 {
-    let modulus = rod.modulus(arclength(rod, tau)).min(1.0);
-    tau.ln() + tau - modulus.ln()
+    let softening = if rod.gradient < 0.0 {
+        rod.modulus(arclength(rod, tau)).ln()
+    } else {
+        0.0
+    };
+    tau.ln() + tau - softening
 }
 
 /// Inverse of [`u_of`] by Newton's method, bisecting where a step would leave the bracket.
@@ -80,38 +89,61 @@ impl Columns {
     /// ones the pole is nearer than that at first touch and at the fold. `None` where a fold is missing.
     pub fn new(method: Method, rod: &Rod, side: Side, nearest: &Row) -> Option<Self> {
         let u_tip = u_of(rod, rod.tau_tip());
-        let tau = |below_tip: f64| tau_of(rod, u_tip - SPACING * below_tip);
-        let beyond = (1..=BEYOND_TIP).rev().map(|i| tau(-(i as f64)));
-        let mut taus: Vec<f64> = beyond.chain([rod.tau_tip()]).collect();
+        let tau = |column: usize| match column.checked_sub(BEYOND_TIP) {
+            Some(0) => rod.tau_tip(),
+            Some(below) => tau_of(rod, u_tip - SPACING * below as f64),
+            None => tau_of(rod, u_tip + SPACING * (BEYOND_TIP - column) as f64),
+        };
+        let touch = rod.tau(nearest.contact.min(1.0));
+        // As many as there are at least, with the one at the tip.
+        #[allow(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "the cast saturates, and a batch is bounded"
+        )]
+        let mut batch = ((u_tip - u_of(rod, touch)) / SPACING) as usize;
+        batch = batch.min(MOST) + BEYOND_TIP + BEYOND_NEAREST + 2;
         let mut folds = Vec::new();
         loop {
-            let batch: Option<Vec<FoldPoint>> =
+            let from = folds.len();
+            let taus: Vec<f64> = (from..from + batch).map(tau).collect();
+            let found: Option<Vec<FoldPoint>> =
                 first_folds(method, rod, side, &taus).into_iter().collect();
-            folds.extend(batch?);
+            folds.extend(found?);
             let reached = folds.iter().rev().nth(BEYOND_NEAREST).is_some_and(|fold| {
                 let distance = fold.landing.landing.pole.length();
-                distance < nearest.pole_distance && fold.tau < rod.tau(nearest.contact.min(1.0))
+                distance < nearest.pole_distance && fold.tau < touch
             });
             if reached || folds.len() > MOST {
                 break;
             }
-            let from = folds.len() - BEYOND_TIP;
-            taus = (from..from + 8).map(|i| tau(i as f64)).collect();
+            batch = WIDTH;
         }
         folds.reverse();
+        let through = |start: usize, f: fn(&FoldPoint) -> f64| {
+            Polynomial::through(folds[start..].iter().take(NODES).map(f))
+        };
+        let stencils = (0..folds.len().saturating_sub(NODES) + 1).map(|start| {
+            let ln_q = |fold: &FoldPoint| (fold.load.abs() * fold.tau * fold.tau).ln();
+            [through(start, |fold| fold.tau.ln()), through(start, ln_q)]
+        });
+        let stencils = stencils.collect();
         let tip = folds.len() - 1 - BEYOND_TIP;
         Some(Self {
             first_u: u_tip - SPACING * tip as f64,
             tip,
             folds,
             rod: *rod,
+            stencils,
         })
     }
 
-    /// Contact at the fractional column `k + t`.
+    /// Contact and `|load|` of the fold at the place `t` in the stencil that begins at column `start`.
     #[must_use]
-    pub fn tau(&self, k: usize, t: f64) -> f64 {
-        tau_of(&self.rod, self.first_u + SPACING * (k as f64 + t))
+    pub fn at(&self, start: usize, t: f64) -> (f64, f64) {
+        let [ln_tau, ln_q] = &self.stencils[start];
+        let ln_tau = ln_tau.at(t).0;
+        (ln_tau.exp(), (ln_q.at(t).0 - 2.0 * ln_tau).exp())
     }
 
     /// `|load|` at the fold for the contact at `tau`, by interpolation.
@@ -125,9 +157,8 @@ impl Columns {
             reason = "the cast saturates, and the result is clamped to the columns"
         )]
         let k = (place as usize).min(last);
-        let start = stencil(k, 0, self.folds.len());
-        let scaled = |fold: &FoldPoint| (fold.load.abs() * fold.tau * fold.tau).ln();
-        let polynomial = Polynomial::through(self.folds[start..].iter().take(NODES).map(scaled));
-        polynomial.at(place - start as f64).0.exp() / (tau * tau)
+        let start = stencil::<NODES>(k, self.folds.len());
+        let [_, ln_q] = &self.stencils[start];
+        ln_q.at(place - start as f64).0.exp() / (tau * tau)
     }
 }

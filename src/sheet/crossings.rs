@@ -6,7 +6,7 @@
 
 use super::bisect::bisect;
 use super::edges::{Edges, REACH_SLACK, Sample};
-use super::polynomial::{NODES, Places, stencil};
+use super::polynomial::{Places, stencil};
 use super::rows::Row;
 use super::seek::{Edge, Wanted, seek_finely};
 use crate::model::batch::Method;
@@ -66,18 +66,21 @@ impl Candidate {
 /// How far, in parts of their distance, a crossing may be outside of the samples that it is between but for rounding.
 const NEXT_TO: f64 = 1e-9;
 
+/// Samples that the start of a crossing is interpolated from: with as many, most starts need a single Newton step.
+const AROUND: usize = 12;
+
 /// An edge near two neighbouring samples, as a function of `ln D`.
 struct Line {
     edge: Edge,
     pair: [Sample; 2],
     /// The samples around, where `ln D` grows or falls throughout.
-    around: Option<(Places, [Sample; NODES])>,
+    around: Option<(Places<AROUND>, [Sample; AROUND])>,
 }
 
 impl Line {
     fn new(edge: Edge, samples: &[Sample], i: usize) -> Self {
-        let start = stencil(i, 0, samples.len());
-        let around = samples[start..].first_chunk::<NODES>().and_then(|around| {
+        let start = stencil::<AROUND>(i, samples.len());
+        let around = samples[start..].first_chunk::<AROUND>().and_then(|around| {
             let places = Places::new(around.iter().map(|sample| sample.ln_distance))?;
             Some((places, *around))
         });

@@ -2,16 +2,20 @@
 
 use super::columns::Columns;
 use super::lattice::Lattice;
+use super::polynomial::{NODES, Polynomial, stencil};
 use super::rows::Row;
 use crate::model::batch::{Launch, Method, land};
 use crate::model::{Dopri8, First, Landing, Rod, Second, nearest_turn};
 
 /// Samples along the tip edge; the distance has at most a few extrema there.
-const TIP_SAMPLES: usize = 64;
+const TIP_SAMPLES: usize = 32;
 
 /// Relative slack with which a distance counts as reached, so that a whisker whose resting tip just touches
 /// the pole does touch it, whatever the rounding.
 pub const REACH_SLACK: f64 = 1e-12;
+
+/// The Newton step, relative to the load, after which an extremum is known: its square is left.
+const LAST_STEP: f64 = 1e-7;
 
 /// How much `ln q` of the fold changes from column to column at the least where it jumps; with friction, from 29 to 15.
 const JUMP: f64 = 0.25;
@@ -103,39 +107,44 @@ fn tip_samples(method: Method, rod: &Rod, columns: &Columns) -> Vec<Sample> {
             break;
         };
         if (landings[i].by_load.x < 0.0) != (next.by_load.x < 0.0) {
-            let load = extremum(method, rod, launches[i], launches[i + 1].load);
-            let launch = launch(load);
-            let landing = land::<Dopri8, Second>(method, &[launch])[0].landing;
+            let start = stencil::<NODES>(i, landings.len());
+            let slopes = landings[start..].iter().take(NODES).map(|l| l.by_load.x);
+            let offset = (i - start) as f64;
+            let rising = landings[i].by_load.x <= 0.0;
+            let between = [offset, offset + 1.0];
+            let place = Polynomial::through(slopes).solve(0.0, offset + 0.5, between, rising);
+            let near = corner.load * (start as f64 + place) / TIP_SAMPLES as f64;
+            let launch = launch(extremum(method, launches[i], launches[i + 1].load, near));
+            let landing = land::<Dopri8, First>(method, &[launch])[0];
             push(&launch, &landing);
         }
     }
     samples
 }
 
-/// The load between `from` and `to` at which `dlnD/dload` vanishes at the contact of `from`.
-fn extremum(method: Method, rod: &Rod, from: Launch, to: f64) -> f64 {
+/// The load between `from` and `to` at which `dlnD/dload` vanishes at the contact of `from`: Newton's method from `near`,
+/// bisecting where a step would leave the bracket.
+fn extremum(method: Method, from: Launch, to: f64, near: f64) -> f64 {
+    let at = |load: f64| land::<Dopri8, Second>(method, &[Launch { load, ..from }])[0];
     let (mut low, mut high) = (from.load, to);
-    let mut load = 0.5 * (low + high);
-    let falling_at_low = land::<Dopri8, Second>(method, &[from])[0].landing.by_load.x < 0.0;
+    let mut load = near;
+    let mut falling_at_low = None;
     for _ in 0..60 {
-        let here = land::<Dopri8, Second>(
-            method,
-            &[Launch {
-                rod: *rod,
-                tau: from.tau,
-                load,
-            }],
-        )[0];
+        let here = at(load);
         let slope = here.landing.by_load.x;
-        if (slope < 0.0) == falling_at_low {
+        let newton = load - slope / here.by_load_load.x;
+        let inside = (newton - low) * (newton - high) < 0.0;
+        if inside && (newton - load).abs() <= LAST_STEP * load.abs() {
+            return newton;
+        }
+        let falls = *falling_at_low.get_or_insert_with(|| at(from.load).landing.by_load.x < 0.0);
+        if (slope < 0.0) == falls {
             low = load;
         } else {
             high = load;
         }
-        let newton = load - slope / here.by_load_load.x;
-        let inside = (newton - low) * (newton - high) < 0.0;
         let next = if inside { newton } else { 0.5 * (low + high) };
-        if (next - load).abs() <= 1e-13 * load.abs() {
+        if next == load {
             return next;
         }
         load = next;

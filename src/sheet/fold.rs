@@ -125,12 +125,12 @@ fn bracket(method: Method, rod: &Rod, side: Side, taus: &[f64]) -> Vec<Option<Br
 fn root(samples: &[f64], dets: &[f64], at: usize) -> f64 {
     let [low, high] = [dets[at], dets[at + 1]];
     let secant = low / (low - high);
-    let start = stencil(at, 0, dets.len());
+    let start = stencil::<NODES>(at, dets.len());
     let is_even = samples[(start + NODES).min(samples.len()) - 1] <= EVEN_UP_TO;
     let part = if is_even {
         let offset = (at - start) as f64;
         let around = Polynomial::through(dets[start..].iter().take(NODES).copied());
-        around.solve(0.0, offset + secant, offset, offset + 1.0) - offset
+        around.solve(0.0, offset + secant, [offset, offset + 1.0], low <= 0.0) - offset
     } else {
         secant
     };
@@ -146,6 +146,9 @@ fn polish(method: Method, rod: &Rod, brackets: &[Option<Bracket>]) -> Vec<Option
         .filter_map(|(i, bracket)| bracket.map(|b| (i, b)))
         .collect();
     for _ in 0..ROUNDS {
+        if open.is_empty() {
+            break;
+        }
         let launches: Vec<Launch> = open
             .iter()
             .map(|(_, b)| Launch {

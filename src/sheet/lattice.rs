@@ -1,6 +1,6 @@
 //! The lattice of trajectories over the stable sheet, and guesses from it.
 //!
-//! Nodes lie at the columns and at the loads `x = 0, 1/16, 2/16, ...` of the fold's load, two steps beyond the
+//! Nodes lie at the columns and at the loads `x = 0, 1/10, 2/10, ...` of the fold's load, two steps beyond the
 //! fold, so that interpolation is as good at the fold as elsewhere. A row of a map is a level curve of `D` on
 //! the lattice; along it the push angle grows from first touch to detachment.
 
@@ -11,7 +11,7 @@ use crate::model::batch::{Launch, Method, land};
 use crate::model::{Dopri8, First, Rod, Side, nearest_turn};
 
 /// Steps in load from first touch to the fold.
-const LOADS: usize = 16;
+const LOADS: usize = 10;
 
 /// Nodes per column: two lie beyond the fold.
 const NODES_PER_COLUMN: usize = LOADS + 3;
@@ -96,17 +96,19 @@ impl Lattice {
                 level.first = m;
             }
             last = Some(k);
-            let start = stencil(k, 0, ln_distance.len());
+            let start = stencil::<NODES>(k, ln_distance.len());
             let local =
                 |values: &[f64]| Polynomial::through(values[start..].iter().take(NODES).copied());
             let offset = (k - start) as f64;
-            let t = local(ln_distance).solve(target, offset + 0.5, offset, offset + 1.0);
-            let tau = columns.tau(start, t);
+            let rising = ln_distance[k] <= target;
+            let between = [offset, offset + 1.0];
+            let t = local(ln_distance).solve(target, offset + 0.5, between, rising);
+            let (tau, fold_load) = columns.at(start, t);
             let phi = local(&self.phi[m]).at(t).0;
             level.nodes.push(Node {
                 push: self.side.sign() * (phi - row.touch),
                 tau,
-                load: self.side.sign() * columns.fold_load(tau) * m as f64 / LOADS as f64,
+                load: self.side.sign() * fold_load * m as f64 / LOADS as f64,
             });
         }
         level
@@ -170,7 +172,7 @@ struct Piece {
 
 impl Piece {
     fn new(level: &Level, interval: usize, is_last: bool) -> Self {
-        let start = stencil(interval, 0, level.nodes.len());
+        let start = stencil::<NODES>(interval, level.nodes.len());
         let local = |f: fn(&Node) -> f64| {
             Polynomial::through(level.nodes[start..].iter().take(NODES).map(f))
         };
@@ -199,7 +201,7 @@ impl Piece {
         } else if push > to {
             (push < to + MARGIN).then_some(high)?
         } else {
-            self.push.solve(push, self.near, low, high)
+            self.push.solve(push, self.near, [low, high], true)
         };
         self.near = t;
         Some(Guess {
@@ -209,13 +211,16 @@ impl Piece {
     }
 }
 
+/// Halvings: the push angle is flat at its summit, so that the place need not be known well.
+const SUMMIT_ROUNDS: usize = 20;
+
 /// Where the push angle is largest, within one step of the interval that begins at `offset`.
 fn summit(push: &Polynomial, offset: f64) -> f64 {
     let (mut low, mut high) = (offset, offset + 2.0);
     if push.at(high).1 > 0.0 {
         return high;
     }
-    for _ in 0..50 {
+    for _ in 0..SUMMIT_ROUNDS {
         let middle = 0.5 * (low + high);
         if push.at(middle).1 > 0.0 {
             low = middle;

@@ -132,7 +132,8 @@ impl LevelCurve {
                 load: point.y,
             })
             .collect();
-        land::<Dopri8, FirstAndEnergy>(self.method, &launches)
+        let landed = land::<Dopri8, FirstAndEnergy>(self.method, &launches);
+        landed.iter().map(|moving| moving.full).collect()
     }
 
     /// How much `tau` and load can change before the state changes by about as much as it is.

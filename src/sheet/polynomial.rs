@@ -1,10 +1,10 @@
-//! Interpolation by polynomials of degree 7: in Newton's form on evenly spaced samples, else barycentric.
+//! Interpolation by polynomials: of degree 7 in Newton's form on evenly spaced samples, else barycentric.
 
 /// Nodes of a polynomial.
 pub const NODES: usize = 8;
 
-/// How well a place on a polynomial is known, in its spacings: interpolation leaves more than that.
-const ENOUGH: f64 = 1e-9;
+/// The last step of Newton's method, in spacings: its square is left, and interpolation leaves more than that.
+const LAST_STEP: f64 = 1e-4;
 
 /// A polynomial through up to [`NODES`] values at `0, 1, 2, ...`.
 #[derive(Clone, Copy, Debug)]
@@ -23,8 +23,9 @@ impl Polynomial {
             n += 1;
         }
         for level in 1..n {
+            let part = 1.0 / level as f64;
             for i in (level..n).rev() {
-                differences[i] = (differences[i] - differences[i - 1]) / level as f64;
+                differences[i] = (differences[i] - differences[i - 1]) * part;
             }
         }
         Self { differences }
@@ -32,6 +33,7 @@ impl Polynomial {
 
     /// Value and slope at `t`.
     #[must_use]
+    #[inline]
     pub fn at(&self, t: f64) -> (f64, f64) {
         let (mut value, mut slope) = (self.differences[NODES - 1], 0.0);
         for i in (0..NODES - 1).rev() {
@@ -43,10 +45,16 @@ impl Polynomial {
     }
 
     /// Where the polynomial is `target` between `low` and `high`, at which it lies on different sides of it:
-    /// Newton's method from `near`, bisecting where a step would leave the bracket.
+    /// Newton's method from `near`, bisecting where a step would leave the bracket. `rising` tells whether it is below the
+    /// target at `low`.
     #[must_use]
-    pub fn solve(&self, target: f64, near: f64, mut low: f64, mut high: f64) -> f64 {
-        let rising = self.at(high).0 > self.at(low).0;
+    pub fn solve(
+        &self,
+        target: f64,
+        near: f64,
+        [mut low, mut high]: [f64; 2],
+        rising: bool,
+    ) -> f64 {
         let mut t = near;
         for _ in 0..60 {
             let (value, slope) = self.at(t);
@@ -56,12 +64,12 @@ impl Polynomial {
                 high = t;
             }
             let newton = t - (value - target) / slope;
-            let next = if newton > low.min(high) && newton < low.max(high) {
-                newton
-            } else {
-                0.5 * (low + high)
-            };
-            if (next - t).abs() < ENOUGH {
+            let inside = low < newton && newton < high;
+            if inside && (newton - t).abs() < LAST_STEP {
+                return newton;
+            }
+            let next = if inside { newton } else { 0.5 * (low + high) };
+            if next == t {
                 return next;
             }
             t = next;
@@ -70,25 +78,24 @@ impl Polynomial {
     }
 }
 
-/// The first of the [`NODES`] (or fewer) samples among `from..to` that surround the interval `at, at + 1`.
+/// The first of the `N` (or fewer) of `count` samples that surround the interval `at, at + 1`.
 #[must_use]
-pub fn stencil(at: usize, from: usize, to: usize) -> usize {
-    let last = to.saturating_sub(NODES).max(from);
-    at.saturating_sub(NODES / 2 - 1).clamp(from, last)
+pub fn stencil<const N: usize>(at: usize, count: usize) -> usize {
+    at.saturating_sub(N / 2 - 1).min(count.saturating_sub(N))
 }
 
 /// Places of samples, in growing or falling order, that polynomials go through.
 #[derive(Clone, Copy, Debug)]
-pub struct Places {
-    places: [f64; NODES],
-    weights: [f64; NODES],
+pub struct Places<const N: usize> {
+    places: [f64; N],
+    weights: [f64; N],
 }
 
-impl Places {
-    /// `None` where the order changes, or for other than [`NODES`] places.
+impl<const N: usize> Places<N> {
+    /// `None` where the order changes, or for other than `N` places.
     pub fn new(places: impl IntoIterator<Item = f64>) -> Option<Self> {
         let places: Vec<f64> = places.into_iter().collect();
-        let places: [f64; NODES] = places.try_into().ok()?;
+        let places: [f64; N] = places.try_into().ok()?;
         let rising = places[1] > places[0];
         let in_order = |pair: &[f64]| {
             if rising {
@@ -98,7 +105,7 @@ impl Places {
             }
         };
         let weight = |i: usize| {
-            let others = (0..NODES).filter(|j| *j != i);
+            let others = (0..N).filter(|j| *j != i);
             1.0 / others.map(|j| places[i] - places[j]).product::<f64>()
         };
         places.windows(2).all(in_order).then(|| Self {
@@ -109,8 +116,8 @@ impl Places {
 
     /// By how much each sample counts `at` a place.
     #[must_use]
-    pub fn shares(&self, at: f64) -> [f64; NODES] {
-        let mut shares = [0.0; NODES];
+    pub fn shares(&self, at: f64) -> [f64; N] {
+        let mut shares = [0.0; N];
         let mut sum = 0.0;
         for ((share, place), weight) in shares.iter_mut().zip(self.places).zip(self.weights) {
             if at == place {

@@ -19,10 +19,10 @@ impl Row {
     /// The row of first touch at `distance` from the base; continued beyond the tip along the rest shape.
     #[must_use]
     pub fn new(rest: &Rest, distance: f64) -> Self {
-        let pole = rest.pole_at_distance(distance);
+        let (contact, pole) = rest.touch_at_distance(distance);
         Self {
             pole_distance: pole.length(),
-            contact: rest.arclength_at_distance(distance),
+            contact,
             touch: pole.to_angle(),
         }
     }

@@ -48,7 +48,7 @@ const ROUNDS: usize = 20;
 
 /// The length of a step that needs no trajectory at its end: what is left after it is its square, and second derivatives
 /// tell the rest to its cube.
-const LAST_STEP: f64 = 1e-7;
+const LAST_STEP: f64 = 3e-7;
 
 /// Newton's method for all `wanted` at once; the caller judges what is left in `miss` and `step`.
 #[must_use]
@@ -67,6 +67,9 @@ fn newton(method: Method, wanted: &[Wanted], coarse_rounds: usize) -> Vec<Sought
     let mut found: Vec<Option<Sought>> = vec![None; wanted.len()];
     let mut open: Vec<usize> = (0..wanted.len()).collect();
     for round in 0..coarse_rounds + ROUNDS {
+        if open.is_empty() {
+            break;
+        }
         let is_coarse = round < coarse_rounds;
         let method = if is_coarse { method.coarsely() } else { method };
         let launches: Vec<Launch> = open

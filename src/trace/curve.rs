@@ -2,7 +2,7 @@
 
 use crate::classify::RowBoundary;
 use crate::model::batch::{Launch, Method, land};
-use crate::model::{Dopri8, Effects, FirstAndEnergy, Resolution, Rest, Rod, Side, Units};
+use crate::model::{Dopri8, Effects, FirstAndEnergy, Moving, Resolution, Rest, Rod, Side, Units};
 use crate::scene::{Pole, Whisker};
 use crate::sheet::{Edge, Sheet};
 use serde::Serialize;
@@ -118,7 +118,7 @@ pub fn curve_at(
         })
         .collect();
     let states = land::<Dopri8, FirstAndEnergy>(method, &launches);
-    for ((i, end), full) in ends.into_iter().zip(&states) {
+    for ((i, end), Moving { full, .. }) in ends.into_iter().zip(&states) {
         let push = side.sign() * end.push;
         let reading = units.read(&rod, end.tau, full, sheet.rows[i].touch, push);
         rows[i] = Detachment {

@@ -6,7 +6,8 @@
 //! `G_i = w_i/w - i theta_i`, `G_ij = w_ij/w - w_i w_j/w^2 - i theta_ij`.
 
 use crate::model::complex::Complex;
-use crate::model::landing::{Base, Curved, Full, Landing};
+use crate::model::contact::Contact;
+use crate::model::landing::{Base, Change, Curved, Full, Landing, Moving};
 use crate::model::order::{
     Arrival, Curvatures, Energetic, Order, Slopes, Triple, general, similar,
 };
@@ -62,7 +63,7 @@ impl<T: Lanes> Derived<T> for First {
 }
 
 impl Kind for FirstAndEnergy {
-    type Answer = Full;
+    type Answer = Moving;
 }
 
 impl<T: Lanes> Derived<T> for FirstAndEnergy {
@@ -74,21 +75,79 @@ impl<T: Lanes> Derived<T> for FirstAndEnergy {
         arrival: &Arrival<T>,
         pole: [T; 2],
         (slopes, energy): (Slopes<T>, T),
-    ) -> [Full; WIDTH] {
+    ) -> [Moving; WIDTH] {
         let [a, b, c, d, e, g] = Centre::new(arrival, pole).landing(&slopes);
         let [cos, sin, x, y] = arrival.rod;
-        let force = arrival.contact.force;
-        let numbers = [a, b, c, d, e, g, cos, sin, x, y, force, energy];
+        let Contact {
+            radius,
+            force,
+            tangent: [_, slant],
+            ..
+        } = arrival.contact;
+        // The work done along the change: the moment at the base turns it, and the force moves it.
+        let work = |[theta, _, y]: Triple<T>| force * x.mul_add(theta, -y);
+        let [theta_tau, x_tau, y_tau] = slopes.by_tau;
+        let [theta_load, x_load, y_load] = slopes.by_load;
+        let force_tau = T::of(-2.0) * arrival.taper * force;
+        let energy_tau = work(slopes.by_tau) - force * radius * slant;
+        let numbers = [
+            a,
+            b,
+            c,
+            d,
+            e,
+            g,
+            cos,
+            sin,
+            x,
+            y,
+            force,
+            energy,
+            theta_tau,
+            x_tau,
+            y_tau,
+            force_tau,
+            energy_tau,
+            theta_load,
+            x_load,
+            y_load,
+            radius * radius,
+            work(slopes.by_load),
+        ];
         spread(numbers).map(|numbers| {
-            let [a, b, c, d, e, g, cos, sin, x, y, force, energy] = numbers;
-            Full {
-                landing: landing([a, b, c, d, e, g]),
-                base: Base {
-                    tangent: DVec2::new(cos, sin),
-                    position: DVec2::new(x, y),
-                    force,
-                },
+            let [
+                a,
+                b,
+                c,
+                d,
+                e,
+                g,
+                cos,
+                sin,
+                x,
+                y,
+                force,
                 energy,
+                changes @ ..,
+            ] = numbers;
+            let change = |i: usize| Change {
+                angle: changes[i],
+                position: DVec2::new(changes[i + 1], changes[i + 2]),
+                force: changes[i + 3],
+                energy: changes[i + 4],
+            };
+            Moving {
+                full: Full {
+                    landing: landing([a, b, c, d, e, g]),
+                    base: Base {
+                        tangent: DVec2::new(cos, sin),
+                        position: DVec2::new(x, y),
+                        force,
+                    },
+                    energy,
+                },
+                by_tau: change(0),
+                by_load: change(5),
             }
         })
     }

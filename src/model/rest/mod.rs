@@ -66,15 +66,6 @@ impl Rest {
         }
     }
 
-    /// Arclength at which the whisker at rest is `distance` from its base.
-    #[must_use]
-    pub fn arclength_at_distance(&self, distance: f64) -> f64 {
-        match &self.form {
-            Form::Parabola(parabola) => parabola.arclength_at(parabola.x_of_chord(distance)),
-            Form::EulerSpiral(spiral) => spiral.arclength_of_chord(distance),
-        }
-    }
-
     /// Point and unit tangent at `distance` from the base.
     fn at_distance(&self, distance: f64) -> (DVec2, DVec2) {
         match &self.form {
@@ -83,10 +74,26 @@ impl Rest {
         }
     }
 
-    /// Direction of the point at `distance` from the base, as an angle from the base's tangent.
+    /// The point at `distance` from the base.
     #[must_use]
-    pub fn direction_at_distance(&self, distance: f64) -> f64 {
-        self.at_distance(distance).0.to_angle()
+    pub fn point_at_distance(&self, distance: f64) -> DVec2 {
+        self.at_distance(distance).0
+    }
+
+    /// Arclength of the contact, and centre of the pole, when it first touches the whisker at `distance` from the base.
+    #[must_use]
+    pub fn touch_at_distance(&self, distance: f64) -> (f64, DVec2) {
+        let (s, (point, tangent)) = match &self.form {
+            Form::Parabola(parabola) => {
+                let x = parabola.x_of_chord(distance);
+                (parabola.arclength_at(x), parabola.at(x))
+            }
+            Form::EulerSpiral(spiral) => {
+                let s = spiral.arclength_of_chord(distance);
+                (s, spiral.at_arclength(s))
+            }
+        };
+        (s, point - self.pole * tangent.perp())
     }
 
     /// Centre of the pole when it first touches the whisker at `distance` from the base.

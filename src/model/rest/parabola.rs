@@ -69,7 +69,7 @@ impl Parabola {
     /// Arclength where the parabola has gone `x` along its own axis.
     pub fn arclength_at(&self, x: f64) -> f64 {
         if self.bend == 0.0 {
-            return x * self.slope.hypot(1.0);
+            return x * (1.0 + self.slope * self.slope).sqrt();
         }
         let t = (2.0 * self.bend).mul_add(x, self.slope);
         (arc(t) - arc(self.slope)) / (4.0 * self.bend)
@@ -87,7 +87,7 @@ impl Parabola {
     /// Point and unit tangent at arclength `s`.
     pub fn at_arclength(&self, s: f64) -> (DVec2, DVec2) {
         let x = if self.bend == 0.0 {
-            s / self.slope.hypot(1.0)
+            s / (1.0 + self.slope * self.slope).sqrt()
         } else {
             (self.slope_at(s) - self.slope) / (2.0 * self.bend)
         };
@@ -98,17 +98,19 @@ impl Parabola {
     /// `x^2 (1 + (A x + t0)^2) = chord^2`, whose left side grows with `x` (the scene made sure).
     pub fn x_of_chord(&self, chord: f64) -> f64 {
         let (mut low, mut high) = (0.0, chord);
-        let mut x = chord;
+        let most = self.bend * chord + self.slope;
+        let mut x = chord / (1.0 + most * most).sqrt();
         for _ in 0..200 {
-            let rise = self.bend.mul_add(x, self.slope);
-            let length = x * rise.hypot(1.0);
+            let rise = self.bend * x + self.slope;
+            let square = 1.0 + rise * rise;
+            let root = square.sqrt();
+            let length = x * root;
             if length > chord {
                 high = x;
             } else {
                 low = x;
             }
-            let derivative = (1.0 + rise * rise + self.bend * x * rise) / rise.hypot(1.0);
-            let newton = x - (length - chord) / derivative;
+            let newton = x - (length - chord) * root / (square + self.bend * x * rise);
             let next = if newton > low && newton < high {
                 newton
             } else {
