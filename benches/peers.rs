@@ -17,6 +17,7 @@ use serde_json::{Value, json};
 use shots::Random;
 use std::fmt::Write;
 use std::time::Instant;
+use whiskmap::accuracy;
 use whiskmap::integrate::Cpu;
 use whiskmap::map::{self, Observer};
 use whiskmap::model::batch::{Launch, Method, Unit, land_on};
@@ -73,14 +74,15 @@ fn processor() -> String {
     )
 }
 
-/// Taper up to 0.95, contacts from 0.05 of the length to next to the tip, straight or `A*` of 0.4, `q` up to 9.
+/// Taper up to 0.95, contacts from 0.05 of the length to next to the tip, `q` up to 9; half of them straight, then half with
+/// `A*` of 0.4.
 fn ensemble() -> Vec<Launch> {
     let mut random = Random(1);
     (0..TRAJECTORIES)
         .map(|i| {
             let rod = Rod {
                 taper: random.between(0.0, 0.95),
-                bend: if i % 2 == 0 { 0.0 } else { 0.4 },
+                bend: if i < TRAJECTORIES / 2 { 0.0 } else { 0.4 },
                 ..Rod::default()
             };
             let s = random.between(0.05, 0.999);
@@ -91,13 +93,17 @@ fn ensemble() -> Vec<Launch> {
         .collect()
 }
 
+/// Straight rods and curved ones each with the effects that they call for, as two scenes would.
 fn land(unit: Unit, resolution: Resolution, launches: &[Launch]) -> Vec<Landing> {
-    let effects = Effects::of(launches.iter().map(|launch| &launch.rod));
-    let method = Method {
-        effects,
-        resolution,
-    };
-    land_on::<Dopri8, First>(unit, method, launches)
+    let scenes = launches.chunk_by(|a, b| a.rod.bend == b.rod.bend);
+    let landed = scenes.flat_map(|launches| {
+        let method = Method {
+            effects: Effects::of(launches.iter().map(|launch| &launch.rod)),
+            resolution,
+        };
+        land_on::<Dopri8, First>(unit, method, launches)
+    });
+    landed.collect()
 }
 
 /// Place of the pole, and the derivatives of the logarithm of its distance and of its direction by the contact's arclength
@@ -196,10 +202,12 @@ fn scene() -> Scene {
     Scene::parse(text, "cone.toml", "cone").unwrap()
 }
 
-/// Detachment points of the cone, both sides, 1024 distances each.
+/// Detachment points of the cone, both sides, 1024 distances each, in the steps that `--tolerance` of 1e-9 degrees takes.
 fn detachment(pool: &ThreadPool) -> Value {
     const POINTS: usize = 1024;
+    const TOLERANCE_DEG: f64 = 1e-9;
     let scene = scene();
+    let steps = accuracy::cheapest(&scene, &Side::BOTH, TOLERANCE_DEG).unwrap();
     let distances: Vec<f64> = (0..POINTS)
         .map(|i| 2.0 + 18.0 * i as f64 / (POINTS - 1) as f64)
         .collect();
@@ -207,22 +215,27 @@ fn detachment(pool: &ThreadPool) -> Value {
         Side::BOTH.map(|side| curve_at(resolution, &scene.whisker, &scene.pole, side, &distances))
     };
     let seconds = seconds(pool, || {
-        std::hint::black_box(curves(Resolution::FINE));
+        std::hint::black_box(curves(steps.resolution));
     });
-    let (found, exact) = (curves(Resolution::FINE), curves(Resolution::of(128)));
+    let (found, exact) = (curves(steps.resolution), curves(Resolution::of(128)));
     let pairs = found.iter().flatten().zip(exact.iter().flatten());
     let apart = pairs.filter_map(|(a, b)| Some((a.push_angle_deg? - b.push_angle_deg?).abs()));
     json!({
         "microseconds": 1e6 * seconds / (2 * POINTS) as f64,
         "error_deg": apart.fold(0.0, f64::max),
+        "estimate_deg": steps.error_deg,
+        "steps": steps.resolution.least,
         "points": 2 * POINTS,
     })
 }
 
-/// Cells of the cone's map, by those with a state.
+/// Cells of the cone's map, and of them those with a state, in the steps that `--tolerance` of 1e-9 radians takes.
 fn cell(pool: &ThreadPool) -> Value {
+    const TOLERANCE: f64 = 1e-9;
     let scene = scene();
-    let plan = Plan::new(&scene).unwrap();
+    let steps = accuracy::cheapest(&scene, &Side::BOTH, TOLERANCE.to_degrees()).unwrap();
+    let mut plan = Plan::new(&scene).unwrap();
+    plan.method.resolution = steps.resolution;
     let mut summary = None;
     let seconds = seconds(pool, || {
         summary = Some(map::run(&scene, &plan, &mut Cpu, &mut Nothing).unwrap());
@@ -232,6 +245,8 @@ fn cell(pool: &ThreadPool) -> Value {
         "microseconds": 1e6 * seconds / summary.cells() as f64,
         "microseconds_by_state": 1e6 * seconds / summary.refined as f64,
         "residual": summary.worst_residual,
+        "estimate": steps.error_deg.to_radians(),
+        "steps": steps.resolution.least,
         "cells": summary.cells(),
         "states": summary.refined,
         "seconds": summary.seconds().map(|(stage, s)| json!({stage: s})).collect::<Vec<_>>(),

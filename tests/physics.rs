@@ -155,7 +155,10 @@ fn straight_whiskers_are_symmetric() {
                 let whisker = whisker(20.0, 30.0, tip_um, 0.0, 0.0);
                 let (cb, at_cb) = detachment(&whisker, &Pole::smooth(pole_mm), Side::Cb, distance);
                 let (cf, at_cf) = detachment(&whisker, &Pole::smooth(pole_mm), Side::Cf, distance);
-                assert_eq!(cb, -cf);
+                assert_eq!(
+                    cb, -cf,
+                    "{tip_um} {pole_mm} {distance}: {at_cb:?} {at_cf:?}"
+                );
                 assert_eq!((at_cb.tau, at_cb.load), (at_cf.tau, -at_cf.load));
             }
         }

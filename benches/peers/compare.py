@@ -57,7 +57,7 @@ def solutions(whiskmap, auto, bvp):
     """AUTO and solve_bvp beside whiskmap's detachment points and cells."""
     fold, cell = whiskmap["detachment"], whiskmap["cell"]
     fold = {"microseconds": fold["microseconds"], "error_max": radians(fold["error_deg"])}
-    cell = {"microseconds": cell["microseconds"], "error_max": cell["residual"]}
+    cell = {"microseconds": cell["microseconds"], "error_max": cell["estimate"]}
     for row in auto["rows"] if auto else ():
         ours, required = (fold, FOLD) if row["kind"] == "fold" else (cell, EQUILIBRIUM)
         yield f"AUTO {row['kind']}, NTST {row['intervals']}", ratio(row, ours, required)

@@ -19,11 +19,21 @@ class Ensemble:
         # Radius at the contact, as a part of the base's.
         self.radius = 1 - self.taper * self.s
 
+        self.is_bent = bool(self.bend.any())
+
+    def scenes(self):
+        """The straight whiskers and the bent ones, each as an ensemble of their own."""
+        return [self._of(self.bend == 0), self._of(self.bend != 0)]
+
     def sort(self, key):
         """Puts the trajectories in the order of `key`."""
-        order = np.argsort(key)
-        for name, array in vars(self).items():
-            setattr(self, name, array[order])
+        self.__dict__ |= vars(self._of(np.argsort(key)))
+
+    def _of(self, chosen):
+        part = object.__new__(Ensemble)
+        part.__dict__ = {name: value[chosen] for name, value in vars(self).items() if name != "is_bent"}
+        part.is_bent = bool(part.bend.any())
+        return part
 
     def slope(self):
         """Slope t of the resting parabola at the contact: t sqrt(1 + t^2) + asinh(t) = 4 A s, by Newton."""

@@ -17,7 +17,8 @@ the resting curvature and m is k times the resting slope: polynomials only. Sens
 
 Microseconds for one trajectory on one thread at order 10 (batch 8, largest error 1e-8), measured on a Zen 5: this 0.72,
 compact mode 1.2; angle as state with sin and cos 0.73; resting angle as state with cos^3 0.77; both 0.79; arclength a
-as the independent variable 0.90. Sorted by load and length, as below, lanes end together (unsorted 0.85).
+as the independent variable 0.90. Sorted by load and length, as below, lanes end together (unsorted 0.85). Whiskers that
+are straight at rest have a system of their own, without k and m.
 """
 
 import json
@@ -39,26 +40,26 @@ TOLERANCES = [1.5 * exp(2 - 2 * order) for order in range(5, 15)]
 fork = get_context("fork")
 
 
-def system():
-    names = ("C", "S", "x", "y", "G", "k", "m", "theta_s", "x_s", "y_s", "theta_p", "x_p", "y_p")
-    C, S, x, y, G, k, m, theta_s, x_s, y_s, theta_p, x_p, y_p = heyoka.make_vars(*names)
+def system(is_bent):
+    names = ("C", "S", "x", "y", "G", "theta_s", "x_s", "y_s", "theta_p", "x_p", "y_p", "k", "m")
+    C, S, x, y, G, theta_s, x_s, y_s, theta_p, x_p, y_p, k, m = heyoka.make_vars(*names)
     beta, p = heyoka.par[0], heyoka.par[1]
     lever = G * x
-    K = k + p * lever
+    K = k + p * lever if is_bent else p * lever
+    resting = [(k, beta * k + 3 * (k * m)), (m, beta * m - k * k + 2 * (m * m))] if is_bent else []
     return [
         (C, beta * C + K * S),
         (S, beta * S - K * C),
         (x, C),
         (y, S),
         (G, -3 * beta * G),
-        (k, beta * k + 3 * (k * m)),
-        (m, beta * m - k * k + 2 * (m * m)),
         (theta_s, -p * (G * x_s)),
         (x_s, -(S * theta_s)),
         (y_s, C * theta_s),
         (theta_p, -lever - p * (G * x_p)),
         (x_p, -(S * theta_p)),
         (y_p, C * theta_p),
+        *resting,
     ]
 
 
@@ -67,15 +68,16 @@ def start(ensemble):
     beta, rho, t = ensemble.taper * ensemble.s, ensemble.radius, ensemble.slope()
     curvature = 2 * ensemble.bend * ensemble.s / np.hypot(1, t) ** 3
     zero, one = np.zeros_like(rho), np.ones_like(rho)
-    contact = [rho, zero, zero, zero, one, rho * curvature, rho * curvature * t]
-    states = np.array([*contact, -curvature, one, zero, zero, zero, zero])
+    derivatives = [-curvature, one, zero, zero, zero, zero]
+    resting = [rho * curvature, rho * curvature * t] if ensemble.is_bent else []
+    states = np.array([rho, zero, zero, zero, one, *derivatives, *resting])
     straight = np.where(beta > 0, beta, 1)
     ends = np.where(beta > 0, -np.log1p(-beta) / straight, 1)
     return states, np.array([beta, ensemble.force * ensemble.s**2 / rho**3]), ends
 
 
 def error(ensemble, states):
-    C, S, x, y, _, _, _, theta_s, x_s, y_s, theta_p, x_p, y_p = states
+    C, S, x, y, _, theta_s, x_s, y_s, theta_p, x_p, y_p = states[:11]
     base = x + 1j * y
     by_s = ((x_s + 1j * y_s) / base - 1j * theta_s) / ensemble.s
     by_p = (x_p + 1j * y_p) / base - 1j * theta_p
@@ -99,42 +101,52 @@ def solve(integrator, batches, states=None):
     return perf_counter() - before
 
 
-def work(tolerance, batches, barrier, answers, place):
-    """One process: its batches, RUNS times, each together with the other processes."""
-    shape = batches[0].shape[1:]
-    ones = np.ones(shape), np.ones((2, shape[1]))
-    options = {"tol": tolerance, "compact_mode": False, "fast_math": True, "force_avx512": True}
-    integrator = heyoka.taylor_adaptive_batch(system(), ones[0], pars=ones[1], **options)
-    states, seconds = np.empty_like(batches[0]), []
-    solve(integrator, batches, states)
+def work(tolerance, scenes, barrier, answers, place):
+    """One process: its batches of each scene, RUNS times, each together with the other processes."""
+    solvers = []
+    for is_bent, batches in scenes:
+        shape = batches[0].shape[1:]
+        ones = np.ones(shape), np.ones((2, shape[1]))
+        options = {"tol": tolerance, "compact_mode": False, "fast_math": True, "force_avx512": True}
+        integrator = heyoka.taylor_adaptive_batch(system(is_bent), ones[0], pars=ones[1], **options)
+        solvers.append((integrator, batches, np.empty_like(batches[0])))
+    for solver in solvers:
+        solve(*solver)
+    seconds = []
     for _ in range(RUNS):
         barrier.wait()
-        whole = solve(integrator, batches, states)
+        whole = sum(solve(*solver) for solver in solvers)
         barrier.wait()
-        seconds.append((whole, solve(integrator, batches)))
-    answers.put((place, states, seconds, integrator.order))
+        seconds.append((whole, sum(solve(integrator, batches) for integrator, batches, _ in solvers)))
+    answers.put((place, [states for _, _, states in solvers], seconds, solvers[0][0].order))
 
 
-def row(ensemble, threads, batch, tolerance):
-    """Cost and error of the ensemble, solved with one tolerance; Python's own part of the time is subtracted."""
-    batches = [cut(array, batch) for array in start(ensemble)]
+def row(scenes, threads, batch, tolerance):
+    """Cost and error of the scenes, solved with one tolerance; Python's own part of the time is subtracted."""
+    batches = [[cut(array, batch) for array in start(ensemble)] for ensemble in scenes]
     barrier, answers = fork.Barrier(threads), fork.Queue()
-    shares = [[array[place::threads] for array in batches] for place in range(threads)]
+    kinds = [ensemble.is_bent for ensemble in scenes]
+    shares = [
+        [(kind, [array[place::threads] for array in each]) for kind, each in zip(kinds, batches)]
+        for place in range(threads)
+    ]
     processes = [
         fork.Process(target=work, args=(tolerance, share, barrier, answers, place))
         for place, share in enumerate(shares)
     ]
     for process in processes:
         process.start()
-    states, net, python = np.empty_like(batches[0]), [], []
+    states, net, python = [np.empty_like(each[0]) for each in batches], [], []
     for _ in processes:
         place, found, seconds, order = answers.get()
-        states[place::threads] = found
+        for whole, part in zip(states, found):
+            whole[place::threads] = part
         net.append([whole - loop for whole, loop in seconds])
         python.append([loop for _, loop in seconds])
     for process in processes:
         process.join()
-    errors = error(ensemble, np.moveaxis(states, 1, 0).reshape(states.shape[1], -1))
+    columns = (np.moveaxis(each, 1, 0).reshape(each.shape[1], -1) for each in states)
+    errors = np.concatenate([error(*pair) for pair in zip(scenes, columns)])
     # A run takes as long as its slowest process.
     net, python = (1e6 * median(map(max, zip(*times))) / errors.size for times in (net, python))
     return {
@@ -156,11 +168,12 @@ def cut(array, batch):
 
 
 def main():
-    ensemble = Ensemble(sys.argv[1])
-    load = ensemble.force * (ensemble.s / ensemble.radius) ** 2
-    # The number of steps grows with the load, and less with the length.
-    ensemble.sort(load + 0.4 * start(ensemble)[2])
-    rows = [row(ensemble, *case) for case in cases()]
+    scenes = Ensemble(sys.argv[1]).scenes()
+    for ensemble in scenes:
+        load = ensemble.force * (ensemble.s / ensemble.radius) ** 2
+        # The number of steps grows with the load, and less with the length.
+        ensemble.sort(load + 0.4 * start(ensemble)[2])
+    rows = [row(scenes, *case) for case in cases()]
     json.dump({"version": heyoka.__version__, "rows": rows}, sys.stdout)
 
 

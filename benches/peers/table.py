@@ -7,8 +7,9 @@ trajectory with first derivatives; compilation and Python's loop not counted.
 AUTO: one point by mesh size (NTST), error in radians of a push angle of which
 it prints 11 digits.
 solve_bvp: one cell, the cheapest mesh with an error of at most 1e-9 of the
-contact's arclength. whiskmap beside them: a detachment point, error in radians,
-or a cell of a map, with its residual. AUTO, solve_bvp, these two: one thread."""
+contact's arclength. whiskmap beside them, in steps for 1e-9 degrees and 1e-9
+radians: a detachment point, error in radians, or a cell of a map refined to
+1e-12, with the estimated error. AUTO, solve_bvp, these two: one thread."""
 
 
 def lines(whiskmap, versions, ratios):

@@ -5,12 +5,20 @@ use super::watch::watch;
 use super::{Engine, Report, Row, Rung, Stages};
 use crate::integrate::{EngineError, Hit, Solver};
 use crate::model::batch::{Launch, Unit, flops};
-use crate::model::{Dopri8, First, Resolution};
+use crate::model::{Dopri8, First, Resolution, Rk4};
 use std::convert::Infallible;
 use std::time::Instant;
 
 /// After a residual below this, in whisker lengths, one more Newton step reaches the rounding.
 const TOLERANCE: f64 = 1e-7;
+
+/// The classical method, to see what order is worth: on the widest engine.
+const RK4_LADDER: [Resolution; 4] = [
+    Resolution::of(16),
+    Resolution::of(32),
+    Resolution::of(64),
+    Resolution::of(128),
+];
 
 /// Rounds of the peak's kernel: milliseconds.
 const ROUNDS: u32 = 1 << 20;
@@ -28,7 +36,8 @@ pub fn measure(
     if all > 1 {
         engines.push((vectors, all));
     }
-    for (unit, threads) in engines {
+    let widest = engines.len() - 1;
+    for (i, (unit, threads)) in engines.into_iter().enumerate() {
         let name = format!("cpu {unit}");
         said(&format!("{name}, {threads} threads"));
         let pool = rayon::ThreadPoolBuilder::new()
@@ -43,7 +52,7 @@ pub fn measure(
         let start = Instant::now();
         pool.install(|| {
             let shots = task.shots.get(..1).unwrap_or_default();
-            solver(Resolution::FINE).solve(task.effects, &task.rods, shots)
+            solver(Resolution::FINE).solve::<Dopri8>(task.effects, &task.rods, shots)
         });
         let first_result_s = start.elapsed().as_secs_f64();
         let peak_gflops = pool.install(|| peak(unit, runs));
@@ -55,38 +64,77 @@ pub fn measure(
             first_result_s,
         });
         for resolution in Resolution::LADDER {
-            let solve = || solver(resolution).solve(task.effects, &task.rods, &task.shots);
-            let Ok((seconds, hits)) =
-                watch(runs, || Ok::<Vec<Hit>, Infallible>(pool.install(solve)));
-            let rung = Rung {
-                integrator: "dopri8",
-                steps: resolution.least,
-                newton_f64: 0,
+            let solve = || {
+                pool.install(|| {
+                    solver(resolution).solve::<Dopri8>(task.effects, &task.rods, &task.shots)
+                })
             };
-            let work = operations(task, &hits, |launch| {
-                let steps = resolution.steps(&launch.rod, launch.tau, launch.load);
-                flops::<Dopri8, First>(task.effects, steps, launch)
-            });
-            let points: Vec<(f64, f64)> = hits.iter().map(|hit| (hit.tau, hit.load)).collect();
-            report.rows.push(Row::new(
-                &name,
-                Some(threads),
-                rung,
-                seconds,
-                Stages {
-                    dispatch: 1e3 * seconds.median,
-                    ..Stages::default()
-                },
-                Work {
-                    trajectories: trajectories(&hits),
-                    operations: work,
-                    peak_gflops,
-                },
-                task.errors(&points),
+            let count =
+                |steps, launch: &Launch| flops::<Dopri8, First>(task.effects, steps, launch);
+            report.rows.push(row(
+                task,
+                runs,
+                (&name, threads, peak_gflops),
+                ("dopri8", resolution),
+                solve,
+                count,
+            ));
+        }
+        for resolution in RK4_LADDER.into_iter().filter(|_| i == widest) {
+            let solve = || {
+                pool.install(|| {
+                    solver(resolution).solve::<Rk4>(task.effects, &task.rods, &task.shots)
+                })
+            };
+            let count = |steps, launch: &Launch| flops::<Rk4, First>(task.effects, steps, launch);
+            report.rows.push(row(
+                task,
+                runs,
+                (&name, threads, peak_gflops),
+                ("rk4", resolution),
+                solve,
+                count,
             ));
         }
     }
     Ok(())
+}
+
+/// The row of an engine, which is its name, its threads and their peak, at an integrator's resolution.
+fn row(
+    task: &Task,
+    runs: usize,
+    (name, threads, peak_gflops): (&str, usize, f64),
+    (integrator, resolution): (&'static str, Resolution),
+    solve: impl Fn() -> Vec<Hit>,
+    flops: impl Fn(u32, &Launch) -> u64,
+) -> Row {
+    let Ok((seconds, hits)) = watch(runs, || Ok::<Vec<Hit>, Infallible>(solve()));
+    let work = operations(task, &hits, |launch| {
+        let steps = resolution.steps(&launch.rod, launch.tau, launch.load);
+        flops(steps, launch)
+    });
+    let points: Vec<(f64, f64)> = hits.iter().map(|hit| (hit.tau, hit.load)).collect();
+    Row::new(
+        name,
+        Some(threads),
+        Rung {
+            integrator,
+            steps: resolution.least,
+            newton_f64: 0,
+        },
+        seconds,
+        Stages {
+            dispatch: 1e3 * seconds.median,
+            ..Stages::default()
+        },
+        Work {
+            trajectories: trajectories(&hits),
+            operations: work,
+            peak_gflops,
+        },
+        task.errors(&points),
+    )
 }
 
 /// What a row's seconds were spent on.

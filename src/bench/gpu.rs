@@ -65,7 +65,8 @@ fn engine(
         first_result_s,
     });
     for newton_f64 in 0..=NEWTON {
-        let (seconds, (hits, points, stages)) = watch(runs, || {
+        let mut stages = Vec::new();
+        let (seconds, (hits, points)) = watch(runs, || {
             let hits = gpu.shoot(task.effects, &task.rods, &task.shots)?;
             let times = gpu.times().unwrap_or_default();
             let start = Instant::now();
@@ -74,14 +75,16 @@ fn engine(
                 newton(task, &mut points);
             }
             let ms = |duration: std::time::Duration| 1e3 * duration.as_secs_f64();
-            let stages = Stages {
+            stages.push(Stages {
                 upload: ms(times.upload),
                 dispatch: ms(times.dispatch),
                 readback: ms(times.readback),
                 refine: ms(start.elapsed()),
-            };
-            Ok::<_, EngineError>((hits, points, stages))
+            });
+            Ok::<_, EngineError>((hits, points))
         })?;
+        // The first run warms up.
+        let stages = Stages::medians(&stages[1..]);
         let steps = |launch: &Launch| {
             let measured = Some(&launch.rod).filter(|_| task.effects.profile);
             precision.steps(measured, launch.tau, launch.load)

@@ -71,7 +71,7 @@ impl fmt::Display for Rung {
     }
 }
 
-/// Milliseconds per stage; 0 where an engine has no such stage.
+/// Milliseconds per stage, medians of the runs; 0 where an engine has no such stage.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
 pub struct Stages {
     /// Packing and handing to the device.
@@ -82,6 +82,19 @@ pub struct Stages {
     pub readback: f64,
     /// Newton steps in `f64` after the engine.
     pub refine: f64,
+}
+
+impl Stages {
+    /// The medians of the stages in several runs.
+    fn medians(runs: &[Self]) -> Self {
+        let median = |stage: fn(&Self) -> f64| watch::median(runs.iter().map(stage));
+        Self {
+            upload: median(|run| run.upload),
+            dispatch: median(|run| run.dispatch),
+            readback: median(|run| run.readback),
+            refine: median(|run| run.refine),
+        }
+    }
 }
 
 /// An engine by itself.

@@ -112,7 +112,7 @@ impl Task {
             resolution: EXACT,
             tolerance: 1e-13,
         };
-        let exact = solver.solve(effects, &rods, &starts);
+        let exact = solver.solve::<Dopri8>(effects, &rods, &starts);
         let exact = exact.iter().zip(&shots).map(|(hit, shot)| Launch {
             rod: rods[shot.rod as usize],
             tau: hit.tau,

@@ -21,8 +21,18 @@ pub fn watch<T, E>(runs: usize, mut work: impl FnMut() -> Result<T, E>) -> Resul
         found = work()?;
         seconds.push(start.elapsed().as_secs_f64());
     }
-    seconds.sort_by(f64::total_cmp);
-    let median = seconds[seconds.len() / 2];
-    let spread = (seconds[seconds.len() - 1] - seconds[0]) / median;
+    let [fastest, slowest] = [f64::min, f64::max].map(|f| seconds.iter().copied().reduce(f));
+    let median = median(seconds);
+    let spread = slowest
+        .zip(fastest)
+        .map_or(0.0, |(slowest, fastest)| slowest - fastest)
+        / median;
     Ok((Timing { median, spread }, found))
+}
+
+/// The median; of an even number, the larger one of the two in the middle.
+pub fn median(values: impl IntoIterator<Item = f64>) -> f64 {
+    let mut values: Vec<f64> = values.into_iter().collect();
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied().unwrap_or_default()
 }

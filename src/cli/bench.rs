@@ -186,7 +186,7 @@ fn named(engine: &str, threads: Option<usize>) -> String {
     }
 }
 
-/// Error against time, a line per engine.
+/// Error against time, a line per engine and integrator.
 fn chart(report: &Report) -> Chart {
     let place = |row: &Row| {
         let error = row.errors.angle_deg.worst;
@@ -196,19 +196,22 @@ fn chart(report: &Report) -> Chart {
         (Ink::Grey, Stroke::Solid),
         (Ink::Black, Stroke::Solid),
         (Ink::Black, Stroke::Dashed),
+        (Ink::Grey, Stroke::Dashed),
         (Ink::Blue, Stroke::Solid),
         (Ink::Blue, Stroke::Dashed),
-        (Ink::Grey, Stroke::Dashed),
     ];
-    let engines = report
-        .rows
-        .chunk_by(|a, b| (&a.engine, a.threads) == (&b.engine, b.threads));
+    let kind = |row: &Row| (row.engine.clone(), row.threads, row.rung.integrator);
+    let engines = report.rows.chunk_by(|a, b| kind(a) == kind(b));
     let lines = engines.zip(looks.iter().cycle());
     let lines = lines.map(|(rows, &(ink, stroke))| Line {
         points: rows.iter().map(place).collect(),
         ink,
         stroke,
-        name: Some(named(&rows[0].engine, rows[0].threads)),
+        name: Some(format!(
+            "{}, {}",
+            named(&rows[0].engine, rows[0].threads),
+            rows[0].rung.integrator
+        )),
     });
     let front = report.rows.iter().filter(|row| row.pareto);
     let front = front.map(|row| Dot {

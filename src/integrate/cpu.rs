@@ -1,8 +1,8 @@
 //! The CPU engine: `f64`, SIMD lanes, all threads of the current pool.
 
 use super::{Description, Engine, EngineError, Hit, MOST_STEPS, Outcome, Shot};
-use crate::model::batch::{Launch, Method, Unit, land_on};
-use crate::model::{Dopri8, Effects, First, Landing, Resolution, Rod, arclength};
+use crate::model::batch::{Kernel, Launch, Method, Unit, land_on};
+use crate::model::{Dopri8, Effects, First, Integrator, Landing, Resolution, Rod, arclength};
 use glam::DVec2;
 
 /// Accurate to 1e-7: the refinement then needs no second trajectory.
@@ -27,7 +27,7 @@ impl Cpu {
             resolution: RESOLUTION,
             tolerance: TOLERANCE,
         };
-        solver.solve(effects, rods, shots)
+        solver.solve::<Dopri8>(effects, rods, shots)
     }
 }
 
@@ -43,9 +43,12 @@ pub struct Solver {
 }
 
 impl Solver {
-    /// Solves `shots`, each on one of `rods`; answers in the same order.
+    /// Solves `shots`, each on one of `rods`, with the integrator `M`; answers in the same order.
     #[must_use]
-    pub fn solve(self, effects: Effects, rods: &[Rod], shots: &[Shot]) -> Vec<Hit> {
+    pub fn solve<M: Integrator>(self, effects: Effects, rods: &[Rod], shots: &[Shot]) -> Vec<Hit>
+    where
+        First: Kernel<M>,
+    {
         let method = Method {
             effects,
             resolution: self.resolution,
@@ -70,7 +73,7 @@ impl Solver {
                     load: hits[i].load,
                 })
                 .collect();
-            let landings = land_on::<Dopri8, First>(self.unit, method, &launches);
+            let landings = land_on::<M, First>(self.unit, method, &launches);
             let mut next = Vec::new();
             for ((&i, launch), landing) in open.iter().zip(&launches).zip(&landings) {
                 let hit = &mut hits[i];

@@ -96,7 +96,7 @@ fn answer(
     let push = push_deg.to_radians();
     let at_tip = sheet
         .zip(cell.state)
-        .is_some_and(|(sheet, state)| state.is_at_tip(&sheet.rod));
+        .is_some_and(|(sheet, state)| state.is_at_tip(sheet));
     let (regime, status) = match boundary {
         // At the tip both verdicts are right; the boundary's is taken.
         Some(boundary)

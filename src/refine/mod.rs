@@ -8,7 +8,7 @@ mod near_fold;
 
 use crate::integrate::Shot;
 use crate::model::batch::{Launch, Method, land};
-use crate::model::{Dopri8, FirstAndEnergy, Full, Rod, arclength, limited};
+use crate::model::{Dopri8, FirstAndEnergy, Full, arclength, limited};
 use crate::sheet::Sheet;
 use near_fold::Verdict;
 
@@ -59,11 +59,11 @@ pub struct State {
 }
 
 impl State {
-    /// Whether the contact is at the tip of `rod`, as far as the residual tells.
+    /// Whether the contact is at the tip of the rod of `sheet`, as far as the residual tells.
     #[must_use]
-    pub fn is_at_tip(&self, rod: &Rod) -> bool {
-        let tip = rod.tau_tip();
-        (self.tau - tip).abs() <= TIP_TIE * tip + self.residual / rod.radius(tip)
+    pub fn is_at_tip(&self, sheet: &Sheet) -> bool {
+        let [tau, radius] = sheet.tip;
+        (self.tau - tau).abs() <= TIP_TIE * tau + self.residual / radius
     }
 }
 
@@ -221,7 +221,7 @@ fn newton(
 fn verdict(sheet: &Sheet, state: &State) -> End {
     if !sheet.is_stable(state.tau, state.load, &state.full.landing) {
         End::NotConverged
-    } else if state.tau > sheet.rod.tau_tip() && !state.is_at_tip(&sheet.rod) {
+    } else if state.tau > sheet.tip[0] && !state.is_at_tip(sheet) {
         End::BeyondTip
     } else {
         End::Solved

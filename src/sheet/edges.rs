@@ -14,7 +14,7 @@ const TIP_SAMPLES: usize = 32;
 /// the pole does touch it, whatever the rounding.
 pub const REACH_SLACK: f64 = 1e-12;
 
-/// The Newton step, relative to the load, after which an extremum is known: its square is left.
+/// The Newton step, relative to the distance of the samples, after which an extremum is known: its square is left.
 const LAST_STEP: f64 = 1e-7;
 
 /// How much `ln q` of the fold changes from column to column at the least where it jumps; with friction, from 29 to 15.
@@ -106,11 +106,12 @@ fn tip_samples(method: Method, rod: &Rod, columns: &Columns) -> Vec<Sample> {
         let Some(next) = landings.get(i + 1) else {
             break;
         };
-        if (landings[i].by_load.x < 0.0) != (next.by_load.x < 0.0) {
+        // A slope of exactly 0, as a straight whisker's at first touch, is a sample already.
+        if landings[i].by_load.x * next.by_load.x < 0.0 {
             let start = stencil::<NODES>(i, landings.len());
             let slopes = landings[start..].iter().take(NODES).map(|l| l.by_load.x);
             let offset = (i - start) as f64;
-            let rising = landings[i].by_load.x <= 0.0;
+            let rising = landings[i].by_load.x < 0.0;
             let between = [offset, offset + 1.0];
             let place = Polynomial::through(slopes).solve(0.0, offset + 0.5, between, rising);
             let near = corner.load * (start as f64 + place) / TIP_SAMPLES as f64;
@@ -134,7 +135,7 @@ fn extremum(method: Method, from: Launch, to: f64, near: f64) -> f64 {
         let slope = here.landing.by_load.x;
         let newton = load - slope / here.by_load_load.x;
         let inside = (newton - low) * (newton - high) < 0.0;
-        if inside && (newton - load).abs() <= LAST_STEP * load.abs() {
+        if inside && (newton - load).abs() <= LAST_STEP * (to - from.load).abs() {
             return newton;
         }
         let falls = *falling_at_low.get_or_insert_with(|| at(from.load).landing.by_load.x < 0.0);

@@ -45,6 +45,8 @@ pub struct Sheet {
     pub rod: Rod,
     /// The side.
     pub side: Side,
+    /// `tau` and radius over the base radius at the tip.
+    pub tip: [f64; 2],
     /// The rows.
     pub rows: Vec<Row>,
     /// Per row: where it leaves and enters the sheet. The end of a push from first touch comes first, if there is one;
@@ -84,9 +86,11 @@ impl Sheet {
                 *crossings = pieces::connect(&level, touches, crossings);
             }
         }
+        let tip = rod.tau_tip();
         Some(Self {
             rod: *rod,
             side,
+            tip: [tip, rod.radius(tip)],
             rows,
             crossings,
             method,

@@ -11,7 +11,7 @@ use crate::model::simd::WIDTH;
 use crate::model::simd::plain::Plain as Baseline;
 #[cfg(target_arch = "x86_64")]
 use crate::model::simd::x86::{Avx2, Avx512, Sse2 as Baseline};
-use crate::model::{Dopri8, Effects};
+use crate::model::{Dopri8, Effects, Rk4};
 use std::fmt;
 
 /// A SIMD unit that this processor has.
@@ -154,6 +154,7 @@ macro_rules! kernel {
 kernel!(Dopri8, First);
 kernel!(Dopri8, FirstAndEnergy);
 kernel!(Dopri8, Second);
+kernel!(Rk4, First);
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx512f,avx512dq,avx512vl,fma")]
