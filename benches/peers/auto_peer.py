@@ -20,7 +20,7 @@ from time import perf_counter
 from cone import TOUCH, WHISKER
 from continuation import ARC, FORCE, LOAD, POLE, PSI, STEP, THETA, Auto
 
-RUNS = 7
+RUNS = 21
 MESHES, EXACT_MESH = (10, 20), 80
 # 76 equilibria up to the fold, and 362 folds from a pole at 0.45 of the length to the tip.
 EQUILIBRIUM_STEP, FOLD_STEP = 0.023, 0.003

@@ -35,6 +35,8 @@ pub struct Columns {
     pub tip: usize,
     first_u: f64,
     rod: Rod,
+    /// The smallest `|load| tau^2` of the folds.
+    least_q: f64,
     /// `ln tau` and `ln(|load| tau^2)` of the folds, by the first column of the stencil.
     stencils: Vec<[Polynomial; 2]>,
 }
@@ -84,6 +86,13 @@ fn tau_of(rod: &Rod, u: f64) -> f64 {
     tau
 }
 
+/// What is this part of the smallest `|load| tau^2` of the columns is below the folds between them, too.
+const BELOW: f64 = 0.9;
+
+fn q(fold: &FoldPoint) -> f64 {
+    fold.load.abs() * fold.tau * fold.tau
+}
+
 impl Columns {
     /// Columns from the tip of `rod` down to some beyond `nearest`, the row nearest to the base: at the last
     /// ones the pole is nearer than that at first touch and at the fold. `None` where a fold is missing.
@@ -124,7 +133,7 @@ impl Columns {
             Polynomial::through(folds[start..].iter().take(NODES).map(f))
         };
         let stencils = (0..folds.len().saturating_sub(NODES) + 1).map(|start| {
-            let ln_q = |fold: &FoldPoint| (fold.load.abs() * fold.tau * fold.tau).ln();
+            let ln_q = |fold: &FoldPoint| q(fold).ln();
             [through(start, |fold| fold.tau.ln()), through(start, ln_q)]
         });
         let stencils = stencils.collect();
@@ -132,8 +141,9 @@ impl Columns {
         Some(Self {
             first_u: u_tip - SPACING * tip as f64,
             tip,
-            folds,
             rod: *rod,
+            least_q: folds.iter().map(q).fold(f64::INFINITY, f64::min),
+            folds,
             stencils,
         })
     }
@@ -144,6 +154,12 @@ impl Columns {
         let [ln_tau, ln_q] = &self.stencils[start];
         let ln_tau = ln_tau.at(t).0;
         (ln_tau.exp(), (ln_q.at(t).0 - 2.0 * ln_tau).exp())
+    }
+
+    /// Whether the load is less than that of any fold of this sheet, whatever the contact at `tau`.
+    #[must_use]
+    pub fn is_below_folds(&self, tau: f64, load: f64) -> bool {
+        load.abs() * tau * tau < BELOW * self.least_q
     }
 
     /// `|load|` at the fold for the contact at `tau`, by interpolation.

@@ -135,9 +135,12 @@ impl Sheet {
     /// the Jacobian's first singularity.
     #[must_use]
     pub fn is_stable(&self, tau: f64, load: f64, landing: &Landing) -> bool {
-        let part = self.side.sign() * load / self.columns.fold_load(tau);
+        let load = self.side.sign() * load;
+        let is_loaded = load >= 0.0 && self.columns.is_below_folds(tau, load) || {
+            let part = load / self.columns.fold_load(tau);
+            part > -UNLOADED && part < 1.0 + 1e-4
+        };
         let scale = landing.by_tau.length() * landing.by_load.length();
-        let before_fold = landing.det() > -1e-7 * scale;
-        part > -UNLOADED && part < 1.0 + 1e-4 && before_fold
+        is_loaded && landing.det() > -1e-7 * scale
     }
 }

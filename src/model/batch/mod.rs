@@ -65,7 +65,7 @@ const FEWEST_TOGETHER: usize = 512;
 
 /// `beta tau` from which on derivatives by `tau` are carried even where they follow from the base: toward the tip of a cone
 /// they vanish with the radius, and what follows is a small difference. The kernel for a gradient carries them.
-const SLENDER: f64 = 3.0;
+const SLENDER: f64 = 1.5;
 
 /// Parts of a batch for each thread, so that threads end together.
 const PARTS: usize = 4;
@@ -105,18 +105,18 @@ fn part<M: Integrator, K: Kernel<M>>(
     launches: &[Launch],
     answers: &mut [K::Answer],
 ) {
-    let mut compute = |steps: u32, is_slender: bool, members: &[usize]| {
+    let mut compute = |kind: BlockKind, members: &[usize]| {
         let lanes = std::array::from_fn(|lane| &launches[members[lane.min(members.len() - 1)]]);
         let effects = Effects {
-            gradient: method.effects.gradient || is_slender,
+            gradient: method.effects.gradient || kind.is_slender,
             ..method.effects
         };
-        let block = K::block(unit, effects, steps, &lanes);
+        let block = K::block(unit, effects, kind.steps, &lanes);
         for (&i, answer) in members.iter().zip(block) {
             answers[i] = answer;
         }
     };
-    // Lanes step together, so only trajectories of equally many steps share a block: company changes nothing.
+    // Lanes step together, so only trajectories of one kind share a block: company changes nothing.
     let mut open: Vec<Open> = Vec::new();
     let mut arclengths = [0.0; WIDTH];
     for (i, Launch { rod, tau, load }) in launches.iter().enumerate() {
@@ -125,38 +125,45 @@ fn part<M: Integrator, K: Kernel<M>>(
             arclengths = unit.arclengths(&std::array::from_fn(next));
         }
         let s = arclengths[i % WIDTH];
-        let kind = (
-            method.resolution.steps_from(rod, *tau, *load, s),
-            method.effects.similar() && rod.taper * tau > SLENDER,
-            rod.piece(s),
-        );
-        let place = open.iter().position(|block| block.kind == kind);
-        let block = match place {
-            Some(place) => &mut open[place],
-            None => {
-                open.push(Open {
-                    kind,
-                    members: [0; WIDTH],
-                    count: 0,
-                });
-                open.last_mut().expect("one was pushed")
-            }
+        let kind = BlockKind {
+            steps: method.resolution.steps_from(rod, *tau, *load, s),
+            is_slender: method.effects.similar() && rod.taper * tau > SLENDER,
+            piece: rod.piece(s),
         };
+        let place = open.iter().position(|block| block.kind == kind);
+        let place = place.unwrap_or_else(|| {
+            open.push(Open {
+                kind,
+                members: [0; WIDTH],
+                count: 0,
+            });
+            open.len() - 1
+        });
+        let block = &mut open[place];
         block.members[block.count] = i;
         block.count += 1;
         if block.count == WIDTH {
-            compute(kind.0, kind.1, &block.members);
+            compute(kind, &block.members);
             block.count = 0;
         }
     }
     for block in open.iter().filter(|block| block.count > 0) {
-        compute(block.kind.0, block.kind.1, &block.members[..block.count]);
+        compute(block.kind, &block.members[..block.count]);
     }
 }
 
-/// A block that waits for more trajectories of its kind: steps, whether it is slender, and the piece of a profile.
+/// What trajectories of a block have in common.
+#[derive(Clone, Copy, PartialEq)]
+struct BlockKind {
+    steps: u32,
+    is_slender: bool,
+    /// Of a profile.
+    piece: usize,
+}
+
+/// A block that waits for more trajectories of its kind.
 struct Open {
-    kind: (u32, bool, usize),
+    kind: BlockKind,
     members: [usize; WIDTH],
     count: usize,
 }

@@ -13,6 +13,9 @@ fn arc(t: f64) -> f64 {
     t * root + asinh.copysign(t)
 }
 
+/// The Newton step, relative to the chord's abscissa, after which it is known to rounding: its square is left.
+const LAST_STEP: f64 = 1e-9;
+
 /// A parabola in the frame of the base.
 #[derive(Clone, Copy, Debug)]
 pub struct Parabola {
@@ -111,15 +114,15 @@ impl Parabola {
                 low = x;
             }
             let newton = x - (length - chord) * root / (square + self.bend * x * rise);
-            let next = if newton > low && newton < high {
+            let step = newton - x;
+            if step.abs() <= LAST_STEP * x {
+                return newton;
+            }
+            x = if newton > low && newton < high {
                 newton
             } else {
                 0.5 * (low + high)
             };
-            if (next - x).abs() <= 2.0 * f64::EPSILON * x {
-                return next;
-            }
-            x = next;
         }
         x
     }
