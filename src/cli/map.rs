@@ -40,7 +40,7 @@ pub struct Options {
     precision: Option<Shaders>,
     /// Threads of the CPU [default: all cores]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    threads: Option<u16>,
+    pub threads: Option<u16>,
     #[command(flatten)]
     tolerance: Tolerance,
     /// Write no picture
@@ -52,12 +52,6 @@ pub struct Options {
 pub fn run(options: &Options) -> Result<(), Failure> {
     let scene = Scene::read(&options.scene)?;
     let mut plan = Plan::new(&scene)?;
-    if let Some(threads) = options.threads {
-        rayon::ThreadPoolBuilder::new()
-            .num_threads(threads.into())
-            .build_global()
-            .map_err(|error| Failure::Input(format!("--threads {threads}: {error}")))?;
-    }
     let accuracy = options.tolerance.choose(&scene, &plan.sides)?;
     if let Some(accuracy) = &accuracy {
         plan.method.resolution = accuracy.resolution;

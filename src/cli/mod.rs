@@ -22,6 +22,7 @@ mod tolerance;
 mod verify;
 
 use clap::{Parser, Subcommand};
+use failure::Failure;
 use std::process::ExitCode;
 
 /// Where does a whisker pushed against a pole stay in contact, where does it slip off, where is it pulled off?
@@ -74,7 +75,30 @@ enum Command {
 #[must_use]
 pub fn main() -> ExitCode {
     let arguments = Arguments::parse();
-    let result = match &arguments.command {
+    let threads = match &arguments.command {
+        Command::Map(options) => options.threads,
+        _ => None,
+    };
+    // All of a command runs on a thread of the pool: from outside, every piece of parallel work would wake one up first.
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(threads.unwrap_or_default().into())
+        .stack_size(STACK)
+        .build();
+    let result = match pool {
+        Ok(pool) => pool.install(|| run(&arguments.command)),
+        Err(error) => Err(Failure::Input(format!("--threads: {error}"))),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => failure.report(),
+    }
+}
+
+/// Stack of a thread, that of a main thread: drivers of GPUs compile on it.
+const STACK: usize = 8 << 20;
+
+fn run(command: &Command) -> Result<(), Failure> {
+    match command {
         Command::Map(options) => map::run(options),
         Command::Plan(options) => plan::run(options),
         Command::Render(options) => render::run(options),
@@ -85,9 +109,5 @@ pub fn main() -> ExitCode {
         Command::Verify => verify::run(),
         Command::Bench(options) => bench::run(options),
         Command::Devices => devices::run(),
-    };
-    match result {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => failure.report(),
     }
 }

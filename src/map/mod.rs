@@ -50,7 +50,8 @@ impl Face {
     }
 }
 
-/// Computes every panel of `scene` as `plan` says. Where the engine fails the CPU goes on in its stead.
+/// Computes every panel of `scene` as `plan` says, on the threads of the current pool, best from within it
+/// (`rayon::ThreadPool::install`): from outside, every stage of every strip wakes it up. Where the engine fails the CPU goes on in its stead.
 ///
 /// # Errors
 /// When the observer refuses a panel; a cell without an answer is no error.

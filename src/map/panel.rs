@@ -2,8 +2,7 @@
 
 use super::{Face, cells::Cell, doubt};
 use crate::classify::{Regime, RowBoundary, Status};
-use crate::model::Units;
-use crate::refine::State;
+use crate::model::{Reader, Reading, Units};
 use crate::scene::{Scene, Whisker};
 use crate::sheet::Sheet;
 use crate::store::{Panel, STATE_CHANNELS};
@@ -37,13 +36,14 @@ pub fn fill(
         .flat_map_iter(|row| {
             let face = &faces[row[0].face];
             let units = Units::new(&whiskers[row[0].face / faces_per_panel]);
+            let reader = face.sheet.as_ref().map(|sheet| units.reader(&sheet.rod));
             let boundary = face.sheet.as_ref().map(|sheet| {
                 RowBoundary::new(sheet.touches(row[0].row), &sheet.crossings[row[0].row])
             });
             let push = |cell: &Cell| scene.grid.push_angle_deg[cell.column];
             let answer = |cell: &Cell| {
                 let sheet = face.sheet.as_ref();
-                answer(cell, push(cell), sheet, boundary.as_ref(), &units)
+                answer(cell, push(cell), sheet, boundary.as_ref(), reader.as_ref())
             };
             let mut answers: Vec<Answer> = row.iter().map(answer).collect();
             let in_doubt = |answer: &Answer| answer.regime == Regime::Unresolved;
@@ -91,7 +91,7 @@ fn answer(
     push_deg: f64,
     sheet: Option<&Sheet>,
     boundary: Option<&RowBoundary>,
-    units: &Units,
+    reader: Option<&Reader>,
 ) -> Answer {
     let push = push_deg.to_radians();
     let at_tip = sheet
@@ -118,8 +118,10 @@ fn answer(
         answer.residual = narrow(state.residual);
     }
     let in_contact = matches!(regime, Regime::Contact | Regime::Unreachable);
-    if let (true, Some(sheet), Some(state)) = (in_contact, sheet, &cell.state) {
-        answer.state = channels(units, sheet, cell.row, push, state).map(narrow);
+    if let (true, Some(sheet), Some(reader), Some(state)) = (in_contact, sheet, reader, &cell.state)
+    {
+        let touch = sheet.rows[cell.row].touch;
+        answer.state = channels(&reader.read(state.tau, &state.full, touch, push)).map(narrow);
         answer.residual = narrow(state.residual);
         let span = boundary.and_then(|boundary| boundary.span(push.abs()));
         answer.margin_deg = span.map_or(f32::NAN, |span| {
@@ -134,16 +136,8 @@ fn narrow(x: f64) -> f32 {
     x as f32
 }
 
-/// The channels of [`STATE_CHANNELS`] for a state at the signed push angle `push`, in radians.
-fn channels(
-    units: &Units,
-    sheet: &Sheet,
-    row: usize,
-    push: f64,
-    state: &State,
-) -> [f64; STATE_CHANNELS.len()] {
-    let touch = sheet.rows[row].touch;
-    let reading = units.read(&sheet.rod, state.tau, &state.full, touch, push);
+/// The channels of [`STATE_CHANNELS`].
+fn channels(reading: &Reading) -> [f64; STATE_CHANNELS.len()] {
     [
         reading.arc_length_mm,
         reading.contact_angle_deg,

@@ -65,7 +65,13 @@ impl Resolution {
     /// The same where the arclength `s` of the contact is known already.
     #[inline]
     pub(super) fn steps_from(&self, rod: &Rod, tau: f64, load: f64, s: f64) -> u32 {
-        let bending = (load.abs() * s * s * rod.softness(tau)) / rod.modulus(s).min(1.0);
+        let mut bending = load.abs() * s * s;
+        if rod.profile.is_some() {
+            bending *= rod.softness(tau);
+        }
+        if rod.gradient < 0.0 {
+            bending /= rod.modulus(s);
+        }
         let bending = if bending <= EVEN_UP_TO {
             bending
         } else {

@@ -43,5 +43,5 @@ pub use rk4::Rk4;
 pub use rod::{Effects, PERFECT_CONE_CUT, Rod, Side};
 pub use start::{Start, arclength};
 pub use turn::nearest_turn;
-pub use units::{Reading, Units};
+pub use units::{Reader, Reading, Units};
 pub use vector::Vector;

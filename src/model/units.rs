@@ -1,6 +1,7 @@
 //! A state of the whisker in the units of people.
 
-use super::{Full, Rest, Rod, arclength, nearest_turn};
+use super::rod::arclength_at;
+use super::{Full, Rest, Rod, nearest_turn};
 use crate::scene::Whisker;
 use glam::DVec2;
 use std::f64::consts::FRAC_PI_4;
@@ -53,28 +54,55 @@ impl Units {
         }
     }
 
-    /// The state `full` of `rod`, in contact at `tau`, after the signed `push` (radians) since the pole was first
-    /// touched in the direction `touch`.
+    /// What reads the states of `rod` in these units.
     #[must_use]
-    pub fn read(&self, rod: &Rod, tau: f64, full: &Full, touch: f64, push: f64) -> Reading {
-        let base = &full.base;
+    pub fn reader(&self, rod: &Rod) -> Reader {
+        let tangent = rod.contact_tangent();
+        Reader {
+            units: *self,
+            taper: rod.taper,
+            rest: Rest::new(rod),
+            to_pole: rod.to_pole(),
+            tilt: tangent.to_angle(),
+            normal: tangent.x,
+        }
+    }
+}
+
+/// What of a rod is the same in all its states.
+#[derive(Clone, Copy, Debug)]
+pub struct Reader {
+    units: Units,
+    taper: f64,
+    rest: Rest,
+    to_pole: DVec2,
+    /// Of the contact's tangent from the normal of the force.
+    tilt: f64,
+    /// The part of the force that is normal to the whisker.
+    normal: f64,
+}
+
+impl Reader {
+    /// The state `full`, in contact at `tau`, after the signed `push` (radians) since the pole was first touched in the
+    /// direction `touch`.
+    #[must_use]
+    pub fn read(&self, tau: f64, full: &Full, touch: f64, push: f64) -> Reading {
+        let (base, units) = (&full.base, &self.units);
         let to_base = DVec2::new(base.tangent.x, -base.tangent.y);
         let contact = to_base.rotate(-base.position);
-        let to_pole = rod.to_pole() - base.position;
-        let tangent = rod.contact_tangent();
+        let to_pole = self.to_pole - base.position;
         let distance = contact.length();
-        let resting = Rest::new(rod).point_at_distance(distance);
+        let resting = self.rest.point_at_distance(distance);
         let chord = DVec2::new(resting.x, -resting.y).rotate(contact).to_angle();
         Reading {
-            arc_length_mm: arclength(rod, tau) * self.length_mm,
-            contact_angle_deg: (touch + push - to_pole.to_angle() + tangent.to_angle())
-                .to_degrees(),
-            force_un: base.force.abs() * tangent.x * self.force_un,
-            base_force_un: base.force * DVec2::new(base.tangent.y, base.tangent.x) * self.force_un,
-            base_moment_nnm: -base.force * base.position.x * self.moment_nnm,
+            arc_length_mm: arclength_at(self.taper, tau) * units.length_mm,
+            contact_angle_deg: (touch + push - to_pole.to_angle() + self.tilt).to_degrees(),
+            force_un: base.force.abs() * self.normal * units.force_un,
+            base_force_un: base.force * DVec2::new(base.tangent.y, base.tangent.x) * units.force_un,
+            base_moment_nnm: -base.force * base.position.x * units.moment_nnm,
             push_chord_deg: nearest_turn(chord, push).to_degrees(),
-            contact_distance_mm: distance * self.length_mm,
-            energy_nj: full.energy * self.moment_nnm,
+            contact_distance_mm: distance * units.length_mm,
+            energy_nj: full.energy * units.moment_nnm,
         }
     }
 }

@@ -144,7 +144,8 @@ impl Branch {
     pub fn read(&self, state: &Found) -> Reading {
         let LevelCurve { rod, row, .. } = &self.level;
         self.units
-            .read(rod, state.tau, &state.full, row.touch, state.push)
+            .reader(rod)
+            .read(state.tau, &state.full, row.touch, state.push)
     }
 
     pub(super) fn lost(&self) -> NoState {
@@ -168,7 +169,8 @@ impl Branch {
         let LevelCurve { rod, side, row, .. } = &self.level;
         let reading = self
             .units
-            .read(rod, node.point.x, &node.full, row.touch, node.push);
+            .reader(rod)
+            .read(node.point.x, &node.full, row.touch, node.push);
         BranchPoint {
             side: *side,
             stable,

@@ -85,7 +85,7 @@ pub fn curve_at(
         effects: Effects::of([&rod]),
         resolution,
     };
-    let units = Units::new(whisker);
+    let reader = Units::new(whisker).reader(&rod);
     let rest = Rest::new(&rod);
     let distances: Vec<f64> = distances_mm.iter().map(|d| d / whisker.length_mm).collect();
     let sheet = Sheet::new(method, &rod, side, &distances);
@@ -120,7 +120,7 @@ pub fn curve_at(
     let states = land::<Dopri8, FirstAndEnergy>(method, &launches);
     for ((i, end), Moving { full, .. }) in ends.into_iter().zip(&states) {
         let push = side.sign() * end.push;
-        let reading = units.read(&rod, end.tau, full, sheet.rows[i].touch, push);
+        let reading = reader.read(end.tau, full, sheet.rows[i].touch, push);
         rows[i] = Detachment {
             kind: match end.edge {
                 Edge::Fold => Kind::SlipOff,

@@ -3,7 +3,7 @@
 use super::Launch;
 use super::kernel::Block;
 use crate::model::Rod;
-use crate::model::contact::parabola_tangent;
+use crate::model::contact::{arc, parabola_tangent};
 use crate::model::radius::Piece;
 use crate::model::rhs::{Bent, Even, Graded, Intrinsic, Material, Measured, Spiral, Straight};
 use crate::model::simd::{Lanes, WIDTH};
@@ -175,8 +175,13 @@ impl<T: Lanes> Gather<T> for Bent<T> {
     fn gather(launches: &Block, s: T) -> (Self, AtRest<T, [T; 2]>) {
         let bend = lanes(launches, |launch| launch.rod.bend);
         let twice_bend = bend + bend;
-        let slope = lanes(launches, |launch| launch.rod.slope);
-        let [cos, sin] = parabola_tangent(bend, slope, s);
+        let is_level = launches.iter().all(|launch| launch.rod.slope == 0.0);
+        let at_base = if is_level {
+            T::of(0.0)
+        } else {
+            arc(lanes(launches, |launch| launch.rod.slope))
+        };
+        let [cos, sin] = parabola_tangent(bend, at_base, s);
         let curvature = twice_bend * cos * cos * cos;
         let at_rest = AtRest {
             state: [cos, sin],
