@@ -4,12 +4,16 @@ use super::{Description, Engine, EngineError, Hit, MOST_STEPS, Outcome, Shot};
 use crate::model::batch::{Kernel, Launch, Method, Unit, land_on};
 use crate::model::{Dopri8, Effects, First, Integrator, Landing, Resolution, Rod, arclength};
 use glam::DVec2;
+use rayon::prelude::*;
 
 /// Accurate to 1e-7: the refinement then needs no second trajectory.
 const RESOLUTION: Resolution = Resolution::COARSE;
 
 /// Shots of one thread whose cells stay in its cache on their way through all stages.
-const SHOTS_IN_CACHE: usize = 4096;
+const SHOTS_IN_CACHE: usize = 8192;
+
+/// Shots that go through all steps together: enough for full lanes, few enough to stay in the cache.
+const TOGETHER: usize = 1024;
 
 /// Residual at which the refinement takes over, in whisker lengths: one Newton step away from 1e-12.
 const TOLERANCE: f64 = 1e-6;
@@ -46,6 +50,21 @@ impl Solver {
     /// Solves `shots`, each on one of `rods`, with the integrator `M`; answers in the same order.
     #[must_use]
     pub fn solve<M: Integrator>(self, effects: Effects, rods: &[Rod], shots: &[Shot]) -> Vec<Hit>
+    where
+        First: Kernel<M>,
+    {
+        shots
+            .par_chunks(TOGETHER)
+            .flat_map_iter(|shots| self.solve_together::<M>(effects, rods, shots))
+            .collect()
+    }
+
+    fn solve_together<M: Integrator>(
+        self,
+        effects: Effects,
+        rods: &[Rod],
+        shots: &[Shot],
+    ) -> Vec<Hit>
     where
         First: Kernel<M>,
     {

@@ -11,6 +11,7 @@ use crate::model::batch::{Launch, Method, land};
 use crate::model::{Dopri8, FirstAndEnergy, Full, arclength, limited};
 use crate::sheet::Sheet;
 use near_fold::Verdict;
+use rayon::prelude::*;
 
 /// Residual, in whisker lengths, at which a state is accepted without another step.
 pub const GOAL: f64 = 1e-12;
@@ -80,9 +81,25 @@ pub enum End {
     NotConverged,
 }
 
+/// Shots that go through all steps together: enough for full lanes, few enough to stay in the cache.
+const TOGETHER: usize = 1024;
+
 /// Refines `starts` by `method` toward `shots`, each on the sheet `sheets[shot.rod]`.
 #[must_use]
 pub fn refine(
+    method: Method,
+    sheets: &[&Sheet],
+    shots: &[Shot],
+    starts: &[(f64, f64)],
+) -> Vec<Refined> {
+    shots
+        .par_chunks(TOGETHER)
+        .zip(starts.par_chunks(TOGETHER))
+        .flat_map_iter(|(shots, starts)| refine_together(method, sheets, shots, starts))
+        .collect()
+}
+
+fn refine_together(
     method: Method,
     sheets: &[&Sheet],
     shots: &[Shot],

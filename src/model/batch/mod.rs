@@ -61,7 +61,7 @@ impl Method {
 }
 
 /// The fewest launches for a thread, so that most of its blocks are full.
-const FEWEST_TOGETHER: usize = 512;
+const FEWEST_TOGETHER: usize = 1024;
 
 /// `beta tau` from which on derivatives by `tau` are carried even where they follow from the base: toward the tip of a cone
 /// they vanish with the radius, and what follows is a small difference. The kernel for a gradient carries them.
