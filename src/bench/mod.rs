@@ -55,7 +55,8 @@ pub struct Row {
 pub struct Rung {
     /// The integrator of the engine.
     pub integrator: &'static str,
-    /// Its steps per trajectory: of `dopri8` those at the fold of a cylinder, fewer under less load.
+    /// Its steps per trajectory: on the CPU those at the fold of a cylinder, fewer under less load; on a GPU all that there are,
+    /// or with measured radii those of a piece.
     pub steps: u32,
     /// Newton steps in `f64` after the engine.
     pub newton_f64: usize,

@@ -86,7 +86,10 @@ pub fn main() -> ExitCode {
         .build();
     let result = match pool {
         Ok(pool) => pool.install(|| run(&arguments.command)),
-        Err(error) => Err(Failure::Input(format!("--threads: {error}"))),
+        Err(error) => Err(Failure::Input(match threads {
+            Some(threads) => format!("--threads {threads}: {error}"),
+            None => format!("threads for the processor's cores: {error}"),
+        })),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -186,6 +186,10 @@ impl Rod {
     }
 }
 
+/// `beta tau` from which on derivatives by `tau` are carried even where they follow from the base: toward the tip of a cone
+/// they vanish with the radius, and what follows is a small difference (`benches/NOTES.md`).
+const SLENDER: f64 = 1.5;
+
 /// The effects that a scene calls for; each set has kernels of its own.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Effects {
@@ -237,6 +241,16 @@ impl Effects {
     #[must_use]
     pub const fn similar(self) -> bool {
         !(self.curvature || self.spiral || self.gradient || self.profile)
+    }
+
+    /// The effects whose kernel is right for contacts up to `beta tau` of `taper_tau`: beyond [`SLENDER`] on a straight cone it
+    /// is the one for a gradient, which carries all derivatives.
+    #[must_use]
+    pub fn reaching(self, taper_tau: f64) -> Self {
+        Self {
+            gradient: self.gradient || self.similar() && taper_tau > SLENDER,
+            ..self
+        }
     }
 
     /// The effects that at least one of `rods` has.

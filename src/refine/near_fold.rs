@@ -21,9 +21,6 @@ pub enum Verdict {
     Unknown,
 }
 
-/// The step, as Newton's method measures it, below which a fold counts as found.
-const FOUND: f64 = 1e-9;
-
 /// Finds, for every shot, the fold at its distance, from its own guess, and compares.
 pub fn decide(method: Method, sheets: &[&Sheet], shots: &[Shot]) -> Vec<Verdict> {
     let wanted: Vec<Wanted> = shots
@@ -38,7 +35,7 @@ pub fn decide(method: Method, sheets: &[&Sheet], shots: &[Shot]) -> Vec<Verdict>
     let folds = seek(method, &wanted).into_iter().zip(shots);
     folds
         .map(|(fold, shot)| {
-            if fold.step < FOUND {
+            if fold.is_found {
                 compare(sheets[shot.rod as usize], shot, fold.point, &fold.here)
             } else {
                 Verdict::Unknown

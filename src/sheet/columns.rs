@@ -21,7 +21,7 @@ pub const BEYOND_TIP: usize = 3;
 const BEYOND_NEAREST: usize = 4;
 
 /// Columns of a further batch.
-const WIDTH: usize = 8;
+const FURTHER: usize = 8;
 
 /// Most columns: the smallest `tau` is then below 1e-12 of the tip's.
 const MOST: usize = 400;
@@ -86,8 +86,9 @@ fn tau_of(rod: &Rod, u: f64) -> f64 {
     tau
 }
 
-/// What is this part of the smallest `|load| tau^2` of the columns is below the folds between them, too.
-const BELOW: f64 = 0.9;
+/// What is this part of the smallest `|load| tau^2` of the columns is below the folds between them, too: from column to column
+/// that changes by less than [`JUMP`](super::edges::JUMP).
+const BELOW: f64 = 0.6;
 
 fn q(fold: &FoldPoint) -> f64 {
     fold.load.abs() * fold.tau * fold.tau
@@ -126,7 +127,7 @@ impl Columns {
             if reached || folds.len() > MOST {
                 break;
             }
-            batch = WIDTH;
+            batch = FURTHER;
         }
         folds.reverse();
         let through = |start: usize, f: fn(&FoldPoint) -> f64| {
@@ -156,7 +157,7 @@ impl Columns {
         (ln_tau.exp(), (ln_q.at(t).0 - 2.0 * ln_tau).exp())
     }
 
-    /// Whether the load is less than that of any fold of this sheet, whatever the contact at `tau`.
+    /// Whether the load is surely less than that of the fold for the contact at `tau`.
     #[must_use]
     pub fn is_below_folds(&self, tau: f64, load: f64) -> bool {
         load.abs() * tau * tau < BELOW * self.least_q

@@ -24,7 +24,8 @@ pub struct Crossing {
     pub load: f64,
     /// Push angle since first touch, in radians, as a magnitude on the row's side.
     pub push: f64,
-    /// Remaining error: distance in `ln D` and, at a fold, the last step taken, both relative.
+    /// Remaining error, relative: the distance in `ln D`, and the square of how far the point still is (the push angle is flat
+    /// at a fold).
     pub residual: f64,
 }
 
@@ -81,7 +82,7 @@ impl Line {
     fn new(edge: Edge, samples: &[Sample], i: usize) -> Self {
         let start = stencil::<AROUND>(i, samples.len());
         let around = samples[start..].first_chunk::<AROUND>().and_then(|around| {
-            let places = Places::new(around.iter().map(|sample| sample.ln_distance))?;
+            let places = Places::new(around.map(|sample| sample.ln_distance))?;
             Some((places, *around))
         });
         Self {
@@ -203,7 +204,7 @@ fn polish(
                     residual,
                 }
             };
-            let residual = sought.miss.abs() + sought.step * sought.step;
+            let residual = sought.miss.abs() + sought.left * sought.left;
             let newton = crossing(sought.point, &sought.here.landing, residual);
             if newton.is_sound() && c.holds(sought.point) {
                 return newton;

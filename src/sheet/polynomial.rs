@@ -92,10 +92,8 @@ pub struct Places<const N: usize> {
 }
 
 impl<const N: usize> Places<N> {
-    /// `None` where the order changes, or for other than `N` places.
-    pub fn new(places: impl IntoIterator<Item = f64>) -> Option<Self> {
-        let places: Vec<f64> = places.into_iter().collect();
-        let places: [f64; N] = places.try_into().ok()?;
+    /// `None` where the order changes.
+    pub fn new(places: [f64; N]) -> Option<Self> {
         let rising = places[1] > places[0];
         let in_order = |pair: &[f64]| {
             if rising {

@@ -35,12 +35,13 @@ pub struct Sought {
     pub here: Curved,
     /// What is missing in `ln D`.
     pub miss: f64,
-    /// Length of the step that Newton's method would take from here, as [`limited`] measures it; its size, where the last step
-    /// was so short that the way on from it is known.
-    pub step: f64,
+    /// How far it still is, as [`limited`] measures lengths: the square of the last step, or the step not taken any more.
+    pub left: f64,
+    /// Whether the method came to its end.
+    pub is_found: bool,
 }
 
-/// Rounds of Newton's method at the coarse resolution: from a hundredth of a column away they lead to its error.
+/// Rounds of Newton's method at the coarse resolution: from the guess of a cell next to the fold they lead to its error.
 const COARSE_ROUNDS: usize = 2;
 
 /// Rounds at the method's own resolution; 1 or 2 are the rule.
@@ -50,13 +51,14 @@ const ROUNDS: usize = 20;
 /// tell the rest to its cube.
 const LAST_STEP: f64 = 3e-7;
 
-/// Newton's method for all `wanted` at once; the caller judges what is left in `miss` and `step`.
+/// Newton's method for all `wanted` at once; the caller judges what is left in `miss` and `left`.
 #[must_use]
 pub fn seek(method: Method, wanted: &[Wanted]) -> Vec<Sought> {
     newton(method, wanted, COARSE_ROUNDS)
 }
 
-/// The same at the method's own resolution throughout. Where friction lets a whisker coil up, the coarse one leads astray.
+/// The same at the method's own resolution throughout: for starts that are good already, and for whiskers that friction lets
+/// coil up, where the coarse one leads astray.
 #[must_use]
 pub fn seek_finely(method: Method, wanted: &[Wanted]) -> Vec<Sought> {
     newton(method, wanted, 0)
@@ -100,14 +102,16 @@ fn newton(method: Method, wanted: &[Wanted], coarse_rounds: usize) -> Vec<Sought
                     point: points[i],
                     here,
                     miss: (goal.pole_distance / here.landing.pole.length()).ln(),
-                    step: length * length,
+                    left: length * length,
+                    is_found: true,
                 }
             } else {
                 Sought {
                     point,
                     here,
                     miss,
-                    step: length,
+                    left: length,
+                    is_found: false,
                 }
             });
             !is_last && step.is_finite() && points[i].x > 0.0

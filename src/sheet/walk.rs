@@ -22,9 +22,6 @@ const SHORTEST_STEP: f64 = 1e-9;
 /// Most nodes: no branch known has more than 300.
 const MOST_NODES: usize = 10_000;
 
-/// The step that Newton's method may still want to take, at the largest, at a fold or at the tip.
-const FOUND: f64 = 1e-8;
-
 /// A branch as it was walked.
 #[derive(Clone, Debug)]
 pub struct Walk {
@@ -153,5 +150,5 @@ fn edge(level: &LevelCurve, edge: Edge, from: &Node, to: &Node) -> Option<Node> 
     let node = level.node(point, &full, from.push, from.angle);
     let reach = 2.0 * level.length(from, to) + f64::EPSILON;
     let near = level.length(from, &node).max(level.length(to, &node)) <= reach;
-    (sought.step < FOUND && near).then_some(node)
+    (sought.is_found && near).then_some(node)
 }

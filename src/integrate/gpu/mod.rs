@@ -161,6 +161,8 @@ impl Gpu {
         rods: &[Rod],
         shots: &[Shot],
     ) -> Result<Vec<Hit>, EngineError> {
+        let most = rods.iter().map(|rod| rod.taper * rod.tau_tip());
+        let effects = effects.reaching(most.fold(0.0, f64::max));
         let measured = rods.first().filter(|_| effects.profile);
         let pieces = measured.map(|rod| self.upload_pieces(rod)).transpose()?;
         let precision = self.precision;

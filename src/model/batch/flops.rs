@@ -71,7 +71,7 @@ impl Lanes for Counted {
     }
 }
 
-/// Operations of one trajectory in `steps` steps, with what lanes compute of its contact, without its answer. Stages whose results nothing needs are
+/// Operations of one trajectory in `steps` steps, from its contact to its answer. Stages whose results nothing needs are
 /// counted too; a compiler leaves them out.
 #[must_use]
 pub fn flops<M: Integrator, K: Derived<Counted>>(
@@ -79,6 +79,7 @@ pub fn flops<M: Integrator, K: Derived<Counted>>(
     steps: u32,
     launch: &Launch,
 ) -> u64 {
+    let effects = effects.reaching(launch.rod.taper * launch.tau);
     COUNT.set(0);
     let _ = by_effects::<M, K, Counted>(effects, steps, &[launch; WIDTH]);
     COUNT.get()

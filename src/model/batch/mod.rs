@@ -63,10 +63,6 @@ impl Method {
 /// The fewest launches for a thread, so that most of its blocks are full.
 const FEWEST_TOGETHER: usize = 1024;
 
-/// `beta tau` from which on derivatives by `tau` are carried even where they follow from the base: toward the tip of a cone
-/// they vanish with the radius, and what follows is a small difference. The kernel for a gradient carries them.
-const SLENDER: f64 = 1.5;
-
 /// Parts of a batch for each thread, so that threads end together.
 const PARTS: usize = 4;
 
@@ -107,11 +103,7 @@ fn part<M: Integrator, K: Kernel<M>>(
 ) {
     let mut compute = |kind: BlockKind, members: &[usize]| {
         let lanes = std::array::from_fn(|lane| &launches[members[lane.min(members.len() - 1)]]);
-        let effects = Effects {
-            gradient: method.effects.gradient || kind.is_slender,
-            ..method.effects
-        };
-        let block = K::block(unit, effects, kind.steps, &lanes);
+        let block = K::block(unit, kind.effects, kind.steps, &lanes);
         for (&i, answer) in members.iter().zip(block) {
             answers[i] = answer;
         }
@@ -127,7 +119,7 @@ fn part<M: Integrator, K: Kernel<M>>(
         let s = arclengths[i % WIDTH];
         let kind = BlockKind {
             steps: method.resolution.steps_from(rod, *tau, *load, s),
-            is_slender: method.effects.similar() && rod.taper * tau > SLENDER,
+            effects: method.effects.reaching(rod.taper * tau),
             piece: rod.piece(s),
         };
         let place = open.iter().position(|block| block.kind == kind);
@@ -156,7 +148,7 @@ fn part<M: Integrator, K: Kernel<M>>(
 #[derive(Clone, Copy, PartialEq)]
 struct BlockKind {
     steps: u32,
-    is_slender: bool,
+    effects: Effects,
     /// Of a profile.
     piece: usize,
 }

@@ -66,23 +66,8 @@ impl Rest {
         }
     }
 
-    /// Point and unit tangent at `distance` from the base.
-    fn at_distance(&self, distance: f64) -> (DVec2, DVec2) {
-        match &self.form {
-            Form::Parabola(parabola) => parabola.at(parabola.x_of_chord(distance)),
-            Form::EulerSpiral(spiral) => spiral.at_arclength(spiral.arclength_of_chord(distance)),
-        }
-    }
-
-    /// The point at `distance` from the base.
-    #[must_use]
-    pub fn point_at_distance(&self, distance: f64) -> DVec2 {
-        self.at_distance(distance).0
-    }
-
-    /// Arclength of the contact, and centre of the pole, when it first touches the whisker at `distance` from the base.
-    #[must_use]
-    pub fn touch_at_distance(&self, distance: f64) -> (f64, DVec2) {
+    /// Arclength, point and unit tangent at `distance` from the base.
+    fn at_distance(&self, distance: f64) -> (f64, DVec2, DVec2) {
         let (s, (point, tangent)) = match &self.form {
             Form::Parabola(parabola) => {
                 let x = parabola.x_of_chord(distance);
@@ -93,14 +78,29 @@ impl Rest {
                 (s, spiral.at_arclength(s))
             }
         };
+        (s, point, tangent)
+    }
+
+    /// The point at `distance` from the base.
+    #[must_use]
+    pub fn point_at_distance(&self, distance: f64) -> DVec2 {
+        match &self.form {
+            Form::Parabola(parabola) => parabola.at(parabola.x_of_chord(distance)).0,
+            Form::EulerSpiral(_) => self.at_distance(distance).1,
+        }
+    }
+
+    /// Arclength of the contact, and centre of the pole, when it first touches the whisker at `distance` from the base.
+    #[must_use]
+    pub fn touch_at_distance(&self, distance: f64) -> (f64, DVec2) {
+        let (s, point, tangent) = self.at_distance(distance);
         (s, point - self.pole * tangent.perp())
     }
 
     /// Centre of the pole when it first touches the whisker at `distance` from the base.
     #[must_use]
     pub fn pole_at_distance(&self, distance: f64) -> DVec2 {
-        let (point, tangent) = self.at_distance(distance);
-        point - self.pole * tangent.perp()
+        self.touch_at_distance(distance).1
     }
 
     /// The distance from the base at which the pole first touches the whisker when its centre is `pole_distance` from

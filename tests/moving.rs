@@ -1,0 +1,167 @@
+//! What Newton's method says of a state without a trajectory there, against trajectories.
+
+#[allow(dead_code, reason = "other tests use the rest")]
+#[path = "gpu_engine/shots.rs"]
+mod shots;
+
+use glam::DVec2;
+use shots::Range;
+use whiskmap::model::batch::{Launch, Method, land};
+use whiskmap::model::{
+    Change, Dopri8, Effects, First, FirstAndEnergy, Full, Moving, Resolution, Rod, Second, Side,
+    arclength,
+};
+use whiskmap::refine::{TOLERANCE, states};
+use whiskmap::scene::Scene;
+use whiskmap::sheet::Sheet;
+
+/// Random states on random rods with these effects, those of the engines' tests.
+fn launches(effects: Effects) -> Vec<Launch> {
+    Range::new(effects, 40, 6.0, 7).truth
+}
+
+/// `(tau, load)` over which a state changes by about as much as it is.
+fn scale(launch: &Launch) -> DVec2 {
+    let s = arclength(&launch.rod, launch.tau);
+    DVec2::new(s, launch.load.abs() + 1.0 / (s * s))
+}
+
+fn moved(launch: &Launch, step: DVec2) -> Launch {
+    Launch {
+        tau: launch.tau + step.x,
+        load: launch.load + step.y,
+        ..*launch
+    }
+}
+
+/// Angle of the tangent (from that of `near`), place, force and energy.
+fn numbers(full: &Full, near: &Full) -> [f64; 5] {
+    let angle = near.base.tangent.perp_dot(full.base.tangent);
+    let place = full.base.position;
+    [angle, place.x, place.y, full.base.force, full.energy]
+}
+
+fn listed(change: &Change) -> [f64; 5] {
+    let Change {
+        angle,
+        position,
+        force,
+        energy,
+    } = *change;
+    [angle, position.x, position.y, force, energy]
+}
+
+/// Every [`Change`] is the derivative of what it names, for every set of effects and on both sides of what a kernel
+/// carries; central differences leave 3e-7 (measured) of it.
+#[test]
+fn a_state_changes_as_it_says() {
+    let mut worst = 0.0_f64;
+    for effects in Effects::all() {
+        let method = Method::fine(effects);
+        let launches = launches(effects);
+        let here: Vec<Moving> = land::<Dopri8, FirstAndEnergy>(method, &launches);
+        for axis in [DVec2::X, DVec2::Y] {
+            let step = |launch: &Launch| 1e-4 * axis * scale(launch);
+            let [before, after] = [-1.0, 1.0].map(|sign| {
+                let there: Vec<Launch> =
+                    launches.iter().map(|l| moved(l, sign * step(l))).collect();
+                land::<Dopri8, FirstAndEnergy>(method, &there)
+            });
+            for (i, launch) in launches.iter().enumerate() {
+                let by = if axis == DVec2::X {
+                    here[i].by_tau
+                } else {
+                    here[i].by_load
+                };
+                let full = &here[i].full;
+                let [low, high] = [&before[i], &after[i]].map(|m| numbers(&m.full, full));
+                let width = scale(launch).dot(axis);
+                let sizes = numbers(full, full);
+                for (k, change) in listed(&by).into_iter().enumerate() {
+                    let difference = (high[k] - low[k]) / 2e-4;
+                    let size = 1.0 + sizes[k].abs() + difference.abs();
+                    let apart = (width * change - difference).abs() / size;
+                    worst = worst.max(apart);
+                    assert!(apart < 3e-6, "{effects:?} {axis} {k} {launch:?}: {apart:e}");
+                }
+            }
+        }
+    }
+    eprintln!("worst {worst:.1e}");
+}
+
+/// A landing with second derivatives, moved, is the landing there: the pole to third order, the first derivatives to second.
+#[test]
+fn a_landing_moves_as_it_says() {
+    let mut worst = [0.0_f64; 2];
+    for effects in Effects::all() {
+        let method = Method::fine(effects);
+        let launches = launches(effects);
+        let here = land::<Dopri8, Second>(method, &launches);
+        let step = |launch: &Launch| 1e-4 * DVec2::new(0.6, -0.8) * scale(launch);
+        let there: Vec<Launch> = launches.iter().map(|l| moved(l, step(l))).collect();
+        let there = land::<Dopri8, First>(method, &there);
+        for ((launch, here), there) in launches.iter().zip(&here).zip(&there) {
+            let found = here.moved(step(launch)).landing;
+            let size = scale(launch);
+            let reach = there.pole.length() + size.x;
+            let turned = (found.by_tau - there.by_tau).length() * size.x
+                + (found.by_load - there.by_load).length() * size.y;
+            let reach_part = reach / there.pole.length();
+            worst[0] = worst[0].max((found.pole - there.pole).length() / reach);
+            worst[1] = worst[1].max(turned / reach_part.powi(3));
+        }
+    }
+    eprintln!("worst {worst:?}");
+    // Steps of 1e-4: their cube is 1e-12, their square 1e-8.
+    assert!(worst[0] < 3e-10 && worst[1] < 3e-6);
+}
+
+/// The residual of a refined state bounds what a trajectory finds there, at every resolution.
+#[test]
+fn residuals_are_bounds() {
+    let scenes = [
+        "cone",
+        "measured",
+        "cylinder",
+        "euler_spiral",
+        "fig4_whisker",
+    ];
+    for name in scenes {
+        let text = std::fs::read_to_string(format!("scenes/{name}.toml")).unwrap();
+        let scene = Scene::parse(&text, &format!("scenes/{name}.toml"), name).unwrap();
+        let whisker = scene.whiskers().next().unwrap().1;
+        for side in Side::BOTH {
+            let rod = Rod::new(&whisker, &scene.pole, side);
+            for least in [4, 8, 16, 32] {
+                let method = Method {
+                    effects: Effects::of([&rod]),
+                    resolution: Resolution::of(least),
+                };
+                let length = whisker.length_mm;
+                let distances = scene.grid.distance_mm.iter().map(|d| d / length);
+                let distances: Vec<f64> = distances.step_by(16).collect();
+                let sheet = Sheet::new(method, &rod, side, &distances).unwrap();
+                let found = states(method, &sheet, &scene.grid.push_angle_deg);
+                assert!(!found.is_empty());
+                let launches: Vec<Launch> = found
+                    .iter()
+                    .map(|(_, state)| Launch {
+                        rod,
+                        tau: state.tau,
+                        load: state.load,
+                    })
+                    .collect();
+                let landed = land::<Dopri8, First>(method, &launches);
+                for ((shot, state), landing) in found.iter().zip(landed) {
+                    let residual = landing.pole.distance(shot.pole);
+                    assert!(
+                        residual <= state.residual && state.residual <= TOLERANCE,
+                        "{name} {side:?} x{least}: {residual:e}, said {:e}",
+                        state.residual
+                    );
+                }
+            }
+        }
+    }
+}
