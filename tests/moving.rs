@@ -1,4 +1,9 @@
 //! What Newton's method says of a state without a trajectory there, against trajectories.
+#![allow(
+    clippy::unwrap_used,
+    clippy::print_stderr,
+    reason = "tests may panic, and tell what they measured"
+)]
 
 #[allow(dead_code, reason = "other tests use the rest")]
 #[path = "gpu_engine/shots.rs"]
