@@ -243,7 +243,7 @@ impl Effects {
         !(self.curvature || self.spiral || self.gradient || self.profile)
     }
 
-    /// The effects whose kernel is right for contacts up to `beta tau` of `taper_tau`: beyond [`SLENDER`] on a straight cone it
+    /// The effects whose kernel is right for contacts up to `beta tau` of `taper_tau`: beyond 1.5 on a straight cone it
     /// is the one for a gradient, which carries all derivatives.
     #[must_use]
     pub fn reaching(self, taper_tau: f64) -> Self {
