@@ -84,14 +84,14 @@ fn facts(scene: &Scene, plan: &Plan, estimate: &Estimate) -> [(&'static str, Str
         (
             "trajectories",
             format!(
-                "about {most:.0} at most: {:.2} Newton steps a cell, sometimes 1 to confirm",
+                "about {most:.0} at most: {:.2} Newton steps a cell and 1 to confirm",
                 estimate.steps_per_cell
             ),
         ),
         (
-            "engine calls",
+            "GPU calls",
             format!(
-                "{} of a GPU: groups of {}, {} of {}, {} a call",
+                "{}: groups of {}, {} of {}, {} a call",
                 plan.engine_calls,
                 counted(plan.panels_at_once, "whisker"),
                 counted(plan.sides.len(), "side"),

@@ -12,6 +12,7 @@ pub mod batch;
 mod complex;
 mod contact;
 mod dopri8;
+mod effects;
 mod integrator;
 mod landing;
 pub mod order;
@@ -30,6 +31,7 @@ mod vector;
 
 pub use batch::{First, FirstAndEnergy, Second};
 pub use dopri8::Dopri8;
+pub use effects::Effects;
 pub use integrator::{Integrator, Resolution, Scales, integrate};
 pub use landing::{Base, Change, Curved, Full, LONGEST_STEP, Landing, Moving, limited};
 pub use radius::{Piece, RadiusProfile};
@@ -40,7 +42,7 @@ pub use rhs::{
     Shape, Spiral, State, Straight,
 };
 pub use rk4::Rk4;
-pub use rod::{Effects, PERFECT_CONE_CUT, Rod, Side};
+pub use rod::{PERFECT_CONE_CUT, Rod, Side};
 pub use start::{Start, arclength};
 pub use turn::nearest_turn;
 pub use units::{Reader, Reading, Units};

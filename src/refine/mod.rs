@@ -31,7 +31,7 @@ const LEFT_BY_STEP: f64 = 20.0;
 const LARGEST_Q: f64 = 12.0;
 
 /// What rounding may leave of it.
-const ROUNDING: f64 = 1e-15;
+const ROUNDING: f64 = 1e-14;
 
 /// The determinant of the Jacobian, over the lengths of its columns, from which on such a step cannot cross the fold.
 const CLEAR_OF_FOLD: f64 = 1e-5;

@@ -88,7 +88,7 @@ fn tau_of(rod: &Rod, u: f64) -> f64 {
 
 /// What is this part of the smallest `|load| tau^2` of the columns is below the folds between them, too: from column to column
 /// that changes by less than [`JUMP`](super::edges::JUMP).
-const BELOW: f64 = 0.6;
+const BELOW: f64 = 0.75;
 
 fn q(fold: &FoldPoint) -> f64 {
     fold.load.abs() * fold.tau * fold.tau

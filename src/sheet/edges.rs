@@ -18,7 +18,7 @@ pub const REACH_SLACK: f64 = 1e-12;
 const LAST_STEP: f64 = 1e-7;
 
 /// How much `ln q` of the fold changes from column to column at the least where it jumps; with friction, from 29 to 15.
-pub const JUMP: f64 = 0.4;
+pub const JUMP: f64 = 0.25;
 
 /// A computed point of an edge.
 #[derive(Clone, Copy, Debug)]

@@ -61,8 +61,8 @@ fn a_straight_cylinder_has_no_effects() {
     assert_eq!(fact(&run, "states"), states);
     let cells = "16: 8 push angles x 2 distances x 1 whisker";
     assert_eq!(fact(&run, "cells"), cells);
-    let calls = "1 of a GPU: groups of 1 whisker, 1 side of 2 rows, 16384 rows a call";
-    assert_eq!(fact(&run, "engine calls"), calls);
+    let calls = "1: groups of 1 whisker, 1 side of 2 rows, 16384 rows a call";
+    assert_eq!(fact(&run, "GPU calls"), calls);
     let memory = "at most 129 MiB for panels and cells in flight";
     assert_eq!(fact(&run, "memory"), memory);
 }
@@ -85,8 +85,8 @@ fn the_cone_scene() {
     assert!(fact(&run, "states").starts_with("11: 2 rest shape"));
     let cells = "262144: 512 push angles x 512 distances x 1 whisker";
     assert_eq!(fact(&run, "cells"), cells);
-    let calls = "4 of a GPU: groups of 1 whisker, 2 sides of 512 rows, 256 rows a call";
-    assert_eq!(fact(&run, "engine calls"), calls);
+    let calls = "4: groups of 1 whisker, 2 sides of 512 rows, 256 rows a call";
+    assert_eq!(fact(&run, "GPU calls"), calls);
 
     // Only the seconds change, and they are a time.
     let same = |run: &Run| run.out.lines().take(16).collect::<Vec<_>>().join("\n");

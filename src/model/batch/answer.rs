@@ -1,11 +1,6 @@
 //! What a batch answers for each trajectory, worked out in lanes.
-//!
-//! With `w` the pole's centre seen from the base in the axes of the contact, and `theta` the base's tangent
-//! there, `G = ln w - i theta` (complex) has the real part `ln D` and the imaginary part `phi`, the two
-//! coordinates of a whisker in front of a pole. Its derivatives need no trigonometry:
-//! `G_i = w_i/w - i theta_i`, `G_ij = w_ij/w - w_i w_j/w^2 - i theta_ij`.
 
-use crate::model::complex::Complex;
+use super::centre::{Centre, spread};
 use crate::model::contact::Contact;
 use crate::model::landing::{Base, Change, Curved, Full, Landing, Moving};
 use crate::model::order::{
@@ -205,60 +200,4 @@ fn landing([x, y, ln_d_tau, phi_tau, ln_d_load, phi_load]: [f64; 6]) -> Landing 
         by_tau: DVec2::new(ln_d_tau, phi_tau),
         by_load: DVec2::new(ln_d_load, phi_load),
     }
-}
-
-/// The pole's centre `w` seen from the base, in the axes of the contact.
-struct Centre<T> {
-    pole: Complex<T>,
-    inverse: Complex<T>,
-}
-
-impl<T: Lanes> Centre<T> {
-    #[inline(always)]
-    fn new(arrival: &Arrival<T>, [to_x, to_y]: [T; 2]) -> Self {
-        let [c, s, x, y] = arrival.rod;
-        let w = Complex::new(to_x - x, to_y - y);
-        Self {
-            pole: Complex::new(c, -s).times(w),
-            inverse: w.inverse(),
-        }
-    }
-
-    /// `w_i/w`.
-    #[inline(always)]
-    fn moved(&self, [_, x, y]: Triple<T>) -> Complex<T> {
-        Complex::new(-x, -y).times(self.inverse)
-    }
-
-    /// `G_i`.
-    #[inline(always)]
-    fn once(&self, of: Triple<T>) -> Complex<T> {
-        let moved = self.moved(of);
-        Complex::new(moved.re, moved.im - of[0])
-    }
-
-    /// `G_ij`; `by` are `w_i/w` and `w_j/w`.
-    #[inline(always)]
-    fn twice(&self, of: Triple<T>, by: Complex<T>, and: Complex<T>) -> Complex<T> {
-        self.once(of).minus(by.times(and))
-    }
-
-    /// The numbers of a [`Landing`].
-    #[inline(always)]
-    fn landing(&self, slopes: &Slopes<T>) -> [T; 6] {
-        let (tau, load) = (self.once(slopes.by_tau), self.once(slopes.by_load));
-        [self.pole.re, self.pole.im, tau.re, tau.im, load.re, load.im]
-    }
-}
-
-/// The numbers of each lane.
-#[inline(always)]
-fn spread<T: Lanes, const N: usize>(numbers: [T; N]) -> [[f64; N]; WIDTH] {
-    let mut lanes = [[0.0; N]; WIDTH];
-    for (i, number) in numbers.into_iter().enumerate() {
-        for (lane, number) in lanes.iter_mut().zip(number.unpack()) {
-            lane[i] = number;
-        }
-    }
-    lanes
 }

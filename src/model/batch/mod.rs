@@ -5,6 +5,7 @@
 //! Results do not depend on the number of threads: every trajectory is computed by itself.
 
 mod answer;
+mod centre;
 mod flops;
 mod gather;
 mod kernel;
