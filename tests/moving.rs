@@ -57,7 +57,7 @@ fn listed(change: &Change) -> [f64; 5] {
 }
 
 /// Every [`Change`] is the derivative of what it names, for every set of effects and on both sides of what a kernel
-/// carries; central differences leave 3e-7 (measured) of it.
+/// carries; central differences leave 3.2e-8 (measured) of it.
 #[test]
 fn a_state_changes_as_it_says() {
     let mut worst = 0.0_f64;
@@ -87,7 +87,7 @@ fn a_state_changes_as_it_says() {
                     let size = 1.0 + sizes[k].abs() + difference.abs();
                     let apart = (width * change - difference).abs() / size;
                     worst = worst.max(apart);
-                    assert!(apart < 3e-6, "{effects:?} {axis} {k} {launch:?}: {apart:e}");
+                    assert!(apart < 3e-7, "{effects:?} {axis} {k} {launch:?}: {apart:e}");
                 }
             }
         }
@@ -118,8 +118,8 @@ fn a_landing_moves_as_it_says() {
         }
     }
     eprintln!("worst {worst:?}");
-    // Steps of 1e-4: their cube is 1e-12, their square 1e-8.
-    assert!(worst[0] < 3e-10 && worst[1] < 3e-6);
+    // Steps of 1e-4: their cube is 1e-12, their square 1e-8. Measured 2.4e-12 and 2.2e-8.
+    assert!(worst[0] < 3e-11 && worst[1] < 3e-7);
 }
 
 /// The residual of a refined state bounds what a trajectory finds there, at every resolution.
