@@ -14,7 +14,6 @@ import sys
 import tempfile
 from functools import partial
 from pathlib import Path
-from statistics import median
 from time import perf_counter
 
 from cone import TOUCH, WHISKER
@@ -67,13 +66,14 @@ class TimedAuto(Auto):
 
     def cost(self, run):
         """Microseconds by point, and the number of points."""
-        costs = []
+        whole, cut = [], []
         for _ in range(RUNS):
             run()
-            seconds, points = self.seconds, self.points
+            whole.append((self.seconds, self.points))
             run(NMX=1)
-            costs.append(1e6 * (seconds - self.seconds) / (points - self.points))
-        return {"microseconds": median(costs), "points": points}
+            cut.append((self.seconds, self.points))
+        (seconds, points), (start, first) = min(whole), min(cut)
+        return {"microseconds": 1e6 * (seconds - start) / (points - first), "points": points}
 
     def push_angles(self):
         """At LOADS along the push, and at the first folds for POLES."""

@@ -16,7 +16,6 @@ import json
 import sys
 from cmath import exp
 from math import log1p
-from statistics import median
 from time import perf_counter
 
 import numpy as np
@@ -130,7 +129,7 @@ def main():
                 {
                     "nodes": nodes,
                     "tolerance": tolerance,
-                    "microseconds": 1e6 * median(map(np.mean, seconds)),
+                    "microseconds": 1e6 * min(map(np.mean, seconds)),
                     "error_max": np.abs(arcs[0] / exact - 1).max(),
                 }
             )

@@ -1,15 +1,17 @@
 """The ratios as a table of 80 columns."""
 
 NOTES = """\
-Microseconds each, and the largest error. Both sides of a line with an error in
-its name: the cheapest run whose largest error is at most that. heyoka: one
-trajectory with first derivatives; compilation and Python's loop not counted.
+Microseconds each, of the fastest run, and the largest error. Both sides of a
+line with an error in its name: the cheapest setting whose largest error is at
+most that. heyoka: one trajectory with first derivatives; compilation and
+Python's loop not counted.
 AUTO: one point by mesh size (NTST), error in radians of a push angle of which
 it prints 11 digits.
 solve_bvp: one cell, the cheapest mesh with an error of at most 1e-9 of the
-contact's arclength. whiskmap beside them, in steps for 1e-9 degrees and 1e-9
-radians: a detachment point, error in radians, or a cell of a map refined to
-1e-12, with the estimated error. AUTO, solve_bvp, these two: one thread."""
+contact's arclength. whiskmap beside them: a detachment point in the cheapest
+steps with an error of at most 1e-9 degrees (the error is in radians), or a cell
+of a map in those for 1e-9 radians, refined to 1e-12, with the estimated error.
+AUTO, solve_bvp, these two: one thread."""
 
 
 def lines(whiskmap, versions, ratios):
