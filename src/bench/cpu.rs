@@ -4,8 +4,8 @@ use super::task::Task;
 use super::watch::watch;
 use super::{Engine, Report, Row, Rung, Stages};
 use crate::integrate::{EngineError, Hit, Solver};
-use crate::model::batch::{Launch, Unit, flops};
-use crate::model::{Dopri8, First, Resolution, Rk4};
+use crate::model::batch::{Kernel, Launch, Unit, flops};
+use crate::model::{Dopri8, First, Integrator, Resolution, Rk4};
 use std::convert::Infallible;
 use std::time::Instant;
 
@@ -56,68 +56,57 @@ pub fn measure(
         });
         let first_result_s = start.elapsed().as_secs_f64();
         let peak_gflops = pool.install(|| peak(unit, runs));
-        report.engines.push(Engine {
-            name: name.clone(),
+        let engine = Engine {
+            name,
             threads: Some(threads),
             adapter: unit.to_string(),
             peak_gflops,
             first_result_s,
+        };
+        let rows = &mut report.rows;
+        pool.install(|| {
+            for resolution in Resolution::LADDER {
+                rows.push(row::<Dopri8>(
+                    task,
+                    runs,
+                    &engine,
+                    "dopri8",
+                    solver(resolution),
+                ));
+            }
+            for resolution in RK4_LADDER.into_iter().filter(|_| i == widest) {
+                rows.push(row::<Rk4>(task, runs, &engine, "rk4", solver(resolution)));
+            }
         });
-        for resolution in Resolution::LADDER {
-            let solve = || {
-                pool.install(|| {
-                    solver(resolution).solve::<Dopri8>(task.effects, &task.rods, &task.shots)
-                })
-            };
-            let count =
-                |steps, launch: &Launch| flops::<Dopri8, First>(task.effects, steps, launch);
-            report.rows.push(row(
-                task,
-                runs,
-                (&name, threads, peak_gflops),
-                ("dopri8", resolution),
-                solve,
-                count,
-            ));
-        }
-        for resolution in RK4_LADDER.into_iter().filter(|_| i == widest) {
-            let solve = || {
-                pool.install(|| {
-                    solver(resolution).solve::<Rk4>(task.effects, &task.rods, &task.shots)
-                })
-            };
-            let count = |steps, launch: &Launch| flops::<Rk4, First>(task.effects, steps, launch);
-            report.rows.push(row(
-                task,
-                runs,
-                (&name, threads, peak_gflops),
-                ("rk4", resolution),
-                solve,
-                count,
-            ));
-        }
+        report.engines.push(engine);
     }
     Ok(())
 }
 
-/// The row of an engine, which is its name, its threads and their peak, at an integrator's resolution.
-fn row(
+/// The row of `engine` with the integrator `M`, on the threads of the current pool.
+fn row<M: Integrator>(
     task: &Task,
     runs: usize,
-    (name, threads, peak_gflops): (&str, usize, f64),
-    (integrator, resolution): (&'static str, Resolution),
-    solve: impl Fn() -> Vec<Hit>,
-    flops: impl Fn(u32, &Launch) -> u64,
-) -> Row {
-    let Ok((seconds, hits)) = watch(runs, || Ok::<Vec<Hit>, Infallible>(solve()));
+    engine: &Engine,
+    integrator: &'static str,
+    solver: Solver,
+) -> Row
+where
+    First: Kernel<M>,
+{
+    let Ok((seconds, hits)) = watch(runs, || {
+        let hits = solver.solve::<M>(task.effects, &task.rods, &task.shots);
+        Ok::<Vec<Hit>, Infallible>(hits)
+    });
+    let resolution = solver.resolution;
     let work = operations(task, &hits, |launch| {
         let steps = resolution.steps(&launch.rod, launch.tau, launch.load);
-        flops(steps, launch)
+        flops::<M, First>(task.effects, steps, launch)
     });
     let points: Vec<(f64, f64)> = hits.iter().map(|hit| (hit.tau, hit.load)).collect();
     Row::new(
-        name,
-        Some(threads),
+        &engine.name,
+        engine.threads,
         Rung {
             integrator,
             steps: resolution.least,
@@ -131,7 +120,7 @@ fn row(
         Work {
             trajectories: trajectories(&hits),
             operations: work,
-            peak_gflops,
+            peak_gflops: engine.peak_gflops,
         },
         task.errors(&points),
     )

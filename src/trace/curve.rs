@@ -120,6 +120,9 @@ pub fn curve_at(
     let states = land::<Dopri8, FirstAndEnergy>(method, &launches);
     for ((i, end), Moving { full, .. }) in ends.into_iter().zip(&states) {
         let push = side.sign() * end.push;
+        // The crossing's own residual foretells what its last step leaves; this trajectory has gone there.
+        let distance = full.landing.pole.length();
+        let off = (sheet.rows[i].pole_distance / distance).ln().abs();
         let reading = reader.read(end.tau, full, sheet.rows[i].touch, push);
         rows[i] = Detachment {
             kind: match end.edge {
@@ -135,7 +138,7 @@ pub fn curve_at(
             base_force_y_un: Some(reading.base_force_un.y),
             base_moment_nnm: Some(reading.base_moment_nnm),
             contact_angle_deg: Some(reading.contact_angle_deg),
-            residual: Some(end.residual),
+            residual: Some(end.residual + off),
             ..rows[i]
         };
     }
