@@ -15,7 +15,7 @@ use naga::{Block, Expression, Function, Handle, Literal, Module, Statement};
 use std::time::Instant;
 use whiskmap::integrate::gpu::{Precision, shaders};
 use whiskmap::model::batch::{Launch, Method, land};
-use whiskmap::model::{Dopri8, Effects, First};
+use whiskmap::model::{Effects, First, Nystrom8};
 
 #[allow(dead_code, reason = "the tests use the rest")]
 #[path = "../tests/gpu_engine/shots.rs"]
@@ -69,7 +69,7 @@ fn main() {
 fn microseconds(effects: Effects, launches: &[Launch]) -> f64 {
     let method = Method::fine(effects);
     let start = Instant::now();
-    let landings = land::<Dopri8, First>(method, launches);
+    let landings = land::<Nystrom8, First>(method, launches);
     let micros = start.elapsed().as_secs_f64() * 1e6;
     assert!(landings.iter().all(|landing| landing.pole.is_finite()));
     micros / launches.len() as f64

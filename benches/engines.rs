@@ -16,7 +16,7 @@ use whiskmap::integrate::gpu::{Gpu, Precision};
 use whiskmap::integrate::{Cpu, Engine};
 use whiskmap::map::{self, Observer};
 use whiskmap::model::batch::{Launch, Method, Unit, land, land_on};
-use whiskmap::model::{Dopri8, Effects, First, FirstAndEnergy, Resolution, Rod, Second, Side};
+use whiskmap::model::{Effects, First, FirstAndEnergy, Nystrom8, Resolution, Rod, Second, Side};
 use whiskmap::plan::Plan;
 use whiskmap::refine::refine;
 use whiskmap::scene::Scene;
@@ -37,18 +37,18 @@ fn integrators(criterion: &mut Criterion) {
         };
         let steps = resolution.least;
         group.bench_function(BenchmarkId::new("dopri8, first derivatives", steps), |b| {
-            b.iter(|| land::<Dopri8, First>(method, black_box(&launches)));
+            b.iter(|| land::<Nystrom8, First>(method, black_box(&launches)));
         });
     }
     let fine = Method::fine(USUAL);
     group.bench_function("dopri8, first derivatives and energy", |b| {
-        b.iter(|| land::<Dopri8, FirstAndEnergy>(fine, black_box(&launches)));
+        b.iter(|| land::<Nystrom8, FirstAndEnergy>(fine, black_box(&launches)));
     });
     group.bench_function("dopri8, second derivatives", |b| {
-        b.iter(|| land::<Dopri8, Second>(fine, black_box(&launches)));
+        b.iter(|| land::<Nystrom8, Second>(fine, black_box(&launches)));
     });
     group.bench_function("dopri8, first derivatives, scalar", |b| {
-        b.iter(|| land_on::<Dopri8, First>(Unit::scalar(), fine, black_box(&launches)));
+        b.iter(|| land_on::<Nystrom8, First>(Unit::scalar(), fine, black_box(&launches)));
     });
     group.finish();
 }

@@ -21,7 +21,7 @@ use whiskmap::accuracy;
 use whiskmap::integrate::Cpu;
 use whiskmap::map::{self, Observer};
 use whiskmap::model::batch::{Launch, Method, Unit, land_on};
-use whiskmap::model::{Dopri8, Effects, First, Landing, Resolution, Rod, Side, arclength};
+use whiskmap::model::{Effects, First, Landing, Nystrom8, Resolution, Rod, Side, arclength};
 use whiskmap::plan::Plan;
 use whiskmap::scene::Scene;
 use whiskmap::store;
@@ -101,7 +101,7 @@ fn land(unit: Unit, resolution: Resolution, launches: &[Launch]) -> Vec<Landing>
             effects: Effects::of(launches.iter().map(|launch| &launch.rod)),
             resolution,
         };
-        land_on::<Dopri8, First>(unit, method, launches)
+        land_on::<Nystrom8, First>(unit, method, launches)
     });
     landed.collect()
 }

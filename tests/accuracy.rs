@@ -8,7 +8,7 @@
 use std::path::PathBuf;
 use whiskmap::accuracy::cheapest;
 use whiskmap::model::batch::{Launch, Method, land};
-use whiskmap::model::{Dopri8, Effects, First, Resolution, Rod, Side};
+use whiskmap::model::{Effects, First, Nystrom8, Resolution, Rod, Side};
 use whiskmap::refine::states;
 use whiskmap::scene::{Scene, Whisker};
 use whiskmap::sheet::Sheet;
@@ -83,7 +83,7 @@ fn cells(scene: &Scene, whisker: &Whisker, side: Side, resolution: Resolution) -
         effects,
         resolution: EXACT,
     };
-    let landed = land::<Dopri8, First>(exact, &launches);
+    let landed = land::<Nystrom8, First>(exact, &launches);
     let missed = landed.iter().zip(poles);
     let missed = missed.map(|(landing, pole)| landing.residual(pole).length().to_degrees());
     missed.fold(0.0, f64::max)

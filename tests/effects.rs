@@ -4,7 +4,7 @@
 use glam::DVec2;
 use whiskmap::model::batch::{Launch, Method, land};
 use whiskmap::model::{
-    Dopri8, Effects, First, FirstAndEnergy, Landing, RadiusProfile, Resolution, Rod, Second,
+    Effects, First, FirstAndEnergy, Landing, Nystrom8, RadiusProfile, Resolution, Rod, Second,
     arclength,
 };
 
@@ -74,7 +74,7 @@ fn plainly(launch: &Launch, steps: u32) -> DVec2 {
 fn the_pole_is_where_plain_equations_see_it() {
     for effects in Effects::all().filter(|e| e.profile && !e.curvature) {
         let launches = launches(effects, 100);
-        let landings = land::<Dopri8, First>(with(effects, Resolution::FINE), &launches);
+        let landings = land::<Nystrom8, First>(with(effects, Resolution::FINE), &launches);
         for (launch, landing) in launches.iter().zip(landings) {
             let apart = plainly(launch, 2000).distance(landing.pole);
             assert!(apart < 1e-10, "{apart:e} {launch:?}");
@@ -97,9 +97,9 @@ fn derivatives_agree_with_differences_in_every_set() {
                     .nth(axis)
                     .map(|value| *value += sign * STEP * scale[axis])
                     .unwrap();
-                land::<Dopri8, First>(method, &[moved])[0]
+                land::<Nystrom8, First>(method, &[moved])[0]
             };
-            let here = land::<Dopri8, Second>(method, &[launch])[0];
+            let here = land::<Nystrom8, Second>(method, &[launch])[0];
             for (axis, first, second) in [
                 (0, here.landing.by_tau, [here.by_tau_tau, here.by_tau_load]),
                 (
@@ -138,7 +138,7 @@ fn derivatives_agree_with_differences_in_every_set() {
 
 fn farthest(one: Effects, other: Effects, pairs: &[(Launch, Launch)]) -> f64 {
     let ends = |effects: Effects, launches: Vec<Launch>| {
-        land::<Dopri8, FirstAndEnergy>(with(effects, Resolution::FINE), &launches)
+        land::<Nystrom8, FirstAndEnergy>(with(effects, Resolution::FINE), &launches)
     };
     let ones = ends(one, pairs.iter().map(|pair| pair.0).collect());
     let others = ends(other, pairs.iter().map(|pair| pair.1).collect());
@@ -228,7 +228,7 @@ fn rows_do_not_cost_the_order() {
         // On the last piece, with all rows behind.
         launches.retain(|launch| arclength(&launch.rod, launch.tau) > ROWS[ROWS.len() - 2][0]);
         let at = |longest: f64| Resolution { least: 0, longest };
-        let poles = |longest: f64| land::<Dopri8, First>(with(effects, at(longest)), &launches);
+        let poles = |longest: f64| land::<Nystrom8, First>(with(effects, at(longest)), &launches);
         let [rough, half, exact] = [0.4, 0.2, 0.01].map(poles);
         let error = |found: &[Landing], i: usize| found[i].pole.distance(exact[i].pole);
         let worst = (0..launches.len())
@@ -270,7 +270,7 @@ fn many_rows_are_fine_at_every_contact() {
                     tau: cone.tau(s),
                     load: q / (s * s),
                 };
-                land::<Dopri8, First>(with(Effects::of([&rod]), resolution), &[launch])[0].pole
+                land::<Nystrom8, First>(with(Effects::of([&rod]), resolution), &[launch])[0].pole
             };
             let apart =
                 pole(cone, Resolution::FINE.doubled()).distance(pole(measured, Resolution::FINE));

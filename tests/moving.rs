@@ -13,7 +13,7 @@ use glam::DVec2;
 use shots::Range;
 use whiskmap::model::batch::{Launch, Method, land};
 use whiskmap::model::{
-    Change, Dopri8, Effects, First, FirstAndEnergy, Full, Moving, Resolution, Rod, Second, Side,
+    Change, Effects, First, FirstAndEnergy, Full, Moving, Nystrom8, Resolution, Rod, Second, Side,
     arclength,
 };
 use whiskmap::refine::{TOLERANCE, states};
@@ -64,13 +64,13 @@ fn a_state_changes_as_it_says() {
     for effects in Effects::all() {
         let method = Method::fine(effects);
         let launches = launches(effects);
-        let here: Vec<Moving> = land::<Dopri8, FirstAndEnergy>(method, &launches);
+        let here: Vec<Moving> = land::<Nystrom8, FirstAndEnergy>(method, &launches);
         for axis in [DVec2::X, DVec2::Y] {
             let step = |launch: &Launch| 1e-4 * axis * scale(launch);
             let [before, after] = [-1.0, 1.0].map(|sign| {
                 let there: Vec<Launch> =
                     launches.iter().map(|l| moved(l, sign * step(l))).collect();
-                land::<Dopri8, FirstAndEnergy>(method, &there)
+                land::<Nystrom8, FirstAndEnergy>(method, &there)
             });
             for (i, launch) in launches.iter().enumerate() {
                 let by = if axis == DVec2::X {
@@ -102,10 +102,10 @@ fn a_landing_moves_as_it_says() {
     for effects in Effects::all() {
         let method = Method::fine(effects);
         let launches = launches(effects);
-        let here = land::<Dopri8, Second>(method, &launches);
+        let here = land::<Nystrom8, Second>(method, &launches);
         let step = |launch: &Launch| 1e-4 * DVec2::new(0.6, -0.8) * scale(launch);
         let there: Vec<Launch> = launches.iter().map(|l| moved(l, step(l))).collect();
-        let there = land::<Dopri8, First>(method, &there);
+        let there = land::<Nystrom8, First>(method, &there);
         for ((launch, here), there) in launches.iter().zip(&here).zip(&there) {
             let found = here.moved(step(launch)).landing;
             let size = scale(launch);
@@ -138,7 +138,7 @@ fn residuals_are_bounds() {
         let whisker = scene.whiskers().next().unwrap().1;
         for side in Side::BOTH {
             let rod = Rod::new(&whisker, &scene.pole, side);
-            for least in [4, 8, 16, 32] {
+            for least in [3, 5, 9, 18] {
                 let method = Method {
                     effects: Effects::of([&rod]),
                     resolution: Resolution::of(least),
@@ -157,7 +157,7 @@ fn residuals_are_bounds() {
                         load: state.load,
                     })
                     .collect();
-                let landed = land::<Dopri8, First>(method, &launches);
+                let landed = land::<Nystrom8, First>(method, &launches);
                 for ((shot, state), landing) in found.iter().zip(landed) {
                     let residual = landing.pole.distance(shot.pole);
                     assert!(

@@ -1,7 +1,7 @@
 //! States and detachments from all over a scene, its corners among them.
 
 use crate::model::batch::{Launch, Method, land};
-use crate::model::{Dopri8, Effects, First, Landing, Resolution, Rod, Side};
+use crate::model::{Effects, First, Landing, Nystrom8, Resolution, Rod, Side};
 use crate::refine::states;
 use crate::scene::{Scene, Whisker};
 use crate::sheet::{Crossing, Edge, Sheet};
@@ -66,7 +66,7 @@ impl Sample {
                 effects,
                 resolution,
             };
-            land::<Dopri8, First>(method, launches)
+            land::<Nystrom8, First>(method, launches)
         };
         let pairs = |launches: &[Launch]| {
             let finer = landed(resolution.doubled(), launches);

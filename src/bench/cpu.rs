@@ -5,7 +5,7 @@ use super::watch::watch;
 use super::{Engine, Report, Row, Rung, Stages};
 use crate::integrate::{EngineError, Hit, Solver};
 use crate::model::batch::{Kernel, Launch, Unit, flops};
-use crate::model::{Dopri8, First, Integrator, Resolution, Rk4};
+use crate::model::{First, Integrator, Nystrom8, Resolution, Rk4};
 use std::convert::Infallible;
 use std::time::Instant;
 
@@ -52,7 +52,7 @@ pub fn measure(
         let start = Instant::now();
         pool.install(|| {
             let shots = task.shots.get(..1).unwrap_or_default();
-            solver(Resolution::FINE).solve::<Dopri8>(task.effects, &task.rods, shots)
+            solver(Resolution::FINE).solve::<Nystrom8>(task.effects, &task.rods, shots)
         });
         let first_result_s = start.elapsed().as_secs_f64();
         let peak_gflops = pool.install(|| peak(unit, runs));
@@ -66,7 +66,7 @@ pub fn measure(
         let rows = &mut report.rows;
         pool.install(|| {
             for resolution in Resolution::LADDER {
-                rows.push(row::<Dopri8>(
+                rows.push(row::<Nystrom8>(
                     task,
                     runs,
                     &engine,

@@ -7,7 +7,7 @@ use super::{Engine, Report, Row, Rung, Stages};
 use crate::integrate::gpu::{Gpu, Precision, adapters};
 use crate::integrate::{Engine as _, EngineError};
 use crate::model::batch::{Launch, Method, flops, land};
-use crate::model::{Dopri8, First, Rk4, arclength};
+use crate::model::{First, Nystrom8, Rk4, arclength};
 use std::time::Instant;
 
 /// Most Newton steps in `f64` after the shader's.
@@ -133,7 +133,7 @@ fn newton(task: &Task, points: &mut [(f64, f64)]) {
             load,
         })
         .collect();
-    let landed = land::<Dopri8, First>(Method::fine(task.effects), &launches);
+    let landed = land::<Nystrom8, First>(Method::fine(task.effects), &launches);
     for (((point, landing), launch), shot) in points
         .iter_mut()
         .zip(landed)

@@ -2,7 +2,7 @@
 
 use crate::integrate::{Shot, Solver};
 use crate::model::batch::{Launch, Method, Unit, land};
-use crate::model::{Dopri8, Effects, First, Resolution, Rod, arclength};
+use crate::model::{Effects, First, Nystrom8, Resolution, Rod, arclength};
 use crate::plan::Plan;
 use crate::refine::states;
 use crate::scene::{Scene, Whisker};
@@ -112,7 +112,7 @@ impl Task {
             resolution: EXACT,
             tolerance: 1e-13,
         };
-        let exact = solver.solve::<Dopri8>(effects, &rods, &starts);
+        let exact = solver.solve::<Nystrom8>(effects, &rods, &starts);
         let exact = exact.iter().zip(&shots).map(|(hit, shot)| Launch {
             rod: rods[shot.rod as usize],
             tau: hit.tau,
@@ -141,7 +141,7 @@ impl Task {
             effects: self.effects,
             resolution: EXACT,
         };
-        let landed = land::<Dopri8, First>(method, &found);
+        let landed = land::<Nystrom8, First>(method, &found);
         let angle = |i: usize| landed[i].residual(self.shots[i].pole).length().to_degrees();
         let place = |launch: &Launch| arclength(&launch.rod, launch.tau);
         let arc = |i: usize| (place(&found[i]) - place(&self.exact[i])).abs();

@@ -2,7 +2,7 @@
 
 use super::{Description, Engine, EngineError, Hit, MOST_STEPS, Outcome, Shot, TOGETHER};
 use crate::model::batch::{Kernel, Launch, Method, Unit, land_on};
-use crate::model::{Dopri8, Effects, First, Integrator, Landing, Resolution, Rod, arclength};
+use crate::model::{Effects, First, Integrator, Landing, Nystrom8, Resolution, Rod, arclength};
 use glam::DVec2;
 use rayon::prelude::*;
 
@@ -28,7 +28,7 @@ impl Cpu {
             resolution: RESOLUTION,
             tolerance: TOLERANCE,
         };
-        solver.solve::<Dopri8>(effects, rods, shots)
+        solver.solve::<Nystrom8>(effects, rods, shots)
     }
 }
 

@@ -11,14 +11,17 @@
 pub mod batch;
 mod complex;
 mod contact;
-mod dopri8;
 mod effects;
 mod integrator;
+mod intrinsic;
 mod landing;
+mod material;
+mod nystrom8;
 pub mod order;
 pub mod profile;
 mod radius;
 mod real;
+mod resolution;
 mod rest;
 mod rhs;
 mod rk4;
@@ -30,17 +33,17 @@ mod units;
 mod vector;
 
 pub use batch::{First, FirstAndEnergy, Second};
-pub use dopri8::Dopri8;
 pub use effects::Effects;
-pub use integrator::{Integrator, Resolution, Scales, integrate};
+pub use integrator::{Integrator, Scales, Stage, integrate};
+pub use intrinsic::{Bent, Intrinsic, Spiral, Straight};
 pub use landing::{Base, Change, Curved, Full, LONGEST_STEP, Landing, Moving, limited};
+pub use material::{Even, Graded, Material, Measured, Swing};
+pub use nystrom8::Nystrom8;
 pub use radius::{Piece, RadiusProfile};
 pub use real::Real;
+pub use resolution::Resolution;
 pub use rest::Rest;
-pub use rhs::{
-    Bent, Even, Graded, Intrinsic, Material, Measured, Planar, RodSystem, Section, Sensitivity,
-    Shape, Spiral, State, Straight,
-};
+pub use rhs::{Carried, Planar, RodSystem, Section, Sensitivity, Shape, State};
 pub use rk4::Rk4;
 pub use rod::{PERFECT_CONE_CUT, Rod, Side};
 pub use start::{Start, arclength};

@@ -1,9 +1,9 @@
 //! A trajectory seen at places along the whisker.
 
-use super::rhs::{
-    Bent, Graded, Intrinsic, Material, Measured, RodSystem, Section, Shape, Spiral, State,
-};
-use super::{Dopri8, Resolution, Rest, Rod, Scales, Start, arclength, integrate};
+use super::intrinsic::{Bent, Intrinsic, Spiral};
+use super::material::{Graded, Material, Measured};
+use super::rhs::{RodSystem, Section, Shape, State};
+use super::{Nystrom8, Resolution, Rest, Rod, Scales, Start, arclength, integrate};
 use glam::DVec2;
 
 /// The whisker at one place, as seen from the contact, in axes whose second one is along the force; lengths in whisker
@@ -54,7 +54,10 @@ impl Way<'_> {
         let contact = self.start.arclength;
         let deflected = at.partition_point(|s| *s < contact);
         let tangent = self.start.tangent;
-        let mut state: State<f64, I, Shape> = (rest, ([tangent.x, tangent.y, 0.0, 0.0], ()));
+        let mut state: State<f64, I, Shape> = (
+            rest,
+            ([tangent.x, tangent.y, 0.0, 0.0, 0.0], ((), ((), ()))),
+        );
         let mut from = self.start.tau;
         let mut places: Vec<Place> = at[..deflected]
             .iter()
@@ -63,7 +66,7 @@ impl Way<'_> {
                 let to = self.rod.tau(*s);
                 state = self.advance(intrinsic, (from, to), state);
                 from = to;
-                let (_, (rod, ())) = state;
+                let (_, (rod, _)) = state;
                 self.loaded(*s, rod)
             })
             .collect();
@@ -130,11 +133,11 @@ impl Way<'_> {
             intrinsic,
             material,
         };
-        let scales = Scales::tapered::<Dopri8>(self.rod.taper, h);
-        integrate::<Dopri8, f64, _, _, Shape>(&system, &scales, section, h, steps, state)
+        let scales = Scales::tapered::<Nystrom8>(self.rod.taper, h);
+        integrate::<Nystrom8, f64, _, _, Shape>(&system, &scales, section, steps, state)
     }
 
-    fn loaded(&self, s: f64, [c, sin, x, y]: [f64; 4]) -> Place {
+    fn loaded(&self, s: f64, [c, sin, x, y, _]: [f64; 5]) -> Place {
         let moment = -self.start.force * x;
         Place {
             arclength: s,

@@ -84,3 +84,35 @@ pub(super) fn expm1_over_small<T: Real>(x: T) -> T {
     let [odd, even] = hyperbolic_small(x);
     x.mul_add(even, odd)
 }
+
+/// Of `sin(x)/x` and `(cos(x) - 1)/x^2` in `x^2`: at 0.25 the first terms left out are below 1e-14, at 0.5 below 2e-11.
+const CIRCULAR: [[f64; 2]; 5] = {
+    let mut terms = [[0.0; 2]; 5];
+    let mut k = 0;
+    while k < terms.len() {
+        let sign = if k % 2 == 0 { 1.0 } else { -1.0 };
+        terms[k] = [sign * HYPERBOLIC[k][0], -sign * HYPERBOLIC[k][1]];
+        k += 1;
+    }
+    terms
+};
+
+/// The unit vector turned by a small `angle`.
+#[inline(always)]
+pub(super) fn turned<T: Real>([x, y]: [T; 2], angle: T) -> [T; 2] {
+    let square = angle * angle;
+    let fourth = square * square;
+    // Pairs first: all that follows waits for this.
+    let mut sums = [T::of(0.0); 2];
+    for (i, sum) in sums.iter_mut().enumerate() {
+        let [a, b, c, d, e] = CIRCULAR;
+        let low = square.mul_add(T::of(b[i]), T::of(a[i]));
+        let high = square.mul_add(T::of(d[i]), T::of(c[i]));
+        *sum = fourth.mul_add(fourth.mul_add(T::of(e[i]), high), low);
+    }
+    let (sin, versed) = (angle * sums[0], square * sums[1]);
+    [
+        (-sin).mul_add(y, versed.mul_add(x, x)),
+        sin.mul_add(x, versed.mul_add(y, y)),
+    ]
+}

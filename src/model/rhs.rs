@@ -4,6 +4,8 @@
 //! `dtheta/da = kappa_i - f X/S` into `dtheta/dsigma = -(rho kappa_i - f X w)`. The unit tangent `(c, s)` stands for `theta`: no
 //! trigonometry in the loop.
 
+use super::intrinsic::Intrinsic;
+use super::material::Material;
 use super::{Real, Vector};
 
 /// The rod at a stage.
@@ -17,128 +19,23 @@ pub struct Section<T> {
     pub arclength: T,
 }
 
-/// How the material stiffens along the rod.
-pub trait Material<T: Real>: Copy {
-    /// `rho/S` at a section: what turns a moment into `dtheta/dtau`.
-    fn compliance(self, section: &Section<T>) -> T;
-}
+/// The rod itself: `c, s, X, Y`, and how far bending has turned it since the contact.
+pub type Planar<T> = [T; 5];
 
-/// The same modulus everywhere: `S = rho^4`.
-#[derive(Clone, Copy, Debug)]
-pub struct Even;
-
-impl<T: Real> Material<T> for Even {
-    #[inline(always)]
-    fn compliance(self, section: &Section<T>) -> T {
-        section.inverse_cube
-    }
-}
-
-/// A modulus that is linear in the arclength: `S = rho^4 (1 + g s)`.
-#[derive(Clone, Copy, Debug)]
-pub struct Graded<T> {
-    /// `g`.
-    pub gradient: T,
-}
-
-impl<T: Real> Material<T> for Graded<T> {
-    #[inline(always)]
-    fn compliance(self, section: &Section<T>) -> T {
-        section.inverse_cube / self.gradient.mul_add(section.arclength, T::of(1.0))
-    }
-}
-
-/// Measured radii, and a modulus that is linear in the arclength: `S = r(s)^4 (1 + g s)` on one cubic piece of `r`.
-#[derive(Clone, Copy, Debug)]
-pub struct Measured<T> {
-    /// Arclength where the piece begins.
-    pub from: T,
-    /// Coefficients of the radius there.
-    pub cubic: [T; 4],
-    /// `g`.
-    pub gradient: T,
-}
-
-impl<T: Real> Material<T> for Measured<T> {
-    #[inline(always)]
-    fn compliance(self, section: &Section<T>) -> T {
-        let x = section.arclength - self.from;
-        let [c0, c1, c2, c3] = self.cubic;
-        let radius = x.mul_add(x.mul_add(x.mul_add(c3, c2), c1), c0);
-        let square = radius * radius;
-        section.rho / (square * square * self.gradient.mul_add(section.arclength, T::of(1.0)))
-    }
-}
-
-/// Curvature at rest.
-pub trait Intrinsic<T: Real>: Copy {
-    /// What has to be carried along to know it.
-    type State: Vector<T>;
-
-    /// `(rho kappa_i, dstate/dsigma)`.
-    fn rhs(self, section: &Section<T>, state: Self::State) -> (T, Self::State);
-}
-
-/// Straight at rest: nothing to carry.
-#[derive(Clone, Copy, Debug)]
-pub struct Straight;
-
-impl<T: Real> Intrinsic<T> for Straight {
-    type State = ();
-
-    #[inline(always)]
-    fn rhs(self, _: &Section<T>, (): ()) -> (T, ()) {
-        (T::of(0.0), ())
-    }
-}
-
-/// Parabola at rest: carries cos and sin of the rest tangent, `kappa_i = 2 A cos^3` (paper, Eq. 10).
-#[derive(Clone, Copy, Debug)]
-pub struct Bent<T> {
-    /// `2 A*`.
-    pub twice_bend: T,
-}
-
-impl<T: Real> Intrinsic<T> for Bent<T> {
-    type State = [T; 2];
-
-    #[inline(always)]
-    fn rhs(self, section: &Section<T>, [cos, sin]: [T; 2]) -> (T, [T; 2]) {
-        let turn = section.rho * self.twice_bend * cos * cos * cos;
-        (turn, [turn * sin, -turn * cos])
-    }
-}
-
-/// Euler spiral at rest, `kappa_i = k0 + k1 s` (E. L. Starostin et al., Science Advances 6, eaax5145, 2020): nothing to
-/// carry.
-#[derive(Clone, Copy, Debug)]
-pub struct Spiral<T> {
-    /// `k0`.
-    pub at_base: T,
-    /// `k1`.
-    pub slope: T,
-}
-
-impl<T: Real> Intrinsic<T> for Spiral<T> {
-    type State = ();
-
-    #[inline(always)]
-    fn rhs(self, section: &Section<T>, (): ()) -> (T, ()) {
-        let curvature = self.slope.mul_add(section.arclength, self.at_base);
-        (section.rho * curvature, ())
-    }
-}
-
-/// The rod itself: `c, s, X, Y`.
-pub type Planar<T> = [T; 4];
-
-/// Derivatives carried beside the rod.
+/// Derivatives carried beside the rod: of angles, of the levers that turn them, and of what only adds up.
 pub trait Sensitivity<T: Real>: 'static {
-    /// Their values.
-    type State: Vector<T>;
+    /// The angles, and as many levers.
+    type Pairs: Vector<T>;
 
-    /// Their right-hand sides at `rod` under the force `f`, where the radius is `rho` and the compliance `w`.
-    fn rhs(f: T, rho: T, w: T, rod: &Planar<T>, state: Self::State) -> Self::State;
+    /// What nothing depends on.
+    type Sums: Vector<T>;
+
+    /// `dangles/dsigma` over the compliance, under the force `f`: derivatives of the moment `f X`.
+    fn moments(f: T, x: T, levers: Self::Pairs) -> Self::Pairs;
+
+    /// `dlevers/dsigma` and `dsums/dsigma` over the radius: derivatives of `-cos theta` and of `-sin theta`, where the tangent is
+    /// `(c, s)` and bending has turned it by `bent`.
+    fn pull(c: T, s: T, bent: T, angles: Self::Pairs) -> (Self::Pairs, Self::Sums);
 }
 
 /// No derivatives.
@@ -146,17 +43,26 @@ pub trait Sensitivity<T: Real>: 'static {
 pub struct Shape;
 
 impl<T: Real> Sensitivity<T> for Shape {
-    type State = ();
+    type Pairs = ();
+    type Sums = ();
 
     #[inline(always)]
-    fn rhs(_: T, _: T, _: T, _: &Planar<T>, (): ()) {}
+    fn moments(_: T, _: T, (): ()) {}
+
+    #[inline(always)]
+    fn pull(_: T, _: T, _: T, (): ()) -> ((), ()) {
+        ((), ())
+    }
 }
 
-/// A trajectory's whole state: rest shape, rod, sensitivities.
-pub type State<T, I, S> = (
-    <I as Intrinsic<T>>::State,
-    (Planar<T>, <S as Sensitivity<T>>::State),
+/// Angles, levers and sums.
+pub type Carried<T, S> = (
+    <S as Sensitivity<T>>::Pairs,
+    (<S as Sensitivity<T>>::Pairs, <S as Sensitivity<T>>::Sums),
 );
+
+/// A trajectory's whole state: rest shape, rod, sensitivities.
+pub type State<T, I, S> = (<I as Intrinsic<T>>::State, (Planar<T>, Carried<T, S>));
 
 /// Rod, rest shape and sensitivities as one system of equations.
 #[derive(Clone, Copy, Debug)]
@@ -175,14 +81,20 @@ impl<T: Real, I: Intrinsic<T>, C: Material<T>> RodSystem<T, I, C> {
     pub fn rhs<S: Sensitivity<T>>(
         &self,
         section: Section<T>,
-        (rest, (rod, sens)): State<T, I, S>,
+        (rest, (rod, (angles, (levers, _)))): State<T, I, S>,
     ) -> State<T, I, S> {
-        let [c, s, x, _] = rod;
+        let [c, s, x, _, bent] = rod;
         let rho = section.rho;
         let w = self.material.compliance(&section);
         let (turn_at_rest, rest_rhs) = self.intrinsic.rhs(&section, rest);
-        let turn = turn_at_rest - self.force * x * w;
-        let rod_rhs = [turn * s, -turn * c, -rho * c, -rho * s];
-        (rest_rhs, (rod_rhs, S::rhs(self.force, rho, w, &rod, sens)))
+        let bend = self.force * x * w;
+        let turn = turn_at_rest - bend;
+        let (pull, climb) = S::pull(c, s, bent, angles);
+        let rod_rhs = [turn * s, -turn * c, -rho * c, -rho * s, bend];
+        let turns = S::moments(self.force, x, levers).times(w);
+        (
+            rest_rhs,
+            (rod_rhs, (turns, (pull.times(rho), climb.times(rho)))),
+        )
     }
 }

@@ -1,7 +1,9 @@
 //! The classical Runge-Kutta method of order 4; the twin of `shaders/rk4.wgsl`.
 
 use super::integrator::{Integrator, STAGES, Scales};
-use super::rhs::{Intrinsic, Material, RodSystem, Sensitivity, State};
+use super::intrinsic::Intrinsic;
+use super::material::Material;
+use super::rhs::{RodSystem, Sensitivity, State};
 use super::{Real, Section, Vector};
 
 /// Order 4, 4 stages.
@@ -10,18 +12,18 @@ pub struct Rk4;
 
 impl Integrator for Rk4 {
     // The two middle stages share a node.
-    const NODES: [f64; STAGES] = [0.0, 0.5, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0];
+    const NODES: [f64; STAGES] = [0.0, 0.5, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0];
 
     #[inline(always)]
     fn step<T: Real, I: Intrinsic<T>, C: Material<T>, S: Sensitivity<T>>(
         system: &RodSystem<T, I, C>,
         scales: &Scales<T>,
         from: Section<T>,
-        h: T,
         y: State<T, I, S>,
     ) -> State<T, I, S> {
+        let h = scales.end().sigma;
         let half = T::of(0.5) * h;
-        let (middle, end) = (scales.at(1, from), scales.at(2, from));
+        let (middle, end) = (from.at(scales.stage(1)), from.at(scales.end()));
         let k1 = system.rhs::<S>(from, y);
         let k2 = system.rhs::<S>(middle, y.plus(half, k1));
         let k3 = system.rhs::<S>(middle, y.plus(half, k2));

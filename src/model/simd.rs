@@ -1,4 +1,6 @@
-//! SIMD lanes as a scalar: eight trajectories integrated in step.
+//! SIMD lanes as a scalar: trajectories integrated in step.
+//!
+//! Each of them waits for itself most of the time, so that two registers of each kind take hardly longer than one.
 //!
 //! The vector types hold registers of one SIMD unit. Their operators are inlined into functions compiled for
 //! that unit (the wrappers of [`super::batch`]), the only place where such values are made.
@@ -10,17 +12,17 @@
 use super::Real;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// Lanes of every bundle.
-pub const WIDTH: usize = 8;
+/// Most lanes of a bundle.
+pub const WIDTH: usize = 16;
 
-/// Eight numbers worked on in step, or one for comparison.
+/// Numbers worked on in step, or one for comparison.
 pub trait Lanes: Real {
     /// How many.
-    const LANES: usize = WIDTH;
+    const LANES: usize;
 
-    /// From an array.
+    /// From the first numbers of an array.
     fn pack(lanes: [f64; WIDTH]) -> Self;
-    /// To an array.
+    /// To the first numbers of an array.
     fn unpack(self) -> [f64; WIDTH];
 }
 
@@ -86,15 +88,40 @@ macro_rules! arithmetic {
     };
 }
 
+/// Implements `Lanes` for the same, whose registers hold `$each` numbers.
+#[cfg(target_arch = "x86_64")]
+macro_rules! lanes {
+    ($name:ident, $each:literal, [$($i:tt)+]; $load:expr, $store:expr) => {
+        impl Lanes for $name {
+            const LANES: usize = $each * [$($i),+].len();
+
+            #[inline(always)]
+            fn pack(lanes: [f64; WIDTH]) -> Self {
+                const { assert!(Self::LANES <= WIDTH) };
+                // SAFETY: the registers are no longer than the array; see the module for the instruction.
+                unsafe { Self($($load(lanes.as_ptr().add($each * $i))),+) }
+            }
+
+            #[inline(always)]
+            fn unpack(self) -> [f64; WIDTH] {
+                let mut lanes = [0.0; WIDTH];
+                // SAFETY: the registers are no longer than the array; see the module for the instruction.
+                unsafe { $($store(lanes.as_mut_ptr().add($each * $i), self.$i);)+ }
+                lanes
+            }
+        }
+    };
+}
+
 /// The vector units of x86-64.
 #[cfg(target_arch = "x86_64")]
 pub mod x86 {
     use super::*;
     use std::arch::x86_64::*;
 
-    /// Four registers of SSE2, which every processor of this architecture has; it has no fused multiply-add.
+    /// Two registers of SSE2, which every processor of this architecture has; it has no fused multiply-add.
     #[derive(Clone, Copy, Debug)]
-    pub struct Sse2(__m128d, __m128d, __m128d, __m128d);
+    pub struct Sse2(__m128d, __m128d);
 
     #[inline(always)]
     unsafe fn multiply_then_add(a: __m128d, b: __m128d, c: __m128d) -> __m128d {
@@ -102,80 +129,23 @@ pub mod x86 {
         unsafe { _mm_add_pd(_mm_mul_pd(a, b), c) }
     }
 
-    arithmetic!(Sse2, [0 1 2 3]; _mm_add_pd, _mm_sub_pd, _mm_mul_pd, _mm_div_pd, multiply_then_add, _mm_set1_pd, _mm_sqrt_pd);
+    arithmetic!(Sse2, [0 1]; _mm_add_pd, _mm_sub_pd, _mm_mul_pd, _mm_div_pd, multiply_then_add, _mm_set1_pd, _mm_sqrt_pd);
 
-    impl Lanes for Sse2 {
-        #[inline(always)]
-        fn pack(lanes: [f64; WIDTH]) -> Self {
-            let pair = |i: usize| {
-                // SAFETY: two of eight numbers, `i` is at most 6; SSE2 is part of x86-64.
-                unsafe { _mm_loadu_pd(lanes.as_ptr().add(i)) }
-            };
-            Self(pair(0), pair(2), pair(4), pair(6))
-        }
+    lanes!(Sse2, 2, [0 1]; _mm_loadu_pd, _mm_storeu_pd);
 
-        #[inline(always)]
-        fn unpack(self) -> [f64; WIDTH] {
-            let mut lanes = [0.0; WIDTH];
-            for (i, pair) in [self.0, self.1, self.2, self.3].into_iter().enumerate() {
-                // SAFETY: two of eight numbers, `i` is at most 3; SSE2 is part of x86-64.
-                unsafe { _mm_storeu_pd(lanes.as_mut_ptr().add(2 * i), pair) };
-            }
-            lanes
-        }
-    }
-
-    /// One register of AVX-512.
+    /// Two registers of AVX-512.
     #[derive(Clone, Copy, Debug)]
-    pub struct Avx512(__m512d);
+    pub struct Avx512(__m512d, __m512d);
 
-    arithmetic!(Avx512, [0]; _mm512_add_pd, _mm512_sub_pd, _mm512_mul_pd, _mm512_div_pd, _mm512_fmadd_pd, _mm512_set1_pd, _mm512_sqrt_pd);
-
-    impl Lanes for Avx512 {
-        #[inline(always)]
-        fn pack(lanes: [f64; WIDTH]) -> Self {
-            // SAFETY: eight numbers are read; see the module for the instruction.
-            unsafe { Self(_mm512_loadu_pd(lanes.as_ptr())) }
-        }
-
-        #[inline(always)]
-        fn unpack(self) -> [f64; WIDTH] {
-            let mut lanes = [0.0; WIDTH];
-            // SAFETY: eight numbers are written; see the module for the instruction.
-            unsafe { _mm512_storeu_pd(lanes.as_mut_ptr(), self.0) };
-            lanes
-        }
-    }
+    arithmetic!(Avx512, [0 1]; _mm512_add_pd, _mm512_sub_pd, _mm512_mul_pd, _mm512_div_pd, _mm512_fmadd_pd, _mm512_set1_pd, _mm512_sqrt_pd);
+    lanes!(Avx512, 8, [0 1]; _mm512_loadu_pd, _mm512_storeu_pd);
 
     /// Two registers of AVX2 with FMA.
     #[derive(Clone, Copy, Debug)]
     pub struct Avx2(__m256d, __m256d);
 
     arithmetic!(Avx2, [0 1]; _mm256_add_pd, _mm256_sub_pd, _mm256_mul_pd, _mm256_div_pd, _mm256_fmadd_pd, _mm256_set1_pd, _mm256_sqrt_pd);
-
-    impl Lanes for Avx2 {
-        #[inline(always)]
-        fn pack(lanes: [f64; WIDTH]) -> Self {
-            // SAFETY: the first and the last four of eight numbers; see the module for the instruction.
-            unsafe {
-                Self(
-                    _mm256_loadu_pd(lanes.as_ptr()),
-                    _mm256_loadu_pd(lanes.as_ptr().add(WIDTH / 2)),
-                )
-            }
-        }
-
-        #[inline(always)]
-        fn unpack(self) -> [f64; WIDTH] {
-            let mut lanes = [0.0; WIDTH];
-            // SAFETY: the first and the last four of eight numbers; see the module for the instruction.
-            unsafe {
-                _mm256_storeu_pd(lanes.as_mut_ptr(), self.0);
-                _mm256_storeu_pd(lanes.as_mut_ptr().add(WIDTH / 2), self.1);
-            }
-            lanes
-        }
-    }
+    lanes!(Avx2, 4, [0 1]; _mm256_loadu_pd, _mm256_storeu_pd);
 }
 
 /// Plain numbers, for architectures without a unit named here.
@@ -235,6 +205,8 @@ pub mod plain {
     }
 
     impl Lanes for Plain {
+        const LANES: usize = WIDTH;
+
         #[inline(always)]
         fn pack(lanes: [f64; WIDTH]) -> Self {
             Self(lanes)

@@ -8,7 +8,7 @@ mod near_fold;
 
 use crate::integrate::{Shot, TOGETHER};
 use crate::model::batch::{Launch, Method, land};
-use crate::model::{Dopri8, FirstAndEnergy, Full, arclength, limited};
+use crate::model::{FirstAndEnergy, Full, Nystrom8, arclength, limited};
 use crate::sheet::Sheet;
 use near_fold::Verdict;
 use rayon::prelude::*;
@@ -31,13 +31,13 @@ const LEFT_BY_STEP: f64 = 20.0;
 const LARGEST_Q: f64 = 12.0;
 
 /// What rounding may leave of it.
-const ROUNDING: f64 = 1e-14;
+const ROUNDING: f64 = 3e-14;
 
 /// The determinant of the Jacobian, over the lengths of its columns, from which on such a step cannot cross the fold.
 const CLEAR_OF_FOLD: f64 = 1e-5;
 
 /// Fewest steps, as in [`Resolution::least`](crate::model::Resolution::least), whose derivatives are good enough for it.
-const LEAST_STEPS: u32 = 6;
+const LEAST_STEPS: u32 = 5;
 
 /// Contacts closer to the tip than this, relative to `tau` there, or than the residual, count as at the tip.
 const TIP_TIE: f64 = 1e-12;
@@ -195,7 +195,7 @@ fn newton(
                 load: points[i].1,
             })
             .collect();
-        let mut answers = land::<Dopri8, FirstAndEnergy>(method, &launches).into_iter();
+        let mut answers = land::<Nystrom8, FirstAndEnergy>(method, &launches).into_iter();
         let mut launches = launches.iter();
         open.retain(|&i| {
             let (Some(moving), Some(launch)) = (answers.next(), launches.next()) else {

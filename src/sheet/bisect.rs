@@ -4,7 +4,7 @@ use super::edges::Sample;
 use super::fold::first_folds;
 use super::seek::Edge;
 use crate::model::batch::{Launch, Method, land};
-use crate::model::{Curved, Dopri8, Rod, Second, Side};
+use crate::model::{Curved, Nystrom8, Rod, Second, Side};
 use glam::DVec2;
 
 /// Halvings: more than a mantissa has bits.
@@ -28,7 +28,7 @@ pub fn bisect(
         }
         let load = from.load + part * (to.load - from.load);
         let rod = *rod;
-        let landed = land::<Dopri8, Second>(method, &[Launch { rod, tau, load }]);
+        let landed = land::<Nystrom8, Second>(method, &[Launch { rod, tau, load }]);
         Some((DVec2::new(tau, load), *landed.first()?))
     };
     let is_nearer = |ln_distance: f64| ln_distance <= target;

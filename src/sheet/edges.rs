@@ -5,7 +5,7 @@ use super::lattice::Lattice;
 use super::polynomial::{NODES, Polynomial, stencil};
 use super::rows::Row;
 use crate::model::batch::{Launch, Method, land};
-use crate::model::{Dopri8, First, Landing, Rod, Second, nearest_turn};
+use crate::model::{First, Landing, Nystrom8, Rod, Second, nearest_turn};
 
 /// Samples along the tip edge; the distance has at most a few extrema there.
 const TIP_SAMPLES: usize = 32;
@@ -96,7 +96,7 @@ fn tip_samples(method: Method, rod: &Rod, columns: &Columns) -> Vec<Sample> {
     let launches: Vec<Launch> = (0..TIP_SAMPLES)
         .map(|i| launch(corner.load * i as f64 / TIP_SAMPLES as f64))
         .collect();
-    let landings = land::<Dopri8, First>(method, &launches);
+    let landings = land::<Nystrom8, First>(method, &launches);
     let mut samples: Vec<Sample> = Vec::new();
     let mut push = |launch: &Launch, landing: &Landing| {
         let near = samples.last().map_or(0.0, |sample| sample.phi);
@@ -117,7 +117,7 @@ fn tip_samples(method: Method, rod: &Rod, columns: &Columns) -> Vec<Sample> {
             let place = Polynomial::through(slopes).solve(0.0, offset + 0.5, between, rising);
             let near = corner.load * (start as f64 + place) / TIP_SAMPLES as f64;
             let launch = launch(extremum(method, launches[i], launches[i + 1].load, near));
-            let landing = land::<Dopri8, First>(method, &[launch])[0];
+            let landing = land::<Nystrom8, First>(method, &[launch])[0];
             push(&launch, &landing);
         }
     }
@@ -127,7 +127,7 @@ fn tip_samples(method: Method, rod: &Rod, columns: &Columns) -> Vec<Sample> {
 /// The load between `from` and `to` at which `dlnD/dload` vanishes at the contact of `from`: Newton's method from `near`,
 /// bisecting where a step would leave the bracket.
 fn extremum(method: Method, from: Launch, to: f64, near: f64) -> f64 {
-    let at = |load: f64| land::<Dopri8, Second>(method, &[Launch { load, ..from }])[0];
+    let at = |load: f64| land::<Nystrom8, Second>(method, &[Launch { load, ..from }])[0];
     let (mut low, mut high) = (from.load, to);
     let mut load = near;
     let mut falling_at_low = None;

@@ -2,7 +2,7 @@
 
 use super::polynomial::{NODES, Polynomial, stencil};
 use crate::model::batch::{Launch, Method, land};
-use crate::model::{Curved, Dopri8, First, Landing, Rod, Second, Side, arclength};
+use crate::model::{Curved, First, Landing, Nystrom8, Rod, Second, Side, arclength};
 use glam::DVec2;
 
 /// A point of the fold edge.
@@ -94,7 +94,7 @@ fn bracket(method: Method, rod: &Rod, side: Side, taus: &[f64]) -> Vec<Option<Br
                 load,
             })
             .collect();
-        let landings = land::<Dopri8, First>(method, &launches);
+        let landings = land::<Nystrom8, First>(method, &launches);
         let mut landings = landings.chunks(SAMPLES);
         open.retain_mut(|march| {
             let landed = landings.next().unwrap_or_default();
@@ -157,7 +157,7 @@ fn polish(method: Method, rod: &Rod, brackets: &[Option<Bracket>]) -> Vec<Option
                 load: b.guess,
             })
             .collect();
-        let mut landings = land::<Dopri8, Second>(method, &launches).into_iter();
+        let mut landings = land::<Nystrom8, Second>(method, &launches).into_iter();
         open.retain_mut(|(i, b)| {
             let Some(landing) = landings.next() else {
                 return false;

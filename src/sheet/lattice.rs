@@ -8,7 +8,7 @@ use super::columns::Columns;
 use super::polynomial::{NODES, Polynomial, stencil};
 use super::rows::Row;
 use crate::model::batch::{Launch, Method, land};
-use crate::model::{Dopri8, First, Rod, Side, nearest_turn};
+use crate::model::{First, Nystrom8, Rod, Side, nearest_turn};
 
 /// Steps in load from first touch to the fold.
 const LOADS: usize = 10;
@@ -47,7 +47,7 @@ impl Lattice {
                 })
             })
             .collect();
-        let landings = land::<Dopri8, First>(method, &launches);
+        let landings = land::<Nystrom8, First>(method, &launches);
         let rows = || landings.chunks(columns.folds.len());
         let ln_distance = rows()
             .map(|row| row.iter().map(|l| l.pole.length().ln()).collect())
@@ -157,8 +157,8 @@ impl Level {
     }
 }
 
-/// The level curve between two nodes. The first piece and the last one reach one step farther, the last one up to the
-/// largest push angle of its polynomial.
+/// The level curve between two nodes. The first piece and the last one reach one step farther, the first one where its
+/// polynomial still falls there, the last one up to the largest push angle of its own.
 struct Piece {
     push: Polynomial,
     tau: Polynomial,
@@ -178,7 +178,12 @@ impl Piece {
         };
         let push = local(|node| node.push);
         let offset = (interval - start) as f64;
-        let low = if interval == 0 { offset - 1.0 } else { offset };
+        let is_sound = push.at(offset - 1.0).0 < push.at(offset).0;
+        let low = if interval == 0 && is_sound {
+            offset - 1.0
+        } else {
+            offset
+        };
         let high = if is_last {
             summit(&push, offset)
         } else {

@@ -7,7 +7,7 @@
 
 use super::{Crossing, Row};
 use crate::model::batch::{Launch, Method, land};
-use crate::model::{Dopri8, FirstAndEnergy, Full, Rod, Side, arclength, nearest_turn};
+use crate::model::{FirstAndEnergy, Full, Nystrom8, Rod, Side, arclength, nearest_turn};
 use glam::{DVec2, DVec3};
 
 /// Rounds of the corrector; from a step's predictor 4 are the rule.
@@ -132,7 +132,7 @@ impl LevelCurve {
                 load: point.y,
             })
             .collect();
-        let landed = land::<Dopri8, FirstAndEnergy>(self.method, &launches);
+        let landed = land::<Nystrom8, FirstAndEnergy>(self.method, &launches);
         landed.iter().map(|moving| moving.full).collect()
     }
 

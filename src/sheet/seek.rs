@@ -1,7 +1,7 @@
 //! Newton's method for the points in which a row leaves the sheet.
 
 use crate::model::batch::{Launch, Method, land};
-use crate::model::{Curved, Dopri8, Rod, Second, arclength, limited};
+use crate::model::{Curved, Nystrom8, Rod, Second, arclength, limited};
 use glam::DVec2;
 
 /// The edge that a point lies on.
@@ -82,7 +82,7 @@ fn newton(method: Method, wanted: &[Wanted], coarse_rounds: usize) -> Vec<Sought
                 load: points[i].y,
             })
             .collect();
-        let mut landings = land::<Dopri8, Second>(method, &launches).into_iter();
+        let mut landings = land::<Nystrom8, Second>(method, &launches).into_iter();
         open.retain(|&i| {
             let Some(here) = landings.next() else {
                 return false;

@@ -2,7 +2,7 @@
 
 use crate::classify::RowBoundary;
 use crate::model::batch::{Launch, Method, land};
-use crate::model::{Dopri8, Effects, FirstAndEnergy, Moving, Resolution, Rest, Rod, Side, Units};
+use crate::model::{Effects, FirstAndEnergy, Moving, Nystrom8, Resolution, Rest, Rod, Side, Units};
 use crate::scene::{Pole, Whisker};
 use crate::sheet::{Edge, Sheet};
 use serde::Serialize;
@@ -117,7 +117,7 @@ pub fn curve_at(
             load: end.load,
         })
         .collect();
-    let states = land::<Dopri8, FirstAndEnergy>(method, &launches);
+    let states = land::<Nystrom8, FirstAndEnergy>(method, &launches);
     for ((i, end), Moving { full, .. }) in ends.into_iter().zip(&states) {
         let push = side.sign() * end.push;
         // The crossing's own residual foretells what its last step leaves; this trajectory has gone there.

@@ -140,16 +140,19 @@ fn steps<T: Number>(effects: Effects, steps: u32, case: &[T]) -> Vec<T> {
     let rest: [T; 2] = case[7..9].try_into().unwrap();
     let rod: [T; 4] = case[9..13].try_into().unwrap();
     let first: [T; 5] = case[13..18].try_into().unwrap();
-    let state = (rod, first);
+    let [c, s, x, y] = rod;
+    let [theta_f, x_f, y_f, theta_s, x_s] = first;
+    let zero = T::of(0.0);
+    let rod = [c, s, x, y, zero];
+    let state = (rod, ([theta_f, theta_s], ([x_f, x_s], [y_f])));
     let run = Run {
         force,
         scales,
         from,
-        h,
         steps,
     };
     let graded = Graded { gradient };
-    let (rest, (rod, first)) = match (effects.curvature, effects.gradient) {
+    let (rest, (rod, carried)) = match (effects.curvature, effects.gradient) {
         (true, false) => run.end::<First, _, _>(Bent { twice_bend }, Even, (rest, state)),
         (true, true) => run.end::<First, _, _>(Bent { twice_bend }, graded, (rest, state)),
         (false, true) => (
@@ -158,13 +161,15 @@ fn steps<T: Number>(effects: Effects, steps: u32, case: &[T]) -> Vec<T> {
         ),
         (false, false) => {
             // Derivatives by the arclength are not carried: they stay what they were.
-            let [a, b, c, theta_s, x_s] = first;
-            let state = ((), (rod, [a, b, c]));
-            let (_, (rod, [a, b, c])) = run.end::<similar::First, _, _>(Straight, Even, state);
-            (rest, (rod, [a, b, c, theta_s, x_s]))
+            let state = ((), (rod, ([theta_f], ([x_f], [y_f]))));
+            let (_, (rod, ([theta_f], ([x_f], y_f)))) =
+                run.end::<similar::First, _, _>(Straight, Even, state);
+            (rest, (rod, ([theta_f, theta_s], ([x_f, x_s], y_f))))
         }
     };
-    [&rest[..], &rod, &first].concat()
+    let ([theta_f, theta_s], ([x_f, x_s], [y_f])) = carried;
+    let first = [theta_f, x_f, y_f, theta_s, x_s];
+    [&rest[..], &rod[..4], &first].concat()
 }
 
 /// Some steps, whatever the rest shape and the material.
@@ -172,7 +177,6 @@ struct Run<T> {
     force: T,
     scales: Scales<T>,
     from: Section<T>,
-    h: T,
     steps: u32,
 }
 
@@ -188,7 +192,7 @@ impl<T: Number> Run<T> {
             intrinsic,
             material,
         };
-        integrate::<Rk4, T, I, C, S>(&system, &self.scales, self.from, self.h, self.steps, start)
+        integrate::<Rk4, T, I, C, S>(&system, &self.scales, self.from, self.steps, start)
     }
 }
 

@@ -3,7 +3,7 @@
 use glam::DVec2;
 use whiskmap::integrate::Shot;
 use whiskmap::model::batch::{Launch, Method, land};
-use whiskmap::model::{Dopri8, Effects, First, Landing, RadiusProfile, Rod, arclength};
+use whiskmap::model::{Effects, First, Landing, Nystrom8, RadiusProfile, Rod, arclength};
 
 /// A reproducible stream of numbers in `[0, 1)` (splitmix64).
 pub struct Random(pub u64);
@@ -83,7 +83,7 @@ pub fn landings(effects: Effects, launches: &[Launch]) -> Vec<Landing> {
         effects,
         resolution: whiskmap::model::Resolution::FINE,
     };
-    land::<Dopri8, First>(method, launches)
+    land::<Nystrom8, First>(method, launches)
 }
 
 /// Shots at the poles of random states, with guesses off by 1 to 3 %.

@@ -14,7 +14,7 @@ use whiskmap::model::{Resolution, arclength};
 use whiskmap::refine::End;
 
 /// Half as many steps as [`Resolution::FINE`].
-const HALF: Resolution = Resolution::of(16);
+const HALF: Resolution = Resolution::of(10);
 
 /// Loads `q = |load| s^2` up to those of whiskers that do not coil up: only strong friction holds such a whisker, up to
 /// `q` of 1000 with a stiff tip.

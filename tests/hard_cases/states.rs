@@ -4,7 +4,7 @@ use glam::DVec2;
 use rayon::prelude::*;
 use whiskmap::integrate::{Engine, Hit, Outcome, Shot};
 use whiskmap::model::batch::{Launch, Method, land};
-use whiskmap::model::{Dopri8, Effects, First, Landing, Resolution, Rod, Side};
+use whiskmap::model::{Effects, First, Landing, Nystrom8, Resolution, Rod, Side};
 use whiskmap::refine::{End, Refined, refine};
 use whiskmap::scene::Scene;
 use whiskmap::sheet::Sheet;
@@ -100,7 +100,7 @@ impl Shots {
             })
             .unzip();
         let method = Method::fine(self.effects);
-        let landed = land::<Dopri8, First>(method, &launches);
+        let landed = land::<Nystrom8, First>(method, &launches);
         let missed = landed.iter().zip(wanted);
         let missed = missed.map(|(landing, pole)| landing.pole.distance(pole));
         launches.iter().copied().zip(missed).collect()
@@ -114,7 +114,7 @@ pub fn halving(effects: Effects, launches: &[Launch], resolution: Resolution) ->
             effects,
             resolution,
         };
-        land::<Dopri8, First>(method, launches).into_iter()
+        land::<Nystrom8, First>(method, launches).into_iter()
     };
     let moved = |(a, b): (Landing, Landing)| a.pole.distance(b.pole);
     poles(resolution)

@@ -72,7 +72,7 @@ impl<T: Lanes> Derived<T> for FirstAndEnergy {
         (slopes, energy): (Slopes<T>, T),
     ) -> [Moving; WIDTH] {
         let [a, b, c, d, e, g] = Centre::new(arrival, pole).landing(&slopes);
-        let [cos, sin, x, y] = arrival.rod;
+        let [cos, sin, x, y, _] = arrival.rod;
         let Contact {
             radius,
             force,

@@ -18,7 +18,7 @@ pub struct Centre<T> {
 impl<T: Lanes> Centre<T> {
     #[inline(always)]
     pub fn new(arrival: &Arrival<T>, [to_x, to_y]: [T; 2]) -> Self {
-        let [c, s, x, y] = arrival.rod;
+        let [c, s, x, y, _] = arrival.rod;
         let w = Complex::new(to_x - x, to_y - y);
         Self {
             pole: Complex::new(c, -s).times(w),

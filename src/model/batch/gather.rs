@@ -4,8 +4,9 @@ use super::Launch;
 use super::kernel::Block;
 use crate::model::Rod;
 use crate::model::contact::{arc, parabola_tangent};
+use crate::model::intrinsic::{Bent, Intrinsic, Spiral, Straight};
+use crate::model::material::{Even, Graded, Material, Measured};
 use crate::model::radius::Piece;
-use crate::model::rhs::{Bent, Even, Graded, Intrinsic, Material, Measured, Spiral, Straight};
 use crate::model::simd::{Lanes, WIDTH};
 
 /// What `number` tells of each launch. (`map` of an array is not inlined into functions for a SIMD unit.)

@@ -6,8 +6,10 @@ use super::gather::{Gather, GatherMaterial, Place, lanes};
 use crate::model::Effects;
 use crate::model::contact::{Contact, radius_and_arclength};
 use crate::model::integrator::{Integrator, Scales, integrate};
+use crate::model::intrinsic::{Bent, Spiral, Straight};
+use crate::model::material::{Even, Graded, Measured};
 use crate::model::order::{Arrival, Order};
-use crate::model::rhs::{Bent, Even, Graded, Measured, RodSystem, Section, Spiral, Straight};
+use crate::model::rhs::{RodSystem, Section};
 use crate::model::simd::{Lanes, WIDTH};
 
 /// The launches of one block.
@@ -83,7 +85,8 @@ where
         curvature_slope: at_rest.slope,
     };
     let [c, sin] = contact.tangent;
-    let mut state = (at_rest.state, ([c, sin, zero, zero], O::start(&contact)));
+    let rod = [c, sin, zero, zero, zero];
+    let mut state = (at_rest.state, (rod, O::start(&contact)));
     let mut here = Place { tau, radius, s };
     for piece in (0..C::pieces(launches, s)).rev() {
         let there = C::begin(launches, piece);
@@ -103,7 +106,7 @@ where
             inverse_cube: one / (rho * rho * rho),
             arclength: here.s,
         };
-        state = integrate::<M, _, I, C, O>(&system, &scales, section, h, steps, state);
+        state = integrate::<M, _, I, C, O>(&system, &scales, section, steps, state);
         here = there;
     }
     let (_, (rod, carried)) = state;

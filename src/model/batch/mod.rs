@@ -16,9 +16,8 @@ pub use answer::{First, FirstAndEnergy, Kind, Second};
 pub use flops::flops;
 pub use unit::{Kernel, Unit};
 
-use super::integrator::{Integrator, Resolution};
 use super::simd::WIDTH;
-use super::{Effects, Rod};
+use super::{Effects, Integrator, Resolution, Rod};
 use rayon::prelude::*;
 
 /// One trajectory: from the contact at `tau` under `load = f/radius^2` to the base.
@@ -104,7 +103,7 @@ fn part<M: Integrator, K: Kernel<M>>(
 ) {
     let mut compute = |kind: BlockKind, members: &[usize]| {
         let lanes = std::array::from_fn(|lane| &launches[members[lane.min(members.len() - 1)]]);
-        let block = K::block(unit, kind.effects, kind.steps, &lanes);
+        let block = K::block(unit, kind.effects, kind.steps, &lanes, members.len());
         for (&i, answer) in members.iter().zip(block) {
             answers[i] = answer;
         }

@@ -6,12 +6,12 @@ use super::answer::{Derived, First, FirstAndEnergy, Kind, Second};
 use super::kernel::{Block, arclengths, by_effects};
 use super::peak::multiply_and_add;
 use crate::model::integrator::Integrator;
-use crate::model::simd::WIDTH;
 #[cfg(not(target_arch = "x86_64"))]
 use crate::model::simd::plain::Plain as Baseline;
 #[cfg(target_arch = "x86_64")]
 use crate::model::simd::x86::{Avx2, Avx512, Sse2 as Baseline};
-use crate::model::{Dopri8, Effects, Rk4};
+use crate::model::simd::{Lanes, WIDTH};
+use crate::model::{Effects, Nystrom8, Rk4};
 use std::fmt;
 
 /// A SIMD unit that this processor has.
@@ -78,12 +78,18 @@ impl Unit {
     pub(super) fn arclengths(self, launches: &Block) -> [f64; WIDTH] {
         match self.0 {
             #[cfg(target_arch = "x86_64")]
-            // SAFETY: only `detect` makes such a unit, and it has seen every feature that the function enables.
-            Instructions::Avx512 => unsafe { arclengths_avx512(launches) },
+            Instructions::Avx512 => parts(Avx512::LANES, launches, WIDTH, |part| {
+                // SAFETY: only `detect` makes such a unit, and it has seen every feature that the function enables.
+                unsafe { arclengths_avx512(part) }
+            }),
             #[cfg(target_arch = "x86_64")]
-            // SAFETY: as above.
-            Instructions::Avx2 => unsafe { arclengths_avx2(launches) },
-            Instructions::Baseline | Instructions::Scalar => arclengths::<Baseline>(launches),
+            Instructions::Avx2 => parts(Avx2::LANES, launches, WIDTH, |part| {
+                // SAFETY: as above.
+                unsafe { arclengths_avx2(part) }
+            }),
+            Instructions::Baseline | Instructions::Scalar => {
+                parts(Baseline::LANES, launches, WIDTH, arclengths::<Baseline>)
+            }
         }
     }
 
@@ -102,7 +108,7 @@ impl Unit {
             #[cfg(target_arch = "x86_64")]
             // SAFETY: as above.
             Instructions::Avx2 => unsafe { exhaust_avx2(rounds) },
-            Instructions::Baseline => multiply_and_add::<Baseline, 3>(rounds),
+            Instructions::Baseline => multiply_and_add::<Baseline, 6>(rounds),
             Instructions::Scalar => multiply_and_add::<f64, 16>(rounds),
         }
     }
@@ -110,8 +116,14 @@ impl Unit {
 
 /// What can be computed in batches with the integrator `M`.
 pub trait Kernel<M: Integrator>: Kind {
-    /// Computes one block on `unit`, in `steps` steps per trajectory, or per piece of a profile.
-    fn block(unit: Unit, effects: Effects, steps: u32, launches: &Block) -> [Self::Answer; WIDTH];
+    /// Computes the first `count` trajectories of a block on `unit`, in `steps` steps per trajectory, or per piece of a profile.
+    fn block(
+        unit: Unit,
+        effects: Effects,
+        steps: u32,
+        launches: &Block,
+        count: usize,
+    ) -> [Self::Answer; WIDTH];
 }
 
 macro_rules! kernel {
@@ -126,24 +138,24 @@ macro_rules! kernel {
                 effects: Effects,
                 steps: u32,
                 launches: &Block,
+                count: usize,
             ) -> [Self::Answer; WIDTH] {
                 match unit.0 {
                     #[cfg(target_arch = "x86_64")]
-                    // SAFETY: only `detect` makes such a unit, and it has seen every feature that the function enables.
-                    Instructions::Avx512 => unsafe {
-                        avx512::<$integrator, $kind>(effects, steps, launches)
-                    },
+                    Instructions::Avx512 => parts(Avx512::LANES, launches, count, |part| {
+                        // SAFETY: only `detect` makes such a unit, and it has seen every feature that the function enables.
+                        unsafe { avx512::<$integrator, $kind>(effects, steps, part) }
+                    }),
                     #[cfg(target_arch = "x86_64")]
-                    // SAFETY: as above.
-                    Instructions::Avx2 => unsafe {
-                        avx2::<$integrator, $kind>(effects, steps, launches)
-                    },
-                    Instructions::Baseline => {
-                        by_effects::<$integrator, $kind, Baseline>(effects, steps, launches)
-                    }
-                    Instructions::Scalar => launches.map(|launch| {
-                        by_effects::<$integrator, $kind, f64>(effects, steps, &[launch; WIDTH])
-                            [0]
+                    Instructions::Avx2 => parts(Avx2::LANES, launches, count, |part| {
+                        // SAFETY: as above.
+                        unsafe { avx2::<$integrator, $kind>(effects, steps, part) }
+                    }),
+                    Instructions::Baseline => parts(Baseline::LANES, launches, count, |part| {
+                        by_effects::<$integrator, $kind, Baseline>(effects, steps, part)
+                    }),
+                    Instructions::Scalar => parts(f64::LANES, launches, count, |part| {
+                        by_effects::<$integrator, $kind, f64>(effects, steps, part)
                     }),
                 }
             }
@@ -151,9 +163,33 @@ macro_rules! kernel {
     };
 }
 
-kernel!(Dopri8, First);
-kernel!(Dopri8, FirstAndEnergy);
-kernel!(Dopri8, Second);
+/// A block in parts of `lanes` launches, as far as there are `count` of them.
+#[inline(always)]
+fn parts<A: Copy + Default>(
+    lanes: usize,
+    launches: &Block,
+    count: usize,
+    compute: impl Fn(&Block) -> [A; WIDTH],
+) -> [A; WIDTH] {
+    if lanes == WIDTH {
+        return compute(launches);
+    }
+    let mut answers = [A::default(); WIDTH];
+    for (launches, answers) in launches[..count]
+        .chunks(lanes)
+        .zip(answers.chunks_mut(lanes))
+    {
+        let part = compute(&std::array::from_fn(|lane| {
+            launches[lane.min(launches.len() - 1)]
+        }));
+        answers.copy_from_slice(&part[..answers.len()]);
+    }
+    answers
+}
+
+kernel!(Nystrom8, First);
+kernel!(Nystrom8, FirstAndEnergy);
+kernel!(Nystrom8, Second);
 kernel!(Rk4, First);
 
 #[cfg(target_arch = "x86_64")]
@@ -171,7 +207,7 @@ fn arclengths_avx2(launches: &Block) -> [f64; WIDTH] {
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx512f,avx512dq,avx512vl,fma")]
 fn exhaust_avx512(rounds: u32) -> u64 {
-    multiply_and_add::<Avx512, 16>(rounds)
+    multiply_and_add::<Avx512, 8>(rounds)
 }
 
 #[cfg(target_arch = "x86_64")]

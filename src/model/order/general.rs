@@ -4,27 +4,31 @@
 //! derivatives by force and by arclength is the same at the base as at the contact:
 //! `Y_s = theta_s (X + f X_f) - f theta_f X_s + const`. `Y_s` and its derivatives therefore need not be carried.
 
-use super::{Arrival, Curvatures, Order, Slopes, Triple, by_force, scaled, twice_by_force};
+use super::{Arrival, Curvatures, Order, Slopes, Triple, scaled, twice};
 use crate::model::Real;
 use crate::model::contact::Contact;
-use crate::model::rhs::{Planar, Sensitivity};
+use crate::model::rhs::{Carried, Sensitivity};
 
-/// First derivatives; carries `theta_f, X_f, Y_f, theta_s, X_s`.
+/// First derivatives; carries `theta, X` by force and by arclength, and `Y_f`.
 #[derive(Clone, Copy, Debug)]
 pub struct First;
 
-/// First and second derivatives; carries `ff` of `theta, X, Y` and `fs` and `ss` of `theta, X`, too.
+/// First and second derivatives; carries `ff`, `fs` and `ss` of `theta, X` and `ff` of `Y`, too.
 #[derive(Clone, Copy, Debug)]
 pub struct Second;
 
 impl<T: Real> Sensitivity<T> for First {
-    type State = [T; 5];
+    type Pairs = [T; 2];
+    type Sums = [T; 1];
 
     #[inline(always)]
-    fn rhs(f: T, rho: T, w: T, rod: &Planar<T>, state: [T; 5]) -> [T; 5] {
-        let [theta_f, x_f, _, theta_s, x_s] = state;
-        let [a, b, c] = by_force(f, rho, w, *rod, theta_f, x_f);
-        [a, b, c, w * f * x_s, rho * rod[1] * theta_s]
+    fn moments(f: T, x: T, [x_f, x_s]: [T; 2]) -> [T; 2] {
+        [f.mul_add(x_f, x), f * x_s]
+    }
+
+    #[inline(always)]
+    fn pull(c: T, s: T, _: T, [theta_f, theta_s]: [T; 2]) -> ([T; 2], [T; 1]) {
+        ([s * theta_f, s * theta_s], [-c * theta_f])
     }
 }
 
@@ -57,14 +61,14 @@ impl<T: Real> Order<T> for First {
     type Known = Slopes<T>;
 
     #[inline(always)]
-    fn start(contact: &Contact<T>) -> [T; 5] {
+    fn start(contact: &Contact<T>) -> Carried<T, Self> {
         let ([x, _], zero) = (contact.tangent, T::of(0.0));
-        [zero, zero, zero, -contact.curvature, -x]
+        ([zero, -contact.curvature], ([zero, -x], [zero]))
     }
 
     #[inline(always)]
-    fn known(arrival: &Arrival<T>, state: [T; 5]) -> Slopes<T> {
-        let [theta_f, x_f, y_f, theta_s, x_s] = state;
+    fn known(arrival: &Arrival<T>, carried: Carried<T, Self>) -> Slopes<T> {
+        let ([theta_f, theta_s], ([x_f, x_s], [y_f])) = carried;
         let (f, x) = (arrival.contact.force, arrival.rod[2]);
         let [_, from] = arrival.contact.tangent;
         let y_s = theta_s * f.mul_add(x_f, x) - f * theta_f * x_s - from;
@@ -73,25 +77,27 @@ impl<T: Real> Order<T> for First {
 }
 
 impl<T: Real> Sensitivity<T> for Second {
-    type State = ([T; 5], [T; 7]);
+    type Pairs = ([T; 2], [T; 3]);
+    type Sums = [T; 2];
 
     #[inline(always)]
-    fn rhs(f: T, rho: T, w: T, rod: &Planar<T>, (first, second): Self::State) -> Self::State {
-        let [c, s, _, _] = *rod;
-        let [theta_f, x_f, _, theta_s, x_s] = first;
-        let [theta_ff, x_ff, _, theta_fs, x_fs, theta_ss, x_ss] = second;
-        let [a, b, d] = twice_by_force(f, rho, w, *rod, [theta_f, x_f], [theta_ff, x_ff]);
-        let along = |turns, theta| rho * s.mul_add(theta, c * turns);
-        let second = [
-            a,
-            b,
-            d,
-            w * f.mul_add(x_fs, x_s),
-            along(theta_f * theta_s, theta_fs),
-            w * f * x_ss,
-            along(theta_s * theta_s, theta_ss),
+    fn moments(f: T, x: T, (first, [x_ff, x_fs, x_ss]): Self::Pairs) -> Self::Pairs {
+        let [x_f, x_s] = first;
+        let twice = [f.mul_add(x_ff, x_f + x_f), f.mul_add(x_fs, x_s), f * x_ss];
+        (First::moments(f, x, first), twice)
+    }
+
+    #[inline(always)]
+    fn pull(c: T, s: T, bent: T, (first, second): Self::Pairs) -> (Self::Pairs, [T; 2]) {
+        let [theta_f, theta_s] = first;
+        let [theta_ff, theta_fs, theta_ss] = second;
+        let (levers, [y_f]) = First::pull(c, s, bent, first);
+        let [(x_ff, y_ff), (x_fs, _), (x_ss, _)] = [
+            twice(c, s, theta_f * theta_f, theta_ff),
+            twice(c, s, theta_f * theta_s, theta_fs),
+            twice(c, s, theta_s * theta_s, theta_ss),
         ];
-        (First::rhs(f, rho, w, rod, first), second)
+        ((levers, [x_ff, x_fs, x_ss]), [y_f, y_ff])
     }
 }
 
@@ -99,19 +105,23 @@ impl<T: Real> Order<T> for Second {
     type Known = Curvatures<T>;
 
     #[inline(always)]
-    fn start(contact: &Contact<T>) -> Self::State {
+    fn start(contact: &Contact<T>) -> Carried<T, Self> {
         let [x, y] = contact.tangent;
         let kappa = contact.curvature;
         let theta_ss = -contact.curvature_slope - contact.force * x / contact.stiffness;
         let zero = T::of(0.0);
-        let second = [zero, zero, zero, zero, zero, theta_ss, -kappa * y];
-        (First::start(contact), second)
+        let (angles, (levers, _)) = First::start(contact);
+        (
+            (angles, [zero, zero, theta_ss]),
+            ((levers, [zero, zero, -kappa * y]), [zero, zero]),
+        )
     }
 
     #[inline(always)]
-    fn known(arrival: &Arrival<T>, (first, second): Self::State) -> Curvatures<T> {
-        let [theta_f, x_f, y_f, theta_s, x_s] = first;
-        let [theta_ff, x_ff, y_ff, theta_fs, x_fs, theta_ss, x_ss] = second;
+    fn known(arrival: &Arrival<T>, carried: Carried<T, Self>) -> Curvatures<T> {
+        let (angles, (levers, [y_f, y_ff])) = carried;
+        let ([theta_f, theta_s], [theta_ff, theta_fs, theta_ss]) = angles;
+        let ([x_f, x_s], [x_ff, x_fs, x_ss]) = levers;
         let (f, x) = (arrival.contact.force, arrival.rod[2]);
         let [_, from] = arrival.contact.tangent;
         // The lever and its derivatives.

@@ -9,22 +9,22 @@ pub mod similar;
 
 use super::Real;
 use super::contact::Contact;
-use super::rhs::{Planar, Sensitivity};
+use super::rhs::{Carried, Planar, Sensitivity};
 use std::marker::PhantomData;
 
 /// Derivatives of `theta, X, Y`.
 pub type Triple<T> = [T; 3];
 
 /// A set of derivatives: where it starts, and what the base knows from it.
-pub trait Order<T: Real>: Sensitivity<T> {
+pub trait Order<T: Real>: Sensitivity<T> + Sized {
     /// In the coordinates of the sheet.
     type Known;
 
     /// Values at the contact.
-    fn start(contact: &Contact<T>) -> Self::State;
+    fn start(contact: &Contact<T>) -> Carried<T, Self>;
 
     /// What follows at the base from the values there.
-    fn known(arrival: &Arrival<T>, state: Self::State) -> Self::Known;
+    fn known(arrival: &Arrival<T>, carried: Carried<T, Self>) -> Self::Known;
 }
 
 /// A trajectory that has come to the base.
@@ -65,28 +65,11 @@ fn scaled<T: Real>(by: T, [theta, x, y]: Triple<T>) -> Triple<T> {
     [by * theta, by * x, by * y]
 }
 
-/// `theta, X, Y` by the force.
+/// Second derivatives of `-cos theta` and `-sin theta`, where those of `theta` are `angle`; `turns` is the product of the first
+/// ones.
 #[inline(always)]
-fn by_force<T: Real>(f: T, rho: T, w: T, [c, s, x, _]: Planar<T>, theta_f: T, x_f: T) -> Triple<T> {
-    [w * f.mul_add(x_f, x), rho * s * theta_f, -rho * c * theta_f]
-}
-
-/// The same twice; `turns` is `theta_f^2`.
-#[inline(always)]
-fn twice_by_force<T: Real>(
-    f: T,
-    rho: T,
-    w: T,
-    [c, s, _, _]: Planar<T>,
-    [theta_f, x_f]: [T; 2],
-    [theta_ff, x_ff]: [T; 2],
-) -> Triple<T> {
-    let turns = theta_f * theta_f;
-    [
-        w * f.mul_add(x_ff, x_f + x_f),
-        rho * s.mul_add(theta_ff, c * turns),
-        rho * (s * turns - c * theta_ff),
-    ]
+fn twice<T: Real>(c: T, s: T, turns: T, angle: T) -> (T, T) {
+    (s.mul_add(angle, c * turns), s * turns - c * angle)
 }
 
 /// A set of derivatives, and the bending energy in `E I_base/L_w`.
@@ -94,13 +77,20 @@ fn twice_by_force<T: Real>(
 pub struct Energetic<O>(PhantomData<O>);
 
 impl<T: Real, O: Sensitivity<T>> Sensitivity<T> for Energetic<O> {
-    type State = (O::State, [T; 1]);
+    type Pairs = O::Pairs;
+    /// Those of the set, and the integral of `psi` along `-X`, where `psi` is how far bending has turned the rod: the energy
+    /// is the integral of `f X/2` along `psi`, and this is the rest of its integration by parts.
+    type Sums = (O::Sums, [T; 1]);
 
     #[inline(always)]
-    fn rhs(f: T, rho: T, w: T, rod: &Planar<T>, (inner, _): Self::State) -> Self::State {
-        let moment = f * rod[2];
-        let energy = T::of(0.5) * moment * moment * w;
-        (O::rhs(f, rho, w, rod, inner), [energy])
+    fn moments(f: T, x: T, levers: O::Pairs) -> O::Pairs {
+        O::moments(f, x, levers)
+    }
+
+    #[inline(always)]
+    fn pull(c: T, s: T, bent: T, angles: O::Pairs) -> (O::Pairs, Self::Sums) {
+        let (levers, sums) = O::pull(c, s, bent, angles);
+        (levers, (sums, [c * bent]))
     }
 }
 
@@ -108,12 +98,16 @@ impl<T: Real, O: Order<T>> Order<T> for Energetic<O> {
     type Known = (O::Known, T);
 
     #[inline(always)]
-    fn start(contact: &Contact<T>) -> Self::State {
-        (O::start(contact), [T::of(0.0)])
+    fn start(contact: &Contact<T>) -> Carried<T, Self> {
+        let (angles, (levers, sums)) = O::start(contact);
+        (angles, (levers, (sums, [T::of(0.0)])))
     }
 
     #[inline(always)]
-    fn known(arrival: &Arrival<T>, (inner, [energy]): Self::State) -> Self::Known {
-        (O::known(arrival, inner), energy)
+    fn known(arrival: &Arrival<T>, carried: Carried<T, Self>) -> Self::Known {
+        let (angles, (levers, (sums, [along]))) = carried;
+        let [_, _, x, _, bent] = arrival.rod;
+        let energy = T::of(0.5) * arrival.contact.force * x.mul_add(bent, along);
+        (O::known(arrival, (angles, (levers, sums))), energy)
     }
 }

@@ -5,25 +5,31 @@
 //! contact is; only its end does. So derivatives by `tau` are right-hand sides at the base:
 //! `theta_tau = f X`, `X_tau = -beta X - c`, `Y_tau = -beta Y - s`, and only those by the load have to be integrated.
 
-use super::{Arrival, Curvatures, Order, Slopes, Triple, by_force, scaled, twice_by_force};
+use super::{Arrival, Curvatures, Order, Slopes, Triple, scaled, twice};
 use crate::model::Real;
 use crate::model::contact::Contact;
-use crate::model::rhs::{Planar, Sensitivity};
+use crate::model::rhs::{Carried, Sensitivity};
 
-/// First derivatives; carries `theta_f, X_f, Y_f`.
+/// First derivatives; carries those by the force.
 #[derive(Clone, Copy, Debug)]
 pub struct First;
 
-/// First and second derivatives; carries `theta_ff, X_ff, Y_ff`, too.
+/// First and second derivatives; carries those by the force.
 #[derive(Clone, Copy, Debug)]
 pub struct Second;
 
 impl<T: Real> Sensitivity<T> for First {
-    type State = [T; 3];
+    type Pairs = [T; 1];
+    type Sums = [T; 1];
 
     #[inline(always)]
-    fn rhs(f: T, rho: T, w: T, rod: &Planar<T>, [theta_f, x_f, _]: [T; 3]) -> [T; 3] {
-        by_force(f, rho, w, *rod, theta_f, x_f)
+    fn moments(f: T, x: T, [x_f]: [T; 1]) -> [T; 1] {
+        [f.mul_add(x_f, x)]
+    }
+
+    #[inline(always)]
+    fn pull(c: T, s: T, _: T, [theta_f]: [T; 1]) -> ([T; 1], [T; 1]) {
+        ([s * theta_f], [-c * theta_f])
     }
 }
 
@@ -31,16 +37,18 @@ impl<T: Real> Order<T> for First {
     type Known = Slopes<T>;
 
     #[inline(always)]
-    fn start(_: &Contact<T>) -> [T; 3] {
-        [T::of(0.0); 3]
+    fn start(_: &Contact<T>) -> Carried<T, Self> {
+        let zero = [T::of(0.0)];
+        (zero, (zero, zero))
     }
 
     #[inline(always)]
-    fn known(arrival: &Arrival<T>, state: [T; 3]) -> Slopes<T> {
+    fn known(arrival: &Arrival<T>, carried: Carried<T, Self>) -> Slopes<T> {
+        let ([theta], ([x_f], [y_f])) = carried;
         let Arrival {
             contact,
             taper,
-            rod: [c, s, x, y],
+            rod: [c, s, x, y, _],
         } = *arrival;
         let by_load = contact.radius * contact.radius;
         Slopes {
@@ -49,7 +57,7 @@ impl<T: Real> Order<T> for First {
                 -taper.mul_add(x, c),
                 -taper.mul_add(y, s),
             ],
-            by_load: scaled(by_load, state),
+            by_load: scaled(by_load, [theta, x_f, y_f]),
         }
     }
 }
@@ -65,14 +73,18 @@ fn by_tau<T: Real>(f: T, taper: T, [c, s]: [T; 2], [theta, x, y]: Triple<T>) -> 
 }
 
 impl<T: Real> Sensitivity<T> for Second {
-    type State = [T; 6];
+    type Pairs = [T; 2];
+    type Sums = [T; 2];
 
     #[inline(always)]
-    fn rhs(f: T, rho: T, w: T, rod: &Planar<T>, state: [T; 6]) -> [T; 6] {
-        let [theta_f, x_f, _, theta_ff, x_ff, _] = state;
-        let [a, b, c] = by_force(f, rho, w, *rod, theta_f, x_f);
-        let [d, e, g] = twice_by_force(f, rho, w, *rod, [theta_f, x_f], [theta_ff, x_ff]);
-        [a, b, c, d, e, g]
+    fn moments(f: T, x: T, [x_f, x_ff]: [T; 2]) -> [T; 2] {
+        [f.mul_add(x_f, x), f.mul_add(x_ff, x_f + x_f)]
+    }
+
+    #[inline(always)]
+    fn pull(c: T, s: T, _: T, [theta_f, theta_ff]: [T; 2]) -> ([T; 2], [T; 2]) {
+        let (x_ff, y_ff) = twice(c, s, theta_f * theta_f, theta_ff);
+        ([s * theta_f, x_ff], [-c * theta_f, y_ff])
     }
 }
 
@@ -80,17 +92,19 @@ impl<T: Real> Order<T> for Second {
     type Known = Curvatures<T>;
 
     #[inline(always)]
-    fn start(_: &Contact<T>) -> [T; 6] {
-        [T::of(0.0); 6]
+    fn start(_: &Contact<T>) -> Carried<T, Self> {
+        let zeros = [T::of(0.0); 2];
+        (zeros, (zeros, zeros))
     }
 
     #[inline(always)]
-    fn known(arrival: &Arrival<T>, [a, b, c, twice @ ..]: [T; 6]) -> Curvatures<T> {
-        let slopes = First::known(arrival, [a, b, c]);
+    fn known(arrival: &Arrival<T>, carried: Carried<T, Self>) -> Curvatures<T> {
+        let ([theta_f, theta_ff], ([x_f, x_ff], [y_f, y_ff])) = carried;
+        let slopes = First::known(arrival, ([theta_f], ([x_f], [y_f])));
         let Arrival {
             contact,
             taper,
-            rod: [c, s, x, _],
+            rod: [c, s, x, ..],
         } = *arrival;
         let (f, by_load) = (contact.force, contact.radius * contact.radius);
         let [theta_tau_tau, x_tau_tau, y_tau_tau] = by_tau(f, taper, [c, s], slopes.by_tau);
@@ -101,7 +115,7 @@ impl<T: Real> Order<T> for Second {
             // The force is the load times the square of the radius at the contact.
             by_tau_tau: [theta_tau_tau - two * taper * f * x, x_tau_tau, y_tau_tau],
             by_tau_load: [by_load.mul_add(x, theta_tau_load), x_tau_load, y_tau_load],
-            by_load_load: scaled(by_load * by_load, twice),
+            by_load_load: scaled(by_load * by_load, [theta_ff, x_ff, y_ff]),
         }
     }
 }
