@@ -9,8 +9,8 @@ use rayon::prelude::*;
 /// Off by less than 1.4e-7 (`tests/gpu_engine`): the refinement then mostly needs a single trajectory.
 const RESOLUTION: Resolution = Resolution::COARSE;
 
-/// Shots of one thread whose cells stay in the outer cache on their way from stage to stage.
-const SHOTS_IN_CACHE: usize = 8192;
+/// Shots of one thread whose cells stay in its cache on their way from stage to stage, and need no new pages.
+const SHOTS_IN_CACHE: usize = 2048;
 
 /// Residual at which the refinement takes over, in whisker lengths: one Newton step away from the resolution's error.
 const TOLERANCE: f64 = 1e-6;
@@ -128,6 +128,11 @@ impl Engine for Cpu {
             engine: "cpu f64".to_owned(),
             adapter: Unit::detect().to_string(),
         }
+    }
+
+    /// The refinement takes the same steps on the same processor.
+    fn spares_work(&self) -> bool {
+        false
     }
 
     fn shots_at_once(&self) -> usize {

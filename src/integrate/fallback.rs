@@ -1,11 +1,11 @@
-//! An engine that cannot fail: from its first error on, the CPU engine shoots in its stead.
+//! An engine that cannot fail: from its first error on, the refinement starts from the guesses.
 //!
 //! A device that has failed once is not asked again, so that a run ends after one failure however many shots it has left.
 
-use super::{Cpu, Engine, EngineError, Hit, Shot};
+use super::{Engine, EngineError, Hit, Shot};
 use crate::model::{Effects, Rod};
 
-/// An engine, with the CPU engine behind it.
+/// An engine that may be missing.
 pub struct Fallback<'a> {
     engine: &'a mut dyn Engine,
     failure: Option<EngineError>,
@@ -20,7 +20,7 @@ impl<'a> Fallback<'a> {
         }
     }
 
-    /// Why the CPU shoots, if it does.
+    /// Why the CPU does it alone, if it does.
     #[must_use]
     pub const fn failure(&self) -> Option<&EngineError> {
         self.failure.as_ref()
@@ -32,14 +32,17 @@ impl<'a> Fallback<'a> {
         self.engine.shots_at_once()
     }
 
-    /// [`Engine::shoot`]. Shots are solved by one engine or the other, all of a call by the same.
-    pub fn shoot(&mut self, effects: Effects, rods: &[Rod], shots: &[Shot]) -> Vec<Hit> {
-        if self.failure.is_none() {
-            match self.engine.shoot(effects, rods, shots) {
-                Ok(hits) => return hits,
-                Err(failure) => self.failure = Some(failure),
+    /// [`Engine::shoot`]; `None` where that spares the refinement nothing, or fails.
+    pub fn shoot(&mut self, effects: Effects, rods: &[Rod], shots: &[Shot]) -> Option<Vec<Hit>> {
+        if self.failure.is_some() || !self.engine.spares_work() {
+            return None;
+        }
+        match self.engine.shoot(effects, rods, shots) {
+            Ok(hits) => Some(hits),
+            Err(failure) => {
+                self.failure = Some(failure);
+                None
             }
         }
-        Cpu.solve(effects, rods, shots)
     }
 }

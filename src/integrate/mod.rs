@@ -78,6 +78,11 @@ pub trait Engine {
         usize::MAX
     }
 
+    /// Whether what it finds spares the refinement, which could start from the guesses as well, more than it costs.
+    fn spares_work(&self) -> bool {
+        true
+    }
+
     /// Solves `shots`, each on one of `rods`; answers in the same order. `effects` are those of the scene, a
     /// superset of every rod's own.
     ///

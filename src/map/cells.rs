@@ -8,7 +8,6 @@ use crate::model::batch::Method;
 use crate::refine::{self, End, Refined, State};
 use crate::scene::Scene;
 use crate::sheet::{Guess, Sheet};
-use crate::store::Shots;
 use rayon::prelude::*;
 
 /// Rows of some faces, settled together.
@@ -91,21 +90,25 @@ pub fn settle(
     let hits = summary.time(Stage::Shooting, || {
         engine.shoot(method.effects, &rods, &shots)
     });
-    count(&hits, engine.failure().is_some(), &mut summary.shots);
+    let hits = hits.as_deref();
+    summary.shots.all += shots.len() as u64;
+    if engine.failure().is_some() && hits.is_none() {
+        summary.shots.on_cpu_instead += shots.len() as u64;
+    }
     let refined = summary.time(Stage::Refinement, || {
         // What an engine could not finish starts again from the lattice's guess.
-        let starts: Vec<(f64, f64)> = hits
-            .iter()
-            .zip(&shots)
-            .map(|(hit, shot)| match hit.outcome {
-                Outcome::Converged => (hit.tau, hit.load),
-                Outcome::Stalled | Outcome::NotFinite => (shot.tau, shot.load),
-            })
-            .collect();
+        let hit = |i: usize| hits.map(|hits| hits[i]);
+        let found = |i: usize| hit(i).filter(|hit| hit.outcome == Outcome::Converged);
+        let start = |(i, shot): (usize, &Shot)| {
+            found(i).map_or((shot.tau, shot.load), |hit| (hit.tau, hit.load))
+        };
+        let starts: Vec<(f64, f64)> = shots.iter().enumerate().map(start).collect();
         refine::refine(method, &sheets, &shots, &starts)
     });
+    let unfinished = |hit: &&Hit| hit.outcome != Outcome::Converged;
+    summary.shots.restarted += hits.unwrap_or_default().iter().filter(unfinished).count() as u64;
     let settled = |place: &Place| match place.shot {
-        Some(i) => place.settled(&hits[i], &refined[i]),
+        Some(i) => place.settled(hits.map_or(0, |hits| hits[i].steps), &refined[i]),
         None => place.without_state(),
     };
     places.par_iter().map(settled).collect()
@@ -134,7 +137,8 @@ impl Place {
         }
     }
 
-    fn settled(&self, hit: &Hit, refined: &Refined) -> Cell {
+    /// After `steps` of an engine.
+    fn settled(&self, steps: u32, refined: &Refined) -> Cell {
         Cell {
             status: match refined.end {
                 End::Solved => Status::Solved,
@@ -143,19 +147,9 @@ impl Place {
                 End::NotConverged => Status::NotConverged,
             },
             state: Some(refined.state),
-            steps: hit.steps + refined.steps,
+            steps: steps + refined.steps,
             ..self.without_state()
         }
-    }
-}
-
-/// Adds the shots of one call to what is known of those before.
-fn count(hits: &[Hit], on_cpu_instead: bool, shots: &mut Shots) {
-    let restarted = hits.iter().filter(|hit| hit.outcome != Outcome::Converged);
-    shots.all += hits.len() as u64;
-    shots.restarted += restarted.count() as u64;
-    if on_cpu_instead {
-        shots.on_cpu_instead += hits.len() as u64;
     }
 }
 

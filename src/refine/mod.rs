@@ -5,12 +5,14 @@
 //! fold's normal form gives the start that Newton's method needs.
 
 mod near_fold;
+mod newton;
 
 use crate::integrate::{Shot, TOGETHER};
-use crate::model::batch::{Launch, Method, land};
-use crate::model::{FirstAndEnergy, Full, Nystrom8, arclength, limited};
+use crate::model::Full;
+use crate::model::batch::Method;
 use crate::sheet::Sheet;
 use near_fold::Verdict;
+use newton::newton;
 use rayon::prelude::*;
 
 /// Residual, in whisker lengths, at which a state is accepted without another step.
@@ -18,26 +20,6 @@ pub const GOAL: f64 = 1e-12;
 
 /// Residual, in whisker lengths, up to which a state is accepted when steps no longer help.
 pub const TOLERANCE: f64 = 1e-11;
-
-/// The length of a Newton step, as [`limited`] measures it, that needs no trajectory at its end.
-const LAST_STEP: f64 = 1.5e-7;
-
-/// The residual after such a step at most, in squares of its length and in sums of the contact's arclength and the pole's
-/// distance: of 400,000 random states (taper up to 0.995, `A*` up to 1.5, poles up to a tenth of the length, friction up to
-/// 1, moduli from a tenth to ten times, loads up to [`LARGEST_Q`]) none left more than 16.3, 99 % at most 4.6.
-const LEFT_BY_STEP: f64 = 20.0;
-
-/// The largest `|load| s^2` that this was measured for; beyond, a whisker coils up.
-const LARGEST_Q: f64 = 12.0;
-
-/// What rounding may leave of it.
-const ROUNDING: f64 = 3e-14;
-
-/// The determinant of the Jacobian, over the lengths of its columns, from which on such a step cannot cross the fold.
-const CLEAR_OF_FOLD: f64 = 1e-5;
-
-/// Fewest steps, as in [`Resolution::least`](crate::model::Resolution::least), whose derivatives are good enough for it.
-const LEAST_STEPS: u32 = 5;
 
 /// Contacts closer to the tip than this, relative to `tau` there, or than the residual, count as at the tip.
 const TIP_TIE: f64 = 1e-12;
@@ -57,6 +39,22 @@ pub struct Refined {
     pub steps: u32,
     /// The verdict.
     pub end: End,
+}
+
+impl Default for Refined {
+    /// Nothing computed yet.
+    fn default() -> Self {
+        Self {
+            state: State {
+                tau: f64::NAN,
+                load: f64::NAN,
+                full: Full::default(),
+                residual: f64::INFINITY,
+            },
+            steps: 0,
+            end: End::NotConverged,
+        }
+    }
 }
 
 /// A state of the whisker.
@@ -103,11 +101,12 @@ pub fn refine(
     shots: &[Shot],
     starts: &[(f64, f64)],
 ) -> Vec<Refined> {
-    shots
-        .par_chunks(TOGETHER)
-        .zip(starts.par_chunks(TOGETHER))
-        .flat_map_iter(|(shots, starts)| refine_together(method, sheets, shots, starts))
-        .collect()
+    let mut cells = vec![Refined::default(); shots.len()];
+    cells
+        .par_chunks_mut(TOGETHER)
+        .zip(shots.par_chunks(TOGETHER).zip(starts.par_chunks(TOGETHER)))
+        .for_each(|(cells, (shots, starts))| refine_together(method, sheets, shots, starts, cells));
+    cells
 }
 
 fn refine_together(
@@ -115,8 +114,9 @@ fn refine_together(
     sheets: &[&Sheet],
     shots: &[Shot],
     starts: &[(f64, f64)],
-) -> Vec<Refined> {
-    let mut cells = newton(method, sheets, shots, starts, STEPS);
+    cells: &mut [Refined],
+) {
+    newton(method, sheets, shots, starts, STEPS, cells);
     let lost: Vec<usize> = (0..cells.len())
         .filter(|&i| cells[i].end == End::NotConverged)
         .collect();
@@ -135,14 +135,21 @@ fn refine_together(
         }
     }
     let again_shots: Vec<Shot> = again.iter().map(|&i| shots[i]).collect();
-    let second = newton(method, sheets, &again_shots, &restarts, STEPS_NEAR_FOLD);
+    let mut second = vec![Refined::default(); again.len()];
+    newton(
+        method,
+        sheets,
+        &again_shots,
+        &restarts,
+        STEPS_NEAR_FOLD,
+        &mut second,
+    );
     for (&i, cell) in again.iter().zip(second) {
         cells[i] = Refined {
             steps: cells[i].steps + cell.steps,
             ..cell
         };
     }
-    cells
 }
 
 /// The states of `sheet` at those of the signed push angles that are on its side, from the lattice's guesses, with what
@@ -170,92 +177,4 @@ pub fn states(method: Method, sheet: &Sheet, pushes_deg: &[f64]) -> Vec<(Shot, S
     let solved = shots.into_iter().zip(cells);
     let solved = solved.filter(|(_, cell)| cell.end == End::Solved);
     solved.map(|(shot, cell)| (shot, cell.state)).collect()
-}
-
-/// Newton's method with at most `most` steps per cell.
-fn newton(
-    method: Method,
-    sheets: &[&Sheet],
-    shots: &[Shot],
-    starts: &[(f64, f64)],
-    most: u32,
-) -> Vec<Refined> {
-    let mut cells: Vec<Option<Refined>> = vec![None; shots.len()];
-    let mut points = starts.to_vec();
-    let mut open: Vec<usize> = (0..shots.len()).collect();
-    for steps in 0..=most {
-        if open.is_empty() {
-            break;
-        }
-        let launches: Vec<Launch> = open
-            .iter()
-            .map(|&i| Launch {
-                rod: sheets[shots[i].rod as usize].rod,
-                tau: points[i].0,
-                load: points[i].1,
-            })
-            .collect();
-        let mut answers = land::<Nystrom8, FirstAndEnergy>(method, &launches).into_iter();
-        let mut launches = launches.iter();
-        open.retain(|&i| {
-            let (Some(moving), Some(launch)) = (answers.next(), launches.next()) else {
-                return false;
-            };
-            let full = moving.full;
-            let residual = full.landing.pole.distance(shots[i].pole);
-            let state = State {
-                tau: launch.tau,
-                load: launch.load,
-                full,
-                residual,
-            };
-            let s = arclength(&launch.rod, launch.tau);
-            let step = full.landing.solve(full.landing.residual(shots[i].pole));
-            let (step, length) = limited(step, s, launch.load);
-            let sheet = sheets[shots[i].rod as usize];
-            let columns = full.landing.by_tau.length() * full.landing.by_load.length();
-            let may_be_last = method.resolution.least >= LEAST_STEPS
-                && launch.rod.profile.is_none()
-                && launch.load.abs() * s * s <= LARGEST_Q
-                && full.landing.det() > CLEAR_OF_FOLD * columns;
-            if residual > GOAL && length <= LAST_STEP && may_be_last {
-                let state = State {
-                    tau: launch.tau + step.x,
-                    load: launch.load + step.y,
-                    full: moving.moved(step),
-                    residual: LEFT_BY_STEP * length * length * (s + full.landing.pole.length())
-                        + ROUNDING,
-                };
-                let (end, steps) = (verdict(sheet, &state), steps + 1);
-                cells[i] = Some(Refined { state, steps, end });
-                return false;
-            }
-            let before = cells[i].map_or(f64::INFINITY, |cell| cell.state.residual);
-            let stuck = residual <= TOLERANCE && residual > 0.5 * before;
-            if residual <= GOAL || stuck {
-                let end = verdict(sheet, &state);
-                cells[i] = Some(Refined { state, steps, end });
-                return false;
-            }
-            cells[i] = Some(Refined {
-                state,
-                steps,
-                end: End::NotConverged,
-            });
-            points[i] = (launch.tau + step.x, launch.load + step.y);
-            step.is_finite() && points[i].0 > 0.0
-        });
-    }
-    cells.into_iter().flatten().collect()
-}
-
-/// Whether a converged state counts.
-fn verdict(sheet: &Sheet, state: &State) -> End {
-    if !sheet.is_stable(state.tau, state.load, &state.full.landing) {
-        End::NotConverged
-    } else if state.tau > sheet.tip[0] && !state.is_at_tip(sheet) {
-        End::BeyondTip
-    } else {
-        End::Solved
-    }
 }

@@ -1,7 +1,7 @@
 //! The lattice of trajectories over the stable sheet, and guesses from it.
 //!
-//! Nodes lie at the columns and at the loads `x = 0, 1/10, 2/10, ...` of the fold's load, two steps beyond the
-//! fold, so that interpolation is as good at the fold as elsewhere. A row of a map is a level curve of `D` on
+//! Nodes lie at the columns and at the loads `x = 0, 1/24, 2/24, ...` of the fold's load, two steps beyond the
+//! fold, so that interpolation is as good at the fold as elsewhere: so good that most guesses are a last Newton step away. A row of a map is a level curve of `D` on
 //! the lattice; along it the push angle grows from first touch to detachment.
 
 use super::columns::Columns;
@@ -11,7 +11,7 @@ use crate::model::batch::{Launch, Method, land};
 use crate::model::{First, Nystrom8, Rod, Side, nearest_turn};
 
 /// Steps in load from first touch to the fold.
-const LOADS: usize = 10;
+const LOADS: usize = 24;
 
 /// Nodes per column: two lie beyond the fold.
 const NODES_PER_COLUMN: usize = LOADS + 3;

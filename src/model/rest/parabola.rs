@@ -13,8 +13,8 @@ fn arc(t: f64) -> f64 {
     t * root + asinh.copysign(t)
 }
 
-/// The Newton step, relative to the chord's abscissa, after which it is known to rounding: its square is left.
-const LAST_STEP: f64 = 1e-9;
+/// The step, relative to the chord's abscissa, after which it is known to rounding: its cube is left.
+const LAST_STEP: f64 = 1e-6;
 
 /// A parabola in the frame of the base.
 #[derive(Clone, Copy, Debug)]
@@ -98,28 +98,32 @@ impl Parabola {
     }
 
     /// How far along the parabola's axis the chord from the base is `chord`: the root of
-    /// `x^2 (1 + (A x + t0)^2) = chord^2`, whose left side grows with `x` (the scene made sure).
+    /// `x^2 (1 + (A x + t0)^2) = chord^2`, whose left side grows with `x` (the scene made sure), by Halley's method.
     pub fn x_of_chord(&self, chord: f64) -> f64 {
         let (mut low, mut high) = (0.0, chord);
         let most = self.bend * chord + self.slope;
         let mut x = chord / (1.0 + most * most).sqrt();
         for _ in 0..200 {
-            let rise = self.bend * x + self.slope;
-            let square = 1.0 + rise * rise;
-            let root = square.sqrt();
-            let length = x * root;
-            if length > chord {
+            let rise = self.bend * x;
+            let slope = rise + self.slope;
+            let square = 1.0 + slope * slope;
+            // The left side less the right one, and its derivatives, over `2 x` and 2.
+            let miss = x * x * square - chord * chord;
+            let first = square + rise * slope;
+            let second = first + rise * (3.0 * slope + rise);
+            if miss > 0.0 {
                 high = x;
             } else {
                 low = x;
             }
-            let newton = x - (length - chord) * root / (square + self.bend * x * rise);
-            let step = newton - x;
+            let slowed = x * first;
+            let step = -2.0 * miss * slowed / (4.0 * slowed * slowed - miss * second);
+            let next = x + step;
             if step.abs() <= LAST_STEP * x {
-                return newton;
+                return next;
             }
-            x = if newton > low && newton < high {
-                newton
+            x = if next > low && next < high {
+                next
             } else {
                 0.5 * (low + high)
             };
