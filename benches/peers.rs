@@ -170,7 +170,7 @@ fn trajectories(
     ];
     let mut rows = Vec::new();
     for (kernel, unit, pool) in kernels {
-        for least in [4, 5, 6, 7, 8, 9, 10, 11, 12, 14, 16, 18, 20, 24, 32, 48] {
+        for least in [3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 14, 16, 18, 20, 24, 30] {
             let resolution = Resolution::of(least);
             let seconds = seconds(pool, || {
                 std::hint::black_box(land(unit, resolution, launches));

@@ -68,7 +68,7 @@ fn facts(scene: &Scene, plan: &Plan, estimate: &Estimate) -> [(&'static str, Str
             format!(
                 "{states}: {rest} rest shape, {ROD_STATES} rod, {derivatives} derivatives; \
                  at last {} with energy",
-                states + 1
+                states + 2
             ),
         ),
         (

@@ -57,7 +57,7 @@ fn a_straight_cylinder_has_no_effects() {
         "projection | off | free: taper | arc_stretch is 1 or left out",
     ];
     assert_eq!(effects(&run), expected);
-    let states = "7: 0 rest shape, 4 rod, 3 derivatives; at last 8 with energy";
+    let states = "7: 0 rest shape, 4 rod, 3 derivatives; at last 9 with energy";
     assert_eq!(fact(&run, "states"), states);
     let cells = "16: 8 push angles x 2 distances x 1 whisker";
     assert_eq!(fact(&run, "cells"), cells);
