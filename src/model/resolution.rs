@@ -62,7 +62,7 @@ impl Resolution {
     }
 
     /// The same where the arclength `s` of the contact is known already.
-    #[inline]
+    #[inline(always)]
     pub(super) fn steps_from(&self, rod: &Rod, tau: f64, load: f64, s: f64) -> u32 {
         let mut bending = load.abs() * s * s;
         if rod.profile.is_some() {
@@ -71,7 +71,11 @@ impl Resolution {
         if rod.gradient < 0.0 {
             bending /= rod.modulus(s);
         }
-        let modulus = rod.gradient.abs() / (1.0 + rod.gradient).min(1.0);
+        let modulus = if rod.gradient == 0.0 {
+            0.0
+        } else {
+            rod.gradient.abs() / (1.0 + rod.gradient).min(1.0)
+        };
         let bend = rod.sharpest_bend();
         let fastest = rod.taper.max(1.6 * bend).max(0.5 * modulus);
         let [taper, bend] = [rod.taper * tau, bend * s].map(|x| x * x.min(2.0));
@@ -99,6 +103,7 @@ const CONCENTRATED: f64 = 2.0;
     clippy::manual_clamp,
     reason = "a small positive number; NaN becomes the smallest, which `clamp` would let through"
 )]
+#[inline(always)]
 fn rounded(steps: f64) -> u32 {
     let steps = steps.max(1.0).min(MOST);
     // `ceil` is a call where the target has no instruction for it.

@@ -166,8 +166,9 @@ struct Piece {
     /// Where it begins and ends, and the push angles there.
     ends: [f64; 2],
     pushes: [f64; 2],
-    /// Where the last guess was.
+    /// Where the last guess was, and how far it was from the one before.
     near: f64,
+    pace: f64,
 }
 
 impl Piece {
@@ -195,6 +196,7 @@ impl Piece {
             ends: [low, high],
             pushes: [push.at(low).0, push.at(high).0],
             near: offset,
+            pace: 0.0,
             push,
         }
     }
@@ -206,8 +208,10 @@ impl Piece {
         } else if push > to {
             (push < to + MARGIN).then_some(high)?
         } else {
-            self.push.solve(push, self.near, [low, high], true)
+            let near = (self.near + self.pace).clamp(low, high);
+            self.push.solve(push, near, [low, high], true)
         };
+        self.pace = t - self.near;
         self.near = t;
         Some(Guess {
             tau: self.tau.at(t).0,

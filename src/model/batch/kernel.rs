@@ -3,7 +3,6 @@
 use super::Launch;
 use super::answer::Derived;
 use super::gather::{Gather, GatherMaterial, Place, lanes};
-use crate::model::Effects;
 use crate::model::contact::{Contact, radius_and_arclength};
 use crate::model::integrator::{Integrator, Scales, integrate};
 use crate::model::intrinsic::{Bent, Spiral, Straight};
@@ -11,6 +10,7 @@ use crate::model::material::{Even, Graded, Measured};
 use crate::model::order::{Arrival, Order};
 use crate::model::rhs::{RodSystem, Section};
 use crate::model::simd::{Lanes, WIDTH};
+use crate::model::{Effects, Resolution};
 
 /// The launches of one block.
 pub type Block<'a> = [&'a Launch; WIDTH];
@@ -48,12 +48,20 @@ where
     }
 }
 
-/// Arclengths of the contacts.
+/// Arclengths of the contacts, and the steps that the trajectories take.
 #[inline(always)]
-pub fn arclengths<T: Lanes>(launches: &Block) -> [f64; WIDTH] {
+pub fn steps<T: Lanes>(resolution: Resolution, launches: &Block) -> [(f64, u32); WIDTH] {
     let taper: T = lanes(launches, |launch| launch.rod.taper);
     let [_, s] = radius_and_arclength(taper, lanes(launches, |launch| launch.tau));
-    s.unpack()
+    let s = s.unpack();
+    let mut steps = [(0.0, 0); WIDTH];
+    for ((lane, launch), s) in steps.iter_mut().zip(launches).zip(s) {
+        *lane = (
+            s,
+            resolution.steps_from(&launch.rod, launch.tau, launch.load, s),
+        );
+    }
+    steps
 }
 
 /// Integrates `WIDTH` trajectories in step.

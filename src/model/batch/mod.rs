@@ -109,26 +109,24 @@ fn part<M: Integrator, K: Kernel<M>>(
         }
     };
     // Lanes step together, so only trajectories of one kind share a block: company changes nothing.
+    let mut kinds: Vec<BlockKind> = Vec::new();
     let mut open: Vec<Open> = Vec::new();
-    let mut arclengths = [0.0; WIDTH];
-    for (i, Launch { rod, tau, load }) in launches.iter().enumerate() {
+    let mut next = [(0.0, 0); WIDTH];
+    for (i, Launch { rod, tau, .. }) in launches.iter().enumerate() {
         if i % WIDTH == 0 {
-            let next = |lane: usize| &launches[(i + lane).min(launches.len() - 1)];
-            arclengths = unit.arclengths(&std::array::from_fn(next));
+            let lane = |lane: usize| &launches[(i + lane).min(launches.len() - 1)];
+            next = unit.steps(method.resolution, &std::array::from_fn(lane));
         }
-        let s = arclengths[i % WIDTH];
+        let (s, steps) = next[i % WIDTH];
         let kind = BlockKind {
-            steps: method.resolution.steps_from(rod, *tau, *load, s),
+            steps,
             effects: method.effects.reaching(rod.taper * tau),
             piece: rod.piece(s),
         };
-        let place = open.iter().position(|block| block.kind == kind);
+        let place = kinds.iter().position(|other| *other == kind);
         let place = place.unwrap_or_else(|| {
-            open.push(Open {
-                kind,
-                members: [0; WIDTH],
-                count: 0,
-            });
+            kinds.push(kind);
+            open.push(Open::default());
             open.len() - 1
         });
         let block = &mut open[place];
@@ -139,8 +137,10 @@ fn part<M: Integrator, K: Kernel<M>>(
             block.count = 0;
         }
     }
-    for block in open.iter().filter(|block| block.count > 0) {
-        compute(block.kind, &block.members[..block.count]);
+    for (kind, block) in kinds.iter().zip(&open) {
+        if block.count > 0 {
+            compute(*kind, &block.members[..block.count]);
+        }
     }
 }
 
@@ -154,8 +154,8 @@ struct BlockKind {
 }
 
 /// A block that waits for more trajectories of its kind.
+#[derive(Default)]
 struct Open {
-    kind: BlockKind,
     members: [usize; WIDTH],
     count: usize,
 }
