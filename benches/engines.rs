@@ -36,18 +36,21 @@ fn integrators(criterion: &mut Criterion) {
             resolution,
         };
         let steps = resolution.least;
-        group.bench_function(BenchmarkId::new("dopri8, first derivatives", steps), |b| {
-            b.iter(|| land::<Nystrom8, First>(method, black_box(&launches)));
-        });
+        group.bench_function(
+            BenchmarkId::new("nystrom8, first derivatives", steps),
+            |b| {
+                b.iter(|| land::<Nystrom8, First>(method, black_box(&launches)));
+            },
+        );
     }
     let fine = Method::fine(USUAL);
-    group.bench_function("dopri8, first derivatives and energy", |b| {
+    group.bench_function("nystrom8, first derivatives and energy", |b| {
         b.iter(|| land::<Nystrom8, FirstAndEnergy>(fine, black_box(&launches)));
     });
-    group.bench_function("dopri8, second derivatives", |b| {
+    group.bench_function("nystrom8, second derivatives", |b| {
         b.iter(|| land::<Nystrom8, Second>(fine, black_box(&launches)));
     });
-    group.bench_function("dopri8, first derivatives, scalar", |b| {
+    group.bench_function("nystrom8, first derivatives, scalar", |b| {
         b.iter(|| land_on::<Nystrom8, First>(Unit::scalar(), fine, black_box(&launches)));
     });
     group.finish();

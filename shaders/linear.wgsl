@@ -1,5 +1,5 @@
 // A radius that is linear in the arclength, and a modulus that is; the way along it. The twin of `Even` and `Graded` in
-// `src/model/rhs.rs`.
+// `src/model/material.rs`.
 
 struct Material {
     gradient: real,

@@ -1,4 +1,4 @@
-// The right-hand sides, in sigma = tau_contact - tau; the twin of `src/model/{rhs,vector}.rs` and `src/model/order/`.
+// The right-hand sides, in sigma = tau_contact - tau; the twin of `src/model/{rhs,intrinsic,vector}.rs` and `src/model/order/`.
 
 struct Section {
     rho: real,

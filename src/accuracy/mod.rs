@@ -22,7 +22,7 @@ pub struct Accuracy {
 }
 
 /// By how much the worst of the sample may be exceeded elsewhere. The largest factor met in all shipped scenes, over
-/// tolerances from 1e-2 to 1e-8 degrees, is 2.2 (`tests/accuracy.rs`).
+/// tolerances from 1e-2 to 1e-8 degrees, is 1.5 (`tests/accuracy.rs`).
 const SAFETY: f64 = 4.0;
 
 /// The cheapest rung of [`Resolution::LADDER`] whose estimate for `sides` of the scene is within `tolerance_deg`.

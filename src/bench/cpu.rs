@@ -70,7 +70,7 @@ pub fn measure(
                     task,
                     runs,
                     &engine,
-                    "dopri8",
+                    "nystrom8",
                     solver(resolution),
                 ));
             }

@@ -11,7 +11,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 /// Four times as many steps as [`Resolution::FINE`]: with order 8, errors that are 65,536 times smaller.
-pub const EXACT: Resolution = Resolution::of(128);
+pub const EXACT: Resolution = Resolution::FINE.doubled().doubled();
 
 /// Shots that have an answer.
 pub struct Task {

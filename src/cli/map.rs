@@ -172,7 +172,7 @@ fn print(scene: &Scene, summary: &Summary, seconds: f64, files: &[PathBuf]) -> s
         ),
         (
             summary.shots.on_cpu_instead,
-            "shots by the CPU, after the engine had failed",
+            "shots left to the refinement, after the engine had failed",
         ),
     ] {
         if shots > 0 {

@@ -6,7 +6,7 @@ use crate::model::{Effects, First, Integrator, Landing, Nystrom8, Resolution, Ro
 use glam::DVec2;
 use rayon::prelude::*;
 
-/// Off by less than 1.4e-7 (`tests/gpu_engine`): the refinement then mostly needs a single trajectory.
+/// Off by less than 5e-8 (`tests/gpu_engine`): the refinement then mostly needs a single trajectory.
 const RESOLUTION: Resolution = Resolution::COARSE;
 
 /// Shots of one thread whose cells stay in its cache on their way from stage to stage, and need no new pages.
@@ -18,19 +18,6 @@ const TOLERANCE: f64 = 1e-6;
 /// The CPU engine.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Cpu;
-
-impl Cpu {
-    /// [`Engine::shoot`], which here cannot fail.
-    #[must_use]
-    pub fn solve(self, effects: Effects, rods: &[Rod], shots: &[Shot]) -> Vec<Hit> {
-        let solver = Solver {
-            unit: Unit::detect(),
-            resolution: RESOLUTION,
-            tolerance: TOLERANCE,
-        };
-        solver.solve::<Nystrom8>(effects, rods, shots)
-    }
-}
 
 /// Newton's method as the CPU engine does it, on any unit, at any resolution, to any tolerance.
 #[derive(Clone, Copy, Debug)]
@@ -145,6 +132,11 @@ impl Engine for Cpu {
         rods: &[Rod],
         shots: &[Shot],
     ) -> Result<Vec<Hit>, EngineError> {
-        Ok(self.solve(effects, rods, shots))
+        let solver = Solver {
+            unit: Unit::detect(),
+            resolution: RESOLUTION,
+            tolerance: TOLERANCE,
+        };
+        Ok(solver.solve::<Nystrom8>(effects, rods, shots))
     }
 }

@@ -92,7 +92,7 @@ pub fn settle(
     });
     let hits = hits.as_deref();
     summary.shots.all += shots.len() as u64;
-    if engine.failure().is_some() && hits.is_none() {
+    if engine.failure().is_some() {
         summary.shots.on_cpu_instead += shots.len() as u64;
     }
     let refined = summary.time(Stage::Refinement, || {

@@ -1,5 +1,5 @@
 //! The contact, where every trajectory starts, for lanes side by side: exponential and inverse functions by algebra alone,
-//! so that eight contacts cost about what one costs with the standard library.
+//! so that a block of contacts costs about what one costs with the standard library.
 
 use super::Real;
 use super::real::expm1_over_small;

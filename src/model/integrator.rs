@@ -1,4 +1,4 @@
-//! Fixed-step integration along the rod: what the Runge-Kutta methods share.
+//! Fixed-step integration along the rod: what the methods share.
 
 use super::intrinsic::Intrinsic;
 use super::material::Material;
@@ -6,7 +6,7 @@ use super::real::hyperbolic_small;
 use super::rhs::{Planar, RodSystem, Sensitivity, State};
 use super::{Real, Section};
 
-/// An explicit Runge-Kutta method with fixed steps.
+/// An explicit one-step method with fixed steps.
 pub trait Integrator: Copy + Send + Sync + 'static {
     /// Where the stages lie in the unit step; the last ones are its end.
     const NODES: [f64; STAGES];

@@ -23,8 +23,14 @@ pub trait Material<T: Real>: Copy {
     /// At a stage of a step that starts at `from`.
     fn swing(self, taper: Option<T>, from: &Section<T>, stage: &Stage<T>) -> Swing<T>;
 
-    /// `m'/m` there, and `m` over that at the start; none where they are 0 and 1.
-    fn settle(self, taper: Option<T>, from: &Section<T>, stage: &Stage<T>) -> Option<[T; 2]>;
+    /// `m'/m` there, and `m` over that at the start, whose inverse is `light`; none where they are 0 and 1.
+    fn settle(
+        self,
+        taper: Option<T>,
+        from: &Section<T>,
+        stage: &Stage<T>,
+        light: T,
+    ) -> Option<[T; 2]>;
 }
 
 /// The same modulus everywhere: `S = rho^4`.
@@ -55,7 +61,7 @@ impl<T: Real> Material<T> for Even {
     }
 
     #[inline(always)]
-    fn settle(self, taper: Option<T>, _: &Section<T>, stage: &Stage<T>) -> Option<[T; 2]> {
+    fn settle(self, taper: Option<T>, _: &Section<T>, stage: &Stage<T>, _: T) -> Option<[T; 2]> {
         match taper {
             Some(taper) => Some([T::of(1.5) * taper, stage.grown * stage.grown * stage.shrunk]),
             None => None,
@@ -107,14 +113,17 @@ impl<T: Real> Material<T> for Graded<T> {
     }
 
     #[inline(always)]
-    fn settle(self, taper: Option<T>, from: &Section<T>, stage: &Stage<T>) -> Option<[T; 2]> {
+    fn settle(
+        self,
+        taper: Option<T>,
+        from: &Section<T>,
+        stage: &Stage<T>,
+        light: T,
+    ) -> Option<[T; 2]> {
         let taper = taper.unwrap_or(T::of(0.0));
         let [_, fall] = self.fall(&from.at(stage));
         let growth = T::of(1.5) * taper - T::of(0.5) * fall;
-        Some([
-            growth,
-            T::of(1.0) / self.swing(Some(taper), from, stage).light,
-        ])
+        Some([growth, T::of(1.0) / light])
     }
 }
 
@@ -172,7 +181,7 @@ impl<T: Real> Material<T> for Measured<T> {
         let per_length = here.rho / radius;
         let narrowing = per_length * slope;
         let growth = -(two * narrowing + half * (fall + taper));
-        // `(m'/m)' + (m'/m)^2`.
+        // `-(m'/m)'`, to be taken from the square of `m'/m`.
         let change = two * (narrowing * (narrowing + taper) - here.rho * per_length * bend)
             + half * fall * (taper + fall);
         Swing {
@@ -183,12 +192,19 @@ impl<T: Real> Material<T> for Measured<T> {
     }
 
     #[inline(always)]
-    fn settle(self, taper: Option<T>, from: &Section<T>, stage: &Stage<T>) -> Option<[T; 2]> {
+    fn settle(
+        self,
+        taper: Option<T>,
+        from: &Section<T>,
+        stage: &Stage<T>,
+        light: T,
+    ) -> Option<[T; 2]> {
         let here = from.at(stage);
         let [_, fall] = self.graded().fall(&here);
         let [radius, slope, _] = self.radius(&here);
-        let tapering = taper.unwrap_or(T::of(0.0));
-        let growth = -(T::of(2.0) * here.rho * slope / radius + T::of(0.5) * (fall + tapering));
-        Some([growth, T::of(1.0) / self.swing(taper, from, stage).light])
+        let taper = taper.unwrap_or(T::of(0.0));
+        let narrowing = here.rho / radius * slope;
+        let growth = -(narrowing + narrowing + T::of(0.5) * (fall + taper));
+        Some([growth, T::of(1.0) / light])
     }
 }

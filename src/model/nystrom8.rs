@@ -121,7 +121,7 @@ impl Integrator for Nystrom8 {
         let swing = system.material.swing(scales.taper, &from, scales.end());
         let ([c, s], bent, angles) = moved!(STAGES - 1, swing.light, chi);
         // `X = m (chi' - (m'/m) chi)`.
-        let ([x], levers) = match system.material.settle(scales.taper, &from, scales.end()) {
+        let ([x], levers) = match system.material.settle(scales.taper, &from, scales.end(), swing.light) {
             Some([growth, heavy]) => speed.plus(-h * growth, chi).times(heavy),
             None => speed,
         };

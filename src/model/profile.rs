@@ -88,7 +88,10 @@ impl Way<'_> {
             return self.integrate(intrinsic, Graded { gradient }, whole, (from, to), state);
         };
         let mut ahead = self.start.tau;
-        for piece in profile.pieces[..=self.rod.piece(ahead)].iter().rev() {
+        for piece in profile.pieces[..=self.rod.piece(self.start.arclength)]
+            .iter()
+            .rev()
+        {
             let begin = self.rod.tau(piece.from);
             let (whole, end) = (ahead - begin, begin.max(to));
             ahead = begin;

@@ -21,7 +21,7 @@ impl Resolution {
     /// What signs and guesses need. Over the stable sheet states are off by less than 1e-6.
     pub const COARSE: Self = Self::of(5);
 
-    /// From cheap to exact, about a factor of 30 in the error apart.
+    /// From cheap to exact, a factor of 6 to 26 in the error apart.
     pub const LADDER: [Self; 8] = [
         Self::of(3),
         Self::of(4),
@@ -96,6 +96,10 @@ impl Resolution {
 /// Under more than a small load the bend gathers in the softest piece.
 const CONCENTRATED: f64 = 2.0;
 
+/// A piece of a profile may be much shorter than what the rod needs as a step; it takes this part of `least`, so that twice as
+/// many steps are twice as many.
+const FEWEST: f64 = 0.15;
+
 /// At least so many steps, up to a number that many trajectories share: two significant bits and some.
 #[allow(
     clippy::cast_possible_truncation,
@@ -111,10 +115,6 @@ fn rounded(steps: f64) -> u32 {
     let unit = (steps.next_power_of_two() / 8).max(1);
     (steps + unit - 1) & !(unit - 1)
 }
-
-/// A piece of a profile may be much shorter than what the rod needs as a step; it takes this part of `least`, so that twice as
-/// many steps are twice as many.
-const FEWEST: f64 = 0.15;
 
 /// Bounds the work on a trajectory that a lost Newton step has sent far away.
 const MOST: f64 = 8192.0;

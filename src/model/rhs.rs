@@ -8,7 +8,7 @@ use super::intrinsic::Intrinsic;
 use super::material::Material;
 use super::{Real, Vector};
 
-/// The rod at a stage.
+/// The rod at a place.
 #[derive(Clone, Copy, Debug)]
 pub struct Section<T> {
     /// Radius over the base radius, `rho`.

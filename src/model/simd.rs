@@ -93,11 +93,14 @@ macro_rules! arithmetic {
 macro_rules! lanes {
     ($name:ident, $each:literal, [$($i:tt)+]; $load:expr, $store:expr) => {
         impl Lanes for $name {
-            const LANES: usize = $each * [$($i),+].len();
+            const LANES: usize = {
+                let lanes = $each * [$($i),+].len();
+                assert!(lanes <= WIDTH);
+                lanes
+            };
 
             #[inline(always)]
             fn pack(lanes: [f64; WIDTH]) -> Self {
-                const { assert!(Self::LANES <= WIDTH) };
                 // SAFETY: the registers are no longer than the array; see the module for the instruction.
                 unsafe { Self($($load(lanes.as_ptr().add($each * $i))),+) }
             }

@@ -2,7 +2,7 @@
 
 use super::Real;
 
-/// What a Runge-Kutta method needs of a state.
+/// What an integrator needs of a state.
 pub trait Vector<T: Real>: Copy {
     /// `self + h k`.
     #[must_use]

@@ -1,8 +1,9 @@
 //! The lattice of trajectories over the stable sheet, and guesses from it.
 //!
 //! Nodes lie at the columns and at the loads `x = 0, 1/24, 2/24, ...` of the fold's load, two steps beyond the
-//! fold, so that interpolation is as good at the fold as elsewhere: so good that most guesses are a last Newton step away. A row of a map is a level curve of `D` on
-//! the lattice; along it the push angle grows from first touch to detachment.
+//! fold, so that interpolation is as good at the fold as elsewhere, and that good that most guesses are a last Newton
+//! step away from the state. A row of a map is a level curve of `D` on the lattice; along it the push angle grows from
+//! first touch to detachment.
 
 use super::columns::Columns;
 use super::polynomial::{NODES, Polynomial, stencil};
@@ -166,7 +167,7 @@ struct Piece {
     /// Where it begins and ends, and the push angles there.
     ends: [f64; 2],
     pushes: [f64; 2],
-    /// Where the last guess was, and how far it was from the one before.
+    /// Where the last guess was, and how far it was from the one before, or from the beginning.
     near: f64,
     pace: f64,
 }
@@ -179,8 +180,7 @@ impl Piece {
         };
         let push = local(|node| node.push);
         let offset = (interval - start) as f64;
-        let is_sound = push.at(offset - 1.0).0 < push.at(offset).0;
-        let low = if interval == 0 && is_sound {
+        let low = if interval == 0 && push.at(offset - 1.0).0 < push.at(offset).0 {
             offset - 1.0
         } else {
             offset

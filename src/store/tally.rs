@@ -24,7 +24,7 @@ pub struct Shots {
     /// Those that ended without a solution, or with numbers that are not finite: the refinement in `f64` started them
     /// again from their guess.
     pub restarted: u64,
-    /// Those that the CPU engine solved because the engine of the run had failed.
+    /// Those that no engine solved because that of the run had failed: the refinement started from their guesses.
     pub on_cpu_instead: u64,
 }
 

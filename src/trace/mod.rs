@@ -17,8 +17,7 @@ pub use state::Found;
 use crate::model::Resolution;
 use serde::Serialize;
 
-/// Twice as fine as [`Resolution::FINE`]: unstable states carry larger loads. On branches of twelve whiskers, from
-/// cylinder to perfect cone, it leaves at most 3e-12 of the pole's distance, where `FINE` leaves 2e-9.
+/// Twice as fine as [`Resolution::FINE`]: unstable states carry larger loads.
 const FINER: Resolution = Resolution::FINE.doubled();
 
 /// What is special about a point of a branch.

@@ -139,7 +139,7 @@ fn the_map_is_completed_whatever_fails_while_it_runs() {
             .find(|line| line.starts_with("warning: GPU: device lost"));
         assert!(warning.is_some(), "{fault}: {err}");
         let line = format!(
-            "{:>12}  shots by the CPU, after the engine had failed",
+            "{:>12}  shots left to the refinement, after the engine had failed",
             shots.all
         );
         assert!(out.contains(&line), "{fault}: {out}");

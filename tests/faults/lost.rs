@@ -108,7 +108,7 @@ fn again(device: wgpu::Device, buffer: wgpu::Buffer, looks: usize) {
     });
 }
 
-/// 128 x 128 cells are one call of several dispatches. All of its shots go to the CPU, so the map is the CPU's.
+/// 128 x 128 cells are one call of several dispatches. All of its shots are left to the refinement, so the map is that of the CPU.
 #[test]
 fn lost_within_a_call() {
     let scene = cone(128);
@@ -129,7 +129,7 @@ fn lost_within_a_call() {
     }
 }
 
-/// Whenever the other thread comes, all shots are solved once, by the one or the other.
+/// Whenever the other thread comes, all shots are counted once, as the engine's or not.
 #[test]
 fn lost_to_another_thread() {
     let scene = cone(64);

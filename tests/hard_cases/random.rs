@@ -123,12 +123,11 @@ struct Seen {
     /// How far halved steps move the poles, in whisker lengths, from the map's resolution and from half of it.
     fine: f64,
     half: f64,
-    /// `fine` under moderate loads.
-    moderate: f64,
     /// Contacts and loads refined from the GPU's and from the CPU's answers.
     engines: f64,
-    /// What converged answers in `f32` miss, in whisker lengths.
+    /// What converged answers in `f32` miss, in whisker lengths, and how many miss by more than [`STABLE`].
     single: f64,
+    rough: usize,
     converged: usize,
     handed_over: usize,
 }
@@ -159,11 +158,7 @@ fn scan(count: u32, whiskers: &impl Strategy<Value = Case>) -> Seen {
         for ((fine, half), state) in fine.iter().zip(half).zip(&states) {
             seen.fine = seen.fine.max(*fine);
             seen.half = seen.half.max(half);
-            if is_moderate(state) {
-                seen.moderate = seen.moderate.max(*fine);
-            } else {
-                seen.coiled += 1;
-            }
+            seen.coiled += usize::from(is_coiled(state));
         }
         if let Some(gpu) = gpu.borrow_mut().as_mut() {
             let hits = shots.shoot(gpu);
@@ -172,6 +167,7 @@ fn scan(count: u32, whiskers: &impl Strategy<Value = Case>) -> Seen {
             seen.converged += misses.len();
             for (_, miss) in misses {
                 seen.single = seen.single.max(miss);
+                seen.rough += usize::from(miss > STABLE);
             }
             for (a, b) in cells.iter().zip(shots.refined(&hits)) {
                 prop_assert_eq!(a.end, b.end);
@@ -206,17 +202,20 @@ fn two_thousand_whiskers_hold() {
 
 fn holds(seen: &Seen) {
     // Measured 5.6e-11, coiled up or not.
-    assert!(seen.moderate < 1e-10 && seen.fine < 1e-6, "{seen:?}");
+    assert!(seen.fine < 1e-10, "{seen:?}");
     // Order 8 would be 256 times; measured 185.
     assert!(seen.half > 128.0 * seen.fine, "{seen:?}");
     // Measured 7e-8. Next to the fold a state is the square root of its residual, which is at most 1e-12.
     assert!(seen.engines < 1e-6, "{seen:?}");
-    // Measured 2.6e-4, of a sharp, strongly curved whisker with friction whose tip is ten times as stiff; all that miss more
-    // than 5e-5 are like it. The shaders take as many steps for every whisker, which are few for these.
-    assert!(seen.single < 10.0 * STABLE, "{seen:?}");
+    // Measured 2.6e-4 and 2 of 28,507, both of sharp, strongly curved whiskers with friction whose tips are ten times as stiff.
+    // The shaders take as many steps for every whisker, which are few for these; guesses bring them to convergence nevertheless.
+    assert!(
+        seen.single < 10.0 * STABLE && seen.rough * 10_000 < seen.converged,
+        "{seen:?}"
+    );
 }
 
-fn is_moderate(state: &Launch) -> bool {
+fn is_coiled(state: &Launch) -> bool {
     let s = arclength(&state.rod, state.tau);
-    state.load.abs() * s * s * state.rod.softness(state.tau) < MODERATE
+    state.load.abs() * s * s * state.rod.softness(state.tau) > MODERATE
 }

@@ -4,7 +4,7 @@
 //! effects has a pipeline of its own, made from `override` constants. Work goes out in dispatches short
 //! enough for any watchdog, at most two in flight; nothing here panics when a device fails.
 //!
-//! Absent on purpose: a second try on a lost device. [`Fallback`](super::Fallback) has the CPU engine for that.
+//! Absent on purpose: a second try on a lost device. [`Fallback`](super::Fallback) does without it.
 
 mod adapters;
 mod device;

@@ -72,7 +72,8 @@ fn twice<T: Real>(c: T, s: T, turns: T, angle: T) -> (T, T) {
     (s.mul_add(angle, c * turns), s * turns - c * angle)
 }
 
-/// A set of derivatives, and the bending energy in `E I_base/L_w`.
+/// A set of derivatives, and the bending energy in `E I_base/L_w`. Its relative error grows with the inverse of the radius at
+/// the contact, over that at the base: 2e-8 where that is 1e-6.
 #[derive(Clone, Copy, Debug)]
 pub struct Energetic<O>(PhantomData<O>);
 
