@@ -11,7 +11,7 @@ use whiskmap::refine::End;
 
 /// How far off, in whisker lengths, a pole or a contact may be, and a load in the median. Measured: 3.1e-5 for a cylinder
 /// that a stiff tip and friction let coil up, else 1.5e-5; 3.7e-6; 1.5e-5. Next to the fold, where the state goes with the
-/// square root of the push angle left, loads are off by up to 5e-3.
+/// square root of the push angle left, loads are off by up to 1.3e-2.
 pub const STABLE: f64 = 1e-4;
 
 #[test]
