@@ -14,8 +14,8 @@ pub struct Resolution {
 }
 
 impl Resolution {
-    /// What maps and lines take unless told otherwise: states are exact to rounding for taper up to 0.95, and to 2e-12 up
-    /// to 0.99.
+    /// What maps and lines take unless told otherwise: states are off by less than 1e-11 of the length for taper up to 0.99
+    /// (`tests/model.rs`).
     pub const FINE: Self = Self::of(20);
 
     /// What signs and guesses need. Over the stable sheet states are off by less than 1e-6.
