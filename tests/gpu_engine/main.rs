@@ -8,6 +8,7 @@
     reason = "a test fails by panicking, and says aloud what it measured and skipped"
 )]
 
+mod bench;
 mod probe;
 mod shots;
 
