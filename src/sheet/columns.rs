@@ -37,8 +37,10 @@ pub struct Columns {
     rod: Rod,
     /// The smallest `|load| tau^2` of the folds.
     least_q: f64,
-    /// `ln tau` and `ln(|load| tau^2)` of the folds, by the first column of the stencil.
-    stencils: Vec<[Polynomial; 2]>,
+    /// `ln tau` of the folds, by the first column of the stencil.
+    pub ln_tau: Vec<Polynomial>,
+    /// `ln(|load| tau^2)` of them.
+    pub ln_q: Vec<Polynomial>,
 }
 
 /// `ln tau + tau`, and minus the logarithm of the modulus where that falls toward the tip: continued beyond the tip, it
@@ -130,14 +132,8 @@ impl Columns {
             batch = FURTHER;
         }
         folds.reverse();
-        let through = |start: usize, f: fn(&FoldPoint) -> f64| {
-            Polynomial::through(folds[start..].iter().take(NODES).map(f))
-        };
-        let stencils = (0..folds.len().saturating_sub(NODES) + 1).map(|start| {
-            let ln_q = |fold: &FoldPoint| q(fold).ln();
-            [through(start, |fold| fold.tau.ln()), through(start, ln_q)]
-        });
-        let stencils = stencils.collect();
+        let ln = |f: fn(&FoldPoint) -> f64| folds.iter().map(|fold| f(fold).ln()).collect();
+        let [ln_tau, ln_q]: [Vec<f64>; 2] = [ln(|fold| fold.tau), ln(q)];
         let tip = folds.len() - 1 - BEYOND_TIP;
         Some(Self {
             first_u: u_tip - SPACING * tip as f64,
@@ -145,16 +141,9 @@ impl Columns {
             rod: *rod,
             least_q: folds.iter().map(q).fold(f64::INFINITY, f64::min),
             folds,
-            stencils,
+            ln_tau: Polynomial::through_each(&ln_tau),
+            ln_q: Polynomial::through_each(&ln_q),
         })
-    }
-
-    /// Contact and `|load|` of the fold at the place `t` in the stencil that begins at column `start`.
-    #[must_use]
-    pub fn at(&self, start: usize, t: f64) -> (f64, f64) {
-        let [ln_tau, ln_q] = &self.stencils[start];
-        let ln_tau = ln_tau.at(t).0;
-        (ln_tau.exp(), (ln_q.at(t).0 - 2.0 * ln_tau).exp())
     }
 
     /// Whether the load is surely less than that of the fold for the contact at `tau`.
@@ -175,7 +164,6 @@ impl Columns {
         )]
         let k = (place as usize).min(last);
         let start = stencil::<NODES>(k, self.folds.len());
-        let [_, ln_q] = &self.stencils[start];
-        ln_q.at(place - start as f64).0.exp() / (tau * tau)
+        self.ln_q[start].at(place - start as f64).0.exp() / (tau * tau)
     }
 }

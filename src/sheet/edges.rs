@@ -112,9 +112,8 @@ fn tip_samples(method: Method, rod: &Rod, columns: &Columns) -> Vec<Sample> {
             let start = stencil::<NODES>(i, landings.len());
             let slopes = landings[start..].iter().take(NODES).map(|l| l.by_load.x);
             let offset = (i - start) as f64;
-            let rising = landings[i].by_load.x < 0.0;
             let between = [offset, offset + 1.0];
-            let place = Polynomial::through(slopes).solve(0.0, offset + 0.5, between, rising);
+            let place = Polynomial::through(slopes).solve(0.0, offset + 0.5, between);
             let near = corner.load * (start as f64 + place) / TIP_SAMPLES as f64;
             let launch = launch(extremum(method, launches[i], launches[i + 1].load, near));
             let landing = land::<Nystrom8, First>(method, &[launch])[0];

@@ -130,7 +130,7 @@ fn root(samples: &[f64], dets: &[f64], at: usize) -> f64 {
     let part = if is_even {
         let offset = (at - start) as f64;
         let around = Polynomial::through(dets[start..].iter().take(NODES).copied());
-        around.solve(0.0, offset + secant, [offset, offset + 1.0], low <= 0.0) - offset
+        around.solve(0.0, offset + secant, [offset, offset + 1.0]) - offset
     } else {
         secant
     };

@@ -6,12 +6,14 @@
 //! rectangle gives every cell of the map a guess, or the certainty that it has no solution
 //! ([`Sheet::guesses`]). The two are computed independently of each other.
 
+mod abreast;
 mod bisect;
 mod columns;
 mod crossings;
 mod edges;
 mod find;
 mod fold;
+mod guess;
 mod lattice;
 mod level;
 mod pieces;
@@ -22,7 +24,7 @@ mod walk;
 
 pub use crossings::Crossing;
 pub use fold::FoldPoint;
-pub use lattice::Guess;
+pub use guess::Guess;
 pub use level::{LevelCurve, Node, ON_CURVE};
 pub use rows::Row;
 pub use seek::{Edge, Sought, Wanted, seek};

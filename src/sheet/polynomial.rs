@@ -4,7 +4,7 @@
 pub const NODES: usize = 8;
 
 /// The last step of Newton's method, in spacings: its square is left, and interpolation leaves more than that.
-const LAST_STEP: f64 = 1e-4;
+pub const LAST_STEP: f64 = 1e-4;
 
 /// A polynomial through up to [`NODES`] values at `0, 1, 2, ...`.
 #[derive(Clone, Copy, Debug)]
@@ -31,6 +31,35 @@ impl Polynomial {
         Self { differences }
     }
 
+    /// Through each [`NODES`] neighbours of `values`, or through all where there are fewer: the first one through `values[0]`
+    /// at 0, the next one through `values[1]` at 0, ...
+    pub fn through_each(values: &[f64]) -> Vec<Self> {
+        let runs = values.len().saturating_sub(NODES) + 1;
+        let zero = Self {
+            differences: [0.0; NODES],
+        };
+        let mut polynomials = vec![zero; runs];
+        let mut differences = values.to_vec();
+        for level in 0..NODES.min(values.len()) {
+            if level > 0 {
+                let part = 1.0 / level as f64;
+                for i in 0..values.len() - level {
+                    differences[i] = (differences[i + 1] - differences[i]) * part;
+                }
+            }
+            for (polynomial, difference) in polynomials.iter_mut().zip(&differences) {
+                polynomial.differences[level] = *difference;
+            }
+        }
+        polynomials
+    }
+
+    /// Divided differences: the value at 0, the slope from 0 to 1, ...
+    #[must_use]
+    pub const fn differences(&self) -> &[f64; NODES] {
+        &self.differences
+    }
+
     /// Value and slope at `t`.
     #[must_use]
     #[inline]
@@ -45,16 +74,10 @@ impl Polynomial {
     }
 
     /// Where the polynomial is `target` between `low` and `high`, at which it lies on different sides of it:
-    /// Newton's method from `near`, bisecting where a step would leave the bracket. `rising` tells whether it is below the
-    /// target at `low`.
+    /// Newton's method from `near`, bisecting where a step would leave the bracket.
     #[must_use]
-    pub fn solve(
-        &self,
-        target: f64,
-        near: f64,
-        [mut low, mut high]: [f64; 2],
-        rising: bool,
-    ) -> f64 {
+    pub fn solve(&self, target: f64, near: f64, [mut low, mut high]: [f64; 2]) -> f64 {
+        let rising = self.at(low).0 <= target;
         let mut t = near;
         for _ in 0..60 {
             let (value, slope) = self.at(t);
