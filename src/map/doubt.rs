@@ -12,13 +12,12 @@ use crate::sheet::{Edge, LevelCurve, Node, Sheet, walk};
 /// How far, in radians, the end of a walk may be from the boundary, which was computed apart from it.
 const SAME_END: f64 = 1e-9;
 
-/// Settles `cells` of `row`, each with its signed push angle in radians, again. Cells that a walk does not reach keep
-/// what they have.
+/// Settles `cells` of `row` again. Cells that a walk does not reach keep what they have.
 pub fn settle<'a>(
     sheet: &Sheet,
     row: usize,
     boundary: &RowBoundary,
-    cells: impl Iterator<Item = (&'a mut Cell, f64)>,
+    cells: impl Iterator<Item = &'a mut Cell>,
 ) {
     let level = sheet.level(row);
     let sign = sheet.side.sign();
@@ -39,7 +38,8 @@ pub fn settle<'a>(
             agrees.then_some(walked.nodes)
         })
         .collect();
-    for (cell, push) in cells {
+    for cell in cells {
+        let push = cell.push.angle;
         let within = boundary.spans().iter().position(|span| {
             let magnitude = sign * push;
             span.from - TIE <= magnitude && magnitude <= span.to + TIE

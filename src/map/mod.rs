@@ -3,6 +3,7 @@
 mod cells;
 mod doubt;
 mod panel;
+mod pushes;
 mod summary;
 
 pub use summary::Summary;
@@ -14,7 +15,8 @@ use crate::plan::Plan;
 use crate::scene::{Scene, Whisker};
 use crate::sheet::Sheet;
 use crate::store::Panel;
-use cells::Strip;
+use cells::{Row, Strip};
+use pushes::Pushes;
 use rayon::prelude::*;
 use summary::Stage;
 
@@ -31,13 +33,14 @@ pub trait Observer {
 }
 
 /// One side of one whisker.
-struct Face {
-    side: Side,
+struct Face<'a> {
+    pushes: &'a Pushes,
     sheet: Option<Sheet>,
 }
 
-impl Face {
-    fn new(scene: &Scene, method: Method, whisker: &Whisker, side: Side) -> Self {
+impl<'a> Face<'a> {
+    fn new(scene: &Scene, method: Method, whisker: &Whisker, pushes: &'a Pushes) -> Self {
+        let side = pushes.side;
         let rod = Rod::new(whisker, &scene.pole, side);
         let distances: Vec<f64> = scene
             .grid
@@ -46,7 +49,7 @@ impl Face {
             .map(|d| d / whisker.length_mm)
             .collect();
         let sheet = Sheet::new(method, &rod, side, &distances);
-        Self { side, sheet }
+        Self { pushes, sheet }
     }
 }
 
@@ -63,34 +66,31 @@ pub fn run(
 ) -> Result<Summary, crate::store::Error> {
     let mut engine = Fallback::new(engine);
     let mut summary = Summary::default();
-    let sides = &plan.sides;
-    let rows_at_once = engine.shots_at_once() / scene.grid.push_angle_deg.len();
+    let width = scene.grid.push_angle_deg.len();
+    let pushes = |side: &Side| Pushes::new(&scene.grid.push_angle_deg, *side);
+    let sides: Vec<Pushes> = plan.sides.iter().map(pushes).collect();
+    let rows_at_once = engine.shots_at_once() / width;
     let rows_at_once = rows_at_once.clamp(1, plan.rows_at_once);
     for (group, whiskers) in plan.whiskers.chunks(plan.panels_at_once).enumerate() {
         let faces: Vec<Face> = summary.time(Stage::Sheets, || {
-            let pairs: Vec<(&Whisker, Side)> = whiskers
+            let sides = &sides;
+            let pairs: Vec<(&Whisker, &Pushes)> = whiskers
                 .iter()
-                .flat_map(|whisker| sides.iter().map(move |side| (whisker, *side)))
+                .flat_map(|whisker| sides.iter().map(move |side| (whisker, side)))
                 .collect();
             pairs
                 .par_iter()
-                .map(|(whisker, side)| Face::new(scene, plan.method, whisker, *side))
+                .map(|(whisker, side)| Face::new(scene, plan.method, whisker, side))
                 .collect()
         });
         let mut panels: Vec<Panel> = whiskers.iter().map(|_| panel::blank(scene)).collect();
         for strip in Strip::all(faces.len(), scene.grid.distance_mm.len(), rows_at_once) {
-            let cells = cells::settle(
-                scene,
-                plan.method,
-                &faces,
-                &strip,
-                &mut engine,
-                &mut summary,
-            );
+            let settled = cells::settle(plan.method, &faces, &strip, &mut engine, &mut summary);
             summary.time(Stage::Regimes, || {
-                panel::fill(scene, whiskers, &faces, sides.len(), &cells, &mut panels);
+                panel::fill(width, whiskers, &faces, sides.len(), &settled, &mut panels);
             });
-            observer.settled(cells.len());
+            let columns = |row: &Row| faces[row.face].pushes.columns.len();
+            observer.settled(settled.rows.iter().map(columns).sum());
         }
         for (i, panel) in panels.iter().enumerate() {
             summary.count(panel);

@@ -1,6 +1,7 @@
 //! From settled cells to the panel of a whisker, in the units of the map.
 
-use super::{Face, cells::Cell, doubt};
+use super::cells::{Cell, Settled};
+use super::{Face, doubt};
 use crate::classify::{Regime, RowBoundary, Status};
 use crate::model::{Reader, Reading, Units};
 use crate::scene::{Scene, Whisker};
@@ -21,60 +22,64 @@ pub fn blank(scene: &Scene) -> Panel {
     }
 }
 
-/// Judges `cells` and writes them into `panels`; face `i` belongs to panel `i / faces_per_panel`.
+/// Judges the cells of `settled` and writes them into `panels`; face `i` belongs to panel `i / faces_per_panel`.
 pub fn fill(
-    scene: &Scene,
+    width: usize,
     whiskers: &[Whisker],
     faces: &[Face],
     faces_per_panel: usize,
-    cells: &[Cell],
+    settled: &Settled,
     panels: &mut [Panel],
 ) {
-    let width = scene.grid.push_angle_deg.len();
-    let answers: Vec<Answer> = cells
-        .par_chunk_by(|a, b| (a.face, a.row) == (b.face, b.row))
-        .flat_map_iter(|row| {
-            let face = &faces[row[0].face];
-            let units = Units::new(&whiskers[row[0].face / faces_per_panel]);
-            let reader = face.sheet.as_ref().map(|sheet| units.reader(&sheet.rod));
-            let boundary = face.sheet.as_ref().map(|sheet| {
-                RowBoundary::new(sheet.touches(row[0].row), &sheet.crossings[row[0].row])
-            });
-            let push = |cell: &Cell| scene.grid.push_angle_deg[cell.column];
-            let answer = |cell: &Cell| {
-                let sheet = face.sheet.as_ref();
-                answer(cell, push(cell), sheet, boundary.as_ref(), reader.as_ref())
-            };
-            let mut answers: Vec<Answer> = row.iter().map(answer).collect();
-            let in_doubt = |answer: &Answer| answer.regime == Regime::Unresolved;
-            if let (Some(sheet), Some(boundary)) = (&face.sheet, &boundary)
-                && answers.iter().any(in_doubt)
-            {
-                let mut again = row.to_vec();
-                let doubtful = again.iter_mut().zip(&answers);
-                let doubtful = doubtful.filter(|(_, answer)| in_doubt(answer));
-                let doubtful = doubtful.map(|(cell, _)| {
-                    let push = push(cell).to_radians();
-                    (cell, push)
-                });
-                doubt::settle(sheet, row[0].row, boundary, doubtful);
-                answers = again.iter().map(answer).collect();
-            }
-            answers
+    let answers: Vec<Vec<Answer>> = settled
+        .rows
+        .par_iter()
+        .map(|row| {
+            let face = &faces[row.face];
+            let units = Units::new(&whiskers[row.face / faces_per_panel]);
+            answers(&units, face, row.row, || settled.cells(face, row))
         })
         .collect();
-    for (cell, answer) in cells.iter().zip(&answers) {
-        let panel = &mut panels[cell.face / faces_per_panel];
-        let at = cell.row * width + cell.column;
-        panel.regime[at] = answer.regime.code();
-        panel.status[at] = answer.status.code();
-        panel.newton_steps[at] = cell.steps;
-        panel.residual[at] = answer.residual;
-        panel.margin_deg[at] = answer.margin_deg;
-        for (channel, value) in panel.state.iter_mut().zip(answer.state) {
-            channel[at] = value;
+    for (row, answers) in settled.rows.iter().zip(&answers) {
+        let panel = &mut panels[row.face / faces_per_panel];
+        for (push, answer) in faces[row.face].pushes.columns.iter().zip(answers) {
+            let at = row.row * width + push.column;
+            panel.regime[at] = answer.regime.code();
+            panel.status[at] = answer.status.code();
+            panel.newton_steps[at] = answer.steps;
+            panel.residual[at] = answer.residual;
+            panel.margin_deg[at] = answer.margin_deg;
+            for (channel, value) in panel.state.iter_mut().zip(answer.state) {
+                channel[at] = value;
+            }
         }
     }
+}
+
+/// The answers for the `cells` of `row`, which are settled once more where they are in doubt.
+fn answers<C: Iterator<Item = Cell>>(
+    units: &Units,
+    face: &Face,
+    row: usize,
+    cells: impl Fn() -> C,
+) -> Vec<Answer> {
+    let Some(sheet) = &face.sheet else {
+        let unresolved = |cell: Cell| Answer::new(Regime::Unresolved, Status::NoFold, cell.steps);
+        return cells().map(unresolved).collect();
+    };
+    let reader = units.reader(&sheet.rod);
+    let boundary = RowBoundary::new(sheet.touches(row), &sheet.crossings[row]);
+    let answer = |cell: &Cell| answer(cell, sheet, row, &boundary, &reader);
+    let answers: Vec<Answer> = cells().map(|cell| answer(&cell)).collect();
+    let in_doubt = |answer: &Answer| answer.regime == Regime::Unresolved;
+    if !answers.iter().any(in_doubt) {
+        return answers;
+    }
+    let mut again: Vec<Cell> = cells().collect();
+    let doubtful = again.iter_mut().zip(&answers);
+    let doubtful = doubtful.filter(|(_, answer)| in_doubt(answer));
+    doubt::settle(sheet, row, &boundary, doubtful.map(|(cell, _)| cell));
+    again.iter().map(answer).collect()
 }
 
 /// What a panel holds of one cell.
@@ -84,49 +89,53 @@ struct Answer {
     state: [f32; STATE_CHANNELS.len()],
     residual: f32,
     margin_deg: f32,
+    steps: u32,
+}
+
+impl Answer {
+    /// Without a state.
+    const fn new(regime: Regime, status: Status, steps: u32) -> Self {
+        Self {
+            regime,
+            status,
+            state: [f32::NAN; STATE_CHANNELS.len()],
+            residual: f32::NAN,
+            margin_deg: f32::NAN,
+            steps,
+        }
+    }
 }
 
 fn answer(
     cell: &Cell,
-    push_deg: f64,
-    sheet: Option<&Sheet>,
-    boundary: Option<&RowBoundary>,
-    reader: Option<&Reader>,
+    sheet: &Sheet,
+    row: usize,
+    boundary: &RowBoundary,
+    reader: &Reader,
 ) -> Answer {
-    let push = push_deg.to_radians();
-    let at_tip = sheet
-        .zip(cell.state)
-        .is_some_and(|(sheet, state)| state.is_at_tip(sheet));
-    let (regime, status) = match boundary {
-        // At the tip both verdicts are right; the boundary's is taken.
-        Some(boundary)
-            if at_tip && cell.status == Status::Solved && boundary.span(push.abs()).is_none() =>
-        {
-            boundary.judge(push.abs(), Status::BeyondTip)
-        }
-        Some(boundary) => boundary.judge(push.abs(), cell.status),
-        None => (Regime::Unresolved, Status::NoFold),
+    let push = cell.push.angle;
+    let span = boundary.span(push.abs());
+    let at_tip = cell.state.is_some_and(|state| state.is_at_tip(sheet));
+    // At the tip both verdicts are right; the boundary's is taken.
+    let status = if at_tip && cell.status == Status::Solved && span.is_none() {
+        Status::BeyondTip
+    } else {
+        cell.status
     };
-    let mut answer = Answer {
-        regime,
-        status,
-        state: [f32::NAN; STATE_CHANNELS.len()],
-        residual: f32::NAN,
-        margin_deg: f32::NAN,
+    let (regime, status) = boundary.judge(push.abs(), status);
+    let mut answer = Answer::new(regime, status, cell.steps);
+    let Some(state) = &cell.state else {
+        return answer;
     };
-    if let (Regime::Unresolved, Some(state)) = (regime, &cell.state) {
-        answer.residual = narrow(state.residual);
-    }
-    let in_contact = matches!(regime, Regime::Contact | Regime::Unreachable);
-    if let (true, Some(sheet), Some(reader), Some(state)) = (in_contact, sheet, reader, &cell.state)
-    {
-        let touch = sheet.rows[cell.row].touch;
+    if matches!(regime, Regime::Contact | Regime::Unreachable) {
+        let touch = sheet.rows[row].touch;
         answer.state = channels(&reader.read(state.tau, &state.full, touch, push)).map(narrow);
         answer.residual = narrow(state.residual);
-        let span = boundary.and_then(|boundary| boundary.span(push.abs()));
         answer.margin_deg = span.map_or(f32::NAN, |span| {
             narrow((span.to - push.abs()).max(0.0).to_degrees())
         });
+    } else if regime == Regime::Unresolved {
+        answer.residual = narrow(state.residual);
     }
     answer
 }

@@ -1,0 +1,46 @@
+//! The columns of a map on one side of the pole.
+
+use crate::model::Side;
+use glam::DVec2;
+
+/// One column.
+#[derive(Clone, Copy, Debug)]
+pub struct Push {
+    /// Index of the column.
+    pub column: usize,
+    /// Signed push angle, in radians.
+    pub angle: f64,
+    /// cos and sin of it.
+    pub turn: DVec2,
+}
+
+/// Columns with growing magnitudes of their push angles.
+#[derive(Clone, Debug)]
+pub struct Pushes {
+    /// The side that they push to.
+    pub side: Side,
+    /// The columns.
+    pub columns: Vec<Push>,
+}
+
+impl Pushes {
+    /// Those of `push_angle_deg`, which grow, that are on `side`.
+    pub fn new(push_angle_deg: &[f64], side: Side) -> Self {
+        let all = push_angle_deg.iter().enumerate();
+        let ours = all.filter(|(_, push)| Side::of_push(**push) == side);
+        let mut columns: Vec<Push> = ours
+            .map(|(column, push)| {
+                let angle = push.to_radians();
+                Push {
+                    column,
+                    angle,
+                    turn: DVec2::from_angle(angle),
+                }
+            })
+            .collect();
+        if side == Side::Cf {
+            columns.reverse();
+        }
+        Self { side, columns }
+    }
+}
