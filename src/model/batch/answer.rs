@@ -53,7 +53,7 @@ impl<T: Lanes> Derived<T> for First {
     #[inline(always)]
     fn answers(arrival: &Arrival<T>, pole: [T; 2], slopes: Slopes<T>) -> [Landing; WIDTH] {
         let numbers = Centre::new(arrival, pole).landing(&slopes);
-        spread(numbers).map(landing)
+        spread(numbers, landing)
     }
 }
 
@@ -109,7 +109,7 @@ impl<T: Lanes> Derived<T> for FirstAndEnergy {
             radius * radius,
             work(slopes.by_load),
         ];
-        spread(numbers).map(|numbers| {
+        spread(numbers, |numbers| {
             let [
                 a,
                 b,
@@ -181,7 +181,7 @@ impl<T: Lanes> Derived<T> for Second {
             load_load.re,
             load_load.im,
         ];
-        spread(numbers).map(|numbers| {
+        spread(numbers, |numbers| {
             let [a, b, c, d, e, g, second @ ..] = numbers;
             let pair = |i: usize| DVec2::new(second[i], second[i + 1]);
             Curved {

@@ -55,12 +55,21 @@ impl<T: Lanes> Centre<T> {
 
 /// The numbers of each lane.
 #[inline(always)]
-pub fn spread<T: Lanes, const N: usize>(numbers: [T; N]) -> [[f64; N]; WIDTH] {
-    let mut lanes = [[0.0; N]; WIDTH];
-    for (i, number) in numbers.into_iter().enumerate() {
-        for (lane, number) in lanes.iter_mut().zip(number.unpack()) {
-            lane[i] = number;
-        }
+pub fn spread<T: Lanes, A: Copy + Default, const N: usize>(
+    numbers: [T; N],
+    answer: impl Fn([f64; N]) -> A,
+) -> [A; WIDTH] {
+    let mut columns = [[0.0; WIDTH]; N];
+    for (column, number) in columns.iter_mut().zip(numbers) {
+        *column = number.unpack();
     }
-    lanes
+    let mut answers = [A::default(); WIDTH];
+    for (lane, slot) in answers.iter_mut().enumerate() {
+        let mut row = [0.0; N];
+        for (number, column) in row.iter_mut().zip(&columns) {
+            *number = column[lane];
+        }
+        *slot = answer(row);
+    }
+    answers
 }

@@ -14,7 +14,7 @@ fn arc(t: f64) -> f64 {
 }
 
 /// The step, relative to the chord's abscissa, after which it is known to rounding: its cube is left.
-const LAST_STEP: f64 = 1e-6;
+const LAST_STEP: f64 = 5e-6;
 
 /// A parabola in the frame of the base.
 #[derive(Clone, Copy, Debug)]
