@@ -7,7 +7,7 @@ use super::Rod;
 const SLENDER: f64 = 1.5;
 
 /// The effects that a scene calls for; each set has kernels of its own.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Effects {
     /// The stiffness falls toward the tip.
     pub taper: bool,

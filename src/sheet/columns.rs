@@ -12,7 +12,7 @@ use crate::model::batch::Method;
 use crate::model::{Rod, Side, arclength};
 
 /// Distance of the columns in `u`.
-const SPACING: f64 = 0.25;
+const SPACING: f64 = 0.34;
 
 /// Columns beyond the tip.
 pub const BEYOND_TIP: usize = 3;

@@ -1,7 +1,7 @@
 //! The fold edge: the first load at which the Jacobian becomes singular, contact by contact.
 
 use super::polynomial::{NODES, Polynomial, stencil};
-use crate::model::batch::{Launch, Method, land};
+use crate::model::batch::{Launch, Method, land_in_company};
 use crate::model::{Curved, First, Landing, Nystrom8, Rod, Second, Side, arclength};
 use glam::DVec2;
 
@@ -17,11 +17,13 @@ pub struct FoldPoint {
 }
 
 /// Samples of `q = |load| s^2` per round of the search; measured radii add their softness as a factor.
-const SAMPLES: usize = 24;
+const SAMPLES: usize = 16;
 
-/// Distance of the first samples. Without measured radii the sheet is at least 6.8 wide in `q`, and the second fold is
-/// farther from the first than this.
+/// Distance of the first samples: the second fold is farther from the first than this.
 const FIRST_STEP: f64 = 0.5;
+
+/// Where the search begins: without measured radii the sheet is at least 6.8 wide in `q`.
+const SURELY_STABLE: f64 = 4.5;
 
 /// How much wider a bracket is than the samples say, relatively: their signs come from the coarse resolution.
 const SLACK: f64 = 1e-2;
@@ -45,11 +47,20 @@ const ROUNDS: usize = 60;
 
 /// First folds of `rod` at the contacts `taus`; `None` where there is none up to [`LARGEST_Q`].
 pub fn first_folds(method: Method, rod: &Rod, side: Side, taus: &[f64]) -> Vec<Option<FoldPoint>> {
-    let mut folds = polish(method, rod, &bracket(method.coarsely(), rod, side, taus));
+    let begin = if rod.profile.is_none() {
+        SURELY_STABLE
+    } else {
+        0.0
+    };
+    let mut folds = polish(
+        method,
+        rod,
+        &bracket(method.coarsely(), rod, side, taus, begin),
+    );
     // With friction and a stiff tip the first fold can lie at `q` of 1000, where the coarse resolution is lost.
     let lost: Vec<usize> = (0..taus.len()).filter(|&i| folds[i].is_none()).collect();
     let again: Vec<f64> = lost.iter().map(|&i| taus[i]).collect();
-    let fine = polish(method, rod, &bracket(method, rod, side, &again));
+    let fine = polish(method, rod, &bracket(method, rod, side, &again, 0.0));
     for (i, fold) in lost.into_iter().zip(fine) {
         folds[i] = fold;
     }
@@ -65,8 +76,14 @@ struct Bracket {
     guess: f64,
 }
 
-/// Marches every contact out from first touch until `det` has changed its sign.
-fn bracket(method: Method, rod: &Rod, side: Side, taus: &[f64]) -> Vec<Option<Bracket>> {
+/// Marches every contact out from `q = begin` until `det` has changed its sign; `None` also where that is not stable.
+fn bracket(
+    method: Method,
+    rod: &Rod,
+    side: Side,
+    taus: &[f64],
+    begin: f64,
+) -> Vec<Option<Bracket>> {
     struct March {
         index: usize,
         scale: f64,
@@ -83,7 +100,7 @@ fn bracket(method: Method, rod: &Rod, side: Side, taus: &[f64]) -> Vec<Option<Br
     let (mut samples, mut step) = (Vec::new(), FIRST_STEP);
     while !open.is_empty() && samples.last().is_none_or(|q| *q < LARGEST_Q) {
         let from = samples.len();
-        let first = samples.last().map_or(0.0, |q| q + step);
+        let first = samples.last().map_or(begin, |q| q + step);
         samples.extend((0..SAMPLES).map(|i| step.mul_add(i as f64, first)));
         let launches: Vec<Launch> = open
             .iter()
@@ -94,11 +111,14 @@ fn bracket(method: Method, rod: &Rod, side: Side, taus: &[f64]) -> Vec<Option<Br
                 load,
             })
             .collect();
-        let landings = land::<Nystrom8, First>(method, &launches);
+        let landings = land_in_company::<Nystrom8, First>(method, &launches);
         let mut landings = landings.chunks(SAMPLES);
         open.retain_mut(|march| {
             let landed = landings.next().unwrap_or_default();
             march.dets.extend(landed.iter().map(Landing::det));
+            if march.dets.first().is_none_or(|det| *det <= 0.0) {
+                return false;
+            }
             // The sample before the first one of the batch is looked at again.
             let pairs = march.dets.windows(2).enumerate().skip(from.max(1) - 1);
             let changed = |(_, pair): &(usize, &[f64])| pair[0] * pair[1] <= 0.0;
@@ -157,7 +177,7 @@ fn polish(method: Method, rod: &Rod, brackets: &[Option<Bracket>]) -> Vec<Option
                 load: b.guess,
             })
             .collect();
-        let mut landings = land::<Nystrom8, Second>(method, &launches).into_iter();
+        let mut landings = land_in_company::<Nystrom8, Second>(method, &launches).into_iter();
         open.retain_mut(|(i, b)| {
             let Some(landing) = landings.next() else {
                 return false;

@@ -45,7 +45,7 @@ impl Level {
             let ends = [self.push[interval], self.push[interval + 1]];
             let piece = Piece::new(&curve[start], start, interval, ends);
             if interval + 1 == last {
-                piece.to_summit()
+                piece.up_to_summit()
             } else {
                 piece
             }
@@ -115,7 +115,7 @@ impl<'a> Piece<'a> {
         piece
     }
 
-    fn to_summit(mut self) -> Self {
+    fn up_to_summit(mut self) -> Self {
         let summit = summit(self.push, self.ends[1] - 1.0);
         self.ends[1] = summit;
         self.pushes[1] = self.push.at(summit).0;

@@ -1,6 +1,6 @@
 //! The lattice of trajectories over the stable sheet, and guesses from it.
 //!
-//! Nodes lie at the columns and at the loads `x = 0, 1/24, 2/24, ...` of the fold's load, two steps beyond the
+//! Nodes lie at the columns and at the loads `x = 0, 1/18, 2/18, ...` of the fold's load, two steps beyond the
 //! fold, so that interpolation is as good at the fold as elsewhere, and that good that most guesses are a last Newton
 //! step away from the state. A row of a map is a level curve of `D` on the lattice; along it the push angle grows from
 //! first touch to detachment.
@@ -10,11 +10,11 @@ use super::columns::Columns;
 use super::guess::Level;
 use super::polynomial::{NODES, Polynomial, stencil};
 use super::rows::Row;
-use crate::model::batch::{Launch, Method, land};
+use crate::model::batch::{Launch, Method, land_in_company};
 use crate::model::{First, Landing, Nystrom8, Rod, Side, nearest_turn};
 
 /// Steps in load from first touch to the fold.
-pub const LOADS: usize = 24;
+pub const LOADS: usize = 18;
 
 /// Nodes per column: two lie beyond the fold.
 const NODES_PER_COLUMN: usize = LOADS + 3;
@@ -79,7 +79,7 @@ impl Lattice {
                 })
             })
             .collect();
-        let landings = land::<Nystrom8, First>(method, &launches);
+        let landings = land_in_company::<Nystrom8, First>(method, &launches);
         let mut steps: Vec<Step> = Vec::with_capacity(NODES_PER_COLUMN);
         for landings in landings.chunks(columns.folds.len()) {
             let before = steps.last().map(|step| step.phis.as_slice());

@@ -1,7 +1,7 @@
-//! Interpolation by polynomials: of degree 7 in Newton's form on evenly spaced samples, else barycentric.
+//! Interpolation by polynomials: of degree 9 in Newton's form on evenly spaced samples, else barycentric.
 
 /// Nodes of a polynomial.
-pub const NODES: usize = 8;
+pub const NODES: usize = 10;
 
 /// The last step of Newton's method, in spacings: its square is left, and interpolation leaves more than that.
 pub const LAST_STEP: f64 = 1e-4;

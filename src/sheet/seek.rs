@@ -1,6 +1,6 @@
 //! Newton's method for the points in which a row leaves the sheet.
 
-use crate::model::batch::{Launch, Method, land};
+use crate::model::batch::{Launch, Method, land, land_in_company};
 use crate::model::{Curved, Nystrom8, Rod, Second, arclength, limited};
 use glam::DVec2;
 
@@ -54,17 +54,22 @@ const LAST_STEP: f64 = 3e-7;
 /// Newton's method for all `wanted` at once; the caller judges what is left in `miss` and `left`.
 #[must_use]
 pub fn seek(method: Method, wanted: &[Wanted]) -> Vec<Sought> {
-    newton(method, wanted, COARSE_ROUNDS)
+    newton(method, wanted, COARSE_ROUNDS, land::<Nystrom8, Second>)
 }
 
 /// The same at the method's own resolution throughout: for starts that are good already, and for whiskers that friction lets
 /// coil up, where the coarse one leads astray.
 #[must_use]
 pub fn seek_finely(method: Method, wanted: &[Wanted]) -> Vec<Sought> {
-    newton(method, wanted, 0)
+    newton(method, wanted, 0, land_in_company::<Nystrom8, Second>)
 }
 
-fn newton(method: Method, wanted: &[Wanted], coarse_rounds: usize) -> Vec<Sought> {
+fn newton(
+    method: Method,
+    wanted: &[Wanted],
+    coarse_rounds: usize,
+    land: fn(Method, &[Launch]) -> Vec<Curved>,
+) -> Vec<Sought> {
     let mut points: Vec<DVec2> = wanted.iter().map(|w| w.from).collect();
     let mut found: Vec<Option<Sought>> = vec![None; wanted.len()];
     let mut open: Vec<usize> = (0..wanted.len()).collect();
@@ -82,7 +87,7 @@ fn newton(method: Method, wanted: &[Wanted], coarse_rounds: usize) -> Vec<Sought
                 load: points[i].y,
             })
             .collect();
-        let mut landings = land::<Nystrom8, Second>(method, &launches).into_iter();
+        let mut landings = land(method, &launches).into_iter();
         open.retain(|&i| {
             let Some(here) = landings.next() else {
                 return false;

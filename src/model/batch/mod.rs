@@ -6,6 +6,7 @@
 
 mod answer;
 mod centre;
+mod company;
 mod flops;
 mod gather;
 mod kernel;
@@ -13,6 +14,7 @@ mod peak;
 mod unit;
 
 pub use answer::{First, FirstAndEnergy, Kind, Second};
+pub use company::land_in_company;
 pub use flops::flops;
 pub use unit::{Kernel, Unit};
 
@@ -112,17 +114,12 @@ fn part<M: Integrator, K: Kernel<M>>(
     let mut kinds: Vec<BlockKind> = Vec::new();
     let mut open: Vec<Open> = Vec::new();
     let mut next = [(0.0, 0); WIDTH];
-    for (i, Launch { rod, tau, .. }) in launches.iter().enumerate() {
+    for (i, launch) in launches.iter().enumerate() {
         if i % WIDTH == 0 {
             let lane = |lane: usize| &launches[(i + lane).min(launches.len() - 1)];
             next = unit.steps(method.resolution, &std::array::from_fn(lane));
         }
-        let (s, steps) = next[i % WIDTH];
-        let kind = BlockKind {
-            steps,
-            effects: method.effects.reaching(rod.taper * tau),
-            piece: rod.piece(s),
-        };
+        let kind = BlockKind::new(method, launch, next[i % WIDTH]);
         let place = kinds.iter().position(|other| *other == kind);
         let place = place.unwrap_or_else(|| {
             kinds.push(kind);
@@ -145,12 +142,29 @@ fn part<M: Integrator, K: Kernel<M>>(
 }
 
 /// What trajectories of a block have in common.
-#[derive(Clone, Copy, PartialEq)]
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct BlockKind {
-    steps: u32,
     effects: Effects,
     /// Of a profile.
     piece: usize,
+    steps: u32,
+}
+
+impl BlockKind {
+    /// That of a launch from arclength `s` that takes so many `steps`.
+    #[inline]
+    fn new(method: Method, Launch { rod, tau, .. }: &Launch, (s, steps): (f64, u32)) -> Self {
+        Self {
+            effects: method.effects.reaching(rod.taper * tau),
+            piece: rod.piece(s),
+            steps,
+        }
+    }
+
+    /// Whether the two can share a block that takes the steps of the one that needs more.
+    fn may_join(&self, other: &Self) -> bool {
+        (self.effects, self.piece) == (other.effects, other.piece)
+    }
 }
 
 /// A block that waits for more trajectories of its kind.
