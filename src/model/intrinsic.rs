@@ -83,6 +83,18 @@ const TANGENT: [[f64; TERMS]; TERMS] = {
     rows
 };
 
+/// `P_(N+1)/(N+1)!` at `sin(alpha)`; every other coefficient is 0.
+#[inline(always)]
+fn term<T: Real, const N: usize>(sin: T, square: T) -> T {
+    let mut sum = T::of(TANGENT[N][N]);
+    let mut power = N;
+    while power > 1 {
+        power -= 2;
+        sum = sum.mul_add(square, T::of(TANGENT[N][power]));
+    }
+    if N % 2 == 1 { sum * sin } else { sum }
+}
+
 /// The Taylor series of the tangent along a parabola.
 pub struct Series<T> {
     /// The tangent where it starts.
@@ -107,18 +119,10 @@ impl<T: Real> Intrinsic<T> for Bent<T> {
     fn course(self, from: &Section<T>, tangent: [T; 2]) -> Series<T> {
         let [cos, sin] = tangent;
         let square = sin * sin;
-        let mut terms = [T::of(1.0); TERMS];
-        for (n, (term, row)) in terms.iter_mut().zip(TANGENT).enumerate() {
-            // Every other coefficient is 0.
-            let lowest = n % 2;
-            let mut power = n;
-            let mut sum = T::of(row[power]);
-            while power > lowest {
-                power -= 2;
-                sum = sum.mul_add(square, T::of(row[power]));
-            }
-            *term = if lowest == 1 { sum * sin } else { sum };
+        macro_rules! terms {
+            ($($n:literal)*) => { [$(term::<T, $n>(sin, square)),*] };
         }
+        let terms = terms!(0 1 2 3 4 5 6 7 8 9 10 11);
         Series {
             tangent,
             rate: -from.rho * self.twice_bend * cos * cos,

@@ -64,6 +64,10 @@ impl Resolution {
     /// The same where the arclength `s` of the contact is known already.
     #[inline(always)]
     pub(super) fn steps_from(&self, rod: &Rod, tau: f64, load: f64, s: f64) -> u32 {
+        let bend = rod.sharpest_bend();
+        if rod.profile.is_none() && rod.gradient == 0.0 {
+            return self.steps_on_even(rod.taper, bend, [tau, load, s]);
+        }
         let mut bending = load.abs() * s * s;
         if rod.profile.is_some() {
             bending *= rod.softness(tau);
@@ -71,15 +75,9 @@ impl Resolution {
         if rod.gradient < 0.0 {
             bending /= rod.modulus(s);
         }
-        let modulus = if rod.gradient == 0.0 {
-            0.0
-        } else {
-            rod.gradient.abs() / (1.0 + rod.gradient).min(1.0)
-        };
-        let bend = rod.sharpest_bend();
-        let fastest = rod.taper.max(1.6 * bend).max(0.5 * modulus);
-        let [taper, bend] = [rod.taper * tau, bend * s].map(|x| x * x.min(2.0));
-        let weight = 0.28 + 0.195 * bending.sqrt() + 0.18 * bend;
+        let modulus = rod.gradient.abs() / (1.0 + rod.gradient).min(1.0);
+        let fastest = fastest(rod.taper, bend).max(0.5 * modulus);
+        let weight = weight(bending, bend * s);
         let (weight, needed) = match rod.profile {
             Some(profile) => {
                 let [change, length] = profile.changes[profile.piece(s)];
@@ -87,10 +85,56 @@ impl Resolution {
                 let weight = (share * (weight + 0.17)).max(FEWEST);
                 (weight, change.max(fastest * length))
             }
-            None => (weight + 0.17 * taper, fastest * tau),
+            None => (weight + weight_of_taper(rod.taper * tau), fastest * tau),
         };
-        rounded((f64::from(self.least) * weight).max(needed / self.longest))
+        self.rounded(weight, needed)
     }
+
+    /// Those on a rod of one modulus without a profile, from `tau`, load and arclength: without a branch, so that a compiler
+    /// can work on several at once.
+    #[inline(always)]
+    pub(super) fn steps_on_even(&self, taper: f64, bend: f64, [tau, load, s]: [f64; 3]) -> u32 {
+        let weight = weight(load.abs() * s * s, bend * s) + weight_of_taper(taper * tau);
+        self.rounded(weight, fastest(taper, bend) * tau)
+    }
+
+    /// At least as many steps as both ask for, up to a number that many trajectories share: three significant bits.
+    #[allow(
+        clippy::cast_possible_truncation,
+        clippy::manual_clamp,
+        reason = "the last bits of the sum are the number; NaN becomes the smallest, which `clamp` would let through"
+    )]
+    #[inline(always)]
+    fn rounded(&self, weight: f64, needed: f64) -> u32 {
+        /// Added to a number below, it leaves no bits for fractions.
+        const WHOLE: f64 = (1_u64 << 52) as f64;
+        /// The bits of a mantissa after the first two.
+        const REST: u64 = (1 << 50) - 1;
+        let steps = (f64::from(self.least) * weight).max(needed / self.longest);
+        let steps = steps.max(1.0).min(MOST);
+        let nearest = (steps + WHOLE) - WHOLE;
+        let whole = nearest + if nearest < steps { 1.0 } else { 0.0 };
+        let rounded = f64::from_bits((whole.to_bits() + REST) & !REST);
+        (rounded + WHOLE).to_bits() as u32
+    }
+}
+
+/// Of the load and of the rest shape, which turns by `bend` between base and contact.
+#[inline(always)]
+fn weight(bending: f64, bend: f64) -> f64 {
+    0.28 + 0.195 * bending.sqrt() + 0.18 * bend * bend.min(2.0)
+}
+
+/// Of the fall of the radius.
+#[inline(always)]
+fn weight_of_taper(fall: f64) -> f64 {
+    0.17 * fall * fall.min(2.0)
+}
+
+/// What limits the length of a step, per `tau`.
+#[inline(always)]
+fn fastest(taper: f64, bend: f64) -> f64 {
+    taper.max(1.6 * bend)
 }
 
 /// Under more than a small load the bend gathers in the softest piece.
@@ -99,22 +143,6 @@ const CONCENTRATED: f64 = 2.0;
 /// A piece of a profile may be much shorter than what the rod needs as a step; it takes this part of `least`, so that twice as
 /// many steps are twice as many.
 const FEWEST: f64 = 0.15;
-
-/// At least so many steps, up to a number that many trajectories share: two significant bits and some.
-#[allow(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    clippy::manual_clamp,
-    reason = "a small positive number; NaN becomes the smallest, which `clamp` would let through"
-)]
-#[inline(always)]
-fn rounded(steps: f64) -> u32 {
-    let steps = steps.max(1.0).min(MOST);
-    // `ceil` is a call where the target has no instruction for it.
-    let steps = steps as u32 + u32::from(steps > f64::from(steps as u32));
-    let unit = (steps.next_power_of_two() / 8).max(1);
-    (steps + unit - 1) & !(unit - 1)
-}
 
 /// Bounds the work on a trajectory that a lost Newton step has sent far away.
 const MOST: f64 = 8192.0;

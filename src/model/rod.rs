@@ -120,6 +120,7 @@ impl Rod {
 
     /// Index of the piece of its profile on which the arclength `s` lies; 0 without one.
     #[must_use]
+    #[inline]
     pub fn piece(&self, s: f64) -> usize {
         self.profile.map_or(0, |profile| profile.piece(s))
     }

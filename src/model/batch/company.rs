@@ -19,7 +19,7 @@ pub fn land_in_company<M: Integrator, K: Kernel<M>>(
     let mut members: Vec<(BlockKind, usize)> = Vec::with_capacity(launches.len());
     for launches in launches.chunks(WIDTH) {
         let lane = |lane: usize| &launches[lane.min(launches.len() - 1)];
-        let steps = unit.steps(method.resolution, &std::array::from_fn(lane));
+        let steps = unit.steps(method, &std::array::from_fn(lane));
         for (launch, steps) in launches.iter().zip(steps) {
             members.push((BlockKind::new(method, launch, steps), members.len()));
         }

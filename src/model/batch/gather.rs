@@ -11,12 +11,18 @@ use crate::model::simd::{Lanes, WIDTH};
 
 /// What `number` tells of each launch. (`map` of an array is not inlined into functions for a SIMD unit.)
 #[inline(always)]
-pub fn lanes<T: Lanes>(launches: &Block, number: impl Fn(&Launch) -> f64) -> T {
-    let mut lanes = [0.0; WIDTH];
-    for (lane, launch) in lanes.iter_mut().zip(launches) {
+pub fn numbers(launches: &Block, number: impl Fn(&Launch) -> f64) -> [f64; WIDTH] {
+    let mut numbers = [0.0; WIDTH];
+    for (lane, launch) in numbers.iter_mut().zip(launches) {
         *lane = number(launch);
     }
-    T::pack(lanes)
+    numbers
+}
+
+/// The same in lanes.
+#[inline(always)]
+pub fn lanes<T: Lanes>(launches: &Block, number: impl Fn(&Launch) -> f64) -> T {
+    T::pack(numbers(launches, number))
 }
 
 /// A place on each rod of a block.

@@ -1,8 +1,9 @@
 //! One specialised kernel per set of effects: no branch on an effect is left inside.
 
-use super::Launch;
 use super::answer::Derived;
-use super::gather::{Gather, GatherMaterial, Place, lanes};
+use super::gather::{Gather, GatherMaterial, Place, lanes, numbers};
+use super::{Launch, Method};
+use crate::model::Effects;
 use crate::model::contact::{Contact, radius_and_arclength};
 use crate::model::integrator::{Integrator, Scales, integrate};
 use crate::model::intrinsic::{Bent, Spiral, Straight};
@@ -10,7 +11,6 @@ use crate::model::material::{Even, Graded, Measured};
 use crate::model::order::{Arrival, Order};
 use crate::model::rhs::{RodSystem, Section};
 use crate::model::simd::{Lanes, WIDTH};
-use crate::model::{Effects, Resolution};
 
 /// The launches of one block.
 pub type Block<'a> = [&'a Launch; WIDTH];
@@ -50,18 +50,30 @@ where
 
 /// Arclengths of the contacts, and the steps that the trajectories take.
 #[inline(always)]
-pub fn steps<T: Lanes>(resolution: Resolution, launches: &Block) -> [(f64, u32); WIDTH] {
-    let taper: T = lanes(launches, |launch| launch.rod.taper);
-    let [_, s] = radius_and_arclength(taper, lanes(launches, |launch| launch.tau));
+pub fn steps<T: Lanes>(method: Method, launches: &Block) -> [(f64, u32); WIDTH] {
+    let taper = numbers(launches, |launch| launch.rod.taper);
+    let tau = numbers(launches, |launch| launch.tau);
+    let [_, s] = radius_and_arclength(T::pack(taper), T::pack(tau));
     let s = s.unpack();
-    let mut steps = [(0.0, 0); WIDTH];
-    for ((lane, launch), s) in steps.iter_mut().zip(launches).zip(s) {
-        *lane = (
-            s,
-            resolution.steps_from(&launch.rod, launch.tau, launch.load, s),
-        );
+    let mut steps = [0; WIDTH];
+    if method.effects.profile || method.effects.gradient {
+        for (lane, launch) in launches.iter().enumerate() {
+            let Launch { rod, tau, load } = launch;
+            steps[lane] = method.resolution.steps_from(rod, *tau, *load, s[lane]);
+        }
+    } else {
+        let bend = numbers(launches, |launch| launch.rod.sharpest_bend());
+        let load = numbers(launches, |launch| launch.load);
+        for lane in 0..WIDTH {
+            let at = [tau[lane], load[lane], s[lane]];
+            steps[lane] = method.resolution.steps_on_even(taper[lane], bend[lane], at);
+        }
     }
-    steps
+    let mut pairs = [(0.0, 0); WIDTH];
+    for (lane, pair) in pairs.iter_mut().enumerate() {
+        *pair = (s[lane], steps[lane]);
+    }
+    pairs
 }
 
 /// Integrates `WIDTH` trajectories in step.

@@ -106,27 +106,32 @@ fn part<M: Integrator, K: Kernel<M>>(
     let mut compute = |kind: BlockKind, members: &[usize]| {
         let lanes = std::array::from_fn(|lane| &launches[members[lane.min(members.len() - 1)]]);
         let block = K::block(unit, kind.effects, kind.steps, &lanes, members.len());
-        for (&i, answer) in members.iter().zip(block) {
-            answers[i] = answer;
+        for (&i, answer) in members.iter().zip(&block) {
+            answers[i] = *answer;
         }
     };
     // Lanes step together, so only trajectories of one kind share a block: company changes nothing.
     let mut kinds: Vec<BlockKind> = Vec::new();
     let mut open: Vec<Open> = Vec::new();
+    // Where the kind with so many steps is, as far as the rest of them agree.
+    let mut likely = [0; 64];
     let mut next = [(0.0, 0); WIDTH];
     for (i, launch) in launches.iter().enumerate() {
         if i % WIDTH == 0 {
             let lane = |lane: usize| &launches[(i + lane).min(launches.len() - 1)];
-            next = unit.steps(method.resolution, &std::array::from_fn(lane));
+            next = unit.steps(method, &std::array::from_fn(lane));
         }
         let kind = BlockKind::new(method, launch, next[i % WIDTH]);
-        let place = kinds.iter().position(|other| *other == kind);
-        let place = place.unwrap_or_else(|| {
-            kinds.push(kind);
-            open.push(Open::default());
-            open.len() - 1
-        });
-        let block = &mut open[place];
+        let likely = &mut likely[kind.steps as usize % 64];
+        if kinds.get(*likely) != Some(&kind) {
+            let place = kinds.iter().position(|other| *other == kind);
+            *likely = place.unwrap_or_else(|| {
+                kinds.push(kind);
+                open.push(Open::default());
+                open.len() - 1
+            });
+        }
+        let block = &mut open[*likely];
         block.members[block.count] = i;
         block.count += 1;
         if block.count == WIDTH {

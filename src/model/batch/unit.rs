@@ -2,6 +2,7 @@
 //!
 //! Kernels are compiled here, once, and not where they are called: there are many of them, and each is long.
 
+use super::Method;
 use super::answer::{Derived, First, FirstAndEnergy, Kind, Second};
 use super::kernel::{Block, by_effects, steps};
 use super::peak::multiply_and_add;
@@ -11,7 +12,7 @@ use crate::model::simd::plain::Plain as Baseline;
 #[cfg(target_arch = "x86_64")]
 use crate::model::simd::x86::{Avx2, Avx512, Sse2 as Baseline};
 use crate::model::simd::{Lanes, WIDTH};
-use crate::model::{Effects, Nystrom8, Resolution, Rk4};
+use crate::model::{Effects, Nystrom8, Rk4};
 use std::fmt;
 
 /// A SIMD unit that this processor has.
@@ -76,21 +77,21 @@ impl Unit {
         unsafe_code,
         reason = "a function compiled for a SIMD unit may be called where `detect` has found that unit"
     )]
-    pub(super) fn steps(self, resolution: Resolution, launches: &Block) -> [(f64, u32); WIDTH] {
+    pub(super) fn steps(self, method: Method, launches: &Block) -> [(f64, u32); WIDTH] {
         match self.0 {
             #[cfg(target_arch = "x86_64")]
             Instructions::Avx512 => parts(Avx512::LANES, launches, WIDTH, |part| {
                 // SAFETY: only `detect` makes such a unit, and it has seen every feature that the function enables.
-                unsafe { steps_avx512(resolution, part) }
+                unsafe { steps_avx512(method, part) }
             }),
             #[cfg(target_arch = "x86_64")]
             Instructions::Avx2 => parts(Avx2::LANES, launches, WIDTH, |part| {
                 // SAFETY: as above.
-                unsafe { steps_avx2(resolution, part) }
+                unsafe { steps_avx2(method, part) }
             }),
             Instructions::Baseline | Instructions::Scalar => {
                 parts(Baseline::LANES, launches, WIDTH, |part| {
-                    steps::<Baseline>(resolution, part)
+                    steps::<Baseline>(method, part)
                 })
             }
         }
@@ -197,14 +198,14 @@ kernel!(Rk4, First);
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx512f,avx512dq,avx512vl,fma")]
-fn steps_avx512(resolution: Resolution, launches: &Block) -> [(f64, u32); WIDTH] {
-    steps::<Avx512>(resolution, launches)
+fn steps_avx512(method: Method, launches: &Block) -> [(f64, u32); WIDTH] {
+    steps::<Avx512>(method, launches)
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,fma")]
-fn steps_avx2(resolution: Resolution, launches: &Block) -> [(f64, u32); WIDTH] {
-    steps::<Avx2>(resolution, launches)
+fn steps_avx2(method: Method, launches: &Block) -> [(f64, u32); WIDTH] {
+    steps::<Avx2>(method, launches)
 }
 
 #[cfg(target_arch = "x86_64")]

@@ -98,8 +98,13 @@ impl Parabola {
     }
 
     /// How far along the parabola's axis the chord from the base is `chord`: the root of
-    /// `x^2 (1 + (A x + t0)^2) = chord^2`, whose left side grows with `x` (the scene made sure), by Halley's method.
+    /// `x^2 (1 + (A x + t0)^2) = chord^2`, whose left side grows with `x` (the scene made sure): of a quadratic equation with
+    /// the vertex at the base, else by Halley's method.
     pub fn x_of_chord(&self, chord: f64) -> f64 {
+        if self.slope == 0.0 {
+            let rise = 2.0 * self.bend * chord;
+            return chord * (2.0 / (1.0 + (1.0 + rise * rise).sqrt())).sqrt();
+        }
         let (mut low, mut high) = (0.0, chord);
         let most = self.bend * chord + self.slope;
         let mut x = chord / (1.0 + most * most).sqrt();
