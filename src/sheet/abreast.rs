@@ -114,3 +114,57 @@ fn value_and_slope(differences: &[Lanes; NODES], places: &Lanes) -> (Lanes, Lane
     }
     (values, slopes)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Polynomials that rise from 0 at 0 to 3 at 9, level at their end but for one.
+    fn polynomials(count: usize) -> Vec<Polynomial> {
+        let through = |i: usize| {
+            let power = 1.0 + (0.618 * i as f64).fract() * 6.0;
+            let values = (0..NODES).map(|t| 1.0 - (1.0 - t as f64 / 9.0).powf(power));
+            Polynomial::through(values.map(|value| 3.0 * value))
+        };
+        (0..count).map(through).collect()
+    }
+
+    #[test]
+    fn what_is_found_together_is_found_alone() {
+        for count in [1, 7, 8, 9, 50] {
+            let polynomials = polynomials(count);
+            let parts = [0.0, 0.1, 0.5, 0.999, 1.0].into_iter().cycle();
+            let search = |(polynomial, part): (_, f64)| Search {
+                polynomial,
+                target: 3.0 * part,
+                near: 4.5,
+                between: [0.0, 9.0],
+            };
+            let searches: Vec<Search> = polynomials.iter().zip(parts).map(search).collect();
+            let found = solve(&searches);
+            let pairs = searches.iter().zip(&found);
+            let there = values(pairs.map(|(search, t)| (search.polynomial, *t)));
+            assert_eq!([found.len(), there.len()], [count; 2]);
+            for (i, search) in searches.iter().enumerate() {
+                assert!((0.0..=9.0).contains(&found[i]), "{i}: {}", found[i]);
+                assert!((there[i] - search.target).abs() < 1e-6, "{i}: {}", found[i]);
+                assert_eq!(there[i], search.polynomial.at(found[i]).0, "{i}");
+            }
+        }
+    }
+
+    /// Of a polynomial through nine values, or three, too: every run of neighbours goes through them.
+    #[test]
+    fn runs_go_through_their_values() {
+        for count in [3, NODES, NODES + 5] {
+            let samples: Vec<f64> = (0..count).map(|i| (0.3 * i as f64).sin()).collect();
+            let runs = Polynomial::through_each(&samples);
+            assert_eq!(runs.len(), count.saturating_sub(NODES) + 1);
+            for (start, run) in runs.iter().enumerate() {
+                for (t, sample) in samples[start..].iter().take(NODES).enumerate() {
+                    assert!((run.at(t as f64).0 - sample).abs() < 1e-14, "{start} {t}");
+                }
+            }
+        }
+    }
+}

@@ -54,8 +54,8 @@ fn u_of(rod: &Rod, tau: f64) -> f64 {
     tau.ln() + tau - softening
 }
 
-/// Inverse of [`u_of`] by Newton's method, bisecting where a step would leave the bracket.
-fn tau_of(rod: &Rod, u: f64) -> f64 {
+/// Inverse of [`u_of`] by Newton's method from `near`, bisecting where a step would leave the bracket.
+fn tau_of(rod: &Rod, u: f64, near: f64) -> f64 {
     let softening = (-rod.gradient).max(0.0);
     let end = if softening > rod.taper {
         rod.tau(1.0 / softening)
@@ -64,7 +64,7 @@ fn tau_of(rod: &Rod, u: f64) -> f64 {
     };
     let most = if u < 1.0 { u.exp() } else { u };
     let (mut low, mut high) = (0.0, most.min(end));
-    let mut tau = most.min(0.5 * end);
+    let mut tau = if near < high { near } else { 0.5 * high };
     for _ in 0..100 {
         let miss = u_of(rod, tau) - u;
         if miss > 0.0 {
@@ -101,10 +101,15 @@ impl Columns {
     /// ones the pole is nearer than that at first touch and at the fold. `None` where a fold is missing.
     pub fn new(method: Method, rod: &Rod, side: Side, nearest: &Row) -> Option<Self> {
         let u_tip = u_of(rod, rod.tau_tip());
-        let tau = |column: usize| match column.checked_sub(BEYOND_TIP) {
-            Some(0) => rod.tau_tip(),
-            Some(below) => tau_of(rod, u_tip - SPACING * below as f64),
-            None => tau_of(rod, u_tip + SPACING * (BEYOND_TIP - column) as f64),
+        let tip = rod.tau_tip();
+        let mut near = tip;
+        let mut tau = |column: usize| {
+            near = match column.checked_sub(BEYOND_TIP) {
+                Some(0) => tip,
+                Some(below) => tau_of(rod, u_tip - SPACING * below as f64, near),
+                None => tau_of(rod, u_tip + SPACING * (BEYOND_TIP - column) as f64, near),
+            };
+            near
         };
         let touch = rod.tau(nearest.contact.min(1.0));
         // As many as there are at least, with the one at the tip.
@@ -118,7 +123,7 @@ impl Columns {
         let mut folds = Vec::new();
         loop {
             let from = folds.len();
-            let taus: Vec<f64> = (from..from + batch).map(tau).collect();
+            let taus: Vec<f64> = (from..from + batch).map(&mut tau).collect();
             let found: Option<Vec<FoldPoint>> =
                 first_folds(method, rod, side, &taus).into_iter().collect();
             folds.extend(found?);

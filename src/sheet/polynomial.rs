@@ -16,19 +16,8 @@ pub struct Polynomial {
 impl Polynomial {
     /// Through `values[0]` at 0, `values[1]` at 1, ...; at most [`NODES`] of them count.
     pub fn through(values: impl IntoIterator<Item = f64>) -> Self {
-        let mut differences = [0.0; NODES];
-        let mut n = 0;
-        for (slot, value) in differences.iter_mut().zip(values) {
-            *slot = value;
-            n += 1;
-        }
-        for level in 1..n {
-            let part = 1.0 / level as f64;
-            for i in (level..n).rev() {
-                differences[i] = (differences[i] - differences[i - 1]) * part;
-            }
-        }
-        Self { differences }
+        let values: Vec<f64> = values.into_iter().take(NODES).collect();
+        Self::through_each(&values)[0]
     }
 
     /// Through each [`NODES`] neighbours of `values`, or through all where there are fewer: the first one through `values[0]`

@@ -4,7 +4,7 @@
 //! steps of its most demanding member, so that an answer depends, by less than its error, on the whole batch; not on
 //! the number of threads.
 
-use super::{BlockKind, FEWEST_TOGETHER, Kernel, Launch, Method, Unit};
+use super::{BlockKind, FEWEST_TOGETHER, Kernel, Kinds, Launch, Method, Unit};
 use crate::model::Integrator;
 use crate::model::simd::WIDTH;
 use rayon::prelude::*;
@@ -16,15 +16,23 @@ pub fn land_in_company<M: Integrator, K: Kernel<M>>(
     launches: &[Launch],
 ) -> Vec<K::Answer> {
     let unit = Unit::detect();
-    let mut members: Vec<(BlockKind, usize)> = Vec::with_capacity(launches.len());
+    let mut kinds = Kinds::default();
+    let mut places = Vec::with_capacity(launches.len());
     for launches in launches.chunks(WIDTH) {
         let lane = |lane: usize| &launches[lane.min(launches.len() - 1)];
         let steps = unit.steps(method, &std::array::from_fn(lane));
-        for (launch, steps) in launches.iter().zip(steps) {
-            members.push((BlockKind::new(method, launch, steps), members.len()));
-        }
+        let pairs = launches.iter().zip(steps);
+        places.extend(
+            pairs.map(|(launch, steps)| kinds.place(BlockKind::new(method, launch, steps))),
+        );
     }
-    members.sort_unstable();
+    let mut kinds: Vec<(usize, BlockKind)> = kinds.all.into_iter().enumerate().collect();
+    kinds.sort_unstable_by_key(|(_, kind)| *kind);
+    let mut members = Vec::with_capacity(launches.len());
+    for (place, kind) in kinds {
+        let of_kind = (0..launches.len()).filter(|&i| places[i] == place);
+        members.extend(of_kind.map(|i| (kind, i)));
+    }
     let blocks: Vec<&[(BlockKind, usize)]> = members
         .chunk_by(|(a, _), (b, _)| a.may_join(b))
         .flat_map(|group| group.chunks(WIDTH))

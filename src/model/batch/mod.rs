@@ -111,10 +111,8 @@ fn part<M: Integrator, K: Kernel<M>>(
         }
     };
     // Lanes step together, so only trajectories of one kind share a block: company changes nothing.
-    let mut kinds: Vec<BlockKind> = Vec::new();
+    let mut kinds = Kinds::default();
     let mut open: Vec<Open> = Vec::new();
-    // Where the kind with so many steps is, as far as the rest of them agree.
-    let mut likely = [0; 64];
     let mut next = [(0.0, 0); WIDTH];
     for (i, launch) in launches.iter().enumerate() {
         if i % WIDTH == 0 {
@@ -122,16 +120,11 @@ fn part<M: Integrator, K: Kernel<M>>(
             next = unit.steps(method, &std::array::from_fn(lane));
         }
         let kind = BlockKind::new(method, launch, next[i % WIDTH]);
-        let likely = &mut likely[kind.steps as usize % 64];
-        if kinds.get(*likely) != Some(&kind) {
-            let place = kinds.iter().position(|other| *other == kind);
-            *likely = place.unwrap_or_else(|| {
-                kinds.push(kind);
-                open.push(Open::default());
-                open.len() - 1
-            });
+        let place = kinds.place(kind);
+        if place == open.len() {
+            open.push(Open::default());
         }
-        let block = &mut open[*likely];
+        let block = &mut open[place];
         block.members[block.count] = i;
         block.count += 1;
         if block.count == WIDTH {
@@ -139,7 +132,7 @@ fn part<M: Integrator, K: Kernel<M>>(
             block.count = 0;
         }
     }
-    for (kind, block) in kinds.iter().zip(&open) {
+    for (kind, block) in kinds.all.iter().zip(&open) {
         if block.count > 0 {
             compute(*kind, &block.members[..block.count]);
         }
@@ -169,6 +162,38 @@ impl BlockKind {
     /// Whether the two can share a block that takes the steps of the one that needs more.
     fn may_join(&self, other: &Self) -> bool {
         (self.effects, self.piece) == (other.effects, other.piece)
+    }
+}
+
+/// The kinds of a batch.
+struct Kinds {
+    all: Vec<BlockKind>,
+    /// Where the last one with so many steps is, give or take multiples of 64.
+    likely: [usize; 64],
+}
+
+impl Default for Kinds {
+    fn default() -> Self {
+        Self {
+            all: Vec::new(),
+            likely: [0; 64],
+        }
+    }
+}
+
+impl Kinds {
+    /// Where `kind` is among all; it is the last one if it is new.
+    #[inline]
+    fn place(&mut self, kind: BlockKind) -> usize {
+        let likely = &mut self.likely[kind.steps as usize % 64];
+        if self.all.get(*likely) != Some(&kind) {
+            let place = self.all.iter().position(|other| *other == kind);
+            *likely = place.unwrap_or_else(|| {
+                self.all.push(kind);
+                self.all.len() - 1
+            });
+        }
+        *likely
     }
 }
 

@@ -1,0 +1,100 @@
+//! Batches of trajectories that want different numbers of steps: alone, or in company.
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use whiskmap::model::batch::{Launch, Method, land, land_in_company};
+use whiskmap::model::{Effects, First, Landing, Nystrom8, Resolution, Rod, Second};
+
+/// Contacts from next to the base to the tip, from no load to that of the fold, on slender and blunt whiskers.
+fn launches(count: usize) -> Vec<Launch> {
+    let launch = |i: usize| {
+        let [along, load, shape] = [0.618, 0.755, 0.570].map(|step| (i as f64 * step).fract());
+        let rod = Rod {
+            taper: 0.97 * shape,
+            bend: if i.is_multiple_of(2) { 0.4 } else { 0.0 },
+            pole: 0.0125,
+            ..Rod::default()
+        };
+        let s = 0.05 + 0.94 * along;
+        Launch {
+            rod,
+            tau: rod.tau(s),
+            load: 9.0 * load / (s * s),
+        }
+    };
+    (0..count).map(launch).collect()
+}
+
+fn method(least: u32, launches: &[Launch]) -> Method {
+    Method {
+        effects: Effects::of(launches.iter().map(|launch| &launch.rod)),
+        resolution: Resolution::of(least),
+    }
+}
+
+/// Who shares a block takes at least the steps that it would take alone: nobody's answer is worse than the worst
+/// alone, but for rounding (4.7e-14 in 20 steps).
+#[test]
+fn company_does_no_harm() {
+    for count in [1, 15, 16, 17, 300, 3000] {
+        let launches = launches(count);
+        let exact = land::<Nystrom8, First>(method(128, &launches), &launches);
+        let worst = |found: &[Landing]| {
+            let pairs = found.iter().zip(&exact);
+            pairs.fold(0.0, |worst, (a, b)| {
+                f64::max(worst, a.pole.distance(b.pole))
+            })
+        };
+        for least in [5, 20] {
+            let method = method(least, &launches);
+            let alone = worst(&land::<Nystrom8, First>(method, &launches));
+            let company = worst(&land_in_company::<Nystrom8, First>(method, &launches));
+            assert!(
+                company <= alone.max(1e-13),
+                "{count} in {least}: {company:.1e}, alone {alone:.1e}"
+            );
+        }
+    }
+}
+
+/// One number of steps for all: then company is no different at all.
+#[test]
+fn equals_in_company_are_as_if_alone() {
+    let one = launches(7)[6];
+    let launches = vec![one; 37];
+    let method = method(20, &launches);
+    let alone = land::<Nystrom8, Second>(method, &launches);
+    assert_eq!(
+        land_in_company::<Nystrom8, Second>(method, &launches),
+        alone
+    );
+}
+
+/// Batches of more than a thread's share, whose blocks are spread over the threads.
+#[test]
+fn threads_change_nothing() {
+    let launches = launches(5000);
+    let method = method(7, &launches);
+    let [one, three] = [1, 3].map(|threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+        let pool = pool.build().unwrap();
+        pool.install(|| land_in_company::<Nystrom8, First>(method, &launches))
+    });
+    assert_eq!(one, three);
+}
+
+/// A launch that cannot be computed has company, too.
+#[test]
+fn no_number_hurts_only_itself() {
+    let sound = launches(100);
+    let method = method(7, &sound);
+    let expected = land_in_company::<Nystrom8, First>(method, &sound);
+    let mut spoilt = sound.clone();
+    spoilt[40].tau = f64::NAN;
+    spoilt[41].load = f64::INFINITY;
+    let found = land_in_company::<Nystrom8, First>(method, &spoilt);
+    for (i, (a, b)) in found.iter().zip(&expected).enumerate() {
+        let is_spoilt = [40, 41].contains(&i);
+        assert_eq!(a.pole.is_finite(), !is_spoilt, "{i}: {a:?}");
+        assert!(is_spoilt || a.pole.distance(b.pole) < 1e-7, "{i}: {a:?}");
+    }
+}
