@@ -129,8 +129,8 @@ fn sheets(criterion: &mut Criterion) {
 struct Kept(Option<Panel>);
 
 impl Observer for Kept {
-    fn panel(&mut self, _: usize, panel: &Panel) -> Result<(), Error> {
-        self.0 = Some(panel.clone());
+    fn panels(&mut self, _: usize, panels: &[Panel]) -> Result<(), Error> {
+        self.0 = panels.first().cloned();
         Ok(())
     }
 
@@ -154,7 +154,7 @@ fn files(criterion: &mut Criterion) {
     };
     let write = |path: &Path| -> Result<(), Error> {
         let mut writer = MapWriter::create(path, &about)?;
-        writer.write_panel(0, &panel)?;
+        writer.write_panels(0, std::slice::from_ref(&panel))?;
         writer.finish(Shots::default())?;
         Ok(())
     };

@@ -254,7 +254,7 @@ fn cell(pool: &ThreadPool) -> Value {
 struct Nothing;
 
 impl Observer for Nothing {
-    fn panel(&mut self, _: usize, _: &store::Panel) -> Result<(), store::Error> {
+    fn panels(&mut self, _: usize, _: &[store::Panel]) -> Result<(), store::Error> {
         Ok(())
     }
 

@@ -12,11 +12,13 @@ use whiskmap::store::{Error, Panel};
 struct Regimes(Vec<u32>);
 
 impl Observer for Regimes {
-    fn panel(&mut self, _: usize, panel: &Panel) -> Result<(), Error> {
-        self.0.extend(&panel.regime);
+    fn panels(&mut self, _: usize, panels: &[Panel]) -> Result<(), Error> {
         let contact = [Regime::Contact.code(), Regime::Unreachable.code()];
-        for (regime, residual) in panel.regime.iter().zip(&panel.residual) {
-            assert!(!contact.contains(regime) || *residual <= 1e-11);
+        for panel in panels {
+            self.0.extend(&panel.regime);
+            for (regime, residual) in panel.regime.iter().zip(&panel.residual) {
+                assert!(!contact.contains(regime) || *residual <= 1e-11);
+            }
         }
         Ok(())
     }

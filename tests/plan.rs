@@ -30,7 +30,7 @@ impl Engine for Counting {
 struct Nothing;
 
 impl Observer for Nothing {
-    fn panel(&mut self, _: usize, _: &Panel) -> Result<(), Error> {
+    fn panels(&mut self, _: usize, _: &[Panel]) -> Result<(), Error> {
         Ok(())
     }
 

@@ -65,9 +65,7 @@ fn draw(scene: &Scene, panels: &[Panel], channel: Option<&str>) -> Picture {
     let [file, out] = ["map.exr", "map.png"].map(|name| folder.path().join(name));
     let tolerances = serde_json::json!(null);
     let mut writer = MapWriter::create(&file, &map::describe(scene, &tolerances)).unwrap();
-    for (index, panel) in panels.iter().enumerate() {
-        writer.write_panel(index, panel).unwrap();
-    }
+    writer.write_panels(0, panels).unwrap();
     writer.finish(Shots::default()).unwrap();
     let map = StoredMap::open(&file).unwrap();
     match channel {

@@ -243,14 +243,14 @@ fn a_map_appears_only_when_it_is_finished() {
     let about = map::describe(&scene, &tolerances);
 
     let mut dropped = MapWriter::create(&path, &about).unwrap();
-    dropped.write_panel(0, &panel(&scene, 0)).unwrap();
+    dropped.write_panels(0, &[panel(&scene, 0)]).unwrap();
     assert_eq!(listing(folder.path()).len(), 1);
     assert!(!path.exists());
     drop(dropped);
     assert!(listing(folder.path()).is_empty());
 
     let mut short = MapWriter::create(&path, &about).unwrap();
-    short.write_panel(0, &panel(&scene, 0)).unwrap();
+    short.write_panels(0, &[panel(&scene, 0)]).unwrap();
     let error = short.finish(Shots::default()).unwrap_err().to_string();
     assert_eq!(error, "the map was finished after 1 of 2 panels");
     assert!(listing(folder.path()).is_empty());
@@ -286,8 +286,15 @@ fn a_panel_that_does_not_fit_is_refused() {
     let tolerances = json!(null);
     let mut writer = MapWriter::create(&path, &map::describe(&scene, &tolerances)).unwrap();
     let good = panel(&scene, 0);
-    let mut refusal = |index, panel| writer.write_panel(index, panel).unwrap_err().to_string();
-
+    let mut refusals = |first, panels: &[Panel]| {
+        let refused = writer.write_panels(first, panels);
+        refused.unwrap_err().to_string()
+    };
+    assert_eq!(
+        refusals(0, &[good.clone(), good.clone(), good.clone()]),
+        "panel 2 was written where panel 2 of 2 is due"
+    );
+    let mut refusal = |index, panel: &Panel| refusals(index, std::slice::from_ref(panel));
     assert_eq!(
         refusal(1, &good),
         "panel 1 was written where panel 0 of 2 is due"
@@ -304,6 +311,12 @@ fn a_panel_that_does_not_fit_is_refused() {
         refusal(0, &strange),
         "panel 0: channel `regime` holds the code 99, which has no name"
     );
+    // None of them was counted.
+    let refused = writer.write_panels(0, &[good.clone(), strange]);
+    assert!(refused.unwrap_err().to_string().starts_with("panel 1: "));
+    writer.write_panels(0, &[good.clone(), good]).unwrap();
+    let counts = writer.finish(Shots::default()).unwrap();
+    assert_eq!(counts.regimes.values().sum::<u64>(), 40);
 }
 
 #[test]

@@ -45,7 +45,7 @@ pub fn estimate(scene: &Scene, plan: &Plan) -> Result<Estimate, Failure> {
 struct Nothing;
 
 impl Observer for Nothing {
-    fn panel(&mut self, _: usize, _: &Panel) -> Result<(), Error> {
+    fn panels(&mut self, _: usize, _: &[Panel]) -> Result<(), Error> {
         Ok(())
     }
 

@@ -117,8 +117,8 @@ struct Keeper {
 }
 
 impl Observer for Keeper {
-    fn panel(&mut self, index: usize, panel: &Panel) -> Result<(), store::Error> {
-        self.writer.write_panel(index, panel)
+    fn panels(&mut self, first: usize, panels: &[Panel]) -> Result<(), store::Error> {
+        self.writer.write_panels(first, panels)
     }
 
     fn settled(&mut self, cells: usize) {

@@ -22,11 +22,11 @@ use summary::Stage;
 
 /// What a run reports while it goes on.
 pub trait Observer {
-    /// Takes one finished panel, in atlas order.
+    /// Takes the next finished panels, in atlas order; the index of the `first`.
     ///
     /// # Errors
-    /// Whatever keeps the panel from being kept; the run stops with it.
-    fn panel(&mut self, index: usize, panel: &Panel) -> Result<(), crate::store::Error>;
+    /// Whatever keeps the panels from being kept; the run stops with it.
+    fn panels(&mut self, first: usize, panels: &[Panel]) -> Result<(), crate::store::Error>;
 
     /// `cells` more cells are settled.
     fn settled(&mut self, cells: usize);
@@ -92,11 +92,11 @@ pub fn run(
             let columns = |row: &Row| faces[row.face].pushes.columns.len();
             observer.settled(settled.rows.iter().map(columns).sum());
         }
-        for (i, panel) in panels.iter().enumerate() {
+        for panel in &panels {
             summary.count(panel);
-            let index = group * plan.panels_at_once + i;
-            summary.time(Stage::Files, || observer.panel(index, panel))?;
         }
+        let first = group * plan.panels_at_once;
+        summary.time(Stage::Files, || observer.panels(first, &panels))?;
     }
     summary.engine_failure = engine.failure().cloned();
     Ok(summary)

@@ -22,7 +22,10 @@ const BYTES_IN_FLIGHT: u64 = 1024;
 /// Cells handed to an engine at once: enough for every lane of a GPU, little memory.
 const CELLS_IN_FLIGHT: usize = 1 << 17;
 
-/// Most panels computed together: each has two sheets of some 100 KiB.
+/// Cells of the panels computed, and packed, together: enough for several threads, little memory.
+const CELLS_OF_PANELS: usize = 1 << 18;
+
+/// Most panels computed together: each has two sheets of some 130 KiB.
 const MOST_PANELS: usize = 64;
 
 /// States of a trajectory for the rod itself: cos and sin of its tilt, two coordinates.
@@ -73,7 +76,7 @@ impl Plan {
         let distances = scene.grid.distance_mm.len();
         let cells = push_angles * distances;
         let whiskers: Vec<Whisker> = scene.whiskers().map(|(_, whisker)| whisker).collect();
-        let panels_at_once = (CELLS_IN_FLIGHT / cells)
+        let panels_at_once = (CELLS_OF_PANELS / cells)
             .clamp(1, MOST_PANELS)
             .min(whiskers.len());
         let in_flight = CELLS_IN_FLIGHT.max(push_angles) as u64;

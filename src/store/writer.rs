@@ -1,4 +1,4 @@
-//! Writes a map panel by panel.
+//! Writes a map, some panels at a time.
 
 use super::attributes::{self, Description};
 use super::layout::{self, Layout, SAMPLE_BYTES};
@@ -67,42 +67,47 @@ impl MapWriter {
         Ok(writer)
     }
 
-    /// Compresses and appends the next panel; `index` is `curvature * tapers + taper`.
+    /// Compresses, side by side, and appends the next panels; the index of the `first` is `curvature * tapers + taper`.
     ///
     /// # Errors
     ///
-    /// The panel is not the next one, has the wrong size or a code without a name, or the disk is full.
-    pub fn write_panel(&mut self, index: usize, panel: &Panel) -> Result<(), Error> {
-        let panels = self.layout.panels();
-        if index != self.written || index >= panels {
-            return Err(Error::PanelOrder {
-                index,
-                due: self.written,
-                panels,
-            });
+    /// A panel is not the next one, has the wrong size or a code without a name, or the disk is full.
+    pub fn write_panels(&mut self, first: usize, panels: &[Panel]) -> Result<(), Error> {
+        let all = self.layout.panels();
+        let order = |index, due| Error::PanelOrder {
+            index,
+            due,
+            panels: all,
+        };
+        if first != self.written {
+            return Err(order(first, self.written));
         }
-        let channels = layout::channel_bytes(panel);
-        self.check_sizes(index, &channels)?;
-        self.count(index, panel)?;
+        if first + panels.len() > all {
+            return Err(order(all, all));
+        }
+        let channels: Vec<_> = panels.iter().map(layout::channel_bytes).collect();
+        for (i, channels) in channels.iter().enumerate() {
+            self.check_sizes(first + i, channels)?;
+        }
+        self.count(first, panels)?;
 
         let blocks = self.layout.blocks_per_panel();
-        let chunks: Vec<Vec<u8>> = (0..channels.len() * blocks)
+        let parts = self.offsets.len();
+        let part = |task: usize| task / blocks % parts;
+        let chunks: Vec<Vec<u8>> = (0..panels.len() * parts * blocks)
             .into_par_iter()
             .map(|task| {
-                self.chunk(
-                    index,
-                    task / blocks,
-                    task % blocks,
-                    &channels[task / blocks],
-                )
+                let panel = task / (parts * blocks);
+                let channels = &channels[panel][part(task)];
+                self.chunk(first + panel, part(task), task % blocks, channels)
             })
             .collect::<exr::error::Result<_>>()
             .map_err(refused(&self.path))?;
         for (task, chunk) in chunks.iter().enumerate() {
-            self.offsets[task / blocks].push(self.position);
+            self.offsets[part(task)].push(self.position);
             self.append(chunk)?;
         }
-        self.written += 1;
+        self.written += panels.len();
         Ok(())
     }
 
@@ -173,27 +178,28 @@ impl MapWriter {
         Ok(())
     }
 
-    /// Counts the cells of a panel, or, where a code has no name, none of them.
-    fn count(&mut self, index: usize, panel: &Panel) -> Result<(), Error> {
-        let unknown = |channel| {
-            move |code| Error::UnknownCode {
-                index,
-                channel,
-                code,
-            }
-        };
+    /// Counts the cells of panels, or, where a code has no name, none of them.
+    fn count(&mut self, first: usize, panels: &[Panel]) -> Result<(), Error> {
         let mut regimes = self.regimes.clone();
         let mut statuses = self.statuses.clone();
-        regimes.add(&panel.regime).map_err(unknown("regime"))?;
-        statuses.add(&panel.status).map_err(unknown("status"))?;
+        for (index, panel) in (first..).zip(panels) {
+            let unknown = |channel| {
+                move |code| Error::UnknownCode {
+                    index,
+                    channel,
+                    code,
+                }
+            };
+            regimes.add(&panel.regime).map_err(unknown("regime"))?;
+            statuses.add(&panel.status).map_err(unknown("status"))?;
+        }
         (self.regimes, self.statuses) = (regimes, statuses);
-        let solved = panel
-            .residual
+        let cells = panels
             .iter()
-            .zip(&panel.regime)
-            .filter(|(residual, regime)| {
-                !residual.is_nan() && **regime != Regime::Unresolved.code()
-            });
+            .flat_map(|panel| panel.residual.iter().zip(&panel.regime));
+        let solved = cells.filter(|(residual, regime)| {
+            !residual.is_nan() && **regime != Regime::Unresolved.code()
+        });
         self.worst_residual = solved
             .map(|(residual, _)| f64::from(*residual))
             .chain(self.worst_residual)

@@ -11,9 +11,9 @@ use whiskmap::store::{self, Panel};
 struct Panels(Vec<Panel>);
 
 impl Observer for Panels {
-    fn panel(&mut self, index: usize, panel: &Panel) -> Result<(), store::Error> {
-        assert_eq!(index, self.0.len());
-        self.0.push(panel.clone());
+    fn panels(&mut self, first: usize, panels: &[Panel]) -> Result<(), store::Error> {
+        assert_eq!(first, self.0.len());
+        self.0.extend_from_slice(panels);
         Ok(())
     }
     fn settled(&mut self, _: usize) {}

@@ -86,8 +86,8 @@ impl Case {
 struct Kept(Option<Panel>);
 
 impl Observer for Kept {
-    fn panel(&mut self, _: usize, panel: &Panel) -> Result<(), store::Error> {
-        self.0 = Some(panel.clone());
+    fn panels(&mut self, _: usize, panels: &[Panel]) -> Result<(), store::Error> {
+        self.0 = panels.first().cloned();
         Ok(())
     }
 

@@ -119,8 +119,12 @@ pub fn write(path: &Path, scene: &Scene) -> Counts {
     let grid = &scene.grid;
     let tapers = grid.taper.as_ref().map_or(1, Vec::len);
     let curvatures = grid.curvature_per_mm.as_ref().map_or(1, Vec::len);
-    for index in 0..tapers * curvatures {
-        writer.write_panel(index, &panel(scene, index)).unwrap();
-    }
+    let panels: Vec<Panel> = (0..tapers * curvatures)
+        .map(|index| panel(scene, index))
+        .collect();
+    // Not always as many at once.
+    let (some, others) = panels.split_at(panels.len() / 3);
+    writer.write_panels(0, some).unwrap();
+    writer.write_panels(some.len(), others).unwrap();
     writer.finish(Shots::default()).unwrap()
 }
