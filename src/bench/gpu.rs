@@ -56,7 +56,7 @@ fn engine(
     )?;
     let first_result_s = start.elapsed().as_secs_f64();
     let about = gpu.describe();
-    let peak_gflops = 1e-9 * gpu.peak()?;
+    let peak_gflops = 1e-9 * gpu.peak(runs)?;
     report.engines.push(Engine {
         name: name.to_owned(),
         threads: None,
