@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use whiskmap::model::batch::{Launch, Method, land, land_in_company};
-use whiskmap::model::{Effects, First, Landing, Nystrom8, Resolution, Rod, Second};
+use whiskmap::model::{Effects, First, Landing, Nystrom8, RadiusProfile, Resolution, Rod, Second};
 
 /// Contacts from next to the base to the tip, from no load to that of the fold, on slender and blunt whiskers.
 fn launches(count: usize) -> Vec<Launch> {
@@ -31,12 +31,33 @@ fn method(least: u32, launches: &[Launch]) -> Method {
     }
 }
 
+/// The same on whiskers with measured radii, in contact on every piece of them.
+fn measured(count: usize) -> Vec<Launch> {
+    let rows = [0.0, 0.2, 0.5, 0.7, 1.0].map(|s| [s, 1.0 - 0.8 * s - 0.1 * s * s]);
+    let profile = Some(RadiusProfile::of(&rows, 1.0));
+    let launch = |Launch { rod, tau, load }: Launch| {
+        let s = rod.radius(tau);
+        let rod = Rod {
+            profile,
+            taper: 0.9,
+            ..rod
+        };
+        Launch {
+            rod,
+            tau: rod.tau(0.1 + 0.8 * s),
+            load: 0.2 * load,
+        }
+    };
+    launches(count).into_iter().map(launch).collect()
+}
+
 /// Who shares a block takes at least the steps that it would take alone: nobody's answer is worse than the worst
 /// alone, but for rounding (4.7e-14 in 20 steps).
 #[test]
 fn company_does_no_harm() {
-    for count in [1, 15, 16, 17, 300, 3000] {
-        let launches = launches(count);
+    let few = [1, 15, 16, 17, 300, 3000].map(launches);
+    for launches in few.into_iter().chain([17, 300].map(measured)) {
+        let count = launches.len();
         let exact = land::<Nystrom8, First>(method(128, &launches), &launches);
         let worst = |found: &[Landing]| {
             let pairs = found.iter().zip(&exact);

@@ -2,8 +2,8 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use whiskmap::classify::{RowBoundary, Span};
-use whiskmap::model::batch::Method;
-use whiskmap::model::{Effects, Rest, Rod, Side, arclength};
+use whiskmap::model::batch::{Launch, Method, land};
+use whiskmap::model::{Effects, First, Nystrom8, Rest, Rod, Side, arclength};
 use whiskmap::scene::{Curvature, Pole, Whisker};
 use whiskmap::sheet::{Crossing, Edge, Sheet};
 
@@ -221,5 +221,43 @@ fn effects_vanish_to_the_first_order() {
         let ratio = (effect(1e-3) - none) / (effect(1e-4) - none);
         assert!((ratio - 10.0).abs() < 0.1, "{name}: {ratio}");
         assert_eq!(effect(0.0), none, "{name}");
+    }
+}
+
+/// The fold with the contact at the tip is the first change of the determinant's sign on the way from first touch. Of soft
+/// tips it lies at a tenth of the load that it has else, and the next ones before that.
+#[test]
+fn the_first_fold_is_the_first() {
+    for tip_to_base in [0.05, 0.1, 0.5, 1.0, 10.0] {
+        for (taper, friction, bend) in [(0.0, 0.0, 0.4), (0.9, 0.5, 0.0), (0.97, 0.0, 0.0)] {
+            for side in Side::BOTH {
+                let rod = Rod {
+                    taper,
+                    bend,
+                    pole: side.sign() * 0.0125,
+                    gradient: tip_to_base - 1.0,
+                    friction: side.sign() * friction,
+                    ..Rod::default()
+                };
+                let method = Method::fine(Effects::of([&rod]));
+                let tau = rod.tau_tip();
+                let scale = arclength(&rod, tau).powi(2);
+                let launches: Vec<Launch> = (0..6000)
+                    .map(|i| Launch {
+                        rod,
+                        tau,
+                        load: side.sign() * 0.05 * f64::from(i) / scale,
+                    })
+                    .collect();
+                let landed = land::<Nystrom8, First>(method, &launches);
+                let beyond = landed.iter().position(|landing| landing.det() <= 0.0);
+                let fold = Sheet::fold_at_tip(method, &rod, side).unwrap();
+                let place = 20.0 * scale * fold.load.abs();
+                assert!(
+                    beyond.is_some_and(|i| (i as f64 - 1.0..=i as f64).contains(&place)),
+                    "{tip_to_base} {taper} {side:?}: {place} instead of {beyond:?}"
+                );
+            }
+        }
     }
 }

@@ -22,7 +22,7 @@ use summary::Stage;
 
 /// What a run reports while it goes on.
 pub trait Observer {
-    /// Takes the next finished panels, in atlas order; the index of the `first`.
+    /// Takes the next finished panels, in atlas order; `first` is the index of the first one.
     ///
     /// # Errors
     /// Whatever keeps the panels from being kept; the run stops with it.

@@ -44,3 +44,27 @@ impl Pushes {
         Self { side, columns }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn columns_go_away_from_no_push() {
+        let all = [-70.0, -1e-9, -0.0, 0.0, 30.0];
+        let columns = |side| {
+            let pushes = Pushes::new(&all, side);
+            pushes
+                .columns
+                .iter()
+                .map(|push| push.column)
+                .collect::<Vec<_>>()
+        };
+        assert_eq!(columns(Side::Cf), [1, 0]);
+        assert_eq!(columns(Side::Cb), [2, 3, 4]);
+        let Push { angle, turn, .. } = Pushes::new(&all, Side::Cf).columns[1];
+        assert!(
+            (turn.to_angle() - angle).abs() < 1e-15 && (angle + 1.2217304763960306).abs() < 1e-15
+        );
+    }
+}

@@ -152,19 +152,4 @@ mod tests {
             }
         }
     }
-
-    /// Of a polynomial through nine values, or three, too: every run of neighbours goes through them.
-    #[test]
-    fn runs_go_through_their_values() {
-        for count in [3, NODES, NODES + 5] {
-            let samples: Vec<f64> = (0..count).map(|i| (0.3 * i as f64).sin()).collect();
-            let runs = Polynomial::through_each(&samples);
-            assert_eq!(runs.len(), count.saturating_sub(NODES) + 1);
-            for (start, run) in runs.iter().enumerate() {
-                for (t, sample) in samples[start..].iter().take(NODES).enumerate() {
-                    assert!((run.at(t as f64).0 - sample).abs() < 1e-14, "{start} {t}");
-                }
-            }
-        }
-    }
 }

@@ -4,7 +4,7 @@ use super::columns::Columns;
 use super::lattice::Lattice;
 use super::polynomial::{NODES, Polynomial, stencil};
 use super::rows::Row;
-use crate::model::batch::{Launch, Method, land_in_company};
+use crate::model::batch::{Launch, Method, land, land_in_company};
 use crate::model::{First, Landing, Nystrom8, Rod, Second, nearest_turn};
 
 /// Samples along the tip edge; the distance has at most a few extrema there.
@@ -17,8 +17,8 @@ pub const REACH_SLACK: f64 = 1e-12;
 /// The Newton step, relative to the distance of the samples, after which an extremum is known: its square is left.
 const LAST_STEP: f64 = 1e-7;
 
-/// How much `ln q` of the fold changes from column to column at the least where it jumps; with friction, from 29 to 15. At 0.4
-/// one of the 2,000 random whiskers of the tests kept a cell in doubt.
+/// How much `ln q` of the fold changes from column to column at the least where it jumps; with friction, from 29 to 15. With columns
+/// 0.25 apart, at 0.4 one of the 2,000 random whiskers of the tests kept a cell in doubt.
 pub const JUMP: f64 = 0.25;
 
 /// A computed point of an edge.
@@ -116,7 +116,7 @@ fn tip_samples(method: Method, rod: &Rod, columns: &Columns) -> Vec<Sample> {
             let place = Polynomial::through(slopes).solve(0.0, offset + 0.5, between);
             let near = corner.load * (start as f64 + place) / TIP_SAMPLES as f64;
             let launch = launch(extremum(method, launches[i], launches[i + 1].load, near));
-            let landing = land_in_company::<Nystrom8, First>(method, &[launch])[0];
+            let landing = land::<Nystrom8, First>(method, &[launch])[0];
             push(&launch, &landing);
         }
     }
@@ -126,7 +126,7 @@ fn tip_samples(method: Method, rod: &Rod, columns: &Columns) -> Vec<Sample> {
 /// The load between `from` and `to` at which `dlnD/dload` vanishes at the contact of `from`: Newton's method from `near`,
 /// bisecting where a step would leave the bracket.
 fn extremum(method: Method, from: Launch, to: f64, near: f64) -> f64 {
-    let at = |load: f64| land_in_company::<Nystrom8, Second>(method, &[Launch { load, ..from }])[0];
+    let at = |load: f64| land::<Nystrom8, Second>(method, &[Launch { load, ..from }])[0];
     let (mut low, mut high) = (from.load, to);
     let mut load = near;
     let mut falling_at_low = None;

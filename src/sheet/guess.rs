@@ -130,7 +130,11 @@ impl<'a> Piece<'a> {
             return None;
         }
         let target = push.max(from).min(to);
-        let part = (target - from) / (to - from);
+        let part = if from < to {
+            (target - from) / (to - from)
+        } else {
+            1.0
+        };
         let part = if self.has_summit {
             1.0 - (1.0 - part).sqrt()
         } else {
@@ -163,4 +167,67 @@ fn summit(push: &Polynomial, offset: f64) -> f64 {
         }
     }
     low
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn level(first: usize, push: &[f64]) -> Level {
+        let along = || (0..push.len()).map(|i| (first + i) as f64);
+        Level {
+            first,
+            push: push.to_vec(),
+            tau: along().map(|i| 0.5 + 0.01 * i).collect(),
+            load: along().map(|i| 0.1 * i).collect(),
+        }
+    }
+
+    fn guess(level: &Level, push: f64) -> Option<Guess> {
+        level.guesses([push].into_iter())[0]
+    }
+
+    #[test]
+    fn guesses_are_on_the_curve_up_to_its_summit() {
+        // The push angle is largest at load step 18.5.
+        let push: Vec<f64> = (0..LOADS + 3)
+            .map(|m| 1.0 - (1.0 - m as f64 / 18.5).powi(2))
+            .collect();
+        let level = level(0, &push);
+        let is_at = |push: f64, load: f64, error: f64| {
+            guess(&level, push).is_some_and(|guess| {
+                (guess.load - load).abs() < error && (guess.tau - 0.5 - 0.1 * load).abs() < error
+            })
+        };
+        for (m, push) in push[..=LOADS].iter().enumerate() {
+            assert!(is_at(*push, 0.1 * m as f64, 1e-6), "{m}");
+        }
+        assert!(is_at(1.0 + 0.5 * MARGIN, 1.85, 1e-3));
+        assert_eq!(guess(&level, 1.0 + 2.0 * MARGIN), None);
+        let all = level.guesses((0..200).map(|i| i as f64 / 180.0));
+        assert_eq!(all.iter().flatten().count(), 181);
+    }
+
+    #[test]
+    fn few_nodes_and_falling_pushes_make_no_number_of_none() {
+        let falling = [0.3, 0.29, 0.27, 0.24];
+        let level_pushes = [0.1; 3];
+        let turning = [0.0, 0.1, 0.2, 0.15, 0.1, 0.3, 0.2, 0.1, 0.0, -0.1];
+        for push in [
+            &falling[..],
+            &falling[..2],
+            &turning,
+            &turning[..3],
+            &level_pushes,
+            &[0.1],
+            &[],
+        ] {
+            for first in [0, 1, LOADS - 1, LOADS, LOADS + 1] {
+                let pushes = (0..=400).map(|i| i as f64 / 1000.0);
+                for guess in level(first, push).guesses(pushes).into_iter().flatten() {
+                    assert!(push.len() > 1 && guess.tau.is_finite() && guess.load.is_finite());
+                }
+            }
+        }
+    }
 }

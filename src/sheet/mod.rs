@@ -62,7 +62,7 @@ pub struct Sheet {
 
 impl Sheet {
     /// The sheet of `rod`, computed by `method`, for rows at these distances (first touch, in whisker lengths); `None` if some
-    /// contact has no fold, which no whisker is known for.
+    /// contact has no fold, or no stable state at first touch, which no whisker is known for.
     #[must_use]
     pub fn new(method: Method, rod: &Rod, side: Side, distances: &[f64]) -> Option<Self> {
         let rest = Rest::new(rod);

@@ -66,7 +66,11 @@ impl Polynomial {
     /// Newton's method from `near`, bisecting where a step would leave the bracket.
     #[must_use]
     pub fn solve(&self, target: f64, near: f64, [mut low, mut high]: [f64; 2]) -> f64 {
-        let rising = self.at(low).0 <= target;
+        if low >= high {
+            return low;
+        }
+        // At an end the value can be the target but for rounding, at both it cannot.
+        let rising = self.at(low).0 < self.at(high).0;
         let mut t = near;
         for _ in 0..60 {
             let (value, slope) = self.at(t);
@@ -138,5 +142,45 @@ impl<const N: usize> Places<N> {
             sum += *share;
         }
         shares.map(|share| share / sum)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A sheet has nine columns at least.
+    #[test]
+    fn runs_go_through_their_values() {
+        for count in [1, 3, 9, NODES, NODES + 5] {
+            let samples: Vec<f64> = (0..count).map(|i| (0.3 * i as f64).sin()).collect();
+            let runs = Polynomial::through_each(&samples);
+            assert_eq!(runs.len(), count.saturating_sub(NODES) + 1);
+            for (start, run) in runs.iter().enumerate() {
+                for (t, sample) in samples[start..].iter().take(NODES).enumerate() {
+                    assert!((run.at(t as f64).0 - sample).abs() < 1e-14, "{start} {t}");
+                }
+            }
+        }
+    }
+
+    /// A target at a sample, as exactly as that is known: a row whose end is the resting tip has one.
+    #[test]
+    fn a_sample_is_found_where_it_is() {
+        for slope in [1.0, -1.0] {
+            let samples: Vec<f64> = (0..NODES)
+                .map(|i| slope * (0.1 * i as f64 - 0.2).exp())
+                .collect();
+            let polynomial = Polynomial::through(samples.iter().copied());
+            for (k, sample) in samples.iter().enumerate() {
+                for target in [sample.next_down(), *sample, sample.next_up()] {
+                    for low in [k.saturating_sub(1), k.min(NODES - 2)] {
+                        let between = [low as f64, (low + 1) as f64];
+                        let t = polynomial.solve(target, low as f64 + 0.3, between);
+                        assert!((t - k as f64).abs() < 1e-6, "{t} instead of {k}");
+                    }
+                }
+            }
+        }
     }
 }

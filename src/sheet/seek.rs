@@ -51,7 +51,8 @@ const ROUNDS: usize = 20;
 /// tell the rest to its cube.
 const LAST_STEP: f64 = 3e-7;
 
-/// Newton's method for all `wanted` at once; the caller judges what is left in `miss` and `left`.
+/// Newton's method for all `wanted` at once; the caller judges what is left in `miss` and `left`. Each is alone: what is wanted
+/// at once next to the folds of a map depends on its strips.
 #[must_use]
 pub fn seek(method: Method, wanted: &[Wanted]) -> Vec<Sought> {
     newton(method, wanted, COARSE_ROUNDS, land::<Nystrom8, Second>)
@@ -68,7 +69,7 @@ fn newton(
     method: Method,
     wanted: &[Wanted],
     coarse_rounds: usize,
-    land: fn(Method, &[Launch]) -> Vec<Curved>,
+    landed: fn(Method, &[Launch]) -> Vec<Curved>,
 ) -> Vec<Sought> {
     let mut points: Vec<DVec2> = wanted.iter().map(|w| w.from).collect();
     let mut found: Vec<Option<Sought>> = vec![None; wanted.len()];
@@ -87,7 +88,7 @@ fn newton(
                 load: points[i].y,
             })
             .collect();
-        let mut landings = land(method, &launches).into_iter();
+        let mut landings = landed(method, &launches).into_iter();
         open.retain(|&i| {
             let Some(here) = landings.next() else {
                 return false;

@@ -67,7 +67,7 @@ impl MapWriter {
         Ok(writer)
     }
 
-    /// Compresses, side by side, and appends the next panels; the index of the `first` is `curvature * tapers + taper`.
+    /// Compresses, side by side, and appends the next panels; `first` is the index of the first one, `curvature * tapers + taper`.
     ///
     /// # Errors
     ///

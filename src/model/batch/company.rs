@@ -9,7 +9,8 @@ use crate::model::Integrator;
 use crate::model::simd::WIDTH;
 use rayon::prelude::*;
 
-/// Computes `K` for every launch with the integrator `M`, on all threads of the current pool.
+/// Computes `K` for every launch with the integrator `M`, on all threads of the current pool, each in at least the steps that
+/// [`land`](super::land) would take.
 #[must_use]
 pub fn land_in_company<M: Integrator, K: Kernel<M>>(
     method: Method,
@@ -17,22 +18,24 @@ pub fn land_in_company<M: Integrator, K: Kernel<M>>(
 ) -> Vec<K::Answer> {
     let unit = Unit::detect();
     let mut kinds = Kinds::default();
-    let mut places = Vec::with_capacity(launches.len());
-    for launches in launches.chunks(WIDTH) {
+    let mut of_kind: Vec<Vec<usize>> = Vec::new();
+    for (block, launches) in launches.chunks(WIDTH).enumerate() {
         let lane = |lane: usize| &launches[lane.min(launches.len() - 1)];
         let steps = unit.steps(method, &std::array::from_fn(lane));
-        let pairs = launches.iter().zip(steps);
-        places.extend(
-            pairs.map(|(launch, steps)| kinds.place(BlockKind::new(method, launch, steps))),
-        );
+        for (i, (launch, steps)) in (block * WIDTH..).zip(launches.iter().zip(steps)) {
+            let place = kinds.place(BlockKind::new(method, launch, steps));
+            if place == of_kind.len() {
+                of_kind.push(Vec::new());
+            }
+            of_kind[place].push(i);
+        }
     }
-    let mut kinds: Vec<(usize, BlockKind)> = kinds.all.into_iter().enumerate().collect();
-    kinds.sort_unstable_by_key(|(_, kind)| *kind);
-    let mut members = Vec::with_capacity(launches.len());
-    for (place, kind) in kinds {
-        let of_kind = (0..launches.len()).filter(|&i| places[i] == place);
-        members.extend(of_kind.map(|i| (kind, i)));
-    }
+    let mut kinds: Vec<(BlockKind, Vec<usize>)> = kinds.all.into_iter().zip(of_kind).collect();
+    kinds.sort_unstable_by_key(|(kind, _)| *kind);
+    let members = kinds
+        .iter()
+        .flat_map(|(kind, all)| all.iter().map(move |i| (*kind, *i)));
+    let members: Vec<(BlockKind, usize)> = members.collect();
     let blocks: Vec<&[(BlockKind, usize)]> = members
         .chunk_by(|(a, _), (b, _)| a.may_join(b))
         .flat_map(|group| group.chunks(WIDTH))

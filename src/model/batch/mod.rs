@@ -2,7 +2,7 @@
 //!
 //! The integrator is generic and inlined whole into three functions compiled for AVX-512, for AVX2 with FMA,
 //! and for the target's baseline (`unit`); which one runs is decided once per call from the processor's features.
-//! Results do not depend on the number of threads: every trajectory is computed by itself.
+//! Results do not depend on the number of threads: every trajectory is computed by itself, or in company that does not (`company`).
 
 mod answer;
 mod centre;
@@ -168,7 +168,7 @@ impl BlockKind {
 /// The kinds of a batch.
 struct Kinds {
     all: Vec<BlockKind>,
-    /// Where the last one with so many steps is, give or take multiples of 64.
+    /// Where the last one with as many steps on such a piece is, give or take multiples of 64.
     likely: [usize; 64],
 }
 
@@ -185,7 +185,7 @@ impl Kinds {
     /// Where `kind` is among all; it is the last one if it is new.
     #[inline]
     fn place(&mut self, kind: BlockKind) -> usize {
-        let likely = &mut self.likely[kind.steps as usize % 64];
+        let likely = &mut self.likely[(kind.steps as usize + 7 * kind.piece) % 64];
         if self.all.get(*likely) != Some(&kind) {
             let place = self.all.iter().position(|other| *other == kind);
             *likely = place.unwrap_or_else(|| {
