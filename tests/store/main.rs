@@ -1,0 +1,20 @@
+//! What is written comes back, whole or not at all.
+#![allow(
+    clippy::unwrap_used,
+    reason = "a test that cannot set up its files should stop"
+)]
+
+mod comes_back;
+#[path = "../map/mod.rs"]
+mod map;
+mod refused;
+
+type Swept = Option<Vec<f64>>;
+
+/// One whisker, and an atlas of three tapers by two curvatures.
+fn sweeps() -> [(Swept, Swept); 2] {
+    [
+        (None, None),
+        (Some(vec![0.5, 0.75, 0.95]), Some(vec![0.0, 0.012])),
+    ]
+}

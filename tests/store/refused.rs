@@ -1,0 +1,190 @@
+//! A file is whole or not there, and what is no map is refused.
+
+use super::map::{self, panel, scene, write};
+use super::sweeps;
+use serde_json::json;
+use std::fs;
+use std::path::Path;
+use whiskmap::store::{Error, MapWriter, Panel, Shots, StoredMap};
+
+fn listing(folder: &Path) -> Vec<String> {
+    let entries = fs::read_dir(folder).unwrap();
+    entries
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect()
+}
+
+#[test]
+fn a_map_appears_only_when_it_is_finished() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("map.exr");
+    let scene = scene(5, 4, Some(vec![0.5, 0.9]), None);
+    let tolerances = json!(null);
+    let about = map::describe(&scene, &tolerances);
+
+    let mut dropped = MapWriter::create(&path, &about).unwrap();
+    dropped.write_panels(0, &[panel(&scene, 0)]).unwrap();
+    assert_eq!(listing(folder.path()).len(), 1);
+    assert!(!path.exists());
+    drop(dropped);
+    assert!(listing(folder.path()).is_empty());
+
+    let mut short = MapWriter::create(&path, &about).unwrap();
+    short.write_panels(0, &[panel(&scene, 0)]).unwrap();
+    let error = short.finish(Shots::default()).unwrap_err().to_string();
+    assert_eq!(error, "the map was finished after 1 of 2 panels");
+    assert!(listing(folder.path()).is_empty());
+
+    fs::write(&path, "an older map").unwrap();
+    write(&path, &scene);
+    assert_eq!(listing(folder.path()), ["map.exr"]);
+    StoredMap::open(&path).unwrap();
+
+    let nowhere = folder.path().join("no such folder/map.exr");
+    let error = MapWriter::create(&nowhere, &about).unwrap_err().to_string();
+    assert!(error.starts_with("cannot write "), "{error}");
+}
+
+#[cfg(unix)]
+#[test]
+fn a_map_has_the_permissions_of_any_new_file() {
+    use std::os::unix::fs::PermissionsExt;
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("map.exr");
+    write(&path, &scene(2, 2, None, None));
+    let plain = folder.path().join("plain");
+    fs::write(&plain, "").unwrap();
+    let mode = |path: &Path| fs::metadata(path).unwrap().permissions().mode();
+    assert_eq!(mode(&path), mode(&plain));
+}
+
+#[test]
+fn a_panel_that_does_not_fit_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("map.exr");
+    let scene = scene(5, 4, Some(vec![0.5, 0.9]), None);
+    let tolerances = json!(null);
+    let mut writer = MapWriter::create(&path, &map::describe(&scene, &tolerances)).unwrap();
+    let good = panel(&scene, 0);
+    let mut refusals = |first, panels: &[Panel]| {
+        let refused = writer.write_panels(first, panels);
+        refused.unwrap_err().to_string()
+    };
+    assert_eq!(
+        refusals(0, &[good.clone(), good.clone(), good.clone()]),
+        "panel 2 was written where panel 2 of 2 is due"
+    );
+    let mut refusal = |index, panel: &Panel| refusals(index, std::slice::from_ref(panel));
+    assert_eq!(
+        refusal(1, &good),
+        "panel 1 was written where panel 0 of 2 is due"
+    );
+    let mut small = good.clone();
+    small.state[3].pop();
+    assert_eq!(
+        refusal(0, &small),
+        "panel 0: channel `base_force_x_un` has 19 cells instead of 20"
+    );
+    let mut strange = good.clone();
+    strange.regime[7] = 99;
+    assert_eq!(
+        refusal(0, &strange),
+        "panel 0: channel `regime` holds the code 99, which has no name"
+    );
+    // None of them was counted.
+    let refused = writer.write_panels(0, &[good.clone(), strange]);
+    assert!(refused.unwrap_err().to_string().starts_with("panel 1: "));
+    writer.write_panels(0, &[good.clone(), good]).unwrap();
+    let counts = writer.finish(Shots::default()).unwrap();
+    assert_eq!(counts.regimes.values().sum::<u64>(), 40);
+}
+
+#[test]
+fn an_unknown_channel_is_answered_with_the_known_ones() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("map.exr");
+    write(&path, &scene(2, 2, None, None));
+    let map = StoredMap::open(&path).unwrap();
+    let error = map.read_channel("force").unwrap_err().to_string();
+    for name in ["`force`", "regime", "force_un", "margin_deg"] {
+        assert!(error.contains(name), "{error}");
+    }
+    let error = map.read_panel("regime", 1).unwrap_err().to_string();
+    assert_eq!(error, "there is no panel 1; the map has 1");
+}
+
+#[test]
+fn other_files_are_told_apart() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("map.exr");
+    let missing = StoredMap::open(&path).unwrap_err();
+    assert!(matches!(missing, Error::Io { action: "read", .. }));
+    for text in ["", "\x76", "this is no picture"] {
+        fs::write(&path, text).unwrap();
+        let error = StoredMap::open(&path).unwrap_err();
+        assert!(matches!(error, Error::NotExr { .. }), "{error}");
+    }
+    exr::prelude::write_rgb_file(&path, 4, 4, |x, y| (x as f32, y as f32, 0.0)).unwrap();
+    let error = StoredMap::open(&path).unwrap_err();
+    assert!(matches!(error, Error::NotAMap { .. }), "{error}");
+}
+
+#[test]
+fn channels_that_do_not_fit_the_axes_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("map.exr");
+    write(&path, &scene(3, 2, None, None));
+    let mut bytes = fs::read(&path).unwrap();
+    let name = b"newton_steps\0";
+    let place = bytes.windows(name.len()).position(|found| found == name);
+    bytes[place.unwrap()] = b'm';
+    fs::write(&path, bytes).unwrap();
+    let error = StoredMap::open(&path).unwrap_err();
+    assert!(matches!(error, Error::NotAMap { .. }), "{error}");
+}
+
+/// Opens a file and reads every block of it.
+fn read_all(path: &Path) -> Result<(), Error> {
+    let map = StoredMap::open(path)?;
+    for name in ["regime", "force_un", "residual"] {
+        map.read_channel(name)?;
+    }
+    Ok(())
+}
+
+#[test]
+fn a_file_cut_short_is_an_error_at_every_length() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("map.exr");
+    for (taper, curvature) in sweeps() {
+        write(&path, &scene(3, 2, taper, curvature));
+        let whole = fs::read(&path).unwrap();
+        read_all(&path).unwrap();
+        for length in (0..whole.len()).rev().step_by(17) {
+            fs::write(&path, &whole[..length]).unwrap();
+            let error = read_all(&path).unwrap_err();
+            assert!(
+                matches!(error, Error::NotExr { .. } | Error::Damaged { .. }),
+                "{length}: {error}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_spoiled_byte_never_panics() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("map.exr");
+    let mut refused = 0;
+    for (taper, curvature) in sweeps() {
+        write(&path, &scene(3, 2, taper, curvature));
+        let whole = fs::read(&path).unwrap();
+        for place in (0..whole.len()).step_by(11) {
+            let mut spoiled = whole.clone();
+            spoiled[place] ^= 1 << (place % 8);
+            fs::write(&path, &spoiled).unwrap();
+            refused += usize::from(read_all(&path).is_err());
+        }
+    }
+    assert!(refused > 300, "{refused}");
+}
