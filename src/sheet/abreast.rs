@@ -1,155 +1,178 @@
-//! Polynomials side by side: one alone would wait for its own products most of the time.
+//! A row of a map in lanes: one polynomial alone would wait for its own products most of the time.
 
-use super::polynomial::{LAST_STEP, NODES, Polynomial};
+use super::loads::{Curve, LOADS};
+use super::polynomial::{NODES, Polynomial};
+use crate::model::batch::Task;
+use crate::model::simd::{Lanes, WIDTH};
 
-/// How many go together.
-const ABREAST: usize = 8;
+/// A number for every lane.
+pub type Numbers = [f64; WIDTH];
 
-/// Rounds of Newton's method for all of them; what is not found then is looked for alone.
-const ROUNDS: usize = 4;
+/// Rounds of Newton's method; what is not found then is looked for alone.
+const ROUNDS: usize = 3;
 
-type Lanes = [f64; ABREAST];
-
-/// A place that is looked for.
+/// Polynomials along the columns, one for every load, by divided differences.
 #[derive(Clone, Copy, Debug)]
-pub struct Search<'a> {
-    /// On which polynomial.
-    pub polynomial: &'a Polynomial,
-    /// Its value there.
+pub struct Patch {
+    /// Of `ln D`.
+    pub ln_distance: [Numbers; NODES],
+    /// Of the direction of the pole.
+    pub phi: [Numbers; NODES],
+}
+
+/// The places in a patch where every load's `ln D` is the same.
+pub struct Across<'a> {
+    /// The patch.
+    pub patch: &'a Patch,
+    /// `ln tau` of the columns.
+    pub ln_tau: &'a Polynomial,
+    /// `ln q` of the columns' folds.
+    pub ln_q: &'a Polynomial,
+    /// The distance.
     pub target: f64,
     /// Where to start.
-    pub near: f64,
-    /// The places it is between, at which the polynomial lies on different sides of the target.
-    pub between: [f64; 2],
+    pub near: Numbers,
 }
 
-/// The places that are looked for.
-pub fn solve(searches: &[Search]) -> Vec<f64> {
-    let mut places = Vec::with_capacity(searches.len());
-    for searches in searches.chunks(ABREAST) {
-        places.extend_from_slice(&together(searches)[..searches.len()]);
-    }
-    places
+/// What a row has at every load.
+#[derive(Clone, Copy, Debug)]
+pub struct Crossed {
+    /// The places.
+    pub place: Numbers,
+    /// The last steps toward them.
+    pub step: Numbers,
+    /// Direction of the pole there.
+    pub phi: Numbers,
+    /// `ln tau` there.
+    pub ln_tau: Numbers,
+    /// `ln q` of the fold there.
+    pub ln_q: Numbers,
 }
 
-/// The value of every polynomial at its place.
-pub fn values<'a>(pairs: impl ExactSizeIterator<Item = (&'a Polynomial, f64)>) -> Vec<f64> {
-    let mut values = Vec::with_capacity(pairs.len());
-    let mut differences = [[0.0; ABREAST]; NODES];
-    let mut places = [0.0; ABREAST];
-    let mut lane = 0;
-    for (polynomial, place) in pairs {
-        spread(&mut differences, lane, polynomial);
-        places[lane] = place;
-        lane += 1;
-        if lane == ABREAST {
-            values.extend_from_slice(&value(&differences, &places));
-            lane = 0;
-        }
-    }
-    values.extend_from_slice(&value(&differences, &places)[..lane]);
-    values
-}
+impl Task for Across<'_> {
+    type Output = Crossed;
 
-fn spread(differences: &mut [Lanes; NODES], lane: usize, polynomial: &Polynomial) {
-    for (lanes, difference) in differences.iter_mut().zip(polynomial.differences()) {
-        lanes[lane] = *difference;
-    }
-}
-
-fn together(searches: &[Search]) -> Lanes {
-    let mut differences = [[0.0; ABREAST]; NODES];
-    let [mut targets, mut places, mut low, mut high] = [[0.0; ABREAST]; 4];
-    for (lane, search) in searches.iter().enumerate() {
-        spread(&mut differences, lane, search.polynomial);
-        targets[lane] = search.target;
-        places[lane] = search.near;
-        [low[lane], high[lane]] = search.between;
-    }
-    let mut steps = [f64::INFINITY; ABREAST];
-    for _ in 0..ROUNDS {
-        let (values, slopes) = value_and_slope(&differences, &places);
-        for lane in 0..ABREAST {
-            let next = places[lane] - (values[lane] - targets[lane]) / slopes[lane];
-            steps[lane] = (next - places[lane]).abs();
-            places[lane] = next;
-        }
-        let known = steps
-            .iter()
-            .take(searches.len())
-            .all(|step| *step < LAST_STEP);
-        if known {
-            break;
-        }
-    }
-    for (lane, search) in searches.iter().enumerate() {
-        let is_inside = low[lane] <= places[lane] && places[lane] <= high[lane];
-        if !(is_inside && steps[lane] < LAST_STEP) {
-            places[lane] = search
-                .polynomial
-                .solve(search.target, search.near, search.between);
-        }
-    }
-    places
-}
-
-fn value(differences: &[Lanes; NODES], places: &Lanes) -> Lanes {
-    let mut values = differences[NODES - 1];
-    for i in (0..NODES - 1).rev() {
-        for lane in 0..ABREAST {
-            values[lane] = values[lane] * (places[lane] - i as f64) + differences[i][lane];
-        }
-    }
-    values
-}
-
-fn value_and_slope(differences: &[Lanes; NODES], places: &Lanes) -> (Lanes, Lanes) {
-    let (mut values, mut slopes) = (differences[NODES - 1], [0.0; ABREAST]);
-    for i in (0..NODES - 1).rev() {
-        for lane in 0..ABREAST {
-            let x = places[lane] - i as f64;
-            slopes[lane] = slopes[lane] * x + values[lane];
-            values[lane] = values[lane] * x + differences[i][lane];
-        }
-    }
-    (values, slopes)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Polynomials that rise from 0 at 0 to 3 at 9, level at their end but for one.
-    fn polynomials(count: usize) -> Vec<Polynomial> {
-        let through = |i: usize| {
-            let power = 1.0 + (0.618 * i as f64).fract() * 6.0;
-            let values = (0..NODES).map(|t| 1.0 - (1.0 - t as f64 / 9.0).powf(power));
-            Polynomial::through(values.map(|value| 3.0 * value))
+    #[inline(always)]
+    fn run<T: Lanes>(self) -> Crossed {
+        let nothing = [0.0; WIDTH];
+        let mut crossed = Crossed {
+            place: nothing,
+            step: nothing,
+            phi: nothing,
+            ln_tau: nothing,
+            ln_q: nothing,
         };
-        (0..count).map(through).collect()
-    }
-
-    #[test]
-    fn what_is_found_together_is_found_alone() {
-        for count in [1, 7, 8, 9, 50] {
-            let polynomials = polynomials(count);
-            let parts = [0.0, 0.1, 0.5, 0.999, 1.0].into_iter().cycle();
-            let search = |(polynomial, part): (_, f64)| Search {
-                polynomial,
-                target: 3.0 * part,
-                near: 4.5,
-                between: [0.0, 9.0],
-            };
-            let searches: Vec<Search> = polynomials.iter().zip(parts).map(search).collect();
-            let found = solve(&searches);
-            let pairs = searches.iter().zip(&found);
-            let there = values(pairs.map(|(search, t)| (search.polynomial, *t)));
-            assert_eq!([found.len(), there.len()], [count; 2]);
-            for (i, search) in searches.iter().enumerate() {
-                assert!((0.0..=9.0).contains(&found[i]), "{i}: {}", found[i]);
-                assert!((there[i] - search.target).abs() < 1e-6, "{i}: {}", found[i]);
-                assert_eq!(there[i], search.polynomial.at(found[i]).0, "{i}");
+        let target = T::of(self.target);
+        for from in (0..WIDTH).step_by(T::LANES) {
+            let (mut place, mut step) = (T::pack(part(&self.near, from)), T::of(0.0));
+            for _ in 0..ROUNDS {
+                let mut slope = T::of(0.0);
+                let mut value = T::pack(part(&self.patch.ln_distance[NODES - 1], from));
+                for i in (0..NODES - 1).rev() {
+                    let x = place - T::of(i as f64);
+                    slope = slope.mul_add(x, value);
+                    value = value.mul_add(x, T::pack(part(&self.patch.ln_distance[i], from)));
+                }
+                step = (target - value) / slope;
+                place = place + step;
             }
+            let mut phi = T::pack(part(&self.patch.phi[NODES - 1], from));
+            let mut ln_tau = T::of(self.ln_tau.differences()[NODES - 1]);
+            let mut ln_q = T::of(self.ln_q.differences()[NODES - 1]);
+            for i in (0..NODES - 1).rev() {
+                let x = place - T::of(i as f64);
+                phi = phi.mul_add(x, T::pack(part(&self.patch.phi[i], from)));
+                ln_tau = ln_tau.mul_add(x, T::of(self.ln_tau.differences()[i]));
+                ln_q = ln_q.mul_add(x, T::of(self.ln_q.differences()[i]));
+            }
+            keep(&mut crossed.place, from, place);
+            keep(&mut crossed.step, from, step);
+            keep(&mut crossed.phi, from, phi);
+            keep(&mut crossed.ln_tau, from, ln_tau);
+            keep(&mut crossed.ln_q, from, ln_q);
         }
+        crossed
     }
+}
+
+/// The places along a level curve where the push angle is as wanted.
+pub struct Along<'a> {
+    /// The push angle.
+    pub push: &'a Curve,
+    /// `tau` of the contact.
+    pub tau: &'a Curve,
+    /// The load.
+    pub load: &'a Curve,
+    /// The push angles.
+    pub targets: Numbers,
+    /// Where to start.
+    pub near: Numbers,
+}
+
+/// What a level curve has at every push angle.
+#[derive(Clone, Copy, Debug)]
+pub struct Found {
+    /// The places, as parts of the fold's load.
+    pub place: Numbers,
+    /// The last steps toward them.
+    pub step: Numbers,
+    /// `tau` there.
+    pub tau: Numbers,
+    /// The load there.
+    pub load: Numbers,
+}
+
+impl Task for Along<'_> {
+    type Output = Found;
+
+    #[inline(always)]
+    fn run<T: Lanes>(self) -> Found {
+        let nothing = [0.0; WIDTH];
+        let mut found = Found {
+            place: nothing,
+            step: nothing,
+            tau: nothing,
+            load: nothing,
+        };
+        for from in (0..WIDTH).step_by(T::LANES) {
+            let target = T::pack(part(&self.targets, from));
+            let (mut place, mut step) = (T::pack(part(&self.near, from)), T::of(0.0));
+            for _ in 0..ROUNDS {
+                let mut slope = T::of(0.0);
+                let mut value = T::of(self.push.differences[LOADS - 1]);
+                for i in (0..LOADS - 1).rev() {
+                    let x = place - T::of(self.push.parts[i]);
+                    slope = slope.mul_add(x, value);
+                    value = value.mul_add(x, T::of(self.push.differences[i]));
+                }
+                step = (target - value) / slope;
+                place = place + step;
+            }
+            let mut tau = T::of(self.tau.differences[LOADS - 1]);
+            let mut load = T::of(self.load.differences[LOADS - 1]);
+            for i in (0..LOADS - 1).rev() {
+                let x = place - T::of(self.push.parts[i]);
+                tau = tau.mul_add(x, T::of(self.tau.differences[i]));
+                load = load.mul_add(x, T::of(self.load.differences[i]));
+            }
+            keep(&mut found.place, from, place);
+            keep(&mut found.step, from, step);
+            keep(&mut found.tau, from, tau);
+            keep(&mut found.load, from, load);
+        }
+        found
+    }
+}
+
+/// The numbers from `from` on, and nothing after them.
+#[inline(always)]
+fn part(numbers: &Numbers, from: usize) -> Numbers {
+    let mut part = [0.0; WIDTH];
+    part[..WIDTH - from].copy_from_slice(&numbers[from..]);
+    part
+}
+
+#[inline(always)]
+fn keep<T: Lanes>(numbers: &mut Numbers, from: usize, lanes: T) {
+    numbers[from..from + T::LANES].copy_from_slice(&lanes.unpack()[..T::LANES]);
 }

@@ -61,7 +61,7 @@ impl Edges {
         let fold: Vec<Sample> = columns.folds[..=columns.tip]
             .iter()
             .zip(lattice.phi_at_fold())
-            .map(|(fold, phi)| Sample::new(fold.tau, fold.load, &fold.landing.landing, *phi))
+            .map(|(fold, phi)| Sample::new(fold.tau, fold.load, &fold.landing.landing, phi))
             .collect();
         tip.extend(fold.last());
         Self { fold, tip }

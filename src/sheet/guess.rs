@@ -1,8 +1,9 @@
 //! Guesses: a row of a map as a curve through the nodes of its level curve on the lattice, asked for push angles.
 
-use super::abreast::{self, Search};
-use super::lattice::LOADS;
-use super::polynomial::{NODES, Polynomial, stencil};
+use super::abreast::{Along, Numbers};
+use super::loads::{Curve, LAST_STEP, LOADS, PARTS};
+use crate::model::batch::Unit;
+use crate::model::simd::WIDTH;
 
 /// A guess for one cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -13,17 +14,19 @@ pub struct Guess {
     pub load: f64,
 }
 
-/// A level curve of `D`, sampled at steps of load.
-#[derive(Clone, Debug)]
+/// A level curve of `D`, sampled at neighbouring loads of the lattice.
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Level {
-    /// Load step of the first node.
+    /// Which load the first node has.
     pub first: usize,
+    /// Nodes.
+    pub count: usize,
     /// Push angle since first touch at each node, in radians, as a magnitude on the sheet's side.
-    pub push: Vec<f64>,
+    pub push: Numbers,
     /// `tau` of the contact.
-    pub tau: Vec<f64>,
+    pub tau: Numbers,
     /// Signed load.
-    pub load: Vec<f64>,
+    pub load: Numbers,
 }
 
 /// How far beyond the lattice's own detachment angle, in radians, a guess is still made: many times the
@@ -33,154 +36,184 @@ const MARGIN: f64 = 1e-3;
 impl Level {
     /// Guesses for growing push angles (at least 0, in radians, as magnitudes); `None` outside the sheet.
     pub fn guesses(&self, pushes: impl Iterator<Item = f64>) -> Vec<Option<Guess>> {
-        let count = self.push.len();
-        if count < 2 {
+        if self.count < 2 {
             return pushes.map(|_| None).collect();
         }
-        let curve = Polynomial::through_each(&self.push);
-        // The fold is the node at load step `LOADS`; intervals beyond it belong to the unstable sheet.
-        let last = (LOADS - self.first.min(LOADS - 1)).min(count - 1);
-        let piece = |interval: usize| {
-            let start = stencil::<NODES>(interval, count);
-            let ends = [self.push[interval], self.push[interval + 1]];
-            let piece = Piece::new(&curve[start], start, interval, ends);
-            if interval + 1 == last {
-                piece.up_to_summit()
-            } else {
-                piece
+        let through = |values: &Numbers| Curve::through(self.first, &values[..self.count]);
+        let curves = Curves {
+            push: through(&self.push),
+            tau: through(&self.tau),
+            load: through(&self.load),
+        };
+        let pieces = self.pieces(&curves.push);
+        let mut guesses = Vec::with_capacity(pushes.size_hint().0);
+        let mut block = Block::default();
+        let mut at = 0;
+        for push in pushes {
+            while at + 2 < self.count && push > pieces[at].pushes[1] {
+                at += 1;
             }
-        };
-        let mut interval = 0;
-        let mut here = piece(0);
-        let mut searches = Vec::new();
-        let mut starts = Vec::new();
-        let asked: Vec<bool> = pushes
-            .map(|push| {
-                let before = interval;
-                while interval + 1 < last && push > self.push[interval + 1] {
-                    interval += 1;
+            if let Some(search) = pieces[at].search(push) {
+                block.take(guesses.len(), search);
+                guesses.push(Some(Guess {
+                    tau: 0.0,
+                    load: 0.0,
+                }));
+                if block.count == WIDTH {
+                    block.find(&curves, &mut guesses);
                 }
-                if interval > before {
-                    here = piece(interval);
-                }
-                let search = here.search(push);
-                searches.extend(search);
-                starts.extend(search.map(|_| here.start));
-                search.is_some()
-            })
-            .collect();
-        let found = abreast::solve(&searches);
-        let values = |values: &[f64]| {
-            let through = Polynomial::through_each(values);
-            let places = starts.iter().zip(&found);
-            abreast::values(places.map(|(start, t)| (&through[*start], *t)))
-        };
-        let states = values(&self.tau).into_iter().zip(values(&self.load));
-        let mut guesses = states.map(|(tau, load)| Guess { tau, load });
-        let guess = |asked: bool| asked.then(|| guesses.next()).flatten();
-        asked.into_iter().map(guess).collect()
-    }
-}
-
-/// The level curve between two nodes. The first piece and the last one reach one step farther, the first one where its
-/// polynomial still falls there, the last one up to the largest push angle of its own.
-struct Piece<'a> {
-    push: &'a Polynomial,
-    /// First node of the polynomial.
-    start: usize,
-    /// Where it begins and ends, and the push angles there.
-    ends: [f64; 2],
-    pushes: [f64; 2],
-    /// Whether the push angle is level at its end.
-    has_summit: bool,
-}
-
-impl<'a> Piece<'a> {
-    fn new(push: &'a Polynomial, start: usize, interval: usize, pushes: [f64; 2]) -> Self {
-        let offset = (interval - start) as f64;
-        let mut piece = Self {
-            push,
-            start,
-            ends: [offset, offset + 1.0],
-            pushes,
-            has_summit: false,
-        };
-        if interval == 0 {
-            let before = push.at(offset - 1.0).0;
-            if before < pushes[0] {
-                piece.ends[0] = offset - 1.0;
-                piece.pushes[0] = before;
+            } else {
+                guesses.push(None);
             }
         }
-        piece
+        block.find(&curves, &mut guesses);
+        guesses
     }
 
-    fn up_to_summit(mut self) -> Self {
-        let summit = summit(self.push, self.ends[1] - 1.0);
-        self.ends[1] = summit;
-        self.pushes[1] = self.push.at(summit).0;
-        self.has_summit = true;
-        self
+    /// The curve between its nodes. The first piece begins at the load before, where the push angle still falls there.
+    fn pieces(&self, push: &Curve) -> [Piece; LOADS] {
+        let mut pieces = [Piece::default(); LOADS];
+        let parts = &PARTS[self.first..];
+        let summit = self.push[..self.count]
+            .iter()
+            .copied()
+            .fold(f64::NEG_INFINITY, f64::max);
+        let below = |push: f64| (summit - push).max(0.0).sqrt();
+        for (i, piece) in pieces[..self.count - 1].iter_mut().enumerate() {
+            let (mut from, mut start) = (self.push[i], parts[i]);
+            if i == 0 && self.first > 0 {
+                let before = PARTS[self.first - 1];
+                let push = push.at(before).0;
+                if push < from {
+                    (from, start) = (push, before);
+                }
+            }
+            let to = self.push[i + 1];
+            *piece = Piece {
+                ends: [start, parts[i + 1]],
+                pushes: [from, to],
+                below: [below(from), below(to)],
+                summit,
+            };
+        }
+        pieces
     }
+}
 
+/// The level curve of a row, as polynomials in the load.
+struct Curves {
+    push: Curve,
+    tau: Curve,
+    load: Curve,
+}
+
+/// The level curve between two nodes.
+#[derive(Clone, Copy, Debug, Default)]
+struct Piece {
+    /// Where it begins and ends, as parts of the fold's load.
+    ends: [f64; 2],
+    /// The push angles there.
+    pushes: [f64; 2],
+    /// The largest push angle of the curve.
+    summit: f64,
+    /// The roots of how far below it the ends are: at the fold the push angle is flat, and the place goes with this root.
+    below: [f64; 2],
+}
+
+/// A push angle that is looked for.
+#[derive(Clone, Copy, Debug, Default)]
+struct Search {
+    target: f64,
+    near: f64,
+    between: [f64; 2],
+}
+
+impl Piece {
     /// Where to look for a push angle; `None` where it is not near the piece.
-    fn search(&self, push: f64) -> Option<Search<'a>> {
+    fn search(&self, push: f64) -> Option<Search> {
         let ([low, high], [from, to]) = (self.ends, self.pushes);
         if push < from - MARGIN || push > to + MARGIN {
             return None;
         }
         let target = push.max(from).min(to);
-        let part = if from < to {
-            (target - from) / (to - from)
+        let [below_low, below_high] = self.below;
+        let below = (self.summit - target).max(0.0).sqrt();
+        let part = if below_high < below_low {
+            (below_low - below) / (below_low - below_high)
         } else {
             1.0
         };
-        let part = if self.has_summit {
-            1.0 - (1.0 - part).sqrt()
-        } else {
-            part
-        };
         Some(Search {
-            polynomial: self.push,
             target,
             near: low + part * (high - low),
-            between: [low, high],
+            between: self.ends,
         })
     }
 }
 
-/// Halvings: the push angle is flat at its summit, so that the place need not be known well.
-const SUMMIT_ROUNDS: usize = 12;
+/// Searches that go together.
+#[derive(Default)]
+struct Block {
+    count: usize,
+    searches: [Search; WIDTH],
+    /// Indices of their guesses.
+    cells: [usize; WIDTH],
+}
 
-/// Where the push angle is largest, within one step of the interval that begins at `offset`.
-fn summit(push: &Polynomial, offset: f64) -> f64 {
-    let (mut low, mut high) = (offset, offset + 2.0);
-    if push.at(high).1 > 0.0 {
-        return high;
+impl Block {
+    fn take(&mut self, cell: usize, search: Search) {
+        self.cells[self.count] = cell;
+        self.searches[self.count] = search;
+        self.count += 1;
     }
-    for _ in 0..SUMMIT_ROUNDS {
-        let middle = 0.5 * (low + high);
-        if push.at(middle).1 > 0.0 {
-            low = middle;
-        } else {
-            high = middle;
+
+    /// Finds what is looked for.
+    fn find(&mut self, curves: &Curves, guesses: &mut [Option<Guess>]) {
+        let Some(last) = self.count.checked_sub(1) else {
+            return;
+        };
+        let lane = |lane: usize| &self.searches[lane.min(last)];
+        let found = Unit::detect().run(Along {
+            push: &curves.push,
+            tau: &curves.tau,
+            load: &curves.load,
+            targets: std::array::from_fn(|i| lane(i).target),
+            near: std::array::from_fn(|i| lane(i).near),
+        });
+        for (i, search) in self.searches[..self.count].iter().enumerate() {
+            let place = found.place[i];
+            let [low, high] = search.between;
+            let is_known = found.step[i].abs() < LAST_STEP && low <= place && place <= high;
+            let [tau, load] = if is_known {
+                [found.tau[i], found.load[i]]
+            } else {
+                let place = curves
+                    .push
+                    .solve(search.target, search.near, search.between);
+                [curves.tau.at(place).0, curves.load.at(place).0]
+            };
+            guesses[self.cells[i]] = Some(Guess { tau, load });
         }
+        self.count = 0;
     }
-    low
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn level(first: usize, push: &[f64]) -> Level {
-        let along = || (0..push.len()).map(|i| (first + i) as f64);
-        Level {
+    fn level(first: usize, pushes: &[f64]) -> Level {
+        let mut level = Level {
             first,
-            push: push.to_vec(),
-            tau: along().map(|i| 0.5 + 0.01 * i).collect(),
-            load: along().map(|i| 0.1 * i).collect(),
+            count: pushes.len(),
+            ..Level::default()
+        };
+        for (i, (push, part)) in pushes.iter().zip(&PARTS[first..]).enumerate() {
+            level.push[i] = *push;
+            level.tau[i] = 0.1f64.mul_add(*part, 0.5);
+            level.load[i] = *part;
         }
+        level
     }
 
     fn guess(level: &Level, push: f64) -> Option<Guess> {
@@ -189,22 +222,36 @@ mod tests {
 
     #[test]
     fn guesses_are_on_the_curve_up_to_its_summit() {
-        // The push angle is largest at load step 18.5.
-        let push: Vec<f64> = (0..LOADS + 3)
-            .map(|m| 1.0 - (1.0 - m as f64 / 18.5).powi(2))
-            .collect();
-        let level = level(0, &push);
-        let is_at = |push: f64, load: f64, error: f64| {
-            guess(&level, push).is_some_and(|guess| {
-                (guess.load - load).abs() < error && (guess.tau - 0.5 - 0.1 * load).abs() < error
-            })
-        };
-        for (m, push) in push[..=LOADS].iter().enumerate() {
-            assert!(is_at(*push, 0.1 * m as f64, 1e-6), "{m}");
+        // The load that a push of this asks for.
+        let load = |push: f64| 1.0 - (1.0 - push).sqrt();
+        for first in [0, 1, 4] {
+            let pushes: Vec<f64> = PARTS[first..]
+                .iter()
+                .map(|part| 1.0 - (1.0 - part).powi(2))
+                .collect();
+            let level = level(first, &pushes);
+            let least = pushes[0];
+            for i in 0..=1000 {
+                let push = 1e-3 * f64::from(i);
+                let found = guess(&level, push).filter(|_| push >= least);
+                assert_eq!(found.is_some(), push >= least, "{first} {push}");
+                if let Some(Guess { tau, load: found }) = found {
+                    assert!((found - load(push)).abs() < 1e-6, "{push}: {found}");
+                    assert!((tau - 0.5 - 0.1 * found).abs() < 1e-12, "{push}: {tau}");
+                }
+            }
+            // One load before the first, where the curve goes on.
+            let before = PARTS[first.saturating_sub(1)];
+            let least = 1.0 - (1.0 - before).powi(2);
+            assert!(guess(&level, least).is_some_and(|guess| (guess.load - before).abs() < 1e-6));
+            assert!(
+                guess(&level, 1.0 + 0.5 * MARGIN)
+                    .is_some_and(|guess| (guess.load - 1.0).abs() < 1e-6)
+            );
+            assert_eq!(guess(&level, 1.0 + 2.0 * MARGIN), None);
         }
-        assert!(is_at(1.0 + 0.5 * MARGIN, 1.85, 1e-3));
-        assert_eq!(guess(&level, 1.0 + 2.0 * MARGIN), None);
-        let all = level.guesses((0..200).map(|i| i as f64 / 180.0));
+        let pushes: Vec<f64> = PARTS.iter().map(|x| 1.0 - (1.0 - x).powi(2)).collect();
+        let all = level(0, &pushes).guesses((0..200).map(|i| f64::from(i) / 180.0));
         assert_eq!(all.iter().flatten().count(), 181);
     }
 
@@ -222,10 +269,11 @@ mod tests {
             &[0.1],
             &[],
         ] {
-            for first in [0, 1, LOADS - 1, LOADS, LOADS + 1] {
-                let pushes = (0..=400).map(|i| i as f64 / 1000.0);
+            for first in [0, 1, LOADS - push.len()] {
+                let pushes = (0..=400).map(|i| f64::from(i) / 1000.0);
                 for guess in level(first, push).guesses(pushes).into_iter().flatten() {
                     assert!(push.len() > 1 && guess.tau.is_finite() && guess.load.is_finite());
+                    assert!(guess.load != 0.0 || guess.tau == 0.5);
                 }
             }
         }

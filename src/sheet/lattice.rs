@@ -1,77 +1,69 @@
-//! The lattice of trajectories over the stable sheet, and guesses from it.
+//! The lattice of trajectories over the stable sheet.
 //!
-//! Nodes lie at the columns and at the loads `x = 0, 1/18, 2/18, ...` of the fold's load, two steps beyond the
-//! fold, so that interpolation is as good at the fold as elsewhere, and that good that most guesses are a last Newton
+//! Nodes lie at the columns and at [`LOADS`] loads from first touch to the fold, so many that most guesses are a last Newton
 //! step away from the state. A row of a map is a level curve of `D` on the lattice; along it the push angle grows from
 //! first touch to detachment.
 
-use super::abreast::{self, Search};
+use super::abreast::{Across, Numbers, Patch};
 use super::columns::Columns;
 use super::guess::Level;
-use super::polynomial::{NODES, Polynomial, stencil};
+use super::loads::{LOADS, PARTS};
+use super::polynomial::{LAST_STEP, NODES, Polynomial, stencil};
 use super::rows::Row;
-use crate::model::batch::{Launch, Method, land_in_company};
+use crate::model::batch::{Launch, Method, Unit, land_in_company};
+use crate::model::simd::WIDTH;
 use crate::model::{First, Landing, Nystrom8, Rod, Side, nearest_turn};
 
-/// Steps in load from first touch to the fold.
-pub const LOADS: usize = 18;
+/// How many intervals between columns the loads of a row may have between them to be looked for in one patch: two intervals
+/// from its middle interpolation is half as good.
+const SPAN: usize = 5;
 
-/// Nodes per column: two lie beyond the fold.
-const NODES_PER_COLUMN: usize = LOADS + 3;
-
-/// The nodes, by load.
+/// The nodes.
 #[derive(Clone, Debug)]
 pub struct Lattice {
     side: Side,
-    steps: Vec<Step>,
+    /// By column.
+    nodes: Vec<Nodes>,
+    /// By their first column.
+    patches: Vec<Patch>,
 }
 
-/// The nodes of one load.
-#[derive(Clone, Debug)]
-struct Step {
-    /// `ln D` at each column.
-    ln_distances: Vec<f64>,
-    /// Direction of the pole at each, continuous from first touch.
-    phis: Vec<f64>,
-    /// Polynomials through `ln D`, by their first column.
-    ln_distance: Vec<Polynomial>,
-    /// Those through the direction.
-    phi: Vec<Polynomial>,
+/// The nodes of one column, by load; after the last one it is repeated.
+#[derive(Clone, Copy, Debug)]
+struct Nodes {
+    ln_distance: Numbers,
+    /// Direction of the pole, continuous from first touch.
+    phi: Numbers,
 }
 
-impl Step {
-    /// `before` has the directions of the step before, if there is one.
-    fn new(landings: &[Landing], before: Option<&[f64]>) -> Self {
-        let ln_distances: Vec<f64> = landings.iter().map(|l| l.pole.length().ln()).collect();
-        let mut phis: Vec<f64> = landings.iter().map(|l| l.pole.to_angle()).collect();
-        for (phi, before) in phis.iter_mut().zip(before.unwrap_or_default()) {
-            *phi = nearest_turn(*phi, *before);
-        }
-        Self {
-            ln_distance: Polynomial::through_each(&ln_distances),
-            phi: Polynomial::through_each(&phis),
-            ln_distances,
-            phis,
-        }
-    }
-
-    /// The column after which `ln D` crosses `target`; the one nearest to `near` if there are several.
-    fn crossing(&self, target: f64, near: usize) -> Option<usize> {
-        let last = self.ln_distances.len() - 1;
-        let crosses = |k: &usize| {
-            *k < last && (self.ln_distances[*k] <= target) != (self.ln_distances[*k + 1] <= target)
+impl Nodes {
+    fn new<'a>(landing: impl Fn(usize) -> &'a Landing) -> Self {
+        let mut nodes = Self {
+            ln_distance: [0.0; WIDTH],
+            phi: [0.0; WIDTH],
         };
-        let around = |away: usize| [near.checked_sub(away), Some(near + away)];
-        (0..=last).flat_map(around).flatten().find(crosses)
+        let mut before = 0.0;
+        for m in 0..WIDTH {
+            let pole = landing(m.min(LOADS - 1)).pole;
+            let phi = pole.to_angle();
+            before = if m == 0 {
+                phi
+            } else {
+                nearest_turn(phi, before)
+            };
+            nodes.phi[m] = before;
+            nodes.ln_distance[m] = pole.length().ln();
+        }
+        nodes
     }
 }
 
 impl Lattice {
     /// The lattice over `columns`.
     pub fn new(method: Method, rod: &Rod, side: Side, columns: &Columns) -> Self {
-        let launches: Vec<Launch> = (0..NODES_PER_COLUMN)
-            .flat_map(|m| {
-                let part = m as f64 / LOADS as f64;
+        let launches: Vec<Launch> = PARTS
+            .iter()
+            .flat_map(|part| {
                 columns.folds.iter().map(move |fold| Launch {
                     rod: *rod,
                     tau: fold.tau,
@@ -80,65 +72,143 @@ impl Lattice {
             })
             .collect();
         let landings = land_in_company::<Nystrom8, First>(method, &launches);
-        let mut steps: Vec<Step> = Vec::with_capacity(NODES_PER_COLUMN);
-        for landings in landings.chunks(columns.folds.len()) {
-            let before = steps.last().map(|step| step.phis.as_slice());
-            steps.push(Step::new(landings, before));
+        let count = columns.folds.len();
+        let nodes: Vec<Nodes> = (0..count)
+            .map(|column| Nodes::new(|m| &landings[m * count + column]))
+            .collect();
+        let patches = patches(&nodes);
+        Self {
+            side,
+            nodes,
+            patches,
         }
-        Self { side, steps }
     }
 
     /// Direction of the pole at the fold, column by column, continuous from first touch.
-    #[must_use]
-    pub fn phi_at_fold(&self) -> &[f64] {
-        &self.steps[LOADS].phis
+    pub fn phi_at_fold(&self) -> impl Iterator<Item = f64> {
+        self.nodes.iter().map(|nodes| nodes.phi[LOADS - 1])
+    }
+
+    /// The column after which `ln D` crosses `target` at the load `m`; the one nearest to `near` if there are several.
+    fn crossing(&self, m: usize, target: f64, near: usize) -> Option<usize> {
+        let last = self.nodes.len() - 1;
+        let is_before = |k: usize| self.nodes[k].ln_distance[m] <= target;
+        let crosses = |k: &usize| *k < last && is_before(*k) != is_before(*k + 1);
+        let around = |away: usize| [near.checked_sub(away), Some(near + away)];
+        (0..=last).flat_map(around).flatten().find(crosses)
     }
 
     /// The level curve of `row` on the lattice.
     #[must_use]
     pub fn level(&self, columns: &Columns, row: &Row) -> Level {
         let target = row.pole_distance.ln();
-        let mut first = 0;
-        let mut starts = Vec::with_capacity(NODES_PER_COLUMN);
-        let mut searches = Vec::with_capacity(NODES_PER_COLUMN);
+        let mut level = Level::default();
+        let mut after = [0; LOADS];
         let mut near = 0;
-        for (m, step) in self.steps.iter().enumerate() {
-            let Some(k) = step.crossing(target, near) else {
-                if starts.is_empty() {
+        for m in 0..LOADS {
+            let Some(k) = self.crossing(m, target, near) else {
+                if level.count == 0 {
                     continue;
                 }
                 break;
             };
-            if starts.is_empty() {
-                first = m;
+            if level.count == 0 {
+                level.first = m;
             }
             near = k;
-            let start = stencil::<NODES>(k, step.ln_distances.len());
-            let offset = (k - start) as f64;
-            let [from, to] = [step.ln_distances[k], step.ln_distances[k + 1]];
-            starts.push(start);
-            searches.push(Search {
-                polynomial: &step.ln_distance[start],
-                target,
-                near: offset + (target - from) / (to - from),
-                between: [offset, offset + 1.0],
-            });
+            after[m] = k;
+            level.count += 1;
         }
-        let found = abreast::solve(&searches);
-        let places = || starts.iter().copied().zip(found.iter().copied());
-        let phi = places().zip(&self.steps[first..]);
-        let phi = abreast::values(phi.map(|((start, t), step)| (&step.phi[start], t)));
-        let ln_tau = abreast::values(places().map(|(start, t)| (&columns.ln_tau[start], t)));
-        let ln_q = abreast::values(places().map(|(start, t)| (&columns.ln_q[start], t)));
-        let sign = self.side.sign();
-        let load = |(m, (ln_q, ln_tau)): (usize, (&f64, &f64))| {
-            sign * (ln_q - 2.0 * ln_tau).exp() * m as f64 / LOADS as f64
+        let end = level.first + level.count;
+        let mut from = level.first;
+        while from < end {
+            let [mut low, mut high] = [after[from]; 2];
+            let mut to = from + 1;
+            while to < end && high.max(after[to]) - low.min(after[to]) < SPAN {
+                [low, high] = [low.min(after[to]), high.max(after[to])];
+                to += 1;
+            }
+            let start = stencil::<NODES>((low + high) / 2, self.nodes.len());
+            self.cross(columns, row, start, &after[from..to], from, &mut level);
+            from = to;
+        }
+        level
+    }
+
+    /// Sets the nodes of `level` from the load `from` on, where `ln D` crosses that of `row` after the columns `after`.
+    fn cross(
+        &self,
+        columns: &Columns,
+        row: &Row,
+        start: usize,
+        after: &[usize],
+        from: usize,
+        level: &mut Level,
+    ) {
+        let (patch, target) = (&self.patches[start], row.pole_distance.ln());
+        let between = |k: usize| {
+            let offset = k as f64 - start as f64;
+            [offset, offset + 1.0]
         };
-        Level {
-            first,
-            push: phi.iter().map(|phi| sign * (phi - row.touch)).collect(),
-            tau: ln_tau.iter().map(|ln_tau| ln_tau.exp()).collect(),
-            load: (first..).zip(ln_q.iter().zip(&ln_tau)).map(load).collect(),
+        let mut near = [0.0; WIDTH];
+        for (m, &k) in (from..).zip(after) {
+            let [here, next] = [k, k + 1].map(|k| self.nodes[k].ln_distance[m]);
+            near[m] = between(k)[0] + (target - here) / (next - here);
+        }
+        let (ln_tau, ln_q) = (&columns.ln_tau[start], &columns.ln_q[start]);
+        let crossed = Unit::detect().run(Across {
+            patch,
+            ln_tau,
+            ln_q,
+            target,
+            near,
+        });
+        let sign = self.side.sign();
+        for (m, &k) in (from..).zip(after) {
+            let place = crossed.place[m];
+            let [low, high] = between(k);
+            let is_known = crossed.step[m].abs() < LAST_STEP && low <= place && place <= high;
+            let [phi, ln_tau, ln_q] = if is_known {
+                [crossed.phi[m], crossed.ln_tau[m], crossed.ln_q[m]]
+            } else {
+                let lane = |differences: &[Numbers; NODES]| {
+                    Polynomial::of(std::array::from_fn(|i| differences[i][m]))
+                };
+                let place = lane(&patch.ln_distance).solve(target, near[m], [low, high]);
+                [lane(&patch.phi), *ln_tau, *ln_q].map(|polynomial| polynomial.at(place).0)
+            };
+            let i = m - level.first;
+            level.push[i] = sign * (phi - row.touch);
+            level.tau[i] = ln_tau.exp();
+            level.load[i] = sign * (ln_q - 2.0 * ln_tau).exp() * PARTS[m];
         }
     }
+}
+
+/// The polynomials through each [`NODES`] neighbours of `nodes`, or through all where there are fewer.
+fn patches(nodes: &[Nodes]) -> Vec<Patch> {
+    let nothing = Patch {
+        ln_distance: [[0.0; WIDTH]; NODES],
+        phi: [[0.0; WIDTH]; NODES],
+    };
+    let mut patches = vec![nothing; nodes.len().saturating_sub(NODES) + 1];
+    let mut differences = nodes.to_vec();
+    for level in 0..NODES.min(nodes.len()) {
+        if level > 0 {
+            let part = 1.0 / level as f64;
+            for i in 0..nodes.len() - level {
+                let next = differences[i + 1];
+                let here = &mut differences[i];
+                for m in 0..WIDTH {
+                    here.ln_distance[m] = (next.ln_distance[m] - here.ln_distance[m]) * part;
+                    here.phi[m] = (next.phi[m] - here.phi[m]) * part;
+                }
+            }
+        }
+        for (patch, difference) in patches.iter_mut().zip(&differences) {
+            patch.ln_distance[level] = difference.ln_distance;
+            patch.phi[level] = difference.phi;
+        }
+    }
+    patches
 }

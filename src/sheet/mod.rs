@@ -16,6 +16,7 @@ mod fold;
 mod guess;
 mod lattice;
 mod level;
+mod loads;
 mod pieces;
 mod polynomial;
 mod rows;

@@ -14,6 +14,11 @@ pub struct Polynomial {
 }
 
 impl Polynomial {
+    /// Of these divided differences: the value at 0, the slope from 0 to 1, ...
+    pub const fn of(differences: [f64; NODES]) -> Self {
+        Self { differences }
+    }
+
     /// Through `values[0]` at 0, `values[1]` at 1, ...; at most [`NODES`] of them count.
     pub fn through(values: impl IntoIterator<Item = f64>) -> Self {
         let values: Vec<f64> = values.into_iter().take(NODES).collect();
@@ -62,36 +67,47 @@ impl Polynomial {
         (value, slope)
     }
 
-    /// Where the polynomial is `target` between `low` and `high`, at which it lies on different sides of it:
-    /// Newton's method from `near`, bisecting where a step would leave the bracket.
+    /// Where the polynomial is `target` in `between`, at whose ends it lies on different sides of it.
     #[must_use]
-    pub fn solve(&self, target: f64, near: f64, [mut low, mut high]: [f64; 2]) -> f64 {
-        if low >= high {
-            return low;
-        }
-        // At an end the value can be the target but for rounding, at both it cannot.
-        let rising = self.at(low).0 < self.at(high).0;
-        let mut t = near;
-        for _ in 0..60 {
-            let (value, slope) = self.at(t);
-            if (value < target) == rising {
-                low = t;
-            } else {
-                high = t;
-            }
-            let newton = t - (value - target) / slope;
-            let inside = low < newton && newton < high;
-            if inside && (newton - t).abs() < LAST_STEP {
-                return newton;
-            }
-            let next = if inside { newton } else { 0.5 * (low + high) };
-            if next == t {
-                return next;
-            }
-            t = next;
-        }
-        t
+    pub fn solve(&self, target: f64, near: f64, between: [f64; 2]) -> f64 {
+        bracketed(|t| self.at(t), target, near, between, LAST_STEP)
     }
+}
+
+/// Where a function with the value and slope `at` is `target` between `low` and `high`, at which it lies on different sides of
+/// it: Newton's method from `near` down to `last_step`, bisecting where a step would leave the bracket.
+pub fn bracketed(
+    at: impl Fn(f64) -> (f64, f64),
+    target: f64,
+    near: f64,
+    [mut low, mut high]: [f64; 2],
+    last_step: f64,
+) -> f64 {
+    if low >= high {
+        return low;
+    }
+    // At an end the value can be the target but for rounding, at both it cannot.
+    let rising = at(low).0 < at(high).0;
+    let mut t = near;
+    for _ in 0..60 {
+        let (value, slope) = at(t);
+        if (value < target) == rising {
+            low = t;
+        } else {
+            high = t;
+        }
+        let newton = t - (value - target) / slope;
+        let inside = low < newton && newton < high;
+        if inside && (newton - t).abs() < last_step {
+            return newton;
+        }
+        let next = if inside { newton } else { 0.5 * (low + high) };
+        if next == t {
+            return next;
+        }
+        t = next;
+    }
+    t
 }
 
 /// The first of the `N` (or fewer) of `count` samples that surround the interval `at, at + 1`.

@@ -16,6 +16,7 @@ mod unit;
 pub use answer::{First, FirstAndEnergy, Kind, Second};
 pub use company::land_in_company;
 pub use flops::flops;
+pub(crate) use unit::Task;
 pub use unit::{Kernel, Unit};
 
 use super::simd::WIDTH;

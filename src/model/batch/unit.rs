@@ -97,6 +97,24 @@ impl Unit {
         }
     }
 
+    /// Does `task` in this unit's lanes.
+    #[allow(
+        unsafe_code,
+        reason = "a function compiled for a SIMD unit may be called where `detect` has found that unit"
+    )]
+    pub(crate) fn run<K: Task>(self, task: K) -> K::Output {
+        match self.0 {
+            #[cfg(target_arch = "x86_64")]
+            // SAFETY: only `detect` makes such a unit, and it has seen every feature that the function enables.
+            Instructions::Avx512 => unsafe { run_avx512(task) },
+            #[cfg(target_arch = "x86_64")]
+            // SAFETY: as above.
+            Instructions::Avx2 => unsafe { run_avx2(task) },
+            Instructions::Baseline => task.run::<Baseline>(),
+            Instructions::Scalar => task.run::<f64>(),
+        }
+    }
+
     /// Does nothing but multiply and add for `rounds` rounds, and tells how many operations that were: with a clock, the
     /// peak of one thread.
     #[must_use]
@@ -116,6 +134,27 @@ impl Unit {
             Instructions::Scalar => multiply_and_add::<f64, 16>(rounds),
         }
     }
+}
+
+/// Arithmetic in lanes.
+pub(crate) trait Task {
+    /// What comes of it.
+    type Output;
+
+    /// Does it with bundles of one unit; to be inlined into a function that is compiled for that unit.
+    fn run<T: Lanes>(self) -> Self::Output;
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx512f,avx512dq,avx512vl,fma")]
+fn run_avx512<K: Task>(task: K) -> K::Output {
+    task.run::<Avx512>()
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2,fma")]
+fn run_avx2<K: Task>(task: K) -> K::Output {
+    task.run::<Avx2>()
 }
 
 /// What can be computed in batches with the integrator `M`.
