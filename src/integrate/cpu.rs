@@ -1,7 +1,7 @@
 //! The CPU engine: `f64`, SIMD lanes, all threads of the current pool.
 
-use super::{Description, Engine, EngineError, Hit, MOST_STEPS, Outcome, Shot, TOGETHER};
-use crate::model::batch::{Kernel, Launch, Method, Unit, land_on};
+use super::{Description, Engine, EngineError, Hit, MOST_STEPS, Outcome, Shot};
+use crate::model::batch::{Kernel, Launch, Method, Unit, land_on, together};
 use crate::model::{Effects, First, Integrator, Landing, Nystrom8, Resolution, Rod, arclength};
 use glam::DVec2;
 use rayon::prelude::*;
@@ -9,8 +9,8 @@ use rayon::prelude::*;
 /// Off by less than 5e-8 (`tests/gpu_engine`): the refinement then mostly needs a single trajectory.
 const RESOLUTION: Resolution = Resolution::COARSE;
 
-/// Shots of one thread whose cells stay in its cache on their way from stage to stage, and need no new pages.
-const SHOTS_IN_CACHE: usize = 2048;
+/// Shots for one thread: so many that nearly all blocks are full, and that starting a stage takes no time.
+const SHOTS_OF_A_THREAD: usize = 16_384;
 
 /// Residual at which the refinement takes over, in whisker lengths: one Newton step away from the resolution's error.
 const TOLERANCE: f64 = 1e-6;
@@ -38,7 +38,7 @@ impl Solver {
         First: Kernel<M>,
     {
         shots
-            .par_chunks(TOGETHER)
+            .par_chunks(together(shots.len()))
             .flat_map_iter(|shots| self.solve_together::<M>(effects, rods, shots))
             .collect()
     }
@@ -123,7 +123,7 @@ impl Engine for Cpu {
     }
 
     fn shots_at_once(&self) -> usize {
-        SHOTS_IN_CACHE * rayon::current_num_threads()
+        SHOTS_OF_A_THREAD * rayon::current_num_threads()
     }
 
     fn shoot(

@@ -53,9 +53,6 @@ pub enum Outcome {
     NotFinite,
 }
 
-/// Shots that go through all steps of the CPU together: enough for full lanes, few enough to stay in the inner cache.
-pub(crate) const TOGETHER: usize = 1024;
-
 /// Newton steps that an engine may take per shot.
 pub const MOST_STEPS: u32 = 4;
 

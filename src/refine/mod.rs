@@ -7,9 +7,9 @@
 mod near_fold;
 mod newton;
 
-use crate::integrate::{Shot, TOGETHER};
+use crate::integrate::Shot;
 use crate::model::Full;
-use crate::model::batch::Method;
+use crate::model::batch::{Method, together};
 use crate::sheet::Sheet;
 use near_fold::Verdict;
 use newton::newton;
@@ -102,9 +102,10 @@ pub fn refine(
     starts: &[(f64, f64)],
 ) -> Vec<Refined> {
     let mut cells = vec![Refined::default(); shots.len()];
+    let together = together(shots.len());
     cells
-        .par_chunks_mut(TOGETHER)
-        .zip(shots.par_chunks(TOGETHER).zip(starts.par_chunks(TOGETHER)))
+        .par_chunks_mut(together)
+        .zip(shots.par_chunks(together).zip(starts.par_chunks(together)))
         .for_each(|(cells, (shots, starts))| refine_together(method, sheets, shots, starts, cells));
     cells
 }

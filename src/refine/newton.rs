@@ -2,7 +2,7 @@
 
 use super::{End, GOAL, Refined, State, TOLERANCE};
 use crate::integrate::Shot;
-use crate::model::batch::{Launch, Method, land};
+use crate::model::batch::{Launch, Method, land_each};
 use crate::model::{FirstAndEnergy, Nystrom8, arclength, limited};
 use crate::sheet::Sheet;
 
@@ -35,26 +35,21 @@ pub fn newton(
     most: u32,
     cells: &mut [Refined],
 ) {
-    let mut points = starts.to_vec();
-    let mut open: Vec<usize> = (0..shots.len()).collect();
+    let mut open: Vec<(usize, (f64, f64))> = starts.iter().copied().enumerate().collect();
     for steps in 0..=most {
         if open.is_empty() {
             break;
         }
-        let launches: Vec<Launch> = open
-            .iter()
-            .map(|&i| Launch {
-                rod: sheets[shots[i].rod as usize].rod,
-                tau: points[i].0,
-                load: points[i].1,
-            })
-            .collect();
-        let mut answers = land::<Nystrom8, FirstAndEnergy>(method, &launches).into_iter();
-        let mut launches = launches.iter();
-        open.retain(|&i| {
-            let (Some(moving), Some(launch)) = (answers.next(), launches.next()) else {
-                return false;
-            };
+        let launch = |(i, (tau, load)): (usize, (f64, f64))| Launch {
+            rod: sheets[shots[i].rod as usize].rod,
+            tau,
+            load,
+        };
+        let launches = open.iter().copied().map(launch);
+        let mut left = Vec::new();
+        land_each::<Nystrom8, FirstAndEnergy>(method, launches, |place, moving| {
+            let i = open[place].0;
+            let launch = launch(open[place]);
             let full = moving.full;
             let residual = full.landing.pole.distance(shots[i].pole);
             let state = State {
@@ -82,23 +77,26 @@ pub fn newton(
                 };
                 let (end, steps) = (verdict(sheet, &state), steps + 1);
                 cells[i] = Refined { state, steps, end };
-                return false;
+                return;
             }
             let before = cells[i].state.residual;
             let stuck = residual <= TOLERANCE && residual > 0.5 * before;
             if residual <= GOAL || stuck {
                 let end = verdict(sheet, &state);
                 cells[i] = Refined { state, steps, end };
-                return false;
+                return;
             }
             cells[i] = Refined {
                 state,
                 steps,
                 end: End::NotConverged,
             };
-            points[i] = (launch.tau + step.x, launch.load + step.y);
-            step.is_finite() && points[i].0 > 0.0
+            let next = (launch.tau + step.x, launch.load + step.y);
+            if step.is_finite() && next.0 > 0.0 {
+                left.push((i, next));
+            }
         });
+        open = left;
     }
 }
 

@@ -22,6 +22,7 @@ pub use unit::{Kernel, Unit};
 use super::simd::WIDTH;
 use super::{Effects, Integrator, Resolution, Rod};
 use rayon::prelude::*;
+use std::borrow::Borrow;
 
 /// One trajectory: from the contact at `tau` under `load = f/radius^2` to the base.
 #[derive(Clone, Copy, Debug)]
@@ -69,6 +70,13 @@ const FEWEST_TOGETHER: usize = 1024;
 /// Parts of a batch for each thread, so that threads end together.
 const PARTS: usize = 4;
 
+/// How many of `count` a thread of the current pool best works on together.
+pub(crate) fn together(count: usize) -> usize {
+    let threads = rayon::current_num_threads();
+    let parts = if threads == 1 { 1 } else { PARTS * threads };
+    count.div_ceil(parts).max(FEWEST_TOGETHER)
+}
+
 /// Computes `K` for every launch with the integrator `M`, on all threads of the current pool.
 #[must_use]
 pub fn land<M: Integrator, K: Kernel<M>>(method: Method, launches: &[Launch]) -> Vec<K::Answer> {
@@ -83,9 +91,7 @@ pub fn land_on<M: Integrator, K: Kernel<M>>(
     launches: &[Launch],
 ) -> Vec<K::Answer> {
     let mut answers = vec![K::Answer::default(); launches.len()];
-    let threads = rayon::current_num_threads();
-    let parts = if threads == 1 { 1 } else { PARTS * threads };
-    let together = launches.len().div_ceil(parts).max(FEWEST_TOGETHER);
+    let together = together(launches.len());
     if launches.len() <= together {
         part::<M, K>(unit, method, launches, &mut answers);
     } else {
@@ -104,38 +110,66 @@ fn part<M: Integrator, K: Kernel<M>>(
     launches: &[Launch],
     answers: &mut [K::Answer],
 ) {
-    let mut compute = |kind: BlockKind, members: &[usize]| {
-        let lanes = std::array::from_fn(|lane| &launches[members[lane.min(members.len() - 1)]]);
-        let block = K::block(unit, kind.effects, kind.steps, &lanes, members.len());
-        for (&i, answer) in members.iter().zip(&block) {
-            answers[i] = *answer;
+    stream::<M, K, _>(unit, method, launches.iter(), |i, answer| {
+        answers[i] = *answer
+    });
+}
+
+/// Computes `K` for launches as they come, on this thread, and hands each answer on with the place of its launch, in no order.
+pub fn land_each<M: Integrator, K: Kernel<M>>(
+    method: Method,
+    launches: impl Iterator<Item = Launch>,
+    take: impl FnMut(usize, &K::Answer),
+) {
+    stream::<M, K, _>(Unit::detect(), method, launches, take);
+}
+
+fn stream<M: Integrator, K: Kernel<M>, L: Borrow<Launch>>(
+    unit: Unit,
+    method: Method,
+    mut launches: impl Iterator<Item = L>,
+    mut take: impl FnMut(usize, &K::Answer),
+) {
+    let mut compute = |kind: BlockKind, block: &mut Vec<(usize, L)>| {
+        let lane = |lane: usize| block[lane.min(block.len() - 1)].1.borrow();
+        let lanes = std::array::from_fn(lane);
+        let answers = K::block(unit, kind.effects, kind.steps, &lanes, block.len());
+        for ((i, _), answer) in block.iter().zip(&answers) {
+            take(*i, answer);
         }
+        block.clear();
     };
     // Lanes step together, so only trajectories of one kind share a block: company changes nothing.
     let mut kinds = Kinds::default();
-    let mut open: Vec<Open> = Vec::new();
-    let mut next = [(0.0, 0); WIDTH];
-    for (i, launch) in launches.iter().enumerate() {
-        if i % WIDTH == 0 {
-            let lane = |lane: usize| &launches[(i + lane).min(launches.len() - 1)];
-            next = unit.steps(method, &std::array::from_fn(lane));
+    let mut open: Vec<Vec<(usize, L)>> = Vec::new();
+    let mut next: Vec<L> = Vec::with_capacity(WIDTH);
+    let mut from = 0;
+    loop {
+        next.extend(launches.by_ref().take(WIDTH));
+        let Some(last) = next.len().checked_sub(1) else {
+            break;
+        };
+        let steps = unit.steps(
+            method,
+            &std::array::from_fn(|lane| next[lane.min(last)].borrow()),
+        );
+        for (i, (launch, steps)) in (from..).zip(next.drain(..).zip(steps)) {
+            let kind = BlockKind::new(method, launch.borrow(), steps);
+            let place = kinds.place(kind);
+            if place == open.len() {
+                open.push(Vec::with_capacity(WIDTH));
+            }
+            let block = &mut open[place];
+            block.push((i, launch));
+            if block.len() == WIDTH {
+                compute(kind, block);
+            }
         }
-        let kind = BlockKind::new(method, launch, next[i % WIDTH]);
-        let place = kinds.place(kind);
-        if place == open.len() {
-            open.push(Open::default());
-        }
-        let block = &mut open[place];
-        block.members[block.count] = i;
-        block.count += 1;
-        if block.count == WIDTH {
-            compute(kind, &block.members);
-            block.count = 0;
-        }
+        from += WIDTH;
     }
-    for (kind, block) in kinds.all.iter().zip(&open) {
-        if block.count > 0 {
-            compute(*kind, &block.members[..block.count]);
+    for (kind, block) in kinds.all.iter().zip(&mut open) {
+        if !block.is_empty() {
+            compute(*kind, block);
         }
     }
 }
@@ -196,11 +230,4 @@ impl Kinds {
         }
         *likely
     }
-}
-
-/// A block that waits for more trajectories of its kind.
-#[derive(Default)]
-struct Open {
-    members: [usize; WIDTH],
-    count: usize,
 }
