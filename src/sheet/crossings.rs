@@ -6,9 +6,9 @@
 
 use super::bisect::bisect;
 use super::edges::{Edges, REACH_SLACK, Sample};
-use super::polynomial::{Places, stencil};
+use super::near::Near;
 use super::rows::Row;
-use super::seek::{Edge, Wanted, seek_finely};
+use super::seek::{Bends, Edge, Wanted, seek_nearby};
 use crate::model::batch::Method;
 use crate::model::{Landing, Rod, Side, nearest_turn};
 use glam::DVec2;
@@ -44,10 +44,7 @@ impl Crossing {
 struct Candidate {
     row: usize,
     edge: Edge,
-    tau: f64,
-    load: f64,
-    /// Direction of the pole there, continuous from first touch.
-    phi: f64,
+    near: Near,
     /// The samples on both sides of it.
     between: [Sample; 2],
 }
@@ -67,60 +64,24 @@ impl Candidate {
 /// How far, in parts of their distance, a crossing may be outside of the samples that it is between but for rounding.
 const NEXT_TO: f64 = 1e-9;
 
-/// Samples that the start of a crossing is interpolated from: with as many, most starts need a single Newton step.
-const AROUND: usize = 12;
+/// How much the load of a fold between two samples, as all samples around tell it, may differ from what the two alone tell: more
+/// is a jump of the first fold.
+const ASTRAY: f64 = 0.05;
 
-/// An edge near two neighbouring samples, as a function of `ln D`.
-struct Line {
-    edge: Edge,
-    pair: [Sample; 2],
-    /// The samples around, where `ln D` grows or falls throughout.
-    around: Option<(Places<AROUND>, [Sample; AROUND])>,
-}
-
-impl Line {
-    fn new(edge: Edge, samples: &[Sample], i: usize) -> Self {
-        let start = stencil::<AROUND>(i, samples.len());
-        let around = samples[start..].first_chunk::<AROUND>().and_then(|around| {
-            let places = Places::new(around.map(|sample| sample.ln_distance))?;
-            Some((places, *around))
-        });
-        Self {
-            edge,
-            pair: [samples[i], samples[i + 1]],
-            around,
-        }
-    }
-
-    /// Contact, load and direction of the pole where `ln D` is `target`: by all samples if that leads between the two, else
-    /// by the two.
-    fn at(&self, target: f64) -> (f64, f64, f64) {
-        let [a, b] = self.pair;
-        if let Some((places, around)) = &self.around {
-            let shares = places.shares(target);
-            let sum = |f: fn(&Sample) -> f64| -> f64 {
-                shares
-                    .iter()
-                    .zip(around)
-                    .map(|(share, sample)| share * f(sample))
-                    .sum()
-            };
-            let (tau, load) = match self.edge {
-                Edge::Fold => {
-                    let tau = sum(|s| s.tau.ln()).exp();
-                    (tau, sum(|s| s.load * s.tau * s.tau) / (tau * tau))
-                }
-                Edge::Tip => (a.tau, sum(|s| s.load)),
-            };
-            if (tau - a.tau) * (tau - b.tau) <= 0.0 && (load - a.load) * (load - b.load) <= 0.0 {
-                return (tau, load, sum(|s| s.phi));
+/// The place on `edge` where `ln D` is `target` between two samples.
+fn near(edges: &Edges, edge: Edge, pair: [&Sample; 2], target: f64) -> Near {
+    let between = pair.map(|sample| sample.place);
+    match edge {
+        Edge::Fold => {
+            let by_all = edges.fold_line.at(between, target);
+            let by_two = Near::between(pair, target);
+            if (by_all.load / by_two.load - 1.0).abs() < ASTRAY {
+                by_all
+            } else {
+                by_two
             }
         }
-        let t = (target - a.ln_distance) / (b.ln_distance - a.ln_distance);
-        let scaled = |s: Sample| s.load * s.tau * s.tau;
-        let tau = a.tau + t * (b.tau - a.tau);
-        let load = (scaled(a) + t * (scaled(b) - scaled(a))) / (tau * tau);
-        (tau, load, a.phi + t * (b.phi - a.phi))
+        Edge::Tip => edges.tip_line.at(between, target),
     }
 }
 
@@ -138,25 +99,18 @@ pub fn crossings(
         .collect();
     let mut candidates = Vec::new();
     for (edge, samples) in [(Edge::Fold, &edges.fold), (Edge::Tip, &edges.tip)] {
-        for (i, pair) in samples.windows(2).enumerate() {
+        for pair in samples.windows(2) {
             let (a, b) = (pair[0], pair[1]);
             let crossed = |target: &f64| (a.ln_distance <= *target) != (b.ln_distance <= *target);
             let between = targets
                 .iter()
                 .enumerate()
                 .filter(|(_, target)| crossed(target));
-            let mut line = None;
-            candidates.extend(between.map(|(row, target)| {
-                let line = line.get_or_insert_with(|| Line::new(edge, samples, i));
-                let (tau, load, phi) = line.at(*target);
-                Candidate {
-                    row,
-                    edge,
-                    tau,
-                    load,
-                    phi,
-                    between: [a, b],
-                }
+            candidates.extend(between.map(|(row, target)| Candidate {
+                row,
+                edge,
+                near: near(edges, edge, [&a, &b], *target),
+                between: [a, b],
             }));
         }
     }
@@ -187,15 +141,18 @@ fn polish(
             rod: *rod,
             edge: c.edge,
             pole_distance: rows[c.row].pole_distance,
-            from: DVec2::new(c.tau, c.load),
+            from: DVec2::new(c.near.tau, c.near.load),
         })
         .collect();
-    let polished = seek_finely(method, &wanted).into_iter().zip(candidates);
+    let bends: Vec<Option<Bends>> = candidates.iter().map(|c| c.near.bends).collect();
+    let polished = seek_nearby(method, &wanted, &bends)
+        .into_iter()
+        .zip(candidates);
     polished
         .map(|(sought, c)| {
             let row = &rows[c.row];
             let crossing = |point: DVec2, landing: &Landing, residual: f64| {
-                let phi = nearest_turn(landing.pole.to_angle(), c.phi);
+                let phi = nearest_turn(landing.pole.to_angle(), c.near.phi);
                 Crossing {
                     edge: c.edge,
                     tau: point.x,
@@ -222,9 +179,9 @@ fn polish(
             // method has found may be on another sheet: the row must be walked.
             Crossing {
                 edge: c.edge,
-                tau: c.tau,
-                load: c.load,
-                push: side.sign() * (c.phi - row.touch),
+                tau: c.near.tau,
+                load: c.near.load,
+                push: side.sign() * (c.near.phi - row.touch),
                 residual: f64::INFINITY,
             }
         })

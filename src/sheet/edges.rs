@@ -1,11 +1,13 @@
 //! The edges of the stable sheet, sampled: the fold at every column, the tip from first touch to the corner.
 
 use super::columns::Columns;
+use super::fold::FoldPoint;
 use super::lattice::Lattice;
-use super::polynomial::{NODES, Polynomial, stencil};
+use super::near::{FoldLine, TipLine};
 use super::rows::Row;
 use crate::model::batch::{Launch, Method, land, land_in_company};
-use crate::model::{First, Landing, Nystrom8, Rod, Second, nearest_turn};
+use crate::model::{Curved, First, Landing, Nystrom8, Rod, Second, nearest_turn};
+use glam::DVec2;
 
 /// Samples along the tip edge; the distance has at most a few extrema there.
 const TIP_SAMPLES: usize = 32;
@@ -24,6 +26,8 @@ pub const JUMP: f64 = 0.25;
 /// A computed point of an edge.
 #[derive(Clone, Copy, Debug)]
 pub struct Sample {
+    /// Where among the even samples of the edge.
+    pub place: f64,
     /// `tau` of the contact.
     pub tau: f64,
     /// Signed load.
@@ -35,8 +39,9 @@ pub struct Sample {
 }
 
 impl Sample {
-    fn new(tau: f64, load: f64, landing: &Landing, phi_near: f64) -> Self {
+    fn new(place: f64, tau: f64, load: f64, landing: &Landing, phi_near: f64) -> Self {
         Self {
+            place,
             tau,
             load,
             ln_distance: landing.pole.length().ln(),
@@ -50,21 +55,36 @@ impl Sample {
 pub struct Edges {
     /// From the base to the corner.
     pub fold: Vec<Sample>,
+    /// The same between the samples.
+    pub fold_line: FoldLine,
     /// From first touch to the corner.
     pub tip: Vec<Sample>,
+    /// The same between the samples.
+    pub tip_line: TipLine,
 }
 
 impl Edges {
     /// Samples both edges; `lattice` knows the whole turns of the pole's direction.
     pub fn new(method: Method, rod: &Rod, columns: &Columns, lattice: &Lattice) -> Self {
-        let mut tip = tip_samples(method, rod, columns);
         let fold: Vec<Sample> = columns.folds[..=columns.tip]
             .iter()
             .zip(lattice.phi_at_fold())
-            .map(|(fold, phi)| Sample::new(fold.tau, fold.load, &fold.landing.landing, phi))
+            .enumerate()
+            .map(|(i, (fold, phi))| {
+                Sample::new(i as f64, fold.tau, fold.load, &fold.landing.landing, phi)
+            })
             .collect();
-        tip.extend(fold.last());
-        Self { fold, tip }
+        let (mut tip, tip_line) = tip_samples(method, rod, &columns.folds[columns.tip]);
+        tip.extend(fold.last().map(|corner| Sample {
+            place: TIP_SAMPLES as f64,
+            ..*corner
+        }));
+        Self {
+            fold,
+            fold_line: FoldLine::new(&columns.folds, lattice.phi_at_fold()),
+            tip,
+            tip_line,
+        }
     }
 
     /// Whether the distance grows along the fold from the base to the tip, so that no row crosses it twice. Where the
@@ -85,47 +105,67 @@ impl Edges {
     }
 }
 
-/// The tip edge from first touch to before the corner, with its extrema of distance among the samples.
-fn tip_samples(method: Method, rod: &Rod, columns: &Columns) -> Vec<Sample> {
-    let corner = &columns.folds[columns.tip];
+/// The tip edge from first touch to before the `corner`, with its extrema of distance among the samples, and the line through the
+/// others and the corner.
+fn tip_samples(method: Method, rod: &Rod, corner: &FoldPoint) -> (Vec<Sample>, TipLine) {
+    let load_step = corner.load / TIP_SAMPLES as f64;
     let launch = |load| Launch {
         rod: *rod,
         tau: corner.tau,
         load,
     };
-    let launches: Vec<Launch> = (0..TIP_SAMPLES)
-        .map(|i| launch(corner.load * i as f64 / TIP_SAMPLES as f64))
-        .collect();
-    let landings = land_in_company::<Nystrom8, First>(method, &launches);
+    let loads = (0..TIP_SAMPLES).map(|i| load_step * i as f64);
+    let launches: Vec<Launch> = loads.map(launch).collect();
+    let mut landings = land_in_company::<Nystrom8, First>(method, &launches);
+    landings.push(corner.landing.landing);
+    let mut phis = Vec::with_capacity(landings.len());
+    for landing in &landings {
+        let near = phis.last().copied().unwrap_or_default();
+        phis.push(nearest_turn(landing.pole.to_angle(), near));
+    }
+    let line = TipLine::new(corner.tau, load_step, &landings, &phis);
     let mut samples: Vec<Sample> = Vec::new();
-    let mut push = |launch: &Launch, landing: &Landing| {
-        let near = samples.last().map_or(0.0, |sample| sample.phi);
-        samples.push(Sample::new(launch.tau, launch.load, landing, near));
-    };
     for i in 0..TIP_SAMPLES {
-        push(&launches[i], &landings[i]);
-        let Some(next) = landings.get(i + 1) else {
-            break;
+        let sample = |place: f64, launch: &Launch, landing: &Landing| {
+            Sample::new(place, launch.tau, launch.load, landing, phis[i])
         };
+        samples.push(sample(i as f64, &launches[i], &landings[i]));
         // A slope of exactly 0, as a straight whisker's at first touch, is a sample already.
-        if landings[i].by_load.x * next.by_load.x < 0.0 {
-            let start = stencil::<NODES>(i, landings.len());
-            let slopes = landings[start..].iter().take(NODES).map(|l| l.by_load.x);
-            let offset = (i - start) as f64;
-            let between = [offset, offset + 1.0];
-            let place = Polynomial::through(slopes).solve(0.0, offset + 0.5, between);
-            let near = corner.load * (start as f64 + place) / TIP_SAMPLES as f64;
-            let launch = launch(extremum(method, launches[i], launches[i + 1].load, near));
-            let landing = land::<Nystrom8, First>(method, &[launch])[0];
-            push(&launch, &landing);
+        let next = launches.get(i + 1).zip(landings.get(i + 1));
+        if let Some((to, next)) = next
+            && landings[i].by_load.x * next.by_load.x < 0.0
+        {
+            let (load, landing) = extremum(method, launches[i], to.load, &line, i);
+            let launch = launch(load);
+            samples.push(sample(load / load_step, &launch, &landing));
         }
     }
-    samples
+    (samples, line)
 }
 
-/// The load between `from` and `to` at which `dlnD/dload` vanishes at the contact of `from`: Newton's method from `near`,
-/// bisecting where a step would leave the bracket.
-fn extremum(method: Method, from: Launch, to: f64, near: f64) -> f64 {
+/// The load between the samples `from` and `to`, the one after place `i` of `line`, at which `dlnD/dload` vanishes, and the landing
+/// there: mostly the `line` knows it, and one trajectory with it all the rest.
+fn extremum(method: Method, from: Launch, to: f64, line: &TipLine, i: usize) -> (f64, Landing) {
+    let (near, by_load_load) = line.level([i as f64, (i + 1) as f64]);
+    let landing = land::<Nystrom8, First>(method, &[Launch { load: near, ..from }])[0];
+    let step = -landing.by_load.x / by_load_load.x;
+    if step.abs() <= LAST_STEP * (to - from.load).abs() {
+        let here = Curved {
+            landing,
+            by_load_load,
+            ..Curved::default()
+        };
+        return (near + step, here.moved(DVec2::new(0.0, step)).landing);
+    }
+    let load = bracketed_extremum(method, from, to, near);
+    (
+        load,
+        land::<Nystrom8, First>(method, &[Launch { load, ..from }])[0],
+    )
+}
+
+/// The same load by Newton's method from `near` and second derivatives, bisecting where a step would leave the bracket.
+fn bracketed_extremum(method: Method, from: Launch, to: f64, near: f64) -> f64 {
     let at = |load: f64| land::<Nystrom8, Second>(method, &[Launch { load, ..from }])[0];
     let (mut low, mut high) = (from.load, to);
     let mut load = near;

@@ -31,7 +31,7 @@ pub struct Level {
 
 /// How far beyond the lattice's own detachment angle, in radians, a guess is still made: many times the
 /// interpolation error, so that no cell of the sheet is missed.
-const MARGIN: f64 = 1e-3;
+const MARGIN: f64 = 1e-4;
 
 impl Level {
     /// Guesses for growing push angles (at least 0, in radians, as magnitudes); `None` outside the sheet.

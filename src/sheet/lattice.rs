@@ -8,7 +8,7 @@ use super::abreast::{Across, Numbers, Patch};
 use super::columns::Columns;
 use super::guess::Level;
 use super::loads::{LOADS, PARTS};
-use super::polynomial::{LAST_STEP, NODES, Polynomial, stencil};
+use super::polynomial::{LAST_STEP, NODES, Polynomial, differences_of_each, stencil};
 use super::rows::Row;
 use crate::model::batch::{Launch, Method, Unit, land_in_company};
 use crate::model::simd::WIDTH;
@@ -187,28 +187,12 @@ impl Lattice {
 
 /// The polynomials through each [`NODES`] neighbours of `nodes`, or through all where there are fewer.
 fn patches(nodes: &[Nodes]) -> Vec<Patch> {
-    let nothing = Patch {
-        ln_distance: [[0.0; WIDTH]; NODES],
-        phi: [[0.0; WIDTH]; NODES],
+    let each = |number: fn(&Nodes) -> Numbers| {
+        let numbers: Vec<Numbers> = nodes.iter().map(number).collect();
+        differences_of_each(&numbers).into_iter()
     };
-    let mut patches = vec![nothing; nodes.len().saturating_sub(NODES) + 1];
-    let mut differences = nodes.to_vec();
-    for level in 0..NODES.min(nodes.len()) {
-        if level > 0 {
-            let part = 1.0 / level as f64;
-            for i in 0..nodes.len() - level {
-                let next = differences[i + 1];
-                let here = &mut differences[i];
-                for m in 0..WIDTH {
-                    here.ln_distance[m] = (next.ln_distance[m] - here.ln_distance[m]) * part;
-                    here.phi[m] = (next.phi[m] - here.phi[m]) * part;
-                }
-            }
-        }
-        for (patch, difference) in patches.iter_mut().zip(&differences) {
-            patch.ln_distance[level] = difference.ln_distance;
-            patch.phi[level] = difference.phi;
-        }
-    }
-    patches
+    each(|nodes| nodes.ln_distance)
+        .zip(each(|nodes| nodes.phi))
+        .map(|(ln_distance, phi)| Patch { ln_distance, phi })
+        .collect()
 }

@@ -17,6 +17,7 @@ mod guess;
 mod lattice;
 mod level;
 mod loads;
+mod near;
 mod pieces;
 mod polynomial;
 mod rows;

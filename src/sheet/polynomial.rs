@@ -1,4 +1,4 @@
-//! Interpolation by polynomials: of degree 9 in Newton's form on evenly spaced samples, else barycentric.
+//! Interpolation by polynomials of degree 9, in Newton's form on evenly spaced samples.
 
 /// Nodes of a polynomial.
 pub const NODES: usize = 10;
@@ -28,24 +28,10 @@ impl Polynomial {
     /// Through each [`NODES`] neighbours of `values`, or through all where there are fewer: the first one through `values[0]`
     /// at 0, the next one through `values[1]` at 0, ...
     pub fn through_each(values: &[f64]) -> Vec<Self> {
-        let runs = values.len().saturating_sub(NODES) + 1;
-        let zero = Self {
-            differences: [0.0; NODES],
-        };
-        let mut polynomials = vec![zero; runs];
-        let mut differences = values.to_vec();
-        for level in 0..NODES.min(values.len()) {
-            if level > 0 {
-                let part = 1.0 / level as f64;
-                for i in 0..values.len() - level {
-                    differences[i] = (differences[i + 1] - differences[i]) * part;
-                }
-            }
-            for (polynomial, difference) in polynomials.iter_mut().zip(&differences) {
-                polynomial.differences[level] = *difference;
-            }
-        }
-        polynomials
+        let values: Vec<[f64; 1]> = values.iter().map(|value| [*value]).collect();
+        let each = differences_of_each(&values).into_iter();
+        each.map(|differences| Self::of(differences.map(|[difference]| difference)))
+            .collect()
     }
 
     /// Divided differences: the value at 0, the slope from 0 to 1, ...
@@ -72,6 +58,29 @@ impl Polynomial {
     pub fn solve(&self, target: f64, near: f64, between: [f64; 2]) -> f64 {
         bracketed(|t| self.at(t), target, near, between, LAST_STEP)
     }
+}
+
+/// Divided differences of `N` functions at once, through each [`NODES`] neighbours of their `values`, or through all where there
+/// are fewer.
+pub fn differences_of_each<const N: usize>(values: &[[f64; N]]) -> Vec<[[f64; N]; NODES]> {
+    let runs = values.len().saturating_sub(NODES) + 1;
+    let mut each = vec![[[0.0; N]; NODES]; runs];
+    let mut differences = values.to_vec();
+    for level in 0..NODES.min(values.len()) {
+        if level > 0 {
+            let part = 1.0 / level as f64;
+            for i in 0..values.len() - level {
+                let next = differences[i + 1];
+                for (here, next) in differences[i].iter_mut().zip(next) {
+                    *here = (next - *here) * part;
+                }
+            }
+        }
+        for (run, difference) in each.iter_mut().zip(&differences) {
+            run[level] = *difference;
+        }
+    }
+    each
 }
 
 /// Where a function with the value and slope `at` is `target` between `low` and `high`, at which it lies on different sides of
@@ -114,51 +123,6 @@ pub fn bracketed(
 #[must_use]
 pub fn stencil<const N: usize>(at: usize, count: usize) -> usize {
     at.saturating_sub(N / 2 - 1).min(count.saturating_sub(N))
-}
-
-/// Places of samples, in growing or falling order, that polynomials go through.
-#[derive(Clone, Copy, Debug)]
-pub struct Places<const N: usize> {
-    places: [f64; N],
-    weights: [f64; N],
-}
-
-impl<const N: usize> Places<N> {
-    /// `None` where the order changes.
-    pub fn new(places: [f64; N]) -> Option<Self> {
-        let rising = places[1] > places[0];
-        let in_order = |pair: &[f64]| {
-            if rising {
-                pair[0] < pair[1]
-            } else {
-                pair[0] > pair[1]
-            }
-        };
-        let weight = |i: usize| {
-            let others = (0..N).filter(|j| *j != i);
-            1.0 / others.map(|j| places[i] - places[j]).product::<f64>()
-        };
-        places.windows(2).all(in_order).then(|| Self {
-            weights: std::array::from_fn(weight),
-            places,
-        })
-    }
-
-    /// By how much each sample counts `at` a place.
-    #[must_use]
-    pub fn shares(&self, at: f64) -> [f64; N] {
-        let mut shares = [0.0; N];
-        let mut sum = 0.0;
-        for ((share, place), weight) in shares.iter_mut().zip(self.places).zip(self.weights) {
-            if at == place {
-                let hit = |other: f64| if other == place { 1.0 } else { 0.0 };
-                return self.places.map(hit);
-            }
-            *share = weight / (at - place);
-            sum += *share;
-        }
-        shares.map(|share| share / sum)
-    }
 }
 
 #[cfg(test)]

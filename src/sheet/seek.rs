@@ -1,7 +1,7 @@
 //! Newton's method for the points in which a row leaves the sheet.
 
 use crate::model::batch::{Launch, Method, land, land_in_company};
-use crate::model::{Curved, Nystrom8, Rod, Second, arclength, limited};
+use crate::model::{Curved, First, Nystrom8, Rod, Second, arclength, limited};
 use glam::DVec2;
 
 /// The edge that a point lies on.
@@ -65,6 +65,45 @@ pub fn seek_finely(method: Method, wanted: &[Wanted]) -> Vec<Sought> {
     newton(method, wanted, 0, land_in_company::<Nystrom8, Second>)
 }
 
+/// The same for starts whose second derivatives may be known from their neighbours (toward the tip those by the load are enough):
+/// most then need a single trajectory, with first derivatives.
+#[must_use]
+pub fn seek_nearby(method: Method, wanted: &[Wanted], bends: &[Option<Bends>]) -> Vec<Sought> {
+    let launch = |wanted: &Wanted| Launch {
+        rod: wanted.rod,
+        tau: wanted.from.x,
+        load: wanted.from.y,
+    };
+    let launches: Vec<Launch> = wanted.iter().map(launch).collect();
+    let landings = land_in_company::<Nystrom8, First>(method, &launches);
+    let mut sought = Vec::with_capacity(wanted.len());
+    let (mut left, mut again) = (Vec::new(), Vec::new());
+    for (i, (goal, (landing, bends))) in wanted.iter().zip(landings.iter().zip(bends)).enumerate() {
+        let [by_tau_tau, by_tau_load, by_load_load] = bends.unwrap_or_default();
+        let here = Curved {
+            landing: *landing,
+            by_tau_tau,
+            by_tau_load,
+            by_load_load,
+        };
+        let last_step = bends.map(|_| LAST_STEP);
+        let (found, next) = advance(goal, goal.from, &here, last_step);
+        if !found.is_found {
+            let from = if is_inside(next) { next } else { goal.from };
+            left.push(i);
+            again.push(Wanted { from, ..*goal });
+        }
+        sought.push(found);
+    }
+    for (i, found) in left.into_iter().zip(seek_finely(method, &again)) {
+        sought[i] = found;
+    }
+    sought
+}
+
+/// Second derivatives of `(ln D, phi)`: twice by `tau`, by `tau` and load, twice by load.
+pub type Bends = [DVec2; 3];
+
 fn newton(
     method: Method,
     wanted: &[Wanted],
@@ -93,37 +132,50 @@ fn newton(
             let Some(here) = landings.next() else {
                 return false;
             };
-            let (goal, point) = (&wanted[i], points[i]);
-            let miss = (goal.pole_distance / here.landing.pole.length()).ln();
-            let step = match goal.edge {
-                Edge::Fold => fold_step(&here, miss),
-                Edge::Tip => DVec2::new(0.0, miss / here.landing.by_load.x),
-            };
-            let (step, length) = limited(step, arclength(&goal.rod, point.x), point.y);
-            points[i] = point + step;
-            let is_last = !is_coarse && length <= LAST_STEP;
-            found[i] = Some(if is_last {
-                let here = here.moved(step);
-                Sought {
-                    point: points[i],
-                    here,
-                    miss: (goal.pole_distance / here.landing.pole.length()).ln(),
-                    left: length * length,
-                    is_found: true,
-                }
-            } else {
-                Sought {
-                    point,
-                    here,
-                    miss,
-                    left: length,
-                    is_found: false,
-                }
-            });
-            !is_last && step.is_finite() && points[i].x > 0.0
+            let last_step = (!is_coarse).then_some(LAST_STEP);
+            let (sought, next) = advance(&wanted[i], points[i], &here, last_step);
+            points[i] = next;
+            found[i] = Some(sought);
+            !sought.is_found && is_inside(next)
         });
     }
     found.into_iter().flatten().collect()
+}
+
+/// A step from `point`, which is `here`, toward the goal, where it leads, and where it ends; up to the length `last_step` there is
+/// nothing more to find.
+fn advance(goal: &Wanted, point: DVec2, here: &Curved, last_step: Option<f64>) -> (Sought, DVec2) {
+    let miss = (goal.pole_distance / here.landing.pole.length()).ln();
+    let step = match goal.edge {
+        Edge::Fold => fold_step(here, miss),
+        Edge::Tip => DVec2::new(0.0, miss / here.landing.by_load.x),
+    };
+    let (step, length) = limited(step, arclength(&goal.rod, point.x), point.y);
+    let next = point + step;
+    let sought = if last_step.is_some_and(|last| length <= last) {
+        let here = here.moved(step);
+        Sought {
+            point: next,
+            here,
+            miss: (goal.pole_distance / here.landing.pole.length()).ln(),
+            left: length * length,
+            is_found: true,
+        }
+    } else {
+        Sought {
+            point,
+            here: *here,
+            miss,
+            left: length,
+            is_found: false,
+        }
+    };
+    (sought, next)
+}
+
+/// Whether a step has led to a place that a whisker has.
+fn is_inside(point: DVec2) -> bool {
+    point.is_finite() && point.x > 0.0
 }
 
 /// The step toward the point of the fold whose `ln D` is larger by `miss`.
