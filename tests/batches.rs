@@ -1,7 +1,7 @@
 //! Batches of trajectories that want different numbers of steps: alone, or in company.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-use whiskmap::model::batch::{Launch, Method, land, land_in_company};
+use whiskmap::model::batch::{Launch, Method, land, land_each, land_in_company};
 use whiskmap::model::{Effects, First, Landing, Nystrom8, RadiusProfile, Resolution, Rod, Second};
 
 /// Contacts from next to the base to the tip, from no load to that of the fold, on slender and blunt whiskers.
@@ -49,6 +49,25 @@ fn measured(count: usize) -> Vec<Launch> {
         }
     };
     launches(count).into_iter().map(launch).collect()
+}
+
+/// One after the other, every launch gets the answer that it gets in a batch, once.
+#[test]
+fn each_gets_its_own_answer() {
+    for launches in [0, 1, 16, 100, 3000]
+        .map(launches)
+        .into_iter()
+        .chain([measured(300)])
+    {
+        let method = method(20, &launches);
+        let together = land::<Nystrom8, First>(method, &launches);
+        let mut each = vec![None; launches.len()];
+        land_each::<Nystrom8, First>(method, launches.iter().copied(), |i, landing| {
+            assert_eq!(each[i].replace(*landing), None);
+        });
+        let together: Vec<Option<Landing>> = together.into_iter().map(Some).collect();
+        assert_eq!(each, together);
+    }
 }
 
 /// Who shares a block takes at least the steps that it would take alone: nobody's answer is worse than the worst

@@ -9,8 +9,8 @@ use rayon::prelude::*;
 /// Off by less than 5e-8 (`tests/gpu_engine`): the refinement then mostly needs a single trajectory.
 const RESOLUTION: Resolution = Resolution::COARSE;
 
-/// Shots for one thread: so many that nearly all blocks are full, and that starting a stage takes no time.
-const SHOTS_OF_A_THREAD: usize = 16_384;
+/// Shots for one thread: so many that nearly all blocks are full, and no more than its cache holds of their states.
+const SHOTS_OF_A_THREAD: usize = 8192;
 
 /// Residual at which the refinement takes over, in whisker lengths: one Newton step away from the resolution's error.
 const TOLERANCE: f64 = 1e-6;

@@ -176,3 +176,81 @@ fn part(numbers: &Numbers, from: usize) -> Numbers {
 fn keep<T: Lanes>(numbers: &mut Numbers, from: usize, lanes: T) {
     numbers[from..from + T::LANES].copy_from_slice(&lanes.unpack()[..T::LANES]);
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::batch::Unit;
+    use crate::sheet::loads::PARTS;
+
+    /// A value for each lane that rises from 0 at 0 to 3 at the last of `places`, level at the end but for some.
+    fn values(places: &[f64], lane: usize) -> Vec<f64> {
+        let last = places[places.len() - 1];
+        let power = 1.0 + (0.618 * lane as f64).fract() * 2.0;
+        let value = |place: &f64| 3.0 * (1.0 - (1.0 - place / last).powf(power));
+        places.iter().map(value).collect()
+    }
+
+    #[test]
+    fn what_is_found_together_is_found_alone() {
+        let places: Vec<f64> = (0..NODES).map(|place| place as f64).collect();
+        let of_lane = |lane| Polynomial::through(values(&places, lane));
+        let mut patch = Patch {
+            ln_distance: [[0.0; WIDTH]; NODES],
+            phi: [[0.0; WIDTH]; NODES],
+        };
+        for lane in 0..WIDTH {
+            for i in 0..NODES {
+                patch.ln_distance[i][lane] = of_lane(lane).differences()[i];
+                patch.phi[i][lane] = of_lane(lane + 1).differences()[i];
+            }
+        }
+        let [ln_tau, ln_q] = [of_lane(WIDTH + 1), of_lane(WIDTH + 2)];
+        for unit in [Unit::detect(), Unit::scalar()] {
+            for target in [0.1, 0.7, 1.9, 2.5] {
+                let alone: [f64; WIDTH] = std::array::from_fn(|lane| {
+                    of_lane(lane).solve(target, 4.5, [0.0, (NODES - 1) as f64])
+                });
+                let crossed = unit.run(Across {
+                    patch: &patch,
+                    ln_tau: &ln_tau,
+                    ln_q: &ln_q,
+                    target,
+                    near: alone.map(|place| place + 0.1),
+                });
+                for (lane, place) in alone.into_iter().enumerate() {
+                    assert!(crossed.step[lane].abs() < 1e-4, "{unit} {target} {lane}");
+                    let near = |found: f64, value: f64| (found - value).abs() < 1e-6;
+                    assert!(near(crossed.place[lane], place), "{unit} {target} {lane}");
+                    assert!(near(crossed.phi[lane], of_lane(lane + 1).at(place).0));
+                    assert!(near(crossed.ln_tau[lane], ln_tau.at(place).0));
+                    assert!(near(crossed.ln_q[lane], ln_q.at(place).0));
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_row_finds_its_push_angles() {
+        let [push, tau, load] =
+            [0, 1, 2].map(|lane| Curve::through(0, &values(PARTS.as_slice(), lane)));
+        for unit in [Unit::detect(), Unit::scalar()] {
+            let targets: Numbers = std::array::from_fn(|lane| 0.1 + 0.15 * lane as f64);
+            let alone = targets.map(|target| push.solve(target, 0.5, [0.0, 1.0]));
+            let found = unit.run(Along {
+                push: &push,
+                tau: &tau,
+                load: &load,
+                targets,
+                near: alone.map(|place| place + 0.02),
+            });
+            for (lane, place) in alone.into_iter().enumerate() {
+                assert!(found.step[lane].abs() < 1e-5, "{unit} {lane}");
+                let near = |found: f64, value: f64| (found - value).abs() < 1e-8;
+                assert!(near(found.place[lane], place), "{unit} {lane}");
+                assert!(near(found.tau[lane], tau.at(place).0), "{unit} {lane}");
+                assert!(near(found.load[lane], load.at(place).0), "{unit} {lane}");
+            }
+        }
+    }
+}

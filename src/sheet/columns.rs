@@ -15,10 +15,10 @@ use crate::model::{Rod, Side, arclength};
 const SPACING: f64 = 0.34;
 
 /// Columns beyond the tip.
-pub const BEYOND_TIP: usize = 3;
+pub const BEYOND_TIP: usize = 2;
 
 /// Columns between the row nearest to the base and the end of the lattice.
-const BEYOND_NEAREST: usize = 4;
+const BEYOND_NEAREST: usize = 2;
 
 /// Columns of a further batch.
 const FURTHER: usize = 8;
@@ -54,7 +54,7 @@ fn u_of(rod: &Rod, tau: f64) -> f64 {
     tau.ln() + tau - softening
 }
 
-/// Inverse of [`u_of`] by Newton's method from `near`, bisecting where a step would leave the bracket.
+/// Inverse of [`u_of`] by Newton's method for `ln tau` from `near`, bisecting where a step would leave the bracket.
 fn tau_of(rod: &Rod, u: f64, near: f64) -> f64 {
     let softening = (-rod.gradient).max(0.0);
     let end = if softening > rod.taper {
@@ -72,15 +72,19 @@ fn tau_of(rod: &Rod, u: f64, near: f64) -> f64 {
         } else {
             low = tau;
         }
-        let modulus = 1.0 - softening * arclength(rod, tau);
-        let slope = 1.0 / tau + 1.0 + softening * rod.radius(tau) / modulus;
-        let newton = tau - miss / slope;
+        let mut slope = 1.0 + tau;
+        if softening > 0.0 {
+            let modulus = 1.0 - softening * arclength(rod, tau);
+            slope += softening * rod.radius(tau) * tau / modulus;
+        }
+        let newton = tau * (-miss / slope).exp();
         let next = if low < newton && newton < high {
             newton
         } else {
             0.5 * (low + high)
         };
-        if (next - tau).abs() <= 2.0 * f64::EPSILON * tau {
+        // The square of the step is left.
+        if (next - tau).abs() <= 1e-9 * tau {
             return next;
         }
         tau = next;

@@ -10,7 +10,7 @@ use crate::model::{Curved, First, Landing, Nystrom8, Rod, Second, nearest_turn};
 use glam::DVec2;
 
 /// Samples along the tip edge; the distance has at most a few extrema there.
-const TIP_SAMPLES: usize = 32;
+const TIP_SAMPLES: usize = 24;
 
 /// Relative slack with which a distance counts as reached, so that a whisker whose resting tip just touches
 /// the pole does touch it, whatever the rounding.

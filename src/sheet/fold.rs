@@ -17,10 +17,10 @@ pub struct FoldPoint {
 }
 
 /// Samples of `q = |load| s^2` per round of the search; measured radii add their softness as a factor.
-const SAMPLES: usize = 16;
+const SAMPLES: usize = 11;
 
 /// Distance of the first samples: the second fold is farther from the first than this.
-const FIRST_STEP: f64 = 0.5;
+const FIRST_STEP: f64 = 0.75;
 
 /// Where the search begins. Without measured radii and moduli that fall toward the tip, which `q` does not know of, the sheet is
 /// wider: no first fold of 2,000 random whiskers with friction up to 2 and `A*` up to 2 lay below 6.5.

@@ -6,7 +6,7 @@ use std::f64::consts::FRAC_PI_2;
 use std::sync::LazyLock;
 
 /// Loads per column, first touch and the fold among them.
-pub const LOADS: usize = 14;
+pub const LOADS: usize = 16;
 
 /// The last step of Newton's method along a level curve: its square is left, and interpolation leaves more than that.
 pub const LAST_STEP: f64 = 1e-5;

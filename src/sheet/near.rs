@@ -179,3 +179,34 @@ impl TipLine {
         DVec2::new(found.slopes[2], found.slopes[3]) / self.load_step
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two functions on even samples, found by either of them: also between places that are no samples.
+    #[test]
+    fn a_line_knows_what_is_between_its_samples() {
+        let [f, g] = [|t: f64| (0.1 * t).exp(), |t: f64| (0.1 * t).sin()];
+        for count in [9, NODES, 30] {
+            let samples: Vec<[f64; 2]> = (0..count).map(|t| [f(t as f64), g(t as f64)]).collect();
+            let line = Line::new(&samples);
+            for (from, to, part) in [(0, 1, 0.2), (4, 5, 0.0), (6, 7, 0.7), (7, 8, 1.0)] {
+                let between = [f64::from(from), f64::from(to)];
+                let t = between[0] + part;
+                for (which, target) in [f(t), g(t)].into_iter().enumerate() {
+                    for between in [between, [between[0], between[1].midpoint(t)]] {
+                        let found = line.find(which, between, target);
+                        let values = [f(t), g(t)];
+                        let slopes = [0.1 * f(t), 0.1 * (0.1 * t).cos()];
+                        assert!((found.place - t).abs() < 1e-9, "{count} {t} {which}");
+                        for i in 0..2 {
+                            assert!((found.values[i] - values[i]).abs() < 1e-9, "{count} {t}");
+                            assert!((found.slopes[i] - slopes[i]).abs() < 1e-8, "{count} {t}");
+                        }
+                    }
+                }
+            }
+        }
+    }
+}

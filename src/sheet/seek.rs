@@ -188,3 +188,60 @@ fn fold_step(here: &Curved, miss: f64) -> DVec2 {
         -miss * by_det.x - det * by_distance.x,
     ) / by_distance.perp_dot(by_det)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::Effects;
+
+    /// Folds and places at the tip, from starts off by 1e-8 and 1e-5, with known second derivatives, with wrong ones and with none.
+    #[test]
+    fn neighbours_lead_to_the_same_place() {
+        let rod = Rod {
+            taper: 0.95,
+            bend: 0.4,
+            pole: 0.0125,
+            ..Rod::default()
+        };
+        let method = Method::fine(Effects::of([&rod]));
+        let goals = [
+            (Edge::Fold, rod.tau(0.8), 12.0),
+            (Edge::Tip, rod.tau_tip(), 3.0),
+        ];
+        for (edge, tau, load) in goals {
+            let start = Wanted {
+                rod,
+                edge,
+                pole_distance: 0.75,
+                from: DVec2::new(tau, load),
+            };
+            let distance = match edge {
+                Edge::Fold => 0.75,
+                Edge::Tip => land::<Nystrom8, Second>(method, &[Launch { rod, tau, load }])[0]
+                    .landing
+                    .pole
+                    .length(),
+            };
+            let goal = Wanted {
+                pole_distance: distance,
+                ..start
+            };
+            let known = seek_finely(method, &[goal])[0];
+            assert!(known.is_found && known.miss.abs() < 1e-12, "{edge:?}");
+            let here = &known.here;
+            let bends = [here.by_tau_tau, here.by_tau_load, here.by_load_load];
+            for off in [1e-8, 1e-5] {
+                let moved = DVec2::new(if edge == Edge::Fold { off } else { 0.0 }, off);
+                let from = known.point * (DVec2::ONE + moved);
+                for bends in [Some(bends), Some(bends.map(|bend| 1.1 * bend)), None] {
+                    let found = seek_nearby(method, &[Wanted { from, ..goal }], &[bends])[0];
+                    let away = (found.point / known.point - DVec2::ONE).abs();
+                    assert!(found.is_found && found.miss.abs() < 1e-12, "{edge:?} {off}");
+                    assert!(away.max_element() < 2e-9, "{edge:?} {off}: {away}");
+                    let [a, b] = [&found, &known].map(|sought| sought.here.landing.pole.to_angle());
+                    assert!((a - b).abs() < 1e-12, "{edge:?} {off}: {a} {b}");
+                }
+            }
+        }
+    }
+}
