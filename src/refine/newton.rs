@@ -17,8 +17,8 @@ const LEFT_BY_STEP: f64 = 20.0;
 /// The largest `|load| s^2` that this was measured for; beyond, a whisker coils up.
 const LARGEST_Q: f64 = 12.0;
 
-/// What rounding may leave of it; on the shipped scenes at most 1.4e-14 (`tests/moving.rs`).
-const ROUNDING: f64 = 3e-14;
+/// What rounding may leave of it; on the shipped scenes at most 3.1e-14 (`tests/moving.rs`).
+const ROUNDING: f64 = 6e-14;
 
 /// The determinant of the Jacobian, over the lengths of its columns, from which on such a step cannot cross the fold.
 const CLEAR_OF_FOLD: f64 = 1e-5;

@@ -105,7 +105,7 @@ impl Lattice {
         let mut level = Level::default();
         let mut after = [0; LOADS];
         let mut near = 0;
-        for m in 0..LOADS {
+        for (m, after) in after.iter_mut().enumerate() {
             let Some(k) = self.crossing(m, target, near) else {
                 if level.count == 0 {
                     continue;
@@ -116,7 +116,7 @@ impl Lattice {
                 level.first = m;
             }
             near = k;
-            after[m] = k;
+            *after = k;
             level.count += 1;
         }
         let end = level.first + level.count;

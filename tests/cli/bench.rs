@@ -63,7 +63,9 @@ fn errors_fall_from_rung_to_rung() {
     }
     let ends = report["detachments"].as_array().unwrap();
     let errors = numbers(ends, "/angle_deg/worst");
-    assert!(errors[..6].is_sorted_by(|a, b| a > b), "{errors:?}");
+    // A sheet's few trajectories share blocks, so that two coarse rungs can take the same steps.
+    assert!(errors[..6].is_sorted_by(|a, b| a >= b), "{errors:?}");
+    assert!(errors[0] > 1e4 * errors[5], "{errors:?}");
 }
 
 #[test]
