@@ -1,7 +1,7 @@
 //! The CPU engine: `f64`, SIMD lanes, all threads of the current pool.
 
 use super::{Description, Engine, EngineError, Hit, MOST_STEPS, Outcome, Shot};
-use crate::model::batch::{Kernel, Launch, Method, Unit, land_on, together};
+use crate::model::batch::{Kernel, Launch, Method, Unit, land_on};
 use crate::model::{Effects, First, Integrator, Landing, Nystrom8, Resolution, Rod, arclength};
 use glam::DVec2;
 use rayon::prelude::*;
@@ -9,7 +9,10 @@ use rayon::prelude::*;
 /// Off by less than 5e-8 (`tests/gpu_engine`): the refinement then mostly needs a single trajectory.
 const RESOLUTION: Resolution = Resolution::COARSE;
 
-/// Shots for one thread: so many that nearly all blocks are full, and no more than its cache holds of their states.
+/// Shots that go through all steps together: enough for full lanes, few enough to stay in the inner cache.
+const TOGETHER: usize = 1024;
+
+/// Shots for one thread: so many that nearly all blocks are full, and hardly a page is new for them.
 const SHOTS_OF_A_THREAD: usize = 8192;
 
 /// Residual at which the refinement takes over, in whisker lengths: one Newton step away from the resolution's error.
@@ -38,7 +41,7 @@ impl Solver {
         First: Kernel<M>,
     {
         shots
-            .par_chunks(together(shots.len()))
+            .par_chunks(TOGETHER)
             .flat_map_iter(|shots| self.solve_together::<M>(effects, rods, shots))
             .collect()
     }

@@ -26,7 +26,7 @@ mod rest;
 mod rhs;
 mod rk4;
 mod rod;
-pub(crate) mod simd;
+mod simd;
 mod start;
 mod turn;
 mod units;

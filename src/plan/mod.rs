@@ -25,7 +25,7 @@ const CELLS_IN_FLIGHT: usize = 1 << 17;
 /// Cells of the panels computed, and packed, together: enough for several threads, little memory.
 const CELLS_OF_PANELS: usize = 1 << 18;
 
-/// Most panels computed together: each has two sheets of some 130 KiB.
+/// Most panels computed together: each has two sheets of some 100 KiB.
 const MOST_PANELS: usize = 64;
 
 /// States of a trajectory for the rod itself: cos and sin of its tilt, two coordinates.

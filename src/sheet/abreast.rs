@@ -2,8 +2,7 @@
 
 use super::loads::{Curve, LOADS};
 use super::polynomial::{NODES, Polynomial};
-use crate::model::batch::Task;
-use crate::model::simd::{Lanes, WIDTH};
+use crate::model::batch::{Lanes, Task, WIDTH};
 
 /// A number for every lane.
 pub type Numbers = [f64; WIDTH];

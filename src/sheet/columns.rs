@@ -3,10 +3,10 @@
 //! Columns are evenly spaced in `u = ln tau + tau`, but for a modulus that falls toward the tip: toward the base the sheet depends on the contact through
 //! its logarithm (everything scales), toward a slender tip through `tau`. One column lies exactly at the tip;
 //! a few lie beyond it, because a trajectory does not know where the whisker ends, so that interpolation is
-//! as good at the tip as elsewhere.
+//! nearly as good at the tip as elsewhere.
 
 use super::fold::{FoldPoint, first_folds};
-use super::polynomial::{NODES, Polynomial, stencil};
+use super::polynomial::{Polynomial, stencil};
 use super::rows::Row;
 use crate::model::batch::Method;
 use crate::model::{Rod, Side, arclength};
@@ -15,7 +15,7 @@ use crate::model::{Rod, Side, arclength};
 const SPACING: f64 = 0.34;
 
 /// Columns beyond the tip.
-pub const BEYOND_TIP: usize = 2;
+pub const BEYOND_TIP: usize = 3;
 
 /// Columns between the row nearest to the base and the end of the lattice.
 const BEYOND_NEAREST: usize = 2;
@@ -172,7 +172,7 @@ impl Columns {
             reason = "the cast saturates, and the result is clamped to the columns"
         )]
         let k = (place as usize).min(last);
-        let start = stencil::<NODES>(k, self.folds.len());
+        let start = stencil(k, self.folds.len());
         self.ln_q[start].at(place - start as f64).0.exp() / (tau * tau)
     }
 }

@@ -119,8 +119,11 @@ fn tip_samples(method: Method, rod: &Rod, corner: &FoldPoint) -> (Vec<Sample>, T
     let mut landings = land_in_company::<Nystrom8, First>(method, &launches);
     landings.push(corner.landing.landing);
     let mut phis = Vec::with_capacity(landings.len());
-    for landing in &landings {
-        let near = phis.last().copied().unwrap_or_default();
+    for (i, landing) in landings.iter().enumerate() {
+        let near = i.checked_sub(1).map_or(0.0, |before| {
+            let slopes = landings[before].by_load.y + landing.by_load.y;
+            0.5f64.mul_add(slopes * load_step, phis[before])
+        });
         phis.push(nearest_turn(landing.pole.to_angle(), near));
     }
     let line = TipLine::new(corner.tau, load_step, &landings, &phis);
@@ -131,11 +134,9 @@ fn tip_samples(method: Method, rod: &Rod, corner: &FoldPoint) -> (Vec<Sample>, T
         };
         samples.push(sample(i as f64, &launches[i], &landings[i]));
         // A slope of exactly 0, as a straight whisker's at first touch, is a sample already.
-        let next = launches.get(i + 1).zip(landings.get(i + 1));
-        if let Some((to, next)) = next
-            && landings[i].by_load.x * next.by_load.x < 0.0
-        {
-            let (load, landing) = extremum(method, launches[i], to.load, &line, i);
+        if landings[i].by_load.x * landings[i + 1].by_load.x < 0.0 {
+            let to = load_step * (i + 1) as f64;
+            let (load, landing) = extremum(method, launches[i], to, &line, i);
             let launch = launch(load);
             samples.push(sample(load / load_step, &launch, &landing));
         }
@@ -143,8 +144,8 @@ fn tip_samples(method: Method, rod: &Rod, corner: &FoldPoint) -> (Vec<Sample>, T
     (samples, line)
 }
 
-/// The load between the samples `from` and `to`, the one after place `i` of `line`, at which `dlnD/dload` vanishes, and the landing
-/// there: mostly the `line` knows it, and one trajectory with it all the rest.
+/// The load between the sample `from`, at place `i` of `line`, and the load `to` of the next one at which `dlnD/dload`
+/// vanishes, and the landing there: mostly the `line` knows it, and one trajectory with it all the rest.
 fn extremum(method: Method, from: Launch, to: f64, line: &TipLine, i: usize) -> (f64, Landing) {
     let (near, by_load_load) = line.level([i as f64, (i + 1) as f64]);
     let landing = land::<Nystrom8, First>(method, &[Launch { load: near, ..from }])[0];

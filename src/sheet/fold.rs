@@ -147,7 +147,7 @@ fn bracket(
 fn root(samples: &[f64], dets: &[f64], at: usize) -> f64 {
     let [low, high] = [dets[at], dets[at + 1]];
     let secant = low / (low - high);
-    let start = stencil::<NODES>(at, dets.len());
+    let start = stencil(at, dets.len());
     let is_even = samples[(start + NODES).min(samples.len()) - 1] <= EVEN_UP_TO;
     let part = if is_even {
         let offset = (at - start) as f64;

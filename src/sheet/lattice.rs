@@ -10,13 +10,14 @@ use super::guess::Level;
 use super::loads::{LOADS, PARTS};
 use super::polynomial::{LAST_STEP, NODES, Polynomial, differences_of_each, stencil};
 use super::rows::Row;
-use crate::model::batch::{Launch, Method, Unit, land_in_company};
-use crate::model::simd::WIDTH;
+use crate::model::batch::{Launch, Method, Unit, WIDTH, land_in_company};
 use crate::model::{First, Landing, Nystrom8, Rod, Side, nearest_turn};
 
-/// How many intervals between columns the loads of a row may have between them to be looked for in one patch: two intervals
-/// from its middle interpolation is half as good.
+/// Intervals between columns over which the loads of a row are looked for in one patch: two from its middle, interpolation is
+/// half as good.
 const SPAN: usize = 5;
+
+const _: () = assert!(LOADS <= WIDTH, "a row's loads go together");
 
 /// The nodes.
 #[derive(Clone, Debug)]
@@ -28,7 +29,7 @@ pub struct Lattice {
     patches: Vec<Patch>,
 }
 
-/// The nodes of one column, by load; after the last one it is repeated.
+/// The nodes of one column, by load.
 #[derive(Clone, Copy, Debug)]
 struct Nodes {
     ln_distance: Numbers,
@@ -37,22 +38,23 @@ struct Nodes {
 }
 
 impl Nodes {
-    fn new<'a>(landing: impl Fn(usize) -> &'a Landing) -> Self {
+    /// The `landings`, load by load, of a contact whose fold is at `load`.
+    fn new<'a>(load: f64, landings: impl Iterator<Item = &'a Landing>) -> Self {
         let mut nodes = Self {
             ln_distance: [0.0; WIDTH],
             phi: [0.0; WIDTH],
         };
-        let mut before = 0.0;
-        for m in 0..WIDTH {
-            let pole = landing(m.min(LOADS - 1)).pole;
-            let phi = pole.to_angle();
-            before = if m == 0 {
-                phi
-            } else {
-                nearest_turn(phi, before)
-            };
-            nodes.phi[m] = before;
-            nodes.ln_distance[m] = pole.length().ln();
+        let mut before: Option<(&Landing, f64, f64)> = None;
+        for (m, (landing, part)) in landings.zip(PARTS.iter()).enumerate() {
+            let phi = landing.pole.to_angle();
+            let near = before.map_or(phi, |(there, phi, part_there)| {
+                let slopes = there.by_load.y + landing.by_load.y;
+                0.5f64.mul_add(slopes * load * (part - part_there), phi)
+            });
+            let phi = nearest_turn(phi, near);
+            before = Some((landing, phi, *part));
+            nodes.phi[m] = phi;
+            nodes.ln_distance[m] = landing.pole.length().ln();
         }
         nodes
     }
@@ -74,7 +76,10 @@ impl Lattice {
         let landings = land_in_company::<Nystrom8, First>(method, &launches);
         let count = columns.folds.len();
         let nodes: Vec<Nodes> = (0..count)
-            .map(|column| Nodes::new(|m| &landings[m * count + column]))
+            .map(|column| {
+                let of_column = landings[column..].iter().step_by(count);
+                Nodes::new(columns.folds[column].load, of_column)
+            })
             .collect();
         let patches = patches(&nodes);
         Self {
@@ -128,7 +133,7 @@ impl Lattice {
                 [low, high] = [low.min(after[to]), high.max(after[to])];
                 to += 1;
             }
-            let start = stencil::<NODES>((low + high) / 2, self.nodes.len());
+            let start = stencil((low + high) / 2, self.nodes.len());
             self.cross(columns, row, start, &after[from..to], from, &mut level);
             from = to;
         }

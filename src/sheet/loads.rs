@@ -1,5 +1,6 @@
 //! The loads at which a column is sampled, as parts of its fold's load: Chebyshev's extreme points between no load and the
-//! fold, so that one polynomial through all of them is as good at its ends as in its middle.
+//! fold, so that one polynomial through all of them is as good at its ends as in its middle. (One through a part of them is not: a row
+//! that leaves the lattice takes the nodes around.)
 
 use super::polynomial::bracketed;
 use std::f64::consts::FRAC_PI_2;

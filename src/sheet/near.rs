@@ -21,11 +21,11 @@ pub struct Near {
 }
 
 impl Near {
-    /// Where `ln D` is `target` if everything changes evenly from one sample to the other.
+    /// Where `ln D` is `target` if all else changes evenly from one sample to the other.
     pub fn between([a, b]: [&Sample; 2], target: f64) -> Self {
         let t = (target - a.ln_distance) / (b.ln_distance - a.ln_distance);
         let scaled = |s: &Sample| s.load * s.tau * s.tau;
-        let tau = a.tau + t * (b.tau - a.tau);
+        let tau = a.tau * (t * (b.tau / a.tau).ln()).exp();
         Self {
             tau,
             load: (scaled(a) + t * (scaled(b) - scaled(a))) / (tau * tau),
@@ -53,13 +53,13 @@ impl<const N: usize> Line<N> {
 
     /// The place `between` two, no more than a sample apart, where the number `which` is `target`; they lie on different sides
     /// of it. The numbers there, and their slopes.
-    fn find(&self, which: usize, between: [f64; 2], target: f64) -> Found<N> {
+    fn find(&self, which: usize, between: [f64; 2], target: f64) -> Point<N> {
         #[allow(
             clippy::cast_possible_truncation,
             clippy::cast_sign_loss,
             reason = "places are not negative, and few"
         )]
-        let start = stencil::<NODES>((0.5 * (between[0] + between[1])) as usize, self.count);
+        let start = stencil((0.5 * (between[0] + between[1])) as usize, self.count);
         let piece = &self.pieces[start];
         let number = Polynomial::of(piece.map(|differences| differences[which]));
         let between = between.map(|place| place - start as f64);
@@ -75,7 +75,7 @@ impl<const N: usize> Line<N> {
                 values[j] = values[j] * x + piece[i][j];
             }
         }
-        Found {
+        Point {
             place: place + start as f64,
             values,
             slopes,
@@ -84,7 +84,7 @@ impl<const N: usize> Line<N> {
 }
 
 /// What a line has at a place.
-struct Found<const N: usize> {
+struct Point<const N: usize> {
     place: f64,
     values: [f64; N],
     slopes: [f64; N],
@@ -175,7 +175,7 @@ impl TipLine {
         (self.load_step * found.place, self.bend(&found))
     }
 
-    fn bend(&self, found: &Found<4>) -> DVec2 {
+    fn bend(&self, found: &Point<4>) -> DVec2 {
         DVec2::new(found.slopes[2], found.slopes[3]) / self.load_step
     }
 }

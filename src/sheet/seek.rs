@@ -51,6 +51,9 @@ const ROUNDS: usize = 20;
 /// tell the rest to its cube.
 const LAST_STEP: f64 = 3e-7;
 
+/// How far off, relatively, second derivatives of the neighbours are at the most; 1e-7 is the rule.
+const BORROWED: f64 = 1e-2;
+
 /// Newton's method for all `wanted` at once; the caller judges what is left in `miss` and `left`. Each is alone: what is wanted
 /// at once next to the folds of a map depends on its strips.
 #[must_use]
@@ -87,9 +90,16 @@ pub fn seek_nearby(method: Method, wanted: &[Wanted], bends: &[Option<Bends>]) -
             by_load_load,
         };
         let last_step = bends.map(|_| LAST_STEP);
-        let (found, next) = advance(goal, goal.from, &here, last_step);
-        if !found.is_found {
-            let from = if is_inside(next) { next } else { goal.from };
+        let (mut found, next) = advance(goal, goal.from, &here, last_step);
+        if found.is_found {
+            found.left += BORROWED * found.left.sqrt();
+        } else {
+            // A long step, or one of second derivatives that nobody knows, can lead astray.
+            let from = if bends.is_some() && found.left < BORROWED {
+                next
+            } else {
+                goal.from
+            };
             left.push(i);
             again.push(Wanted { from, ..*goal });
         }

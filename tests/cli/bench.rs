@@ -65,6 +65,10 @@ fn errors_fall_from_rung_to_rung() {
     let errors = numbers(ends, "/angle_deg/worst");
     // A sheet's few trajectories share blocks, so that two coarse rungs can take the same steps.
     assert!(errors[..6].is_sorted_by(|a, b| a >= b), "{errors:?}");
+    assert!(
+        errors[..6].windows(3).all(|few| few[0] > few[2]),
+        "{errors:?}"
+    );
     assert!(errors[0] > 1e4 * errors[5], "{errors:?}");
 }
 

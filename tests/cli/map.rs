@@ -44,6 +44,12 @@ fn the_same_bytes_every_time_and_with_any_number_of_threads() {
         same(&format!("first/{file}"), &format!("one/{file}"));
         same(&format!("one/{file}"), &format!("two/{file}"));
     }
+    // More cells than a strip, and more than a thread's share of it.
+    place.write("large.toml", &SCENE.replace("count = 24", "count = 200"));
+    for threads in ["1", "2", "3"] {
+        place.map(&["large.toml", "-o", threads, "--threads", threads]);
+        same("1/large.exr", &format!("{threads}/large.exr"));
+    }
 }
 
 #[test]

@@ -13,13 +13,13 @@ mod kernel;
 mod peak;
 mod unit;
 
+pub(crate) use super::simd::{Lanes, WIDTH};
 pub use answer::{First, FirstAndEnergy, Kind, Second};
 pub use company::land_in_company;
 pub use flops::flops;
 pub(crate) use unit::Task;
 pub use unit::{Kernel, Unit};
 
-use super::simd::WIDTH;
 use super::{Effects, Integrator, Resolution, Rod};
 use rayon::prelude::*;
 use std::borrow::Borrow;
@@ -127,7 +127,7 @@ pub fn land_each<M: Integrator, K: Kernel<M>>(
 fn stream<M: Integrator, K: Kernel<M>, L: Borrow<Launch>>(
     unit: Unit,
     method: Method,
-    mut launches: impl Iterator<Item = L>,
+    launches: impl Iterator<Item = L>,
     mut take: impl FnMut(usize, &K::Answer),
 ) {
     let mut compute = |kind: BlockKind, block: &mut Vec<(usize, L)>| {
@@ -143,6 +143,7 @@ fn stream<M: Integrator, K: Kernel<M>, L: Borrow<Launch>>(
     let mut kinds = Kinds::default();
     let mut open: Vec<Vec<(usize, L)>> = Vec::new();
     let mut next: Vec<L> = Vec::with_capacity(WIDTH);
+    let mut launches = launches.fuse();
     let mut from = 0;
     loop {
         next.extend(launches.by_ref().take(WIDTH));
