@@ -158,7 +158,7 @@ fn advance(goal: &Wanted, point: DVec2, here: &Curved, last_step: Option<f64>) -
     let miss = (goal.pole_distance / here.landing.pole.length()).ln();
     let step = match goal.edge {
         Edge::Fold => fold_step(here, miss),
-        Edge::Tip => DVec2::new(0.0, miss / here.landing.by_load.x),
+        Edge::Tip => DVec2::new(0.0, load_step(here, miss)),
     };
     let (step, length) = limited(step, arclength(&goal.rod, point.x), point.y);
     let next = point + step;
@@ -186,6 +186,14 @@ fn advance(goal: &Wanted, point: DVec2, here: &Curved, last_step: Option<f64>) -
 /// Whether a step has led to a place that a whisker has.
 fn is_inside(point: DVec2) -> bool {
     point.is_finite() && point.x > 0.0
+}
+
+/// The step in load toward the point at the same contact whose `ln D` is larger by `miss`, to second order: where the distance is
+/// largest, as that of a straight whisker is at first touch, a step of first order would go half the way.
+fn load_step(here: &Curved, miss: f64) -> f64 {
+    let (slope, bend) = (here.landing.by_load.x, here.by_load_load.x);
+    let at_goal = (slope * slope + 2.0 * bend * miss).max(0.0).sqrt();
+    2.0 * miss / (slope + at_goal.copysign(slope))
 }
 
 /// The step toward the point of the fold whose `ln D` is larger by `miss`.
