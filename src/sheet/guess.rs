@@ -42,6 +42,7 @@ impl Level {
             return pushes.map(|_| None).collect();
         }
         let pieces = self.pieces();
+        let pieces = &pieces[..self.count - 1];
         let mut at = 0;
         let searches = pushes.map(|push| {
             while at + 1 < pieces.len() && push > pieces[at].pushes[1] {
@@ -104,17 +105,19 @@ impl Level {
 
     /// The curve between its nodes. Where the row leaves the lattice, the piece there reaches one load farther, if the push angle
     /// falls before it or grows after it.
-    fn pieces(&self) -> Vec<Piece> {
+    fn pieces(&self) -> [Piece; LOADS] {
         let parts = &PARTS[self.first..];
         let last = self.count - 2;
         let near_cut = self.count.min(NEAR_CUT);
-        let mut ends: Vec<[(f64, f64); 2]> = (0..=last)
-            .map(|i| [i, i + 1].map(|i| (parts[i], self.push[i])))
-            .collect();
+        let mut pieces = [Piece::default(); LOADS];
+        for (i, piece) in pieces[..=last].iter_mut().enumerate() {
+            piece.ends = [parts[i], parts[i + 1]];
+            piece.pushes = [self.push[i], self.push[i + 1]];
+        }
         if let Some(before) = self.first.checked_sub(1) {
             let push = self.curves(0, near_cut).push.at(PARTS[before]).0;
             if push < self.push[0] {
-                ends[0][0] = (PARTS[before], push);
+                (pieces[0].ends[0], pieces[0].pushes[0]) = (PARTS[before], push);
             }
         }
         if let Some(after) = parts.get(self.count) {
@@ -124,19 +127,18 @@ impl Level {
                 .at(*after)
                 .0;
             if push > self.push[self.count - 1] {
-                ends[last][1] = (*after, push);
+                (pieces[last].ends[1], pieces[last].pushes[1]) = (*after, push);
             }
         }
-        let pushes = ends.iter().flatten().map(|(_, push)| *push);
-        let summit = pushes.fold(f64::NEG_INFINITY, f64::max);
-        let below = |push: f64| (summit - push).max(0.0).sqrt();
-        let piece = |[(start, from), (end, to)]: [(f64, f64); 2]| Piece {
-            ends: [start, end],
-            pushes: [from, to],
-            below: [below(from), below(to)],
-            summit,
-        };
-        ends.into_iter().map(piece).collect()
+        let mut summit = f64::NEG_INFINITY;
+        for piece in &pieces[..=last] {
+            summit = summit.max(piece.pushes[0]).max(piece.pushes[1]);
+        }
+        for piece in &mut pieces[..=last] {
+            piece.summit = summit;
+            piece.below = piece.pushes.map(|push| (summit - push).max(0.0).sqrt());
+        }
+        pieces
     }
 }
 
