@@ -1,0 +1,98 @@
+//! Whether a cell costs the same in small maps and large ones, of one whisker and of many:
+//! `cargo bench --bench sizes -- [runs]`.
+//!
+//! `scenes/cone.toml` on one thread, without a file: from 64 x 64 cells to 2048 x 2048, then 128 x 128 for each of 1 to 1024
+//! whiskers. Microseconds a cell, stage by stage, of the fastest of some runs in turn; a small map is repeated, so that each run
+//! takes long enough for the clock.
+#![allow(
+    clippy::print_stdout,
+    reason = "a table on the screen is what this program is for"
+)]
+#![allow(clippy::expect_used, reason = "a bench that cannot start should stop")]
+
+use whiskmap::integrate::Cpu;
+use whiskmap::map::{self, Observer};
+use whiskmap::plan::Plan;
+use whiskmap::scene::Scene;
+use whiskmap::store::{Error, Panel};
+
+/// Cells of a run at least.
+const CELLS: usize = 1 << 18;
+
+fn main() {
+    let runs = std::env::args()
+        .filter_map(|text| text.parse().ok())
+        .next()
+        .unwrap_or(5);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
+    let pool = pool.expect("a thread can be started");
+    let sides = [64, 128, 256, 512, 1024, 2048].map(|side| (side, 1));
+    let whiskers = [4, 16, 64, 256, 1024].map(|whiskers| (128, whiskers));
+    let maps: Vec<Map> = sides.into_iter().chain(whiskers).map(Map::new).collect();
+    let mut fastest = vec![vec![f64::INFINITY]; maps.len()];
+    for _ in 0..runs {
+        for (map, fastest) in maps.iter().zip(&mut fastest) {
+            let micros = pool.install(|| map.micros_per_cell());
+            if micros.iter().sum::<f64>() < fastest.iter().sum() {
+                *fastest = micros;
+            }
+        }
+    }
+    println!("      cells  us/cell  sheets  guesses  shooting  refinement  regimes");
+    for (map, fastest) in maps.iter().zip(&fastest) {
+        print!("{:>11}  {:7.3}", map.name, fastest.iter().sum::<f64>());
+        for (micros, width) in fastest.iter().zip([6, 7, 8, 10, 7]) {
+            print!("  {micros:width$.3}");
+        }
+        println!();
+    }
+}
+
+/// What is measured.
+struct Map {
+    name: String,
+    scene: Scene,
+    plan: Plan,
+}
+
+impl Map {
+    fn new((side, whiskers): (usize, usize)) -> Self {
+        let taper = format!("taper = {{ from = 0.9, to = 0.95, count = {whiskers} }}\n\n[output]");
+        let mut text = include_str!("../scenes/cone.toml")
+            .replace("count = 512", &format!("count = {side}"));
+        let mut name = format!("{side}^2");
+        if whiskers > 1 {
+            text = text.replace("[output]", &taper);
+            name = format!("{whiskers} x {name}");
+        }
+        let scene = Scene::parse(&text, "cone.toml", "cone").expect("the scene is good");
+        let plan = Plan::new(&scene).expect("it has room");
+        Self { name, scene, plan }
+    }
+
+    /// Stage by stage.
+    fn micros_per_cell(&self) -> Vec<f64> {
+        let repeats = CELLS.div_ceil(self.plan.cells);
+        let mut seconds = vec![0.0; 5];
+        for _ in 0..repeats {
+            let summary = map::run(&self.scene, &self.plan, &mut Cpu, &mut Nothing)
+                .expect("nothing is written");
+            for (sum, (_, stage)) in seconds.iter_mut().zip(summary.seconds()) {
+                *sum += stage;
+            }
+        }
+        let cells = (repeats * self.plan.cells) as f64;
+        seconds.iter().map(|stage| 1e6 * stage / cells).collect()
+    }
+}
+
+/// Keeps nothing.
+struct Nothing;
+
+impl Observer for Nothing {
+    fn panels(&mut self, _: usize, _: &[Panel]) -> Result<(), Error> {
+        Ok(())
+    }
+
+    fn settled(&mut self, _: usize) {}
+}
