@@ -58,8 +58,8 @@ struct Map {
 impl Map {
     fn new((side, whiskers): (usize, usize)) -> Self {
         let taper = format!("taper = {{ from = 0.9, to = 0.95, count = {whiskers} }}\n\n[output]");
-        let mut text = include_str!("../scenes/cone.toml")
-            .replace("count = 512", &format!("count = {side}"));
+        let mut text =
+            include_str!("../scenes/cone.toml").replace("count = 512", &format!("count = {side}"));
         let mut name = format!("{side}^2");
         if whiskers > 1 {
             text = text.replace("[output]", &taper);

@@ -41,6 +41,13 @@ pub fn radius_and_arclength<T: Real>(taper: T, tau: T) -> [T; 2] {
     [radius, tau * growth]
 }
 
+/// The exponential of a number of magnitude 25.6 at most, good to 32 times the rounding.
+#[inline(always)]
+pub fn exp<T: Real>(x: T) -> T {
+    let [exp, _] = radius_and_arclength(T::of(-1.0), x);
+    exp
+}
+
 /// cos and sin of the tangent of the parabola `y = bend x^2 + slope x` at arclength `s`; `at_base` is the [`arc`] of `slope`.
 #[inline(always)]
 pub fn parabola_tangent<T: Real>(bend: T, at_base: T, s: T) -> [T; 2] {
@@ -123,6 +130,9 @@ mod tests {
                     "{taper} {tau}"
                 );
             }
+        }
+        for x in [-25.6, -3.0, -1e-9, 0.0, 1e-3, 1.0, 25.6_f64] {
+            assert!((exp(x) / x.exp() - 1.0).abs() < 1e-14, "{x}");
         }
         for bend in [0.0, 1e-9, 0.02, 0.4, 1.5, 10.0] {
             for slope in [-3.0, -0.3, 0.0, 1e-6, 2.0] {

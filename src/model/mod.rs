@@ -33,6 +33,7 @@ mod units;
 mod vector;
 
 pub use batch::{First, FirstAndEnergy, Second};
+pub(crate) use contact::exp;
 pub use effects::Effects;
 pub use integrator::{Integrator, Scales, Stage, integrate};
 pub use intrinsic::{Bent, Intrinsic, Spiral, Straight};

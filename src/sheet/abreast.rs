@@ -1,8 +1,9 @@
 //! A row of a map in lanes: one polynomial alone would wait for its own products most of the time.
 
-use super::loads::{Curve, LOADS};
-use super::polynomial::{NODES, Polynomial};
+use super::columns::{Line, TERMS};
+use super::loads::Curve;
 use crate::model::batch::{Lanes, Task, WIDTH};
+use crate::model::exp;
 
 /// A number for every lane.
 pub type Numbers = [f64; WIDTH];
@@ -10,13 +11,13 @@ pub type Numbers = [f64; WIDTH];
 /// Rounds of Newton's method; what is not found then is looked for alone.
 const ROUNDS: usize = 3;
 
-/// Polynomials along the columns, one for every load, by divided differences.
+/// Lines along the columns, one for every load, by divided differences.
 #[derive(Clone, Copy, Debug)]
 pub struct Patch {
     /// Of `ln D`.
-    pub ln_distance: [Numbers; NODES],
+    pub ln_distance: [Numbers; TERMS],
     /// Of the direction of the pole.
-    pub phi: [Numbers; NODES],
+    pub phi: [Numbers; TERMS],
 }
 
 /// The places in a patch where every load's `ln D` is the same.
@@ -24,9 +25,9 @@ pub struct Across<'a> {
     /// The patch.
     pub patch: &'a Patch,
     /// `ln tau` of the columns.
-    pub ln_tau: &'a Polynomial,
+    pub ln_tau: &'a Line,
     /// `ln q` of the columns' folds.
-    pub ln_q: &'a Polynomial,
+    pub ln_q: &'a Line,
     /// The distance.
     pub target: f64,
     /// Where to start.
@@ -42,10 +43,10 @@ pub struct Crossed {
     pub step: Numbers,
     /// Direction of the pole there.
     pub phi: Numbers,
-    /// `ln tau` there.
-    pub ln_tau: Numbers,
-    /// `ln q` of the fold there.
-    pub ln_q: Numbers,
+    /// `tau` there.
+    pub tau: Numbers,
+    /// `q` of the fold there.
+    pub q: Numbers,
 }
 
 impl Task for Across<'_> {
@@ -58,37 +59,35 @@ impl Task for Across<'_> {
             place: nothing,
             step: nothing,
             phi: nothing,
-            ln_tau: nothing,
-            ln_q: nothing,
+            tau: nothing,
+            q: nothing,
         };
+        let Self {
+            patch,
+            ln_tau,
+            ln_q,
+            ..
+        } = self;
+        let places = &ln_tau.places;
         let target = T::of(self.target);
         for from in (0..WIDTH).step_by(T::LANES) {
             let (mut place, mut step) = (T::pack(part(&self.near, from)), T::of(0.0));
             for _ in 0..ROUNDS {
-                let mut slope = T::of(0.0);
-                let mut value = T::pack(part(&self.patch.ln_distance[NODES - 1], from));
-                for i in (0..NODES - 1).rev() {
-                    let x = place - T::of(i as f64);
-                    slope = slope.mul_add(x, value);
-                    value = value.mul_add(x, T::pack(part(&self.patch.ln_distance[i], from)));
-                }
+                let (value, slope) = at(places, &patch.ln_distance, from, place);
                 step = (target - value) / slope;
                 place = place + step;
             }
-            let mut phi = T::pack(part(&self.patch.phi[NODES - 1], from));
-            let mut ln_tau = T::of(self.ln_tau.differences()[NODES - 1]);
-            let mut ln_q = T::of(self.ln_q.differences()[NODES - 1]);
-            for i in (0..NODES - 1).rev() {
-                let x = place - T::of(i as f64);
-                phi = phi.mul_add(x, T::pack(part(&self.patch.phi[i], from)));
-                ln_tau = ln_tau.mul_add(x, T::of(self.ln_tau.differences()[i]));
-                ln_q = ln_q.mul_add(x, T::of(self.ln_q.differences()[i]));
-            }
             keep(&mut crossed.place, from, place);
             keep(&mut crossed.step, from, step);
-            keep(&mut crossed.phi, from, phi);
-            keep(&mut crossed.ln_tau, from, ln_tau);
-            keep(&mut crossed.ln_q, from, ln_q);
+            keep(
+                &mut crossed.phi,
+                from,
+                at(places, &patch.phi, from, place).0,
+            );
+            let tau = exp(at(places, &ln_tau.differences, from, place).0);
+            let q = exp(at(places, &ln_q.differences, from, place).0);
+            keep(&mut crossed.tau, from, tau);
+            keep(&mut crossed.q, from, q);
         }
         crossed
     }
@@ -133,34 +132,69 @@ impl Task for Along<'_> {
             tau: nothing,
             load: nothing,
         };
+        let Self {
+            push, tau, load, ..
+        } = self;
         for from in (0..WIDTH).step_by(T::LANES) {
             let target = T::pack(part(&self.targets, from));
             let (mut place, mut step) = (T::pack(part(&self.near, from)), T::of(0.0));
             for _ in 0..ROUNDS {
-                let mut slope = T::of(0.0);
-                let mut value = T::of(self.push.differences[LOADS - 1]);
-                for i in (0..LOADS - 1).rev() {
-                    let x = place - T::of(self.push.parts[i]);
-                    slope = slope.mul_add(x, value);
-                    value = value.mul_add(x, T::of(self.push.differences[i]));
-                }
+                let (value, slope) = at(&push.places, &push.differences, from, place);
                 step = (target - value) / slope;
                 place = place + step;
             }
-            let mut tau = T::of(self.tau.differences[LOADS - 1]);
-            let mut load = T::of(self.load.differences[LOADS - 1]);
-            for i in (0..LOADS - 1).rev() {
-                let x = place - T::of(self.push.parts[i]);
-                tau = tau.mul_add(x, T::of(self.tau.differences[i]));
-                load = load.mul_add(x, T::of(self.load.differences[i]));
-            }
             keep(&mut found.place, from, place);
             keep(&mut found.step, from, step);
-            keep(&mut found.tau, from, tau);
-            keep(&mut found.load, from, load);
+            keep(
+                &mut found.tau,
+                from,
+                at(&push.places, &tau.differences, from, place).0,
+            );
+            keep(
+                &mut found.load,
+                from,
+                at(&push.places, &load.differences, from, place).0,
+            );
         }
         found
     }
+}
+
+/// What a polynomial has as its terms: a number, or one for every lane.
+trait Term {
+    /// The lanes from `from` on.
+    fn lanes<T: Lanes>(&self, from: usize) -> T;
+}
+
+impl Term for f64 {
+    #[inline(always)]
+    fn lanes<T: Lanes>(&self, _: usize) -> T {
+        T::of(*self)
+    }
+}
+
+impl Term for Numbers {
+    #[inline(always)]
+    fn lanes<T: Lanes>(&self, from: usize) -> T {
+        T::pack(part(self, from))
+    }
+}
+
+/// Value and slope at `place` of polynomials in Newton's form, in the lanes from `from` on.
+#[inline(always)]
+fn at<T: Lanes, C: Term, const N: usize>(
+    places: &[f64; N],
+    differences: &[C; N],
+    from: usize,
+    place: T,
+) -> (T, T) {
+    let (mut value, mut slope): (T, T) = (differences[N - 1].lanes(from), T::of(0.0));
+    for i in (0..N - 1).rev() {
+        let x = place - T::of(places[i]);
+        slope = slope.mul_add(x, value);
+        value = value.mul_add(x, differences[i].lanes(from));
+    }
+    (value, slope)
 }
 
 /// The numbers from `from` on, and nothing after them.
@@ -180,7 +214,8 @@ fn keep<T: Lanes>(numbers: &mut Numbers, from: usize, lanes: T) {
 mod tests {
     use super::*;
     use crate::model::batch::Unit;
-    use crate::sheet::loads::PARTS;
+    use crate::sheet::loads::{self, PARTS};
+    use crate::sheet::polynomial;
 
     /// A value for each lane that rises from 0 at 0 to 3 at the last of `places`, level at the end but for some.
     fn values(places: &[f64], lane: usize) -> Vec<f64> {
@@ -192,23 +227,29 @@ mod tests {
 
     #[test]
     fn what_is_found_together_is_found_alone() {
-        let places: Vec<f64> = (0..NODES).map(|place| place as f64).collect();
-        let of_lane = |lane| Polynomial::through(values(&places, lane));
+        let places: Vec<f64> = (0..TERMS).map(|place| place as f64).collect();
+        let of_lane = |lane| {
+            let values: Vec<[f64; 1]> = values(&places, lane).iter().map(|v| [*v]).collect();
+            Line {
+                places: polynomial::places(1),
+                differences: polynomial::through_values(&values)[0].map(|[d]| d),
+            }
+        };
         let mut patch = Patch {
-            ln_distance: [[0.0; WIDTH]; NODES],
-            phi: [[0.0; WIDTH]; NODES],
+            ln_distance: [[0.0; WIDTH]; TERMS],
+            phi: [[0.0; WIDTH]; TERMS],
         };
         for lane in 0..WIDTH {
-            for i in 0..NODES {
-                patch.ln_distance[i][lane] = of_lane(lane).differences()[i];
-                patch.phi[i][lane] = of_lane(lane + 1).differences()[i];
+            for i in 0..TERMS {
+                patch.ln_distance[i][lane] = of_lane(lane).differences[i];
+                patch.phi[i][lane] = of_lane(lane + 1).differences[i];
             }
         }
         let [ln_tau, ln_q] = [of_lane(WIDTH + 1), of_lane(WIDTH + 2)];
-        for unit in [Unit::detect(), Unit::scalar()] {
+        for unit in Unit::all() {
             for target in [0.1, 0.7, 1.9, 2.5] {
                 let alone: [f64; WIDTH] = std::array::from_fn(|lane| {
-                    of_lane(lane).solve(target, 4.5, [0.0, (NODES - 1) as f64])
+                    of_lane(lane).solve(target, 4.5, [0.0, (TERMS - 1) as f64], 1e-4)
                 });
                 let crossed = unit.run(Across {
                     patch: &patch,
@@ -222,8 +263,8 @@ mod tests {
                     let near = |found: f64, value: f64| (found - value).abs() < 1e-6;
                     assert!(near(crossed.place[lane], place), "{unit} {target} {lane}");
                     assert!(near(crossed.phi[lane], of_lane(lane + 1).at(place).0));
-                    assert!(near(crossed.ln_tau[lane], ln_tau.at(place).0));
-                    assert!(near(crossed.ln_q[lane], ln_q.at(place).0));
+                    assert!(near(crossed.tau[lane].ln(), ln_tau.at(place).0));
+                    assert!(near(crossed.q[lane].ln(), ln_q.at(place).0));
                 }
             }
         }
@@ -232,10 +273,10 @@ mod tests {
     #[test]
     fn a_row_finds_its_push_angles() {
         let [push, tau, load] =
-            [0, 1, 2].map(|lane| Curve::through(0, &values(PARTS.as_slice(), lane)));
-        for unit in [Unit::detect(), Unit::scalar()] {
+            [0, 1, 2].map(|lane| loads::through(0, &values(PARTS.as_slice(), lane)));
+        for unit in Unit::all() {
             let targets: Numbers = std::array::from_fn(|lane| 0.1 + 0.15 * lane as f64);
-            let alone = targets.map(|target| push.solve(target, 0.5, [0.0, 1.0]));
+            let alone = targets.map(|target| push.solve(target, 0.5, [0.0, 1.0], 1e-5));
             let found = unit.run(Along {
                 push: &push,
                 tau: &tau,

@@ -66,14 +66,13 @@ const NEXT_TO: f64 = 1e-9;
 
 /// How much the load of a fold between two samples, as all samples around tell it, may differ from what the two alone tell: more
 /// is a jump of the first fold.
-const ASTRAY: f64 = 0.05;
+const ASTRAY: f64 = 0.15;
 
 /// The place on `edge` where `ln D` is `target` between two samples.
 fn near(edges: &Edges, edge: Edge, pair: [&Sample; 2], target: f64) -> Near {
-    let between = pair.map(|sample| sample.place);
     match edge {
         Edge::Fold => {
-            let by_all = edges.fold_line.at(between, target);
+            let by_all = edges.fold_line.at(pair, target);
             let by_two = Near::between(pair, target);
             if (by_all.load / by_two.load - 1.0).abs() < ASTRAY {
                 by_all
@@ -81,7 +80,7 @@ fn near(edges: &Edges, edge: Edge, pair: [&Sample; 2], target: f64) -> Near {
                 by_two
             }
         }
-        Edge::Tip => edges.tip_line.at(between, target),
+        Edge::Tip => edges.tip_line.at(pair, target),
     }
 }
 

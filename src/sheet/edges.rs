@@ -3,14 +3,12 @@
 use super::columns::Columns;
 use super::fold::FoldPoint;
 use super::lattice::Lattice;
+use super::loads::{LOADS, PARTS, directions};
 use super::near::{FoldLine, TipLine};
 use super::rows::Row;
 use crate::model::batch::{Launch, Method, land, land_in_company};
 use crate::model::{Curved, First, Landing, Nystrom8, Rod, Second, nearest_turn};
 use glam::DVec2;
-
-/// Samples along the tip edge; the distance has at most a few extrema there.
-const TIP_SAMPLES: usize = 24;
 
 /// Relative slack with which a distance counts as reached, so that a whisker whose resting tip just touches
 /// the pole does touch it, whatever the rounding.
@@ -19,14 +17,10 @@ pub const REACH_SLACK: f64 = 1e-12;
 /// The Newton step, relative to the distance of the samples, after which an extremum is known: its square is left.
 const LAST_STEP: f64 = 1e-7;
 
-/// How much `ln q` of the fold changes from column to column at the least where it jumps; with friction, from 29 to 15. With columns
-/// 0.25 apart, at 0.4 one of the 2,000 random whiskers of the tests kept a cell in doubt.
-pub const JUMP: f64 = 0.25;
-
 /// A computed point of an edge.
 #[derive(Clone, Copy, Debug)]
 pub struct Sample {
-    /// Where among the even samples of the edge.
+    /// The column, or the part of the load at the corner.
     pub place: f64,
     /// `tau` of the contact.
     pub tau: f64,
@@ -57,6 +51,9 @@ pub struct Edges {
     pub fold: Vec<Sample>,
     /// The same between the samples.
     pub fold_line: FoldLine,
+    /// Whether the distance grows along the fold from the base to the tip, so that no row crosses it twice. Where the
+    /// first fold jumps from contact to contact, there is more of it than the samples show.
+    pub fold_grows: bool,
     /// From first touch to the corner.
     pub tip: Vec<Sample>,
     /// The same between the samples.
@@ -76,26 +73,16 @@ impl Edges {
             .collect();
         let (mut tip, tip_line) = tip_samples(method, rod, &columns.folds[columns.tip]);
         tip.extend(fold.last().map(|corner| Sample {
-            place: TIP_SAMPLES as f64,
+            place: 1.0,
             ..*corner
         }));
         Self {
             fold,
-            fold_line: FoldLine::new(&columns.folds, lattice.phi_at_fold()),
+            fold_line: FoldLine::new(columns, lattice.phi_at_fold()),
+            fold_grows: (0..columns.tip).all(|column| columns.grow_after(column)),
             tip,
             tip_line,
         }
-    }
-
-    /// Whether the distance grows along the fold from the base to the tip, so that no row crosses it twice. Where the
-    /// first fold jumps from contact to contact, there is more of it than the samples show.
-    #[must_use]
-    pub fn fold_grows(&self) -> bool {
-        let q = |s: &Sample| s.load.abs() * s.tau * s.tau;
-        self.fold.windows(2).all(|pair| {
-            let jump = (q(&pair[1]) / q(&pair[0])).ln().abs();
-            pair[0].ln_distance < pair[1].ln_distance && jump < JUMP
-        })
     }
 
     /// Whether a whisker at rest reaches the pole of this row.
@@ -108,46 +95,40 @@ impl Edges {
 /// The tip edge from first touch to before the `corner`, with its extrema of distance among the samples, and the line through the
 /// others and the corner.
 fn tip_samples(method: Method, rod: &Rod, corner: &FoldPoint) -> (Vec<Sample>, TipLine) {
-    let load_step = corner.load / TIP_SAMPLES as f64;
     let launch = |load| Launch {
         rod: *rod,
         tau: corner.tau,
         load,
     };
-    let loads = (0..TIP_SAMPLES).map(|i| load_step * i as f64);
+    let loads = PARTS[..LOADS - 1].iter().map(|part| part * corner.load);
     let launches: Vec<Launch> = loads.map(launch).collect();
     let mut landings = land_in_company::<Nystrom8, First>(method, &launches);
     landings.push(corner.landing.landing);
-    let mut phis = Vec::with_capacity(landings.len());
-    for (i, landing) in landings.iter().enumerate() {
-        let near = i.checked_sub(1).map_or(0.0, |before| {
-            let slopes = landings[before].by_load.y + landing.by_load.y;
-            0.5f64.mul_add(slopes * load_step, phis[before])
-        });
-        phis.push(nearest_turn(landing.pole.to_angle(), near));
-    }
-    let line = TipLine::new(corner.tau, load_step, &landings, &phis);
+    let phis = directions(corner.load, landings.iter());
+    let line = TipLine::new(corner.tau, corner.load, &landings, &phis);
     let mut samples: Vec<Sample> = Vec::new();
-    for i in 0..TIP_SAMPLES {
-        let sample = |place: f64, launch: &Launch, landing: &Landing| {
-            Sample::new(place, launch.tau, launch.load, landing, phis[i])
+    for (m, launch) in launches.iter().enumerate() {
+        let sample = |load: f64, landing: &Landing| {
+            Sample::new(load / corner.load, corner.tau, load, landing, phis[m])
         };
-        samples.push(sample(i as f64, &launches[i], &landings[i]));
+        samples.push(Sample {
+            place: PARTS[m],
+            ..sample(launch.load, &landings[m])
+        });
         // A slope of exactly 0, as a straight whisker's at first touch, is a sample already.
-        if landings[i].by_load.x * landings[i + 1].by_load.x < 0.0 {
-            let to = load_step * (i + 1) as f64;
-            let (load, landing) = extremum(method, launches[i], to, &line, i);
-            let launch = launch(load);
-            samples.push(sample(load / load_step, &launch, &landing));
+        if landings[m].by_load.x * landings[m + 1].by_load.x < 0.0 {
+            let to = corner.load * PARTS[m + 1];
+            let (load, landing) = extremum(method, *launch, to, &line, m);
+            samples.push(sample(load, &landing));
         }
     }
     (samples, line)
 }
 
-/// The load between the sample `from`, at place `i` of `line`, and the load `to` of the next one at which `dlnD/dload`
+/// The load between the one of sample `m`, `from`, and the load `to` of the next one at which `dlnD/dload`
 /// vanishes, and the landing there: mostly the `line` knows it, and one trajectory with it all the rest.
-fn extremum(method: Method, from: Launch, to: f64, line: &TipLine, i: usize) -> (f64, Landing) {
-    let (near, by_load_load) = line.level([i as f64, (i + 1) as f64]);
+fn extremum(method: Method, from: Launch, to: f64, line: &TipLine, m: usize) -> (f64, Landing) {
+    let (near, by_load_load) = line.level(m);
     let landing = land::<Nystrom8, First>(method, &[Launch { load: near, ..from }])[0];
     let step = -landing.by_load.x / by_load_load.x;
     if step.abs() <= LAST_STEP * (to - from.load).abs() {

@@ -1,6 +1,6 @@
 //! The fold edge: the first load at which the Jacobian becomes singular, contact by contact.
 
-use super::polynomial::{NODES, Polynomial, stencil};
+use super::polynomial::{Polynomial, places, stencil, through_values};
 use crate::model::batch::{Launch, Method, land_in_company};
 use crate::model::{Curved, First, Landing, Nystrom8, Rod, Second, Side, arclength};
 use glam::DVec2;
@@ -28,6 +28,9 @@ const SURELY_STABLE: f64 = 4.5;
 
 /// How much wider a bracket is than the samples say, relatively: their signs come from the coarse resolution.
 const SLACK: f64 = 1e-2;
+
+/// The last step between two samples, in parts of their distance: its square is left.
+const LAST_PART: f64 = 1e-4;
 
 /// Beyond this `q` the samples spread out. The largest first fold known of a cone lies at 24.15: the limit at the tip of a
 /// perfect one that is slender against the pole.
@@ -143,16 +146,23 @@ fn bracket(
     found
 }
 
+/// Samples that tell where between two of them `det` vanishes.
+const AROUND: usize = 10;
+
 /// Where `dets` vanishes between the sample `at` and the next one.
 fn root(samples: &[f64], dets: &[f64], at: usize) -> f64 {
     let [low, high] = [dets[at], dets[at + 1]];
     let secant = low / (low - high);
-    let start = stencil(at, dets.len());
-    let is_even = samples[(start + NODES).min(samples.len()) - 1] <= EVEN_UP_TO;
-    let part = if is_even {
+    let start = stencil(at, AROUND, dets.len());
+    let around = start..(start + AROUND).min(samples.len());
+    let part = if samples[around.end - 1] <= EVEN_UP_TO {
         let offset = (at - start) as f64;
-        let around = Polynomial::through(dets[start..].iter().take(NODES).copied());
-        around.solve(0.0, offset + secant, [offset, offset + 1.0]) - offset
+        let values: Vec<[f64; 1]> = dets[around].iter().map(|det| [*det]).collect();
+        let polynomial = Polynomial::<AROUND> {
+            places: places(1),
+            differences: through_values(&values)[0].map(|[difference]| difference),
+        };
+        polynomial.solve(0.0, offset + secant, [offset + 1.0, offset], LAST_PART) - offset
     } else {
         secant
     };

@@ -1,7 +1,8 @@
 //! Guesses: a row of a map as a curve through the nodes of its level curve on the lattice, asked for push angles.
 
 use super::abreast::{Along, Numbers};
-use super::loads::{Curve, LAST_STEP, LOADS, PARTS};
+use super::loads::{Curve, LAST_STEP, LOADS, PARTS, through};
+use super::polynomial::oriented;
 use crate::model::batch::{Unit, WIDTH};
 
 /// A guess for one cell.
@@ -94,12 +95,11 @@ impl Level {
 
     /// Polynomials through `count` nodes from the node `from` on.
     fn curves(&self, from: usize, count: usize) -> Curves {
-        let through =
-            |values: &Numbers| Curve::through(self.first + from, &values[from..from + count]);
+        let curve = |values: &Numbers| through(self.first + from, &values[from..from + count]);
         Curves {
-            push: through(&self.push),
-            tau: through(&self.tau),
-            load: through(&self.load),
+            push: curve(&self.push),
+            tau: curve(&self.tau),
+            load: curve(&self.load),
         }
     }
 
@@ -152,7 +152,9 @@ struct Curves {
 impl Curves {
     /// What is looked for, by itself.
     fn alone(&self, search: &Search) -> Guess {
-        let place = self.push.solve(search.target, search.near, search.between);
+        let place = self
+            .push
+            .solve(search.target, search.near, search.between, LAST_STEP);
         Guess {
             tau: self.tau.at(place).0,
             load: self.load.at(place).0,
@@ -178,6 +180,7 @@ struct Piece {
 struct Search {
     target: f64,
     near: f64,
+    /// Two places, the second one with the larger push angle.
     between: [f64; 2],
 }
 
@@ -199,7 +202,7 @@ impl Piece {
         Some(Search {
             target,
             near: low + part * (high - low),
-            between: self.ends,
+            between: oriented(self.ends, self.pushes),
         })
     }
 }
@@ -235,8 +238,9 @@ impl Block {
         });
         for (i, search) in self.searches[..self.count].iter().enumerate() {
             let place = found.place[i];
-            let [low, high] = search.between;
-            let is_known = found.step[i].abs() < LAST_STEP && low <= place && place <= high;
+            let [below, above] = search.between;
+            let is_inside = (place - below) * (place - above) <= 0.0;
+            let is_known = found.step[i].abs() < LAST_STEP && is_inside;
             guesses[self.cells[i]] = Some(if is_known {
                 Guess {
                     tau: found.tau[i],

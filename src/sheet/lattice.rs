@@ -5,17 +5,20 @@
 //! first touch to detachment.
 
 use super::abreast::{Across, Numbers, Patch};
-use super::columns::Columns;
+use super::columns::{AROUND, Columns, Line, TERMS, line};
 use super::guess::Level;
-use super::loads::{LOADS, PARTS};
-use super::polynomial::{LAST_STEP, NODES, Polynomial, differences_of_each, stencil};
+use super::loads::{LOADS, PARTS, directions};
+use super::polynomial::{oriented, stencil, through_slopes};
 use super::rows::Row;
 use crate::model::batch::{Launch, Method, Unit, WIDTH, land_in_company};
-use crate::model::{First, Landing, Nystrom8, Rod, Side, nearest_turn};
+use crate::model::{First, Landing, Nystrom8, Rod, Side};
 
-/// Intervals between columns over which the loads of a row are looked for in one patch: two from its middle, interpolation is
+/// Intervals between columns over which the loads of a row are looked for in one patch: one from its middle, interpolation is
 /// half as good.
-const SPAN: usize = 5;
+const SPAN: usize = 3;
+
+/// The last step of Newton's method, in distances of columns: its square is left, and interpolation leaves more than that.
+const LAST_STEP: f64 = 5e-5;
 
 const _: () = assert!(LOADS <= WIDTH, "a row's loads go together");
 
@@ -35,26 +38,28 @@ struct Nodes {
     ln_distance: Numbers,
     /// Direction of the pole, continuous from first touch.
     phi: Numbers,
+    /// How both change to the next column.
+    slopes: [Numbers; 2],
 }
 
 impl Nodes {
-    /// The `landings`, load by load, of a contact whose fold is at `load`.
-    fn new<'a>(load: f64, landings: impl Iterator<Item = &'a Landing>) -> Self {
+    /// The `landings`, load by load, at `column`.
+    fn new<'a>(
+        columns: &Columns,
+        column: usize,
+        landings: impl Iterator<Item = &'a Landing> + Clone,
+    ) -> Self {
         let mut nodes = Self {
             ln_distance: [0.0; WIDTH],
             phi: [0.0; WIDTH],
+            slopes: [[0.0; WIDTH]; 2],
         };
-        let mut before: Option<(&Landing, f64, f64)> = None;
+        nodes.phi[..LOADS]
+            .copy_from_slice(&directions(columns.folds[column].load, landings.clone()));
         for (m, (landing, part)) in landings.zip(PARTS.iter()).enumerate() {
-            let phi = landing.pole.to_angle();
-            let near = before.map_or(phi, |(there, phi, part_there)| {
-                let slopes = there.by_load.y + landing.by_load.y;
-                0.5f64.mul_add(slopes * load * (part - part_there), phi)
-            });
-            let phi = nearest_turn(phi, near);
-            before = Some((landing, phi, *part));
-            nodes.phi[m] = phi;
             nodes.ln_distance[m] = landing.pole.length().ln();
+            [nodes.slopes[0][m], nodes.slopes[1][m]] =
+                columns.slope(column, *part, landing).to_array();
         }
         nodes
     }
@@ -78,7 +83,7 @@ impl Lattice {
         let nodes: Vec<Nodes> = (0..count)
             .map(|column| {
                 let of_column = landings[column..].iter().step_by(count);
-                Nodes::new(columns.folds[column].load, of_column)
+                Nodes::new(columns, column, of_column)
             })
             .collect();
         let patches = patches(&nodes);
@@ -133,7 +138,7 @@ impl Lattice {
                 [low, high] = [low.min(after[to]), high.max(after[to])];
                 to += 1;
             }
-            let start = stencil((low + high) / 2, self.nodes.len());
+            let start = stencil((low + high) / 2, AROUND, self.nodes.len());
             self.cross(columns, row, start, &after[from..to], from, &mut level);
             from = to;
         }
@@ -173,31 +178,36 @@ impl Lattice {
             let place = crossed.place[m];
             let [low, high] = between(k);
             let is_known = crossed.step[m].abs() < LAST_STEP && low <= place && place <= high;
-            let [phi, ln_tau, ln_q] = if is_known {
-                [crossed.phi[m], crossed.ln_tau[m], crossed.ln_q[m]]
+            let [phi, tau, q] = if is_known {
+                [crossed.phi[m], crossed.tau[m], crossed.q[m]]
             } else {
-                let lane = |differences: &[Numbers; NODES]| {
-                    Polynomial::of(std::array::from_fn(|i| differences[i][m]))
-                };
-                let place = lane(&patch.ln_distance).solve(target, near[m], [low, high]);
-                [lane(&patch.phi), *ln_tau, *ln_q].map(|polynomial| polynomial.at(place).0)
+                let lane = |differences: &[Numbers; TERMS]| line(differences.map(|term| term[m]));
+                let distances = lane(&patch.ln_distance);
+                let ends = oriented(
+                    [low, high],
+                    [k, k + 1].map(|k| self.nodes[k].ln_distance[m]),
+                );
+                let place = distances.solve(target, near[m], ends, LAST_STEP);
+                let at = |line: &Line| line.at(place).0;
+                [at(&lane(&patch.phi)), at(ln_tau).exp(), at(ln_q).exp()]
             };
             let i = m - level.first;
             level.push[i] = sign * (phi - row.touch);
-            level.tau[i] = ln_tau.exp();
-            level.load[i] = sign * (ln_q - 2.0 * ln_tau).exp() * PARTS[m];
+            level.tau[i] = tau;
+            level.load[i] = sign * q / (tau * tau) * PARTS[m];
         }
     }
 }
 
-/// The polynomials through each [`NODES`] neighbours of `nodes`, or through all where there are fewer.
+/// Through each [`AROUND`] neighbours of `nodes`, or through all where there are fewer.
 fn patches(nodes: &[Nodes]) -> Vec<Patch> {
-    let each = |number: fn(&Nodes) -> Numbers| {
-        let numbers: Vec<Numbers> = nodes.iter().map(number).collect();
-        differences_of_each(&numbers).into_iter()
+    let lines = |value: fn(&Nodes) -> Numbers, slope: usize| {
+        let values: Vec<Numbers> = nodes.iter().map(value).collect();
+        let slopes: Vec<Numbers> = nodes.iter().map(|nodes| nodes.slopes[slope]).collect();
+        through_slopes(&values, &slopes).into_iter()
     };
-    each(|nodes| nodes.ln_distance)
-        .zip(each(|nodes| nodes.phi))
+    lines(|nodes| nodes.ln_distance, 0)
+        .zip(lines(|nodes| nodes.phi, 1))
         .map(|(ln_distance, phi)| Patch { ln_distance, phi })
         .collect()
 }

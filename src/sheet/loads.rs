@@ -2,7 +2,8 @@
 //! fold, so that one polynomial through all of them is as good at its ends as in its middle. (One through a part of them is not: a row
 //! that leaves the lattice takes the nodes around.)
 
-use super::polynomial::bracketed;
+use super::polynomial::Polynomial;
+use crate::model::{Landing, nearest_turn};
 use std::f64::consts::FRAC_PI_2;
 use std::sync::LazyLock;
 
@@ -29,52 +30,46 @@ static INVERSE_DISTANCES: LazyLock<[[f64; LOADS]; LOADS]> = LazyLock::new(|| {
     inverse
 });
 
-/// A polynomial through values at neighbouring loads, in Newton's form.
-#[derive(Clone, Copy, Debug)]
-pub struct Curve {
-    /// The loads, 0 after the last one.
-    pub parts: [f64; LOADS],
-    /// Divided differences, 0 after the last one.
-    pub differences: [f64; LOADS],
+/// Along a row, by the load.
+pub type Curve = Polynomial<LOADS>;
+
+/// The curve through `values[0]` at the load `first`, `values[1]` at the next one, ...
+#[must_use]
+pub fn through(first: usize, values: &[f64]) -> Curve {
+    let mut places = [0.0; LOADS];
+    let count = values.len();
+    places[..count].copy_from_slice(&PARTS[first..first + count]);
+    let mut column = [0.0; LOADS];
+    column[..count].copy_from_slice(values);
+    let mut differences = [0.0; LOADS];
+    differences[0] = column[0];
+    for level in 1..count {
+        let inverse = &INVERSE_DISTANCES[level][first..];
+        for i in 0..count - level {
+            column[i] = (column[i + 1] - column[i]) * inverse[i];
+        }
+        differences[level] = column[0];
+    }
+    Curve {
+        places,
+        differences,
+    }
 }
 
-impl Curve {
-    /// Through `values[0]` at the load `first`, `values[1]` at the next one, ...
-    pub fn through(first: usize, values: &[f64]) -> Self {
-        let mut parts = [0.0; LOADS];
-        let count = values.len();
-        parts[..count].copy_from_slice(&PARTS[first..first + count]);
-        let mut column = [0.0; LOADS];
-        column[..count].copy_from_slice(values);
-        let mut differences = [0.0; LOADS];
-        differences[0] = column[0];
-        for level in 1..count {
-            let inverse = &INVERSE_DISTANCES[level][first..];
-            for i in 0..count - level {
-                column[i] = (column[i + 1] - column[i]) * inverse[i];
-            }
-            differences[level] = column[0];
-        }
-        Self { parts, differences }
+/// Directions of the pole, continuous from first touch, of `landings` of one contact under these parts of its fold's `load`.
+pub fn directions<'a>(load: f64, landings: impl Iterator<Item = &'a Landing>) -> [f64; LOADS] {
+    let mut phis = [0.0; LOADS];
+    let mut before: Option<(&Landing, f64, f64)> = None;
+    for (slot, (landing, part)) in phis.iter_mut().zip(landings.zip(PARTS.iter())) {
+        let near = before.map_or(0.0, |(there, phi, part_there)| {
+            let slopes = there.by_load.y + landing.by_load.y;
+            0.5f64.mul_add(slopes * load * (part - part_there), phi)
+        });
+        let phi = nearest_turn(landing.pole.to_angle(), near);
+        before = Some((landing, phi, *part));
+        *slot = phi;
     }
-
-    /// Value and slope at `part` of the fold's load.
-    #[must_use]
-    pub fn at(&self, part: f64) -> (f64, f64) {
-        let (mut value, mut slope) = (self.differences[LOADS - 1], 0.0);
-        for i in (0..LOADS - 1).rev() {
-            let x = part - self.parts[i];
-            slope = slope * x + value;
-            value = value * x + self.differences[i];
-        }
-        (value, slope)
-    }
-
-    /// Where the curve is `target` in `between`, at whose ends it lies on different sides of it.
-    #[must_use]
-    pub fn solve(&self, target: f64, near: f64, between: [f64; 2]) -> f64 {
-        bracketed(|part| self.at(part), target, near, between, LAST_STEP)
-    }
+    phis
 }
 
 #[cfg(test)]
@@ -87,7 +82,7 @@ mod tests {
         for first in [0, 3, LOADS - 2] {
             let count = LOADS - first;
             let values: Vec<f64> = PARTS[first..].iter().map(|part| f(*part)).collect();
-            let curve = Curve::through(first, &values);
+            let curve = through(first, &values);
             for (part, value) in PARTS[first..].iter().zip(&values) {
                 assert!((curve.at(*part).0 - value).abs() < 1e-13, "{first} {part}");
             }

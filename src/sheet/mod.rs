@@ -76,7 +76,7 @@ impl Sheet {
         let lattice = Lattice::new(method.coarsely(), rod, side, &columns);
         let edges = Edges::new(method, rod, &columns, &lattice);
         let mut crossings = crossings::crossings(method, rod, side, &edges, &rows);
-        let fold_grows = edges.fold_grows();
+        let fold_grows = edges.fold_grows;
         for (row, crossings) in rows.iter().zip(&mut crossings) {
             let touches = edges.touches(row);
             let pair = fold_grows && usize::from(touches) + crossings.len() == 2;

@@ -1,146 +1,179 @@
-//! Interpolation by polynomials of degree 9, in Newton's form on evenly spaced samples.
+//! Polynomials in Newton's form, which takes slopes for values that coincide: what a trajectory tells about its neighbours is not
+//! computed twice.
 
-/// Nodes of a polynomial.
-pub const NODES: usize = 10;
-
-/// The last step of Newton's method, in spacings: its square is left, and interpolation leaves more than that.
-pub const LAST_STEP: f64 = 1e-4;
-
-/// A polynomial through up to [`NODES`] values at `0, 1, 2, ...`.
+/// A polynomial with `N` terms.
 #[derive(Clone, Copy, Debug)]
-pub struct Polynomial {
-    /// Divided differences.
-    differences: [f64; NODES],
+pub struct Polynomial<const N: usize> {
+    /// Where it is known; each term but the first has the places of those before as zeros.
+    pub places: [f64; N],
+    /// Divided differences, 0 where fewer than `N` are known.
+    pub differences: [f64; N],
 }
 
-impl Polynomial {
-    /// Of these divided differences: the value at 0, the slope from 0 to 1, ...
-    pub const fn of(differences: [f64; NODES]) -> Self {
-        Self { differences }
-    }
-
-    /// Through `values[0]` at 0, `values[1]` at 1, ...; at most [`NODES`] of them count.
-    pub fn through(values: impl IntoIterator<Item = f64>) -> Self {
-        let values: Vec<f64> = values.into_iter().take(NODES).collect();
-        Self::through_each(&values)[0]
-    }
-
-    /// Through each [`NODES`] neighbours of `values`, or through all where there are fewer: the first one through `values[0]`
-    /// at 0, the next one through `values[1]` at 0, ...
-    pub fn through_each(values: &[f64]) -> Vec<Self> {
-        let values: Vec<[f64; 1]> = values.iter().map(|value| [*value]).collect();
-        let each = differences_of_each(&values).into_iter();
-        each.map(|differences| Self::of(differences.map(|[difference]| difference)))
-            .collect()
-    }
-
-    /// Divided differences: the value at 0, the slope from 0 to 1, ...
-    #[must_use]
-    pub const fn differences(&self) -> &[f64; NODES] {
-        &self.differences
-    }
-
+impl<const N: usize> Polynomial<N> {
     /// Value and slope at `t`.
     #[must_use]
     #[inline]
     pub fn at(&self, t: f64) -> (f64, f64) {
-        let (mut value, mut slope) = (self.differences[NODES - 1], 0.0);
-        for i in (0..NODES - 1).rev() {
-            let x = t - i as f64;
+        let (mut value, mut slope) = (self.differences[N - 1], 0.0);
+        for i in (0..N - 1).rev() {
+            let x = t - self.places[i];
             slope = slope * x + value;
             value = value * x + self.differences[i];
         }
         (value, slope)
     }
 
-    /// Where the polynomial is `target` in `between`, at whose ends it lies on different sides of it.
+    /// Where the polynomial is `target` between two places, at most that at the first and at least that at the second one, but for
+    /// rounding: Newton's method from `near` down to `last_step`, bisecting where a step would leave the bracket.
     #[must_use]
-    pub fn solve(&self, target: f64, near: f64, between: [f64; 2]) -> f64 {
-        bracketed(|t| self.at(t), target, near, between, LAST_STEP)
+    pub fn solve(
+        &self,
+        target: f64,
+        near: f64,
+        [mut below, mut above]: [f64; 2],
+        last_step: f64,
+    ) -> f64 {
+        let is_inside = |t: f64, below: f64, above: f64| (t - below) * (t - above) < 0.0;
+        let middle = 0.5 * (below + above);
+        let mut t = if is_inside(near, below, above) {
+            near
+        } else {
+            middle
+        };
+        for _ in 0..60 {
+            let (value, slope) = self.at(t);
+            if value < target {
+                below = t;
+            } else {
+                above = t;
+            }
+            let newton = t - (value - target) / slope;
+            let inside = is_inside(newton, below, above);
+            if inside && (newton - t).abs() < last_step {
+                return newton;
+            }
+            let next = if inside {
+                newton
+            } else {
+                0.5 * (below + above)
+            };
+            if next == t {
+                return next;
+            }
+            t = next;
+        }
+        t
     }
 }
 
-/// Divided differences of `N` functions at once, through each [`NODES`] neighbours of their `values`, or through all where there
-/// are fewer.
-pub fn differences_of_each<const N: usize>(values: &[[f64; N]]) -> Vec<[[f64; N]; NODES]> {
-    let runs = values.len().saturating_sub(NODES) + 1;
-    let mut each = vec![[[0.0; N]; NODES]; runs];
-    let mut differences = values.to_vec();
-    for level in 0..NODES.min(values.len()) {
+/// Places of the terms of a polynomial through the samples 0, 1, ..., of which each has `each` terms.
+#[must_use]
+pub const fn places<const N: usize>(each: usize) -> [f64; N] {
+    let mut places = [0.0; N];
+    let mut i = 0;
+    while i < N {
+        places[i] = (i / each) as f64;
+        i += 1;
+    }
+    places
+}
+
+/// Divided differences of `F` functions at once on even samples, through each `N` neighbours of their `values`, or through all where
+/// there are fewer: the first ones count from sample 0, the next ones from sample 1, ...
+#[must_use]
+pub fn through_values<const F: usize, const N: usize>(values: &[[f64; F]]) -> Vec<[[f64; F]; N]> {
+    runs(1, values, &[])
+}
+
+/// The same through each `N / 2` neighbours of their `values` and `slopes`.
+#[must_use]
+pub fn through_slopes<const F: usize, const N: usize>(
+    values: &[[f64; F]],
+    slopes: &[[f64; F]],
+) -> Vec<[[f64; F]; N]> {
+    runs(2, values, slopes)
+}
+
+/// The same with `each` terms for every sample.
+fn runs<const F: usize, const N: usize>(
+    each: usize,
+    values: &[[f64; F]],
+    slopes: &[[f64; F]],
+) -> Vec<[[f64; F]; N]> {
+    let terms = each * values.len();
+    let mut runs = vec![[[0.0; F]; N]; values.len().saturating_sub(N / each) + 1];
+    let mut differences: Vec<[f64; F]> = (0..terms).map(|i| values[i / each]).collect();
+    for level in 0..N.min(terms) {
         if level > 0 {
-            let part = 1.0 / level as f64;
-            for i in 0..values.len() - level {
+            for i in 0..terms - level {
+                let apart = (i + level) / each - i / each;
+                if apart == 0 {
+                    differences[i] = slopes[i / each];
+                    continue;
+                }
+                let part = 1.0 / apart as f64;
                 let next = differences[i + 1];
                 for (here, next) in differences[i].iter_mut().zip(next) {
                     *here = (next - *here) * part;
                 }
             }
         }
-        for (run, difference) in each.iter_mut().zip(&differences) {
+        for (run, difference) in runs.iter_mut().zip(differences.iter().step_by(each)) {
             run[level] = *difference;
         }
     }
-    each
+    runs
 }
 
-/// Where a function with the value and slope `at` is `target` between `low` and `high`, at which it lies on different sides of
-/// it: Newton's method from `near` down to `last_step`, bisecting where a step would leave the bracket.
-pub fn bracketed(
-    at: impl Fn(f64) -> (f64, f64),
-    target: f64,
-    near: f64,
-    [mut low, mut high]: [f64; 2],
-    last_step: f64,
-) -> f64 {
-    if low >= high {
-        return low;
-    }
-    // At an end the value can be the target but for rounding, at both it cannot.
-    let rising = at(low).0 < at(high).0;
-    let inside = low < near && near < high;
-    let mut t = if inside { near } else { 0.5 * (low + high) };
-    for _ in 0..60 {
-        let (value, slope) = at(t);
-        if (value < target) == rising {
-            low = t;
-        } else {
-            high = t;
-        }
-        let newton = t - (value - target) / slope;
-        let inside = low < newton && newton < high;
-        if inside && (newton - t).abs() < last_step {
-            return newton;
-        }
-        let next = if inside { newton } else { 0.5 * (low + high) };
-        if next == t {
-            return next;
-        }
-        t = next;
-    }
-    t
-}
-
-/// The first of the [`NODES`] (or fewer) of `count` samples that surround the interval `at, at + 1`.
+/// The first of the `around` (or fewer) of `count` samples that surround the interval `at, at + 1`.
 #[must_use]
-pub fn stencil(at: usize, count: usize) -> usize {
-    at.saturating_sub(NODES / 2 - 1)
-        .min(count.saturating_sub(NODES))
+pub fn stencil(at: usize, around: usize, count: usize) -> usize {
+    at.saturating_sub(around / 2 - 1)
+        .min(count.saturating_sub(around))
+}
+
+/// Two places, the one with the smaller of two `values` first.
+#[must_use]
+pub fn oriented([a, b]: [f64; 2], values: [f64; 2]) -> [f64; 2] {
+    if values[0] <= values[1] {
+        [a, b]
+    } else {
+        [b, a]
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// A sheet has six columns at least.
+    /// Through their values, and where they are known through their slopes; a sheet has five columns at least.
     #[test]
-    fn runs_go_through_their_values() {
-        for count in [1, 3, 6, 9, NODES, NODES + 5] {
-            let samples: Vec<f64> = (0..count).map(|i| (0.3 * i as f64).sin()).collect();
-            let runs = Polynomial::through_each(&samples);
-            assert_eq!(runs.len(), count.saturating_sub(NODES) + 1);
-            for (start, run) in runs.iter().enumerate() {
-                for (t, sample) in samples[start..].iter().take(NODES).enumerate() {
-                    assert!((run.at(t as f64).0 - sample).abs() < 1e-14, "{start} {t}");
+    fn runs_go_through_their_samples() {
+        let f = |t: usize| (0.3 * t as f64).sin();
+        let slope = |t: usize| 0.3 * (0.3 * t as f64).cos();
+        for count in [1, 3, 6, 9, 15] {
+            let values: Vec<[f64; 1]> = (0..count).map(|t| [f(t)]).collect();
+            let slopes: Vec<[f64; 1]> = (0..count).map(|t| [slope(t)]).collect();
+            let plain = through_values::<1, 6>(&values);
+            let slanted = through_slopes::<1, 12>(&values, &slopes);
+            assert_eq!(plain.len(), count.saturating_sub(6) + 1);
+            assert_eq!(slanted.len(), plain.len());
+            for start in 0..plain.len() {
+                let plain = Polynomial {
+                    places: places(1),
+                    differences: plain[start].map(|[difference]| difference),
+                };
+                let slanted = Polynomial {
+                    places: places(2),
+                    differences: slanted[start].map(|[difference]| difference),
+                };
+                for t in 0..count.min(6) {
+                    let there = start + t;
+                    assert!((plain.at(t as f64).0 - f(there)).abs() < 1e-14, "{there}");
+                    let (value, by_t) = slanted.at(t as f64);
+                    assert!((value - f(there)).abs() < 1e-14, "{there}");
+                    assert!((by_t - slope(there)).abs() < 1e-13, "{there}");
                 }
             }
         }
@@ -149,16 +182,22 @@ mod tests {
     /// A target at a sample, as exactly as that is known: a row whose end is the resting tip has one.
     #[test]
     fn a_sample_is_found_where_it_is() {
-        for slope in [1.0, -1.0] {
-            let samples: Vec<f64> = (0..NODES)
-                .map(|i| slope * (0.1 * i as f64 - 0.2).exp())
+        const COUNT: usize = 10;
+        for sign in [1.0, -1.0] {
+            let samples: Vec<f64> = (0..COUNT)
+                .map(|i| sign * (0.1 * i as f64 - 0.2).exp())
                 .collect();
-            let polynomial = Polynomial::through(samples.iter().copied());
+            let values: Vec<[f64; 1]> = samples.iter().map(|value| [*value]).collect();
+            let polynomial = Polynomial::<COUNT> {
+                places: places(1),
+                differences: through_values(&values)[0].map(|[difference]| difference),
+            };
             for (k, sample) in samples.iter().enumerate() {
                 for target in [sample.next_down(), *sample, sample.next_up()] {
-                    for low in [k.saturating_sub(1), k.min(NODES - 2)] {
-                        let between = [low as f64, (low + 1) as f64];
-                        let t = polynomial.solve(target, low as f64 + 0.3, between);
+                    for low in [k.saturating_sub(1), k.min(COUNT - 2)] {
+                        let ends = [low as f64, (low + 1) as f64];
+                        let between = oriented(ends, [samples[low], samples[low + 1]]);
+                        let t = polynomial.solve(target, low as f64 + 0.3, between, 1e-4);
                         assert!((t - k as f64).abs() < 1e-6, "{t} instead of {k}");
                     }
                 }

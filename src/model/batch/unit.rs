@@ -33,6 +33,24 @@ enum Instructions {
     Scalar,
 }
 
+impl Instructions {
+    /// Whether this processor has them.
+    fn is_here(&self) -> bool {
+        match self {
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx512 => {
+                is_x86_feature_detected!("avx512f")
+                    && is_x86_feature_detected!("avx512dq")
+                    && is_x86_feature_detected!("avx512vl")
+                    && is_x86_feature_detected!("fma")
+            }
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx2 => is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma"),
+            Self::Baseline | Self::Scalar => true,
+        }
+    }
+}
+
 impl fmt::Display for Unit {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self.0 {
@@ -47,23 +65,23 @@ impl fmt::Display for Unit {
 }
 
 impl Unit {
+    /// The units of this processor, the widest first, and none at all.
+    pub fn all() -> impl Iterator<Item = Self> {
+        let units = [
+            #[cfg(target_arch = "x86_64")]
+            Instructions::Avx512,
+            #[cfg(target_arch = "x86_64")]
+            Instructions::Avx2,
+            Instructions::Baseline,
+            Instructions::Scalar,
+        ];
+        units.into_iter().filter(Instructions::is_here).map(Self)
+    }
+
     /// The widest unit of this processor.
     #[must_use]
     pub fn detect() -> Self {
-        #[cfg(target_arch = "x86_64")]
-        {
-            if is_x86_feature_detected!("avx512f")
-                && is_x86_feature_detected!("avx512dq")
-                && is_x86_feature_detected!("avx512vl")
-                && is_x86_feature_detected!("fma")
-            {
-                return Self(Instructions::Avx512);
-            }
-            if is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma") {
-                return Self(Instructions::Avx2);
-            }
-        }
-        Self(Instructions::Baseline)
+        Self::all().next().unwrap_or(Self::scalar())
     }
 
     /// No unit at all, as the compiler's default target does arithmetic: what vectors are compared with.
@@ -81,7 +99,7 @@ impl Unit {
         match self.0 {
             #[cfg(target_arch = "x86_64")]
             Instructions::Avx512 => parts(Avx512::LANES, launches, WIDTH, |part| {
-                // SAFETY: only `detect` makes such a unit, and it has seen every feature that the function enables.
+                // SAFETY: only `all` makes such a unit, and it has seen every feature that the function enables.
                 unsafe { steps_avx512(method, part) }
             }),
             #[cfg(target_arch = "x86_64")]
@@ -105,7 +123,7 @@ impl Unit {
     pub(crate) fn run<K: Task>(self, task: K) -> K::Output {
         match self.0 {
             #[cfg(target_arch = "x86_64")]
-            // SAFETY: only `detect` makes such a unit, and it has seen every feature that the function enables.
+            // SAFETY: only `all` makes such a unit, and it has seen every feature that the function enables.
             Instructions::Avx512 => unsafe { run_avx512(task) },
             #[cfg(target_arch = "x86_64")]
             // SAFETY: as above.
@@ -125,7 +143,7 @@ impl Unit {
     pub fn exhaust(self, rounds: u32) -> u64 {
         match self.0 {
             #[cfg(target_arch = "x86_64")]
-            // SAFETY: only `detect` makes such a unit, and it has seen every feature that the function enables.
+            // SAFETY: only `all` makes such a unit, and it has seen every feature that the function enables.
             Instructions::Avx512 => unsafe { exhaust_avx512(rounds) },
             #[cfg(target_arch = "x86_64")]
             // SAFETY: as above.
@@ -186,7 +204,7 @@ macro_rules! kernel {
                 match unit.0 {
                     #[cfg(target_arch = "x86_64")]
                     Instructions::Avx512 => parts(Avx512::LANES, launches, count, |part| {
-                        // SAFETY: only `detect` makes such a unit, and it has seen every feature that the function enables.
+                        // SAFETY: only `all` makes such a unit, and it has seen every feature that the function enables.
                         unsafe { avx512::<$integrator, $kind>(effects, steps, part) }
                     }),
                     #[cfg(target_arch = "x86_64")]
