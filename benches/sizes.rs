@@ -73,7 +73,7 @@ impl Map {
     /// Stage by stage.
     fn micros_per_cell(&self) -> Vec<f64> {
         let repeats = CELLS.div_ceil(self.plan.cells);
-        let mut seconds = vec![0.0; 5];
+        let mut seconds = [0.0; 5];
         for _ in 0..repeats {
             let summary = map::run(&self.scene, &self.plan, &mut Cpu, &mut Nothing)
                 .expect("nothing is written");

@@ -16,7 +16,7 @@ use glam::DVec2;
 const SPACING: f64 = 0.68;
 
 /// Columns beyond the tip.
-pub const BEYOND_TIP: usize = 2;
+pub const BEYOND_TIP: usize = 1;
 
 /// Columns between the row nearest to the base and the end of the lattice.
 const BEYOND_NEAREST: usize = 1;

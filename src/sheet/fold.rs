@@ -172,16 +172,18 @@ fn root(samples: &[f64], dets: &[f64], at: usize) -> f64 {
 /// Newton's method on `det(load) = 0` inside the brackets.
 fn polish(method: Method, rod: &Rod, brackets: &[Option<Bracket>]) -> Vec<Option<FoldPoint>> {
     let mut points = vec![None; brackets.len()];
-    let mut open: Vec<(usize, Bracket)> = brackets
+    let mut all: Vec<(usize, Bracket)> = brackets
         .iter()
         .enumerate()
         .filter_map(|(i, bracket)| bracket.map(|b| (i, b)))
         .collect();
+    let mut is_open = vec![true; all.len()];
     for _ in 0..ROUNDS {
-        if open.is_empty() {
+        if !is_open.contains(&true) {
             break;
         }
-        let launches: Vec<Launch> = open
+        // Those that are done keep company: with fewer steps, at the tip of a perfect cone, `det` may have its root elsewhere.
+        let launches: Vec<Launch> = all
             .iter()
             .map(|(_, b)| Launch {
                 rod: *rod,
@@ -189,11 +191,11 @@ fn polish(method: Method, rod: &Rod, brackets: &[Option<Bracket>]) -> Vec<Option
                 load: b.guess,
             })
             .collect();
-        let mut landings = land_in_company::<Nystrom8, Second>(method, &launches).into_iter();
-        open.retain_mut(|(i, b)| {
-            let Some(landing) = landings.next() else {
-                return false;
-            };
+        let landings = land_in_company::<Nystrom8, Second>(method, &launches);
+        for (((i, b), is_open), landing) in all.iter_mut().zip(&mut is_open).zip(landings) {
+            if !*is_open {
+                continue;
+            }
             let (det, slope) = (landing.landing.det(), landing.det_gradient().y);
             let newton = b.guess - det / slope;
             let step = newton - b.guess;
@@ -222,10 +224,9 @@ fn polish(method: Method, rod: &Rod, brackets: &[Option<Bracket>]) -> Vec<Option
             } else {
                 0.5 * (b.stable + b.beyond)
             };
-            let done = is_last || next == b.guess;
+            *is_open = !is_last && next != b.guess;
             b.guess = next;
-            !done
-        });
+        }
     }
     // A bracket that closed on something else than a root, or did not close, is no fold.
     for point in &mut points {

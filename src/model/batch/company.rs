@@ -18,24 +18,21 @@ pub fn land_in_company<M: Integrator, K: Kernel<M>>(
 ) -> Vec<K::Answer> {
     let unit = Unit::detect();
     let mut kinds = Kinds::default();
-    let mut of_kind: Vec<Vec<usize>> = Vec::new();
-    for (block, launches) in launches.chunks(WIDTH).enumerate() {
+    let mut places = Vec::with_capacity(launches.len());
+    for launches in launches.chunks(WIDTH) {
         let lane = |lane: usize| &launches[lane.min(launches.len() - 1)];
         let steps = unit.steps(method, &std::array::from_fn(lane));
-        for (i, (launch, steps)) in (block * WIDTH..).zip(launches.iter().zip(steps)) {
-            let place = kinds.place(BlockKind::new(method, launch, steps));
-            if place == of_kind.len() {
-                of_kind.push(Vec::new());
-            }
-            of_kind[place].push(i);
+        for (launch, steps) in launches.iter().zip(steps) {
+            places.push(kinds.place(BlockKind::new(method, launch, steps)));
         }
     }
-    let mut kinds: Vec<(BlockKind, Vec<usize>)> = kinds.all.into_iter().zip(of_kind).collect();
-    kinds.sort_unstable_by_key(|(kind, _)| *kind);
-    let members = kinds
-        .iter()
-        .flat_map(|(kind, all)| all.iter().map(move |i| (*kind, *i)));
-    let members: Vec<(BlockKind, usize)> = members.collect();
+    let mut kinds: Vec<(BlockKind, usize)> = kinds.all.into_iter().zip(0..).collect();
+    kinds.sort_unstable();
+    let mut members = Vec::with_capacity(launches.len());
+    for (kind, place) in kinds {
+        let of_kind = places.iter().zip(0..).filter(|(other, _)| **other == place);
+        members.extend(of_kind.map(|(_, i)| (kind, i)));
+    }
     let blocks: Vec<&[(BlockKind, usize)]> = members
         .chunk_by(|(a, _), (b, _)| a.may_join(b))
         .flat_map(|group| group.chunks(WIDTH))
