@@ -214,7 +214,7 @@ fn keep<T: Lanes>(numbers: &mut Numbers, from: usize, lanes: T) {
 mod tests {
     use super::*;
     use crate::model::batch::Unit;
-    use crate::sheet::loads::{self, PARTS};
+    use crate::sheet::loads::{self, LOADS, PARTS};
     use crate::sheet::polynomial;
 
     /// A value for each lane that rises from 0 at 0 to 3 at the last of `places`, level at the end but for some.
@@ -272,8 +272,11 @@ mod tests {
 
     #[test]
     fn a_row_finds_its_push_angles() {
-        let [push, tau, load] =
-            [0, 1, 2].map(|lane| loads::through(0, &values(PARTS.as_slice(), lane)));
+        let values = [0, 1, 2].map(|lane| {
+            let values = values(PARTS.as_slice(), lane);
+            std::array::from_fn(|i| values[i])
+        });
+        let [push, tau, load] = loads::through(0, LOADS, values);
         for unit in Unit::all() {
             let targets: Numbers = std::array::from_fn(|lane| 0.1 + 0.15 * lane as f64);
             let alone = targets.map(|target| push.solve(target, 0.5, [0.0, 1.0], 1e-5));

@@ -42,14 +42,13 @@ impl Level {
         if self.count < 2 {
             return pushes.map(|_| None).collect();
         }
-        let pieces = self.pieces();
-        let pieces = &pieces[..self.count - 1];
-        let mut at = 0;
+        let nodes = self.nodes();
+        let mut piece = 0;
         let searches = pushes.map(|push| {
-            while at + 1 < pieces.len() && push > pieces[at].pushes[1] {
-                at += 1;
+            while piece + 2 < self.count && push > nodes.push[piece + 1] {
+                piece += 1;
             }
-            pieces[at].search(push).map(|search| (at, search))
+            nodes.search(piece, push).map(|search| (piece, search))
         });
         if self.count == LOADS {
             self.whole(searches)
@@ -95,50 +94,48 @@ impl Level {
 
     /// Polynomials through `count` nodes from the node `from` on.
     fn curves(&self, from: usize, count: usize) -> Curves {
-        let curve = |values: &Numbers| through(self.first + from, &values[from..from + count]);
-        Curves {
-            push: curve(&self.push),
-            tau: curve(&self.tau),
-            load: curve(&self.load),
-        }
+        let values = |numbers: &'_ Numbers| {
+            let mut values = [0.0; LOADS];
+            values[..count].copy_from_slice(&numbers[from..from + count]);
+            values
+        };
+        let [push, tau, load] = through(
+            self.first + from,
+            count,
+            [&self.push, &self.tau, &self.load].map(values),
+        );
+        Curves { push, tau, load }
     }
 
-    /// The curve between its nodes. Where the row leaves the lattice, the piece there reaches one load farther, if the push angle
-    /// falls before it or grows after it.
-    fn pieces(&self) -> [Piece; LOADS] {
-        let parts = &PARTS[self.first..];
-        let last = self.count - 2;
-        let near_cut = self.count.min(NEAR_CUT);
-        let mut pieces = [Piece::default(); LOADS];
-        for (i, piece) in pieces[..=last].iter_mut().enumerate() {
-            piece.ends = [parts[i], parts[i + 1]];
-            piece.pushes = [self.push[i], self.push[i + 1]];
-        }
-        if let Some(before) = self.first.checked_sub(1) {
+    /// The nodes. Where the row leaves the lattice, the one there is one load farther, if the push angle falls before it or grows
+    /// after it.
+    fn nodes(&self) -> Nodes {
+        let (first, count) = (self.first, self.count);
+        let near_cut = count.min(NEAR_CUT);
+        let mut nodes = Nodes {
+            part: [0.0; WIDTH],
+            push: self.push,
+            summit: 0.0,
+            below: [0.0; WIDTH],
+        };
+        nodes.part[..count].copy_from_slice(&PARTS[first..first + count]);
+        if let Some(before) = first.checked_sub(1) {
             let push = self.curves(0, near_cut).push.at(PARTS[before]).0;
             if push < self.push[0] {
-                (pieces[0].ends[0], pieces[0].pushes[0]) = (PARTS[before], push);
+                (nodes.part[0], nodes.push[0]) = (PARTS[before], push);
             }
         }
-        if let Some(after) = parts.get(self.count) {
-            let push = self
-                .curves(self.count - near_cut, near_cut)
-                .push
-                .at(*after)
-                .0;
-            if push > self.push[self.count - 1] {
-                (pieces[last].ends[1], pieces[last].pushes[1]) = (*after, push);
+        if let Some(after) = PARTS.get(first + count) {
+            let push = self.curves(count - near_cut, near_cut).push.at(*after).0;
+            if push > self.push[count - 1] {
+                (nodes.part[count - 1], nodes.push[count - 1]) = (*after, push);
             }
         }
-        let mut summit = f64::NEG_INFINITY;
-        for piece in &pieces[..=last] {
-            summit = summit.max(piece.pushes[0]).max(piece.pushes[1]);
-        }
-        for piece in &mut pieces[..=last] {
-            piece.summit = summit;
-            piece.below = piece.pushes.map(|push| (summit - push).max(0.0).sqrt());
-        }
-        pieces
+        let pushes = &nodes.push[..count];
+        let summit = pushes.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        nodes.summit = summit;
+        nodes.below = nodes.push.map(|push| (summit - push).max(0.0).sqrt());
+        nodes
     }
 }
 
@@ -162,17 +159,16 @@ impl Curves {
     }
 }
 
-/// The level curve between two nodes.
-#[derive(Clone, Copy, Debug, Default)]
-struct Piece {
-    /// Where it begins and ends, as parts of the fold's load.
-    ends: [f64; 2],
-    /// The push angles there.
-    pushes: [f64; 2],
-    /// The largest push angle of the curve.
+/// Where a row is asked for push angles.
+struct Nodes {
+    /// The loads, as parts of the fold's.
+    part: Numbers,
+    /// The push angles.
+    push: Numbers,
+    /// The largest of them.
     summit: f64,
-    /// The roots of how far below it the ends are: at the fold the push angle is flat, and the place goes with this root.
-    below: [f64; 2],
+    /// The roots of how far they are below it: at the fold the push angle is flat, and the place goes with this root.
+    below: Numbers,
 }
 
 /// A push angle that is looked for.
@@ -184,15 +180,16 @@ struct Search {
     between: [f64; 2],
 }
 
-impl Piece {
-    /// Where to look for a push angle; `None` where it is not near the piece.
-    fn search(&self, push: f64) -> Option<Search> {
-        let ([low, high], [from, to]) = (self.ends, self.pushes);
+impl Nodes {
+    /// Where to look for a push angle between the node `i` and the next one; `None` where it is not near them.
+    fn search(&self, i: usize, push: f64) -> Option<Search> {
+        let pair = |numbers: &Numbers| [numbers[i], numbers[i + 1]];
+        let ([low, high], [from, to]) = (pair(&self.part), pair(&self.push));
         if push < from - MARGIN || push > to + MARGIN {
             return None;
         }
         let target = push.max(from).min(to);
-        let [below_low, below_high] = self.below;
+        let [below_low, below_high] = pair(&self.below);
         let below = (self.summit - target).max(0.0).sqrt();
         let part = if below_high < below_low {
             (below_low - below) / (below_low - below_high)
@@ -202,7 +199,7 @@ impl Piece {
         Some(Search {
             target,
             near: low + part * (high - low),
-            between: oriented(self.ends, self.pushes),
+            between: oriented([low, high], [from, to]),
         })
     }
 }
@@ -211,34 +208,37 @@ impl Piece {
 #[derive(Default)]
 struct Block {
     count: usize,
-    searches: [Search; WIDTH],
+    targets: Numbers,
+    near: Numbers,
+    between: [[f64; 2]; WIDTH],
     /// Indices of their guesses.
     cells: [usize; WIDTH],
 }
 
 impl Block {
     fn take(&mut self, cell: usize, search: Search) {
+        self.targets[self.count] = search.target;
+        self.near[self.count] = search.near;
+        self.between[self.count] = search.between;
         self.cells[self.count] = cell;
-        self.searches[self.count] = search;
         self.count += 1;
     }
 
     /// Finds what is looked for.
     fn find(&mut self, curves: &Curves, guesses: &mut [Option<Guess>]) {
-        let Some(last) = self.count.checked_sub(1) else {
+        if self.count == 0 {
             return;
-        };
-        let lane = |lane: usize| &self.searches[lane.min(last)];
+        }
         let found = Unit::detect().run(Along {
             push: &curves.push,
             tau: &curves.tau,
             load: &curves.load,
-            targets: std::array::from_fn(|i| lane(i).target),
-            near: std::array::from_fn(|i| lane(i).near),
+            targets: self.targets,
+            near: self.near,
         });
-        for (i, search) in self.searches[..self.count].iter().enumerate() {
+        for i in 0..self.count {
             let place = found.place[i];
-            let [below, above] = search.between;
+            let [below, above] = self.between[i];
             let is_inside = (place - below) * (place - above) <= 0.0;
             let is_known = found.step[i].abs() < LAST_STEP && is_inside;
             guesses[self.cells[i]] = Some(if is_known {
@@ -247,7 +247,11 @@ impl Block {
                     load: found.load[i],
                 }
             } else {
-                curves.alone(search)
+                curves.alone(&Search {
+                    target: self.targets[i],
+                    near: self.near[i],
+                    between: self.between[i],
+                })
             });
         }
         self.count = 0;

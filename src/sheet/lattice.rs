@@ -103,9 +103,16 @@ impl Lattice {
     fn crossing(&self, m: usize, target: f64, near: usize) -> Option<usize> {
         let last = self.nodes.len() - 1;
         let is_before = |k: usize| self.nodes[k].ln_distance[m] <= target;
-        let crosses = |k: &usize| *k < last && is_before(*k) != is_before(*k + 1);
-        let around = |away: usize| [near.checked_sub(away), Some(near + away)];
-        (0..=last).flat_map(around).flatten().find(crosses)
+        let crosses = |k: usize| k < last && is_before(k) != is_before(k + 1);
+        for away in 0..=last {
+            if near >= away && crosses(near - away) {
+                return Some(near - away);
+            }
+            if crosses(near + away) {
+                return Some(near + away);
+            }
+        }
+        None
     }
 
     /// The level curve of `row` on the lattice.

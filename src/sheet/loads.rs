@@ -3,6 +3,7 @@
 //! that leaves the lattice takes the nodes around.)
 
 use super::polynomial::Polynomial;
+use crate::model::batch::{Lanes, Task, Unit};
 use crate::model::{Landing, nearest_turn};
 use std::f64::consts::FRAC_PI_2;
 use std::sync::LazyLock;
@@ -19,9 +20,9 @@ pub static PARTS: LazyLock<[f64; LOADS]> = LazyLock::new(|| {
     std::array::from_fn(part)
 });
 
-/// One over the distance of the load `i` from the load `level` further on, by `level`.
-static INVERSE_DISTANCES: LazyLock<[[f64; LOADS]; LOADS]> = LazyLock::new(|| {
-    let mut inverse = [[0.0; LOADS]; LOADS];
+/// One over the distance of the load `i` from the load `level` further on, by `level`; 0 where there is none.
+static INVERSE_DISTANCES: LazyLock<[[f64; 2 * LOADS]; LOADS]> = LazyLock::new(|| {
+    let mut inverse = [[0.0; 2 * LOADS]; LOADS];
     for (level, inverse) in inverse.iter_mut().enumerate().skip(1) {
         for (inverse, pair) in inverse.iter_mut().zip(PARTS.windows(level + 1)) {
             *inverse = 1.0 / (pair[level] - pair[0]);
@@ -33,26 +34,58 @@ static INVERSE_DISTANCES: LazyLock<[[f64; LOADS]; LOADS]> = LazyLock::new(|| {
 /// Along a row, by the load.
 pub type Curve = Polynomial<LOADS>;
 
-/// The curve through `values[0]` at the load `first`, `values[1]` at the next one, ...
+/// The curves through the first `count` of some values each, `values[0]` at the load `first`, `values[1]` at the next one, ...
 #[must_use]
-pub fn through(first: usize, values: &[f64]) -> Curve {
+pub fn through<const N: usize>(
+    first: usize,
+    count: usize,
+    values: [[f64; LOADS]; N],
+) -> [Curve; N] {
     let mut places = [0.0; LOADS];
-    let count = values.len();
     places[..count].copy_from_slice(&PARTS[first..first + count]);
-    let mut column = [0.0; LOADS];
-    column[..count].copy_from_slice(values);
-    let mut differences = [0.0; LOADS];
-    differences[0] = column[0];
-    for level in 1..count {
-        let inverse = &INVERSE_DISTANCES[level][first..];
-        for i in 0..count - level {
-            column[i] = (column[i + 1] - column[i]) * inverse[i];
-        }
-        differences[level] = column[0];
-    }
-    Curve {
+    let inverse_distances = &INVERSE_DISTANCES;
+    let differences = Unit::detect().run(Differences {
+        first,
+        count,
+        inverse_distances,
+        values,
+    });
+    differences.map(|differences| Curve {
         places,
         differences,
+    })
+}
+
+/// Divided differences of values at neighbouring loads.
+struct Differences<const N: usize> {
+    first: usize,
+    count: usize,
+    inverse_distances: &'static [[f64; 2 * LOADS]; LOADS],
+    values: [[f64; LOADS]; N],
+}
+
+impl<const N: usize> Task for Differences<N> {
+    type Output = [[f64; LOADS]; N];
+
+    /// Loops over all loads, whatever the count, which the compiler turns into vectors.
+    #[inline(always)]
+    fn run<T: Lanes>(self) -> [[f64; LOADS]; N] {
+        let mut differences = [[0.0; LOADS]; N];
+        for (differences, values) in differences.iter_mut().zip(&self.values) {
+            let mut column = [0.0; LOADS + 1];
+            column[..LOADS].copy_from_slice(values);
+            differences[0] = column[0];
+            let levels = differences.iter_mut().zip(self.inverse_distances);
+            for (difference, inverse) in levels.take(self.count).skip(1) {
+                let inverse = &inverse[self.first..self.first + LOADS];
+                let before = column;
+                for i in 0..LOADS {
+                    column[i] = (before[i + 1] - before[i]) * inverse[i];
+                }
+                *difference = column[0];
+            }
+        }
+        differences
     }
 }
 
@@ -81,8 +114,11 @@ mod tests {
         let f = |part: f64| (2.0 * part).sin();
         for first in [0, 3, LOADS - 2] {
             let count = LOADS - first;
-            let values: Vec<f64> = PARTS[first..].iter().map(|part| f(*part)).collect();
-            let curve = through(first, &values);
+            let mut values = [0.0; LOADS];
+            for (value, part) in values.iter_mut().zip(&PARTS[first..]) {
+                *value = f(*part);
+            }
+            let [curve] = through(first, count, [values]);
             for (part, value) in PARTS[first..].iter().zip(&values) {
                 assert!((curve.at(*part).0 - value).abs() < 1e-13, "{first} {part}");
             }

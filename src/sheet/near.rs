@@ -2,7 +2,7 @@
 
 use super::columns::{AROUND, Columns, Line, line};
 use super::edges::Sample;
-use super::loads::{self, Curve, LOADS, PARTS};
+use super::loads::{Curve, LOADS, PARTS, through};
 use super::polynomial::{Polynomial, oriented, places, stencil, through_slopes, through_values};
 use super::seek::Bends;
 use crate::model::Landing;
@@ -165,19 +165,29 @@ pub struct TipLine {
 impl TipLine {
     /// Through `landings` with the contact at `tau`, under all parts of the load `corner`, with the directions `phis` of the pole.
     pub fn new(tau: f64, corner: f64, landings: &[Landing], phis: &[f64; LOADS]) -> Self {
-        let curve = |number: fn(&Landing) -> f64| {
-            let numbers: Vec<f64> = landings.iter().map(number).collect();
-            loads::through(0, &numbers)
+        let numbers = |number: fn(&Landing) -> f64| {
+            let mut numbers = [0.0; LOADS];
+            for (slot, landing) in numbers.iter_mut().zip(landings) {
+                *slot = number(landing);
+            }
+            numbers
         };
+        let [ln_distance, phi, by_load @ ..] = through(
+            0,
+            LOADS,
+            [
+                numbers(|landing| landing.pole.length().ln()),
+                *phis,
+                numbers(|landing| landing.by_load.x),
+                numbers(|landing| landing.by_load.y),
+            ],
+        );
         Self {
             tau,
             corner,
-            ln_distance: curve(|landing| landing.pole.length().ln()),
-            phi: loads::through(0, phis),
-            by_load: [
-                curve(|landing| landing.by_load.x),
-                curve(|landing| landing.by_load.y),
-            ],
+            ln_distance,
+            phi,
+            by_load,
         }
     }
 
