@@ -2,8 +2,8 @@
 //!
 //! Columns are evenly spaced in `u = ln tau + tau`, but for a modulus that falls toward the tip: toward the base the sheet depends on the contact through
 //! its logarithm (everything scales), toward a slender tip through `tau`. One column lies exactly at the tip;
-//! a few lie beyond it, because a trajectory does not know where the whisker ends, so that interpolation is
-//! nearly as good at the tip as elsewhere.
+//! one lies beyond it, because a trajectory does not know where the whisker ends, so that interpolation is
+//! nearly as good at the tip as elsewhere. Lines along the columns go through values and slopes.
 
 use super::fold::{FoldPoint, first_folds};
 use super::polynomial::{Polynomial, places, stencil, through_slopes};
@@ -42,7 +42,7 @@ pub const fn line(differences: [f64; TERMS]) -> Line {
 }
 
 /// Most columns: the smallest `tau` is then below 1e-12 of the tip's.
-const MOST: usize = 400;
+const MOST: usize = 100;
 
 /// The sampled contacts with their folds, from the base outward.
 #[derive(Clone, Debug)]
