@@ -21,8 +21,7 @@ const CELLS: usize = 1 << 18;
 
 fn main() {
     let runs = std::env::args()
-        .filter_map(|text| text.parse().ok())
-        .next()
+        .find_map(|text| text.parse().ok())
         .unwrap_or(5);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
     let pool = pool.expect("a thread can be started");
@@ -67,6 +66,11 @@ impl Map {
         }
         let scene = Scene::parse(&text, "cone.toml", "cone").expect("the scene is good");
         let plan = Plan::new(&scene).expect("it has room");
+        assert_eq!(
+            plan.cells,
+            side * side * whiskers,
+            "the scene's text has changed"
+        );
         Self { name, scene, plan }
     }
 

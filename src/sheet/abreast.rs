@@ -1,12 +1,10 @@
 //! A row of a map in lanes: one polynomial alone would wait for its own products most of the time.
 
 use super::columns::{Line, TERMS};
+use super::lanes::{Numbers, at, keep, part};
 use super::loads::Curve;
 use crate::model::batch::{Lanes, Task, WIDTH};
 use crate::model::exp;
-
-/// A number for every lane.
-pub type Numbers = [f64; WIDTH];
 
 /// Rounds of Newton's method; what is not found then is looked for alone.
 const ROUNDS: usize = 3;
@@ -160,62 +158,11 @@ impl Task for Along<'_> {
     }
 }
 
-/// What a polynomial has as its terms: a number, or one for every lane.
-trait Term {
-    /// The lanes from `from` on.
-    fn lanes<T: Lanes>(&self, from: usize) -> T;
-}
-
-impl Term for f64 {
-    #[inline(always)]
-    fn lanes<T: Lanes>(&self, _: usize) -> T {
-        T::of(*self)
-    }
-}
-
-impl Term for Numbers {
-    #[inline(always)]
-    fn lanes<T: Lanes>(&self, from: usize) -> T {
-        T::pack(part(self, from))
-    }
-}
-
-/// Value and slope at `place` of polynomials in Newton's form, in the lanes from `from` on.
-#[inline(always)]
-fn at<T: Lanes, C: Term, const N: usize>(
-    places: &[f64; N],
-    differences: &[C; N],
-    from: usize,
-    place: T,
-) -> (T, T) {
-    let (mut value, mut slope): (T, T) = (differences[N - 1].lanes(from), T::of(0.0));
-    for i in (0..N - 1).rev() {
-        let x = place - T::of(places[i]);
-        slope = slope.mul_add(x, value);
-        value = value.mul_add(x, differences[i].lanes(from));
-    }
-    (value, slope)
-}
-
-/// The numbers from `from` on, and nothing after them.
-#[inline(always)]
-fn part(numbers: &Numbers, from: usize) -> Numbers {
-    let mut part = [0.0; WIDTH];
-    part[..WIDTH - from].copy_from_slice(&numbers[from..]);
-    part
-}
-
-#[inline(always)]
-fn keep<T: Lanes>(numbers: &mut Numbers, from: usize, lanes: T) {
-    numbers[from..from + T::LANES].copy_from_slice(&lanes.unpack()[..T::LANES]);
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::model::batch::Unit;
     use crate::sheet::loads::{self, LOADS, PARTS};
-    use crate::sheet::polynomial;
 
     /// A value for each lane that rises from 0 at 0 to 3 at the last of `places`, level at the end but for some.
     fn values(places: &[f64], lane: usize) -> Vec<f64> {
@@ -228,13 +175,7 @@ mod tests {
     #[test]
     fn what_is_found_together_is_found_alone() {
         let places: Vec<f64> = (0..TERMS).map(|place| place as f64).collect();
-        let of_lane = |lane| {
-            let values: Vec<[f64; 1]> = values(&places, lane).iter().map(|v| [*v]).collect();
-            Line {
-                places: polynomial::places(1),
-                differences: polynomial::through_values(&values)[0].map(|[d]| d),
-            }
-        };
+        let of_lane = |lane| Line::through(&values(&places, lane));
         let mut patch = Patch {
             ln_distance: [[0.0; WIDTH]; TERMS],
             phi: [[0.0; WIDTH]; TERMS],

@@ -4,8 +4,9 @@ use super::columns::Columns;
 use super::fold::FoldPoint;
 use super::lattice::Lattice;
 use super::loads::{LOADS, PARTS, directions};
-use super::near::{FoldLine, TipLine};
+use super::near::FoldLine;
 use super::rows::Row;
+use super::tip_line::{TipLine, Turn};
 use crate::model::batch::{Launch, Method, land, land_in_company};
 use crate::model::{Curved, First, Landing, Nystrom8, Rod, Second, nearest_turn};
 use glam::DVec2;
@@ -106,6 +107,7 @@ fn tip_samples(method: Method, rod: &Rod, corner: &FoldPoint) -> (Vec<Sample>, T
     landings.push(corner.landing.landing);
     let phis = directions(corner.load, landings.iter());
     let line = TipLine::new(corner.tau, corner.load, &landings, &phis);
+    let turns = line.turns();
     let mut samples: Vec<Sample> = Vec::new();
     for (m, launch) in launches.iter().enumerate() {
         let sample = |load: f64, landing: &Landing| {
@@ -115,23 +117,22 @@ fn tip_samples(method: Method, rod: &Rod, corner: &FoldPoint) -> (Vec<Sample>, T
             place: PARTS[m],
             ..sample(launch.load, &landings[m])
         });
-        // A slope of exactly 0, as a straight whisker's at first touch, is a sample already.
-        if landings[m].by_load.x * landings[m + 1].by_load.x < 0.0 {
-            let to = corner.load * PARTS[m + 1];
-            let (load, landing) = extremum(method, *launch, to, &line, m);
+        for turn in turns.iter().filter(|turn| turn.after == m) {
+            let (load, landing) = extremum(method, *launch, turn);
             samples.push(sample(load, &landing));
         }
     }
     (samples, line)
 }
 
-/// The load between the one of sample `m`, `from`, and the load `to` of the next one at which `dlnD/dload`
-/// vanishes, and the landing there: mostly the `line` knows it, and one trajectory with it all the rest.
-fn extremum(method: Method, from: Launch, to: f64, line: &TipLine, m: usize) -> (f64, Landing) {
-    let (near, by_load_load) = line.level(m);
-    let landing = land::<Nystrom8, First>(method, &[Launch { load: near, ..from }])[0];
+/// The load at which the distance turns with the contact at the tip, and the landing there: mostly the line along the tip knows the
+/// `turn`, and one trajectory with it all the rest.
+fn extremum(method: Method, at_tip: Launch, turn: &Turn) -> (f64, Landing) {
+    let (near, [from, to], by_load_load) = (turn.load, turn.between, turn.bend);
+    let at = |load| land::<Nystrom8, First>(method, &[Launch { load, ..at_tip }])[0];
+    let landing = at(near);
     let step = -landing.by_load.x / by_load_load.x;
-    if step.abs() <= LAST_STEP * (to - from.load).abs() {
+    if step.abs() <= LAST_STEP * (to - from).abs() {
         let here = Curved {
             landing,
             by_load_load,
@@ -139,11 +140,16 @@ fn extremum(method: Method, from: Launch, to: f64, line: &TipLine, m: usize) -> 
         };
         return (near + step, here.moved(DVec2::new(0.0, step)).landing);
     }
-    let load = bracketed_extremum(method, from, to, near);
-    (
-        load,
-        land::<Nystrom8, First>(method, &[Launch { load, ..from }])[0],
-    )
+    let load = bracketed_extremum(
+        method,
+        Launch {
+            load: from,
+            ..at_tip
+        },
+        to,
+        near,
+    );
+    (load, at(load))
 }
 
 /// The same load by Newton's method from `near` and second derivatives, bisecting where a step would leave the bracket.

@@ -1,6 +1,6 @@
 //! The fold edge: the first load at which the Jacobian becomes singular, contact by contact.
 
-use super::polynomial::{Polynomial, places, stencil, through_values};
+use super::polynomial::{Polynomial, stencil};
 use crate::model::batch::{Launch, Method, land_in_company};
 use crate::model::{Curved, First, Landing, Nystrom8, Rod, Second, Side, arclength};
 use glam::DVec2;
@@ -157,11 +157,7 @@ fn root(samples: &[f64], dets: &[f64], at: usize) -> f64 {
     let around = start..(start + AROUND).min(samples.len());
     let part = if samples[around.end - 1] <= EVEN_UP_TO {
         let offset = (at - start) as f64;
-        let values: Vec<[f64; 1]> = dets[around].iter().map(|det| [*det]).collect();
-        let polynomial = Polynomial::<AROUND> {
-            places: places(1),
-            differences: through_values(&values)[0].map(|[difference]| difference),
-        };
+        let polynomial = Polynomial::<AROUND>::through(&dets[around]);
         polynomial.solve(0.0, offset + secant, [offset + 1.0, offset], LAST_PART) - offset
     } else {
         secant

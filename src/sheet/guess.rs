@@ -1,8 +1,9 @@
 //! Guesses: a row of a map as a curve through the nodes of its level curve on the lattice, asked for push angles.
 
-use super::abreast::{Along, Numbers};
+use super::abreast::Along;
+use super::lanes::Numbers;
 use super::loads::{Curve, LAST_STEP, LOADS, PARTS, through};
-use super::polynomial::oriented;
+use super::search::{Nodes, Search};
 use crate::model::batch::{Unit, WIDTH};
 
 /// A guess for one cell.
@@ -28,10 +29,6 @@ pub struct Level {
     /// Signed load.
     pub load: Numbers,
 }
-
-/// How far beyond the lattice's own detachment angle, in radians, a guess is still made: on most whiskers many times the
-/// interpolation error. A row with a cell that is missed for all that is walked.
-const MARGIN: f64 = 1e-4;
 
 /// Nodes of a polynomial near the end of a row that leaves the lattice.
 const NEAR_CUT: usize = 7;
@@ -94,7 +91,7 @@ impl Level {
 
     /// Polynomials through `count` nodes from the node `from` on.
     fn curves(&self, from: usize, count: usize) -> Curves {
-        let values = |numbers: &'_ Numbers| {
+        let values = |numbers: &Numbers| {
             let mut values = [0.0; LOADS];
             values[..count].copy_from_slice(&numbers[from..from + count]);
             values
@@ -159,51 +156,6 @@ impl Curves {
     }
 }
 
-/// Where a row is asked for push angles.
-struct Nodes {
-    /// The loads, as parts of the fold's.
-    part: Numbers,
-    /// The push angles.
-    push: Numbers,
-    /// The largest of them.
-    summit: f64,
-    /// The roots of how far they are below it: at the fold the push angle is flat, and the place goes with this root.
-    below: Numbers,
-}
-
-/// A push angle that is looked for.
-#[derive(Clone, Copy, Debug, Default)]
-struct Search {
-    target: f64,
-    near: f64,
-    /// Two places, the second one with the larger push angle.
-    between: [f64; 2],
-}
-
-impl Nodes {
-    /// Where to look for a push angle between the node `i` and the next one; `None` where it is not near them.
-    fn search(&self, i: usize, push: f64) -> Option<Search> {
-        let pair = |numbers: &Numbers| [numbers[i], numbers[i + 1]];
-        let ([low, high], [from, to]) = (pair(&self.part), pair(&self.push));
-        if push < from - MARGIN || push > to + MARGIN {
-            return None;
-        }
-        let target = push.max(from).min(to);
-        let [below_low, below_high] = pair(&self.below);
-        let below = (self.summit - target).max(0.0).sqrt();
-        let part = if below_high < below_low {
-            (below_low - below) / (below_low - below_high)
-        } else {
-            1.0
-        };
-        Some(Search {
-            target,
-            near: low + part * (high - low),
-            between: oriented([low, high], [from, to]),
-        })
-    }
-}
-
 /// Searches that go together.
 #[derive(Default)]
 struct Block {
@@ -260,6 +212,7 @@ impl Block {
 
 #[cfg(test)]
 mod tests {
+    use super::super::search::MARGIN;
     use super::*;
     use std::f64::consts::FRAC_PI_2;
 

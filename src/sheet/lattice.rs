@@ -4,9 +4,10 @@
 //! step away from the state. A row of a map is a level curve of `D` on the lattice; along it the push angle grows from
 //! first touch to detachment.
 
-use super::abreast::{Across, Numbers, Patch};
+use super::abreast::{Across, Patch};
 use super::columns::{AROUND, Columns, Line, TERMS, line};
 use super::guess::Level;
+use super::lanes::Numbers;
 use super::loads::{LOADS, PARTS, directions};
 use super::polynomial::{oriented, stencil, through_slopes};
 use super::rows::Row;
@@ -38,7 +39,7 @@ struct Nodes {
     ln_distance: Numbers,
     /// Direction of the pole, continuous from first touch.
     phi: Numbers,
-    /// How both change to the next column.
+    /// Slopes of both, per column.
     slopes: [Numbers; 2],
 }
 

@@ -67,7 +67,7 @@ struct Differences<const N: usize> {
 impl<const N: usize> Task for Differences<N> {
     type Output = [[f64; LOADS]; N];
 
-    /// Loops over all loads, whatever the count, which the compiler turns into vectors.
+    /// In no lanes of ours: loops over all loads, whatever the count, which the compiler turns into the unit's vectors.
     #[inline(always)]
     fn run<T: Lanes>(self) -> [[f64; LOADS]; N] {
         let mut differences = [[0.0; LOADS]; N];

@@ -9,11 +9,13 @@
 mod abreast;
 mod bisect;
 mod columns;
+mod coordinate;
 mod crossings;
 mod edges;
 mod find;
 mod fold;
 mod guess;
+mod lanes;
 mod lattice;
 mod level;
 mod loads;
@@ -21,7 +23,9 @@ mod near;
 mod pieces;
 mod polynomial;
 mod rows;
+mod search;
 mod seek;
+mod tip_line;
 mod walk;
 
 pub use crossings::Crossing;

@@ -2,10 +2,8 @@
 
 use super::columns::{AROUND, Columns, Line, line};
 use super::edges::Sample;
-use super::loads::{Curve, LOADS, PARTS, through};
 use super::polynomial::{Polynomial, oriented, places, stencil, through_slopes, through_values};
 use super::seek::Bends;
-use crate::model::Landing;
 use glam::DVec2;
 
 /// A place near an edge.
@@ -37,10 +35,10 @@ impl Near {
 }
 
 /// The last step along an edge, in distances of columns or in parts of the load: its square is left.
-const LAST_STEP: f64 = 1e-5;
+pub const LAST_STEP: f64 = 1e-5;
 
 /// Where `ln D` is `target` on a `line` between two samples.
-fn place<const N: usize>(
+pub fn place<const N: usize>(
     line: &Polynomial<N>,
     ends: [f64; 2],
     pair: [&Sample; 2],
@@ -142,84 +140,86 @@ impl FoldLine {
         );
         let tau = piece.ln_tau.at(place).0.exp();
         let bend = |i: usize| piece.bends[i].at(place).0;
-        let pair = |i: usize| DVec2::new(bend(i), bend(i + 1));
+        let bends = |i: usize| DVec2::new(bend(i), bend(i + 1));
         Near {
             tau,
             load: self.sign * piece.ln_q.at(place).0.exp() / (tau * tau),
             phi: piece.phi.at(place).0,
-            bends: Some([pair(0) / (tau * tau), pair(2) * tau, pair(4) * tau.powi(4)]),
+            bends: Some([
+                bends(0) / (tau * tau),
+                bends(2) * tau,
+                bends(4) * tau.powi(4),
+            ]),
         }
     }
 }
 
-/// The tip edge, by the parts of the load at the corner.
-#[derive(Clone, Debug)]
-pub struct TipLine {
-    tau: f64,
-    corner: f64,
-    ln_distance: Curve,
-    phi: Curve,
-    by_load: [Curve; 2],
-}
+#[cfg(test)]
+mod tests {
+    use super::super::columns::Columns;
+    use super::super::edges::Edges;
+    use super::super::lattice::Lattice;
+    use super::super::loads::LOADS;
+    use super::super::rows::Row;
+    use super::super::seek::{Edge, Wanted, seek_finely};
+    use super::*;
+    use crate::model::batch::Method;
+    use crate::model::{Effects, Rest, Rod, Side};
 
-impl TipLine {
-    /// Through `landings` with the contact at `tau`, under all parts of the load `corner`, with the directions `phis` of the pole.
-    pub fn new(tau: f64, corner: f64, landings: &[Landing], phis: &[f64; LOADS]) -> Self {
-        let numbers = |number: fn(&Landing) -> f64| {
-            let mut numbers = [0.0; LOADS];
-            for (slot, landing) in numbers.iter_mut().zip(landings) {
-                *slot = number(landing);
+    /// Places in the middle between samples, against those that trajectories find from there.
+    #[test]
+    fn edges_are_known_between_their_samples() {
+        for side in Side::BOTH {
+            let rod = Rod {
+                taper: 0.95,
+                bend: 0.4,
+                pole: 0.0125 * side.sign(),
+                ..Rod::default()
+            };
+            let method = Method::fine(Effects::of([&rod]));
+            let row = Row::new(&Rest::new(&rod), 0.1);
+            let columns = Columns::new(method, &rod, side, &row).unwrap();
+            let lattice = Lattice::new(method.coarsely(), &rod, side, &columns);
+            let edges = Edges::new(method, &rod, &columns, &lattice);
+            let mut checked = 0;
+            for (edge, samples) in [(Edge::Fold, &edges.fold), (Edge::Tip, &edges.tip)] {
+                for pair in samples.windows(2) {
+                    let pair = [&pair[0], &pair[1]];
+                    let target = pair[0].ln_distance.midpoint(pair[1].ln_distance);
+                    // The nearest row.
+                    if target < row.pole_distance.ln() {
+                        continue;
+                    }
+                    let near = match edge {
+                        Edge::Fold => edges.fold_line.at(pair, target),
+                        Edge::Tip => edges.tip_line.at(pair, target),
+                    };
+                    let wanted = Wanted {
+                        rod,
+                        edge,
+                        pole_distance: target.exp(),
+                        from: DVec2::new(near.tau, near.load),
+                    };
+                    let found = seek_finely(method, &[wanted])[0];
+                    let away = (found.point / wanted.from - DVec2::ONE).abs();
+                    assert!(
+                        found.is_found && away.max_element() < 1e-7,
+                        "{edge:?} {away}"
+                    );
+                    let phi = found.here.landing.pole.to_angle();
+                    assert!((near.phi - phi).abs() < 1e-6, "{edge:?}");
+                    let [bend, known] = [near.bends.unwrap()[2], found.here.by_load_load];
+                    assert!(
+                        bend.distance(known) < 1e-2 * known.length(),
+                        "{edge:?} {bend}"
+                    );
+                    checked += 1;
+                }
             }
-            numbers
-        };
-        let [ln_distance, phi, by_load @ ..] = through(
-            0,
-            LOADS,
-            [
-                numbers(|landing| landing.pole.length().ln()),
-                *phis,
-                numbers(|landing| landing.by_load.x),
-                numbers(|landing| landing.by_load.y),
-            ],
-        );
-        Self {
-            tau,
-            corner,
-            ln_distance,
-            phi,
-            by_load,
+            assert!(checked > 20);
+            let turns = edges.tip_line.turns();
+            let turning = edges.tip.len() - LOADS;
+            assert_eq!(turns.len(), turning);
         }
-    }
-
-    /// Where `ln D` is `target` between two samples.
-    pub fn at(&self, pair: [&Sample; 2], target: f64) -> Near {
-        let part = place(
-            &self.ln_distance,
-            pair.map(|sample| sample.place),
-            pair,
-            target,
-        );
-        Near {
-            tau: self.tau,
-            load: self.corner * part,
-            phi: self.phi.at(part).0,
-            bends: Some([DVec2::ZERO, DVec2::ZERO, self.bend(part)]),
-        }
-    }
-
-    /// The load between those of two landings, `m` and the next one, at which `dlnD/dload` is 0, and the second derivatives of `(ln D, phi)`
-    /// by the load there.
-    pub fn level(&self, m: usize) -> (f64, DVec2) {
-        let slope = &self.by_load[0];
-        let ends = [PARTS[m], PARTS[m + 1]];
-        let [from, to] = ends.map(|part| slope.at(part).0);
-        let near = ends[0] + from / (from - to) * (ends[1] - ends[0]);
-        let part = slope.solve(0.0, near, oriented(ends, [from, to]), LAST_STEP);
-        (self.corner * part, self.bend(part))
-    }
-
-    fn bend(&self, part: f64) -> DVec2 {
-        let [distance, phi] = &self.by_load;
-        DVec2::new(distance.at(part).1, phi.at(part).1) / self.corner
     }
 }

@@ -11,6 +11,16 @@ pub struct Polynomial<const N: usize> {
 }
 
 impl<const N: usize> Polynomial<N> {
+    /// Through `values[0]` at 0, `values[1]` at 1, ...; at most `N` of them count.
+    #[must_use]
+    pub fn through(values: &[f64]) -> Self {
+        let values: Vec<[f64; 1]> = values.iter().map(|value| [*value]).collect();
+        Self {
+            places: places(1),
+            differences: through_values(&values)[0].map(|[difference]| difference),
+        }
+    }
+
     /// Value and slope at `t`.
     #[must_use]
     #[inline]
@@ -147,12 +157,12 @@ pub fn oriented([a, b]: [f64; 2], values: [f64; 2]) -> [f64; 2] {
 mod tests {
     use super::*;
 
-    /// Through their values, and where they are known through their slopes; a sheet has five columns at least.
+    /// Through their values, and where they are known through their slopes; a sheet has four columns at least.
     #[test]
     fn runs_go_through_their_samples() {
         let f = |t: usize| (0.3 * t as f64).sin();
         let slope = |t: usize| 0.3 * (0.3 * t as f64).cos();
-        for count in [1, 3, 6, 9, 15] {
+        for count in [1, 3, 4, 5, 6, 9, 15] {
             let values: Vec<[f64; 1]> = (0..count).map(|t| [f(t)]).collect();
             let slopes: Vec<[f64; 1]> = (0..count).map(|t| [slope(t)]).collect();
             let plain = through_values::<1, 6>(&values);
@@ -187,11 +197,7 @@ mod tests {
             let samples: Vec<f64> = (0..COUNT)
                 .map(|i| sign * (0.1 * i as f64 - 0.2).exp())
                 .collect();
-            let values: Vec<[f64; 1]> = samples.iter().map(|value| [*value]).collect();
-            let polynomial = Polynomial::<COUNT> {
-                places: places(1),
-                differences: through_values(&values)[0].map(|[difference]| difference),
-            };
+            let polynomial = Polynomial::<COUNT>::through(&samples);
             for (k, sample) in samples.iter().enumerate() {
                 for target in [sample.next_down(), *sample, sample.next_up()] {
                     for low in [k.saturating_sub(1), k.min(COUNT - 2)] {

@@ -51,7 +51,7 @@ const ROUNDS: usize = 20;
 /// tell the rest to its cube.
 const LAST_STEP: f64 = 3e-7;
 
-/// How far off, relatively, second derivatives of the neighbours are at the most; 1e-7 is the rule.
+/// How far off, relatively, second derivatives of the neighbours are at the most; 1e-3 is the rule.
 const BORROWED: f64 = 1e-2;
 
 /// Newton's method for all `wanted` at once; the caller judges what is left in `miss` and `left`. Each is alone: what is wanted

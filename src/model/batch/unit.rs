@@ -65,7 +65,7 @@ impl fmt::Display for Unit {
 }
 
 impl Unit {
-    /// The units of this processor, the widest first, and none at all.
+    /// The units of this processor, the widest first, the scalar one last.
     pub fn all() -> impl Iterator<Item = Self> {
         let units = [
             #[cfg(target_arch = "x86_64")]
@@ -93,7 +93,7 @@ impl Unit {
     /// Arclengths of the contacts of a block, and the steps that its trajectories take.
     #[allow(
         unsafe_code,
-        reason = "a function compiled for a SIMD unit may be called where `detect` has found that unit"
+        reason = "a function compiled for a SIMD unit may be called where `all` has found that unit"
     )]
     pub(super) fn steps(self, method: Method, launches: &Block) -> [(f64, u32); WIDTH] {
         match self.0 {
@@ -118,7 +118,7 @@ impl Unit {
     /// Does `task` in this unit's lanes.
     #[allow(
         unsafe_code,
-        reason = "a function compiled for a SIMD unit may be called where `detect` has found that unit"
+        reason = "a function compiled for a SIMD unit may be called where `all` has found that unit"
     )]
     pub(crate) fn run<K: Task>(self, task: K) -> K::Output {
         match self.0 {
@@ -138,7 +138,7 @@ impl Unit {
     #[must_use]
     #[allow(
         unsafe_code,
-        reason = "a function compiled for a SIMD unit may be called where `detect` has found that unit"
+        reason = "a function compiled for a SIMD unit may be called where `all` has found that unit"
     )]
     pub fn exhaust(self, rounds: u32) -> u64 {
         match self.0 {
@@ -192,7 +192,7 @@ macro_rules! kernel {
         impl Kernel<$integrator> for $kind {
             #[allow(
                 unsafe_code,
-                reason = "a function compiled for a SIMD unit may be called where `detect` has found that unit"
+                reason = "a function compiled for a SIMD unit may be called where `all` has found that unit"
             )]
             fn block(
                 unit: Unit,
