@@ -155,6 +155,10 @@ impl FoldLine {
 }
 
 #[cfg(test)]
+#[allow(
+    clippy::unwrap_used,
+    reason = "a sheet that is not there fails the test"
+)]
 mod tests {
     use super::super::columns::Columns;
     use super::super::edges::Edges;
