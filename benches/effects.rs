@@ -14,8 +14,9 @@ use naga::valid::{Capabilities, ValidationFlags, Validator};
 use naga::{Block, Expression, Function, Handle, Literal, Module, Statement};
 use std::time::Instant;
 use whiskmap::integrate::gpu::{Precision, shaders};
-use whiskmap::model::batch::{Launch, Method, land};
-use whiskmap::model::{Effects, First, Nystrom8};
+use whiskmap::rod::Effects;
+use whiskmap::shooting::batch::{Launch, Method, land};
+use whiskmap::shooting::{First, Nystrom8};
 
 #[allow(dead_code, reason = "the tests use the rest")]
 #[path = "../tests/gpu_engine/shots.rs"]

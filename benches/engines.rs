@@ -15,12 +15,14 @@ use whiskmap::classify::Status;
 use whiskmap::integrate::gpu::{Gpu, Precision};
 use whiskmap::integrate::{Cpu, Engine};
 use whiskmap::map::{self, Observer};
-use whiskmap::model::batch::{Launch, Method, Unit, land, land_on};
-use whiskmap::model::{Effects, First, FirstAndEnergy, Nystrom8, Resolution, Rod, Second, Side};
+use whiskmap::numerics::Unit;
 use whiskmap::plan::Plan;
 use whiskmap::refine::refine;
+use whiskmap::rod::{Effects, Side};
 use whiskmap::scene::Scene;
 use whiskmap::sheet::Sheet;
+use whiskmap::shooting::batch::{Launch, Method, land, land_on};
+use whiskmap::shooting::{First, FirstAndEnergy, Nystrom8, Resolution, Second};
 use whiskmap::store::{Description, Error, MapWriter, Panel, Shots};
 
 const TRAJECTORIES: usize = 16_384;
@@ -88,7 +90,7 @@ fn scene() -> Scene {
 /// Folds, lattice and crossings of a sheet; and its cells, refined from the lattice's guesses.
 fn sheets(criterion: &mut Criterion) {
     let scene = scene();
-    let rod = Rod::new(&scene.whisker, &scene.pole, Side::Cb);
+    let rod = scene.whisker.rod(&scene.pole, Side::Cb);
     let method = Method::fine(Effects::of([&rod]));
     let length = scene.whisker.length_mm;
     let distances: Vec<f64> = scene.grid.distance_mm.iter().map(|d| d / length).collect();

@@ -20,10 +20,12 @@ use std::time::Instant;
 use whiskmap::accuracy;
 use whiskmap::integrate::Cpu;
 use whiskmap::map::{self, Observer};
-use whiskmap::model::batch::{Launch, Method, Unit, land_on};
-use whiskmap::model::{Effects, First, Landing, Nystrom8, Resolution, Rod, Side, arclength};
+use whiskmap::numerics::Unit;
 use whiskmap::plan::Plan;
+use whiskmap::rod::{Effects, Rod, Side, arclength};
 use whiskmap::scene::Scene;
+use whiskmap::shooting::batch::{Launch, Method, land_on};
+use whiskmap::shooting::{First, Landing, Nystrom8, Resolution};
 use whiskmap::store;
 use whiskmap::trace::curve_at;
 

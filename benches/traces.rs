@@ -4,7 +4,7 @@
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use std::hint::black_box;
-use whiskmap::model::Side;
+use whiskmap::rod::Side;
 use whiskmap::scene::Scene;
 use whiskmap::trace::{Branch, Shape, corner, curve};
 

@@ -1,4 +1,4 @@
-// The pole as the base sees it, and Newton's step; the twin of `src/model/landing.rs` and `src/model/batch/answer.rs`.
+// The pole as the base sees it, and Newton's step; the twin of `crates/mechanics/src/shooting/map.rs` and `shooting/batch/output.rs` beside it.
 
 struct Landing {
     pole: vec2<real>,

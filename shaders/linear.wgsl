@@ -1,5 +1,5 @@
 // A radius that is linear in the arclength, and a modulus that is; the way along it. The twin of `Even` and `Graded` in
-// `src/model/material.rs`.
+// `crates/mechanics/src/shooting/material.rs`.
 
 struct Material {
     gradient: real,

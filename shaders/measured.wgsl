@@ -1,4 +1,4 @@
-// Measured radii, piece by piece, so that no step crosses a row; the twin of `Measured` in `src/model/material.rs`.
+// Measured radii, piece by piece, so that no step crosses a row; the twin of `Measured` in `crates/mechanics/src/shooting/material.rs`.
 
 struct Piece {
     // where it begins

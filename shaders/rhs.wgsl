@@ -1,4 +1,4 @@
-// The right-hand sides, in sigma = tau_contact - tau; the twin of `src/model/{rhs,intrinsic,vector}.rs` and `src/model/order/`.
+// The right-hand sides, in sigma = tau_contact - tau; the twin of `rhs`, `intrinsic` and `sensitivity` in `crates/mechanics/src/shooting/`.
 
 struct Section {
     rho: real,

@@ -1,4 +1,4 @@
-// The rod and its contact; the twin of `src/model/{rod,rest,start}.rs`.
+// The rod and its contact; the twin of `crates/mechanics/src/rod/`.
 
 // Lengths in whisker lengths; as in Rust.
 struct Rod {

@@ -11,7 +11,6 @@ pub mod classify;
 pub mod cli;
 pub mod integrate;
 pub mod map;
-pub mod model;
 pub mod paper;
 pub mod plan;
 pub mod refine;
@@ -20,3 +19,5 @@ pub mod scene;
 pub mod sheet;
 pub mod store;
 pub mod trace;
+
+pub use whiskmap_mechanics::{numerics, rod, shooting};

@@ -7,11 +7,12 @@
 
 use std::path::PathBuf;
 use whiskmap::accuracy::cheapest;
-use whiskmap::model::batch::{Launch, Method, land};
-use whiskmap::model::{Effects, First, Nystrom8, Resolution, Rod, Side};
 use whiskmap::refine::states;
+use whiskmap::rod::{Effects, Side};
 use whiskmap::scene::{Scene, Whisker};
 use whiskmap::sheet::Sheet;
+use whiskmap::shooting::batch::{Launch, Method, land};
+use whiskmap::shooting::{First, Nystrom8, Resolution};
 use whiskmap::trace::curve_at;
 
 /// Its own error, 1e-11 degrees at most, is far below every tolerance here.
@@ -62,7 +63,7 @@ fn ends(scene: &Scene, whisker: &Whisker, side: Side, resolution: Resolution) ->
 
 /// The largest error of the cells, in degrees: where a state that the resolution calls solved has its pole.
 fn cells(scene: &Scene, whisker: &Whisker, side: Side, resolution: Resolution) -> f64 {
-    let rod = Rod::new(whisker, &scene.pole, side);
+    let rod = whisker.rod(&scene.pole, side);
     let effects = Effects::of([&rod]);
     let method = Method {
         effects,

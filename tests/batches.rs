@@ -1,8 +1,9 @@
 //! Batches of trajectories that want different numbers of steps: alone, or in company.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-use whiskmap::model::batch::{Launch, Method, land, land_each, land_in_company};
-use whiskmap::model::{Effects, First, Landing, Nystrom8, RadiusProfile, Resolution, Rod, Second};
+use whiskmap::rod::{Effects, RadiusProfile, Rod};
+use whiskmap::shooting::batch::{Launch, Method, land, land_each, land_in_company};
+use whiskmap::shooting::{First, Landing, Nystrom8, Resolution, Second};
 
 /// Contacts from next to the base to the tip, from no load to that of the fold, on slender and blunt whiskers.
 fn launches(count: usize) -> Vec<Launch> {

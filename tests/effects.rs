@@ -2,11 +2,9 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use glam::DVec2;
-use whiskmap::model::batch::{Launch, Method, land};
-use whiskmap::model::{
-    Effects, First, FirstAndEnergy, Landing, Nystrom8, RadiusProfile, Resolution, Rod, Second,
-    arclength,
-};
+use whiskmap::rod::{Effects, RadiusProfile, Rod, arclength};
+use whiskmap::shooting::batch::{Launch, Method, land};
+use whiskmap::shooting::{First, FirstAndEnergy, Landing, Nystrom8, Resolution, Second};
 
 #[allow(dead_code, reason = "the engines' tests use the rest")]
 #[path = "gpu_engine/shots.rs"]

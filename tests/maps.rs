@@ -12,11 +12,11 @@ use compute::{compute, difference, thin};
 use std::path::Path;
 use whiskmap::integrate::gpu::{Gpu, Precision};
 use whiskmap::integrate::{Cpu, Engine, EngineError, Outcome, Shot};
-use whiskmap::model::batch::Method;
-use whiskmap::model::{Effects, Rod, Side};
 use whiskmap::refine::{End, TOLERANCE, refine};
+use whiskmap::rod::{Effects, Side};
 use whiskmap::scene::Scene;
 use whiskmap::sheet::Sheet;
+use whiskmap::shooting::batch::Method;
 use whiskmap::store::{self, Panel};
 
 fn shipped() -> Vec<Scene> {
@@ -121,7 +121,7 @@ fn engines_agree_on_every_field() {
     thin(&mut scene.grid.push_angle_deg, 128);
     thin(&mut scene.grid.distance_mm, 128);
     for side in Side::BOTH {
-        let rod = Rod::new(&scene.whisker, &scene.pole, side);
+        let rod = scene.whisker.rod(&scene.pole, side);
         let effects = Effects::of([&rod]);
         let distances: Vec<f64> = scene.grid.distance_mm.iter().map(|d| d / 20.0).collect();
         let sheet = Sheet::new(Method::fine(effects), &rod, side, &distances).unwrap();

@@ -4,10 +4,12 @@
 use glam::DVec2;
 use num_dual::{DualNum, HyperDual64, second_partial_derivative};
 use std::ops::{Add, Div, Mul, Neg, Sub};
-use whiskmap::model::batch::{Launch, Method, land};
-use whiskmap::model::{
-    Curved, Effects, Even, First, Graded, Integrator, Landing, Nystrom8, Planar, Real, Resolution,
-    Rk4, Rod, RodSystem, Scales, Second, Section, Shape, Straight, integrate,
+use whiskmap::numerics::Real;
+use whiskmap::rod::{Effects, Rod};
+use whiskmap::shooting::batch::{Launch, Method, land};
+use whiskmap::shooting::{
+    Curved, Even, First, Graded, Integrator, Landing, Nystrom8, Planar, Resolution, Rk4, RodSystem,
+    Scales, Second, Section, Shape, Straight, integrate,
 };
 
 const EFFECTS: Effects = Effects {
@@ -113,7 +115,7 @@ fn batches_have_the_order() {
 #[test]
 fn the_fine_resolution_is_exact() {
     let fine = Method {
-        resolution: whiskmap::model::Resolution::FINE,
+        resolution: whiskmap::shooting::Resolution::FINE,
         ..steps(1)
     };
     let exact = land::<Nystrom8, First>(steps(512), &rods());

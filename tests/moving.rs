@@ -11,14 +11,14 @@ mod shots;
 
 use glam::DVec2;
 use shots::Range;
-use whiskmap::model::batch::{Launch, Method, land};
-use whiskmap::model::{
-    Change, Effects, First, FirstAndEnergy, Full, Moving, Nystrom8, Resolution, Rod, Second, Side,
-    arclength,
-};
 use whiskmap::refine::{TOLERANCE, states};
+use whiskmap::rod::{Effects, Rod, Side, arclength};
 use whiskmap::scene::Scene;
 use whiskmap::sheet::Sheet;
+use whiskmap::shooting::batch::{Launch, Method, land};
+use whiskmap::shooting::{
+    Change, First, FirstAndEnergy, Full, Moving, Nystrom8, Resolution, Second,
+};
 
 /// Random states on random rods with these effects, those of the engines' tests.
 fn launches(effects: Effects) -> Vec<Launch> {
@@ -137,7 +137,7 @@ fn residuals_are_bounds() {
         let scene = Scene::parse(&text, &format!("scenes/{name}.toml"), name).unwrap();
         let whisker = scene.whiskers().next().unwrap().1;
         for side in Side::BOTH {
-            let rod = Rod::new(&whisker, &scene.pole, side);
+            let rod = whisker.rod(&scene.pole, side);
             for least in [3, 5, 9, 18] {
                 let method = Method {
                     effects: Effects::of([&rod]),

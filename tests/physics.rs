@@ -2,14 +2,15 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use whiskmap::classify::{RowBoundary, Span};
-use whiskmap::model::batch::{Launch, Method, land};
-use whiskmap::model::{Effects, First, Nystrom8, Rest, Rod, Side, arclength};
+use whiskmap::rod::{Effects, Rest, Rod, Side, arclength};
 use whiskmap::scene::{Curvature, Pole, Whisker};
 use whiskmap::sheet::{Crossing, Edge, Sheet};
+use whiskmap::shooting::batch::{Launch, Method, land};
+use whiskmap::shooting::{First, Nystrom8};
 
 /// The detachment of `whisker` at `distance_mm` from a pole: push angle in degrees, signed, and the crossing.
 fn detachment(whisker: &Whisker, pole: &Pole, side: Side, distance_mm: f64) -> (f64, Crossing) {
-    let rod = Rod::new(whisker, pole, side);
+    let rod = whisker.rod(pole, side);
     let sheet = Sheet::new(
         Method::fine(Effects::of([&rod])),
         &rod,
@@ -83,7 +84,7 @@ fn the_reference_is_reproduced() {
         // The file has 9 decimals.
         let miss = (push - number("push_angle_deg")).abs();
         assert!(miss < 1e-8, "{line}: {push}, off by {miss:.1e}");
-        let rod = Rod::new(&whisker, &pole, side);
+        let rod = whisker.rod(&pole, side);
         let arc = arclength(&rod, crossing.tau) * whisker.length_mm;
         let miss = (arc - number("arc_length_mm")).abs() / whisker.length_mm;
         assert!(miss < 1e-8, "{line}: arc length {arc}");
@@ -94,7 +95,7 @@ fn the_reference_is_reproduced() {
 
 /// The distance at first touch of the paper's pole, whose centre is at (15.13, 4.29) mm with radius 0.25 mm.
 fn fig2_distance(whisker: &Whisker) -> f64 {
-    let rest = Rest::new(&Rod::new(whisker, &Pole::smooth(0.25), Side::Cb));
+    let rest = Rest::new(&whisker.rod(&Pole::smooth(0.25), Side::Cb));
     let wanted = 15.13_f64.hypot(4.29) / whisker.length_mm;
     let (mut low, mut high) = (0.5, 1.0);
     for _ in 0..60 {

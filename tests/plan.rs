@@ -3,8 +3,8 @@
 
 use whiskmap::integrate::{Cpu, Description, Engine, EngineError, Hit, Shot};
 use whiskmap::map::{self, Observer};
-use whiskmap::model::{Effects, Rod};
 use whiskmap::plan::Plan;
+use whiskmap::rod::{Effects, Rod};
 use whiskmap::scene::Scene;
 use whiskmap::store::{Error, Panel};
 

@@ -9,7 +9,7 @@ use naga::back::PipelineConstants;
 use naga::back::pipeline_constants::process_overrides;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use whiskmap::integrate::gpu::{Precision, shaders};
-use whiskmap::model::Effects;
+use whiskmap::rod::Effects;
 
 const PRECISIONS: [Precision; 2] = [Precision::F32, Precision::F64];
 const PROBE: &str = include_str!("../shaders/probe.wgsl");

@@ -5,9 +5,10 @@
 
 mod sample;
 
-use crate::model::{Resolution, Side};
 use crate::refine::GOAL;
+use crate::rod::Side;
 use crate::scene::Scene;
+use crate::shooting::Resolution;
 use sample::Sample;
 
 /// A resolution, and what it leaves.

@@ -1,10 +1,11 @@
 //! States and detachments from all over a scene, its corners among them.
 
-use crate::model::batch::{Launch, Method, land};
-use crate::model::{Effects, First, Landing, Nystrom8, Resolution, Rod, Side};
 use crate::refine::states;
+use crate::rod::{Effects, Side};
 use crate::scene::{Scene, Whisker};
 use crate::sheet::{Crossing, Edge, Sheet};
+use crate::shooting::batch::{Launch, Method, land};
+use crate::shooting::{First, Landing, Nystrom8, Resolution};
 use rayon::prelude::*;
 
 /// Values of an axis that take part: its ends, and some between. The ends of pushes get better with more distances, near
@@ -28,7 +29,7 @@ impl Sample {
         let pairs: Vec<_> = whiskers
             .iter()
             .flat_map(|whisker| sides.iter().map(move |side| (whisker, *side)))
-            .map(|(whisker, side)| (Rod::new(whisker, &scene.pole, side), side))
+            .map(|(whisker, side)| (whisker.rod(&scene.pole, side), side))
             .collect();
         let effects = Effects::of(pairs.iter().map(|(rod, _)| rod));
         let distances: Vec<f64> = spread(&scene.grid.distance_mm, DISTANCES)

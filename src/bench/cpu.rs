@@ -4,8 +4,10 @@ use super::task::Task;
 use super::watch::watch;
 use super::{Engine, Report, Row, Rung, Stages};
 use crate::integrate::{EngineError, Hit, Solver};
-use crate::model::batch::{Kernel, Launch, Unit, flops};
-use crate::model::{First, Integrator, Nystrom8, Resolution, Rk4};
+use crate::numerics::MultiplyAndAdd;
+use crate::numerics::Unit;
+use crate::shooting::batch::{Kernel, Launch, flops};
+use crate::shooting::{First, Integrator, Nystrom8, Resolution, Rk4};
 use std::convert::Infallible;
 use std::time::Instant;
 
@@ -159,7 +161,7 @@ pub fn operations(task: &Task, hits: &[Hit], count: impl Fn(&Launch) -> u64) -> 
 /// Billions of operations per second of all threads of the pool at once.
 fn peak(unit: Unit, runs: usize) -> f64 {
     let work = || {
-        let each = rayon::broadcast(|_| unit.exhaust(ROUNDS));
+        let each = rayon::broadcast(|_| unit.run(MultiplyAndAdd { rounds: ROUNDS }));
         Ok::<u64, Infallible>(each.iter().sum())
     };
     let Ok((seconds, operations)) = watch(runs, work);

@@ -2,9 +2,9 @@
 
 use super::task::{EXACT, Spread};
 use super::watch::{Timing, watch};
-use crate::model::Resolution;
 use crate::plan::Plan;
 use crate::scene::Scene;
+use crate::shooting::Resolution;
 use crate::trace::{Detachment, curve_at};
 use rayon::prelude::*;
 use serde::Serialize;

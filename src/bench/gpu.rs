@@ -6,8 +6,9 @@ use super::watch::watch;
 use super::{Engine, Report, Row, Rung, Stages};
 use crate::integrate::gpu::{Gpu, Precision, adapters};
 use crate::integrate::{Engine as _, EngineError};
-use crate::model::batch::{Launch, Method, flops, land};
-use crate::model::{First, Nystrom8, Rk4, arclength};
+use crate::rod::arclength;
+use crate::shooting::batch::{Launch, Method, flops, land};
+use crate::shooting::{First, Nystrom8, Rk4};
 use std::time::Instant;
 
 /// Most Newton steps in `f64` after the shader's.

@@ -1,12 +1,14 @@
 //! The states of a scene, with exact answers.
 
 use crate::integrate::{Shot, Solver};
-use crate::model::batch::{Launch, Method, Unit, land};
-use crate::model::{Effects, First, Nystrom8, Resolution, Rod, arclength};
+use crate::numerics::Unit;
 use crate::plan::Plan;
 use crate::refine::states;
+use crate::rod::{Effects, Rod, arclength};
 use crate::scene::{Scene, Whisker};
 use crate::sheet::Sheet;
+use crate::shooting::batch::{Launch, Method, land};
+use crate::shooting::{First, Nystrom8, Resolution};
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -77,7 +79,7 @@ impl Task {
         let pairs: Vec<_> = whiskers
             .iter()
             .flat_map(|whisker| sides.iter().map(move |side| (whisker, *side)))
-            .map(|(whisker, side)| (Rod::new(whisker, &scene.pole, side), side))
+            .map(|(whisker, side)| (whisker.rod(&scene.pole, side), side))
             .collect();
         let rods: Vec<Rod> = pairs.iter().map(|(rod, _)| *rod).collect();
         let effects = Effects::of(&rods);

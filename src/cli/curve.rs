@@ -3,9 +3,10 @@
 use super::failure::{Failure, say};
 use super::outputs::{Opened, Outputs};
 use super::tolerance::Tolerance;
-use crate::model::{Resolution, Side};
 use crate::render::{Chart, CurveAxis, curves};
+use crate::rod::Side;
 use crate::scene::{Morphology, Scene, Whisker};
+use crate::shooting::Resolution;
 use crate::trace::{self, Corner, Detachment, Kind};
 use clap::Args;
 use rayon::prelude::*;

@@ -3,8 +3,8 @@
 use super::failure::Failure;
 use super::outputs::Outputs;
 use super::pole::Pole;
-use crate::model::Side;
 use crate::render::{Chart, Drawn, Ink, Stroke, shapes};
+use crate::rod::Side;
 use crate::trace::{Branch, NoState, Shape};
 use clap::{Args, ValueEnum};
 

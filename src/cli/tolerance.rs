@@ -2,7 +2,7 @@
 
 use super::failure::{Failure, say};
 use crate::accuracy::{Accuracy, cheapest};
-use crate::model::Side;
+use crate::rod::Side;
 use crate::scene::Scene;
 use clap::Args;
 

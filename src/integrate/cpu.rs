@@ -1,8 +1,10 @@
 //! The CPU engine: `f64`, SIMD lanes, all threads of the current pool.
 
 use super::{Description, Engine, EngineError, Hit, MOST_STEPS, Outcome, Shot};
-use crate::model::batch::{Kernel, Launch, Method, Unit, land_on};
-use crate::model::{Effects, First, Integrator, Landing, Nystrom8, Resolution, Rod, arclength};
+use crate::numerics::Unit;
+use crate::rod::{Effects, Rod, arclength};
+use crate::shooting::batch::{Kernel, Launch, Method, land_on};
+use crate::shooting::{First, Integrator, Landing, Nystrom8, Resolution};
 use glam::DVec2;
 use rayon::prelude::*;
 

@@ -3,7 +3,7 @@
 //! A device that has failed once is not asked again, so that a run ends after one failure however many shots it has left.
 
 use super::{Engine, EngineError, Hit, Shot};
-use crate::model::{Effects, Rod};
+use crate::rod::{Effects, Rod};
 
 /// An engine that may be missing.
 pub struct Fallback<'a> {

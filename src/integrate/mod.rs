@@ -11,7 +11,7 @@ pub mod gpu;
 pub use cpu::{Cpu, Solver};
 pub use fallback::Fallback;
 
-use crate::model::{Effects, Rod};
+use crate::rod::{Effects, Rod};
 use glam::DVec2;
 
 /// A shooting problem.

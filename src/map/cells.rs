@@ -3,9 +3,9 @@
 use super::{Face, Summary, pushes::Push, summary::Stage};
 use crate::classify::Status;
 use crate::integrate::{Fallback, Hit, Outcome, Shot};
-use crate::model::batch::Method;
 use crate::refine::{self, End, Refined, State};
 use crate::sheet::{Guess, Sheet};
+use crate::shooting::batch::Method;
 use rayon::prelude::*;
 
 /// Rows of some faces, settled together.

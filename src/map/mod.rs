@@ -9,11 +9,11 @@ mod summary;
 pub use summary::Summary;
 
 use crate::integrate::{Engine, Fallback};
-use crate::model::batch::Method;
-use crate::model::{Rod, Side};
 use crate::plan::Plan;
+use crate::rod::Side;
 use crate::scene::{Scene, Whisker};
 use crate::sheet::Sheet;
+use crate::shooting::batch::Method;
 use crate::store::Panel;
 use cells::{Row, Strip};
 use pushes::Pushes;
@@ -41,7 +41,7 @@ struct Face<'a> {
 impl<'a> Face<'a> {
     fn new(scene: &Scene, method: Method, whisker: &Whisker, pushes: &'a Pushes) -> Self {
         let side = pushes.side;
-        let rod = Rod::new(whisker, &scene.pole, side);
+        let rod = whisker.rod(&scene.pole, side);
         let distances: Vec<f64> = scene
             .grid
             .distance_mm

@@ -3,9 +3,10 @@
 use super::cells::{Cell, Settled};
 use super::{Face, doubt};
 use crate::classify::{Regime, RowBoundary, Status};
-use crate::model::{Reader, Reading, Units};
+use crate::rod::Units;
 use crate::scene::{Scene, Whisker};
 use crate::sheet::Sheet;
+use crate::shooting::{Reader, Reading};
 use crate::store::{Panel, STATE_CHANNELS};
 use rayon::prelude::*;
 
@@ -36,7 +37,7 @@ pub fn fill(
         .par_iter()
         .map(|row| {
             let face = &faces[row.face];
-            let units = Units::new(&whiskers[row.face / faces_per_panel]);
+            let units = whiskers[row.face / faces_per_panel].units();
             answers(&units, face, row.row, || settled.cells(face, row))
         })
         .collect();
@@ -67,7 +68,7 @@ fn answers<C: Iterator<Item = Cell>>(
         let unresolved = |cell: Cell| Answer::new(Regime::Unresolved, Status::NoFold, cell.steps);
         return cells().map(unresolved).collect();
     };
-    let reader = units.reader(&sheet.rod);
+    let reader = Reader::new(*units, &sheet.rod);
     let boundary = RowBoundary::new(sheet.touches(row), &sheet.crossings[row]);
     let answer = |cell: &Cell| answer(cell, sheet, row, &boundary, &reader);
     let answers: Vec<Answer> = cells().map(|cell| answer(&cell)).collect();

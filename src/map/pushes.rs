@@ -1,6 +1,6 @@
 //! The columns of a map on one side of the pole.
 
-use crate::model::Side;
+use crate::rod::Side;
 use glam::DVec2;
 
 /// One column.

@@ -1,6 +1,6 @@
 //! A number that is known otherwise, and how far ours is from it.
 
-use crate::model::Side;
+use crate::rod::Side;
 use crate::scene::{Pole, Whisker};
 use crate::trace::{Detachment, curve};
 

@@ -3,7 +3,7 @@
 use super::check::{CLOSED, Check, EXACT, end, near};
 use super::elastica::{elastica, fold};
 use super::whiskers::{CONE, CYLINDER, POLE, whisker};
-use crate::model::{Side, Units};
+use crate::rod::Side;
 use crate::scene::{Pole, Whisker};
 use crate::trace::{Branch, Kind, corner, curve};
 
@@ -103,7 +103,7 @@ fn straight_cone() -> Vec<Check> {
     .flat_map(|(name, cone)| [5.0, 15.0].map(|a| (name, cone.clone(), a)))
     .map(|(name, cone, a)| {
         let length = cone.length_mm / (1.0 - cone.tip_radius_um / cone.base_radius_um);
-        let units = Units::new(&cone);
+        let units = cone.units();
         let exact = 3.0 * units.moment_nnm * cone.length_mm * push * (length - a) / (a * length);
         let moment = Branch::new(&cone, &POINT, Side::Cb, a)
             .and_then(|branch| Ok((branch.state(push, true)?, branch)))

@@ -3,10 +3,10 @@
 use super::whiskers::{
     CONE, CYLINDER, FIG4_HAIR, FIG4_WHISKER, FIG5_LEFT, FIG5_RIGHT, POLE, fig2_distance_mm,
 };
-use crate::model::Side;
 use crate::render::{
     BranchAxis, Chart, CurveAxis, Drawn, Ink, Plot, Stroke, branches, curves, shapes,
 };
+use crate::rod::Side;
 use crate::scene::Whisker;
 use crate::store::Table;
 use crate::trace::{Branch, BranchPoint, Detachment, NoState, Shape, ShapePoint, curve};

@@ -2,7 +2,7 @@
 
 use super::check::{AUTO, Check, Expected, FORWARD, PAPER, end, near};
 use super::whiskers::{CONE, CYLINDER, POLE, fig2_distance_mm};
-use crate::model::Side;
+use crate::rod::Side;
 use crate::scene::Pole;
 use crate::trace::{Detachment, Kind, corner};
 

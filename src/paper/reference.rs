@@ -2,7 +2,7 @@
 
 use super::check::{AUTO, Check, Expected};
 use super::whiskers::whisker;
-use crate::model::Side;
+use crate::rod::Side;
 use crate::scene::Pole;
 use crate::trace::{Kind, curve};
 use serde::Deserialize;

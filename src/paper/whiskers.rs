@@ -1,6 +1,6 @@
 //! The whiskers of the paper, and those of the closed forms.
 
-use crate::model::{Rest, Rod, Side};
+use crate::rod::{Rest, Side};
 use crate::scene::{Curvature, Pole, Whisker};
 
 /// The paper's pole.
@@ -55,7 +55,7 @@ pub const fn whisker([length_mm, base, tip]: [f64; 3], a_per_mm: f64, vertex_mm:
 
 /// The distance at which the pole of Fig. 2 first touches `whisker`.
 pub fn fig2_distance_mm(whisker: &Whisker) -> f64 {
-    let rest = Rest::new(&Rod::new(whisker, &POLE, Side::Cb));
+    let rest = Rest::new(&whisker.rod(&POLE, Side::Cb));
     let [x, y] = FIG2_POLE_MM;
     rest.distance_of_pole(x.hypot(y) / whisker.length_mm) * whisker.length_mm
 }

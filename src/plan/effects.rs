@@ -1,6 +1,6 @@
 //! The effects by name: which are on, and which line of the scene decides it. The only list of them.
 
-use crate::model::Effects;
+use crate::rod::Effects;
 use crate::scene::{Scene, Whisker};
 
 /// An effect of the scene.

@@ -6,9 +6,9 @@ mod sample;
 pub use effects::{Cost, Effect, effects};
 pub use sample::{SAMPLE_LINES, sample};
 
-use crate::model::batch::Method;
-use crate::model::{Effects, Rod, Side};
+use crate::rod::{Effects, Rod, Side};
 use crate::scene::{Scene, Whisker};
+use crate::shooting::batch::Method;
 
 /// Bytes that a run may take for its panels.
 pub const MEMORY_LIMIT: u64 = 4 << 30;
@@ -92,7 +92,7 @@ impl Plan {
         }
         let rods: Vec<Rod> = whiskers
             .iter()
-            .map(|whisker| Rod::new(whisker, &scene.pole, Side::Cb))
+            .map(|whisker| whisker.rod(&scene.pole, Side::Cb))
             .collect();
         let sides = Self::sides(scene);
         let rows_at_once = (CELLS_IN_FLIGHT / push_angles).max(1);

@@ -8,9 +8,9 @@ mod near_fold;
 mod newton;
 
 use crate::integrate::Shot;
-use crate::model::Full;
-use crate::model::batch::{Method, together};
 use crate::sheet::Sheet;
+use crate::shooting::Full;
+use crate::shooting::batch::{Method, together};
 use near_fold::Verdict;
 use newton::newton;
 use rayon::prelude::*;

@@ -5,9 +5,10 @@
 //! solution at all, and `eta` where it is.
 
 use crate::integrate::Shot;
-use crate::model::batch::Method;
-use crate::model::{Curved, nearest_turn};
+use crate::numerics::nearest_turn;
 use crate::sheet::{Edge, Sheet, Wanted, seek};
+use crate::shooting::Curved;
+use crate::shooting::batch::Method;
 use glam::DVec2;
 
 /// What the fold says about a cell.

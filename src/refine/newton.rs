@@ -2,9 +2,10 @@
 
 use super::{End, GOAL, Refined, State, TOLERANCE};
 use crate::integrate::Shot;
-use crate::model::batch::{Launch, Method, land_each};
-use crate::model::{FirstAndEnergy, Nystrom8, arclength, limited};
+use crate::rod::arclength;
 use crate::sheet::Sheet;
+use crate::shooting::batch::{Launch, Method, land_each};
+use crate::shooting::{FirstAndEnergy, Nystrom8, limited};
 
 /// The length of a Newton step, as [`limited`] measures it, that needs no trajectory at its end.
 const LAST_STEP: f64 = 1.5e-7;

@@ -8,6 +8,7 @@ mod check;
 mod error;
 mod file;
 mod limits;
+mod mechanics;
 mod profile;
 mod read;
 mod rows;

@@ -6,40 +6,26 @@
 //! rectangle gives every cell of the map a guess, or the certainty that it has no solution
 //! ([`Sheet::guesses`]). The two are computed independently of each other.
 
-mod abreast;
-mod bisect;
-mod columns;
-mod coordinate;
-mod crossings;
+mod continuation;
 mod edges;
-mod find;
 mod fold;
-mod guess;
-mod lanes;
 mod lattice;
-mod level;
-mod loads;
-mod near;
-mod pieces;
-mod polynomial;
-mod rows;
-mod search;
-mod seek;
-mod tip_line;
-mod walk;
+mod row;
 
-pub use crossings::Crossing;
+pub use continuation::branch_steps::{Walk, walk};
+pub use continuation::level_curve::{LevelCurve, Node, ON_CURVE};
+pub use edges::crossings::Crossing;
+pub use edges::edge_newton::{Edge, Sought, Wanted, seek};
 pub use fold::FoldPoint;
-pub use guess::Guess;
-pub use level::{LevelCurve, Node, ON_CURVE};
-pub use rows::Row;
-pub use seek::{Edge, Sought, Wanted, seek};
-pub use walk::{Walk, walk};
+pub use lattice::guesses::Guess;
+pub use row::Row;
 
-use crate::model::batch::Method;
-use crate::model::{Landing, Rest, Rod, Side};
-use columns::Columns;
-use edges::Edges;
+use crate::rod::{Rest, Rod, Side};
+use crate::shooting::Landing;
+use crate::shooting::batch::Method;
+use continuation::pieces;
+use edges::{Edges, crossings};
+use fold::contact_nodes::Columns;
 use lattice::Lattice;
 
 /// How far below zero the load of an unloaded whisker may come out, relative to the fold's: at the soft tip of a

@@ -2,10 +2,12 @@
 
 use super::even::{interpolate, targets};
 use super::{FINER, Found, Mark, NoState};
-use crate::model::batch::Method;
-use crate::model::{Effects, Reading, Rest, Rod, Side, Units};
+use crate::rod::{Effects, Rest, Rod, Side, Units};
 use crate::scene::{Pole, Whisker};
 use crate::sheet::{Edge, LevelCurve, Node, ON_CURVE, Row, Walk, walk};
+use crate::shooting::Reader;
+use crate::shooting::Reading;
+use crate::shooting::batch::Method;
 use glam::DVec2;
 use serde::Serialize;
 
@@ -53,7 +55,7 @@ impl Branch {
         side: Side,
         distance_mm: f64,
     ) -> Result<Self, NoState> {
-        let rod = Rod::new(whisker, pole, side);
+        let rod = whisker.rod(pole, side);
         let rest = Rest::new(&rod);
         let row = Row::new(&rest, distance_mm / whisker.length_mm);
         if !row.is_reached(&rod) {
@@ -74,7 +76,7 @@ impl Branch {
         };
         Ok(Self {
             level,
-            units: Units::new(whisker),
+            units: whisker.units(),
             walk: level
                 .touch()
                 .and_then(|touch| walk(&level, touch, true))
@@ -143,9 +145,7 @@ impl Branch {
     #[must_use]
     pub fn read(&self, state: &Found) -> Reading {
         let LevelCurve { rod, row, .. } = &self.level;
-        self.units
-            .reader(rod)
-            .read(state.tau, &state.full, row.touch, state.push)
+        Reader::new(self.units, rod).read(state.tau, &state.full, row.touch, state.push)
     }
 
     pub(super) fn lost(&self) -> NoState {
@@ -167,10 +167,8 @@ impl Branch {
 
     fn point(&self, node: &Node, stable: bool, mark: Option<Mark>) -> BranchPoint {
         let LevelCurve { rod, side, row, .. } = &self.level;
-        let reading = self
-            .units
-            .reader(rod)
-            .read(node.point.x, &node.full, row.touch, node.push);
+        let reading =
+            Reader::new(self.units, rod).read(node.point.x, &node.full, row.touch, node.push);
         BranchPoint {
             side: *side,
             stable,

@@ -1,10 +1,12 @@
 //! Detachment curves: where pushes from first touch end, distance by distance.
 
 use crate::classify::RowBoundary;
-use crate::model::batch::{Launch, Method, land};
-use crate::model::{Effects, FirstAndEnergy, Moving, Nystrom8, Resolution, Rest, Rod, Side, Units};
+use crate::rod::{Effects, Rest, Side};
 use crate::scene::{Pole, Whisker};
 use crate::sheet::{Edge, Sheet};
+use crate::shooting::Reader;
+use crate::shooting::batch::{Launch, Method, land};
+use crate::shooting::{FirstAndEnergy, Moving, Nystrom8, Resolution};
 use serde::Serialize;
 
 /// How a push from first touch ends.
@@ -80,12 +82,12 @@ pub fn curve_at(
     side: Side,
     distances_mm: &[f64],
 ) -> Vec<Detachment> {
-    let rod = Rod::new(whisker, pole, side);
+    let rod = whisker.rod(pole, side);
     let method = Method {
         effects: Effects::of([&rod]),
         resolution,
     };
-    let reader = Units::new(whisker).reader(&rod);
+    let reader = Reader::new(whisker.units(), &rod);
     let rest = Rest::new(&rod);
     let distances: Vec<f64> = distances_mm.iter().map(|d| d / whisker.length_mm).collect();
     let sheet = Sheet::new(method, &rod, side, &distances);
@@ -168,7 +170,7 @@ fn blank(side: Side, distance_mm: f64, pole_distance_mm: f64) -> Detachment {
 /// and other whiskers may be too short to be pulled off.
 #[must_use]
 pub fn corner(whisker: &Whisker, pole: &Pole, side: Side) -> Corner {
-    let rod = Rod::new(whisker, pole, side);
+    let rod = whisker.rod(pole, side);
     let length = whisker.length_mm;
     let end = |distance: f64| curve(whisker, pole, side, &[distance])[0];
     let switches = |distance: &f64| {

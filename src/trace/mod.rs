@@ -14,7 +14,7 @@ pub use curve::{Corner, Detachment, Kind, corner, curve, curve_at};
 pub use shape::{Part, Shape, ShapePoint};
 pub use state::Found;
 
-use crate::model::Resolution;
+use crate::shooting::Resolution;
 use serde::Serialize;
 
 /// Twice as fine as [`Resolution::FINE`]: unstable states carry larger loads.

@@ -1,8 +1,8 @@
 //! The whisker in one state, from base to tip.
 
 use super::{Branch, FINER, Found};
-use crate::model::profile::{Place, profile};
-use crate::model::{Rest, arclength};
+use crate::rod::{Rest, arclength};
+use crate::shooting::shape::{Place, profile};
 use glam::DVec2;
 use serde::Serialize;
 
@@ -75,7 +75,7 @@ impl Shape {
                 position, tangent, ..
             } = *place;
             let at = turn.rotate(position - base.position) * length;
-            angle = crate::model::nearest_turn(turn.rotate(tangent).to_angle(), angle);
+            angle = crate::numerics::nearest_turn(turn.rotate(tangent).to_angle(), angle);
             ShapePoint {
                 arc_length_mm: place.arclength * length,
                 x_mm: at.x,

@@ -1,8 +1,8 @@
 //! The state of a branch at a push angle.
 
 use super::{Branch, NoState};
-use crate::model::Full;
 use crate::sheet::Walk;
+use crate::shooting::Full;
 
 /// A state found on a branch.
 #[derive(Clone, Copy, Debug, PartialEq)]

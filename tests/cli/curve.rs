@@ -2,7 +2,7 @@
 
 use crate::traces::{CURVE, cells, good};
 use crate::{Place, SCENE};
-use whiskmap::model::Side;
+use whiskmap::rod::Side;
 use whiskmap::scene::Scene;
 use whiskmap::trace::curve;
 

@@ -2,7 +2,7 @@
 
 use crate::traces::{SHAPE, cells, good};
 use crate::{Place, SCENE, names};
-use whiskmap::model::Side;
+use whiskmap::rod::Side;
 use whiskmap::scene::Scene;
 use whiskmap::trace::Branch;
 

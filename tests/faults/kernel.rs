@@ -4,7 +4,7 @@ use crate::compute::compute;
 use crate::{assert_identical, assert_same, cone, open, sound};
 use whiskmap::integrate::gpu::{Gpu, Precision, shaders};
 use whiskmap::integrate::{Cpu, Description, Engine, EngineError, Hit, Outcome, Shot};
-use whiskmap::model::{Effects, Rod};
+use whiskmap::rod::{Effects, Rod};
 use whiskmap::store::Shots;
 
 /// The shader of the engine with the last line of its entry point replaced.

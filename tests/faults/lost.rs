@@ -4,8 +4,8 @@ use crate::compute::{compute, compute_as};
 use crate::{assert_identical, assert_same, cone, sound};
 use whiskmap::integrate::gpu::Gpu;
 use whiskmap::integrate::{Cpu, Description, Engine, EngineError, Hit, Shot};
-use whiskmap::model::{Effects, Rod};
 use whiskmap::plan::Plan;
+use whiskmap::rod::{Effects, Rod};
 
 /// A GPU to which something is done before one of its calls.
 struct Sabotaged<F> {

@@ -19,7 +19,7 @@ use compute::{difference, thin};
 use std::path::Path;
 use whiskmap::integrate::EngineError;
 use whiskmap::integrate::gpu::{Gpu, Precision, shaders};
-use whiskmap::model::Effects;
+use whiskmap::rod::Effects;
 use whiskmap::scene::Scene;
 use whiskmap::store::{Panel, STATE_CHANNELS};
 

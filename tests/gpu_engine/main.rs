@@ -15,7 +15,7 @@ mod shots;
 use shots::{Range, USUAL};
 use whiskmap::integrate::gpu::{Gpu, Precision, adapters, preferred};
 use whiskmap::integrate::{Cpu, Engine, EngineError, Hit, Outcome, Shot};
-use whiskmap::model::Effects;
+use whiskmap::rod::Effects;
 
 /// The GPU engine, or `None` (said aloud) where there is none.
 fn open(precision: Precision) -> Option<Gpu> {

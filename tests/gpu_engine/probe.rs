@@ -4,10 +4,13 @@ use crate::bench::Bench;
 use crate::shots::{Random, USUAL};
 use bytemuck::Pod;
 use whiskmap::integrate::gpu::{Precision, shaders};
-use whiskmap::model::order::{general::First, similar};
-use whiskmap::model::{
-    Bent, Effects, Even, Graded, Intrinsic, Material, Real, Rk4, Rod, RodSystem, Scales, Section,
-    Sensitivity, Start, State, Straight, arclength, integrate,
+use whiskmap::numerics::Real;
+use whiskmap::rod::{Effects, Rod, Start, arclength};
+use whiskmap::shooting::sensitivity::general::First;
+use whiskmap::shooting::sensitivity::similar;
+use whiskmap::shooting::{
+    Bent, Even, Graded, Intrinsic, Material, Rk4, RodSystem, Scales, Section, Sensitivity, State,
+    Straight, integrate,
 };
 
 const PROBE: &str = include_str!("../../shaders/probe.wgsl");

@@ -2,8 +2,9 @@
 
 use glam::DVec2;
 use whiskmap::integrate::Shot;
-use whiskmap::model::batch::{Launch, Method, land};
-use whiskmap::model::{Effects, First, Landing, Nystrom8, RadiusProfile, Rod, arclength};
+use whiskmap::rod::{Effects, RadiusProfile, Rod, arclength};
+use whiskmap::shooting::batch::{Launch, Method, land};
+use whiskmap::shooting::{First, Landing, Nystrom8};
 
 /// A reproducible stream of numbers in `[0, 1)` (splitmix64).
 pub struct Random(pub u64);
@@ -81,7 +82,7 @@ pub fn launch(rod: Rod, most_q: f64, random: &mut Random) -> Launch {
 pub fn landings(effects: Effects, launches: &[Launch]) -> Vec<Landing> {
     let method = Method {
         effects,
-        resolution: whiskmap::model::Resolution::FINE,
+        resolution: whiskmap::shooting::Resolution::FINE,
     };
     land::<Nystrom8, First>(method, launches)
 }

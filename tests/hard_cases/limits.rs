@@ -1,6 +1,6 @@
 //! Limits checked against each other, each with its order: the detachment angle as one number tends to 0.
 
-use whiskmap::model::Side;
+use whiskmap::rod::Side;
 use whiskmap::scene::{Curvature, Pole, Whisker};
 use whiskmap::trace::{Detachment, Kind, corner, curve};
 

@@ -9,9 +9,10 @@ use proptest::test_runner::{Config, RngSeed, TestRunner};
 use std::cell::RefCell;
 use whiskmap::integrate::Cpu;
 use whiskmap::integrate::gpu::Precision;
-use whiskmap::model::batch::Launch;
-use whiskmap::model::{Resolution, arclength};
 use whiskmap::refine::End;
+use whiskmap::rod::arclength;
+use whiskmap::shooting::Resolution;
+use whiskmap::shooting::batch::Launch;
 
 /// Half as many steps as [`Resolution::FINE`].
 const HALF: Resolution = Resolution::of(10);

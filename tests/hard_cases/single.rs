@@ -6,8 +6,8 @@ use crate::states::Shots;
 use std::fmt::Write;
 use whiskmap::integrate::gpu::Precision;
 use whiskmap::integrate::{Cpu, Engine, Outcome};
-use whiskmap::model::arclength;
 use whiskmap::refine::End;
+use whiskmap::rod::arclength;
 
 /// How far off, in whisker lengths, a pole or a contact may be, and a load in the median. Measured: 3.1e-5 for a cylinder
 /// that a stiff tip and friction let coil up, else 1.5e-5; 3.7e-6; 1.5e-5. Next to the fold, where the state goes with the

@@ -3,11 +3,12 @@
 use glam::DVec2;
 use rayon::prelude::*;
 use whiskmap::integrate::{Engine, Hit, Outcome, Shot};
-use whiskmap::model::batch::{Launch, Method, land};
-use whiskmap::model::{Effects, First, Landing, Nystrom8, Resolution, Rod, Side};
 use whiskmap::refine::{End, Refined, refine};
+use whiskmap::rod::{Effects, Rod, Side};
 use whiskmap::scene::Scene;
 use whiskmap::sheet::Sheet;
+use whiskmap::shooting::batch::{Launch, Method, land};
+use whiskmap::shooting::{First, Landing, Nystrom8, Resolution};
 
 /// The cells of one whisker that have a guess, on both sides.
 pub struct Shots {
@@ -20,7 +21,7 @@ impl Shots {
     pub fn new(scene: &Scene) -> Self {
         let length = scene.whisker.length_mm;
         let distances: Vec<f64> = scene.grid.distance_mm.iter().map(|d| d / length).collect();
-        let rods = Side::BOTH.map(|side| Rod::new(&scene.whisker, &scene.pole, side));
+        let rods = Side::BOTH.map(|side| scene.whisker.rod(&scene.pole, side));
         let effects = Effects::of(&rods);
         let pairs: Vec<(Side, Rod)> = Side::BOTH.into_iter().zip(rods).collect();
         let sheets: Vec<Sheet> = pairs

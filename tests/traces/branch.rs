@@ -1,7 +1,7 @@
 //! What must hold along every branch.
 
 use crate::{POLE, everything, whisker};
-use whiskmap::model::Side;
+use whiskmap::rod::Side;
 use whiskmap::scene::Pole;
 use whiskmap::trace::{Branch, BranchPoint, Kind, Mark, NoState, curve};
 

@@ -1,9 +1,9 @@
 //! Where the answer is known exactly.
 
 use crate::{POINT, whisker};
-use whiskmap::model::{Side, Units};
 use whiskmap::paper::checks;
 use whiskmap::paper::elastica::{elastica, fold};
+use whiskmap::rod::Side;
 use whiskmap::trace::{Branch, Kind, curve};
 
 /// Ten turning angles of the straight cylinder at a point contact, up to the fold at 119 degrees.
@@ -55,7 +55,7 @@ fn a_straight_cone_tends_to_its_small_load_formula() {
         let cone = whisker(tip, 0.0);
         let branch = Branch::new(&cone, &POINT, Side::Cb, a).unwrap();
         let part = a * (1.0 - tip / 30.0) / 20.0;
-        let stiffness = Units::new(&cone).moment_nnm * 20.0;
+        let stiffness = cone.units().moment_nnm * 20.0;
         let miss = |push: f64| {
             let moment = branch
                 .read(&branch.state(push, true).unwrap())

@@ -1,10 +1,10 @@
 //! Detachment curves and their corners.
 
 use crate::{POLE, everything, whisker};
-use whiskmap::model::batch::Method;
-use whiskmap::model::{Effects, Rod, Side};
+use whiskmap::rod::{Effects, Side};
 use whiskmap::scene::Curvature;
 use whiskmap::sheet::Sheet;
+use whiskmap::shooting::batch::Method;
 use whiskmap::trace::{Branch, Kind, corner, curve};
 
 /// 1e-8 mm before the corner a push ends at the fold, 1e-8 mm behind it at the tip.
@@ -121,7 +121,7 @@ fn the_branch_decides_where_rows_leave_the_sheet_more_than_once() {
                         "{case}: {push} {last:?}"
                     );
                     compared += 1;
-                    let rod = Rod::new(&whisker, &POLE, side);
+                    let rod = whisker.rod(&POLE, side);
                     let sheet = Sheet::new(
                         Method::fine(Effects::of([&rod])),
                         &rod,

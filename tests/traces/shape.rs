@@ -1,7 +1,7 @@
 //! Shapes: geometry, statics, and the rest shape as a limit.
 
 use crate::{POLE, everything, whisker};
-use whiskmap::model::Side;
+use whiskmap::rod::Side;
 use whiskmap::trace::{Branch, Part, Shape};
 
 /// The base is at the origin and turned by the push angle, the contact touches the pole, and the moment at the base

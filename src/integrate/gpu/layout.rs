@@ -2,7 +2,7 @@
 
 use super::Precision;
 use crate::integrate::{Hit, Outcome, Shot};
-use crate::model::{Piece, Rod};
+use crate::rod::{Piece, Rod};
 use bytemuck::Pod;
 
 /// Sizes, and the ways in and out.
@@ -73,7 +73,7 @@ macro_rules! layout {
         mod $module {
             use super::{Layout, OUTCOMES, read, write};
             use crate::integrate::{self as host, Outcome};
-            use crate::model;
+            use crate::rod;
             use bytemuck::{Pod, Zeroable};
 
             #[derive(Clone, Copy, Pod, Zeroable)]
@@ -117,8 +117,8 @@ macro_rules! layout {
                 pub outcome: u32,
             }
 
-            impl From<&model::Rod> for Rod {
-                fn from(rod: &model::Rod) -> Self {
+            impl From<&rod::Rod> for Rod {
+                fn from(rod: &rod::Rod) -> Self {
                     Self {
                         taper: rod.taper as $real,
                         bend: rod.bend as $real,
@@ -194,7 +194,7 @@ layout!(double, f64);
 mod tests {
     use super::*;
     use crate::integrate::gpu::shaders;
-    use crate::model::Effects;
+    use crate::rod::Effects;
     use naga::TypeInner;
     use std::mem::offset_of;
 

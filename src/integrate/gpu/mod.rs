@@ -22,7 +22,7 @@ pub use adapters::{AdapterReport, Kind, adapters, preferred};
 pub use precision::Precision;
 
 use super::{Description, Engine, EngineError, Hit, Outcome, Shot};
-use crate::model::{Effects, Piece, Rod, arclength};
+use crate::rod::{Effects, Piece, Rod, arclength};
 use device::Device;
 use layout::{Layout, Stretch, Task};
 use pipeline::Pipeline;

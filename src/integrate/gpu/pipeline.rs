@@ -5,7 +5,7 @@ use super::device::Device;
 use super::layout::Layout;
 use super::pace::Pace;
 use super::shaders::{WORKGROUP, overrides};
-use crate::model::Effects;
+use crate::rod::Effects;
 
 /// A pipeline, and what has been learnt about its speed.
 #[derive(Debug)]

@@ -1,6 +1,7 @@
 //! `f32` or `f64` in the shaders, and what follows from it.
 
-use crate::model::{Resolution, Rod};
+use crate::rod::Rod;
+use crate::shooting::Resolution;
 use std::fmt;
 
 /// The shaders' scalar.

@@ -3,7 +3,8 @@
 use super::Precision;
 use super::layout::OUTCOMES;
 use crate::integrate::MOST_STEPS;
-use crate::model::{Effects, LONGEST_STEP};
+use crate::rod::Effects;
+use crate::shooting::LONGEST_STEP;
 use std::fmt::Write;
 
 /// Invocations per workgroup; every device allows this many.

@@ -1,0 +1,6 @@
+//! The mechanics of one whisker in front of one pole: [`numerics`], the [`rod`], and how it is shot from its contact
+//! ([`shooting`]). `whiskmap` builds sheets, maps and curves from it.
+
+pub mod numerics;
+pub mod rod;
+pub mod shooting;

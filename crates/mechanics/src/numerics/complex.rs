@@ -1,0 +1,42 @@
+//! Complex numbers over any scalar.
+
+use crate::numerics::Real;
+
+/// `re + i im`.
+#[derive(Clone, Copy, Debug)]
+pub struct Complex<T> {
+    /// Real part.
+    pub re: T,
+    /// Imaginary part.
+    pub im: T,
+}
+
+impl<T: Real> Complex<T> {
+    /// `re + i im`.
+    #[inline(always)]
+    pub fn new(re: T, im: T) -> Self {
+        Self { re, im }
+    }
+
+    /// The product.
+    #[inline(always)]
+    pub fn times(self, other: Self) -> Self {
+        Self::new(
+            self.re * other.re - self.im * other.im,
+            self.re.mul_add(other.im, self.im * other.re),
+        )
+    }
+
+    /// The inverse.
+    #[inline(always)]
+    pub fn inverse(self) -> Self {
+        let over = T::of(1.0) / self.re.mul_add(self.re, self.im * self.im);
+        Self::new(over * self.re, -over * self.im)
+    }
+
+    /// The difference.
+    #[inline(always)]
+    pub fn minus(self, other: Self) -> Self {
+        Self::new(self.re - other.re, self.im - other.im)
+    }
+}

@@ -1,0 +1,20 @@
+//! Numbers, and what can be said of them without a whisker: scalars and SIMD lanes, vectors, polynomials.
+
+mod complex;
+pub mod lobatto;
+pub mod newton_form;
+pub mod newton_form_simd;
+mod peak;
+mod real;
+pub mod simd;
+mod turn;
+mod unit;
+mod vector;
+
+pub use complex::Complex;
+pub use peak::MultiplyAndAdd;
+pub use real::{Real, expm1_over_small, hyperbolic_small, turned};
+pub use simd::{Lanes, WIDTH};
+pub use turn::nearest_turn;
+pub use unit::{Task, Unit};
+pub use vector::Vector;

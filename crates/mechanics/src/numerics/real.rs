@@ -1,0 +1,118 @@
+//! The scalar that the model is generic over.
+
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+/// A real number, or a bundle of them that is worked on in step.
+pub trait Real:
+    Copy
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+{
+    /// The constant `x` in every lane.
+    fn of(x: f64) -> Self;
+
+    /// `self * a + b`, fused where the machine fuses it at no cost.
+    fn mul_add(self, a: Self, b: Self) -> Self;
+
+    /// The square root.
+    fn sqrt(self) -> Self;
+}
+
+macro_rules! scalar {
+    ($t:ty) => {
+        impl Real for $t {
+            #[inline(always)]
+            #[allow(
+                clippy::cast_possible_truncation,
+                clippy::cast_lossless,
+                trivial_numeric_casts,
+                reason = "rounding to the scalar's own precision is what this function is for"
+            )]
+            fn of(x: f64) -> Self {
+                x as $t
+            }
+
+            // `mul_add` of the standard library is a slow call where the target has no FMA.
+            #[inline(always)]
+            fn mul_add(self, a: Self, b: Self) -> Self {
+                self * a + b
+            }
+
+            #[inline(always)]
+            fn sqrt(self) -> Self {
+                <$t>::sqrt(self)
+            }
+        }
+    };
+}
+
+scalar!(f32);
+scalar!(f64);
+
+/// `1/(2k + 1)!` and `1/(2k + 2)!`: at 0.4 the first term left out is below 1e-17.
+const HYPERBOLIC: [[f64; 2]; 7] = {
+    let mut terms = [[1.0, 0.5]; 7];
+    let mut k = 1;
+    while k < terms.len() {
+        let n = (2 * k) as f64;
+        let [odd, even] = terms[k - 1];
+        terms[k] = [odd / (n * (n + 1.0)), even / ((n + 1.0) * (n + 2.0))];
+        k += 1;
+    }
+    terms
+};
+
+/// `sinh(x)/x` and `(cosh(x) - 1)/x^2` for `|x| <= 0.4`, by their Taylor polynomials: with them
+/// `exp(x) = 1 + x (odd + x even)` and `exp(-x) = 1 - x (odd - x even)`.
+#[inline(always)]
+pub fn hyperbolic_small<T: Real>(x: T) -> [T; 2] {
+    let square = x * x;
+    let mut sums = [T::of(0.0); 2];
+    for [odd, even] in HYPERBOLIC.into_iter().rev() {
+        sums[0] = sums[0].mul_add(square, T::of(odd));
+        sums[1] = sums[1].mul_add(square, T::of(even));
+    }
+    sums
+}
+
+/// `(exp(x) - 1)/x` for `|x| <= 0.4`.
+#[inline(always)]
+pub fn expm1_over_small<T: Real>(x: T) -> T {
+    let [odd, even] = hyperbolic_small(x);
+    x.mul_add(even, odd)
+}
+
+/// Of `sin(x)/x` and `(cos(x) - 1)/x^2` in `x^2`: at 0.25 the first terms left out are below 3e-14, at 0.5 below 3e-11.
+const CIRCULAR: [[f64; 2]; 5] = {
+    let mut terms = [[0.0; 2]; 5];
+    let mut k = 0;
+    while k < terms.len() {
+        let sign = if k % 2 == 0 { 1.0 } else { -1.0 };
+        terms[k] = [sign * HYPERBOLIC[k][0], -sign * HYPERBOLIC[k][1]];
+        k += 1;
+    }
+    terms
+};
+
+/// The unit vector turned by a small `angle`.
+#[inline(always)]
+pub fn turned<T: Real>([x, y]: [T; 2], angle: T) -> [T; 2] {
+    let square = angle * angle;
+    let fourth = square * square;
+    // Pairs first: all that follows waits for this.
+    let mut sums = [T::of(0.0); 2];
+    for (i, sum) in sums.iter_mut().enumerate() {
+        let [a, b, c, d, e] = CIRCULAR;
+        let low = square.mul_add(T::of(b[i]), T::of(a[i]));
+        let high = square.mul_add(T::of(d[i]), T::of(c[i]));
+        *sum = fourth.mul_add(fourth.mul_add(T::of(e[i]), high), low);
+    }
+    let (sin, versed) = (angle * sums[0], square * sums[1]);
+    [
+        (-sin).mul_add(y, versed.mul_add(x, x)),
+        sin.mul_add(x, versed.mul_add(y, y)),
+    ]
+}

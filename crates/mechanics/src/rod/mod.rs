@@ -1,0 +1,20 @@
+//! What a whisker is: radius, shape at rest, stiffness, contact, effects, units. Plain `f64`, lengths in whisker lengths.
+
+mod contact;
+mod effects;
+mod radius;
+mod rest;
+#[allow(
+    clippy::module_inception,
+    reason = "the file of the type that the room is named after"
+)]
+mod rod;
+mod units;
+
+pub use contact::{Start, arclength};
+pub use effects::Effects;
+pub use radius::{Piece, RadiusProfile};
+pub use rest::Rest;
+pub(crate) use rod::arclength_at;
+pub use rod::{PERFECT_CONE_CUT, Rod, Side};
+pub use units::Units;

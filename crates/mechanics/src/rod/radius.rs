@@ -1,0 +1,330 @@
+//! Measured radii: a smooth curve through the rows of a table that rises or falls only where the rows do.
+//!
+//! Cubic pieces between the rows with the slopes of F. N. Fritsch and J. Butland, SIAM J. Sci. Stat. Comput. 5, 300
+//! (1984): continuous with the first derivative. A trajectory is integrated piece by piece, so that no step crosses a
+//! row, where the second derivative jumps, and a Runge-Kutta method keeps its order.
+
+use crate::rod::rod::{arclength_at, pointed, tau_at};
+use std::sync::{Mutex, PoisonError};
+
+/// A cubic piece of a profile.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Piece {
+    /// Arclength where it begins, in whisker lengths.
+    pub from: f64,
+    /// `radius = c0 + x (c1 + x (c2 + x c3))` with `x = s - from`, over the base radius.
+    pub cubic: [f64; 4],
+}
+
+impl Piece {
+    /// A cone.
+    #[must_use]
+    pub fn cone(taper: f64) -> Self {
+        Self {
+            from: 0.0,
+            cubic: [1.0, -taper, 0.0, 0.0],
+        }
+    }
+
+    /// Radius at arclength `s` over that at the base.
+    #[must_use]
+    pub fn radius(&self, s: f64) -> f64 {
+        let x = s - self.from;
+        let [c0, c1, c2, c3] = self.cubic;
+        x.mul_add(x.mul_add(x.mul_add(c3, c2), c1), c0)
+    }
+
+    fn slope(&self, s: f64) -> f64 {
+        let x = s - self.from;
+        let [_, c1, c2, c3] = self.cubic;
+        x.mul_add(x.mul_add(3.0 * c3, 2.0 * c2), c1)
+    }
+}
+
+/// Radii along a whisker, over that at the base, by arclength in whisker lengths.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RadiusProfile {
+    /// From the base on; the last one continues beyond the last row, as the cone from the first row to the last does.
+    pub pieces: Vec<Piece>,
+    /// Per piece: the largest change of `ln radius` over it, and its length, both along `tau` and up to the tip, or those
+    /// of a piece nearer to the base if they are larger.
+    pub changes: Vec<[f64; 2]>,
+    /// Of the cone from the first row to the last, continued.
+    taper: f64,
+    /// Per piece: into how many parts its quadrature divides it, along `tau`.
+    parts: Vec<u32>,
+    /// From the base to each piece: the integrals of `radius^-4` and of `s radius^-4`.
+    compliances: Vec<[f64; 2]>,
+}
+
+/// Every profile in use. A process reads few scenes, and trajectories by the million want to share one without counting.
+static KNOWN: Mutex<Vec<&'static RadiusProfile>> = Mutex::new(Vec::new());
+
+/// Places per piece at which its slope is looked at. `|radius'|/radius` peaks where a piece runs out into a thin end, over
+/// a fiftieth of it at a radius that falls to a thousandth.
+const LOOKS: u32 = 256;
+
+/// Nodes and weights of Gauss and Legendre's quadrature on `[0, 1]`, exact up to degree 7.
+const GAUSS: [[f64; 2]; 4] = [
+    [0.069_431_844_202_973_71, 0.173_927_422_568_726_93],
+    [0.330_009_478_207_571_87, 0.326_072_577_431_273_07],
+    [0.669_990_521_792_428_1, 0.326_072_577_431_273_07],
+    [0.930_568_155_797_026_3, 0.173_927_422_568_726_93],
+];
+
+impl RadiusProfile {
+    /// The profile through `rows` of arclength and radius, as fractions of the whisker's, of a whisker whose real
+    /// arclength is `stretch` times the one in the plane of contact. Equal profiles are one and stay until the end.
+    #[must_use]
+    pub fn of(rows: &[[f64; 2]], stretch: f64) -> &'static Self {
+        let rows: Vec<[f64; 2]> = rows.iter().map(|[s, r]| [s / stretch, *r]).collect();
+        let profile = Self::through(&rows);
+        let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(equal) = known.iter().find(|other| ***other == profile) {
+            return equal;
+        }
+        let leaked: &'static Self = Box::leak(Box::new(profile));
+        known.push(leaked);
+        leaked
+    }
+
+    fn through(rows: &[[f64; 2]]) -> Self {
+        let mut widths: Vec<f64> = rows.windows(2).map(|w| w[1][0] - w[0][0]).collect();
+        let secants: Vec<f64> = rows
+            .windows(2)
+            .zip(&widths)
+            .map(|(w, width)| (w[1][1] - w[0][1]) / width)
+            .collect();
+        let slopes = slopes(&widths, &secants);
+        let mut pieces: Vec<Piece> = (0..widths.len())
+            .map(|i| {
+                let (h, secant, [d0, d1]) = (widths[i], secants[i], [slopes[i], slopes[i + 1]]);
+                let c2 = (3.0 * secant - 2.0 * d0 - d1) / h;
+                let c3 = (d0 + d1 - 2.0 * secant) / (h * h);
+                Piece {
+                    from: rows[i][0],
+                    cubic: [rows[i][1], d0, c2, c3],
+                }
+            })
+            .collect();
+        let [end, last] = rows[rows.len() - 1];
+        let taper = (1.0 - last) / end;
+        let whole = pointed(taper);
+        pieces.push(Piece {
+            from: end,
+            cubic: [last, -taper, 0.0, 0.0],
+        });
+        widths.push((whole - end).max(0.0));
+        let mut largest = [0.0_f64; 2];
+        let (mut changes, mut parts) = (Vec::new(), Vec::new());
+        for (piece, width) in pieces.iter().zip(&widths) {
+            let length = tau_at(taper, piece.from + width) - tau_at(taper, piece.from);
+            let steepest = (0..=LOOKS)
+                .map(|i| piece.from + width * f64::from(i) / f64::from(LOOKS))
+                .map(|s| (1.0 - taper * s) * (piece.slope(s) / piece.radius(s)).abs())
+                .fold(0.0, f64::max);
+            largest = [largest[0].max(length * steepest), largest[1].max(length)];
+            changes.push(largest);
+            #[allow(
+                clippy::cast_possible_truncation,
+                clippy::cast_sign_loss,
+                reason = "a positive number that the rows keep below a few hundred"
+            )]
+            parts.push((length * steepest).ceil().max(1.0) as u32);
+        }
+        let mut profile = Self {
+            pieces,
+            changes,
+            taper,
+            parts,
+            compliances: vec![[0.0; 2]],
+        };
+        for k in 1..profile.pieces.len() {
+            let next = profile.up_to(k - 1, profile.pieces[k].from);
+            profile.compliances.push(next);
+        }
+        profile
+    }
+
+    /// How far a small load at arclength `s` turns the whisker there: the integral of `(s - x) radius(x)^-4` from the
+    /// base to `s`, within a few percent.
+    #[must_use]
+    pub fn compliance(&self, s: f64) -> f64 {
+        let k = self.piece(s);
+        let [flat, lever] = self.up_to(k, s);
+        s * flat - lever
+    }
+
+    /// The largest part that a piece has in the compliance at `s`.
+    #[must_use]
+    pub fn largest_share(&self, s: f64) -> f64 {
+        let k = self.piece(s);
+        let turns = (0..=k).map(|j| {
+            let [flat, lever] = if j == k {
+                self.up_to(k, s)
+            } else {
+                self.compliances[j + 1]
+            };
+            s * (flat - self.compliances[j][0]) - (lever - self.compliances[j][1])
+        });
+        turns.fold(0.0, f64::max) / self.compliance(s)
+    }
+
+    /// The integrals from the base to `s`, which lies on piece `k`: by `tau`, along which the radius changes evenly.
+    fn up_to(&self, k: usize, s: f64) -> [f64; 2] {
+        let piece = &self.pieces[k];
+        let from = tau_at(self.taper, piece.from);
+        let width = (tau_at(self.taper, s) - from) / f64::from(self.parts[k]);
+        let nodes = (0..self.parts[k]).flat_map(|part| {
+            GAUSS.map(|[node, weight]| (width.mul_add(f64::from(part) + node, from), weight))
+        });
+        nodes.fold(self.compliances[k], |[flat, lever], (tau, weight)| {
+            let scale = (-self.taper * tau).exp();
+            let here = arclength_at(self.taper, tau);
+            let part = weight * width * scale / piece.radius(here).powi(4);
+            [flat + part, lever + part * here]
+        })
+    }
+
+    /// Index of the piece on which arclength `s` lies; a row belongs to the piece that it ends.
+    #[must_use]
+    pub fn piece(&self, s: f64) -> usize {
+        self.pieces
+            .partition_point(|piece| piece.from < s)
+            .saturating_sub(1)
+    }
+
+    /// Radius at arclength `s` over that at the base.
+    #[must_use]
+    pub fn radius(&self, s: f64) -> f64 {
+        self.pieces[self.piece(s)].radius(s)
+    }
+}
+
+/// Slopes at the rows. Between secants of one sign their harmonic mean, weighted by the widths; 0 at an extremum; at
+/// the ends that of a parabola, kept monotone.
+fn slopes(widths: &[f64], secants: &[f64]) -> Vec<f64> {
+    let n = widths.len();
+    if n == 1 {
+        return vec![secants[0]; 2];
+    }
+    let end = |h0: f64, h1: f64, d0: f64, d1: f64| {
+        let slope = ((2.0 * h0 + h1) * d0 - h0 * d1) / (h0 + h1);
+        if slope * d0 <= 0.0 {
+            0.0
+        } else if d0 * d1 <= 0.0 && slope.abs() > 3.0 * d0.abs() {
+            3.0 * d0
+        } else {
+            slope
+        }
+    };
+    let mut slopes = vec![end(widths[0], widths[1], secants[0], secants[1])];
+    slopes.extend((1..n).map(|i| {
+        let (before, after) = (secants[i - 1], secants[i]);
+        if before * after <= 0.0 {
+            return 0.0;
+        }
+        let (w1, w2) = (
+            2.0 * widths[i] + widths[i - 1],
+            widths[i] + 2.0 * widths[i - 1],
+        );
+        (w1 + w2) / (w1 / before + w2 / after)
+    }));
+    slopes.push(end(
+        widths[n - 1],
+        widths[n - 2],
+        secants[n - 1],
+        secants[n - 2],
+    ));
+    slopes
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const ROWS: [[f64; 2]; 6] = [
+        [0.0, 1.0],
+        [0.1, 0.93],
+        [0.3, 0.9],
+        [0.5, 0.9],
+        [0.8, 0.2],
+        [1.0, 0.05],
+    ];
+
+    #[test]
+    fn it_goes_through_the_rows_smoothly_and_falls_where_they_do() {
+        let profile = RadiusProfile::through(&ROWS);
+        for [s, radius] in ROWS {
+            assert!((profile.radius(s) - radius).abs() < 1e-15, "{s}");
+        }
+        for pair in profile.pieces[..ROWS.len() - 1].windows(2) {
+            let row = pair[1].from;
+            assert!(
+                (pair[0].slope(row) - pair[1].slope(row)).abs() < 1e-13,
+                "{row}"
+            );
+        }
+        let radii: Vec<f64> = (0..=1000)
+            .map(|i| profile.radius(f64::from(i) / 1000.0))
+            .collect();
+        assert!(radii.is_sorted_by(|a, b| a >= b));
+    }
+
+    #[test]
+    fn a_linear_table_is_the_cone() {
+        let rows = [0.0, 0.2, 0.7, 1.0].map(|s| [s, 1.0 - 0.9 * s]);
+        let profile = RadiusProfile::through(&rows);
+        for s in [0.0, 0.1, 0.2, 0.5, 0.9, 1.0, 1.05] {
+            assert!((profile.radius(s) - (1.0 - 0.9 * s)).abs() < 1e-15, "{s}");
+        }
+    }
+
+    #[test]
+    fn the_way_from_the_last_row_to_the_tip_counts() {
+        let rows = [0.0, 0.5, 1.0].map(|s| [s, 1.0 - 0.6 * s]);
+        let ends = |stretch: f64| {
+            let taper = 0.6 * stretch;
+            let tau = |s: f64| -(-taper * s).ln_1p() / taper;
+            (
+                tau(1.0) - tau(1.0 / stretch),
+                tau(1.0 / stretch) - tau(0.5 / stretch),
+            )
+        };
+        for stretch in [1.0, 1.2, 1.6] {
+            let profile = RadiusProfile::of(&rows, stretch);
+            let (beyond, before) = ends(stretch);
+            let [change, length] = profile.changes[2];
+            assert!((length - beyond.max(before)).abs() < 1e-12, "{stretch}");
+            assert!((change - 0.6 * stretch * length).abs() < 1e-12, "{stretch}");
+        }
+    }
+
+    #[test]
+    fn a_cone_is_as_compliant_as_by_integration() {
+        let rows: Vec<[f64; 2]> = (0..=20)
+            .map(|i| f64::from(i) / 20.0)
+            .map(|s| [s, 1.0 - 0.8 * s])
+            .collect();
+        let profile = RadiusProfile::through(&rows);
+        for s in [0.01_f64, 0.3, 0.72, 1.0] {
+            // Two integrations of (1 - 0.8 s)^-4.
+            let radius = 1.0 - 0.8 * s;
+            let exact = (radius.powi(-2) - 1.0 - 1.6 * s) / (6.0 * 0.64);
+            assert!(
+                (profile.compliance(s) / exact - 1.0).abs() < 1e-6,
+                "{s}: {}",
+                profile.compliance(s) / exact
+            );
+        }
+        assert!((profile.largest_share(0.04) - 1.0).abs() < 1e-12);
+        assert!((0.1..0.2).contains(&profile.largest_share(0.5)));
+    }
+
+    #[test]
+    fn equal_profiles_are_one() {
+        let (one, other) = (RadiusProfile::of(&ROWS, 1.0), RadiusProfile::of(&ROWS, 1.0));
+        assert!(std::ptr::eq(one, other));
+        assert!(!std::ptr::eq(one, RadiusProfile::of(&ROWS, 1.03)));
+    }
+}

@@ -1,0 +1,125 @@
+//! The whisker at rest: a parabola or an Euler spiral, by arclength and by chord, and the pole at first touch. Continued
+//! beyond the tip where a distance asks for it.
+
+mod parabola;
+mod spiral;
+
+use crate::rod::Rod;
+use glam::DVec2;
+use parabola::Parabola;
+use spiral::EulerSpiral;
+
+/// The undeflected shape of a [`Rod`], in the frame of the base: origin at the base, first axis its tangent.
+#[derive(Clone, Copy, Debug)]
+pub struct Rest {
+    form: Form,
+    pole: f64,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Form {
+    Parabola(Parabola),
+    EulerSpiral(EulerSpiral),
+}
+
+impl Rest {
+    /// The rest shape of `rod`.
+    #[must_use]
+    pub fn new(rod: &Rod) -> Self {
+        Self {
+            form: match rod.spiral {
+                Some(coefficients) => Form::EulerSpiral(EulerSpiral::new(coefficients)),
+                None => Form::Parabola(Parabola::new(rod)),
+            },
+            pole: rod.pole,
+        }
+    }
+
+    /// cos and sin of the tangent of the parabola of `rod` at arclength `s`, in the frame of the parabola.
+    #[must_use]
+    #[inline(always)]
+    pub fn parabola_tangent(rod: &Rod, s: f64) -> DVec2 {
+        let slope = if rod.bend == 0.0 {
+            rod.slope
+        } else {
+            Parabola::new(rod).slope_at(s)
+        };
+        let cos = 1.0 / (1.0 + slope * slope).sqrt();
+        DVec2::new(cos, slope * cos)
+    }
+
+    /// Curvature at arclength `s`.
+    #[must_use]
+    pub fn curvature(&self, s: f64) -> f64 {
+        match &self.form {
+            Form::Parabola(parabola) => parabola.curvature(s),
+            Form::EulerSpiral(spiral) => spiral.curvature(s),
+        }
+    }
+
+    /// Point and unit tangent at arclength `s`.
+    #[must_use]
+    pub fn at_arclength(&self, s: f64) -> (DVec2, DVec2) {
+        match &self.form {
+            Form::Parabola(parabola) => parabola.at_arclength(s),
+            Form::EulerSpiral(spiral) => spiral.at_arclength(s),
+        }
+    }
+
+    /// Arclength, point and unit tangent at `distance` from the base.
+    fn at_distance(&self, distance: f64) -> (f64, DVec2, DVec2) {
+        let (s, (point, tangent)) = match &self.form {
+            Form::Parabola(parabola) => {
+                let x = parabola.x_of_chord(distance);
+                (parabola.arclength_at(x), parabola.at(x))
+            }
+            Form::EulerSpiral(spiral) => {
+                let s = spiral.arclength_of_chord(distance);
+                (s, spiral.at_arclength(s))
+            }
+        };
+        (s, point, tangent)
+    }
+
+    /// The point at `distance` from the base.
+    #[must_use]
+    pub fn point_at_distance(&self, distance: f64) -> DVec2 {
+        match &self.form {
+            Form::Parabola(parabola) => parabola.at(parabola.x_of_chord(distance)).0,
+            Form::EulerSpiral(_) => self.at_distance(distance).1,
+        }
+    }
+
+    /// Arclength of the contact, and centre of the pole, when it first touches the whisker at `distance` from the base.
+    #[must_use]
+    pub fn touch_at_distance(&self, distance: f64) -> (f64, DVec2) {
+        let (s, point, tangent) = self.at_distance(distance);
+        (s, point - self.pole * tangent.perp())
+    }
+
+    /// Centre of the pole when it first touches the whisker at `distance` from the base.
+    #[must_use]
+    pub fn pole_at_distance(&self, distance: f64) -> DVec2 {
+        self.touch_at_distance(distance).1
+    }
+
+    /// The distance from the base at which the pole first touches the whisker when its centre is `pole_distance` from
+    /// the base: the inverse of [`Rest::pole_at_distance`], which grows with the distance (the scene made sure).
+    #[must_use]
+    pub fn distance_of_pole(&self, pole_distance: f64) -> f64 {
+        let radius = self.pole.abs();
+        let mut low = (pole_distance - radius).max(0.0);
+        let mut high = pole_distance + radius;
+        loop {
+            let middle = 0.5 * (low + high);
+            if middle <= low || middle >= high {
+                return middle;
+            }
+            if self.pole_at_distance(middle).length() < pole_distance {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+    }
+}

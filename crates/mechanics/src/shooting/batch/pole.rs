@@ -1,0 +1,75 @@
+//! The pole as the base sees it, in lanes.
+//!
+//! With `w` the pole's centre seen from the base in the axes of the contact, and `theta` the base's tangent
+//! there, `G = ln w - i theta` (complex) has the real part `ln D` and the imaginary part `phi`, the two
+//! coordinates of a whisker in front of a pole. Its derivatives need no trigonometry:
+//! `G_i = w_i/w - i theta_i`, `G_ij = w_ij/w - w_i w_j/w^2 - i theta_ij`.
+
+use crate::numerics::Complex;
+use crate::numerics::{Lanes, WIDTH};
+use crate::shooting::sensitivity::{Arrival, Slopes, Triple};
+
+/// The pole's centre `w` seen from the base, in the axes of the contact.
+pub struct Centre<T> {
+    pole: Complex<T>,
+    inverse: Complex<T>,
+}
+
+impl<T: Lanes> Centre<T> {
+    #[inline(always)]
+    pub fn new(arrival: &Arrival<T>, [to_x, to_y]: [T; 2]) -> Self {
+        let [c, s, x, y, _] = arrival.rod;
+        let w = Complex::new(to_x - x, to_y - y);
+        Self {
+            pole: Complex::new(c, -s).times(w),
+            inverse: w.inverse(),
+        }
+    }
+
+    /// `w_i/w`.
+    #[inline(always)]
+    pub fn moved(&self, [_, x, y]: Triple<T>) -> Complex<T> {
+        Complex::new(-x, -y).times(self.inverse)
+    }
+
+    /// `G_i`.
+    #[inline(always)]
+    pub fn once(&self, of: Triple<T>) -> Complex<T> {
+        let moved = self.moved(of);
+        Complex::new(moved.re, moved.im - of[0])
+    }
+
+    /// `G_ij`; `by` are `w_i/w` and `w_j/w`.
+    #[inline(always)]
+    pub fn twice(&self, of: Triple<T>, by: Complex<T>, and: Complex<T>) -> Complex<T> {
+        self.once(of).minus(by.times(and))
+    }
+
+    /// The numbers of a [`Landing`].
+    #[inline(always)]
+    pub fn landing(&self, slopes: &Slopes<T>) -> [T; 6] {
+        let (tau, load) = (self.once(slopes.by_tau), self.once(slopes.by_load));
+        [self.pole.re, self.pole.im, tau.re, tau.im, load.re, load.im]
+    }
+}
+
+/// The numbers of each lane.
+#[inline(always)]
+pub fn spread<T: Lanes, A: Copy + Default, const N: usize>(
+    numbers: [T; N],
+    answer: impl Fn([f64; N]) -> A,
+) -> [A; WIDTH] {
+    let mut columns = [[0.0; WIDTH]; N];
+    for (column, number) in columns.iter_mut().zip(numbers) {
+        *column = number.unpack();
+    }
+    let mut answers = [A::default(); WIDTH];
+    for (lane, slot) in answers.iter_mut().enumerate() {
+        let mut row = [0.0; N];
+        for (number, column) in row.iter_mut().zip(&columns) {
+            *number = column[lane];
+        }
+        *slot = answer(row);
+    }
+    answers
+}

@@ -1,0 +1,158 @@
+//! Fixed-step integration along the rod: what the methods share.
+
+mod nystrom8;
+mod rk4;
+
+pub use nystrom8::Nystrom8;
+pub use rk4::Rk4;
+
+use crate::numerics::Real;
+use crate::numerics::hyperbolic_small;
+use crate::shooting::Intrinsic;
+use crate::shooting::Material;
+use crate::shooting::Section;
+use crate::shooting::{Planar, RodSystem, Sensitivity, State};
+
+/// An explicit one-step method with fixed steps.
+pub trait Integrator: Copy + Send + Sync + 'static {
+    /// Where the stages lie in the unit step; the last ones are its end.
+    const NODES: [f64; STAGES];
+
+    /// One step from the section `from`.
+    fn step<T: Real, I: Intrinsic<T>, C: Material<T>, S: Sensitivity<T>>(
+        system: &RodSystem<T, I, C>,
+        scales: &Scales<T>,
+        from: Section<T>,
+        state: State<T, I, S>,
+    ) -> State<T, I, S>;
+}
+
+/// Stages of the largest method.
+pub const STAGES: usize = 8;
+
+/// How the rod changes from the start of a step to one of its stages, `sigma` further on.
+#[derive(Clone, Copy, Debug)]
+pub struct Stage<T> {
+    /// `sigma`.
+    pub sigma: T,
+    /// How much arclength the stage is nearer to the base, over the radius at the start of the step.
+    pub along: T,
+    /// `exp(taper sigma)`: the radius.
+    pub grown: T,
+    /// `exp(-3 taper sigma)`: its inverse cube.
+    pub inverse_cube: T,
+    /// `exp(-taper sigma/2)`.
+    pub shrunk: T,
+}
+
+/// The stages of a step.
+#[derive(Clone, Copy, Debug)]
+pub struct Scales<T> {
+    stages: [Stage<T>; STAGES],
+    /// The rod's taper, where it has one.
+    pub taper: Option<T>,
+}
+
+impl<T: Real> Scales<T> {
+    /// Steps of `h` on a rod of this `taper`; `taper h` up to 0.8.
+    #[inline(always)]
+    pub fn tapered<M: Integrator>(taper: T, h: T) -> Self {
+        let mut scales = Self::cylinder::<M>(h);
+        let one = T::of(1.0);
+        for stage in &mut scales.stages {
+            let half = T::of(0.5) * stage.sigma;
+            let x = taper * half;
+            let [odd, even] = hyperbolic_small(x);
+            let growth = x.mul_add(even, odd);
+            let root = x.mul_add(growth, one);
+            let shrunk = (-x).mul_add((-x).mul_add(even, odd), one);
+            let cube = shrunk * shrunk * shrunk;
+            *stage = Stage {
+                along: half * growth * (root + one),
+                grown: root * root,
+                inverse_cube: cube * cube,
+                shrunk,
+                ..*stage
+            };
+        }
+        scales.taper = Some(taper);
+        scales
+    }
+
+    /// Steps of `h` on a cylinder.
+    #[inline(always)]
+    pub fn cylinder<M: Integrator>(h: T) -> Self {
+        let one = T::of(1.0);
+        let start = Stage {
+            sigma: h,
+            along: h,
+            grown: one,
+            inverse_cube: one,
+            shrunk: one,
+        };
+        let mut stages = [start; STAGES];
+        for (stage, node) in stages.iter_mut().zip(M::NODES) {
+            stage.sigma = h * T::of(node);
+            stage.along = stage.sigma;
+        }
+        Self {
+            stages,
+            taper: None,
+        }
+    }
+
+    /// Stage `i`.
+    #[inline(always)]
+    pub fn stage(&self, i: usize) -> &Stage<T> {
+        &self.stages[i]
+    }
+
+    /// The end of the step.
+    #[inline(always)]
+    pub fn end(&self) -> &Stage<T> {
+        &self.stages[STAGES - 1]
+    }
+}
+
+impl<T: Real> Section<T> {
+    /// The section at a stage of a step that starts here.
+    #[inline(always)]
+    #[must_use]
+    pub fn at(&self, stage: &Stage<T>) -> Self {
+        Self {
+            rho: self.rho * stage.grown,
+            inverse_cube: self.inverse_cube * stage.inverse_cube,
+            arclength: self.arclength - self.rho * stage.along,
+        }
+    }
+}
+
+/// Integrates `system` in `steps` steps from the section `from`.
+#[inline(always)]
+pub fn integrate<M: Integrator, T: Real, I, C, S: Sensitivity<T>>(
+    system: &RodSystem<T, I, C>,
+    scales: &Scales<T>,
+    from: Section<T>,
+    steps: u32,
+    mut state: State<T, I, S>,
+) -> State<T, I, S>
+where
+    I: Intrinsic<T>,
+    C: Material<T>,
+{
+    let mut section = from;
+    for _ in 0..steps {
+        let (rest, (rod, carried)) = M::step::<T, I, C, S>(system, scales, section, state);
+        state = (rest, (upright(rod), carried));
+        section = section.at(scales.end());
+    }
+    state
+}
+
+/// The rod with its tangent brought back to unit length, to first order in the drift of a step. Without this,
+/// the drift near a slender tip stretches all that follows.
+#[inline(always)]
+fn upright<T: Real>([c, s, x, y, bent]: Planar<T>) -> Planar<T> {
+    let scale = T::of(1.5) - T::of(0.5) * c.mul_add(c, s * s);
+    [scale * c, scale * s, x, y, bent]
+}

@@ -1,0 +1,81 @@
+//! A state of the whisker in the units of people.
+
+use super::Full;
+use crate::numerics::nearest_turn;
+use crate::rod::{Rest, Rod, Units, arclength_at};
+use glam::DVec2;
+
+/// What a person reads off a state. The base frame has its first axis along the base's tangent; force and moment
+/// are those that the pole puts on the base.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reading {
+    /// From the base to the contact, along the whisker.
+    pub arc_length_mm: f64,
+    /// Of the whisker's tangent at the contact, from the base's tangent.
+    pub contact_angle_deg: f64,
+    /// Between pole and whisker, normal to both.
+    pub force_un: f64,
+    /// In the base frame.
+    pub base_force_un: DVec2,
+    /// Positive where it turns the base's tangent toward its normal.
+    pub base_moment_nnm: f64,
+    /// The push angle of the paper's Fig. 1D, between base-contact and the point of the resting whisker that is as
+    /// far from the base.
+    pub push_chord_deg: f64,
+    /// From the base to the contact, as the crow flies.
+    pub contact_distance_mm: f64,
+    /// Of bending.
+    pub energy_nj: f64,
+}
+
+/// What of a rod is the same in all its states.
+#[derive(Clone, Copy, Debug)]
+pub struct Reader {
+    units: Units,
+    taper: f64,
+    rest: Rest,
+    to_pole: DVec2,
+    /// Of the contact's tangent from the normal of the force.
+    tilt: f64,
+    /// The part of the force that is normal to the whisker.
+    normal: f64,
+}
+
+impl Reader {
+    /// What reads the states of `rod` in `units`.
+    #[must_use]
+    pub fn new(units: Units, rod: &Rod) -> Self {
+        let tangent = rod.contact_tangent();
+        Self {
+            units,
+            taper: rod.taper,
+            rest: Rest::new(rod),
+            to_pole: rod.to_pole(),
+            tilt: tangent.to_angle(),
+            normal: tangent.x,
+        }
+    }
+
+    /// The state `full`, in contact at `tau`, after the signed `push` (radians) since the pole was first touched in the
+    /// direction `touch`.
+    #[must_use]
+    pub fn read(&self, tau: f64, full: &Full, touch: f64, push: f64) -> Reading {
+        let (base, units) = (&full.base, &self.units);
+        let to_base = DVec2::new(base.tangent.x, -base.tangent.y);
+        let contact = to_base.rotate(-base.position);
+        let to_pole = self.to_pole - base.position;
+        let distance = contact.length();
+        let resting = self.rest.point_at_distance(distance);
+        let chord = DVec2::new(resting.x, -resting.y).rotate(contact).to_angle();
+        Reading {
+            arc_length_mm: arclength_at(self.taper, tau) * units.length_mm,
+            contact_angle_deg: (touch + push - to_pole.to_angle() + self.tilt).to_degrees(),
+            force_un: base.force.abs() * self.normal * units.force_un,
+            base_force_un: base.force * DVec2::new(base.tangent.y, base.tangent.x) * units.force_un,
+            base_moment_nnm: -base.force * base.position.x * units.moment_nnm,
+            push_chord_deg: nearest_turn(chord, push).to_degrees(),
+            contact_distance_mm: distance * units.length_mm,
+            energy_nj: full.energy * units.moment_nnm,
+        }
+    }
+}

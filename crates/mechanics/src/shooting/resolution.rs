@@ -1,0 +1,174 @@
+//! How many steps a trajectory takes.
+
+use crate::rod::{Rod, arclength};
+
+/// How finely trajectories are integrated: `least` steps under about the load of a cylinder's fold, and no step along which the
+/// radius changes by more than a factor `exp(longest)`, the modulus by more than `exp(2 longest)`, or the resting whisker turns
+/// by more than `0.6 longest`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Resolution {
+    /// Steps of a straight whisker under `q = 8` with `beta tau = 1`.
+    pub least: u32,
+    /// Longest step in `beta tau`, in `3.2 A* tau` and in half the logarithm of the modulus; at most 0.4.
+    pub longest: f64,
+}
+
+impl Resolution {
+    /// What maps and lines take unless told otherwise: states are off by less than 1e-11 of the length for taper up to 0.99
+    /// (`tests/model.rs`).
+    pub const FINE: Self = Self::of(20);
+
+    /// What signs and guesses need. Over the stable sheet states are off by less than 1e-6.
+    pub const COARSE: Self = Self::of(5);
+
+    /// From cheap to exact, a factor of 6 to 26 in the error apart.
+    pub const LADDER: [Self; 8] = [
+        Self::of(3),
+        Self::of(4),
+        Self::COARSE,
+        Self::of(7),
+        Self::of(10),
+        Self::of(14),
+        Self::FINE,
+        Self::of(30),
+    ];
+
+    /// So many steps, and none longer than a cone of taper 0.96 takes on average in as many.
+    #[must_use]
+    pub const fn of(least: u32) -> Self {
+        let longest = 3.2 / least as f64;
+        Self {
+            least,
+            longest: if longest < 0.4 { longest } else { 0.4 },
+        }
+    }
+
+    /// Twice as fine.
+    #[must_use]
+    pub const fn doubled(self) -> Self {
+        Self {
+            least: 2 * self.least,
+            longest: 0.5 * self.longest,
+        }
+    }
+
+    /// Steps for a trajectory from `tau` under `load` on `rod`; with a profile, steps for every piece of it.
+    ///
+    /// What is needed grows with the root of the load above all, so that a whisker that hardly bends takes a third of the steps.
+    /// The weights are those of 20,000 random trajectories that had to reach 1e-8, 1e-10 and 3e-12 (`benches/NOTES.md`).
+    #[must_use]
+    pub fn steps(&self, rod: &Rod, tau: f64, load: f64) -> u32 {
+        self.steps_from(rod, tau, load, arclength(rod, tau))
+    }
+
+    /// The same where the arclength `s` of the contact is known already.
+    #[inline(always)]
+    pub(super) fn steps_from(&self, rod: &Rod, tau: f64, load: f64, s: f64) -> u32 {
+        let bend = rod.sharpest_bend();
+        if rod.profile.is_none() && rod.gradient == 0.0 {
+            return self.steps_on_even(rod.taper, bend, [tau, load, s]);
+        }
+        let mut bending = load.abs() * s * s;
+        if rod.profile.is_some() {
+            bending *= rod.softness(tau);
+        }
+        if rod.gradient < 0.0 {
+            bending /= rod.modulus(s);
+        }
+        let modulus = rod.gradient.abs() / (1.0 + rod.gradient).min(1.0);
+        let fastest = fastest(rod.taper, bend).max(0.5 * modulus);
+        let weight = weight(bending, bend * s);
+        let (weight, needed) = match rod.profile {
+            Some(profile) => {
+                let [change, length] = profile.changes[profile.piece(s)];
+                let share = CONCENTRATED * profile.largest_share(s);
+                let weight = (share * (weight + 0.17)).max(FEWEST);
+                (weight, change.max(fastest * length))
+            }
+            None => (weight + weight_of_taper(rod.taper * tau), fastest * tau),
+        };
+        self.rounded(weight, needed)
+    }
+
+    /// Those on a rod of one modulus without a profile, from `tau`, load and arclength: without a branch, so that a compiler
+    /// can work on several at once.
+    #[inline(always)]
+    pub(super) fn steps_on_even(&self, taper: f64, bend: f64, [tau, load, s]: [f64; 3]) -> u32 {
+        let weight = weight(load.abs() * s * s, bend * s) + weight_of_taper(taper * tau);
+        self.rounded(weight, fastest(taper, bend) * tau)
+    }
+
+    /// At least as many steps as both ask for, up to a number that many trajectories share: three significant bits.
+    #[allow(
+        clippy::cast_possible_truncation,
+        clippy::manual_clamp,
+        reason = "the last bits of the sum are the number; NaN becomes the smallest, which `clamp` would let through"
+    )]
+    #[inline(always)]
+    fn rounded(&self, weight: f64, needed: f64) -> u32 {
+        /// Added to a number below, it leaves no bits for fractions.
+        const WHOLE: f64 = (1_u64 << 52) as f64;
+        /// The bits of a mantissa after the first two.
+        const REST: u64 = (1 << 50) - 1;
+        let steps = (f64::from(self.least) * weight).max(needed / self.longest);
+        let steps = steps.max(1.0).min(MOST);
+        let nearest = (steps + WHOLE) - WHOLE;
+        let whole = nearest + if nearest < steps { 1.0 } else { 0.0 };
+        let rounded = f64::from_bits((whole.to_bits() + REST) & !REST);
+        (rounded + WHOLE).to_bits() as u32
+    }
+}
+
+/// Of the load and of the rest shape, which turns by `bend` between base and contact.
+#[inline(always)]
+fn weight(bending: f64, bend: f64) -> f64 {
+    0.28 + 0.195 * bending.sqrt() + 0.18 * bend * bend.min(2.0)
+}
+
+/// Of the fall of the radius.
+#[inline(always)]
+fn weight_of_taper(fall: f64) -> f64 {
+    0.17 * fall * fall.min(2.0)
+}
+
+/// What limits the length of a step, per `tau`.
+#[inline(always)]
+fn fastest(taper: f64, bend: f64) -> f64 {
+    taper.max(1.6 * bend)
+}
+
+/// Under more than a small load the bend gathers in the softest piece.
+const CONCENTRATED: f64 = 2.0;
+
+/// A piece of a profile may be much shorter than what the rod needs as a step; it takes this part of `least`, so that twice as
+/// many steps are twice as many.
+const FEWEST: f64 = 0.15;
+
+/// Bounds the work on a trajectory that a lost Newton step has sent far away.
+const MOST: f64 = 8192.0;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Against whole numbers: the smallest one of three significant bits that is as large.
+    #[test]
+    fn steps_are_rounded_up_to_three_bits() {
+        let resolution = Resolution {
+            least: 1,
+            longest: 1.0,
+        };
+        for quarters in 0..4 * 9000 {
+            let wanted = 0.25 * f64::from(quarters);
+            let fits = |steps: &u32| {
+                let unit = (steps.next_power_of_two() / 8).max(1);
+                f64::from(*steps) >= wanted && steps.is_multiple_of(unit)
+            };
+            let expected = (1..=8192).find(fits).unwrap_or(8192);
+            assert_eq!(resolution.rounded(wanted, 0.0), expected, "{wanted}");
+            assert_eq!(resolution.rounded(0.0, wanted), expected, "{wanted}");
+        }
+        assert_eq!(resolution.rounded(f64::NAN, 0.0), 1);
+        assert_eq!(resolution.rounded(f64::INFINITY, 0.0), 8192);
+    }
+}

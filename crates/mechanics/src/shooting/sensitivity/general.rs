@@ -1,0 +1,157 @@
+//! Derivatives on any rod.
+//!
+//! The rod is a Hamiltonian system, `theta` with the moment `f X` and `Y` with the force, so the symplectic product of the
+//! derivatives by force and by arclength is the same at the base as at the contact:
+//! `Y_s = theta_s (X + f X_f) - f theta_f X_s + const`. `Y_s` and its derivatives therefore need not be carried.
+
+use crate::numerics::Real;
+use crate::shooting::contact::Contact;
+use crate::shooting::sensitivity::{Arrival, Curvatures, Order, Slopes, Triple, scaled, twice};
+use crate::shooting::{Carried, Sensitivity};
+
+/// First derivatives; carries `theta, X` by force and by arclength, and `Y_f`.
+#[derive(Clone, Copy, Debug)]
+pub struct First;
+
+/// First and second derivatives; carries `ff`, `fs` and `ss` of `theta, X` and `ff` of `Y`, too.
+#[derive(Clone, Copy, Debug)]
+pub struct Second;
+
+impl<T: Real> Sensitivity<T> for First {
+    type Pairs = [T; 2];
+    type Sums = [T; 1];
+
+    #[inline(always)]
+    fn moments(f: T, x: T, [x_f, x_s]: [T; 2]) -> [T; 2] {
+        [f.mul_add(x_f, x), f * x_s]
+    }
+
+    #[inline(always)]
+    fn pull(c: T, s: T, _: T, [theta_f, theta_s]: [T; 2]) -> ([T; 2], [T; 1]) {
+        ([s * theta_f, s * theta_s], [-c * theta_f])
+    }
+}
+
+/// Derivatives by the force from those by the force, those by `tau` from both.
+#[inline(always)]
+fn slopes<T: Real>(
+    arrival: &Arrival<T>,
+    by_force: Triple<T>,
+    by_arclength: Triple<T>,
+) -> Slopes<T> {
+    let (rho, load) = (arrival.contact.radius, load(arrival));
+    Slopes {
+        by_tau: sum(scaled(rho, by_arclength), scaled(load, by_force)),
+        by_load: scaled(rho * rho, by_force),
+    }
+}
+
+#[inline(always)]
+fn sum<T: Real>([a, b, c]: Triple<T>, [d, e, f]: Triple<T>) -> Triple<T> {
+    [a + d, b + e, c + f]
+}
+
+/// How the force changes with `tau` at fixed load.
+#[inline(always)]
+fn load<T: Real>(arrival: &Arrival<T>) -> T {
+    T::of(-2.0) * arrival.taper * arrival.contact.force
+}
+
+impl<T: Real> Order<T> for First {
+    type Known = Slopes<T>;
+
+    #[inline(always)]
+    fn start(contact: &Contact<T>) -> Carried<T, Self> {
+        let ([x, _], zero) = (contact.tangent, T::of(0.0));
+        ([zero, -contact.curvature], ([zero, -x], [zero]))
+    }
+
+    #[inline(always)]
+    fn known(arrival: &Arrival<T>, carried: Carried<T, Self>) -> Slopes<T> {
+        let ([theta_f, theta_s], ([x_f, x_s], [y_f])) = carried;
+        let (f, x) = (arrival.contact.force, arrival.rod[2]);
+        let [_, from] = arrival.contact.tangent;
+        let y_s = theta_s * f.mul_add(x_f, x) - f * theta_f * x_s - from;
+        slopes(arrival, [theta_f, x_f, y_f], [theta_s, x_s, y_s])
+    }
+}
+
+impl<T: Real> Sensitivity<T> for Second {
+    type Pairs = ([T; 2], [T; 3]);
+    type Sums = [T; 2];
+
+    #[inline(always)]
+    fn moments(f: T, x: T, (first, [x_ff, x_fs, x_ss]): Self::Pairs) -> Self::Pairs {
+        let [x_f, x_s] = first;
+        let twice = [f.mul_add(x_ff, x_f + x_f), f.mul_add(x_fs, x_s), f * x_ss];
+        (First::moments(f, x, first), twice)
+    }
+
+    #[inline(always)]
+    fn pull(c: T, s: T, bent: T, (first, second): Self::Pairs) -> (Self::Pairs, [T; 2]) {
+        let [theta_f, theta_s] = first;
+        let [theta_ff, theta_fs, theta_ss] = second;
+        let (levers, [y_f]) = First::pull(c, s, bent, first);
+        let [(x_ff, y_ff), (x_fs, _), (x_ss, _)] = [
+            twice(c, s, theta_f * theta_f, theta_ff),
+            twice(c, s, theta_f * theta_s, theta_fs),
+            twice(c, s, theta_s * theta_s, theta_ss),
+        ];
+        ((levers, [x_ff, x_fs, x_ss]), [y_f, y_ff])
+    }
+}
+
+impl<T: Real> Order<T> for Second {
+    type Known = Curvatures<T>;
+
+    #[inline(always)]
+    fn start(contact: &Contact<T>) -> Carried<T, Self> {
+        let [x, y] = contact.tangent;
+        let kappa = contact.curvature;
+        let theta_ss = -contact.curvature_slope - contact.force * x / contact.stiffness;
+        let zero = T::of(0.0);
+        let (angles, (levers, _)) = First::start(contact);
+        (
+            (angles, [zero, zero, theta_ss]),
+            ((levers, [zero, zero, -kappa * y]), [zero, zero]),
+        )
+    }
+
+    #[inline(always)]
+    fn known(arrival: &Arrival<T>, carried: Carried<T, Self>) -> Curvatures<T> {
+        let (angles, (levers, [y_f, y_ff])) = carried;
+        let ([theta_f, theta_s], [theta_ff, theta_fs, theta_ss]) = angles;
+        let ([x_f, x_s], [x_ff, x_fs, x_ss]) = levers;
+        let (f, x) = (arrival.contact.force, arrival.rod[2]);
+        let [_, from] = arrival.contact.tangent;
+        // The lever and its derivatives.
+        let (m_f, m_ff) = (f.mul_add(x_f, x), f.mul_add(x_ff, x_f + x_f));
+        let m_fs = f.mul_add(x_fs, x_s);
+        let y_s = theta_s * m_f - f * theta_f * x_s - from;
+        let y_fs =
+            theta_fs * m_f + theta_s * m_ff - (theta_f + f * theta_ff) * x_s - f * theta_f * x_fs;
+        let y_ss = theta_ss * m_f + theta_s * m_fs - f * (theta_fs * x_s + theta_f * x_ss);
+        let by_force = [theta_f, x_f, y_f];
+        let by_arclength = [theta_s, x_s, y_s];
+        let ff = [theta_ff, x_ff, y_ff];
+        let fs = [theta_fs, x_fs, y_fs];
+        let ss = [theta_ss, x_ss, y_ss];
+        let (rho, load, taper) = (arrival.contact.radius, load(arrival), arrival.taper);
+        let two = T::of(2.0);
+        let by_tau_tau = sum(
+            sum(scaled(load * load, ff), scaled(two * load * rho, fs)),
+            scaled(rho * rho, ss),
+        );
+        let slanted = sum(scaled(two * load, by_force), scaled(rho, by_arclength));
+        let by_tau_load = sum(
+            sum(scaled(load, ff), scaled(rho, fs)),
+            scaled(-two * taper, by_force),
+        );
+        Curvatures {
+            slopes: slopes(arrival, by_force, by_arclength),
+            by_tau_tau: sum(by_tau_tau, scaled(-taper, slanted)),
+            by_tau_load: scaled(rho * rho, by_tau_load),
+            by_load_load: scaled(rho * rho * (rho * rho), ff),
+        }
+    }
+}

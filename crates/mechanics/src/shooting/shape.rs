@@ -1,0 +1,168 @@
+//! A trajectory seen at places along the whisker.
+
+use crate::rod::{Rest, Rod, Start, arclength};
+use crate::shooting::{Bent, Intrinsic, Spiral};
+use crate::shooting::{Graded, Material, Measured};
+use crate::shooting::{Nystrom8, Resolution, Scales, integrate};
+use crate::shooting::{RodSystem, Section, Shape, State};
+use glam::DVec2;
+
+/// The whisker at one place, as seen from the contact, in axes whose second one is along the force; lengths in whisker
+/// lengths.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Place {
+    /// Arclength from the base.
+    pub arclength: f64,
+    /// Position.
+    pub position: DVec2,
+    /// Unit tangent.
+    pub tangent: DVec2,
+    /// `dtheta/ds`.
+    pub curvature: f64,
+    /// Bending moment, in `E I_base/L_w`; 0 beyond the contact.
+    pub moment: f64,
+}
+
+/// The places at growing arclengths `at` of the whisker in contact at `tau` under `load`; beyond the contact it keeps
+/// its rest shape.
+#[must_use]
+pub fn profile(rod: &Rod, tau: f64, load: f64, resolution: Resolution, at: &[f64]) -> Vec<Place> {
+    let start = Start::new(rod, tau, load);
+    let way = Way {
+        rod,
+        start: &start,
+        steps: resolution.steps(rod, tau, load),
+    };
+    match rod.spiral {
+        Some([at_base, slope]) => way.places(Spiral { at_base, slope }, (), at),
+        None => {
+            let twice_bend = 2.0 * rod.bend;
+            way.places(Bent { twice_bend }, start.rest.to_array(), at)
+        }
+    }
+}
+
+/// The way from a contact to the base.
+struct Way<'a> {
+    rod: &'a Rod,
+    start: &'a Start,
+    /// Steps that the whole way would take, or a piece of a profile.
+    steps: u32,
+}
+
+impl Way<'_> {
+    fn places<I: Intrinsic<f64>>(&self, intrinsic: I, rest: I::State, at: &[f64]) -> Vec<Place> {
+        let contact = self.start.arclength;
+        let deflected = at.partition_point(|s| *s < contact);
+        let tangent = self.start.tangent;
+        let mut state: State<f64, I, Shape> = (
+            rest,
+            ([tangent.x, tangent.y, 0.0, 0.0, 0.0], ((), ((), ()))),
+        );
+        let mut from = self.start.tau;
+        let mut places: Vec<Place> = at[..deflected]
+            .iter()
+            .rev()
+            .map(|s| {
+                let to = self.rod.tau(*s);
+                state = self.advance(intrinsic, (from, to), state);
+                from = to;
+                let (_, (rod, _)) = state;
+                self.loaded(*s, rod)
+            })
+            .collect();
+        places.reverse();
+        places.extend(at[deflected..].iter().map(|s| self.free(*s)));
+        places
+    }
+
+    /// Integrates `state` from one `tau` back to a smaller one, piece by piece.
+    fn advance<I: Intrinsic<f64>>(
+        &self,
+        intrinsic: I,
+        (mut from, to): (f64, f64),
+        mut state: State<f64, I, Shape>,
+    ) -> State<f64, I, Shape> {
+        let gradient = self.rod.gradient;
+        let Some(profile) = self.rod.profile else {
+            let whole = self.start.tau;
+            return self.integrate(intrinsic, Graded { gradient }, whole, (from, to), state);
+        };
+        let mut ahead = self.start.tau;
+        for piece in profile.pieces[..=self.rod.piece(self.start.arclength)]
+            .iter()
+            .rev()
+        {
+            let begin = self.rod.tau(piece.from);
+            let (whole, end) = (ahead - begin, begin.max(to));
+            ahead = begin;
+            if end < from {
+                let material = Measured {
+                    from: piece.from,
+                    cubic: piece.cubic,
+                    gradient,
+                };
+                state = self.integrate(intrinsic, material, whole, (from, end), state);
+                from = end;
+            }
+        }
+        state
+    }
+
+    /// Takes the share of the steps over `whole` that the part from `from` to `to` has.
+    fn integrate<I: Intrinsic<f64>, C: Material<f64>>(
+        &self,
+        intrinsic: I,
+        material: C,
+        whole: f64,
+        (from, to): (f64, f64),
+        state: State<f64, I, Shape>,
+    ) -> State<f64, I, Shape> {
+        let share = f64::from(self.steps) * (from - to) / whole;
+        #[allow(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a share of a small number"
+        )]
+        let steps = (share.ceil() as u32).max(1);
+        let h = (from - to) / f64::from(steps);
+        let rho = self.rod.radius(from);
+        let section = Section {
+            rho,
+            inverse_cube: 1.0 / (rho * rho * rho),
+            arclength: arclength(self.rod, from),
+        };
+        let system = RodSystem {
+            force: self.start.force,
+            intrinsic,
+            material,
+        };
+        let scales = Scales::tapered::<Nystrom8>(self.rod.taper, h);
+        integrate::<Nystrom8, f64, _, _, Shape>(&system, &scales, section, steps, state)
+    }
+
+    fn loaded(&self, s: f64, [c, sin, x, y, _]: [f64; 5]) -> Place {
+        let moment = -self.start.force * x;
+        Place {
+            arclength: s,
+            position: DVec2::new(x, y),
+            tangent: DVec2::new(c, sin),
+            curvature: Rest::new(self.rod).curvature(s) + moment / self.rod.stiffness(s),
+            moment,
+        }
+    }
+
+    fn free(&self, s: f64) -> Place {
+        let rest = Rest::new(self.rod);
+        let (from, axis) = rest.at_arclength(self.start.arclength);
+        let (to, tangent) = rest.at_arclength(s);
+        let turn = self.start.tangent.rotate(DVec2::new(axis.x, -axis.y));
+        Place {
+            arclength: s,
+            position: turn.rotate(to - from),
+            tangent: turn.rotate(tangent),
+            curvature: rest.curvature(s),
+            moment: 0.0,
+        }
+    }
+}

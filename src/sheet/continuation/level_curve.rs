@@ -1,0 +1,165 @@
+//! The level curve of `D`: every state of the whisker in front of one pole, by pseudo-arclength continuation.
+//!
+//! Neither the load nor the push angle can be stepped: the load peaks, the push angle turns at the fold. The curve is
+//! followed in the plane of contact and load, where it is the level set of one smooth function whose gradient every
+//! trajectory brings along; predictor along the tangent, corrector along the gradient. Its length is measured where
+//! people look at it: in push angle, contact angle (both in radians) and arclength of the contact (in whisker lengths).
+
+use crate::numerics::nearest_turn;
+use crate::rod::{Rod, Side, arclength};
+use crate::sheet::edges::crossings::Crossing;
+use crate::sheet::row::Row;
+use crate::shooting::batch::{Launch, Method, land};
+use crate::shooting::{FirstAndEnergy, Full, Nystrom8};
+use glam::{DVec2, DVec3};
+
+/// Rounds of the corrector; from a step's predictor 4 are the rule.
+const ROUNDS: usize = 12;
+
+/// `ln D` at which a point lies on the curve, to rounding.
+pub const ON_CURVE: f64 = 1e-14;
+
+/// A state on the level curve.
+#[derive(Clone, Copy, Debug)]
+pub struct Node {
+    /// `(tau, load)`.
+    pub point: DVec2,
+    /// Everything else.
+    pub full: Full,
+    /// Push angle since first touch, signed, in radians, continuous along the curve.
+    pub push: f64,
+    /// Tangent angle at the contact from the base's tangent, in radians, continuous along the curve.
+    pub angle: f64,
+}
+
+/// The level curve of one row.
+#[derive(Clone, Copy, Debug)]
+pub struct LevelCurve {
+    /// How trajectories are integrated.
+    pub method: Method,
+    /// The whisker and its pole.
+    pub rod: Rod,
+    /// The side.
+    pub side: Side,
+    /// Where the pole stands.
+    pub row: Row,
+    /// Whether it is followed in the direction of growing push angles.
+    pub forward: bool,
+}
+
+impl LevelCurve {
+    /// First touch, from where pushes are counted.
+    #[must_use]
+    pub fn touch(&self) -> Option<Node> {
+        let at_touch = DVec2::new(self.rod.tau(self.row.contact).min(self.rod.tau_tip()), 0.0);
+        let full = *self.land(&[at_touch]).first()?;
+        Some(Node {
+            push: 0.0,
+            ..self.node(at_touch, &full, 0.0, 0.0)
+        })
+    }
+
+    /// The state at a crossing.
+    #[must_use]
+    pub fn at(&self, crossing: &Crossing) -> Option<Node> {
+        let at = DVec2::new(crossing.tau, crossing.load);
+        let (point, full) = self.settle(&[at], ON_CURVE).pop()??;
+        Some(self.node(point, &full, self.side.sign() * crossing.push, 0.0))
+    }
+
+    /// The state `full` at `point`, its angles continued from `push` and `angle`.
+    #[must_use]
+    pub fn node(&self, point: DVec2, full: &Full, push: f64, angle: f64) -> Node {
+        let phi = full.landing.pole.to_angle();
+        let to_pole = self.rod.to_pole() - full.base.position;
+        let tilt = self.rod.contact_tangent().to_angle();
+        Node {
+            point,
+            full: *full,
+            push: nearest_turn(phi - self.row.touch, push),
+            angle: nearest_turn(phi - to_pole.to_angle() + tilt, angle),
+        }
+    }
+
+    /// The next node, about `step` further on, where the corrector finds the curve again.
+    #[must_use]
+    pub fn step(&self, from: &Node, step: f64) -> Option<Node> {
+        let scale = self.scale(from.point);
+        let gradient = scale * gradient(from);
+        // Along the curve the push angle changes by minus `det` times its direction (by_load, -by_tau).
+        let heading = if self.forward { 1.0 } else { -1.0 };
+        let along = -heading * self.side.sign() * DVec2::new(gradient.y, -gradient.x).normalize();
+        let predicted = from.point + step * scale * along;
+        let (point, full) = self.settle(&[predicted], ON_CURVE).pop()??;
+        let turned = (point - from.point) / scale;
+        let node = self.node(point, &full, from.push, from.angle);
+        (turned.dot(along) > 0.5 * turned.length()).then_some(node)
+    }
+
+    /// Brings every point onto the curve, to `tolerance` in `ln D` or to rounding; `None` where that fails.
+    #[must_use]
+    pub fn settle(&self, points: &[DVec2], tolerance: f64) -> Vec<Option<(DVec2, Full)>> {
+        let mut points = points.to_vec();
+        let mut settled = vec![None; points.len()];
+        let mut misses = vec![f64::INFINITY; points.len()];
+        let mut open: Vec<usize> = (0..points.len()).collect();
+        for _ in 0..ROUNDS {
+            let at: Vec<DVec2> = open.iter().map(|&i| points[i]).collect();
+            let mut fulls = self.land(&at).into_iter();
+            open.retain(|&i| {
+                let Some(full) = fulls.next() else {
+                    return false;
+                };
+                let miss = (self.row.pole_distance / full.landing.pole.length()).ln();
+                let stuck = miss.abs() < 1e3 * tolerance && miss.abs() > 0.5 * misses[i];
+                if miss.abs() <= tolerance || stuck {
+                    settled[i] = Some((points[i], full));
+                    return false;
+                }
+                misses[i] = miss.abs();
+                let scale = self.scale(points[i]);
+                let gradient = scale * DVec2::new(full.landing.by_tau.x, full.landing.by_load.x);
+                points[i] += scale * gradient * (miss / gradient.length_squared());
+                points[i].is_finite() && points[i].x > 0.0
+            });
+        }
+        settled
+    }
+
+    fn land(&self, points: &[DVec2]) -> Vec<Full> {
+        let launches: Vec<Launch> = points
+            .iter()
+            .map(|point| Launch {
+                rod: self.rod,
+                tau: point.x,
+                load: point.y,
+            })
+            .collect();
+        let landed = land::<Nystrom8, FirstAndEnergy>(self.method, &launches);
+        landed.iter().map(|moving| moving.full).collect()
+    }
+
+    /// How much `tau` and load can change before the state changes by about as much as it is.
+    fn scale(&self, point: DVec2) -> DVec2 {
+        let s = arclength(&self.rod, point.x);
+        DVec2::new(s, point.y.abs() + 1.0 / (s * s))
+    }
+
+    /// Where people see a node.
+    #[must_use]
+    pub fn place(&self, node: &Node) -> DVec3 {
+        let s = arclength(&self.rod, node.point.x);
+        DVec3::new(node.push, node.angle, s)
+    }
+
+    /// How far apart people see two nodes.
+    #[must_use]
+    pub fn length(&self, from: &Node, to: &Node) -> f64 {
+        self.place(from).distance(self.place(to))
+    }
+}
+
+/// `d ln D/d(tau, load)`.
+fn gradient(node: &Node) -> DVec2 {
+    DVec2::new(node.full.landing.by_tau.x, node.full.landing.by_load.x)
+}

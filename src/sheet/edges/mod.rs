@@ -1,0 +1,190 @@
+//! The edges of the stable sheet, sampled: the fold at every column, the tip from first touch to the corner.
+
+mod bracket;
+pub mod crossings;
+pub mod edge_newton;
+pub mod tip_edge;
+
+use crate::numerics::lobatto::{LOADS, PARTS};
+use crate::numerics::nearest_turn;
+use crate::rod::Rod;
+use crate::sheet::edges::tip_edge::{TipLine, Turn};
+use crate::sheet::fold::FoldPoint;
+use crate::sheet::fold::contact_nodes::Columns;
+use crate::sheet::fold::predictor::FoldLine;
+use crate::sheet::lattice::Lattice;
+use crate::sheet::lattice::directions;
+use crate::sheet::row::Row;
+use crate::shooting::batch::{Launch, Method, land, land_in_company};
+use crate::shooting::{Curved, First, Landing, Nystrom8, Second};
+use glam::DVec2;
+
+/// Relative slack with which a distance counts as reached, so that a whisker whose resting tip just touches
+/// the pole does touch it, whatever the rounding.
+pub const REACH_SLACK: f64 = 1e-12;
+
+/// The Newton step, relative to the distance of the samples, after which an extremum is known: its square is left.
+const LAST_STEP: f64 = 1e-7;
+
+/// A computed point of an edge.
+#[derive(Clone, Copy, Debug)]
+pub struct Sample {
+    /// The column, or the part of the load at the corner.
+    pub place: f64,
+    /// `tau` of the contact.
+    pub tau: f64,
+    /// Signed load.
+    pub load: f64,
+    /// `ln D`.
+    pub ln_distance: f64,
+    /// Direction of the pole, continuous from first touch.
+    pub phi: f64,
+}
+
+impl Sample {
+    fn new(place: f64, tau: f64, load: f64, landing: &Landing, phi_near: f64) -> Self {
+        Self {
+            place,
+            tau,
+            load,
+            ln_distance: landing.pole.length().ln(),
+            phi: nearest_turn(landing.pole.to_angle(), phi_near),
+        }
+    }
+}
+
+/// The sampled edges of a sheet.
+#[derive(Clone, Debug)]
+pub struct Edges {
+    /// From the base to the corner.
+    pub fold: Vec<Sample>,
+    /// The same between the samples.
+    pub fold_line: FoldLine,
+    /// Whether the distance grows along the fold from the base to the tip, so that no row crosses it twice. Where the
+    /// first fold jumps from contact to contact, there is more of it than the samples show.
+    pub fold_grows: bool,
+    /// From first touch to the corner.
+    pub tip: Vec<Sample>,
+    /// The same between the samples.
+    pub tip_line: TipLine,
+}
+
+impl Edges {
+    /// Samples both edges; `lattice` knows the whole turns of the pole's direction.
+    pub fn new(method: Method, rod: &Rod, columns: &Columns, lattice: &Lattice) -> Self {
+        let fold: Vec<Sample> = columns.folds[..=columns.tip]
+            .iter()
+            .zip(lattice.phi_at_fold())
+            .enumerate()
+            .map(|(i, (fold, phi))| {
+                Sample::new(i as f64, fold.tau, fold.load, &fold.landing.landing, phi)
+            })
+            .collect();
+        let (mut tip, tip_line) = tip_samples(method, rod, &columns.folds[columns.tip]);
+        tip.extend(fold.last().map(|corner| Sample {
+            place: 1.0,
+            ..*corner
+        }));
+        Self {
+            fold,
+            fold_line: FoldLine::new(columns, lattice.phi_at_fold()),
+            fold_grows: (0..columns.tip).all(|column| columns.grow_after(column)),
+            tip,
+            tip_line,
+        }
+    }
+
+    /// Whether a whisker at rest reaches the pole of this row.
+    #[must_use]
+    pub fn touches(&self, row: &Row) -> bool {
+        self.tip[0].ln_distance > row.pole_distance.ln() - REACH_SLACK
+    }
+}
+
+/// The tip edge from first touch to before the `corner`, with its extrema of distance among the samples, and the line through the
+/// others and the corner.
+fn tip_samples(method: Method, rod: &Rod, corner: &FoldPoint) -> (Vec<Sample>, TipLine) {
+    let launch = |load| Launch {
+        rod: *rod,
+        tau: corner.tau,
+        load,
+    };
+    let loads = PARTS[..LOADS - 1].iter().map(|part| part * corner.load);
+    let launches: Vec<Launch> = loads.map(launch).collect();
+    let mut landings = land_in_company::<Nystrom8, First>(method, &launches);
+    landings.push(corner.landing.landing);
+    let phis = directions(corner.load, landings.iter());
+    let line = TipLine::new(corner.tau, corner.load, &landings, &phis);
+    let turns = line.turns();
+    let mut samples: Vec<Sample> = Vec::new();
+    for (m, launch) in launches.iter().enumerate() {
+        let sample = |load: f64, landing: &Landing| {
+            Sample::new(load / corner.load, corner.tau, load, landing, phis[m])
+        };
+        samples.push(Sample {
+            place: PARTS[m],
+            ..sample(launch.load, &landings[m])
+        });
+        for turn in turns.iter().filter(|turn| turn.after == m) {
+            let (load, landing) = extremum(method, *launch, turn);
+            samples.push(sample(load, &landing));
+        }
+    }
+    (samples, line)
+}
+
+/// The load at which the distance turns with the contact at the tip, and the landing there: mostly the line along the tip knows the
+/// `turn`, and one trajectory with it all the rest.
+fn extremum(method: Method, at_tip: Launch, turn: &Turn) -> (f64, Landing) {
+    let (near, [from, to], by_load_load) = (turn.load, turn.between, turn.bend);
+    let at = |load| land::<Nystrom8, First>(method, &[Launch { load, ..at_tip }])[0];
+    let landing = at(near);
+    let step = -landing.by_load.x / by_load_load.x;
+    if step.abs() <= LAST_STEP * (to - from).abs() {
+        let here = Curved {
+            landing,
+            by_load_load,
+            ..Curved::default()
+        };
+        return (near + step, here.moved(DVec2::new(0.0, step)).landing);
+    }
+    let load = bracketed_extremum(
+        method,
+        Launch {
+            load: from,
+            ..at_tip
+        },
+        to,
+        near,
+    );
+    (load, at(load))
+}
+
+/// The same load by Newton's method from `near` and second derivatives, bisecting where a step would leave the bracket.
+fn bracketed_extremum(method: Method, from: Launch, to: f64, near: f64) -> f64 {
+    let at = |load: f64| land::<Nystrom8, Second>(method, &[Launch { load, ..from }])[0];
+    let (mut low, mut high) = (from.load, to);
+    let mut load = near;
+    let mut falling_at_low = None;
+    for _ in 0..60 {
+        let here = at(load);
+        let slope = here.landing.by_load.x;
+        let newton = load - slope / here.by_load_load.x;
+        let inside = (newton - low) * (newton - high) < 0.0;
+        if inside && (newton - load).abs() <= LAST_STEP * (to - from.load).abs() {
+            return newton;
+        }
+        let falls = *falling_at_low.get_or_insert_with(|| at(from.load).landing.by_load.x < 0.0);
+        if (slope < 0.0) == falls {
+            low = load;
+        } else {
+            high = load;
+        }
+        let next = if inside { newton } else { 0.5 * (low + high) };
+        if next == load {
+            return next;
+        }
+        load = next;
+    }
+    load
+}

@@ -1,0 +1,240 @@
+//! The fold edge: the first load at which the Jacobian becomes singular, contact by contact.
+
+pub mod contact_nodes;
+mod coordinate;
+pub mod predictor;
+
+use crate::numerics::newton_form::{Polynomial, stencil};
+use crate::rod::{Rod, Side, arclength};
+use crate::shooting::batch::{Launch, Method, land_in_company};
+use crate::shooting::{Curved, First, Landing, Nystrom8, Second};
+use glam::DVec2;
+
+/// A point of the fold edge.
+#[derive(Clone, Copy, Debug)]
+pub struct FoldPoint {
+    /// `tau` of the contact.
+    pub tau: f64,
+    /// Signed load.
+    pub load: f64,
+    /// The pole there, with second derivatives.
+    pub landing: Curved,
+}
+
+/// Samples of `q = |load| s^2` per round of the search; measured radii add their softness as a factor.
+const SAMPLES: usize = 11;
+
+/// Distance of the first samples: the second fold is farther from the first than this.
+const FIRST_STEP: f64 = 0.75;
+
+/// Where the search begins. Without measured radii and moduli that fall toward the tip, which `q` does not know of, the sheet is
+/// wider: no first fold of 2,000 random whiskers with friction up to 2 and `A*` up to 2 lay below 6.5.
+const SURELY_STABLE: f64 = 4.5;
+
+/// How much wider a bracket is than the samples say, relatively: their signs come from the coarse resolution.
+const SLACK: f64 = 1e-2;
+
+/// The last step between two samples, in parts of their distance: its square is left.
+const LAST_PART: f64 = 1e-4;
+
+/// Beyond this `q` the samples spread out. The largest first fold known of a cone lies at 24.15: the limit at the tip of a
+/// perfect one that is slender against the pole.
+const EVEN_UP_TO: f64 = 64.0;
+
+/// The largest Newton step left, relative to the load, at a point that counts as a fold. At the tip of a perfect
+/// cone rounding of `det` leaves 2e-7; elsewhere it is below 1e-13.
+const STEP_LEFT: f64 = 1e-5;
+
+/// The Newton step, relative to the load, that needs no trajectory at its end: its square is left.
+const LAST_STEP: f64 = 1e-6;
+
+/// Where the search is given up.
+const LARGEST_Q: f64 = 1e6;
+
+/// Rounds of the safeguarded Newton method; bisection alone would need 50.
+const ROUNDS: usize = 60;
+
+/// First folds of `rod` at the contacts `taus`; `None` where there is none up to [`LARGEST_Q`], or no stable state at first
+/// touch.
+pub fn first_folds(method: Method, rod: &Rod, side: Side, taus: &[f64]) -> Vec<Option<FoldPoint>> {
+    let begin = if rod.profile.is_none() && rod.gradient >= 0.0 {
+        SURELY_STABLE
+    } else {
+        0.0
+    };
+    let mut folds = polish(
+        method,
+        rod,
+        &bracket(method.coarsely(), rod, side, taus, begin),
+    );
+    // With friction and a stiff tip the first fold can lie at `q` of 1000, where the coarse resolution is lost.
+    let lost: Vec<usize> = (0..taus.len()).filter(|&i| folds[i].is_none()).collect();
+    let again: Vec<f64> = lost.iter().map(|&i| taus[i]).collect();
+    let fine = polish(method, rod, &bracket(method, rod, side, &again, 0.0));
+    for (i, fold) in lost.into_iter().zip(fine) {
+        folds[i] = fold;
+    }
+    folds
+}
+
+/// A stretch of load over which `det` changes its sign for the first time.
+#[derive(Clone, Copy, Debug)]
+struct Bracket {
+    tau: f64,
+    stable: f64,
+    beyond: f64,
+    guess: f64,
+}
+
+/// Marches every contact out from `q = begin` until `det` has changed its sign; `None` also where that is not stable.
+fn bracket(
+    method: Method,
+    rod: &Rod,
+    side: Side,
+    taus: &[f64],
+    begin: f64,
+) -> Vec<Option<Bracket>> {
+    struct March {
+        index: usize,
+        scale: f64,
+        dets: Vec<f64>,
+    }
+    let mut found = vec![None; taus.len()];
+    let mut open: Vec<March> = (0..taus.len())
+        .map(|index| March {
+            index,
+            scale: side.sign() / (arclength(rod, taus[index]).powi(2) * rod.softness(taus[index])),
+            dets: Vec::new(),
+        })
+        .collect();
+    let (mut samples, mut step) = (Vec::new(), FIRST_STEP);
+    while !open.is_empty() && samples.last().is_none_or(|q| *q < LARGEST_Q) {
+        let from = samples.len();
+        let first = samples.last().map_or(begin, |q| q + step);
+        samples.extend((0..SAMPLES).map(|i| step.mul_add(i as f64, first)));
+        let launches: Vec<Launch> = open
+            .iter()
+            .flat_map(|m| samples[from..].iter().map(|q| (taus[m.index], q * m.scale)))
+            .map(|(tau, load)| Launch {
+                rod: *rod,
+                tau,
+                load,
+            })
+            .collect();
+        let landings = land_in_company::<Nystrom8, First>(method, &launches);
+        let mut landings = landings.chunks(SAMPLES);
+        open.retain_mut(|march| {
+            let landed = landings.next().unwrap_or_default();
+            march.dets.extend(landed.iter().map(Landing::det));
+            if march.dets.first().is_none_or(|det| *det <= 0.0) {
+                return false;
+            }
+            // The sample before the first one of the batch is looked at again.
+            let pairs = march.dets.windows(2).enumerate().skip(from.max(1) - 1);
+            let changed = |(_, pair): &(usize, &[f64])| pair[0] * pair[1] <= 0.0;
+            let Some((at, _)) = pairs.into_iter().find(changed) else {
+                return true;
+            };
+            let slack = SLACK * (samples[at + 1] - samples[at]);
+            found[march.index] = Some(Bracket {
+                tau: taus[march.index],
+                stable: (samples[at] - slack) * march.scale,
+                beyond: (samples[at + 1] + slack) * march.scale,
+                guess: root(&samples, &march.dets, at) * march.scale,
+            });
+            false
+        });
+        if samples[samples.len() - 1] >= EVEN_UP_TO {
+            step = samples[samples.len() - 1] / SAMPLES as f64;
+        }
+    }
+    found
+}
+
+/// Samples that tell where between two of them `det` vanishes.
+const AROUND: usize = 10;
+
+/// Where `dets` vanishes between the sample `at` and the next one.
+fn root(samples: &[f64], dets: &[f64], at: usize) -> f64 {
+    let [low, high] = [dets[at], dets[at + 1]];
+    let secant = low / (low - high);
+    let start = stencil(at, AROUND, dets.len());
+    let around = start..(start + AROUND).min(samples.len());
+    let part = if samples[around.end - 1] <= EVEN_UP_TO {
+        let offset = (at - start) as f64;
+        let polynomial = Polynomial::<AROUND>::through(&dets[around]);
+        polynomial.solve(0.0, offset + secant, [offset + 1.0, offset], LAST_PART) - offset
+    } else {
+        secant
+    };
+    samples[at] + part * (samples[at + 1] - samples[at])
+}
+
+/// Newton's method on `det(load) = 0` inside the brackets.
+fn polish(method: Method, rod: &Rod, brackets: &[Option<Bracket>]) -> Vec<Option<FoldPoint>> {
+    let mut points = vec![None; brackets.len()];
+    let mut all: Vec<(usize, Bracket)> = brackets
+        .iter()
+        .enumerate()
+        .filter_map(|(i, bracket)| bracket.map(|b| (i, b)))
+        .collect();
+    let mut is_open = vec![true; all.len()];
+    for _ in 0..ROUNDS {
+        if !is_open.contains(&true) {
+            break;
+        }
+        // Those that are done keep company: with fewer steps, at the tip of a perfect cone, `det` may have its root elsewhere.
+        let launches: Vec<Launch> = all
+            .iter()
+            .map(|(_, b)| Launch {
+                rod: *rod,
+                tau: b.tau,
+                load: b.guess,
+            })
+            .collect();
+        let landings = land_in_company::<Nystrom8, Second>(method, &launches);
+        for (((i, b), is_open), landing) in all.iter_mut().zip(&mut is_open).zip(landings) {
+            if !*is_open {
+                continue;
+            }
+            let (det, slope) = (landing.landing.det(), landing.det_gradient().y);
+            let newton = b.guess - det / slope;
+            let step = newton - b.guess;
+            let is_last = step.abs() <= LAST_STEP * b.guess.abs();
+            points[*i] = Some(if is_last {
+                FoldPoint {
+                    tau: b.tau,
+                    load: newton,
+                    landing: landing.moved(DVec2::new(0.0, step)),
+                }
+            } else {
+                FoldPoint {
+                    tau: b.tau,
+                    load: b.guess,
+                    landing,
+                }
+            });
+            if det > 0.0 {
+                b.stable = b.guess;
+            } else {
+                b.beyond = b.guess;
+            }
+            let inside = (newton - b.stable) * (newton - b.beyond) < 0.0;
+            let next = if inside {
+                newton
+            } else {
+                0.5 * (b.stable + b.beyond)
+            };
+            *is_open = !is_last && next != b.guess;
+            b.guess = next;
+        }
+    }
+    // A bracket that closed on something else than a root, or did not close, is no fold.
+    for point in &mut points {
+        *point = point.filter(|fold| {
+            let step = fold.landing.landing.det() / fold.landing.det_gradient().y;
+            step.abs() <= STEP_LEFT * fold.load.abs()
+        });
+    }
+    points
+}
