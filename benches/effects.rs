@@ -15,14 +15,14 @@ use naga::{Block, Expression, Function, Handle, Literal, Module, Statement};
 use std::time::Instant;
 use whiskmap::integrate::gpu::{Precision, shaders};
 use whiskmap::rod::Effects;
-use whiskmap::shooting::batch::{Launch, Method, land};
+use whiskmap::shooting::batch::{InitialCondition, Method, shoot};
 use whiskmap::shooting::{First, Nystrom8};
 
 #[allow(dead_code, reason = "the tests use the rest")]
 #[path = "../tests/gpu_engine/shots.rs"]
 mod shots;
 
-use shots::{Random, launch, rod};
+use shots::{Random, condition, rod};
 
 const RUNS: usize = 7;
 
@@ -34,17 +34,18 @@ fn main() {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1);
     pool.build_global().expect("no pool is there yet");
 
-    let sets: Vec<(Effects, Vec<Launch>)> = Effects::all()
+    let sets: Vec<(Effects, Vec<InitialCondition>)> = Effects::all()
         .map(|effects| {
             let mut random = Random(31);
-            let launches = (0..count).map(|_| launch(rod(effects, &mut random), 6.5, &mut random));
-            (effects, launches.collect())
+            let conditions =
+                (0..count).map(|_| condition(rod(effects, &mut random), 6.5, &mut random));
+            (effects, conditions.collect())
         })
         .collect();
     let mut times = vec![Vec::new(); sets.len()];
     for _ in 0..RUNS {
-        for ((effects, launches), times) in sets.iter().zip(&mut times) {
-            times.push(microseconds(*effects, launches));
+        for ((effects, conditions), times) in sets.iter().zip(&mut times) {
+            times.push(microseconds(*effects, conditions));
         }
     }
     let medians: Vec<f64> = times
@@ -67,13 +68,13 @@ fn main() {
     }
 }
 
-fn microseconds(effects: Effects, launches: &[Launch]) -> f64 {
+fn microseconds(effects: Effects, conditions: &[InitialCondition]) -> f64 {
     let method = Method::fine(effects);
     let start = Instant::now();
-    let landings = land::<Nystrom8, First>(method, launches);
+    let maps = shoot::<Nystrom8, First>(method, conditions);
     let micros = start.elapsed().as_secs_f64() * 1e6;
-    assert!(landings.iter().all(|landing| landing.pole.is_finite()));
-    micros / launches.len() as f64
+    assert!(maps.iter().all(|map| map.pole.is_finite()));
+    micros / conditions.len() as f64
 }
 
 fn name(effects: Effects) -> String {

@@ -21,7 +21,7 @@ use whiskmap::refine::refine;
 use whiskmap::rod::{Effects, Side};
 use whiskmap::scene::Scene;
 use whiskmap::sheet::Sheet;
-use whiskmap::shooting::batch::{Launch, Method, land, land_on};
+use whiskmap::shooting::batch::{InitialCondition, Method, shoot, shoot_on};
 use whiskmap::shooting::{First, FirstAndEnergy, Nystrom8, Resolution, Second};
 use whiskmap::store::{Description, Error, MapWriter, Panel, Shots};
 
@@ -29,7 +29,7 @@ const TRAJECTORIES: usize = 16_384;
 
 /// Trajectories by number of steps, and by the derivatives that they carry; one at a time and in vectors.
 fn integrators(criterion: &mut Criterion) {
-    let launches: Vec<Launch> = Range::new(USUAL, TRAJECTORIES, 6.5, 1).truth;
+    let conditions: Vec<InitialCondition> = Range::new(USUAL, TRAJECTORIES, 6.5, 1).truth;
     let mut group = criterion.benchmark_group("integrators");
     group.throughput(Throughput::Elements(TRAJECTORIES as u64));
     for resolution in Resolution::LADDER {
@@ -41,19 +41,19 @@ fn integrators(criterion: &mut Criterion) {
         group.bench_function(
             BenchmarkId::new("nystrom8, first derivatives", steps),
             |b| {
-                b.iter(|| land::<Nystrom8, First>(method, black_box(&launches)));
+                b.iter(|| shoot::<Nystrom8, First>(method, black_box(&conditions)));
             },
         );
     }
     let fine = Method::fine(USUAL);
     group.bench_function("nystrom8, first derivatives and energy", |b| {
-        b.iter(|| land::<Nystrom8, FirstAndEnergy>(fine, black_box(&launches)));
+        b.iter(|| shoot::<Nystrom8, FirstAndEnergy>(fine, black_box(&conditions)));
     });
     group.bench_function("nystrom8, second derivatives", |b| {
-        b.iter(|| land::<Nystrom8, Second>(fine, black_box(&launches)));
+        b.iter(|| shoot::<Nystrom8, Second>(fine, black_box(&conditions)));
     });
     group.bench_function("nystrom8, first derivatives, scalar", |b| {
-        b.iter(|| land_on::<Nystrom8, First>(Unit::scalar(), fine, black_box(&launches)));
+        b.iter(|| shoot_on::<Nystrom8, First>(Unit::scalar(), fine, black_box(&conditions)));
     });
     group.finish();
 }

@@ -24,8 +24,8 @@ use whiskmap::numerics::Unit;
 use whiskmap::plan::Plan;
 use whiskmap::rod::{Effects, Rod, Side, arclength};
 use whiskmap::scene::Scene;
-use whiskmap::shooting::batch::{Launch, Method, land_on};
-use whiskmap::shooting::{First, Landing, Nystrom8, Resolution};
+use whiskmap::shooting::batch::{InitialCondition, Method, shoot_on};
+use whiskmap::shooting::{First, Nystrom8, Resolution, ShootingMap};
 use whiskmap::store;
 use whiskmap::trace::curve_at;
 
@@ -38,10 +38,10 @@ fn main() {
         let place = arguments.iter().position(|argument| argument == name);
         place.and_then(|place| arguments.get(place + 1))
     };
-    let launches = ensemble();
-    let exact = land(Unit::detect(), Resolution::of(128), &launches);
+    let conditions = ensemble();
+    let exact = shoot(Unit::detect(), Resolution::of(128), &conditions);
     if let Some(path) = value("--ensemble") {
-        std::fs::write(path, table(&launches, &exact)).unwrap();
+        std::fs::write(path, table(&conditions, &exact)).unwrap();
     }
     let threads = std::thread::available_parallelism()
         .map_or(1, usize::from)
@@ -54,7 +54,7 @@ fn main() {
         "machine": processor(),
         "unit": Unit::detect().to_string(),
         "threads": threads,
-        "trajectories": trajectories(&one, &two, &launches, &exact),
+        "trajectories": trajectories(&one, &two, &conditions, &exact),
         "detachment": detachment(&one),
         "cell": cell(&one),
     });
@@ -78,7 +78,7 @@ fn processor() -> String {
 
 /// Taper up to 0.95, contacts from 0.05 of the length to next to the tip, `q` up to 9; half of them straight, then half with
 /// `A*` of 0.4.
-fn ensemble() -> Vec<Launch> {
+fn ensemble() -> Vec<InitialCondition> {
     let mut random = Random(1);
     (0..TRAJECTORIES)
         .map(|i| {
@@ -90,45 +90,45 @@ fn ensemble() -> Vec<Launch> {
             let s = random.between(0.05, 0.999);
             let load = random.between(0.0, 9.0) / (s * s);
             let tau = rod.tau(s);
-            Launch { rod, tau, load }
+            InitialCondition { rod, tau, load }
         })
         .collect()
 }
 
 /// Straight rods and curved ones each with the effects that they call for, as two scenes would.
-fn land(unit: Unit, resolution: Resolution, launches: &[Launch]) -> Vec<Landing> {
-    let scenes = launches.chunk_by(|a, b| a.rod.bend == b.rod.bend);
-    let landed = scenes.flat_map(|launches| {
+fn shoot(unit: Unit, resolution: Resolution, conditions: &[InitialCondition]) -> Vec<ShootingMap> {
+    let scenes = conditions.chunk_by(|a, b| a.rod.bend == b.rod.bend);
+    let shot = scenes.flat_map(|conditions| {
         let method = Method {
-            effects: Effects::of(launches.iter().map(|launch| &launch.rod)),
+            effects: Effects::of(conditions.iter().map(|condition| &condition.rod)),
             resolution,
         };
-        land_on::<Nystrom8, First>(unit, method, launches)
+        shoot_on::<Nystrom8, First>(unit, method, conditions)
     });
-    landed.collect()
+    shot.collect()
 }
 
 /// Place of the pole, and the derivatives of the logarithm of its distance and of its direction by the contact's arclength
 /// at a fixed force, and by the force.
-fn observables(launch: &Launch, landing: &Landing) -> [f64; 6] {
-    let Launch { rod, tau, load } = launch;
+fn observables(condition: &InitialCondition, map: &ShootingMap) -> [f64; 6] {
+    let InitialCondition { rod, tau, load } = condition;
     let rho = rod.radius(*tau);
-    let by_f = landing.by_load / (rho * rho);
-    let by_s = (landing.by_tau + 2.0 * rod.taper * load * rho * rho * by_f) / rho;
-    let pole = landing.pole;
+    let by_f = map.by_load / (rho * rho);
+    let by_s = (map.by_tau + 2.0 * rod.taper * load * rho * rho * by_f) / rho;
+    let pole = map.pole;
     [pole.x, pole.y, by_s.x, by_s.y, by_f.x, by_f.y]
 }
 
 /// The ensemble as CSV.
-fn table(launches: &[Launch], exact: &[Landing]) -> String {
+fn table(conditions: &[InitialCondition], exact: &[ShootingMap]) -> String {
     let mut text =
         String::from("taper,bend,arclength,force,x,y,ln_d_by_s,phi_by_s,ln_d_by_f,phi_by_f\n");
-    for (launch, landing) in launches.iter().zip(exact) {
-        let Launch { rod, tau, load } = launch;
+    for (condition, map) in conditions.iter().zip(exact) {
+        let InitialCondition { rod, tau, load } = condition;
         let rho = rod.radius(*tau);
         let (s, force) = (arclength(rod, *tau), load * rho * rho);
         let _ = write!(text, "{},{},{s},{force}", rod.taper, rod.bend);
-        for number in observables(launch, landing) {
+        for number in observables(condition, map) {
             let _ = write!(text, ",{number}");
         }
         text.push('\n');
@@ -137,12 +137,12 @@ fn table(launches: &[Launch], exact: &[Landing]) -> String {
 }
 
 /// The largest difference of the observables, each by its own size.
-fn error(launch: &Launch, found: &Landing, exact: &Landing) -> f64 {
-    let rho = launch.rod.radius(launch.tau);
-    let s = arclength(&launch.rod, launch.tau);
+fn error(condition: &InitialCondition, found: &ShootingMap, exact: &ShootingMap) -> f64 {
+    let rho = condition.rod.radius(condition.tau);
+    let s = arclength(&condition.rod, condition.tau);
     let by_force = rho * rho / (s * s);
     let sizes = [1.0 / s, 1.0 / s, s, s, by_force, by_force];
-    let (found, exact) = (observables(launch, found), observables(launch, exact));
+    let (found, exact) = (observables(condition, found), observables(condition, exact));
     (0..6).fold(0.0, |worst, i| {
         f64::max(worst, sizes[i] * (found[i] - exact[i]).abs())
     })
@@ -161,8 +161,8 @@ fn seconds(pool: &ThreadPool, mut work: impl FnMut() + Send) -> f64 {
 fn trajectories(
     one: &ThreadPool,
     two: &ThreadPool,
-    launches: &[Launch],
-    exact: &[Landing],
+    conditions: &[InitialCondition],
+    exact: &[ShootingMap],
 ) -> Vec<Value> {
     let vectors = Unit::detect();
     let kernels = [
@@ -175,18 +175,18 @@ fn trajectories(
         for least in [3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 14, 16, 18, 20, 24, 30] {
             let resolution = Resolution::of(least);
             let seconds = seconds(pool, || {
-                std::hint::black_box(land(unit, resolution, launches));
+                std::hint::black_box(shoot(unit, resolution, conditions));
             });
-            let found = land(unit, resolution, launches);
-            let mut errors: Vec<f64> = (0..launches.len())
-                .map(|i| error(&launches[i], &found[i], &exact[i]))
+            let found = shoot(unit, resolution, conditions);
+            let mut errors: Vec<f64> = (0..conditions.len())
+                .map(|i| error(&conditions[i], &found[i], &exact[i]))
                 .collect();
             errors.sort_by(f64::total_cmp);
             rows.push(json!({
                 "kernel": kernel,
                 "threads": pool.current_num_threads(),
                 "steps": least,
-                "microseconds": 1e6 * seconds / launches.len() as f64,
+                "microseconds": 1e6 * seconds / conditions.len() as f64,
                 "error_max": errors[errors.len() - 1],
                 "error_99": errors[errors.len() * 99 / 100],
             }));

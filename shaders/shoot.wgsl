@@ -26,8 +26,8 @@ fn solve(rod: Rod, shot: Shot) -> Hit {
     var hit = Hit(shot.tau, shot.load, 0.0, 0u, STALLED);
     for (var round = 0u; round <= MOST_STEPS; round++) {
         let start = start_at(rod, hit.tau, hit.load);
-        let landing = land(rod, hit.tau, start, shot.steps);
-        hit.residual = length(landing.pole - wanted);
+        let map = shoot_once(rod, hit.tau, start, shot.steps);
+        hit.residual = length(map.pole - wanted);
         if !is_finite(hit.residual) {
             hit.outcome = NOT_FINITE;
             break;
@@ -36,7 +36,7 @@ fn solve(rod: Rod, shot: Shot) -> Hit {
             hit.outcome = CONVERGED;
         }
         if round < MOST_STEPS {
-            let step = newton_step(landing, wanted, start.arclength, hit.load);
+            let step = newton_step(map, wanted, start.arclength, hit.load);
             hit.tau += step.x;
             hit.load += step.y;
             hit.steps += 1u;

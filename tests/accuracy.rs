@@ -11,7 +11,7 @@ use whiskmap::refine::states;
 use whiskmap::rod::{Effects, Side};
 use whiskmap::scene::{Scene, Whisker};
 use whiskmap::sheet::Sheet;
-use whiskmap::shooting::batch::{Launch, Method, land};
+use whiskmap::shooting::batch::{InitialCondition, Method, shoot};
 use whiskmap::shooting::{First, Nystrom8, Resolution};
 use whiskmap::trace::curve_at;
 
@@ -72,21 +72,21 @@ fn cells(scene: &Scene, whisker: &Whisker, side: Side, resolution: Resolution) -
     let distances = &scene.grid.distance_mm;
     let distances: Vec<f64> = distances.iter().map(|d| d / whisker.length_mm).collect();
     let sheet = Sheet::new(method, &rod, side, &distances).unwrap();
-    let (launches, poles): (Vec<Launch>, Vec<_>) =
+    let (conditions, poles): (Vec<InitialCondition>, Vec<_>) =
         states(method, &sheet, &scene.grid.push_angle_deg)
             .into_iter()
             .map(|(shot, state)| {
                 let (tau, load) = (state.tau, state.load);
-                (Launch { rod, tau, load }, shot.pole)
+                (InitialCondition { rod, tau, load }, shot.pole)
             })
             .unzip();
     let exact = Method {
         effects,
         resolution: EXACT,
     };
-    let landed = land::<Nystrom8, First>(exact, &launches);
-    let missed = landed.iter().zip(poles);
-    let missed = missed.map(|(landing, pole)| landing.residual(pole).length().to_degrees());
+    let shot = shoot::<Nystrom8, First>(exact, &conditions);
+    let missed = shot.iter().zip(poles);
+    let missed = missed.map(|(map, pole)| map.residual(pole).length().to_degrees());
     missed.fold(0.0, f64::max)
 }
 

@@ -3,14 +3,14 @@
 
 use glam::DVec2;
 use whiskmap::rod::{Effects, RadiusProfile, Rod, arclength};
-use whiskmap::shooting::batch::{Launch, Method, land};
-use whiskmap::shooting::{First, FirstAndEnergy, Landing, Nystrom8, Resolution, Second};
+use whiskmap::shooting::batch::{InitialCondition, Method, shoot};
+use whiskmap::shooting::{First, FirstAndEnergy, Nystrom8, Resolution, Second, ShootingMap};
 
 #[allow(dead_code, reason = "the engines' tests use the rest")]
 #[path = "gpu_engine/shots.rs"]
 mod shots;
 
-use shots::{ROWS, Random, launch, rod};
+use shots::{ROWS, Random, condition, rod};
 
 fn with(effects: Effects, resolution: Resolution) -> Method {
     Method {
@@ -19,17 +19,17 @@ fn with(effects: Effects, resolution: Resolution) -> Method {
     }
 }
 
-fn launches(effects: Effects, count: usize) -> Vec<Launch> {
+fn conditions(effects: Effects, count: usize) -> Vec<InitialCondition> {
     let mut random = Random(21);
     (0..count)
-        .map(|_| launch(rod(effects, &mut random), 6.5, &mut random))
+        .map(|_| condition(rod(effects, &mut random), 6.5, &mut random))
         .collect()
 }
 
 /// The pole as the base sees it, by the classical Runge-Kutta method on the equations as they are usually written: by
 /// arclength, from the contact to the base, with angles. Steps end at the rows of the profile.
-fn plainly(launch: &Launch, steps: u32) -> DVec2 {
-    let Launch { rod, tau, load } = launch;
+fn plainly(condition: &InitialCondition, steps: u32) -> DVec2 {
+    let InitialCondition { rod, tau, load } = condition;
     let force = load * rod.radius(*tau).powi(2);
     let at_rest = |s: f64| match rod.spiral {
         Some([k0, k1]) => k0 + k1 * s,
@@ -71,40 +71,39 @@ fn plainly(launch: &Launch, steps: u32) -> DVec2 {
 #[test]
 fn the_pole_is_where_plain_equations_see_it() {
     for effects in Effects::all().filter(|e| e.profile && !e.curvature) {
-        let launches = launches(effects, 100);
-        let landings = land::<Nystrom8, First>(with(effects, Resolution::FINE), &launches);
-        for (launch, landing) in launches.iter().zip(landings) {
-            let apart = plainly(launch, 2000).distance(landing.pole);
-            assert!(apart < 1e-10, "{apart:e} {launch:?}");
+        let conditions = conditions(effects, 100);
+        let maps = shoot::<Nystrom8, First>(with(effects, Resolution::FINE), &conditions);
+        for (condition, map) in conditions.iter().zip(maps) {
+            let apart = plainly(condition, 2000).distance(map.pole);
+            assert!(apart < 1e-10, "{apart:e} {condition:?}");
         }
     }
 }
 
-/// Central differences of the landing; with steps of 1e-5 they are right to 1e-8 relative or so.
+/// Central differences of the map; with steps of 1e-5 they are right to 1e-8 relative or so.
 #[test]
 fn derivatives_agree_with_differences_in_every_set() {
     const STEP: f64 = 1e-5;
     for effects in Effects::all() {
         let method = with(effects, Resolution::FINE);
-        for launch in launches(effects, 40) {
-            let scale = [launch.tau, launch.load.abs() + 1.0 / launch.tau.powi(2)];
+        for condition in conditions(effects, 40) {
+            let scale = [
+                condition.tau,
+                condition.load.abs() + 1.0 / condition.tau.powi(2),
+            ];
             let moved = |axis: usize, sign: f64| {
-                let mut moved = launch;
+                let mut moved = condition;
                 [&mut moved.tau, &mut moved.load]
                     .into_iter()
                     .nth(axis)
                     .map(|value| *value += sign * STEP * scale[axis])
                     .unwrap();
-                land::<Nystrom8, First>(method, &[moved])[0]
+                shoot::<Nystrom8, First>(method, &[moved])[0]
             };
-            let here = land::<Nystrom8, Second>(method, &[launch])[0];
+            let here = shoot::<Nystrom8, Second>(method, &[condition])[0];
             for (axis, first, second) in [
-                (0, here.landing.by_tau, [here.by_tau_tau, here.by_tau_load]),
-                (
-                    1,
-                    here.landing.by_load,
-                    [here.by_tau_load, here.by_load_load],
-                ),
+                (0, here.map.by_tau, [here.by_tau_tau, here.by_tau_load]),
+                (1, here.map.by_load, [here.by_tau_load, here.by_load_load]),
             ] {
                 let (after, before) = (moved(axis, 1.0), moved(axis, -1.0));
                 let width = 2.0 * STEP * scale[axis];
@@ -115,7 +114,7 @@ fn derivatives_agree_with_differences_in_every_set() {
                 );
                 let close = |a: DVec2, b: DVec2, unit: f64| a.distance(b) * unit < 1e-6;
                 let size = scale[axis] / (1.0 + first.length() * scale[axis]);
-                assert!(close(ln / width, first, size), "{effects:?} {launch:?}");
+                assert!(close(ln / width, first, size), "{effects:?} {condition:?}");
                 let by = [
                     (after.by_tau, before.by_tau),
                     (after.by_load, before.by_load),
@@ -126,7 +125,7 @@ fn derivatives_agree_with_differences_in_every_set() {
                     let found = (after - before) / width;
                     assert!(
                         close(found, second, size),
-                        "{effects:?} {axis} {other} {launch:?}"
+                        "{effects:?} {axis} {other} {condition:?}"
                     );
                 }
             }
@@ -134,16 +133,16 @@ fn derivatives_agree_with_differences_in_every_set() {
     }
 }
 
-fn farthest(one: Effects, other: Effects, pairs: &[(Launch, Launch)]) -> f64 {
-    let ends = |effects: Effects, launches: Vec<Launch>| {
-        land::<Nystrom8, FirstAndEnergy>(with(effects, Resolution::FINE), &launches)
+fn farthest(one: Effects, other: Effects, pairs: &[(InitialCondition, InitialCondition)]) -> f64 {
+    let ends = |effects: Effects, conditions: Vec<InitialCondition>| {
+        shoot::<Nystrom8, FirstAndEnergy>(with(effects, Resolution::FINE), &conditions)
     };
     let ones = ends(one, pairs.iter().map(|pair| pair.0).collect());
     let others = ends(other, pairs.iter().map(|pair| pair.1).collect());
     let apart = ones.iter().zip(&others).map(|(one, other)| {
         let (one, other) = (one.full, other.full);
         let energy = (one.energy - other.energy).abs() / (1.0 + one.energy);
-        one.landing.pole.distance(other.landing.pole) + energy
+        one.map.pole.distance(other.map.pole) + energy
     });
     apart.fold(0.0, f64::max)
 }
@@ -156,17 +155,17 @@ fn neutral_values_are_absence() {
         taper: true,
         ..Effects::default()
     };
-    let usual = launches(tapered, 200);
+    let usual = conditions(tapered, 200);
     let spiral = Effects {
         spiral: true,
         ..tapered
     };
-    let unbent: Vec<(Launch, Launch)> = usual
+    let unbent: Vec<(InitialCondition, InitialCondition)> = usual
         .iter()
-        .map(|launch| {
-            let mut straight = *launch;
+        .map(|condition| {
+            let mut straight = *condition;
             straight.rod.spiral = Some([0.0, 0.0]);
-            (*launch, straight)
+            (*condition, straight)
         })
         .collect();
     assert!(farthest(tapered, spiral, &unbent) < 1e-14);
@@ -175,13 +174,13 @@ fn neutral_values_are_absence() {
         profile: true,
         ..tapered
     };
-    let measured: Vec<(Launch, Launch)> = usual
+    let measured: Vec<(InitialCondition, InitialCondition)> = usual
         .iter()
-        .map(|launch| {
-            let mut cone = *launch;
+        .map(|condition| {
+            let mut cone = *condition;
             let rows = [0.0, 0.1, 0.4, 0.75, 1.0].map(|s| [s, 1.0 - cone.rod.taper * s]);
             cone.rod.profile = Some(RadiusProfile::of(&rows, 1.0));
-            (*launch, cone)
+            (*condition, cone)
         })
         .collect();
     let apart = farthest(tapered, profile, &measured);
@@ -202,10 +201,10 @@ fn a_faint_parabola_is_a_circular_arc_to_third_order() {
         ..bent
     };
     let apart = |bend: f64| {
-        let pairs: Vec<(Launch, Launch)> = launches(bent, 100)
+        let pairs: Vec<(InitialCondition, InitialCondition)> = conditions(bent, 100)
             .iter()
-            .map(|launch| {
-                let (mut parabola, mut circle) = (*launch, *launch);
+            .map(|condition| {
+                let (mut parabola, mut circle) = (*condition, *condition);
                 (parabola.rod.bend, parabola.rod.slope) = (bend, 0.0);
                 (circle.rod.bend, circle.rod.slope) = (0.0, 0.0);
                 circle.rod.spiral = Some([2.0 * bend, 0.0]);
@@ -222,17 +221,19 @@ fn a_faint_parabola_is_a_circular_arc_to_third_order() {
 #[test]
 fn rows_do_not_cost_the_order() {
     for effects in Effects::all().filter(|effects| effects.profile) {
-        let mut launches = launches(effects, 400);
+        let mut conditions = conditions(effects, 400);
         // On the last piece, with all rows behind.
-        launches.retain(|launch| arclength(&launch.rod, launch.tau) > ROWS[ROWS.len() - 2][0]);
+        conditions
+            .retain(|condition| arclength(&condition.rod, condition.tau) > ROWS[ROWS.len() - 2][0]);
         let at = |longest: f64| Resolution { least: 0, longest };
-        let poles = |longest: f64| land::<Nystrom8, First>(with(effects, at(longest)), &launches);
+        let poles =
+            |longest: f64| shoot::<Nystrom8, First>(with(effects, at(longest)), &conditions);
         let [rough, half, exact] = [0.4, 0.2, 0.01].map(poles);
-        let error = |found: &[Landing], i: usize| found[i].pole.distance(exact[i].pole);
-        let worst = (0..launches.len())
+        let error = |found: &[ShootingMap], i: usize| found[i].pole.distance(exact[i].pole);
+        let worst = (0..conditions.len())
             .max_by(|&i, &j| error(&rough, i).total_cmp(&error(&rough, j)))
             .unwrap();
-        let Launch { rod, tau, load } = &launches[worst];
+        let InitialCondition { rod, tau, load } = &conditions[worst];
         let steps = |longest| f64::from(at(longest).steps(rod, *tau, *load));
         let order =
             (error(&rough, worst) / error(&half, worst)).ln() / (steps(0.2) / steps(0.4)).ln();
@@ -263,12 +264,13 @@ fn many_rows_are_fine_at_every_contact() {
     for s in [0.002, 0.004, 0.0075, 0.03, 0.3, 0.9, 0.999] {
         for q in [1.0, 6.0, 12.0] {
             let pole = |rod: Rod, resolution: Resolution| {
-                let launch = Launch {
+                let condition = InitialCondition {
                     rod,
                     tau: cone.tau(s),
                     load: q / (s * s),
                 };
-                land::<Nystrom8, First>(with(Effects::of([&rod]), resolution), &[launch])[0].pole
+                shoot::<Nystrom8, First>(with(Effects::of([&rod]), resolution), &[condition])[0]
+                    .pole
             };
             let apart =
                 pole(cone, Resolution::FINE.doubled()).distance(pole(measured, Resolution::FINE));

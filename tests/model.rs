@@ -6,10 +6,10 @@ use num_dual::{DualNum, HyperDual64, second_partial_derivative};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 use whiskmap::numerics::Real;
 use whiskmap::rod::{Effects, Rod};
-use whiskmap::shooting::batch::{Launch, Method, land};
+use whiskmap::shooting::batch::{InitialCondition, Method, shoot};
 use whiskmap::shooting::{
-    Curved, Even, First, Graded, Integrator, Landing, Nystrom8, Planar, Resolution, Rk4, RodSystem,
-    Scales, Second, Section, Shape, Straight, integrate,
+    Even, First, Graded, Integrator, Nystrom8, Planar, Resolution, Rk4, RodSystem, Scales, Second,
+    SecondVariation, Section, Shape, ShootingMap, Straight, integrate,
 };
 
 const EFFECTS: Effects = Effects {
@@ -30,8 +30,8 @@ fn steps(least: u32) -> Method {
     }
 }
 
-fn rods() -> Vec<Launch> {
-    let mut launches = Vec::new();
+fn rods() -> Vec<InitialCondition> {
+    let mut conditions = Vec::new();
     for taper in [0.0, 0.3, 0.95, 0.99] {
         for bend in [0.0, 0.4, 0.8] {
             for (pole, load) in [(0.0125, 5.0), (-0.0125, -5.0)] {
@@ -44,7 +44,7 @@ fn rods() -> Vec<Launch> {
                     friction: 10.0 * pole,
                     ..Rod::default()
                 };
-                launches.push(Launch {
+                conditions.push(InitialCondition {
                     rod,
                     tau: rod.tau(0.9),
                     load,
@@ -52,7 +52,7 @@ fn rods() -> Vec<Launch> {
             }
         }
     }
-    launches
+    conditions
 }
 
 /// What is carried beside a shape.
@@ -98,14 +98,14 @@ fn integrators_have_their_order() {
 /// is left out of the rest shape's series falls faster, in more of them there is little but rounding.)
 #[test]
 fn batches_have_the_order() {
-    let launches = rods();
-    let poles = |least: u32| land::<Nystrom8, First>(steps(least), &launches);
+    let conditions = rods();
+    let poles = |least: u32| shoot::<Nystrom8, First>(steps(least), &conditions);
     let [rough, half, exact] = [10, 20, 128].map(poles);
-    let error = |found: &[Landing], i: usize| found[i].pole.distance(exact[i].pole);
-    let worst = (0..launches.len())
+    let error = |found: &[ShootingMap], i: usize| found[i].pole.distance(exact[i].pole);
+    let worst = (0..conditions.len())
         .max_by(|&i, &j| error(&rough, i).total_cmp(&error(&rough, j)))
         .unwrap();
-    let Launch { rod, tau, load } = &launches[worst];
+    let InitialCondition { rod, tau, load } = &conditions[worst];
     let taken = |least| f64::from(steps(least).resolution.steps(rod, *tau, *load));
     let order = (error(&rough, worst) / error(&half, worst)).ln() / (taken(20) / taken(10)).ln();
     assert!((7.3..9.0).contains(&order), "{order}");
@@ -118,8 +118,8 @@ fn the_fine_resolution_is_exact() {
         resolution: whiskmap::shooting::Resolution::FINE,
         ..steps(1)
     };
-    let exact = land::<Nystrom8, First>(steps(512), &rods());
-    for (a, b) in exact.iter().zip(land::<Nystrom8, First>(fine, &rods())) {
+    let exact = shoot::<Nystrom8, First>(steps(512), &rods());
+    for (a, b) in exact.iter().zip(shoot::<Nystrom8, First>(fine, &rods())) {
         assert!(a.pole.distance(b.pole) < 1e-11, "{} {}", a.pole, b.pole);
     }
 }
@@ -214,7 +214,7 @@ fn sensitivities_agree_with_num_dual() {
                 effects: Effects::of([&rod]),
                 ..steps(128)
             };
-            let hand = land::<Nystrom8, Second>(method, &[Launch { rod, tau, load }])[0];
+            let hand = shoot::<Nystrom8, Second>(method, &[InitialCondition { rod, tau, load }])[0];
             for (i, (name, pick)) in PICKS.iter().enumerate() {
                 for axis in 0..2 {
                     let dual = second(&rod, tau, load, axis, i);
@@ -230,11 +230,11 @@ fn sensitivities_agree_with_num_dual() {
     }
 }
 
-type Pick = fn(&Curved) -> DVec2;
+type Pick = fn(&SecondVariation) -> DVec2;
 
 const PICKS: [(&str, Pick); 5] = [
-    ("by_tau", |c| c.landing.by_tau),
-    ("by_load", |c| c.landing.by_load),
+    ("by_tau", |c| c.map.by_tau),
+    ("by_load", |c| c.map.by_load),
     ("by_tau_load", |c| c.by_tau_load),
     ("by_tau_tau", |c| c.by_tau_tau),
     ("by_load_load", |c| c.by_load_load),
@@ -255,42 +255,34 @@ fn second(rod: &Rod, tau: f64, load: f64, axis: usize, which: usize) -> f64 {
     }
 }
 
-/// Curved rods: derivatives against central differences of one order less (measured: 3e-9 relative).
+/// SecondVariation rods: derivatives against central differences of one order less (measured: 3e-9 relative).
 #[test]
 fn sensitivities_of_curved_rods_agree_with_differences() {
-    for launch in rods().iter().filter(|launch| launch.rod.bend > 0.0) {
+    for condition in rods().iter().filter(|condition| condition.rod.bend > 0.0) {
         let at = |tau: f64, load: f64| {
-            land::<Nystrom8, Second>(
+            shoot::<Nystrom8, Second>(
                 steps(128),
-                &[Launch {
-                    rod: launch.rod,
+                &[InitialCondition {
+                    rod: condition.rod,
                     tau,
                     load,
                 }],
             )[0]
         };
-        let (tau, load) = (launch.tau, launch.load);
+        let (tau, load) = (condition.tau, condition.load);
         let h = 1e-4;
         let here = at(tau, load);
-        let difference = |pick: fn(&Landing) -> DVec2, dt: f64, dl: f64| {
-            let f = |k: f64| pick(&at(tau + k * dt, load + k * dl).landing);
+        let difference = |pick: fn(&ShootingMap) -> DVec2, dt: f64, dl: f64| {
+            let f = |k: f64| pick(&at(tau + k * dt, load + k * dl).map);
             (8.0 * (f(1.0) - f(-1.0)) - (f(2.0) - f(-2.0))) / 12.0
         };
-        let by_tau: fn(&Landing) -> DVec2 = |l| l.by_tau;
-        let by_load: fn(&Landing) -> DVec2 = |l| l.by_load;
-        let ln_pole: fn(&Landing) -> DVec2 =
+        let by_tau: fn(&ShootingMap) -> DVec2 = |l| l.by_tau;
+        let by_load: fn(&ShootingMap) -> DVec2 = |l| l.by_load;
+        let ln_pole: fn(&ShootingMap) -> DVec2 =
             |l| DVec2::new(l.pole.length().ln(), l.pole.to_angle());
         for (name, exact, numeric) in [
-            (
-                "by_tau",
-                here.landing.by_tau,
-                difference(ln_pole, h, 0.0) / h,
-            ),
-            (
-                "by_load",
-                here.landing.by_load,
-                difference(ln_pole, 0.0, h) / h,
-            ),
+            ("by_tau", here.map.by_tau, difference(ln_pole, h, 0.0) / h),
+            ("by_load", here.map.by_load, difference(ln_pole, 0.0, h) / h),
             (
                 "by_tau_tau",
                 here.by_tau_tau,
@@ -310,7 +302,7 @@ fn sensitivities_of_curved_rods_agree_with_differences() {
             let miss = exact.distance(numeric) / exact.length();
             assert!(
                 miss < 1e-5,
-                "{name} of {launch:?}: {exact}, differences {numeric}"
+                "{name} of {condition:?}: {exact}, differences {numeric}"
             );
         }
     }

@@ -15,39 +15,39 @@ use whiskmap::refine::{TOLERANCE, states};
 use whiskmap::rod::{Effects, Rod, Side, arclength};
 use whiskmap::scene::Scene;
 use whiskmap::sheet::Sheet;
-use whiskmap::shooting::batch::{Launch, Method, land};
+use whiskmap::shooting::batch::{InitialCondition, Method, shoot};
 use whiskmap::shooting::{
-    Change, First, FirstAndEnergy, Full, Moving, Nystrom8, Resolution, Second,
+    First, FirstAndEnergy, FirstVariation, FullState, Nystrom8, Resolution, Second, StateDerivative,
 };
 
 /// Random states on random rods with these effects, those of the engines' tests.
-fn launches(effects: Effects) -> Vec<Launch> {
+fn conditions(effects: Effects) -> Vec<InitialCondition> {
     Range::new(effects, 40, 6.0, 7).truth
 }
 
 /// `(tau, load)` over which a state changes by about as much as it is.
-fn scale(launch: &Launch) -> DVec2 {
-    let s = arclength(&launch.rod, launch.tau);
-    DVec2::new(s, launch.load.abs() + 1.0 / (s * s))
+fn scale(condition: &InitialCondition) -> DVec2 {
+    let s = arclength(&condition.rod, condition.tau);
+    DVec2::new(s, condition.load.abs() + 1.0 / (s * s))
 }
 
-fn moved(launch: &Launch, step: DVec2) -> Launch {
-    Launch {
-        tau: launch.tau + step.x,
-        load: launch.load + step.y,
-        ..*launch
+fn moved(condition: &InitialCondition, step: DVec2) -> InitialCondition {
+    InitialCondition {
+        tau: condition.tau + step.x,
+        load: condition.load + step.y,
+        ..*condition
     }
 }
 
 /// Angle of the tangent (from that of `near`), place, force and energy.
-fn numbers(full: &Full, near: &Full) -> [f64; 5] {
+fn numbers(full: &FullState, near: &FullState) -> [f64; 5] {
     let angle = near.base.tangent.perp_dot(full.base.tangent);
     let place = full.base.position;
     [angle, place.x, place.y, full.base.force, full.energy]
 }
 
-fn listed(change: &Change) -> [f64; 5] {
-    let Change {
+fn listed(change: &StateDerivative) -> [f64; 5] {
+    let StateDerivative {
         angle,
         position,
         force,
@@ -56,23 +56,25 @@ fn listed(change: &Change) -> [f64; 5] {
     [angle, position.x, position.y, force, energy]
 }
 
-/// Every [`Change`] is the derivative of what it names, for every set of effects and on both sides of what a kernel
+/// Every [`StateDerivative`] is the derivative of what it names, for every set of effects and on both sides of what a kernel
 /// carries; central differences leave 3.2e-8 (measured) of it.
 #[test]
 fn a_state_changes_as_it_says() {
     let mut worst = 0.0_f64;
     for effects in Effects::all() {
         let method = Method::fine(effects);
-        let launches = launches(effects);
-        let here: Vec<Moving> = land::<Nystrom8, FirstAndEnergy>(method, &launches);
+        let conditions = conditions(effects);
+        let here: Vec<FirstVariation> = shoot::<Nystrom8, FirstAndEnergy>(method, &conditions);
         for axis in [DVec2::X, DVec2::Y] {
-            let step = |launch: &Launch| 1e-4 * axis * scale(launch);
+            let step = |condition: &InitialCondition| 1e-4 * axis * scale(condition);
             let [before, after] = [-1.0, 1.0].map(|sign| {
-                let there: Vec<Launch> =
-                    launches.iter().map(|l| moved(l, sign * step(l))).collect();
-                land::<Nystrom8, FirstAndEnergy>(method, &there)
+                let there: Vec<InitialCondition> = conditions
+                    .iter()
+                    .map(|l| moved(l, sign * step(l)))
+                    .collect();
+                shoot::<Nystrom8, FirstAndEnergy>(method, &there)
             });
-            for (i, launch) in launches.iter().enumerate() {
+            for (i, condition) in conditions.iter().enumerate() {
                 let by = if axis == DVec2::X {
                     here[i].by_tau
                 } else {
@@ -80,14 +82,17 @@ fn a_state_changes_as_it_says() {
                 };
                 let full = &here[i].full;
                 let [low, high] = [&before[i], &after[i]].map(|m| numbers(&m.full, full));
-                let width = scale(launch).dot(axis);
+                let width = scale(condition).dot(axis);
                 let sizes = numbers(full, full);
                 for (k, change) in listed(&by).into_iter().enumerate() {
                     let difference = (high[k] - low[k]) / 2e-4;
                     let size = 1.0 + sizes[k].abs() + difference.abs();
                     let apart = (width * change - difference).abs() / size;
                     worst = worst.max(apart);
-                    assert!(apart < 3e-7, "{effects:?} {axis} {k} {launch:?}: {apart:e}");
+                    assert!(
+                        apart < 3e-7,
+                        "{effects:?} {axis} {k} {condition:?}: {apart:e}"
+                    );
                 }
             }
         }
@@ -95,20 +100,20 @@ fn a_state_changes_as_it_says() {
     eprintln!("worst {worst:.1e}");
 }
 
-/// A landing with second derivatives, moved, is the landing there: the pole to third order, the first derivatives to second.
+/// A map with second derivatives, moved, is the map there: the pole to third order, the first derivatives to second.
 #[test]
-fn a_landing_moves_as_it_says() {
+fn taylor_extrapolation_is_of_second_order() {
     let mut worst = [0.0_f64; 2];
     for effects in Effects::all() {
         let method = Method::fine(effects);
-        let launches = launches(effects);
-        let here = land::<Nystrom8, Second>(method, &launches);
-        let step = |launch: &Launch| 1e-4 * DVec2::new(0.6, -0.8) * scale(launch);
-        let there: Vec<Launch> = launches.iter().map(|l| moved(l, step(l))).collect();
-        let there = land::<Nystrom8, First>(method, &there);
-        for ((launch, here), there) in launches.iter().zip(&here).zip(&there) {
-            let found = here.moved(step(launch)).landing;
-            let size = scale(launch);
+        let conditions = conditions(effects);
+        let here = shoot::<Nystrom8, Second>(method, &conditions);
+        let step = |condition: &InitialCondition| 1e-4 * DVec2::new(0.6, -0.8) * scale(condition);
+        let there: Vec<InitialCondition> = conditions.iter().map(|l| moved(l, step(l))).collect();
+        let there = shoot::<Nystrom8, First>(method, &there);
+        for ((condition, here), there) in conditions.iter().zip(&here).zip(&there) {
+            let found = here.extrapolated(step(condition)).map;
+            let size = scale(condition);
             let reach = there.pole.length() + size.x;
             let turned = (found.by_tau - there.by_tau).length() * size.x
                 + (found.by_load - there.by_load).length() * size.y;
@@ -149,17 +154,17 @@ fn residuals_are_bounds() {
                 let sheet = Sheet::new(method, &rod, side, &distances).unwrap();
                 let found = states(method, &sheet, &scene.grid.push_angle_deg);
                 assert!(!found.is_empty());
-                let launches: Vec<Launch> = found
+                let conditions: Vec<InitialCondition> = found
                     .iter()
-                    .map(|(_, state)| Launch {
+                    .map(|(_, state)| InitialCondition {
                         rod,
                         tau: state.tau,
                         load: state.load,
                     })
                     .collect();
-                let landed = land::<Nystrom8, First>(method, &launches);
-                for ((shot, state), landing) in found.iter().zip(landed) {
-                    let residual = landing.pole.distance(shot.pole);
+                let shot = shoot::<Nystrom8, First>(method, &conditions);
+                for ((shot, state), map) in found.iter().zip(shot) {
+                    let residual = map.pole.distance(shot.pole);
                     assert!(
                         residual <= state.residual && state.residual <= TOLERANCE,
                         "{name} {side:?} x{least}: {residual:e}, said {:e}",
@@ -186,7 +191,7 @@ fn the_energy_is_known_toward_the_tip() {
                 effects: Effects::of([&rod]),
                 resolution,
             };
-            land::<Nystrom8, FirstAndEnergy>(method, &[Launch { rod, tau, load }])[0]
+            shoot::<Nystrom8, FirstAndEnergy>(method, &[InitialCondition { rod, tau, load }])[0]
                 .full
                 .energy
         };

@@ -5,7 +5,7 @@ use whiskmap::classify::{RowBoundary, Span};
 use whiskmap::rod::{Effects, Rest, Rod, Side, arclength};
 use whiskmap::scene::{Curvature, Pole, Whisker};
 use whiskmap::sheet::{Crossing, Edge, Sheet};
-use whiskmap::shooting::batch::{Launch, Method, land};
+use whiskmap::shooting::batch::{InitialCondition, Method, shoot};
 use whiskmap::shooting::{First, Nystrom8};
 
 /// The detachment of `whisker` at `distance_mm` from a pole: push angle in degrees, signed, and the crossing.
@@ -243,15 +243,15 @@ fn the_first_fold_is_the_first() {
                 let method = Method::fine(Effects::of([&rod]));
                 let tau = rod.tau_tip();
                 let scale = arclength(&rod, tau).powi(2);
-                let launches: Vec<Launch> = (0..6000)
-                    .map(|i| Launch {
+                let conditions: Vec<InitialCondition> = (0..6000)
+                    .map(|i| InitialCondition {
                         rod,
                         tau,
                         load: side.sign() * 0.05 * f64::from(i) / scale,
                     })
                     .collect();
-                let landed = land::<Nystrom8, First>(method, &launches);
-                let beyond = landed.iter().position(|landing| landing.det() <= 0.0);
+                let shot = shoot::<Nystrom8, First>(method, &conditions);
+                let beyond = shot.iter().position(|map| map.det() <= 0.0);
                 let fold = Sheet::fold_at_tip(method, &rod, side).unwrap();
                 let place = 20.0 * scale * fold.load.abs();
                 assert!(

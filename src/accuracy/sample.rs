@@ -4,8 +4,8 @@ use crate::refine::states;
 use crate::rod::{Effects, Side};
 use crate::scene::{Scene, Whisker};
 use crate::sheet::{Crossing, Edge, Sheet};
-use crate::shooting::batch::{Launch, Method, land};
-use crate::shooting::{First, Landing, Nystrom8, Resolution};
+use crate::shooting::batch::{InitialCondition, Method, shoot};
+use crate::shooting::{First, Nystrom8, Resolution, ShootingMap};
 use rayon::prelude::*;
 
 /// Values of an axis that take part: its ends, and some between. The ends of pushes get better with more distances, near
@@ -17,9 +17,9 @@ const WHISKERS: usize = 4;
 /// States to integrate once and again.
 pub struct Sample {
     effects: Effects,
-    states: Vec<Launch>,
+    states: Vec<InitialCondition>,
     /// Where pushes end.
-    ends: Vec<(Launch, Edge)>,
+    ends: Vec<(InitialCondition, Edge)>,
 }
 
 impl Sample {
@@ -44,11 +44,11 @@ impl Sample {
                 // Where the coarse steps find no fold, the fine ones may.
                 let sheet = Sheet::new(method, &rod, side, &distances)
                     .or_else(|| Sheet::new(Method::fine(effects), &rod, side, &distances))?;
-                let launch = |tau, load| Launch { rod, tau, load };
+                let condition = |tau, load| InitialCondition { rod, tau, load };
                 let solved = states(method, &sheet, &pushes).into_iter();
                 let crossings = sheet.crossings.iter().flatten();
-                let ends = crossings.map(|end: &Crossing| (launch(end.tau, end.load), end.edge));
-                let states = solved.map(|(_, state)| launch(state.tau, state.load));
+                let ends = crossings.map(|end: &Crossing| (condition(end.tau, end.load), end.edge));
+                let states = solved.map(|(_, state)| condition(state.tau, state.load));
                 Some((states.collect::<Vec<_>>(), ends.collect::<Vec<_>>()))
             })
             .unzip();
@@ -61,33 +61,34 @@ impl Sample {
 
     /// The largest error at `resolution`, in radians, as twice as many steps see it.
     pub fn error(&self, resolution: Resolution) -> f64 {
-        let landed = |resolution, launches: &[Launch]| {
+        let shot = |resolution, conditions: &[InitialCondition]| {
             let effects = self.effects;
             let method = Method {
                 effects,
                 resolution,
             };
-            land::<Nystrom8, First>(method, launches)
+            shoot::<Nystrom8, First>(method, conditions)
         };
-        let pairs = |launches: &[Launch]| {
-            let finer = landed(resolution.doubled(), launches);
-            landed(resolution, launches).into_iter().zip(finer)
+        let pairs = |conditions: &[InitialCondition]| {
+            let finer = shot(resolution.doubled(), conditions);
+            shot(resolution, conditions).into_iter().zip(finer)
         };
         let states = pairs(&self.states).map(|(rough, fine)| rough.residual(fine.pole).length());
-        let launches: Vec<Launch> = self.ends.iter().map(|(launch, _)| *launch).collect();
-        let ends = pairs(&launches)
+        let conditions: Vec<InitialCondition> =
+            self.ends.iter().map(|(condition, _)| *condition).collect();
+        let ends = pairs(&conditions)
             .zip(&self.ends)
-            .map(|((rough, fine), (launch, edge))| shift(&rough, &fine, launch, *edge));
+            .map(|((rough, fine), (condition, edge))| shift(&rough, &fine, condition, *edge));
         states.chain(ends).fold(0.0, worse)
     }
 }
 
 /// How far the end of a push moves along its edge, where the distance is held: the direction of the pole, less what it
 /// changes with the distance. On a fold contact and load change both in the same proportion.
-fn shift(rough: &Landing, fine: &Landing, launch: &Launch, edge: Edge) -> f64 {
+fn shift(rough: &ShootingMap, fine: &ShootingMap, condition: &InitialCondition, edge: Edge) -> f64 {
     let moved = rough.residual(fine.pole);
-    let by_contact = rough.by_tau * launch.tau;
-    let by_load = rough.by_load * launch.load;
+    let by_contact = rough.by_tau * condition.tau;
+    let by_load = rough.by_load * condition.load;
     let along = if edge == Edge::Tip || by_load.x.abs() > by_contact.x.abs() {
         by_load
     } else {

@@ -6,7 +6,7 @@ use super::{Engine, Report, Row, Rung, Stages};
 use crate::integrate::{EngineError, Hit, Solver};
 use crate::numerics::MultiplyAndAdd;
 use crate::numerics::Unit;
-use crate::shooting::batch::{Kernel, Launch, flops};
+use crate::shooting::batch::{InitialCondition, Kernel, flops};
 use crate::shooting::{First, Integrator, Nystrom8, Resolution, Rk4};
 use std::convert::Infallible;
 use std::time::Instant;
@@ -101,9 +101,9 @@ where
         Ok::<Vec<Hit>, Infallible>(hits)
     });
     let resolution = solver.resolution;
-    let work = operations(task, &hits, |launch| {
-        let steps = resolution.steps(&launch.rod, launch.tau, launch.load);
-        flops::<M, First>(task.effects, steps, launch)
+    let work = operations(task, &hits, |condition| {
+        let steps = resolution.steps(&condition.rod, condition.tau, condition.load);
+        flops::<M, First>(task.effects, steps, condition)
     });
     let points: Vec<(f64, f64)> = hits.iter().map(|hit| (hit.tau, hit.load)).collect();
     Row::new(
@@ -141,17 +141,17 @@ pub fn trajectories(hits: &[Hit]) -> f64 {
 }
 
 /// Operations of these trajectories, counted on every 64th shot.
-pub fn operations(task: &Task, hits: &[Hit], count: impl Fn(&Launch) -> u64) -> f64 {
+pub fn operations(task: &Task, hits: &[Hit], count: impl Fn(&InitialCondition) -> u64) -> f64 {
     const EVERY: usize = 64;
     let pairs = || hits.iter().zip(&task.shots).step_by(EVERY);
     let counted: f64 = pairs()
         .map(|(hit, shot)| {
-            let launch = Launch {
+            let condition = InitialCondition {
                 rod: task.rods[shot.rod as usize],
                 tau: shot.tau,
                 load: shot.load,
             };
-            count(&launch) as f64 * f64::from(hit.steps)
+            count(&condition) as f64 * f64::from(hit.steps)
         })
         .sum();
     let sampled: f64 = pairs().map(|(hit, _)| f64::from(hit.steps)).sum();

@@ -7,7 +7,7 @@ use super::{Engine, Report, Row, Rung, Stages};
 use crate::integrate::gpu::{Gpu, Precision, adapters};
 use crate::integrate::{Engine as _, EngineError};
 use crate::rod::arclength;
-use crate::shooting::batch::{Launch, Method, flops, land};
+use crate::shooting::batch::{InitialCondition, Method, flops, shoot};
 use crate::shooting::{First, Nystrom8, Rk4};
 use std::time::Instant;
 
@@ -86,17 +86,17 @@ fn engine(
         })?;
         // The first run warms up.
         let stages = Stages::medians(&stages[1..]);
-        let steps = |launch: &Launch| {
-            let measured = Some(&launch.rod).filter(|_| task.effects.profile);
-            precision.steps(measured, launch.tau, launch.load)
+        let steps = |condition: &InitialCondition| {
+            let measured = Some(&condition.rod).filter(|_| task.effects.profile);
+            precision.steps(measured, condition.tau, condition.load)
         };
         let rung = Rung {
             integrator: "rk4",
             steps: precision.least_steps(),
             newton_f64,
         };
-        let work = operations(task, &hits, |launch| {
-            flops::<Rk4, First>(task.effects, steps(launch), launch)
+        let work = operations(task, &hits, |condition| {
+            flops::<Rk4, First>(task.effects, steps(condition), condition)
         });
         // Only the shader's work counts against the shader's peak.
         let on_device = if stages.dispatch > 0.0 {
@@ -125,24 +125,24 @@ fn engine(
 
 /// A Newton step in `f64` for every state.
 fn newton(task: &Task, points: &mut [(f64, f64)]) {
-    let launches: Vec<Launch> = points
+    let conditions: Vec<InitialCondition> = points
         .iter()
         .zip(&task.shots)
-        .map(|(&(tau, load), shot)| Launch {
+        .map(|(&(tau, load), shot)| InitialCondition {
             rod: task.rods[shot.rod as usize],
             tau,
             load,
         })
         .collect();
-    let landed = land::<Nystrom8, First>(Method::fine(task.effects), &launches);
-    for (((point, landing), launch), shot) in points
+    let shot = shoot::<Nystrom8, First>(Method::fine(task.effects), &conditions);
+    for (((point, map), condition), shot) in points
         .iter_mut()
-        .zip(landed)
-        .zip(&launches)
+        .zip(shot)
+        .zip(&conditions)
         .zip(&task.shots)
     {
-        let s = arclength(&launch.rod, launch.tau);
-        let step = landing.newton_step(shot.pole, s, launch.load);
-        *point = (launch.tau + step.x, launch.load + step.y);
+        let s = arclength(&condition.rod, condition.tau);
+        let step = map.newton_step(shot.pole, s, condition.load);
+        *point = (condition.tau + step.x, condition.load + step.y);
     }
 }

@@ -7,7 +7,7 @@ use crate::refine::states;
 use crate::rod::{Effects, Rod, arclength};
 use crate::scene::{Scene, Whisker};
 use crate::sheet::Sheet;
-use crate::shooting::batch::{Launch, Method, land};
+use crate::shooting::batch::{InitialCondition, Method, shoot};
 use crate::shooting::{First, Nystrom8, Resolution};
 use rayon::prelude::*;
 use serde::Serialize;
@@ -21,7 +21,7 @@ pub struct Task {
     pub rods: Vec<Rod>,
     pub shots: Vec<Shot>,
     /// The answers.
-    exact: Vec<Launch>,
+    exact: Vec<InitialCondition>,
 }
 
 /// A number over all states.
@@ -115,11 +115,14 @@ impl Task {
             tolerance: 1e-13,
         };
         let exact = solver.solve::<Nystrom8>(effects, &rods, &starts);
-        let exact = exact.iter().zip(&shots).map(|(hit, shot)| Launch {
-            rod: rods[shot.rod as usize],
-            tau: hit.tau,
-            load: hit.load,
-        });
+        let exact = exact
+            .iter()
+            .zip(&shots)
+            .map(|(hit, shot)| InitialCondition {
+                rod: rods[shot.rod as usize],
+                tau: hit.tau,
+                load: hit.load,
+            });
         Self {
             effects,
             exact: exact.collect(),
@@ -130,10 +133,10 @@ impl Task {
 
     /// How far off the answers `points`, `(tau, load)` of every shot, are.
     pub fn errors(&self, points: &[(f64, f64)]) -> Errors {
-        let found: Vec<Launch> = points
+        let found: Vec<InitialCondition> = points
             .iter()
             .zip(&self.exact)
-            .map(|(&(tau, load), exact)| Launch {
+            .map(|(&(tau, load), exact)| InitialCondition {
                 rod: exact.rod,
                 tau,
                 load,
@@ -143,11 +146,13 @@ impl Task {
             effects: self.effects,
             resolution: EXACT,
         };
-        let landed = land::<Nystrom8, First>(method, &found);
-        let angle = |i: usize| landed[i].residual(self.shots[i].pole).length().to_degrees();
-        let place = |launch: &Launch| arclength(&launch.rod, launch.tau);
+        let shot = shoot::<Nystrom8, First>(method, &found);
+        let angle = |i: usize| shot[i].residual(self.shots[i].pole).length().to_degrees();
+        let place = |condition: &InitialCondition| arclength(&condition.rod, condition.tau);
         let arc = |i: usize| (place(&found[i]) - place(&self.exact[i])).abs();
-        let force = |launch: &Launch| launch.load * launch.rod.radius(launch.tau).powi(2);
+        let force = |condition: &InitialCondition| {
+            condition.load * condition.rod.radius(condition.tau).powi(2)
+        };
         let off = |i: usize| {
             let exact = &self.exact[i];
             let unit = (exact.rod.radius(exact.tau) / place(exact)).powi(2);

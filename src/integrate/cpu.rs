@@ -3,8 +3,8 @@
 use super::{Description, Engine, EngineError, Hit, MOST_STEPS, Outcome, Shot};
 use crate::numerics::Unit;
 use crate::rod::{Effects, Rod, arclength};
-use crate::shooting::batch::{Kernel, Launch, Method, land_on};
-use crate::shooting::{First, Integrator, Landing, Nystrom8, Resolution};
+use crate::shooting::batch::{InitialCondition, Kernel, Method, shoot_on};
+use crate::shooting::{First, Integrator, Nystrom8, Resolution, ShootingMap};
 use glam::DVec2;
 use rayon::prelude::*;
 
@@ -73,19 +73,19 @@ impl Solver {
             .collect();
         let mut open: Vec<usize> = (0..shots.len()).collect();
         for round in 0..=MOST_STEPS {
-            let launches: Vec<Launch> = open
+            let conditions: Vec<InitialCondition> = open
                 .iter()
-                .map(|&i| Launch {
+                .map(|&i| InitialCondition {
                     rod: rods[shots[i].rod as usize],
                     tau: hits[i].tau,
                     load: hits[i].load,
                 })
                 .collect();
-            let landings = land_on::<M, First>(self.unit, method, &launches);
+            let maps = shoot_on::<M, First>(self.unit, method, &conditions);
             let mut next = Vec::new();
-            for ((&i, launch), landing) in open.iter().zip(&launches).zip(&landings) {
+            for ((&i, condition), map) in open.iter().zip(&conditions).zip(&maps) {
                 let hit = &mut hits[i];
-                self.step(&launch.rod, hit, landing, shots[i].pole, round < MOST_STEPS);
+                self.step(&condition.rod, hit, map, shots[i].pole, round < MOST_STEPS);
                 if hit.outcome == Outcome::Stalled {
                     next.push(i);
                 }
@@ -95,9 +95,9 @@ impl Solver {
         hits
     }
 
-    /// Judges a landing and, unless it is the last, takes a Newton step from it.
-    fn step(&self, rod: &Rod, hit: &mut Hit, landing: &Landing, wanted: DVec2, more: bool) {
-        hit.residual = landing.pole.distance(wanted);
+    /// Judges a map and, unless it is the last, takes a Newton step from it.
+    fn step(&self, rod: &Rod, hit: &mut Hit, map: &ShootingMap, wanted: DVec2, more: bool) {
+        hit.residual = map.pole.distance(wanted);
         if !hit.residual.is_finite() {
             hit.outcome = Outcome::NotFinite;
             return;
@@ -106,7 +106,7 @@ impl Solver {
             hit.outcome = Outcome::Converged;
         }
         if more {
-            let step = landing.newton_step(wanted, arclength(rod, hit.tau), hit.load);
+            let step = map.newton_step(wanted, arclength(rod, hit.tau), hit.load);
             hit.tau += step.x;
             hit.load += step.y;
             hit.steps += 1;

@@ -83,6 +83,6 @@ fn state(level: &LevelCurve, node: &Node, push: f64) -> State {
         tau: node.point.x,
         load: node.point.y,
         full: node.full,
-        residual: node.full.landing.pole.distance(level.row.pole(push)),
+        residual: node.full.map.pole.distance(level.row.pole(push)),
     }
 }

@@ -9,7 +9,7 @@ mod newton;
 
 use crate::integrate::Shot;
 use crate::sheet::Sheet;
-use crate::shooting::Full;
+use crate::shooting::FullState;
 use crate::shooting::batch::{Method, together};
 use near_fold::Verdict;
 use newton::newton;
@@ -48,7 +48,7 @@ impl Default for Refined {
             state: State {
                 tau: f64::NAN,
                 load: f64::NAN,
-                full: Full::default(),
+                full: FullState::default(),
                 residual: f64::INFINITY,
             },
             steps: 0,
@@ -65,7 +65,7 @@ pub struct State {
     /// Signed load.
     pub load: f64,
     /// Everything else.
-    pub full: Full,
+    pub full: FullState,
     /// Distance of the pole from the wanted place, in whisker lengths; a bound on it where the last step was so short that no
     /// trajectory followed it.
     pub residual: f64,

@@ -7,7 +7,7 @@
 use crate::integrate::Shot;
 use crate::numerics::nearest_turn;
 use crate::sheet::{Edge, Sheet, Wanted, seek};
-use crate::shooting::Curved;
+use crate::shooting::SecondVariation;
 use crate::shooting::batch::Method;
 use glam::DVec2;
 
@@ -46,14 +46,14 @@ pub fn decide(method: Method, sheets: &[&Sheet], shots: &[Shot]) -> Vec<Verdict>
 }
 
 /// The fold `here`, at `point`, against the wanted direction.
-fn compare(sheet: &Sheet, shot: &Shot, point: DVec2, here: &Curved) -> Verdict {
-    let phi = here.landing.pole.to_angle();
+fn compare(sheet: &Sheet, shot: &Shot, point: DVec2, here: &SecondVariation) -> Verdict {
+    let phi = here.map.pole.to_angle();
     let left = sheet.side.sign() * (phi - nearest_turn(shot.pole.to_angle(), phi));
     if left < 0.0 {
         return Verdict::Beyond;
     }
     // Along the level curve of ln D, from the fold toward the stable side; `det` grows from 0 there.
-    let along = DVec2::new(here.landing.by_load.x, -here.landing.by_tau.x);
+    let along = DVec2::new(here.map.by_load.x, -here.map.by_tau.x);
     let det_slope = here.det_gradient().dot(along);
     // dphi/deta = -det, with eta counted in units of `along`.
     let eta = det_slope.signum() * (2.0 * left / det_slope.abs()).sqrt();

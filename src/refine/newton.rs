@@ -4,7 +4,7 @@ use super::{End, GOAL, Refined, State, TOLERANCE};
 use crate::integrate::Shot;
 use crate::rod::arclength;
 use crate::sheet::Sheet;
-use crate::shooting::batch::{Launch, Method, land_each};
+use crate::shooting::batch::{InitialCondition, Method, shoot_each};
 use crate::shooting::{FirstAndEnergy, Nystrom8, limited};
 
 /// The length of a Newton step, as [`limited`] measures it, that needs no trajectory at its end.
@@ -41,39 +41,39 @@ pub fn newton(
         if open.is_empty() {
             break;
         }
-        let launch = |(i, (tau, load)): (usize, (f64, f64))| Launch {
+        let condition = |(i, (tau, load)): (usize, (f64, f64))| InitialCondition {
             rod: sheets[shots[i].rod as usize].rod,
             tau,
             load,
         };
-        let launches = open.iter().copied().map(launch);
+        let conditions = open.iter().copied().map(condition);
         let mut left = Vec::new();
-        land_each::<Nystrom8, FirstAndEnergy>(method, launches, |place, moving| {
+        shoot_each::<Nystrom8, FirstAndEnergy>(method, conditions, |place, moving| {
             let i = open[place].0;
-            let launch = launch(open[place]);
+            let condition = condition(open[place]);
             let full = moving.full;
-            let residual = full.landing.pole.distance(shots[i].pole);
+            let residual = full.map.pole.distance(shots[i].pole);
             let state = State {
-                tau: launch.tau,
-                load: launch.load,
+                tau: condition.tau,
+                load: condition.load,
                 full,
                 residual,
             };
-            let s = arclength(&launch.rod, launch.tau);
-            let step = full.landing.solve(full.landing.residual(shots[i].pole));
-            let (step, length) = limited(step, s, launch.load);
+            let s = arclength(&condition.rod, condition.tau);
+            let step = full.map.solve(full.map.residual(shots[i].pole));
+            let (step, length) = limited(step, s, condition.load);
             let sheet = sheets[shots[i].rod as usize];
-            let columns = full.landing.by_tau.length() * full.landing.by_load.length();
+            let columns = full.map.by_tau.length() * full.map.by_load.length();
             let may_be_last = method.resolution.least >= LEAST_STEPS
-                && launch.rod.profile.is_none()
-                && launch.load.abs() * s * s <= LARGEST_Q
-                && full.landing.det() > CLEAR_OF_FOLD * columns;
+                && condition.rod.profile.is_none()
+                && condition.load.abs() * s * s <= LARGEST_Q
+                && full.map.det() > CLEAR_OF_FOLD * columns;
             if residual > GOAL && length <= LAST_STEP && may_be_last {
                 let state = State {
-                    tau: launch.tau + step.x,
-                    load: launch.load + step.y,
-                    full: moving.moved(step),
-                    residual: LEFT_BY_STEP * length * length * (s + full.landing.pole.length())
+                    tau: condition.tau + step.x,
+                    load: condition.load + step.y,
+                    full: moving.extrapolated(step),
+                    residual: LEFT_BY_STEP * length * length * (s + full.map.pole.length())
                         + ROUNDING,
                 };
                 let (end, steps) = (verdict(sheet, &state), steps + 1);
@@ -92,7 +92,7 @@ pub fn newton(
                 steps,
                 end: End::NotConverged,
             };
-            let next = (launch.tau + step.x, launch.load + step.y);
+            let next = (condition.tau + step.x, condition.load + step.y);
             if step.is_finite() && next.0 > 0.0 {
                 left.push((i, next));
             }
@@ -103,7 +103,7 @@ pub fn newton(
 
 /// Whether a converged state counts.
 fn verdict(sheet: &Sheet, state: &State) -> End {
-    if !sheet.is_stable(state.tau, state.load, &state.full.landing) {
+    if !sheet.is_stable(state.tau, state.load, &state.full.map) {
         End::NotConverged
     } else if state.tau > sheet.tip[0] && !state.is_at_tip(sheet) {
         End::BeyondTip

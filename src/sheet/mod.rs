@@ -21,7 +21,7 @@ pub use lattice::guesses::Guess;
 pub use row::Row;
 
 use crate::rod::{Rest, Rod, Side};
-use crate::shooting::Landing;
+use crate::shooting::ShootingMap;
 use crate::shooting::batch::Method;
 use continuation::pieces;
 use edges::{Edges, crossings};
@@ -129,13 +129,13 @@ impl Sheet {
     /// Whether a state, as far as the fold goes, is on the sheet: loaded toward the pole, on the stable side of
     /// the Jacobian's first singularity.
     #[must_use]
-    pub fn is_stable(&self, tau: f64, load: f64, landing: &Landing) -> bool {
+    pub fn is_stable(&self, tau: f64, load: f64, map: &ShootingMap) -> bool {
         let load = self.side.sign() * load;
         let is_loaded = load >= 0.0 && self.columns.is_below_folds(tau, load) || {
             let part = load / self.columns.fold_load(tau);
             part > -UNLOADED && part < 1.0 + 1e-4
         };
-        let scale = landing.by_tau.length() * landing.by_load.length();
-        is_loaded && landing.det() > -1e-7 * scale
+        let scale = map.by_tau.length() * map.by_load.length();
+        is_loaded && map.det() > -1e-7 * scale
     }
 }

@@ -180,7 +180,7 @@ impl Branch {
             base_moment_nnm: reading.base_moment_nnm,
             // From (ln D, phi) by (tau, load) to (D, phi) by (s, f): dtau/ds = 1/rho, dload/df = 1/rho^2, and f is the
             // part of the force along the normal.
-            det: node.full.landing.det() * row.pole_distance
+            det: node.full.map.det() * row.pole_distance
                 / (rod.radius(node.point.x).powi(3) * rod.contact_tangent().x),
             mark,
         }

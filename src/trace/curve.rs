@@ -5,8 +5,8 @@ use crate::rod::{Effects, Rest, Side};
 use crate::scene::{Pole, Whisker};
 use crate::sheet::{Edge, Sheet};
 use crate::shooting::Reader;
-use crate::shooting::batch::{Launch, Method, land};
-use crate::shooting::{FirstAndEnergy, Moving, Nystrom8, Resolution};
+use crate::shooting::batch::{InitialCondition, Method, shoot};
+use crate::shooting::{FirstAndEnergy, FirstVariation, Nystrom8, Resolution};
 use serde::Serialize;
 
 /// How a push from first touch ends.
@@ -111,19 +111,19 @@ pub fn curve_at(
             ends.push((i, end));
         }
     }
-    let launches: Vec<Launch> = ends
+    let conditions: Vec<InitialCondition> = ends
         .iter()
-        .map(|(_, end)| Launch {
+        .map(|(_, end)| InitialCondition {
             rod,
             tau: end.tau,
             load: end.load,
         })
         .collect();
-    let states = land::<Nystrom8, FirstAndEnergy>(method, &launches);
-    for ((i, end), Moving { full, .. }) in ends.into_iter().zip(&states) {
+    let states = shoot::<Nystrom8, FirstAndEnergy>(method, &conditions);
+    for ((i, end), FirstVariation { full, .. }) in ends.into_iter().zip(&states) {
         let push = side.sign() * end.push;
         // The crossing's own residual foretells what its last step leaves; this trajectory has gone there.
-        let distance = full.landing.pole.length();
+        let distance = full.map.pole.length();
         let off = (sheet.rows[i].pole_distance / distance).ln().abs();
         let reading = reader.read(end.tau, full, sheet.rows[i].touch, push);
         rows[i] = Detachment {
@@ -180,7 +180,7 @@ pub fn corner(whisker: &Whisker, pole: &Pole, side: Side) -> Corner {
     let tip = (rod.taper < 1.0)
         .then(|| Sheet::fold_at_tip(Method::fine(Effects::of([&rod])), &rod, side));
     let distance = tip.flatten().and_then(|fold| {
-        let pole = fold.landing.landing.pole.length();
+        let pole = fold.variation.map.pole.length();
         let at_tip = Rest::new(&rod).distance_of_pole(pole) * length;
         Some(at_tip)
             .filter(switches)

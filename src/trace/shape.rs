@@ -94,7 +94,7 @@ impl Shape {
             points: points.collect(),
             pole_mm: (pole * length).to_array(),
             pole_radius_mm: rod.pole.abs() * length,
-            residual: found.full.landing.pole.distance(row.pole(found.push)),
+            residual: found.full.map.pole.distance(row.pole(found.push)),
         }
     }
 

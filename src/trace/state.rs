@@ -2,7 +2,7 @@
 
 use super::{Branch, NoState};
 use crate::sheet::Walk;
-use crate::shooting::Full;
+use crate::shooting::FullState;
 
 /// A state found on a branch.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -14,7 +14,7 @@ pub struct Found {
     /// Push angle, signed, in radians: the one asked for but for the residual.
     pub push: f64,
     /// Everything else.
-    pub full: Full,
+    pub full: FullState,
 }
 
 impl Branch {

@@ -1,10 +1,10 @@
-//! Shots with known answers: random states, landed in `f64` by the CPU.
+//! Shots with known answers: random states, shot in `f64` by the CPU.
 
 use glam::DVec2;
 use whiskmap::integrate::Shot;
 use whiskmap::rod::{Effects, RadiusProfile, Rod, arclength};
-use whiskmap::shooting::batch::{Launch, Method, land};
-use whiskmap::shooting::{First, Landing, Nystrom8};
+use whiskmap::shooting::batch::{InitialCondition, Method, shoot};
+use whiskmap::shooting::{First, Nystrom8, ShootingMap};
 
 /// A reproducible stream of numbers in `[0, 1)` (splitmix64).
 pub struct Random(pub u64);
@@ -71,27 +71,27 @@ pub fn rod(effects: Effects, random: &mut Random) -> Rod {
 }
 
 /// A contact on `rod` under `q = |load| s^2` up to `most_q`, on the side of its pole.
-pub fn launch(rod: Rod, most_q: f64, random: &mut Random) -> Launch {
+pub fn condition(rod: Rod, most_q: f64, random: &mut Random) -> InitialCondition {
     let tau = rod.tau_tip() * random.between(0.1, 1.0);
     let s = arclength(&rod, tau);
     let load = rod.pole.signum() * random.between(0.0, most_q) / (s * s);
-    Launch { rod, tau, load }
+    InitialCondition { rod, tau, load }
 }
 
 /// The truth: the default steps are off by less than 1e-11 (`tests/model.rs`).
-pub fn landings(effects: Effects, launches: &[Launch]) -> Vec<Landing> {
+pub fn maps(effects: Effects, conditions: &[InitialCondition]) -> Vec<ShootingMap> {
     let method = Method {
         effects,
         resolution: whiskmap::shooting::Resolution::FINE,
     };
-    land::<Nystrom8, First>(method, launches)
+    shoot::<Nystrom8, First>(method, conditions)
 }
 
 /// Shots at the poles of random states, with guesses off by 1 to 3 %.
 pub struct Range {
     pub effects: Effects,
     pub rods: Vec<Rod>,
-    pub truth: Vec<Launch>,
+    pub truth: Vec<InitialCondition>,
     pub shots: Vec<Shot>,
 }
 
@@ -101,22 +101,22 @@ impl Range {
         let rods: Vec<Rod> = (0..count.div_ceil(8))
             .map(|_| rod(effects, &mut random))
             .collect();
-        let truth: Vec<Launch> = (0..count)
-            .map(|i| launch(rods[i / 8], most_q, &mut random))
+        let truth: Vec<InitialCondition> = (0..count)
+            .map(|i| condition(rods[i / 8], most_q, &mut random))
             .collect();
         let mut off = || {
             let size = random.between(0.01, 0.03);
             if random.unit() < 0.5 { -size } else { size }
         };
-        let shots = landings(effects, &truth)
+        let shots = maps(effects, &truth)
             .iter()
             .zip(&truth)
             .enumerate()
-            .map(|(i, (landing, launch))| Shot {
+            .map(|(i, (map, condition))| Shot {
                 rod: (i / 8) as u32,
-                tau: launch.tau * (1.0 + off()),
-                load: launch.load * (1.0 + off()),
-                pole: landing.pole,
+                tau: condition.tau * (1.0 + off()),
+                load: condition.load * (1.0 + off()),
+                pole: map.pole,
             })
             .collect();
         Self {
@@ -129,20 +129,20 @@ impl Range {
 
     /// How far from the wanted place the poles of `(tau, load)` really are.
     pub fn misses(&self, states: impl IntoIterator<Item = (f64, f64)>) -> Vec<f64> {
-        let launches: Vec<Launch> = states
+        let conditions: Vec<InitialCondition> = states
             .into_iter()
             .zip(&self.truth)
-            .map(|((tau, load), truth)| Launch {
+            .map(|((tau, load), truth)| InitialCondition {
                 rod: truth.rod,
                 tau,
                 load,
             })
             .collect();
         let wanted = self.shots.iter().map(|shot| shot.pole);
-        landings(self.effects, &launches)
+        maps(self.effects, &conditions)
             .iter()
             .zip(wanted)
-            .map(|(landing, wanted): (&Landing, DVec2)| landing.pole.distance(wanted))
+            .map(|(map, wanted): (&ShootingMap, DVec2)| map.pole.distance(wanted))
             .collect()
     }
 }

@@ -12,7 +12,7 @@ use whiskmap::integrate::gpu::Precision;
 use whiskmap::refine::End;
 use whiskmap::rod::arclength;
 use whiskmap::shooting::Resolution;
-use whiskmap::shooting::batch::Launch;
+use whiskmap::shooting::batch::InitialCondition;
 
 /// Half as many steps as [`Resolution::FINE`].
 const HALF: Resolution = Resolution::of(10);
@@ -152,7 +152,7 @@ fn scan(count: u32, whiskers: &impl Strategy<Value = Case>) -> Seen {
         let seen = &mut *seen.borrow_mut();
         let shots = Shots::new(&scene);
         let cells = shots.refined(&shots.shoot(&mut Cpu));
-        let states = shots.launches(&cells);
+        let states = shots.conditions(&cells);
         let fine = halving(shots.effects, &states, Resolution::FINE);
         let half = halving(shots.effects, &states, HALF);
         seen.states += states.len();
@@ -216,7 +216,7 @@ fn holds(seen: &Seen) {
     );
 }
 
-fn is_coiled(state: &Launch) -> bool {
+fn is_coiled(state: &InitialCondition) -> bool {
     let s = arclength(&state.rod, state.tau);
     state.load.abs() * s * s * state.rod.softness(state.tau) > MODERATE
 }

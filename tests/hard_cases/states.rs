@@ -7,8 +7,8 @@ use whiskmap::refine::{End, Refined, refine};
 use whiskmap::rod::{Effects, Rod, Side};
 use whiskmap::scene::Scene;
 use whiskmap::sheet::Sheet;
-use whiskmap::shooting::batch::{Launch, Method, land};
-use whiskmap::shooting::{First, Landing, Nystrom8, Resolution};
+use whiskmap::shooting::batch::{InitialCondition, Method, shoot};
+use whiskmap::shooting::{First, Nystrom8, Resolution, ShootingMap};
 
 /// The cells of one whisker that have a guess, on both sides.
 pub struct Shots {
@@ -77,11 +77,11 @@ impl Shots {
     }
 
     /// The trajectories that end at these states.
-    pub fn launches(&self, cells: &[Refined]) -> Vec<Launch> {
+    pub fn conditions(&self, cells: &[Refined]) -> Vec<InitialCondition> {
         let solved = cells.iter().zip(&self.shots);
         solved
             .filter(|(cell, _)| cell.end == End::Solved)
-            .map(|(cell, shot)| Launch {
+            .map(|(cell, shot)| InitialCondition {
                 rod: self.sheets[shot.rod as usize].rod,
                 tau: cell.state.tau,
                 load: cell.state.load,
@@ -90,34 +90,38 @@ impl Shots {
     }
 
     /// The converged `hits`, and how far from the wanted place, in whisker lengths, their poles really are.
-    pub fn misses(&self, hits: &[Hit]) -> Vec<(Launch, f64)> {
+    pub fn misses(&self, hits: &[Hit]) -> Vec<(InitialCondition, f64)> {
         let found = hits.iter().zip(&self.shots);
         let found = found.filter(|(hit, _)| hit.outcome == Outcome::Converged);
-        let (wanted, launches): (Vec<DVec2>, Vec<Launch>) = found
+        let (wanted, conditions): (Vec<DVec2>, Vec<InitialCondition>) = found
             .map(|(hit, shot)| {
                 let rod = self.sheets[shot.rod as usize].rod;
                 let (tau, load) = (hit.tau, hit.load);
-                (shot.pole, Launch { rod, tau, load })
+                (shot.pole, InitialCondition { rod, tau, load })
             })
             .unzip();
         let method = Method::fine(self.effects);
-        let landed = land::<Nystrom8, First>(method, &launches);
-        let missed = landed.iter().zip(wanted);
-        let missed = missed.map(|(landing, pole)| landing.pole.distance(pole));
-        launches.iter().copied().zip(missed).collect()
+        let shot = shoot::<Nystrom8, First>(method, &conditions);
+        let missed = shot.iter().zip(wanted);
+        let missed = missed.map(|(map, pole)| map.pole.distance(pole));
+        conditions.iter().copied().zip(missed).collect()
     }
 }
 
-/// How far the poles of `launches` move, in whisker lengths, when the steps of `resolution` are halved.
-pub fn halving(effects: Effects, launches: &[Launch], resolution: Resolution) -> Vec<f64> {
+/// How far the poles of `conditions` move, in whisker lengths, when the steps of `resolution` are halved.
+pub fn halving(
+    effects: Effects,
+    conditions: &[InitialCondition],
+    resolution: Resolution,
+) -> Vec<f64> {
     let poles = |resolution| {
         let method = Method {
             effects,
             resolution,
         };
-        land::<Nystrom8, First>(method, launches).into_iter()
+        shoot::<Nystrom8, First>(method, conditions).into_iter()
     };
-    let moved = |(a, b): (Landing, Landing)| a.pole.distance(b.pole);
+    let moved = |(a, b): (ShootingMap, ShootingMap)| a.pole.distance(b.pole);
     poles(resolution)
         .zip(poles(resolution.doubled()))
         .map(moved)

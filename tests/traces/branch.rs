@@ -142,7 +142,7 @@ fn states_are_found_again() {
             assert!(miss < 1e-9, "{case}: {point:?} {reading:?}");
             let pole = branch.row().pole(push);
             assert!(
-                state.full.landing.pole.distance(pole) < 1e-12,
+                state.full.map.pole.distance(pole) < 1e-12,
                 "{case}: {point:?}"
             );
         }

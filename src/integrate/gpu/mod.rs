@@ -205,12 +205,12 @@ impl Gpu {
                 let (device, layout) = (&self.device, self.layout);
                 let begun = Instant::now();
                 let tasks: Vec<Task> = now.iter().map(task).collect();
-                flights.push_back(slot.launch(device, layout, pipeline, &shared, &tasks)?);
+                flights.push_back(slot.condition(device, layout, pipeline, &shared, &tasks)?);
                 times.upload += begun.elapsed();
             } else if let Some(flight) = flights.pop_front() {
                 let (count, started) = (flight.shots, flight.submitted.max(idle_since));
                 self.slots
-                    .push(flight.land(&self.device, self.layout, &mut hits, &mut times)?);
+                    .push(flight.shoot(&self.device, self.layout, &mut hits, &mut times)?);
                 idle_since = Instant::now();
                 pipeline.pace.learn(count, idle_since - started);
             } else {

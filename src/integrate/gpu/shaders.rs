@@ -16,7 +16,7 @@ const MODEL: [&str; 5] = [
     include_str!("../../../shaders/rod.wgsl"),
     include_str!("../../../shaders/rhs.wgsl"),
     include_str!("../../../shaders/rk4.wgsl"),
-    include_str!("../../../shaders/landing.wgsl"),
+    include_str!("../../../shaders/shooting_map.wgsl"),
 ];
 
 /// The material, and the way along it.

@@ -92,7 +92,7 @@ fn part(binding: u32, buffer: &wgpu::Buffer, size: u64) -> wgpu::BindGroupEntry<
 
 impl Slot {
     /// Sends shots on their way.
-    pub fn launch(
+    pub fn condition(
         self,
         device: &Device,
         layout: &Layout,
@@ -157,7 +157,7 @@ impl Slot {
 
 impl Flight {
     /// Waits for the hits, appends them, and gives the buffers back.
-    pub fn land(
+    pub fn shoot(
         self,
         device: &Device,
         layout: &Layout,

@@ -110,7 +110,7 @@ fn meet(level: &LevelCurve, from: &Node, to: &Node, stable: bool) -> Meeting {
         };
         met = Meeting::Edge(Edge::Tip, tip);
     }
-    if (to.full.landing.det() < 0.0) == stable {
+    if (to.full.map.det() < 0.0) == stable {
         match edge(level, Edge::Fold, from, to) {
             None => return Meeting::Unclear,
             Some(fold) if fold.point.x <= level.rod.tau_tip() => {
@@ -125,7 +125,7 @@ fn meet(level: &LevelCurve, from: &Node, to: &Node, stable: bool) -> Meeting {
 /// The point of an edge between two nodes; `None` if Newton's method found none, or one somewhere else.
 fn edge(level: &LevelCurve, edge: Edge, from: &Node, to: &Node) -> Option<Node> {
     let height = |node: &Node| match edge {
-        Edge::Fold => node.full.landing.det(),
+        Edge::Fold => node.full.map.det(),
         Edge::Tip => node.point.x - level.rod.tau_tip(),
     };
     let part = height(from) / (height(from) - height(to));

@@ -9,8 +9,8 @@ use crate::numerics::nearest_turn;
 use crate::rod::{Rod, Side, arclength};
 use crate::sheet::edges::crossings::Crossing;
 use crate::sheet::row::Row;
-use crate::shooting::batch::{Launch, Method, land};
-use crate::shooting::{FirstAndEnergy, Full, Nystrom8};
+use crate::shooting::batch::{InitialCondition, Method, shoot};
+use crate::shooting::{FirstAndEnergy, FullState, Nystrom8};
 use glam::{DVec2, DVec3};
 
 /// Rounds of the corrector; from a step's predictor 4 are the rule.
@@ -25,7 +25,7 @@ pub struct Node {
     /// `(tau, load)`.
     pub point: DVec2,
     /// Everything else.
-    pub full: Full,
+    pub full: FullState,
     /// Push angle since first touch, signed, in radians, continuous along the curve.
     pub push: f64,
     /// Tangent angle at the contact from the base's tangent, in radians, continuous along the curve.
@@ -52,7 +52,7 @@ impl LevelCurve {
     #[must_use]
     pub fn touch(&self) -> Option<Node> {
         let at_touch = DVec2::new(self.rod.tau(self.row.contact).min(self.rod.tau_tip()), 0.0);
-        let full = *self.land(&[at_touch]).first()?;
+        let full = *self.shoot(&[at_touch]).first()?;
         Some(Node {
             push: 0.0,
             ..self.node(at_touch, &full, 0.0, 0.0)
@@ -69,8 +69,8 @@ impl LevelCurve {
 
     /// The state `full` at `point`, its angles continued from `push` and `angle`.
     #[must_use]
-    pub fn node(&self, point: DVec2, full: &Full, push: f64, angle: f64) -> Node {
-        let phi = full.landing.pole.to_angle();
+    pub fn node(&self, point: DVec2, full: &FullState, push: f64, angle: f64) -> Node {
+        let phi = full.map.pole.to_angle();
         let to_pole = self.rod.to_pole() - full.base.position;
         let tilt = self.rod.contact_tangent().to_angle();
         Node {
@@ -98,19 +98,19 @@ impl LevelCurve {
 
     /// Brings every point onto the curve, to `tolerance` in `ln D` or to rounding; `None` where that fails.
     #[must_use]
-    pub fn settle(&self, points: &[DVec2], tolerance: f64) -> Vec<Option<(DVec2, Full)>> {
+    pub fn settle(&self, points: &[DVec2], tolerance: f64) -> Vec<Option<(DVec2, FullState)>> {
         let mut points = points.to_vec();
         let mut settled = vec![None; points.len()];
         let mut misses = vec![f64::INFINITY; points.len()];
         let mut open: Vec<usize> = (0..points.len()).collect();
         for _ in 0..ROUNDS {
             let at: Vec<DVec2> = open.iter().map(|&i| points[i]).collect();
-            let mut fulls = self.land(&at).into_iter();
+            let mut fulls = self.shoot(&at).into_iter();
             open.retain(|&i| {
                 let Some(full) = fulls.next() else {
                     return false;
                 };
-                let miss = (self.row.pole_distance / full.landing.pole.length()).ln();
+                let miss = (self.row.pole_distance / full.map.pole.length()).ln();
                 let stuck = miss.abs() < 1e3 * tolerance && miss.abs() > 0.5 * misses[i];
                 if miss.abs() <= tolerance || stuck {
                     settled[i] = Some((points[i], full));
@@ -118,7 +118,7 @@ impl LevelCurve {
                 }
                 misses[i] = miss.abs();
                 let scale = self.scale(points[i]);
-                let gradient = scale * DVec2::new(full.landing.by_tau.x, full.landing.by_load.x);
+                let gradient = scale * DVec2::new(full.map.by_tau.x, full.map.by_load.x);
                 points[i] += scale * gradient * (miss / gradient.length_squared());
                 points[i].is_finite() && points[i].x > 0.0
             });
@@ -126,17 +126,17 @@ impl LevelCurve {
         settled
     }
 
-    fn land(&self, points: &[DVec2]) -> Vec<Full> {
-        let launches: Vec<Launch> = points
+    fn shoot(&self, points: &[DVec2]) -> Vec<FullState> {
+        let conditions: Vec<InitialCondition> = points
             .iter()
-            .map(|point| Launch {
+            .map(|point| InitialCondition {
                 rod: self.rod,
                 tau: point.x,
                 load: point.y,
             })
             .collect();
-        let landed = land::<Nystrom8, FirstAndEnergy>(self.method, &launches);
-        landed.iter().map(|moving| moving.full).collect()
+        let shot = shoot::<Nystrom8, FirstAndEnergy>(self.method, &conditions);
+        shot.iter().map(|moving| moving.full).collect()
     }
 
     /// How much `tau` and load can change before the state changes by about as much as it is.
@@ -161,5 +161,5 @@ impl LevelCurve {
 
 /// `d ln D/d(tau, load)`.
 fn gradient(node: &Node) -> DVec2 {
-    DVec2::new(node.full.landing.by_tau.x, node.full.landing.by_load.x)
+    DVec2::new(node.full.map.by_tau.x, node.full.map.by_load.x)
 }

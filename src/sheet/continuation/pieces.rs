@@ -61,7 +61,7 @@ fn backward(level: &LevelCurve) -> LevelCurve {
 fn follow(level: &LevelCurve, start: Node) -> Option<Crossing> {
     let walk = walk(level, start, false)?;
     let end = walk.nodes.last()?;
-    let distance = end.full.landing.pole.length();
+    let distance = end.full.map.pole.length();
     Some(Crossing {
         edge: walk.end,
         tau: end.point.x,

@@ -4,8 +4,8 @@ use crate::rod::{Rod, Side};
 use crate::sheet::edges::Sample;
 use crate::sheet::edges::edge_newton::Edge;
 use crate::sheet::fold::first_folds;
-use crate::shooting::batch::{Launch, Method, land};
-use crate::shooting::{Curved, Nystrom8, Second};
+use crate::shooting::batch::{InitialCondition, Method, shoot};
+use crate::shooting::{Nystrom8, Second, SecondVariation};
 use glam::DVec2;
 
 /// Halvings: more than a mantissa has bits.
@@ -20,17 +20,17 @@ pub fn bisect(
     edge: Edge,
     target: f64,
     [from, to]: [Sample; 2],
-) -> Option<(DVec2, Curved)> {
-    let between = |part: f64| -> Option<(DVec2, Curved)> {
+) -> Option<(DVec2, SecondVariation)> {
+    let between = |part: f64| -> Option<(DVec2, SecondVariation)> {
         let tau = from.tau + part * (to.tau - from.tau);
         if edge == Edge::Fold {
             let fold = first_folds(method, rod, side, &[tau]).pop()??;
-            return Some((DVec2::new(tau, fold.load), fold.landing));
+            return Some((DVec2::new(tau, fold.load), fold.variation));
         }
         let load = from.load + part * (to.load - from.load);
         let rod = *rod;
-        let landed = land::<Nystrom8, Second>(method, &[Launch { rod, tau, load }]);
-        Some((DVec2::new(tau, load), *landed.first()?))
+        let shot = shoot::<Nystrom8, Second>(method, &[InitialCondition { rod, tau, load }]);
+        Some((DVec2::new(tau, load), *shot.first()?))
     };
     let is_nearer = |ln_distance: f64| ln_distance <= target;
     if is_nearer(from.ln_distance) == is_nearer(to.ln_distance) {
@@ -41,7 +41,7 @@ pub fn bisect(
     for _ in 0..ROUNDS {
         let middle = 0.5 * (low + high);
         let (_, here) = between(middle)?;
-        if is_nearer(here.landing.pole.length().ln()) == is_nearer(from.ln_distance) {
+        if is_nearer(here.map.pole.length().ln()) == is_nearer(from.ln_distance) {
             low = middle;
         } else {
             high = middle;

@@ -11,7 +11,7 @@ use crate::sheet::edges::edge_newton::{Bends, Edge, Wanted, seek_nearby};
 use crate::sheet::edges::{Edges, REACH_SLACK, Sample};
 use crate::sheet::fold::predictor::Near;
 use crate::sheet::row::Row;
-use crate::shooting::Landing;
+use crate::shooting::ShootingMap;
 use crate::shooting::batch::Method;
 use glam::DVec2;
 
@@ -152,8 +152,8 @@ fn polish(
     polished
         .map(|(sought, c)| {
             let row = &rows[c.row];
-            let crossing = |point: DVec2, landing: &Landing, residual: f64| {
-                let phi = nearest_turn(landing.pole.to_angle(), c.near.phi);
+            let crossing = |point: DVec2, map: &ShootingMap, residual: f64| {
+                let phi = nearest_turn(map.pole.to_angle(), c.near.phi);
                 Crossing {
                     edge: c.edge,
                     tau: point.x,
@@ -163,15 +163,15 @@ fn polish(
                 }
             };
             let residual = sought.miss.abs() + sought.left * sought.left;
-            let newton = crossing(sought.point, &sought.here.landing, residual);
+            let newton = crossing(sought.point, &sought.here.map, residual);
             if newton.is_sound() && c.holds(sought.point) {
                 return newton;
             }
             let bisected = bisect(method, rod, side, c.edge, row.pole_distance.ln(), c.between);
             let bisected = bisected.map(|(point, here)| {
-                let distance = here.landing.pole.length();
+                let distance = here.map.pole.length();
                 let residual = (row.pole_distance / distance).ln().abs();
-                crossing(point, &here.landing, residual)
+                crossing(point, &here.map, residual)
             });
             if let Some(bisected) = bisected.filter(Crossing::is_sound) {
                 return bisected;

@@ -1,8 +1,8 @@
 //! Newton's method for the points in which a row leaves the sheet.
 
 use crate::rod::{Rod, arclength};
-use crate::shooting::batch::{Launch, Method, land, land_in_company};
-use crate::shooting::{Curved, First, Nystrom8, Second, limited};
+use crate::shooting::batch::{InitialCondition, Method, shoot, shoot_padded};
+use crate::shooting::{First, Nystrom8, Second, SecondVariation, limited};
 use glam::DVec2;
 
 /// The edge that a point lies on.
@@ -33,7 +33,7 @@ pub struct Sought {
     /// `(tau, load)`.
     pub point: DVec2,
     /// The pole there.
-    pub here: Curved,
+    pub here: SecondVariation,
     /// What is missing in `ln D`.
     pub miss: f64,
     /// How far it still is, as [`limited`] measures lengths: the square of the last step, or the step not taken any more.
@@ -59,33 +59,33 @@ const BORROWED: f64 = 1e-2;
 /// at once next to the folds of a map depends on its strips.
 #[must_use]
 pub fn seek(method: Method, wanted: &[Wanted]) -> Vec<Sought> {
-    newton(method, wanted, COARSE_ROUNDS, land::<Nystrom8, Second>)
+    newton(method, wanted, COARSE_ROUNDS, shoot::<Nystrom8, Second>)
 }
 
 /// The same at the method's own resolution throughout: for starts that are good already, and for whiskers that friction lets
 /// coil up, where the coarse one leads astray.
 #[must_use]
 pub fn seek_finely(method: Method, wanted: &[Wanted]) -> Vec<Sought> {
-    newton(method, wanted, 0, land_in_company::<Nystrom8, Second>)
+    newton(method, wanted, 0, shoot_padded::<Nystrom8, Second>)
 }
 
 /// The same for starts whose second derivatives may be known from their neighbours (toward the tip those by the load are enough):
 /// most then need a single trajectory, with first derivatives.
 #[must_use]
 pub fn seek_nearby(method: Method, wanted: &[Wanted], bends: &[Option<Bends>]) -> Vec<Sought> {
-    let launch = |wanted: &Wanted| Launch {
+    let condition = |wanted: &Wanted| InitialCondition {
         rod: wanted.rod,
         tau: wanted.from.x,
         load: wanted.from.y,
     };
-    let launches: Vec<Launch> = wanted.iter().map(launch).collect();
-    let landings = land_in_company::<Nystrom8, First>(method, &launches);
+    let conditions: Vec<InitialCondition> = wanted.iter().map(condition).collect();
+    let maps = shoot_padded::<Nystrom8, First>(method, &conditions);
     let mut sought = Vec::with_capacity(wanted.len());
     let (mut left, mut again) = (Vec::new(), Vec::new());
-    for (i, (goal, (landing, bends))) in wanted.iter().zip(landings.iter().zip(bends)).enumerate() {
+    for (i, (goal, (map, bends))) in wanted.iter().zip(maps.iter().zip(bends)).enumerate() {
         let [by_tau_tau, by_tau_load, by_load_load] = bends.unwrap_or_default();
-        let here = Curved {
-            landing: *landing,
+        let here = SecondVariation {
+            map: *map,
             by_tau_tau,
             by_tau_load,
             by_load_load,
@@ -119,7 +119,7 @@ fn newton(
     method: Method,
     wanted: &[Wanted],
     coarse_rounds: usize,
-    landed: fn(Method, &[Launch]) -> Vec<Curved>,
+    shot: fn(Method, &[InitialCondition]) -> Vec<SecondVariation>,
 ) -> Vec<Sought> {
     let mut points: Vec<DVec2> = wanted.iter().map(|w| w.from).collect();
     let mut found: Vec<Option<Sought>> = vec![None; wanted.len()];
@@ -130,17 +130,17 @@ fn newton(
         }
         let is_coarse = round < coarse_rounds;
         let method = if is_coarse { method.coarsely() } else { method };
-        let launches: Vec<Launch> = open
+        let conditions: Vec<InitialCondition> = open
             .iter()
-            .map(|&i| Launch {
+            .map(|&i| InitialCondition {
                 rod: wanted[i].rod,
                 tau: points[i].x,
                 load: points[i].y,
             })
             .collect();
-        let mut landings = landed(method, &launches).into_iter();
+        let mut maps = shot(method, &conditions).into_iter();
         open.retain(|&i| {
-            let Some(here) = landings.next() else {
+            let Some(here) = maps.next() else {
                 return false;
             };
             let last_step = (!is_coarse).then_some(LAST_STEP);
@@ -155,8 +155,13 @@ fn newton(
 
 /// A step from `point`, which is `here`, toward the goal, where it leads, and where it ends; up to the length `last_step` there is
 /// nothing more to find.
-fn advance(goal: &Wanted, point: DVec2, here: &Curved, last_step: Option<f64>) -> (Sought, DVec2) {
-    let miss = (goal.pole_distance / here.landing.pole.length()).ln();
+fn advance(
+    goal: &Wanted,
+    point: DVec2,
+    here: &SecondVariation,
+    last_step: Option<f64>,
+) -> (Sought, DVec2) {
+    let miss = (goal.pole_distance / here.map.pole.length()).ln();
     let step = match goal.edge {
         Edge::Fold => fold_step(here, miss),
         Edge::Tip => DVec2::new(0.0, load_step(here, miss)),
@@ -164,11 +169,11 @@ fn advance(goal: &Wanted, point: DVec2, here: &Curved, last_step: Option<f64>) -
     let (step, length) = limited(step, arclength(&goal.rod, point.x), point.y);
     let next = point + step;
     let sought = if last_step.is_some_and(|last| length <= last) {
-        let here = here.moved(step);
+        let here = here.extrapolated(step);
         Sought {
             point: next,
             here,
-            miss: (goal.pole_distance / here.landing.pole.length()).ln(),
+            miss: (goal.pole_distance / here.map.pole.length()).ln(),
             left: length * length,
             is_found: true,
         }
@@ -191,17 +196,17 @@ fn is_inside(point: DVec2) -> bool {
 
 /// The step in load toward the point at the same contact whose `ln D` is larger by `miss`, to second order: where the distance is
 /// largest, as that of a straight whisker is at first touch, a step of first order would go half the way.
-fn load_step(here: &Curved, miss: f64) -> f64 {
-    let (slope, bend) = (here.landing.by_load.x, here.by_load_load.x);
+fn load_step(here: &SecondVariation, miss: f64) -> f64 {
+    let (slope, bend) = (here.map.by_load.x, here.by_load_load.x);
     let at_goal = (slope * slope + 2.0 * bend * miss).max(0.0).sqrt();
     2.0 * miss / (slope + at_goal.copysign(slope))
 }
 
 /// The step toward the point of the fold whose `ln D` is larger by `miss`.
-fn fold_step(here: &Curved, miss: f64) -> DVec2 {
-    let by_distance = DVec2::new(here.landing.by_tau.x, here.landing.by_load.x);
+fn fold_step(here: &SecondVariation, miss: f64) -> DVec2 {
+    let by_distance = DVec2::new(here.map.by_tau.x, here.map.by_load.x);
     let by_det = here.det_gradient();
-    let det = here.landing.det();
+    let det = here.map.det();
     DVec2::new(
         miss * by_det.y + det * by_distance.y,
         -miss * by_det.x - det * by_distance.x,
@@ -236,10 +241,12 @@ mod tests {
             };
             let distance = match edge {
                 Edge::Fold => 0.75,
-                Edge::Tip => land::<Nystrom8, Second>(method, &[Launch { rod, tau, load }])[0]
-                    .landing
-                    .pole
-                    .length(),
+                Edge::Tip => {
+                    shoot::<Nystrom8, Second>(method, &[InitialCondition { rod, tau, load }])[0]
+                        .map
+                        .pole
+                        .length()
+                }
             };
             let goal = Wanted {
                 pole_distance: distance,
@@ -257,7 +264,7 @@ mod tests {
                     let away = (found.point / known.point - DVec2::ONE).abs();
                     assert!(found.is_found && found.miss.abs() < 1e-12, "{edge:?} {off}");
                     assert!(away.max_element() < 2e-9, "{edge:?} {off}: {away}");
-                    let [a, b] = [&found, &known].map(|sought| sought.here.landing.pole.to_angle());
+                    let [a, b] = [&found, &known].map(|sought| sought.here.map.pole.to_angle());
                     assert!((a - b).abs() < 1e-12, "{edge:?} {off}: {a} {b}");
                 }
             }

@@ -15,8 +15,8 @@ use crate::sheet::fold::predictor::FoldLine;
 use crate::sheet::lattice::Lattice;
 use crate::sheet::lattice::directions;
 use crate::sheet::row::Row;
-use crate::shooting::batch::{Launch, Method, land, land_in_company};
-use crate::shooting::{Curved, First, Landing, Nystrom8, Second};
+use crate::shooting::batch::{InitialCondition, Method, shoot, shoot_padded};
+use crate::shooting::{First, Nystrom8, Second, SecondVariation, ShootingMap};
 use glam::DVec2;
 
 /// Relative slack with which a distance counts as reached, so that a whisker whose resting tip just touches
@@ -42,13 +42,13 @@ pub struct Sample {
 }
 
 impl Sample {
-    fn new(place: f64, tau: f64, load: f64, landing: &Landing, phi_near: f64) -> Self {
+    fn new(place: f64, tau: f64, load: f64, map: &ShootingMap, phi_near: f64) -> Self {
         Self {
             place,
             tau,
             load,
-            ln_distance: landing.pole.length().ln(),
-            phi: nearest_turn(landing.pole.to_angle(), phi_near),
+            ln_distance: map.pole.length().ln(),
+            phi: nearest_turn(map.pole.to_angle(), phi_near),
         }
     }
 }
@@ -77,7 +77,7 @@ impl Edges {
             .zip(lattice.phi_at_fold())
             .enumerate()
             .map(|(i, (fold, phi))| {
-                Sample::new(i as f64, fold.tau, fold.load, &fold.landing.landing, phi)
+                Sample::new(i as f64, fold.tau, fold.load, &fold.variation.map, phi)
             })
             .collect();
         let (mut tip, tip_line) = tip_samples(method, rod, &columns.folds[columns.tip]);
@@ -104,53 +104,53 @@ impl Edges {
 /// The tip edge from first touch to before the `corner`, with its extrema of distance among the samples, and the line through the
 /// others and the corner.
 fn tip_samples(method: Method, rod: &Rod, corner: &FoldPoint) -> (Vec<Sample>, TipLine) {
-    let launch = |load| Launch {
+    let condition = |load| InitialCondition {
         rod: *rod,
         tau: corner.tau,
         load,
     };
     let loads = PARTS[..LOADS - 1].iter().map(|part| part * corner.load);
-    let launches: Vec<Launch> = loads.map(launch).collect();
-    let mut landings = land_in_company::<Nystrom8, First>(method, &launches);
-    landings.push(corner.landing.landing);
-    let phis = directions(corner.load, landings.iter());
-    let line = TipLine::new(corner.tau, corner.load, &landings, &phis);
+    let conditions: Vec<InitialCondition> = loads.map(condition).collect();
+    let mut maps = shoot_padded::<Nystrom8, First>(method, &conditions);
+    maps.push(corner.variation.map);
+    let phis = directions(corner.load, maps.iter());
+    let line = TipLine::new(corner.tau, corner.load, &maps, &phis);
     let turns = line.turns();
     let mut samples: Vec<Sample> = Vec::new();
-    for (m, launch) in launches.iter().enumerate() {
-        let sample = |load: f64, landing: &Landing| {
-            Sample::new(load / corner.load, corner.tau, load, landing, phis[m])
+    for (m, condition) in conditions.iter().enumerate() {
+        let sample = |load: f64, map: &ShootingMap| {
+            Sample::new(load / corner.load, corner.tau, load, map, phis[m])
         };
         samples.push(Sample {
             place: PARTS[m],
-            ..sample(launch.load, &landings[m])
+            ..sample(condition.load, &maps[m])
         });
         for turn in turns.iter().filter(|turn| turn.after == m) {
-            let (load, landing) = extremum(method, *launch, turn);
-            samples.push(sample(load, &landing));
+            let (load, map) = extremum(method, *condition, turn);
+            samples.push(sample(load, &map));
         }
     }
     (samples, line)
 }
 
-/// The load at which the distance turns with the contact at the tip, and the landing there: mostly the line along the tip knows the
+/// The load at which the distance turns with the contact at the tip, and the map there: mostly the line along the tip knows the
 /// `turn`, and one trajectory with it all the rest.
-fn extremum(method: Method, at_tip: Launch, turn: &Turn) -> (f64, Landing) {
+fn extremum(method: Method, at_tip: InitialCondition, turn: &Turn) -> (f64, ShootingMap) {
     let (near, [from, to], by_load_load) = (turn.load, turn.between, turn.bend);
-    let at = |load| land::<Nystrom8, First>(method, &[Launch { load, ..at_tip }])[0];
-    let landing = at(near);
-    let step = -landing.by_load.x / by_load_load.x;
+    let at = |load| shoot::<Nystrom8, First>(method, &[InitialCondition { load, ..at_tip }])[0];
+    let map = at(near);
+    let step = -map.by_load.x / by_load_load.x;
     if step.abs() <= LAST_STEP * (to - from).abs() {
-        let here = Curved {
-            landing,
+        let here = SecondVariation {
+            map,
             by_load_load,
-            ..Curved::default()
+            ..SecondVariation::default()
         };
-        return (near + step, here.moved(DVec2::new(0.0, step)).landing);
+        return (near + step, here.extrapolated(DVec2::new(0.0, step)).map);
     }
     let load = bracketed_extremum(
         method,
-        Launch {
+        InitialCondition {
             load: from,
             ..at_tip
         },
@@ -161,20 +161,20 @@ fn extremum(method: Method, at_tip: Launch, turn: &Turn) -> (f64, Landing) {
 }
 
 /// The same load by Newton's method from `near` and second derivatives, bisecting where a step would leave the bracket.
-fn bracketed_extremum(method: Method, from: Launch, to: f64, near: f64) -> f64 {
-    let at = |load: f64| land::<Nystrom8, Second>(method, &[Launch { load, ..from }])[0];
+fn bracketed_extremum(method: Method, from: InitialCondition, to: f64, near: f64) -> f64 {
+    let at = |load: f64| shoot::<Nystrom8, Second>(method, &[InitialCondition { load, ..from }])[0];
     let (mut low, mut high) = (from.load, to);
     let mut load = near;
     let mut falling_at_low = None;
     for _ in 0..60 {
         let here = at(load);
-        let slope = here.landing.by_load.x;
+        let slope = here.map.by_load.x;
         let newton = load - slope / here.by_load_load.x;
         let inside = (newton - low) * (newton - high) < 0.0;
         if inside && (newton - load).abs() <= LAST_STEP * (to - from.load).abs() {
             return newton;
         }
-        let falls = *falling_at_low.get_or_insert_with(|| at(from.load).landing.by_load.x < 0.0);
+        let falls = *falling_at_low.get_or_insert_with(|| at(from.load).map.by_load.x < 0.0);
         if (slope < 0.0) == falls {
             low = load;
         } else {

@@ -4,7 +4,7 @@ use crate::numerics::lobatto::{Curve, LOADS, PARTS, through};
 use crate::numerics::newton_form::oriented;
 use crate::sheet::edges::Sample;
 use crate::sheet::fold::predictor::{LAST_STEP, Near, place};
-use crate::shooting::Landing;
+use crate::shooting::ShootingMap;
 use glam::DVec2;
 
 /// An extremum of the distance along the tip edge.
@@ -31,12 +31,12 @@ pub struct TipLine {
 }
 
 impl TipLine {
-    /// Through `landings` with the contact at `tau`, under all parts of the load `corner`, with the directions `phis` of the pole.
-    pub fn new(tau: f64, corner: f64, landings: &[Landing], phis: &[f64; LOADS]) -> Self {
-        let numbers = |number: fn(&Landing) -> f64| {
+    /// Through `maps` with the contact at `tau`, under all parts of the load `corner`, with the directions `phis` of the pole.
+    pub fn new(tau: f64, corner: f64, maps: &[ShootingMap], phis: &[f64; LOADS]) -> Self {
+        let numbers = |number: fn(&ShootingMap) -> f64| {
             let mut numbers = [0.0; LOADS];
-            for (slot, landing) in numbers.iter_mut().zip(landings) {
-                *slot = number(landing);
+            for (slot, map) in numbers.iter_mut().zip(maps) {
+                *slot = number(map);
             }
             numbers
         };
@@ -44,10 +44,10 @@ impl TipLine {
             0,
             LOADS,
             [
-                numbers(|landing| landing.pole.length().ln()),
+                numbers(|map| map.pole.length().ln()),
                 *phis,
-                numbers(|landing| landing.by_load.x),
-                numbers(|landing| landing.by_load.y),
+                numbers(|map| map.by_load.x),
+                numbers(|map| map.by_load.y),
             ],
         );
         Self {

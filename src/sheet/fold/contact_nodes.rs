@@ -10,7 +10,7 @@ use crate::rod::{Rod, Side};
 use crate::sheet::fold::coordinate::{slope_of_u, tau_of, u_of};
 use crate::sheet::fold::{FoldPoint, first_folds};
 use crate::sheet::row::Row;
-use crate::shooting::Landing;
+use crate::shooting::ShootingMap;
 use crate::shooting::batch::Method;
 use glam::DVec2;
 
@@ -104,7 +104,7 @@ fn q(fold: &FoldPoint) -> f64 {
 /// Slopes of `ln tau` and `ln(|load| tau^2)` of the folds at `fold`, per column.
 fn slopes_at(rod: &Rod, fold: &FoldPoint) -> [f64; 2] {
     let ln_tau = SPACING / slope_of_u(rod, fold.tau);
-    let by_det = fold.landing.det_gradient();
+    let by_det = fold.variation.det_gradient();
     let ln_load = -by_det.x / by_det.y * fold.tau / fold.load;
     // Where the first fold jumps from contact to contact it may stand still there, and no line is of any use.
     let ln_q = (2.0 + ln_load).clamp(-STEEPEST, STEEPEST);
@@ -143,7 +143,7 @@ impl Columns {
                 first_folds(method, rod, side, &taus).into_iter().collect();
             folds.extend(found?);
             let reached = folds.iter().rev().nth(BEYOND_NEAREST).is_some_and(|fold| {
-                let distance = fold.landing.landing.pole.length();
+                let distance = fold.variation.map.pole.length();
                 distance < nearest.pole_distance && fold.tau < touch
             });
             if reached || folds.len() > MOST {
@@ -175,21 +175,21 @@ impl Columns {
         load.abs() * tau * tau < BELOW * self.least_q
     }
 
-    /// The slope, per column, of `(ln D, phi)` where the load is this `part` of the fold's: that of the `landing` at `column`.
+    /// The slope, per column, of `(ln D, phi)` where the load is this `part` of the fold's: that of the `map` at `column`.
     #[must_use]
-    pub fn slope(&self, column: usize, part: f64, landing: &Landing) -> DVec2 {
+    pub fn slope(&self, column: usize, part: f64, map: &ShootingMap) -> DVec2 {
         let (fold, [ln_tau, ln_q]) = (&self.folds[column], self.slopes[column]);
         let ln_load = ln_q - 2.0 * ln_tau;
-        landing.by_tau * (fold.tau * ln_tau) + landing.by_load * (part * fold.load * ln_load)
+        map.by_tau * (fold.tau * ln_tau) + map.by_load * (part * fold.load * ln_load)
     }
 
     /// Whether the distance at the fold grows from `column` to the next one, and the fold does not jump.
     #[must_use]
     pub fn grow_after(&self, column: usize) -> bool {
         let ends = [column, column + 1];
-        let landings = ends.map(|column| &self.folds[column].landing.landing);
-        let [here, next] = landings.map(|landing| landing.pole.length());
-        let grows = |i: usize| self.slope(ends[i], 1.0, landings[i]).x > -LEVEL;
+        let maps = ends.map(|column| &self.folds[column].variation.map);
+        let [here, next] = maps.map(|map| map.pole.length());
+        let grows = |i: usize| self.slope(ends[i], 1.0, maps[i]).x > -LEVEL;
         let [from, to] = ends.map(|column| q(&self.folds[column]).ln());
         let slopes = ends.map(|column| self.slopes[column][1]);
         here < next && grows(0) && grows(1) && !jumps(to - from, slopes)
@@ -219,7 +219,7 @@ impl Columns {
 mod tests {
     use super::*;
     use crate::rod::{Effects, Rest};
-    use crate::shooting::batch::{Launch, land};
+    use crate::shooting::batch::{InitialCondition, shoot};
     use crate::shooting::{First, Nystrom8};
 
     /// Slopes against differences between neighbours, columns in the middle and the one at the tip.
@@ -268,14 +268,14 @@ mod tests {
         assert!((differ(folds.map(|fold| fold.tau.ln())) - ln_tau).abs() < 1e-5);
         assert!((differ(folds.map(|fold| q(&fold).ln())) - ln_q).abs() < 1e-5);
         for part in [0.0, 0.5, 1.0] {
-            let landed = |fold: &FoldPoint| {
+            let shot = |fold: &FoldPoint| {
                 let (tau, load) = (fold.tau, part * fold.load);
-                land::<Nystrom8, First>(method, &[Launch { rod, tau, load }])[0]
+                shoot::<Nystrom8, First>(method, &[InitialCondition { rod, tau, load }])[0]
             };
-            let slope = columns.slope(column, part, &landed(&columns.folds[column]));
-            let landings = [0, 1].map(|i| landed(&folds[i]));
-            let ln_distance = differ(landings.map(|landing| landing.pole.length().ln()));
-            let phi = differ(landings.map(|landing| landing.pole.to_angle()));
+            let slope = columns.slope(column, part, &shot(&columns.folds[column]));
+            let maps = [0, 1].map(|i| shot(&folds[i]));
+            let ln_distance = differ(maps.map(|map| map.pole.length().ln()));
+            let phi = differ(maps.map(|map| map.pole.to_angle()));
             assert!((ln_distance - slope.x).abs() < 1e-5, "{column} {part}");
             assert!((phi - slope.y).abs() < 1e-5, "{column} {part}");
         }

@@ -6,8 +6,8 @@ pub mod predictor;
 
 use crate::numerics::newton_form::{Polynomial, stencil};
 use crate::rod::{Rod, Side, arclength};
-use crate::shooting::batch::{Launch, Method, land_in_company};
-use crate::shooting::{Curved, First, Landing, Nystrom8, Second};
+use crate::shooting::batch::{InitialCondition, Method, shoot_padded};
+use crate::shooting::{First, Nystrom8, Second, SecondVariation, ShootingMap};
 use glam::DVec2;
 
 /// A point of the fold edge.
@@ -18,7 +18,7 @@ pub struct FoldPoint {
     /// Signed load.
     pub load: f64,
     /// The pole there, with second derivatives.
-    pub landing: Curved,
+    pub variation: SecondVariation,
 }
 
 /// Samples of `q = |load| s^2` per round of the search; measured radii add their softness as a factor.
@@ -112,20 +112,20 @@ fn bracket(
         let from = samples.len();
         let first = samples.last().map_or(begin, |q| q + step);
         samples.extend((0..SAMPLES).map(|i| step.mul_add(i as f64, first)));
-        let launches: Vec<Launch> = open
+        let conditions: Vec<InitialCondition> = open
             .iter()
             .flat_map(|m| samples[from..].iter().map(|q| (taus[m.index], q * m.scale)))
-            .map(|(tau, load)| Launch {
+            .map(|(tau, load)| InitialCondition {
                 rod: *rod,
                 tau,
                 load,
             })
             .collect();
-        let landings = land_in_company::<Nystrom8, First>(method, &launches);
-        let mut landings = landings.chunks(SAMPLES);
+        let maps = shoot_padded::<Nystrom8, First>(method, &conditions);
+        let mut maps = maps.chunks(SAMPLES);
         open.retain_mut(|march| {
-            let landed = landings.next().unwrap_or_default();
-            march.dets.extend(landed.iter().map(Landing::det));
+            let shot = maps.next().unwrap_or_default();
+            march.dets.extend(shot.iter().map(ShootingMap::det));
             if march.dets.first().is_none_or(|det| *det <= 0.0) {
                 return false;
             }
@@ -184,20 +184,20 @@ fn polish(method: Method, rod: &Rod, brackets: &[Option<Bracket>]) -> Vec<Option
             break;
         }
         // Those that are done keep company: with fewer steps, at the tip of a perfect cone, `det` may have its root elsewhere.
-        let launches: Vec<Launch> = all
+        let conditions: Vec<InitialCondition> = all
             .iter()
-            .map(|(_, b)| Launch {
+            .map(|(_, b)| InitialCondition {
                 rod: *rod,
                 tau: b.tau,
                 load: b.guess,
             })
             .collect();
-        let landings = land_in_company::<Nystrom8, Second>(method, &launches);
-        for (((i, b), is_open), landing) in all.iter_mut().zip(&mut is_open).zip(landings) {
+        let variations = shoot_padded::<Nystrom8, Second>(method, &conditions);
+        for (((i, b), is_open), variation) in all.iter_mut().zip(&mut is_open).zip(variations) {
             if !*is_open {
                 continue;
             }
-            let (det, slope) = (landing.landing.det(), landing.det_gradient().y);
+            let (det, slope) = (variation.map.det(), variation.det_gradient().y);
             let newton = b.guess - det / slope;
             let step = newton - b.guess;
             let is_last = step.abs() <= LAST_STEP * b.guess.abs();
@@ -205,13 +205,13 @@ fn polish(method: Method, rod: &Rod, brackets: &[Option<Bracket>]) -> Vec<Option
                 FoldPoint {
                     tau: b.tau,
                     load: newton,
-                    landing: landing.moved(DVec2::new(0.0, step)),
+                    variation: variation.extrapolated(DVec2::new(0.0, step)),
                 }
             } else {
                 FoldPoint {
                     tau: b.tau,
                     load: b.guess,
-                    landing,
+                    variation,
                 }
             });
             if det > 0.0 {
@@ -232,7 +232,7 @@ fn polish(method: Method, rod: &Rod, brackets: &[Option<Bracket>]) -> Vec<Option
     // A bracket that closed on something else than a root, or did not close, is no fold.
     for point in &mut points {
         *point = point.filter(|fold| {
-            let step = fold.landing.landing.det() / fold.landing.det_gradient().y;
+            let step = fold.variation.map.det() / fold.variation.det_gradient().y;
             step.abs() <= STEP_LEFT * fold.load.abs()
         });
     }

@@ -75,20 +75,20 @@ impl FoldLine {
     /// Through the folds of all columns, with the directions `phis` of the pole.
     pub fn new(columns: &Columns, phis: impl Iterator<Item = f64>) -> Self {
         let folds = &columns.folds;
-        let landings = folds.iter().map(|fold| &fold.landing.landing);
-        let values: Vec<[f64; 2]> = landings
+        let maps = folds.iter().map(|fold| &fold.variation.map);
+        let values: Vec<[f64; 2]> = maps
             .clone()
             .zip(phis)
-            .map(|(landing, phi)| [landing.pole.length().ln(), phi])
+            .map(|(map, phi)| [map.pole.length().ln(), phi])
             .collect();
-        let slopes: Vec<[f64; 2]> = landings
+        let slopes: Vec<[f64; 2]> = maps
             .enumerate()
-            .map(|(column, landing)| columns.slope(column, 1.0, landing).to_array())
+            .map(|(column, map)| columns.slope(column, 1.0, map).to_array())
             .collect();
         let bends: Vec<[f64; 6]> = folds
             .iter()
             .map(|fold| {
-                let (tau, here) = (fold.tau, &fold.landing);
+                let (tau, here) = (fold.tau, &fold.variation);
                 let tau_tau = here.by_tau_tau * tau.powi(2);
                 let tau_load = here.by_tau_load / tau;
                 let load_load = here.by_load_load / tau.powi(4);
@@ -212,7 +212,7 @@ mod tests {
                         found.is_found && away.max_element() < 1e-7,
                         "{edge:?} {away}"
                     );
-                    let phi = found.here.landing.pole.to_angle();
+                    let phi = found.here.map.pole.to_angle();
                     assert!((near.phi - phi).abs() < 1e-6, "{edge:?}");
                     let [bend, known] = [near.bends.unwrap()[2], found.here.by_load_load];
                     assert!(

@@ -18,8 +18,8 @@ use crate::sheet::fold::contact_nodes::{AROUND, Columns, Line, TERMS, line};
 use crate::sheet::lattice::guesses::Level;
 use crate::sheet::lattice::simd_roots::{Across, Patch};
 use crate::sheet::row::Row;
-use crate::shooting::batch::{Launch, Method, land_in_company};
-use crate::shooting::{First, Landing, Nystrom8};
+use crate::shooting::batch::{InitialCondition, Method, shoot_padded};
+use crate::shooting::{First, Nystrom8, ShootingMap};
 
 /// Intervals between columns over which the loads of a row are looked for in one patch: one from its middle, interpolation is
 /// half as good.
@@ -51,23 +51,21 @@ struct Nodes {
 }
 
 impl Nodes {
-    /// The `landings`, load by load, at `column`.
+    /// The `maps`, load by load, at `column`.
     fn new<'a>(
         columns: &Columns,
         column: usize,
-        landings: impl Iterator<Item = &'a Landing> + Clone,
+        maps: impl Iterator<Item = &'a ShootingMap> + Clone,
     ) -> Self {
         let mut nodes = Self {
             ln_distance: [0.0; WIDTH],
             phi: [0.0; WIDTH],
             slopes: [[0.0; WIDTH]; 2],
         };
-        nodes.phi[..LOADS]
-            .copy_from_slice(&directions(columns.folds[column].load, landings.clone()));
-        for (m, (landing, part)) in landings.zip(PARTS.iter()).enumerate() {
-            nodes.ln_distance[m] = landing.pole.length().ln();
-            [nodes.slopes[0][m], nodes.slopes[1][m]] =
-                columns.slope(column, *part, landing).to_array();
+        nodes.phi[..LOADS].copy_from_slice(&directions(columns.folds[column].load, maps.clone()));
+        for (m, (map, part)) in maps.zip(PARTS.iter()).enumerate() {
+            nodes.ln_distance[m] = map.pole.length().ln();
+            [nodes.slopes[0][m], nodes.slopes[1][m]] = columns.slope(column, *part, map).to_array();
         }
         nodes
     }
@@ -76,21 +74,21 @@ impl Nodes {
 impl Lattice {
     /// The lattice over `columns`.
     pub fn new(method: Method, rod: &Rod, side: Side, columns: &Columns) -> Self {
-        let launches: Vec<Launch> = PARTS
+        let conditions: Vec<InitialCondition> = PARTS
             .iter()
             .flat_map(|part| {
-                columns.folds.iter().map(move |fold| Launch {
+                columns.folds.iter().map(move |fold| InitialCondition {
                     rod: *rod,
                     tau: fold.tau,
                     load: part * fold.load,
                 })
             })
             .collect();
-        let landings = land_in_company::<Nystrom8, First>(method, &launches);
+        let maps = shoot_padded::<Nystrom8, First>(method, &conditions);
         let count = columns.folds.len();
         let nodes: Vec<Nodes> = (0..count)
             .map(|column| {
-                let of_column = landings[column..].iter().step_by(count);
+                let of_column = maps[column..].iter().step_by(count);
                 Nodes::new(columns, column, of_column)
             })
             .collect();
@@ -227,17 +225,17 @@ fn patches(nodes: &[Nodes]) -> Vec<Patch> {
         .collect()
 }
 
-/// Directions of the pole, continuous from first touch, of `landings` of one contact under these parts of its fold's `load`.
-pub fn directions<'a>(load: f64, landings: impl Iterator<Item = &'a Landing>) -> [f64; LOADS] {
+/// Directions of the pole, continuous from first touch, of `maps` of one contact under these parts of its fold's `load`.
+pub fn directions<'a>(load: f64, maps: impl Iterator<Item = &'a ShootingMap>) -> [f64; LOADS] {
     let mut phis = [0.0; LOADS];
-    let mut before: Option<(&Landing, f64, f64)> = None;
-    for (slot, (landing, part)) in phis.iter_mut().zip(landings.zip(PARTS.iter())) {
+    let mut before: Option<(&ShootingMap, f64, f64)> = None;
+    for (slot, (map, part)) in phis.iter_mut().zip(maps.zip(PARTS.iter())) {
         let near = before.map_or(0.0, |(there, phi, part_there)| {
-            let slopes = there.by_load.y + landing.by_load.y;
+            let slopes = there.by_load.y + map.by_load.y;
             0.5f64.mul_add(slopes * load * (part - part_there), phi)
         });
-        let phi = nearest_turn(landing.pole.to_angle(), near);
-        before = Some((landing, phi, *part));
+        let phi = nearest_turn(map.pole.to_angle(), near);
+        before = Some((map, phi, *part));
         *slot = phi;
     }
     phis

@@ -34,7 +34,7 @@ pub struct Base {
 
 /// Where the pole is, and how that changes with the contact and the load.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Landing {
+pub struct ShootingMap {
     /// Centre of the pole in the frame of the base.
     pub pole: DVec2,
     /// `d(ln D, phi)/dtau` at fixed load.
@@ -43,7 +43,7 @@ pub struct Landing {
     pub by_load: DVec2,
 }
 
-impl Landing {
+impl ShootingMap {
     /// `det d(ln D, phi)/d(tau, load)`: 0 at a fold.
     #[must_use]
     pub fn det(&self) -> f64 {
@@ -74,9 +74,9 @@ impl Landing {
 
 /// A state with everything that a map tells about it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Full {
+pub struct FullState {
     /// Pole and derivatives.
-    pub landing: Landing,
+    pub map: ShootingMap,
     /// The base as seen from the contact, in axes whose second one is along the force.
     pub base: Base,
     /// Bending energy in `E I_base/L_w`.
@@ -85,7 +85,7 @@ pub struct Full {
 
 /// How a state changes with a coordinate of the sheet.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Change {
+pub struct StateDerivative {
     /// Of the base's tangent, as an angle.
     pub angle: f64,
     /// Of its position.
@@ -98,31 +98,27 @@ pub struct Change {
 
 /// A state, and how it changes with the contact and the load.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Moving {
+pub struct FirstVariation {
     /// The state.
-    pub full: Full,
+    pub full: FullState,
     /// By `tau` at fixed load.
-    pub by_tau: Change,
+    pub by_tau: StateDerivative,
     /// By the load.
-    pub by_load: Change,
+    pub by_load: StateDerivative,
 }
 
-impl Moving {
+impl FirstVariation {
     /// The state `step` further on in `(tau, load)`, to first order.
     #[must_use]
-    pub fn moved(&self, step: DVec2) -> Full {
-        let Full {
-            landing,
-            base,
-            energy,
-        } = self.full;
+    pub fn extrapolated(&self, step: DVec2) -> FullState {
+        let FullState { map, base, energy } = self.full;
         let (tau, load) = (self.by_tau, self.by_load);
-        let ln_pole = landing.by_tau * step.x + landing.by_load * step.y;
+        let ln_pole = map.by_tau * step.x + map.by_load * step.y;
         let angle = tau.angle * step.x + load.angle * step.y;
-        Full {
-            landing: Landing {
-                pole: landing.pole + ln_pole.rotate(landing.pole),
-                ..landing
+        FullState {
+            map: ShootingMap {
+                pole: map.pole + ln_pole.rotate(map.pole),
+                ..map
             },
             base: Base {
                 tangent: base.tangent + angle * base.tangent.perp(),
@@ -134,11 +130,11 @@ impl Moving {
     }
 }
 
-/// A landing with the second derivatives of `(ln D, phi)`.
+/// A map with the second derivatives of `(ln D, phi)`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Curved {
+pub struct SecondVariation {
     /// Pole and first derivatives.
-    pub landing: Landing,
+    pub map: ShootingMap,
     /// Twice by `tau`.
     pub by_tau_tau: DVec2,
     /// By `tau` and load.
@@ -147,22 +143,22 @@ pub struct Curved {
     pub by_load_load: DVec2,
 }
 
-impl Curved {
+impl SecondVariation {
     /// What a trajectory would say `step` further on in `(tau, load)`: the pole to second order, its first derivatives to
     /// first.
     #[must_use]
-    pub fn moved(&self, step: DVec2) -> Self {
-        let Landing {
+    pub fn extrapolated(&self, step: DVec2) -> Self {
+        let ShootingMap {
             pole,
             by_tau,
             by_load,
-        } = self.landing;
+        } = self.map;
         let turned_tau = self.by_tau_tau * step.x + self.by_tau_load * step.y;
         let turned_load = self.by_tau_load * step.x + self.by_load_load * step.y;
         let [tau, load] = [by_tau + 0.5 * turned_tau, by_load + 0.5 * turned_load];
         let ln_pole = tau * step.x + load * step.y;
         Self {
-            landing: Landing {
+            map: ShootingMap {
                 pole: (DVec2::from_angle(ln_pole.y) * ln_pole.x.exp()).rotate(pole),
                 by_tau: by_tau + turned_tau,
                 by_load: by_load + turned_load,
@@ -171,12 +167,12 @@ impl Curved {
         }
     }
 
-    /// Gradient of [`Landing::det`] in `(tau, load)`.
+    /// Gradient of [`ShootingMap::det`] in `(tau, load)`.
     #[must_use]
     pub fn det_gradient(&self) -> DVec2 {
-        let Landing {
+        let ShootingMap {
             by_tau, by_load, ..
-        } = self.landing;
+        } = self.map;
         DVec2::new(
             self.by_tau_tau.perp_dot(by_load) + by_tau.perp_dot(self.by_tau_load),
             self.by_tau_load.perp_dot(by_load) + by_tau.perp_dot(self.by_load_load),

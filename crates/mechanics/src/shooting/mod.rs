@@ -23,7 +23,10 @@ pub mod shape;
 pub use batch::{First, FirstAndEnergy, Second};
 pub use integrator::{Integrator, Nystrom8, Rk4, STAGES, Scales, Stage, integrate};
 pub use intrinsic::{Bent, Intrinsic, Spiral, Straight};
-pub use map::{Base, Change, Curved, Full, LONGEST_STEP, Landing, Moving, limited};
+pub use map::{
+    Base, FirstVariation, FullState, LONGEST_STEP, SecondVariation, ShootingMap, StateDerivative,
+    limited,
+};
 pub use material::{Even, Graded, Material, Measured, Swing};
 pub use reading::{Reader, Reading};
 pub use resolution::Resolution;

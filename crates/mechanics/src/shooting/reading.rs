@@ -1,6 +1,6 @@
 //! A state of the whisker in the units of people.
 
-use super::Full;
+use super::FullState;
 use crate::numerics::nearest_turn;
 use crate::rod::{Rest, Rod, Units, arclength_at};
 use glam::DVec2;
@@ -59,7 +59,7 @@ impl Reader {
     /// The state `full`, in contact at `tau`, after the signed `push` (radians) since the pole was first touched in the
     /// direction `touch`.
     #[must_use]
-    pub fn read(&self, tau: f64, full: &Full, touch: f64, push: f64) -> Reading {
+    pub fn read(&self, tau: f64, full: &FullState, touch: f64, push: f64) -> Reading {
         let (base, units) = (&full.base, &self.units);
         let to_base = DVec2::new(base.tangent.x, -base.tangent.y);
         let contact = to_base.rotate(-base.position);

@@ -15,7 +15,7 @@ pub trait Kernel<M: Integrator>: Kind {
         unit: Unit,
         effects: Effects,
         steps: u32,
-        launches: &Block,
+        conditions: &Block,
         count: usize,
     ) -> [Self::Answer; WIDTH];
 }
@@ -24,7 +24,7 @@ pub trait Kernel<M: Integrator>: Kind {
 struct Trajectories<'a, M, K> {
     effects: Effects,
     steps: u32,
-    launches: &'a Block<'a>,
+    conditions: &'a Block<'a>,
     count: usize,
     of: PhantomData<(M, K)>,
 }
@@ -36,7 +36,7 @@ macro_rules! kernel {
 
             #[inline(always)]
             fn run<T: Lanes>(self) -> Self::Output {
-                parts(T::LANES, self.launches, self.count, |part| {
+                parts(T::LANES, self.conditions, self.count, |part| {
                     by_effects::<$integrator, $kind, T>(self.effects, self.steps, part)
                 })
             }
@@ -47,13 +47,13 @@ macro_rules! kernel {
                 unit: Unit,
                 effects: Effects,
                 steps: u32,
-                launches: &Block,
+                conditions: &Block,
                 count: usize,
             ) -> [Self::Answer; WIDTH] {
                 unit.run(Trajectories::<$integrator, $kind> {
                     effects,
                     steps,
-                    launches,
+                    conditions,
                     count,
                     of: PhantomData,
                 })
@@ -72,7 +72,7 @@ pub struct Steps<'a> {
     /// How they are integrated.
     pub method: Method,
     /// The block.
-    pub launches: &'a Block<'a>,
+    pub conditions: &'a Block<'a>,
 }
 
 impl Task for Steps<'_> {
@@ -80,30 +80,30 @@ impl Task for Steps<'_> {
 
     #[inline(always)]
     fn run<T: Lanes>(self) -> Self::Output {
-        parts(T::LANES, self.launches, WIDTH, |part| {
+        parts(T::LANES, self.conditions, WIDTH, |part| {
             steps::<T>(self.method, part)
         })
     }
 }
 
-/// A block in parts of `lanes` launches, as far as there are `count` of them.
+/// A block in parts of `lanes` conditions, as far as there are `count` of them.
 #[inline(always)]
 fn parts<A: Copy + Default>(
     lanes: usize,
-    launches: &Block,
+    conditions: &Block,
     count: usize,
     compute: impl Fn(&Block) -> [A; WIDTH],
 ) -> [A; WIDTH] {
     if lanes == WIDTH {
-        return compute(launches);
+        return compute(conditions);
     }
     let mut answers = [A::default(); WIDTH];
-    for (launches, answers) in launches[..count]
+    for (conditions, answers) in conditions[..count]
         .chunks(lanes)
         .zip(answers.chunks_mut(lanes))
     {
         let part = compute(&std::array::from_fn(|lane| {
-            launches[lane.min(launches.len() - 1)]
+            conditions[lane.min(conditions.len() - 1)]
         }));
         answers.copy_from_slice(&part[..answers.len()]);
     }

@@ -4,7 +4,7 @@ use crate::numerics::Real;
 use crate::numerics::{Lanes, WIDTH};
 use crate::rod::Effects;
 use crate::shooting::Integrator;
-use crate::shooting::batch::Launch;
+use crate::shooting::batch::InitialCondition;
 use crate::shooting::batch::kernel::by_effects;
 use crate::shooting::batch::output::Derived;
 use std::cell::Cell;
@@ -78,10 +78,10 @@ impl Lanes for Counted {
 pub fn flops<M: Integrator, K: Derived<Counted>>(
     effects: Effects,
     steps: u32,
-    launch: &Launch,
+    condition: &InitialCondition,
 ) -> u64 {
-    let effects = effects.reaching(launch.rod.taper * launch.tau);
+    let effects = effects.reaching(condition.rod.taper * condition.tau);
     COUNT.set(0);
-    let _ = by_effects::<M, K, Counted>(effects, steps, &[launch; WIDTH]);
+    let _ = by_effects::<M, K, Counted>(effects, steps, &[condition; WIDTH]);
     COUNT.get()
 }

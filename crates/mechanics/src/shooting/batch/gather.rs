@@ -3,26 +3,26 @@
 use crate::numerics::{Lanes, WIDTH};
 use crate::rod::Piece;
 use crate::rod::Rod;
-use crate::shooting::batch::Launch;
+use crate::shooting::batch::InitialCondition;
 use crate::shooting::batch::kernel::Block;
 use crate::shooting::contact::{arc, parabola_tangent};
 use crate::shooting::{Bent, Intrinsic, Spiral, Straight};
 use crate::shooting::{Even, Graded, Material, Measured};
 
-/// What `number` tells of each launch. (`map` of an array is not inlined into functions for a SIMD unit.)
+/// What `number` tells of each condition. (`map` of an array is not inlined into functions for a SIMD unit.)
 #[inline(always)]
-pub fn numbers(launches: &Block, number: impl Fn(&Launch) -> f64) -> [f64; WIDTH] {
+pub fn numbers(conditions: &Block, number: impl Fn(&InitialCondition) -> f64) -> [f64; WIDTH] {
     let mut numbers = [0.0; WIDTH];
-    for (lane, launch) in numbers.iter_mut().zip(launches) {
-        *lane = number(launch);
+    for (lane, condition) in numbers.iter_mut().zip(conditions) {
+        *lane = number(condition);
     }
     numbers
 }
 
 /// The same in lanes.
 #[inline(always)]
-pub fn lanes<T: Lanes>(launches: &Block, number: impl Fn(&Launch) -> f64) -> T {
-    T::pack(numbers(launches, number))
+pub fn lanes<T: Lanes>(conditions: &Block, number: impl Fn(&InitialCondition) -> f64) -> T {
+    T::pack(numbers(conditions, number))
 }
 
 /// A place on each rod of a block.
@@ -50,16 +50,16 @@ impl<T: Lanes> Place<T> {
 /// A material that can be gathered from the rods of a block, and the way along it.
 pub trait GatherMaterial<T: Lanes>: Material<T> {
     /// The material on piece `piece` of a profile.
-    fn gather(launches: &Block, piece: usize) -> Self;
+    fn gather(conditions: &Block, piece: usize) -> Self;
 
     /// Stiffness at the contacts, over that at the base; `radius` and `s` are those there.
-    fn stiffness(launches: &Block, radius: T, s: T) -> T;
+    fn stiffness(conditions: &Block, radius: T, s: T) -> T;
 
     /// Where piece `piece` begins; the base for the first one.
-    fn begin(launches: &Block, piece: usize) -> Place<T>;
+    fn begin(conditions: &Block, piece: usize) -> Place<T>;
 
     /// How many pieces the way from the contacts at the arclengths `s` to the base has.
-    fn pieces(launches: &Block, s: T) -> usize;
+    fn pieces(conditions: &Block, s: T) -> usize;
 }
 
 impl<T: Lanes> GatherMaterial<T> for Even {
@@ -86,14 +86,14 @@ impl<T: Lanes> GatherMaterial<T> for Even {
 
 impl<T: Lanes> GatherMaterial<T> for Graded<T> {
     #[inline(always)]
-    fn gather(launches: &Block, _: usize) -> Self {
-        let gradient: T = lanes(launches, |launch| launch.rod.gradient);
+    fn gather(conditions: &Block, _: usize) -> Self {
+        let gradient: T = lanes(conditions, |condition| condition.rod.gradient);
         Self { gradient }
     }
 
     #[inline(always)]
-    fn stiffness(launches: &Block, radius: T, s: T) -> T {
-        let gradient: T = lanes(launches, |launch| launch.rod.gradient);
+    fn stiffness(conditions: &Block, radius: T, s: T) -> T {
+        let gradient: T = lanes(conditions, |condition| condition.rod.gradient);
         radius * radius * (radius * radius) * gradient.mul_add(s, T::of(1.0))
     }
 
@@ -110,48 +110,52 @@ impl<T: Lanes> GatherMaterial<T> for Graded<T> {
 
 impl<T: Lanes> GatherMaterial<T> for Measured<T> {
     #[inline(always)]
-    fn gather(launches: &Block, piece: usize) -> Self {
+    fn gather(conditions: &Block, piece: usize) -> Self {
         // A rod without a profile has no business in this kernel; its piece is its own cone.
-        let pieces = launches.map(|launch| match launch.rod.profile {
+        let pieces = conditions.map(|condition| match condition.rod.profile {
             Some(profile) => profile.pieces[piece],
-            None => Piece::cone(launch.rod.taper),
+            None => Piece::cone(condition.rod.taper),
         });
         Self {
             from: T::pack(pieces.map(|piece| piece.from)),
             cubic: std::array::from_fn(|i| T::pack(pieces.map(|piece| piece.cubic[i]))),
-            gradient: lanes(launches, |launch| launch.rod.gradient),
+            gradient: lanes(conditions, |condition| condition.rod.gradient),
         }
     }
 
     #[inline(always)]
-    fn stiffness(launches: &Block, _: T, s: T) -> T {
+    fn stiffness(conditions: &Block, _: T, s: T) -> T {
         let s = s.unpack();
-        T::pack(std::array::from_fn(|i| launches[i].rod.stiffness(s[i])))
+        T::pack(std::array::from_fn(|i| conditions[i].rod.stiffness(s[i])))
     }
 
     #[inline(always)]
-    fn begin(launches: &Block, piece: usize) -> Place<T> {
+    fn begin(conditions: &Block, piece: usize) -> Place<T> {
         let begin = |rod: &Rod| {
             rod.profile
                 .map_or(0.0, |profile| profile.pieces[piece].from)
         };
         Place {
-            tau: lanes(launches, |Launch { rod, .. }| rod.tau(begin(rod))),
-            radius: lanes(launches, |Launch { rod, .. }| 1.0 - rod.taper * begin(rod)),
-            s: lanes(launches, |Launch { rod, .. }| begin(rod)),
+            tau: lanes(conditions, |InitialCondition { rod, .. }| {
+                rod.tau(begin(rod))
+            }),
+            radius: lanes(conditions, |InitialCondition { rod, .. }| {
+                1.0 - rod.taper * begin(rod)
+            }),
+            s: lanes(conditions, |InitialCondition { rod, .. }| begin(rod)),
         }
     }
 
     #[inline(always)]
-    fn pieces(launches: &Block, s: T) -> usize {
-        launches[0].rod.piece(s.unpack()[0]) + 1
+    fn pieces(conditions: &Block, s: T) -> usize {
+        conditions[0].rod.piece(s.unpack()[0]) + 1
     }
 }
 
 /// A rest shape that can be gathered from the rods of a block.
 pub trait Gather<T: Lanes>: Intrinsic<T> {
     /// The rest shape, and what is known of it at the arclengths `s`.
-    fn gather(launches: &Block, s: T) -> (Self, AtRest<T, Self::State>);
+    fn gather(conditions: &Block, s: T) -> (Self, AtRest<T, Self::State>);
 }
 
 /// The whisker at rest where the contact is.
@@ -179,14 +183,16 @@ impl<T: Lanes> Gather<T> for Straight {
 
 impl<T: Lanes> Gather<T> for Bent<T> {
     #[inline(always)]
-    fn gather(launches: &Block, s: T) -> (Self, AtRest<T, [T; 2]>) {
-        let bend = lanes(launches, |launch| launch.rod.bend);
+    fn gather(conditions: &Block, s: T) -> (Self, AtRest<T, [T; 2]>) {
+        let bend = lanes(conditions, |condition| condition.rod.bend);
         let twice_bend = bend + bend;
-        let is_level = launches.iter().all(|launch| launch.rod.slope == 0.0);
+        let is_level = conditions
+            .iter()
+            .all(|condition| condition.rod.slope == 0.0);
         let at_base = if is_level {
             T::of(0.0)
         } else {
-            arc(lanes(launches, |launch| launch.rod.slope))
+            arc(lanes(conditions, |condition| condition.rod.slope))
         };
         let [cos, sin] = parabola_tangent(bend, at_base, s);
         let curvature = twice_bend * cos * cos * cos;
@@ -201,12 +207,13 @@ impl<T: Lanes> Gather<T> for Bent<T> {
 
 impl<T: Lanes> Gather<T> for Spiral<T> {
     #[inline(always)]
-    fn gather(launches: &Block, s: T) -> (Self, AtRest<T, ()>) {
-        let coefficient =
-            |i: usize| move |launch: &Launch| launch.rod.spiral.unwrap_or_default()[i];
+    fn gather(conditions: &Block, s: T) -> (Self, AtRest<T, ()>) {
+        let coefficient = |i: usize| {
+            move |condition: &InitialCondition| condition.rod.spiral.unwrap_or_default()[i]
+        };
         let spiral = Self {
-            at_base: lanes(launches, coefficient(0)),
-            slope: lanes(launches, coefficient(1)),
+            at_base: lanes(conditions, coefficient(0)),
+            slope: lanes(conditions, coefficient(1)),
         };
         let at_rest = AtRest {
             state: (),

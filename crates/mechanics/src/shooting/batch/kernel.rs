@@ -4,7 +4,7 @@ use crate::numerics::{Lanes, WIDTH};
 use crate::rod::Effects;
 use crate::shooting::batch::gather::{Gather, GatherMaterial, Place, lanes, numbers};
 use crate::shooting::batch::output::Derived;
-use crate::shooting::batch::{Launch, Method};
+use crate::shooting::batch::{InitialCondition, Method};
 use crate::shooting::contact::{Contact, radius_and_arclength};
 use crate::shooting::sensitivity::{Arrival, Order};
 use crate::shooting::{Bent, Spiral, Straight};
@@ -12,20 +12,20 @@ use crate::shooting::{Even, Graded, Measured};
 use crate::shooting::{Integrator, Scales, integrate};
 use crate::shooting::{RodSystem, Section};
 
-/// The launches of one block.
-pub type Block<'a> = [&'a Launch; WIDTH];
+/// The conditions of one block.
+pub type Block<'a> = [&'a InitialCondition; WIDTH];
 
 /// One specialised kernel per set of effects.
 #[inline(always)]
 pub fn by_effects<M: Integrator, K: Derived<T>, T: Lanes>(
     effects: Effects,
     steps: u32,
-    launches: &Block,
+    conditions: &Block,
 ) -> [K::Answer; WIDTH] {
     match (effects.curvature, effects.spiral) {
-        (_, true) => by_stiffness::<M, K, K::General, T, Spiral<_>>(effects, steps, launches),
-        (true, false) => by_stiffness::<M, K, K::General, T, Bent<_>>(effects, steps, launches),
-        (false, false) => by_stiffness::<M, K, K::Similar, T, Straight>(effects, steps, launches),
+        (_, true) => by_stiffness::<M, K, K::General, T, Spiral<_>>(effects, steps, conditions),
+        (true, false) => by_stiffness::<M, K, K::General, T, Bent<_>>(effects, steps, conditions),
+        (false, false) => by_stiffness::<M, K, K::Similar, T, Straight>(effects, steps, conditions),
     }
 }
 
@@ -35,35 +35,35 @@ pub fn by_effects<M: Integrator, K: Derived<T>, T: Lanes>(
 fn by_stiffness<M: Integrator, K: Derived<T>, E, T: Lanes, I: Gather<T>>(
     effects: Effects,
     steps: u32,
-    launches: &Block,
+    conditions: &Block,
 ) -> [K::Answer; WIDTH]
 where
     E: Order<T, Known = <K::General as Order<T>>::Known>,
 {
     match (effects.profile, effects.gradient, effects.advances()) {
-        (true, _, _) => block::<M, K, K::General, T, I, Measured<_>, true>(steps, launches),
-        (false, true, _) => block::<M, K, K::General, T, I, Graded<_>, true>(steps, launches),
-        (false, false, true) => block::<M, K, E, T, I, Even, true>(steps, launches),
-        (false, false, false) => block::<M, K, E, T, I, Even, false>(steps, launches),
+        (true, _, _) => block::<M, K, K::General, T, I, Measured<_>, true>(steps, conditions),
+        (false, true, _) => block::<M, K, K::General, T, I, Graded<_>, true>(steps, conditions),
+        (false, false, true) => block::<M, K, E, T, I, Even, true>(steps, conditions),
+        (false, false, false) => block::<M, K, E, T, I, Even, false>(steps, conditions),
     }
 }
 
 /// Arclengths of the contacts, and the steps that the trajectories take.
 #[inline(always)]
-pub fn steps<T: Lanes>(method: Method, launches: &Block) -> [(f64, u32); WIDTH] {
-    let taper = numbers(launches, |launch| launch.rod.taper);
-    let tau = numbers(launches, |launch| launch.tau);
+pub fn steps<T: Lanes>(method: Method, conditions: &Block) -> [(f64, u32); WIDTH] {
+    let taper = numbers(conditions, |condition| condition.rod.taper);
+    let tau = numbers(conditions, |condition| condition.tau);
     let [_, s] = radius_and_arclength(T::pack(taper), T::pack(tau));
     let s = s.unpack();
     let mut steps = [0; WIDTH];
     if method.effects.profile || method.effects.gradient {
-        for (lane, launch) in launches.iter().enumerate() {
-            let Launch { rod, tau, load } = launch;
+        for (lane, condition) in conditions.iter().enumerate() {
+            let InitialCondition { rod, tau, load } = condition;
             steps[lane] = method.resolution.steps_from(rod, *tau, *load, s[lane]);
         }
     } else {
-        let bend = numbers(launches, |launch| launch.rod.sharpest_bend());
-        let load = numbers(launches, |launch| launch.load);
+        let bend = numbers(conditions, |condition| condition.rod.sharpest_bend());
+        let load = numbers(conditions, |condition| condition.load);
         for lane in 0..WIDTH {
             let at = [tau[lane], load[lane], s[lane]];
             steps[lane] = method.resolution.steps_on_even(taper[lane], bend[lane], at);
@@ -78,7 +78,7 @@ pub fn steps<T: Lanes>(method: Method, launches: &Block) -> [(f64, u32); WIDTH] 
 
 /// Integrates `WIDTH` trajectories in step.
 #[inline(always)]
-fn block<M, K, O, T, I, C, const TAPER: bool>(steps: u32, launches: &Block) -> [K::Answer; WIDTH]
+fn block<M, K, O, T, I, C, const TAPER: bool>(steps: u32, conditions: &Block) -> [K::Answer; WIDTH]
 where
     M: Integrator,
     K: Derived<T>,
@@ -87,20 +87,20 @@ where
     I: Gather<T>,
     C: GatherMaterial<T>,
 {
-    let tau: T = lanes(launches, |launch| launch.tau);
-    let load: T = lanes(launches, |launch| launch.load);
-    let taper: T = lanes(launches, |launch| launch.rod.taper);
+    let tau: T = lanes(conditions, |condition| condition.tau);
+    let load: T = lanes(conditions, |condition| condition.load);
+    let taper: T = lanes(conditions, |condition| condition.rod.taper);
     let [radius, s] = radius_and_arclength(taper, tau);
-    let (intrinsic, at_rest) = I::gather(launches, s);
+    let (intrinsic, at_rest) = I::gather(conditions, s);
     let (zero, one) = (T::of(0.0), T::of(1.0));
     // The contact's tangent is that of the angle of friction.
-    let friction: T = lanes(launches, |launch| launch.rod.friction);
+    let friction: T = lanes(conditions, |condition| condition.rod.friction);
     let cos = one / friction.mul_add(friction, one).sqrt();
     let contact = Contact {
         radius,
         force: load * radius * radius,
         tangent: [cos, friction * cos],
-        stiffness: C::stiffness(launches, radius, s),
+        stiffness: C::stiffness(conditions, radius, s),
         curvature: at_rest.curvature,
         curvature_slope: at_rest.slope,
     };
@@ -108,13 +108,13 @@ where
     let rod = [c, sin, zero, zero, zero];
     let mut state = (at_rest.state, (rod, O::start(&contact)));
     let mut here = Place { tau, radius, s };
-    for piece in (0..C::pieces(launches, s)).rev() {
-        let there = C::begin(launches, piece);
+    for piece in (0..C::pieces(conditions, s)).rev() {
+        let there = C::begin(conditions, piece);
         let h = (here.tau - there.tau) / T::of(f64::from(steps));
         let system = RodSystem {
             force: contact.force,
             intrinsic,
-            material: C::gather(launches, piece),
+            material: C::gather(conditions, piece),
         };
         let (scales, rho) = if TAPER {
             (Scales::tapered::<M>(taper, h), here.radius)
@@ -135,7 +135,7 @@ where
         taper,
         rod,
     };
-    let pole: T = lanes(launches, |launch| launch.rod.pole);
+    let pole: T = lanes(conditions, |condition| condition.rod.pole);
     // See `Rod::to_pole`.
     let to_pole = [pole * contact.tangent[1], -pole * contact.tangent[0]];
     K::answers(&arrival, to_pole, O::known(&arrival, carried))

@@ -15,7 +15,7 @@ mod pole;
 pub use dispatch::Kernel;
 pub use flops::flops;
 pub use output::{Derived, First, FirstAndEnergy, Kind, Second};
-pub use padded::land_in_company;
+pub use padded::shoot_padded;
 
 use super::{Integrator, Resolution};
 use crate::numerics::{Unit, WIDTH};
@@ -26,7 +26,7 @@ use std::borrow::Borrow;
 
 /// One trajectory: from the contact at `tau` under `load = f/radius^2` to the base.
 #[derive(Clone, Copy, Debug)]
-pub struct Launch {
+pub struct InitialCondition {
     /// The rod.
     pub rod: Rod,
     /// `tau` of the contact.
@@ -64,7 +64,7 @@ impl Method {
     }
 }
 
-/// The fewest launches for a thread, so that most of its blocks are full.
+/// The fewest conditions for a thread, so that most of its blocks are full.
 const FEWEST_TOGETHER: usize = 1024;
 
 /// Parts of a batch for each thread, so that threads end together.
@@ -78,28 +78,31 @@ pub fn together(count: usize) -> usize {
     count.div_ceil(parts).max(FEWEST_TOGETHER)
 }
 
-/// Computes `K` for every launch with the integrator `M`, on all threads of the current pool.
+/// Computes `K` for every condition with the integrator `M`, on all threads of the current pool.
 #[must_use]
-pub fn land<M: Integrator, K: Kernel<M>>(method: Method, launches: &[Launch]) -> Vec<K::Answer> {
-    land_on::<M, K>(Unit::detect(), method, launches)
+pub fn shoot<M: Integrator, K: Kernel<M>>(
+    method: Method,
+    conditions: &[InitialCondition],
+) -> Vec<K::Answer> {
+    shoot_on::<M, K>(Unit::detect(), method, conditions)
 }
 
 /// The same on a given unit.
 #[must_use]
-pub fn land_on<M: Integrator, K: Kernel<M>>(
+pub fn shoot_on<M: Integrator, K: Kernel<M>>(
     unit: Unit,
     method: Method,
-    launches: &[Launch],
+    conditions: &[InitialCondition],
 ) -> Vec<K::Answer> {
-    let mut answers = vec![K::Answer::default(); launches.len()];
-    let together = together(launches.len());
-    if launches.len() <= together {
-        part::<M, K>(unit, method, launches, &mut answers);
+    let mut answers = vec![K::Answer::default(); conditions.len()];
+    let together = together(conditions.len());
+    if conditions.len() <= together {
+        part::<M, K>(unit, method, conditions, &mut answers);
     } else {
         answers
             .par_chunks_mut(together)
-            .zip(launches.par_chunks(together))
-            .for_each(|(answers, launches)| part::<M, K>(unit, method, launches, answers));
+            .zip(conditions.par_chunks(together))
+            .for_each(|(answers, conditions)| part::<M, K>(unit, method, conditions, answers));
     }
     answers
 }
@@ -108,27 +111,27 @@ pub fn land_on<M: Integrator, K: Kernel<M>>(
 fn part<M: Integrator, K: Kernel<M>>(
     unit: Unit,
     method: Method,
-    launches: &[Launch],
+    conditions: &[InitialCondition],
     answers: &mut [K::Answer],
 ) {
-    stream::<M, K, _>(unit, method, launches.iter(), |i, answer| {
+    stream::<M, K, _>(unit, method, conditions.iter(), |i, answer| {
         answers[i] = *answer
     });
 }
 
-/// Computes `K` for launches as they come, on this thread, and hands each answer on with the place of its launch, in no order.
-pub fn land_each<M: Integrator, K: Kernel<M>>(
+/// Computes `K` for conditions as they come, on this thread, and hands each answer on with the place of its condition, in no order.
+pub fn shoot_each<M: Integrator, K: Kernel<M>>(
     method: Method,
-    launches: impl Iterator<Item = Launch>,
+    conditions: impl Iterator<Item = InitialCondition>,
     take: impl FnMut(usize, &K::Answer),
 ) {
-    stream::<M, K, _>(Unit::detect(), method, launches, take);
+    stream::<M, K, _>(Unit::detect(), method, conditions, take);
 }
 
-fn stream<M: Integrator, K: Kernel<M>, L: Borrow<Launch>>(
+fn stream<M: Integrator, K: Kernel<M>, L: Borrow<InitialCondition>>(
     unit: Unit,
     method: Method,
-    launches: impl Iterator<Item = L>,
+    conditions: impl Iterator<Item = L>,
     mut take: impl FnMut(usize, &K::Answer),
 ) {
     let mut compute = |kind: BlockKind, block: &mut Vec<(usize, L)>| {
@@ -144,23 +147,23 @@ fn stream<M: Integrator, K: Kernel<M>, L: Borrow<Launch>>(
     let mut kinds = Kinds::default();
     let mut open: Vec<Vec<(usize, L)>> = Vec::new();
     let mut next: Vec<L> = Vec::with_capacity(WIDTH);
-    let mut launches = launches.fuse();
+    let mut conditions = conditions.fuse();
     let mut from = 0;
     loop {
-        next.extend(launches.by_ref().take(WIDTH));
+        next.extend(conditions.by_ref().take(WIDTH));
         let Some(last) = next.len().checked_sub(1) else {
             break;
         };
-        let launches = &std::array::from_fn(|lane| next[lane.min(last)].borrow());
-        let steps = unit.run(Steps { method, launches });
-        for (i, (launch, steps)) in (from..).zip(next.drain(..).zip(steps)) {
-            let kind = BlockKind::new(method, launch.borrow(), steps);
+        let conditions = &std::array::from_fn(|lane| next[lane.min(last)].borrow());
+        let steps = unit.run(Steps { method, conditions });
+        for (i, (condition, steps)) in (from..).zip(next.drain(..).zip(steps)) {
+            let kind = BlockKind::new(method, condition.borrow(), steps);
             let place = kinds.place(kind);
             if place == open.len() {
                 open.push(Vec::with_capacity(WIDTH));
             }
             let block = &mut open[place];
-            block.push((i, launch));
+            block.push((i, condition));
             if block.len() == WIDTH {
                 compute(kind, block);
             }
@@ -184,9 +187,13 @@ struct BlockKind {
 }
 
 impl BlockKind {
-    /// That of a launch from arclength `s` that takes so many `steps`.
+    /// That of a condition from arclength `s` that takes so many `steps`.
     #[inline]
-    fn new(method: Method, Launch { rod, tau, .. }: &Launch, (s, steps): (f64, u32)) -> Self {
+    fn new(
+        method: Method,
+        InitialCondition { rod, tau, .. }: &InitialCondition,
+        (s, steps): (f64, u32),
+    ) -> Self {
         Self {
             effects: method.effects.reaching(rod.taper * tau),
             piece: rod.piece(s),

@@ -6,7 +6,9 @@ use crate::shooting::contact::Contact;
 use crate::shooting::sensitivity::{
     Arrival, Curvatures, Energetic, Order, Slopes, Triple, general, similar,
 };
-use crate::shooting::{Base, Change, Curved, Full, Landing, Moving};
+use crate::shooting::{
+    Base, FirstVariation, FullState, SecondVariation, ShootingMap, StateDerivative,
+};
 use glam::DVec2;
 
 /// What a batch computes for each trajectory.
@@ -43,7 +45,7 @@ pub struct FirstAndEnergy;
 pub struct Second;
 
 impl Kind for First {
-    type Answer = Landing;
+    type Answer = ShootingMap;
 }
 
 impl<T: Lanes> Derived<T> for First {
@@ -51,14 +53,14 @@ impl<T: Lanes> Derived<T> for First {
     type Similar = similar::First;
 
     #[inline(always)]
-    fn answers(arrival: &Arrival<T>, pole: [T; 2], slopes: Slopes<T>) -> [Landing; WIDTH] {
-        let numbers = Centre::new(arrival, pole).landing(&slopes);
-        spread(numbers, landing)
+    fn answers(arrival: &Arrival<T>, pole: [T; 2], slopes: Slopes<T>) -> [ShootingMap; WIDTH] {
+        let numbers = Centre::new(arrival, pole).map(&slopes);
+        spread(numbers, map)
     }
 }
 
 impl Kind for FirstAndEnergy {
-    type Answer = Moving;
+    type Answer = FirstVariation;
 }
 
 impl<T: Lanes> Derived<T> for FirstAndEnergy {
@@ -70,8 +72,8 @@ impl<T: Lanes> Derived<T> for FirstAndEnergy {
         arrival: &Arrival<T>,
         pole: [T; 2],
         (slopes, energy): (Slopes<T>, T),
-    ) -> [Moving; WIDTH] {
-        let [a, b, c, d, e, g] = Centre::new(arrival, pole).landing(&slopes);
+    ) -> [FirstVariation; WIDTH] {
+        let [a, b, c, d, e, g] = Centre::new(arrival, pole).map(&slopes);
         let [cos, sin, x, y, _] = arrival.rod;
         let Contact {
             radius,
@@ -125,15 +127,15 @@ impl<T: Lanes> Derived<T> for FirstAndEnergy {
                 energy,
                 changes @ ..,
             ] = numbers;
-            let change = |i: usize| Change {
+            let change = |i: usize| StateDerivative {
                 angle: changes[i],
                 position: DVec2::new(changes[i + 1], changes[i + 2]),
                 force: changes[i + 3],
                 energy: changes[i + 4],
             };
-            Moving {
-                full: Full {
-                    landing: landing([a, b, c, d, e, g]),
+            FirstVariation {
+                full: FullState {
+                    map: map([a, b, c, d, e, g]),
                     base: Base {
                         tangent: DVec2::new(cos, sin),
                         position: DVec2::new(x, y),
@@ -149,7 +151,7 @@ impl<T: Lanes> Derived<T> for FirstAndEnergy {
 }
 
 impl Kind for Second {
-    type Answer = Curved;
+    type Answer = SecondVariation;
 }
 
 impl<T: Lanes> Derived<T> for Second {
@@ -157,9 +159,13 @@ impl<T: Lanes> Derived<T> for Second {
     type Similar = similar::Second;
 
     #[inline(always)]
-    fn answers(arrival: &Arrival<T>, pole: [T; 2], known: Curvatures<T>) -> [Curved; WIDTH] {
+    fn answers(
+        arrival: &Arrival<T>,
+        pole: [T; 2],
+        known: Curvatures<T>,
+    ) -> [SecondVariation; WIDTH] {
         let centre = Centre::new(arrival, pole);
-        let [a, b, c, d, e, g] = centre.landing(&known.slopes);
+        let [a, b, c, d, e, g] = centre.map(&known.slopes);
         let (by_tau, by_load) = (
             centre.moved(known.slopes.by_tau),
             centre.moved(known.slopes.by_load),
@@ -184,8 +190,8 @@ impl<T: Lanes> Derived<T> for Second {
         spread(numbers, |numbers| {
             let [a, b, c, d, e, g, second @ ..] = numbers;
             let pair = |i: usize| DVec2::new(second[i], second[i + 1]);
-            Curved {
-                landing: landing([a, b, c, d, e, g]),
+            SecondVariation {
+                map: map([a, b, c, d, e, g]),
                 by_tau_tau: pair(0),
                 by_tau_load: pair(2),
                 by_load_load: pair(4),
@@ -194,8 +200,8 @@ impl<T: Lanes> Derived<T> for Second {
     }
 }
 
-fn landing([x, y, ln_d_tau, phi_tau, ln_d_load, phi_load]: [f64; 6]) -> Landing {
-    Landing {
+fn map([x, y, ln_d_tau, phi_tau, ln_d_load, phi_load]: [f64; 6]) -> ShootingMap {
+    ShootingMap {
         pole: DVec2::new(x, y),
         by_tau: DVec2::new(ln_d_tau, phi_tau),
         by_load: DVec2::new(ln_d_load, phi_load),

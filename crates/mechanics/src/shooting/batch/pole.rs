@@ -45,9 +45,9 @@ impl<T: Lanes> Centre<T> {
         self.once(of).minus(by.times(and))
     }
 
-    /// The numbers of a [`Landing`].
+    /// The numbers of a [`ShootingMap`].
     #[inline(always)]
-    pub fn landing(&self, slopes: &Slopes<T>) -> [T; 6] {
+    pub fn map(&self, slopes: &Slopes<T>) -> [T; 6] {
         let (tau, load) = (self.once(slopes.by_tau), self.once(slopes.by_load));
         [self.pole.re, self.pole.im, tau.re, tau.im, load.re, load.im]
     }

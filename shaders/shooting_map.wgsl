@@ -1,6 +1,6 @@
 // The pole as the base sees it, and Newton's step; the twin of `crates/mechanics/src/shooting/map.rs` and `shooting/batch/output.rs` beside it.
 
-struct Landing {
+struct ShootingMap {
     pole: vec2<real>,
     // d(ln D, phi)/dtau at fixed load, and by the load
     by_tau: vec2<real>,
@@ -50,7 +50,7 @@ fn turned(by: vec3<real>, w: vec2<real>) -> vec2<real> {
 }
 
 // One trajectory, in `steps` steps, or as many for every piece of a profile.
-fn land(rod: Rod, tau: real, start: Start, steps: u32) -> Landing {
+fn shoot_once(rod: Rod, tau: real, start: Start, steps: u32) -> ShootingMap {
     let at_contact = State(
         vec2<real>(start.cos, start.sin),
         vec4<real>(start.tangent, 0.0, 0.0),
@@ -61,7 +61,7 @@ fn land(rod: Rod, tau: real, start: Start, steps: u32) -> Landing {
     let to_pole = rod.pole * vec2<real>(start.tangent.y, -start.tangent.x);
     let w = to_pole - y.rod.zw;
     let by = slopes(rod, start, y);
-    return Landing(
+    return ShootingMap(
         times(vec2<real>(y.rod.x, -y.rod.y), w),
         turned(by.by_tau, w),
         turned(by.by_load, w),
@@ -69,10 +69,10 @@ fn land(rod: Rod, tau: real, start: Start, steps: u32) -> Landing {
 }
 
 // Newton's step (tau, load) toward `wanted` from the contact at arclength s, shortened as a whole.
-fn newton_step(landing: Landing, wanted: vec2<real>, s: real, load: real) -> vec2<real> {
-    let residual = over(wanted - landing.pole, landing.pole);
-    let det = cross2(landing.by_tau, landing.by_load);
-    let full = vec2<real>(cross2(residual, landing.by_load), cross2(landing.by_tau, residual)) / det;
+fn newton_step(map: ShootingMap, wanted: vec2<real>, s: real, load: real) -> vec2<real> {
+    let residual = over(wanted - map.pole, map.pole);
+    let det = cross2(map.by_tau, map.by_load);
+    let full = vec2<real>(cross2(residual, map.by_load), cross2(map.by_tau, residual)) / det;
     let length = max(abs(full.x) / s, abs(full.y) / (abs(load) + 1.0 / (s * s)));
     return full / max(length / LONGEST_STEP, 1.0);
 }
