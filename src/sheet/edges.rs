@@ -5,15 +5,10 @@ use super::fold::FoldPoint;
 use super::lattice::Lattice;
 use super::loads::{LOADS, PARTS, directions};
 use super::near::FoldLine;
-use super::rows::Row;
 use super::tip_line::{TipLine, Turn};
 use crate::model::batch::{Launch, Method, land, land_in_company};
-use crate::model::{Curved, First, Landing, Nystrom8, Rod, Second, nearest_turn};
+use crate::model::{Curved, First, Landing, Nystrom8, Rest, Rod, Second, arclength, nearest_turn};
 use glam::DVec2;
-
-/// Relative slack with which a distance counts as reached, so that a whisker whose resting tip just touches
-/// the pole does touch it, whatever the rounding.
-pub const REACH_SLACK: f64 = 1e-12;
 
 /// The Newton step, relative to the distance of the samples, after which an extremum is known: its square is left.
 const LAST_STEP: f64 = 1e-7;
@@ -59,11 +54,19 @@ pub struct Edges {
     pub tip: Vec<Sample>,
     /// The same between the samples.
     pub tip_line: TipLine,
+    /// How far, in `tau`, the integration puts the tip of the resting whisker from where its shape at rest has it.
+    pub tip_error: f64,
 }
 
 impl Edges {
-    /// Samples both edges; `lattice` knows the whole turns of the pole's direction.
-    pub fn new(method: Method, rod: &Rod, columns: &Columns, lattice: &Lattice) -> Self {
+    /// Samples both edges of a whisker that is at `rest` without load; `lattice` knows the whole turns of the pole's direction.
+    pub fn new(
+        method: Method,
+        rod: &Rod,
+        rest: &Rest,
+        columns: &Columns,
+        lattice: &Lattice,
+    ) -> Self {
         let fold: Vec<Sample> = columns.folds[..=columns.tip]
             .iter()
             .zip(lattice.phi_at_fold())
@@ -72,7 +75,9 @@ impl Edges {
                 Sample::new(i as f64, fold.tau, fold.load, &fold.landing.landing, phi)
             })
             .collect();
-        let (mut tip, tip_line) = tip_samples(method, rod, &columns.folds[columns.tip]);
+        let (mut tip, tip_line, at_touch) = tip_samples(method, rod, &columns.folds[columns.tip]);
+        let (tip_at_rest, _) = rest.at_arclength(arclength(rod, rod.tau_tip()));
+        let pole = rest.pole_at_distance(tip_at_rest.length()).length();
         tip.extend(fold.last().map(|corner| Sample {
             place: 1.0,
             ..*corner
@@ -81,21 +86,16 @@ impl Edges {
             fold,
             fold_line: FoldLine::new(columns, lattice.phi_at_fold()),
             fold_grows: (0..columns.tip).all(|column| columns.grow_after(column)),
+            tip_error: ((at_touch.pole.length() / pole).ln() / at_touch.by_tau.x).abs(),
             tip,
             tip_line,
         }
     }
-
-    /// Whether a whisker at rest reaches the pole of this row.
-    #[must_use]
-    pub fn touches(&self, row: &Row) -> bool {
-        self.tip[0].ln_distance > row.pole_distance.ln() - REACH_SLACK
-    }
 }
 
 /// The tip edge from first touch to before the `corner`, with its extrema of distance among the samples, and the line through the
-/// others and the corner.
-fn tip_samples(method: Method, rod: &Rod, corner: &FoldPoint) -> (Vec<Sample>, TipLine) {
+/// others and the corner, and first touch.
+fn tip_samples(method: Method, rod: &Rod, corner: &FoldPoint) -> (Vec<Sample>, TipLine, Landing) {
     let launch = |load| Launch {
         rod: *rod,
         tau: corner.tau,
@@ -122,7 +122,7 @@ fn tip_samples(method: Method, rod: &Rod, corner: &FoldPoint) -> (Vec<Sample>, T
             samples.push(sample(load, &landing));
         }
     }
-    (samples, line)
+    (samples, line, landings[0])
 }
 
 /// The load at which the distance turns with the contact at the tip, and the landing there: mostly the line along the tip knows the

@@ -148,6 +148,6 @@ fn fainter_bends_are_refused() {
             ..case.clone()
         }
         .text();
-        assert_eq!(Scene::parse(&text, "hard", "hard").is_ok(), fits, "{bend}");
+        assert_eq!(Scene::parse(&text, "hard").is_ok(), fits, "{bend}");
     }
 }
