@@ -1,12 +1,12 @@
 //! Detachment curves: where pushes from first touch end, distance by distance.
 
 use crate::classify::RowBoundary;
-use crate::rod::{Effects, Rest, Side};
+use crate::rod::{Rest, Side};
 use crate::scene::{Pole, Whisker};
 use crate::sheet::{Edge, Sheet};
 use crate::shooting::Reader;
-use crate::shooting::batch::{InitialCondition, Method, shoot};
-use crate::shooting::{FirstAndEnergy, FirstVariation, Nystrom8, Resolution};
+use crate::shooting::batch::{Batch, InitialCondition, Method};
+use crate::shooting::{FirstVariation, Resolution};
 use serde::Serialize;
 
 /// How a push from first touch ends.
@@ -83,10 +83,7 @@ pub fn curve_at(
     distances_mm: &[f64],
 ) -> Vec<Detachment> {
     let rod = whisker.rod(pole, side);
-    let method = Method {
-        effects: Effects::of([&rod]),
-        resolution,
-    };
+    let method = Method::new(resolution);
     let reader = Reader::new(whisker.units(), &rod);
     let rest = Rest::new(&rod);
     let distances: Vec<f64> = distances_mm.iter().map(|d| d / whisker.length_mm).collect();
@@ -114,12 +111,12 @@ pub fn curve_at(
     let conditions: Vec<InitialCondition> = ends
         .iter()
         .map(|(_, end)| InitialCondition {
-            rod,
+            rod: &rod,
             tau: end.tau,
             load: end.load,
         })
         .collect();
-    let states = shoot::<Nystrom8, FirstAndEnergy>(method, &conditions);
+    let states = Batch::new(method).shoot::<FirstVariation>(&conditions);
     for ((i, end), FirstVariation { full, .. }) in ends.into_iter().zip(&states) {
         let push = side.sign() * end.push;
         // The crossing's own residual foretells what its last step leaves; this trajectory has gone there.
@@ -177,8 +174,7 @@ pub fn corner(whisker: &Whisker, pole: &Pole, side: Side) -> Corner {
         let kinds = [-1.0, 1.0].map(|sign| end(distance + sign * CORNER_TOLERANCE * length).kind);
         kinds == [Kind::SlipOff, Kind::PullOff]
     };
-    let tip = (rod.taper < 1.0)
-        .then(|| Sheet::fold_at_tip(Method::fine(Effects::of([&rod])), &rod, side));
+    let tip = (rod.taper < 1.0).then(|| Sheet::fold_at_tip(Method::fine(), &rod, side));
     let distance = tip.flatten().and_then(|fold| {
         let pole = fold.variation.map.pole.length();
         let at_tip = Rest::new(&rod).distance_of_pole(pole) * length;

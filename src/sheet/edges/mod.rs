@@ -15,8 +15,8 @@ use crate::sheet::fold::predictor::FoldLine;
 use crate::sheet::lattice::Lattice;
 use crate::sheet::lattice::directions;
 use crate::sheet::row::Row;
-use crate::shooting::batch::{InitialCondition, Method, shoot, shoot_padded};
-use crate::shooting::{First, Nystrom8, Second, SecondVariation, ShootingMap};
+use crate::shooting::batch::{Batch, InitialCondition, Method};
+use crate::shooting::{SecondVariation, ShootingMap};
 use glam::DVec2;
 
 /// Relative slack with which a distance counts as reached, so that a whisker whose resting tip just touches
@@ -105,13 +105,15 @@ impl Edges {
 /// others and the corner.
 fn tip_samples(method: Method, rod: &Rod, corner: &FoldPoint) -> (Vec<Sample>, TipLine) {
     let condition = |load| InitialCondition {
-        rod: *rod,
+        rod,
         tau: corner.tau,
         load,
     };
     let loads = PARTS[..LOADS - 1].iter().map(|part| part * corner.load);
     let conditions: Vec<InitialCondition> = loads.map(condition).collect();
-    let mut maps = shoot_padded::<Nystrom8, First>(method, &conditions);
+    let mut maps = Batch::new(method)
+        .padded()
+        .shoot::<ShootingMap>(&conditions);
     maps.push(corner.variation.map);
     let phis = directions(corner.load, maps.iter());
     let line = TipLine::new(corner.tau, corner.load, &maps, &phis);
@@ -137,7 +139,8 @@ fn tip_samples(method: Method, rod: &Rod, corner: &FoldPoint) -> (Vec<Sample>, T
 /// `turn`, and one trajectory with it all the rest.
 fn extremum(method: Method, at_tip: InitialCondition, turn: &Turn) -> (f64, ShootingMap) {
     let (near, [from, to], by_load_load) = (turn.load, turn.between, turn.bend);
-    let at = |load| shoot::<Nystrom8, First>(method, &[InitialCondition { load, ..at_tip }])[0];
+    let at =
+        |load| Batch::new(method).shoot::<ShootingMap>(&[InitialCondition { load, ..at_tip }])[0];
     let map = at(near);
     let step = -map.by_load.x / by_load_load.x;
     if step.abs() <= LAST_STEP * (to - from).abs() {
@@ -162,7 +165,9 @@ fn extremum(method: Method, at_tip: InitialCondition, turn: &Turn) -> (f64, Shoo
 
 /// The same load by Newton's method from `near` and second derivatives, bisecting where a step would leave the bracket.
 fn bracketed_extremum(method: Method, from: InitialCondition, to: f64, near: f64) -> f64 {
-    let at = |load: f64| shoot::<Nystrom8, Second>(method, &[InitialCondition { load, ..from }])[0];
+    let at = |load: f64| {
+        Batch::new(method).shoot::<SecondVariation>(&[InitialCondition { load, ..from }])[0]
+    };
     let (mut low, mut high) = (from.load, to);
     let mut load = near;
     let mut falling_at_low = None;
