@@ -15,8 +15,8 @@ use naga::{Block, Expression, Function, Handle, Literal, Module, Statement};
 use std::time::Instant;
 use whiskmap::integrate::gpu::{Precision, shaders};
 use whiskmap::rod::Effects;
-use whiskmap::shooting::batch::{InitialCondition, Method, shoot};
-use whiskmap::shooting::{First, Nystrom8};
+use whiskmap::shooting::ShootingMap;
+use whiskmap::shooting::batch::{Batch, InitialCondition, Method};
 
 #[allow(dead_code, reason = "the tests use the rest")]
 #[path = "../tests/gpu_engine/shots.rs"]
@@ -34,11 +34,13 @@ fn main() {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1);
     pool.build_global().expect("no pool is there yet");
 
-    let sets: Vec<(Effects, Vec<InitialCondition>)> = Effects::all()
+    let sets: Vec<(Effects, Vec<InitialCondition<'static>>)> = Effects::all()
         .map(|effects| {
             let mut random = Random(31);
-            let conditions =
-                (0..count).map(|_| condition(rod(effects, &mut random), 6.5, &mut random));
+            let conditions = (0..count).map(|_| {
+                let rod = Box::leak(Box::new(rod(effects, &mut random)));
+                condition(rod, 6.5, &mut random)
+            });
             (effects, conditions.collect())
         })
         .collect();
@@ -69,9 +71,9 @@ fn main() {
 }
 
 fn microseconds(effects: Effects, conditions: &[InitialCondition]) -> f64 {
-    let method = Method::fine(effects);
+    let method = Method::fine().with_effects(effects);
     let start = Instant::now();
-    let maps = shoot::<Nystrom8, First>(method, conditions);
+    let maps = Batch::new(method).shoot::<ShootingMap>(conditions);
     let micros = start.elapsed().as_secs_f64() * 1e6;
     assert!(maps.iter().all(|map| map.pole.is_finite()));
     micros / conditions.len() as f64

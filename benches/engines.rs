@@ -18,11 +18,11 @@ use whiskmap::map::{self, Observer};
 use whiskmap::numerics::Unit;
 use whiskmap::plan::Plan;
 use whiskmap::refine::refine;
-use whiskmap::rod::{Effects, Side};
+use whiskmap::rod::Side;
 use whiskmap::scene::Scene;
 use whiskmap::sheet::Sheet;
-use whiskmap::shooting::batch::{InitialCondition, Method, shoot, shoot_on};
-use whiskmap::shooting::{First, FirstAndEnergy, Nystrom8, Resolution, Second};
+use whiskmap::shooting::batch::{Batch, InitialCondition, Method};
+use whiskmap::shooting::{FirstVariation, Resolution, SecondVariation, ShootingMap};
 use whiskmap::store::{Description, Error, MapWriter, Panel, Shots};
 
 const TRAJECTORIES: usize = 16_384;
@@ -33,27 +33,28 @@ fn integrators(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("integrators");
     group.throughput(Throughput::Elements(TRAJECTORIES as u64));
     for resolution in Resolution::LADDER {
-        let method = Method {
-            effects: USUAL,
-            resolution,
-        };
+        let method = Method::new(resolution).with_effects(USUAL);
         let steps = resolution.least;
         group.bench_function(
             BenchmarkId::new("nystrom8, first derivatives", steps),
             |b| {
-                b.iter(|| shoot::<Nystrom8, First>(method, black_box(&conditions)));
+                b.iter(|| Batch::new(method).shoot::<ShootingMap>(black_box(&conditions)));
             },
         );
     }
-    let fine = Method::fine(USUAL);
+    let fine = Method::fine().with_effects(USUAL);
     group.bench_function("nystrom8, first derivatives and energy", |b| {
-        b.iter(|| shoot::<Nystrom8, FirstAndEnergy>(fine, black_box(&conditions)));
+        b.iter(|| Batch::new(fine).shoot::<FirstVariation>(black_box(&conditions)));
     });
     group.bench_function("nystrom8, second derivatives", |b| {
-        b.iter(|| shoot::<Nystrom8, Second>(fine, black_box(&conditions)));
+        b.iter(|| Batch::new(fine).shoot::<SecondVariation>(black_box(&conditions)));
     });
     group.bench_function("nystrom8, first derivatives, scalar", |b| {
-        b.iter(|| shoot_on::<Nystrom8, First>(Unit::scalar(), fine, black_box(&conditions)));
+        b.iter(|| {
+            Batch::new(fine)
+                .on(Unit::scalar())
+                .shoot::<ShootingMap>(black_box(&conditions))
+        });
     });
     group.finish();
 }
@@ -91,7 +92,7 @@ fn scene() -> Scene {
 fn sheets(criterion: &mut Criterion) {
     let scene = scene();
     let rod = scene.whisker.rod(&scene.pole, Side::Cb);
-    let method = Method::fine(Effects::of([&rod]));
+    let method = Method::fine();
     let length = scene.whisker.length_mm;
     let distances: Vec<f64> = scene.grid.distance_mm.iter().map(|d| d / length).collect();
     let mut group = criterion.benchmark_group("sheets");

@@ -24,8 +24,8 @@ use whiskmap::numerics::Unit;
 use whiskmap::plan::Plan;
 use whiskmap::rod::{Effects, Rod, Side, arclength};
 use whiskmap::scene::Scene;
-use whiskmap::shooting::batch::{InitialCondition, Method, shoot_on};
-use whiskmap::shooting::{First, Nystrom8, Resolution, ShootingMap};
+use whiskmap::shooting::batch::{Batch, InitialCondition, Method};
+use whiskmap::shooting::{Resolution, ShootingMap};
 use whiskmap::store;
 use whiskmap::trace::curve_at;
 
@@ -78,7 +78,7 @@ fn processor() -> String {
 
 /// Taper up to 0.95, contacts from 0.05 of the length to next to the tip, `q` up to 9; half of them straight, then half with
 /// `A*` of 0.4.
-fn ensemble() -> Vec<InitialCondition> {
+fn ensemble() -> Vec<InitialCondition<'static>> {
     let mut random = Random(1);
     (0..TRAJECTORIES)
         .map(|i| {
@@ -90,6 +90,7 @@ fn ensemble() -> Vec<InitialCondition> {
             let s = random.between(0.05, 0.999);
             let load = random.between(0.0, 9.0) / (s * s);
             let tau = rod.tau(s);
+            let rod = Box::leak(Box::new(rod));
             InitialCondition { rod, tau, load }
         })
         .collect()
@@ -99,11 +100,9 @@ fn ensemble() -> Vec<InitialCondition> {
 fn shoot(unit: Unit, resolution: Resolution, conditions: &[InitialCondition]) -> Vec<ShootingMap> {
     let scenes = conditions.chunk_by(|a, b| a.rod.bend == b.rod.bend);
     let shot = scenes.flat_map(|conditions| {
-        let method = Method {
-            effects: Effects::of(conditions.iter().map(|condition| &condition.rod)),
-            resolution,
-        };
-        shoot_on::<Nystrom8, First>(unit, method, conditions)
+        let effects = Effects::of(conditions.iter().map(|condition| condition.rod));
+        let method = Method::new(resolution).with_effects(effects);
+        Batch::new(method).on(unit).shoot::<ShootingMap>(conditions)
     });
     shot.collect()
 }
@@ -139,7 +138,7 @@ fn table(conditions: &[InitialCondition], exact: &[ShootingMap]) -> String {
 /// The largest difference of the observables, each by its own size.
 fn error(condition: &InitialCondition, found: &ShootingMap, exact: &ShootingMap) -> f64 {
     let rho = condition.rod.radius(condition.tau);
-    let s = arclength(&condition.rod, condition.tau);
+    let s = arclength(condition.rod, condition.tau);
     let by_force = rho * rho / (s * s);
     let sizes = [1.0 / s, 1.0 / s, s, s, by_force, by_force];
     let (found, exact) = (observables(condition, found), observables(condition, exact));
@@ -234,7 +233,7 @@ fn cell(pool: &ThreadPool) -> Value {
     let scene = scene();
     let steps = accuracy::cheapest(&scene, &Side::BOTH, TOLERANCE.to_degrees()).unwrap();
     let mut plan = Plan::new(&scene).unwrap();
-    plan.method.resolution = steps.resolution;
+    plan.method = plan.method.with_resolution(steps.resolution);
     let mut summary = None;
     let seconds = seconds(pool, || {
         summary = Some(map::run(&scene, &plan, &mut Cpu, &mut Nothing).unwrap());

@@ -1,4 +1,4 @@
-// A radius that is linear in the arclength, and a modulus that is; the way along it. The twin of `Even` and `Graded` in
+// A radius that is linear in the arclength, and a modulus that is; the way along it. The twin of `Uniform` and `Graded` in
 // `crates/mechanics/src/shooting/material.rs`.
 
 struct Material {

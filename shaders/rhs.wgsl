@@ -1,4 +1,5 @@
-// The right-hand sides, in sigma = tau_contact - tau; the twin of `rhs`, `intrinsic` and `sensitivity` in `crates/mechanics/src/shooting/`.
+// The right-hand sides, in sigma = tau_contact - tau; the twin of `rhs.rs`, `intrinsic.rs` and `sensitivity/` in
+// `crates/mechanics/src/shooting/`.
 
 struct Section {
     rho: real,

@@ -1,4 +1,5 @@
-// The classical Runge-Kutta method of order 4; the twin of `crates/mechanics/src/shooting/integrator/`.
+// The classical Runge-Kutta method of order 4; the twin of `rk4.rs` and `mod.rs` in
+// `crates/mechanics/src/shooting/integrator/`.
 
 // What the radius and its inverse cube gain from the start of a step to its middle and to its end, relative, and what
 // the arclength gains over the radius.

@@ -1,4 +1,4 @@
-// The rod and its contact; the twin of `crates/mechanics/src/rod/`.
+// The rod and its contact; the twin of `rod.rs`, `contact.rs` and `rest/parabola.rs` in `crates/mechanics/src/rod/`.
 
 // Lengths in whisker lengths; as in Rust.
 struct Rod {

@@ -1,4 +1,5 @@
-// The pole as the base sees it, and Newton's step; the twin of `crates/mechanics/src/shooting/map.rs` and `shooting/batch/output.rs` beside it.
+// The pole as the base sees it, and Newton's step; the twin of `map.rs`, `sensitivity/` and `batch/pole.rs` in
+// `crates/mechanics/src/shooting/`.
 
 struct ShootingMap {
     pole: vec2<real>,
@@ -22,30 +23,30 @@ fn cross2(a: vec2<real>, b: vec2<real>) -> real {
 }
 
 // d(theta, X, Y) at the base by tau at fixed load, and by the load.
-struct Slopes {
+struct BaseDerivatives {
     by_tau: vec3<real>,
     by_load: vec3<real>,
 }
 
-// The twin of `Order::known`.
-fn slopes(rod: Rod, start: Start, y: State) -> Slopes {
+// The twin of `SensitivitySet::at_base`.
+fn at_base(rod: Rod, start: Start, y: State) -> BaseDerivatives {
     let f = start.force;
     let x = y.rod.z;
     let by_load = start.radius * start.radius * y.by_force;
     if SIMILAR {
-        return Slopes(vec3<real>(f * x, -rod.taper * y.rod.zw - y.rod.xy), by_load);
+        return BaseDerivatives(vec3<real>(f * x, -rod.taper * y.rod.zw - y.rod.xy), by_load);
     }
     let theta_s = y.by_arclength.x;
     let x_s = y.by_arclength.y;
     let y_s = theta_s * (f * y.by_force.y + x) - f * y.by_force.x * x_s - start.tangent.y;
-    return Slopes(
+    return BaseDerivatives(
         start.radius * vec3<real>(theta_s, x_s, y_s) - 2.0 * rod.taper * f * y.by_force,
         by_load,
     );
 }
 
-// Derivatives of (ln D, phi), from those of theta, X and Y.
-fn turned(by: vec3<real>, w: vec2<real>) -> vec2<real> {
+// A derivative of (ln D, phi) from that of theta, X and Y; the twin of `Centre::ln_pole_by`.
+fn ln_pole_by(by: vec3<real>, w: vec2<real>) -> vec2<real> {
     return over(-by.yz, w) - vec2<real>(0.0, by.x);
 }
 
@@ -60,11 +61,11 @@ fn shoot_once(rod: Rod, tau: real, start: Start, steps: u32) -> ShootingMap {
     let y = travel(rod, tau, start, steps, at_contact);
     let to_pole = rod.pole * vec2<real>(start.tangent.y, -start.tangent.x);
     let w = to_pole - y.rod.zw;
-    let by = slopes(rod, start, y);
+    let first = at_base(rod, start, y);
     return ShootingMap(
         times(vec2<real>(y.rod.x, -y.rod.y), w),
-        turned(by.by_tau, w),
-        turned(by.by_load, w),
+        ln_pole_by(first.by_tau, w),
+        ln_pole_by(first.by_load, w),
     );
 }
 

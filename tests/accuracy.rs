@@ -11,8 +11,8 @@ use whiskmap::refine::states;
 use whiskmap::rod::{Effects, Side};
 use whiskmap::scene::{Scene, Whisker};
 use whiskmap::sheet::Sheet;
-use whiskmap::shooting::batch::{InitialCondition, Method, shoot};
-use whiskmap::shooting::{First, Nystrom8, Resolution};
+use whiskmap::shooting::batch::{Batch, InitialCondition, Method};
+use whiskmap::shooting::{Resolution, ShootingMap};
 use whiskmap::trace::curve_at;
 
 /// Its own error, 1e-11 degrees at most, is far below every tolerance here.
@@ -48,10 +48,7 @@ fn ends(scene: &Scene, whisker: &Whisker, side: Side, resolution: Resolution) ->
 fn cells(scene: &Scene, whisker: &Whisker, side: Side, resolution: Resolution) -> f64 {
     let rod = whisker.rod(&scene.pole, side);
     let effects = Effects::of([&rod]);
-    let method = Method {
-        effects,
-        resolution,
-    };
+    let method = Method::new(resolution).with_effects(effects);
     let distances = &scene.grid.distance_mm;
     let distances: Vec<f64> = distances.iter().map(|d| d / whisker.length_mm).collect();
     let sheet = Sheet::new(method, &rod, side, &distances).unwrap();
@@ -60,14 +57,18 @@ fn cells(scene: &Scene, whisker: &Whisker, side: Side, resolution: Resolution) -
             .into_iter()
             .map(|(shot, state)| {
                 let (tau, load) = (state.tau, state.load);
-                (InitialCondition { rod, tau, load }, shot.pole)
+                (
+                    InitialCondition {
+                        rod: &rod,
+                        tau,
+                        load,
+                    },
+                    shot.pole,
+                )
             })
             .unzip();
-    let exact = Method {
-        effects,
-        resolution: EXACT,
-    };
-    let shot = shoot::<Nystrom8, First>(exact, &conditions);
+    let exact = Method::new(EXACT).with_effects(effects);
+    let shot = Batch::new(exact).shoot::<ShootingMap>(&conditions);
     let missed = shot.iter().zip(poles);
     let missed = missed.map(|(map, pole)| map.residual(pole).length().to_degrees());
     missed.fold(0.0, f64::max)

@@ -1,12 +1,18 @@
-//! Batches of trajectories that want different numbers of steps: alone, or in company.
+//! Batches of trajectories that want different numbers of steps: alone, or padded.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-use whiskmap::rod::{Effects, RadiusProfile, Rod};
-use whiskmap::shooting::batch::{InitialCondition, Method, shoot, shoot_each, shoot_padded};
-use whiskmap::shooting::{First, Nystrom8, Resolution, Second, ShootingMap};
+use std::sync::Arc;
+use whiskmap::rod::{RadiusProfile, Rod};
+use whiskmap::shooting::batch::{Batch, InitialCondition, Method};
+use whiskmap::shooting::{Resolution, SecondVariation, ShootingMap};
+
+/// A test ends soon: its rods may stay until then.
+fn kept(rod: Rod) -> &'static Rod {
+    Box::leak(Box::new(rod))
+}
 
 /// Contacts from next to the base to the tip, from no load to that of the fold, on slender and blunt whiskers.
-fn conditions(count: usize) -> Vec<InitialCondition> {
+fn conditions(count: usize) -> Vec<InitialCondition<'static>> {
     let condition = |i: usize| {
         let [along, load, shape] = [0.618, 0.755, 0.570].map(|step| (i as f64 * step).fract());
         let rod = Rod {
@@ -17,7 +23,7 @@ fn conditions(count: usize) -> Vec<InitialCondition> {
         };
         let s = 0.05 + 0.94 * along;
         InitialCondition {
-            rod,
+            rod: kept(rod.clone()),
             tau: rod.tau(s),
             load: 9.0 * load / (s * s),
         }
@@ -25,24 +31,21 @@ fn conditions(count: usize) -> Vec<InitialCondition> {
     (0..count).map(condition).collect()
 }
 
-fn method(least: u32, conditions: &[InitialCondition]) -> Method {
-    Method {
-        effects: Effects::of(conditions.iter().map(|condition| &condition.rod)),
-        resolution: Resolution::of(least),
-    }
+fn method(least: u32) -> Method {
+    Method::new(Resolution::of(least))
 }
 
 /// The same on whiskers with measured radii, in contact on every piece of them.
-fn measured(count: usize) -> Vec<InitialCondition> {
+fn measured(count: usize) -> Vec<InitialCondition<'static>> {
     let rows = [0.0, 0.2, 0.5, 0.7, 1.0].map(|s| [s, 1.0 - 0.8 * s - 0.1 * s * s]);
-    let profile = Some(RadiusProfile::of(&rows, 1.0));
-    let condition = |InitialCondition { rod, tau, load }: InitialCondition| {
+    let profile = Arc::new(RadiusProfile::new(&rows, 1.0));
+    let condition = |InitialCondition { rod, tau, load }: InitialCondition<'static>| {
         let s = rod.radius(tau);
-        let rod = Rod {
-            profile,
+        let rod = kept(Rod {
+            profile: Some(profile.clone()),
             taper: 0.9,
-            ..rod
-        };
+            ..rod.clone()
+        });
         InitialCondition {
             rod,
             tau: rod.tau(0.1 + 0.8 * s),
@@ -60,25 +63,25 @@ fn each_gets_its_own_answer() {
         .into_iter()
         .chain([measured(300)])
     {
-        let method = method(20, &conditions);
-        let together = shoot::<Nystrom8, First>(method, &conditions);
+        let method = method(20);
+        let all: Vec<ShootingMap> = Batch::new(method).shoot(&conditions);
         let mut each = vec![None; conditions.len()];
-        shoot_each::<Nystrom8, First>(method, conditions.iter().copied(), |i, map| {
+        Batch::new(method).for_each::<ShootingMap>(conditions.iter().copied(), |i, map| {
             assert_eq!(each[i].replace(*map), None);
         });
-        let together: Vec<Option<ShootingMap>> = together.into_iter().map(Some).collect();
-        assert_eq!(each, together);
+        let all: Vec<Option<ShootingMap>> = all.into_iter().map(Some).collect();
+        assert_eq!(each, all);
     }
 }
 
 /// Who shares a block takes at least the steps that it would take alone: nobody's answer is worse than the worst
 /// alone, but for rounding (4.7e-14 in 20 steps).
 #[test]
-fn company_does_no_harm() {
+fn padding_does_no_harm() {
     let few = [1, 15, 16, 17, 300, 3000].map(conditions);
     for conditions in few.into_iter().chain([17, 300].map(measured)) {
         let count = conditions.len();
-        let exact = shoot::<Nystrom8, First>(method(128, &conditions), &conditions);
+        let exact = Batch::new(method(128)).shoot::<ShootingMap>(&conditions);
         let worst = |found: &[ShootingMap]| {
             let pairs = found.iter().zip(&exact);
             pairs.fold(0.0, |worst, (a, b)| {
@@ -86,50 +89,63 @@ fn company_does_no_harm() {
             })
         };
         for least in [5, 20] {
-            let method = method(least, &conditions);
-            let alone = worst(&shoot::<Nystrom8, First>(method, &conditions));
-            let company = worst(&shoot_padded::<Nystrom8, First>(method, &conditions));
+            let method = method(least);
+            let alone = worst(&Batch::new(method).shoot::<ShootingMap>(&conditions));
+            let padded = worst(
+                &Batch::new(method)
+                    .padded()
+                    .shoot::<ShootingMap>(&conditions),
+            );
             assert!(
-                company <= alone.max(1e-13),
-                "{count} in {least}: {company:.1e}, alone {alone:.1e}"
+                padded <= alone.max(1e-13),
+                "{count} in {least}: {padded:.1e}, alone {alone:.1e}"
             );
         }
     }
 }
 
-/// One number of steps for all: then company is no different at all.
+/// One number of steps for all: then padding is no different at all.
 #[test]
-fn equals_in_company_are_as_if_alone() {
+fn equals_padded_are_as_if_alone() {
     let one = conditions(7)[6];
     let conditions = vec![one; 37];
-    let method = method(20, &conditions);
-    let alone = shoot::<Nystrom8, Second>(method, &conditions);
-    assert_eq!(shoot_padded::<Nystrom8, Second>(method, &conditions), alone);
+    let method = method(20);
+    let alone = Batch::new(method).shoot::<SecondVariation>(&conditions);
+    assert_eq!(
+        Batch::new(method)
+            .padded()
+            .shoot::<SecondVariation>(&conditions),
+        alone
+    );
 }
 
 /// Batches of more than a thread's share, whose blocks are spread over the threads.
 #[test]
 fn threads_change_nothing() {
     let conditions = conditions(5000);
-    let method = method(7, &conditions);
+    let method = method(7);
     let [one, three] = [1, 3].map(|threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
         let pool = pool.build().unwrap();
-        pool.install(|| shoot_padded::<Nystrom8, First>(method, &conditions))
+        pool.install(|| {
+            Batch::new(method)
+                .padded()
+                .shoot::<ShootingMap>(&conditions)
+        })
     });
     assert_eq!(one, three);
 }
 
-/// A condition that cannot be computed has company, too.
+/// A condition that cannot be computed shares a block, too.
 #[test]
 fn no_number_hurts_only_itself() {
     let sound = conditions(100);
-    let method = method(7, &sound);
-    let expected = shoot_padded::<Nystrom8, First>(method, &sound);
+    let method = method(7);
+    let expected = Batch::new(method).padded().shoot::<ShootingMap>(&sound);
     let mut spoilt = sound.clone();
     spoilt[40].tau = f64::NAN;
     spoilt[41].load = f64::INFINITY;
-    let found = shoot_padded::<Nystrom8, First>(method, &spoilt);
+    let found = Batch::new(method).padded().shoot::<ShootingMap>(&spoilt);
     for (i, (a, b)) in found.iter().zip(&expected).enumerate() {
         let is_spoilt = [40, 41].contains(&i);
         assert_eq!(a.pole.is_finite(), !is_spoilt, "{i}: {a:?}");

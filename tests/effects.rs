@@ -2,9 +2,10 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use glam::DVec2;
+use std::sync::Arc;
 use whiskmap::rod::{Effects, RadiusProfile, Rod, arclength};
-use whiskmap::shooting::batch::{InitialCondition, Method, shoot};
-use whiskmap::shooting::{First, FirstAndEnergy, Nystrom8, Resolution, Second, ShootingMap};
+use whiskmap::shooting::batch::{Batch, InitialCondition, Method};
+use whiskmap::shooting::{FirstVariation, Resolution, SecondVariation, ShootingMap};
 
 #[allow(dead_code, reason = "the engines' tests use the rest")]
 #[path = "gpu_engine/shots.rs"]
@@ -13,16 +14,18 @@ mod shots;
 use shots::{ROWS, Random, condition, rod};
 
 fn with(effects: Effects, resolution: Resolution) -> Method {
-    Method {
-        effects,
-        resolution,
-    }
+    Method::new(resolution).with_effects(effects)
 }
 
-fn conditions(effects: Effects, count: usize) -> Vec<InitialCondition> {
+/// A test ends soon: its rods may stay until then.
+fn kept(rod: Rod) -> &'static Rod {
+    Box::leak(Box::new(rod))
+}
+
+fn conditions(effects: Effects, count: usize) -> Vec<InitialCondition<'static>> {
     let mut random = Random(21);
     (0..count)
-        .map(|_| condition(rod(effects, &mut random), 6.5, &mut random))
+        .map(|_| condition(kept(rod(effects, &mut random)), 6.5, &mut random))
         .collect()
 }
 
@@ -72,7 +75,7 @@ fn plainly(condition: &InitialCondition, steps: u32) -> DVec2 {
 fn the_pole_is_where_plain_equations_see_it() {
     for effects in Effects::all().filter(|e| e.profile && !e.curvature) {
         let conditions = conditions(effects, 100);
-        let maps = shoot::<Nystrom8, First>(with(effects, Resolution::FINE), &conditions);
+        let maps = Batch::new(with(effects, Resolution::FINE)).shoot::<ShootingMap>(&conditions);
         for (condition, map) in conditions.iter().zip(maps) {
             let apart = plainly(condition, 2000).distance(map.pole);
             assert!(apart < 1e-10, "{apart:e} {condition:?}");
@@ -98,9 +101,9 @@ fn derivatives_agree_with_differences_in_every_set() {
                     .nth(axis)
                     .map(|value| *value += sign * STEP * scale[axis])
                     .unwrap();
-                shoot::<Nystrom8, First>(method, &[moved])[0]
+                Batch::new(method).shoot::<ShootingMap>(&[moved])[0]
             };
-            let here = shoot::<Nystrom8, Second>(method, &[condition])[0];
+            let here = Batch::new(method).shoot::<SecondVariation>(&[condition])[0];
             for (axis, first, second) in [
                 (0, here.map.by_tau, [here.by_tau_tau, here.by_tau_load]),
                 (1, here.map.by_load, [here.by_tau_load, here.by_load_load]),
@@ -133,9 +136,12 @@ fn derivatives_agree_with_differences_in_every_set() {
     }
 }
 
-fn farthest(one: Effects, other: Effects, pairs: &[(InitialCondition, InitialCondition)]) -> f64 {
+/// A state on two rods.
+type Pair = (InitialCondition<'static>, InitialCondition<'static>);
+
+fn farthest(one: Effects, other: Effects, pairs: &[Pair]) -> f64 {
     let ends = |effects: Effects, conditions: Vec<InitialCondition>| {
-        shoot::<Nystrom8, FirstAndEnergy>(with(effects, Resolution::FINE), &conditions)
+        Batch::new(with(effects, Resolution::FINE)).shoot::<FirstVariation>(&conditions)
     };
     let ones = ends(one, pairs.iter().map(|pair| pair.0).collect());
     let others = ends(other, pairs.iter().map(|pair| pair.1).collect());
@@ -160,12 +166,14 @@ fn neutral_values_are_absence() {
         spiral: true,
         ..tapered
     };
-    let unbent: Vec<(InitialCondition, InitialCondition)> = usual
+    let unbent: Vec<Pair> = usual
         .iter()
         .map(|condition| {
-            let mut straight = *condition;
-            straight.rod.spiral = Some([0.0, 0.0]);
-            (*condition, straight)
+            let rod = kept(Rod {
+                spiral: Some([0.0, 0.0]),
+                ..condition.rod.clone()
+            });
+            (*condition, InitialCondition { rod, ..*condition })
         })
         .collect();
     assert!(farthest(tapered, spiral, &unbent) < 1e-14);
@@ -174,13 +182,16 @@ fn neutral_values_are_absence() {
         profile: true,
         ..tapered
     };
-    let measured: Vec<(InitialCondition, InitialCondition)> = usual
+    let measured: Vec<Pair> = usual
         .iter()
         .map(|condition| {
-            let mut cone = *condition;
-            let rows = [0.0, 0.1, 0.4, 0.75, 1.0].map(|s| [s, 1.0 - cone.rod.taper * s]);
-            cone.rod.profile = Some(RadiusProfile::of(&rows, 1.0));
-            (*condition, cone)
+            let cone = condition.rod;
+            let rows = [0.0, 0.1, 0.4, 0.75, 1.0].map(|s| [s, 1.0 - cone.taper * s]);
+            let rod = kept(Rod {
+                profile: Some(Arc::new(RadiusProfile::new(&rows, 1.0))),
+                ..cone.clone()
+            });
+            (*condition, InitialCondition { rod, ..*condition })
         })
         .collect();
     let apart = farthest(tapered, profile, &measured);
@@ -201,14 +212,19 @@ fn a_faint_parabola_is_a_circular_arc_to_third_order() {
         ..bent
     };
     let apart = |bend: f64| {
-        let pairs: Vec<(InitialCondition, InitialCondition)> = conditions(bent, 100)
+        let pairs: Vec<Pair> = conditions(bent, 100)
             .iter()
             .map(|condition| {
-                let (mut parabola, mut circle) = (*condition, *condition);
-                (parabola.rod.bend, parabola.rod.slope) = (bend, 0.0);
-                (circle.rod.bend, circle.rod.slope) = (0.0, 0.0);
-                circle.rod.spiral = Some([2.0 * bend, 0.0]);
-                (parabola, circle)
+                let shaped = |bend, spiral| InitialCondition {
+                    rod: kept(Rod {
+                        bend,
+                        slope: 0.0,
+                        spiral,
+                        ..condition.rod.clone()
+                    }),
+                    ..*condition
+                };
+                (shaped(bend, None), shaped(0.0, Some([2.0 * bend, 0.0])))
             })
             .collect();
         farthest(bent, arc, &pairs)
@@ -224,10 +240,10 @@ fn rows_do_not_cost_the_order() {
         let mut conditions = conditions(effects, 400);
         // On the last piece, with all rows behind.
         conditions
-            .retain(|condition| arclength(&condition.rod, condition.tau) > ROWS[ROWS.len() - 2][0]);
+            .retain(|condition| arclength(condition.rod, condition.tau) > ROWS[ROWS.len() - 2][0]);
         let at = |longest: f64| Resolution { least: 0, longest };
         let poles =
-            |longest: f64| shoot::<Nystrom8, First>(with(effects, at(longest)), &conditions);
+            |longest: f64| Batch::new(with(effects, at(longest))).shoot::<ShootingMap>(&conditions);
         let [rough, half, exact] = [0.4, 0.2, 0.01].map(poles);
         let error = |found: &[ShootingMap], i: usize| found[i].pole.distance(exact[i].pole);
         let worst = (0..conditions.len())
@@ -258,22 +274,21 @@ fn many_rows_are_fine_at_every_contact() {
         ..Rod::default()
     };
     let measured = Rod {
-        profile: Some(RadiusProfile::of(&rows, 1.0)),
-        ..cone
+        profile: Some(Arc::new(RadiusProfile::new(&rows, 1.0))),
+        ..cone.clone()
     };
     for s in [0.002, 0.004, 0.0075, 0.03, 0.3, 0.9, 0.999] {
         for q in [1.0, 6.0, 12.0] {
-            let pole = |rod: Rod, resolution: Resolution| {
+            let pole = |rod: &Rod, resolution: Resolution| {
                 let condition = InitialCondition {
                     rod,
                     tau: cone.tau(s),
                     load: q / (s * s),
                 };
-                shoot::<Nystrom8, First>(with(Effects::of([&rod]), resolution), &[condition])[0]
-                    .pole
+                Batch::new(Method::new(resolution)).shoot::<ShootingMap>(&[condition])[0].pole
             };
             let apart =
-                pole(cone, Resolution::FINE.doubled()).distance(pole(measured, Resolution::FINE));
+                pole(&cone, Resolution::FINE.doubled()).distance(pole(&measured, Resolution::FINE));
             assert!(apart < 1e-12 * s, "{apart:e} at {s}, q {q}");
         }
     }

@@ -115,7 +115,7 @@ fn engines_agree_on_every_field() {
         let rod = scene.whisker.rod(&scene.pole, side);
         let effects = Effects::of([&rod]);
         let distances: Vec<f64> = scene.grid.distance_mm.iter().map(|d| d / 20.0).collect();
-        let sheet = Sheet::new(Method::fine(effects), &rod, side, &distances).unwrap();
+        let sheet = Sheet::new(Method::fine(), &rod, side, &distances).unwrap();
         let mut pushes: Vec<f64> = scene
             .grid
             .push_angle_deg
@@ -137,10 +137,12 @@ fn engines_agree_on_every_field() {
             }
         }
         let states = |engine: &mut dyn Engine| {
-            let hits = engine.shoot(effects, &[rod], &shots).unwrap();
+            let hits = engine
+                .shoot(effects, std::slice::from_ref(&rod), &shots)
+                .unwrap();
             assert!(hits.iter().all(|hit| hit.outcome != Outcome::NotFinite));
             let starts: Vec<(f64, f64)> = hits.iter().map(|hit| (hit.tau, hit.load)).collect();
-            refine(Method::fine(effects), &[&sheet], &shots, &starts)
+            refine(Method::fine(), &[&sheet], &shots, &starts)
         };
         let cpu = states(&mut Cpu);
         assert!(cpu.iter().filter(|cell| cell.end == End::Solved).count() > 3000);

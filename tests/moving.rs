@@ -15,23 +15,23 @@ use whiskmap::refine::{TOLERANCE, states};
 use whiskmap::rod::{Effects, Rod, Side, arclength};
 use whiskmap::scene::Scene;
 use whiskmap::sheet::Sheet;
-use whiskmap::shooting::batch::{InitialCondition, Method, shoot};
+use whiskmap::shooting::batch::{Batch, InitialCondition, Method};
 use whiskmap::shooting::{
-    First, FirstAndEnergy, FirstVariation, FullState, Nystrom8, Resolution, Second, StateDerivative,
+    FirstVariation, FullState, Resolution, SecondVariation, ShootingMap, StateDerivative,
 };
 
 /// Random states on random rods with these effects, those of the engines' tests.
-fn conditions(effects: Effects) -> Vec<InitialCondition> {
+fn conditions(effects: Effects) -> Vec<InitialCondition<'static>> {
     Range::new(effects, 40, 6.0, 7).truth
 }
 
 /// `(tau, load)` over which a state changes by about as much as it is.
 fn scale(condition: &InitialCondition) -> DVec2 {
-    let s = arclength(&condition.rod, condition.tau);
+    let s = arclength(condition.rod, condition.tau);
     DVec2::new(s, condition.load.abs() + 1.0 / (s * s))
 }
 
-fn moved(condition: &InitialCondition, step: DVec2) -> InitialCondition {
+fn moved<'a>(condition: &InitialCondition<'a>, step: DVec2) -> InitialCondition<'a> {
     InitialCondition {
         tau: condition.tau + step.x,
         load: condition.load + step.y,
@@ -62,9 +62,9 @@ fn listed(change: &StateDerivative) -> [f64; 5] {
 fn a_state_changes_as_it_says() {
     let mut worst = 0.0_f64;
     for effects in Effects::all() {
-        let method = Method::fine(effects);
+        let method = Method::fine().with_effects(effects);
         let conditions = conditions(effects);
-        let here: Vec<FirstVariation> = shoot::<Nystrom8, FirstAndEnergy>(method, &conditions);
+        let here: Vec<FirstVariation> = Batch::new(method).shoot::<FirstVariation>(&conditions);
         for axis in [DVec2::X, DVec2::Y] {
             let step = |condition: &InitialCondition| 1e-4 * axis * scale(condition);
             let [before, after] = [-1.0, 1.0].map(|sign| {
@@ -72,7 +72,7 @@ fn a_state_changes_as_it_says() {
                     .iter()
                     .map(|l| moved(l, sign * step(l)))
                     .collect();
-                shoot::<Nystrom8, FirstAndEnergy>(method, &there)
+                Batch::new(method).shoot::<FirstVariation>(&there)
             });
             for (i, condition) in conditions.iter().enumerate() {
                 let by = if axis == DVec2::X {
@@ -105,12 +105,12 @@ fn a_state_changes_as_it_says() {
 fn taylor_extrapolation_is_of_second_order() {
     let mut worst = [0.0_f64; 2];
     for effects in Effects::all() {
-        let method = Method::fine(effects);
+        let method = Method::fine().with_effects(effects);
         let conditions = conditions(effects);
-        let here = shoot::<Nystrom8, Second>(method, &conditions);
+        let here = Batch::new(method).shoot::<SecondVariation>(&conditions);
         let step = |condition: &InitialCondition| 1e-4 * DVec2::new(0.6, -0.8) * scale(condition);
         let there: Vec<InitialCondition> = conditions.iter().map(|l| moved(l, step(l))).collect();
-        let there = shoot::<Nystrom8, First>(method, &there);
+        let there = Batch::new(method).shoot::<ShootingMap>(&there);
         for ((condition, here), there) in conditions.iter().zip(&here).zip(&there) {
             let found = here.extrapolated(step(condition)).map;
             let size = scale(condition);
@@ -143,10 +143,7 @@ fn residuals_are_bounds() {
         for side in Side::BOTH {
             let rod = whisker.rod(&scene.pole, side);
             for least in [3, 5, 9, 18] {
-                let method = Method {
-                    effects: Effects::of([&rod]),
-                    resolution: Resolution::of(least),
-                };
+                let method = Method::new(Resolution::of(least));
                 let length = whisker.length_mm;
                 let distances = scene.grid.distance_mm.iter().map(|d| d / length);
                 let distances: Vec<f64> = distances.step_by(16).collect();
@@ -156,12 +153,12 @@ fn residuals_are_bounds() {
                 let conditions: Vec<InitialCondition> = found
                     .iter()
                     .map(|(_, state)| InitialCondition {
-                        rod,
+                        rod: &rod,
                         tau: state.tau,
                         load: state.load,
                     })
                     .collect();
-                let shot = shoot::<Nystrom8, First>(method, &conditions);
+                let shot = Batch::new(method).shoot::<ShootingMap>(&conditions);
                 for ((shot, state), map) in found.iter().zip(shot) {
                     let residual = map.pole.distance(shot.pole);
                     assert!(
@@ -186,11 +183,12 @@ fn the_energy_is_known_toward_the_tip() {
     for (radius, bound) in [(1e-3, 1e-10), (1e-6, 1e-7)] {
         let (tau, load) = (-f64::ln(radius), 6.0);
         let energy = |resolution: Resolution| {
-            let method = Method {
-                effects: Effects::of([&rod]),
-                resolution,
-            };
-            shoot::<Nystrom8, FirstAndEnergy>(method, &[InitialCondition { rod, tau, load }])[0]
+            let method = Method::new(resolution);
+            Batch::new(method).shoot::<FirstVariation>(&[InitialCondition {
+                rod: &rod,
+                tau,
+                load,
+            }])[0]
                 .full
                 .energy
         };

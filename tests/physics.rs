@@ -2,17 +2,17 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use whiskmap::classify::{RowBoundary, Span};
-use whiskmap::rod::{Effects, Rest, Rod, Side, arclength};
+use whiskmap::rod::{Rest, Rod, Side, arclength};
 use whiskmap::scene::{Curvature, Pole, Whisker};
 use whiskmap::sheet::{Crossing, Edge, Sheet};
-use whiskmap::shooting::batch::{InitialCondition, Method, shoot};
-use whiskmap::shooting::{First, Nystrom8};
+use whiskmap::shooting::ShootingMap;
+use whiskmap::shooting::batch::{Batch, InitialCondition, Method};
 
 /// The detachment of `whisker` at `distance_mm` from a pole: push angle in degrees, signed, and the crossing.
 fn detachment(whisker: &Whisker, pole: &Pole, side: Side, distance_mm: f64) -> (f64, Crossing) {
     let rod = whisker.rod(pole, side);
     let sheet = Sheet::new(
-        Method::fine(Effects::of([&rod])),
+        Method::fine(),
         &rod,
         side,
         &[distance_mm / whisker.length_mm],
@@ -240,17 +240,17 @@ fn the_first_fold_is_the_first() {
                     friction: side.sign() * friction,
                     ..Rod::default()
                 };
-                let method = Method::fine(Effects::of([&rod]));
+                let method = Method::fine();
                 let tau = rod.tau_tip();
                 let scale = arclength(&rod, tau).powi(2);
                 let conditions: Vec<InitialCondition> = (0..6000)
                     .map(|i| InitialCondition {
-                        rod,
+                        rod: &rod,
                         tau,
                         load: side.sign() * 0.05 * f64::from(i) / scale,
                     })
                     .collect();
-                let shot = shoot::<Nystrom8, First>(method, &conditions);
+                let shot = Batch::new(method).shoot::<ShootingMap>(&conditions);
                 let beyond = shot.iter().position(|map| map.det() <= 0.0);
                 let fold = Sheet::fold_at_tip(method, &rod, side).unwrap();
                 let place = 20.0 * scale * fold.load.abs();

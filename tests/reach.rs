@@ -47,7 +47,7 @@ fn the_shape_at_rest_decides_at_the_straight_length() {
         let told = cheapest(&scene, &Side::BOTH, 1e-3).unwrap().resolution;
         for resolution in Resolution::LADDER.into_iter().chain([told]) {
             let mut plan = Plan::new(&scene).unwrap();
-            plan.method.resolution = resolution;
+            plan.method = plan.method.with_resolution(resolution);
             let (summary, panels) = compute_as(&scene, &plan, &mut Cpu);
             let case = format!("pole {pole}, friction {friction}, {resolution:?}");
             assert_eq!(

@@ -1,17 +1,11 @@
 //! States and detachments from all over a scene, its corners among them.
 
 use crate::refine::states;
-use crate::rod::Effects;
-use crate::rod::Side;
+use crate::rod::{Effects, Rod, Side};
 use crate::scene::{Grid, Scene, Setup, Whisker};
-use crate::sheet::{Edge, Sheet};
-use crate::shooting::First;
-use crate::shooting::Nystrom8;
-use crate::shooting::Resolution;
-use crate::shooting::ShootingMap;
-use crate::shooting::batch::InitialCondition;
-use crate::shooting::batch::Method;
-use crate::shooting::batch::shoot;
+use crate::sheet::{Crossing, Edge, Sheet};
+use crate::shooting::batch::{Batch, InitialCondition, Method};
+use crate::shooting::{Resolution, ShootingMap};
 use rayon::prelude::*;
 
 /// Values of an axis that take part: its ends, and some between. The ends of pushes get better with more distances, near
@@ -23,9 +17,22 @@ const WHISKERS: usize = 4;
 /// States to integrate once and again.
 pub struct Sample {
     effects: Effects,
-    states: Vec<InitialCondition>,
+    rods: Vec<Sampled>,
+}
+
+/// States of one rod, `(tau, load)`.
+struct Sampled {
+    rod: Rod,
+    states: Vec<(f64, f64)>,
     /// Where pushes end.
-    ends: Vec<(InitialCondition, Edge)>,
+    ends: Vec<((f64, f64), Edge)>,
+}
+
+impl Sampled {
+    fn condition(&self, (tau, load): (f64, f64)) -> InitialCondition<'_> {
+        let rod = &self.rod;
+        InitialCondition { rod, tau, load }
+    }
 }
 
 impl Sample {
@@ -43,49 +50,51 @@ impl Sample {
             .map(|d| d / scene.whisker.length_mm)
             .collect();
         let pushes = spread(&scene.grid.push_angle_deg, PUSHES);
-        let (states, ends): (Vec<_>, Vec<_>) = pairs
-            .par_iter()
-            .filter_map(|&(rod, side)| {
-                let method = Method::fine(effects).coarsely();
+        let rods = pairs
+            .into_par_iter()
+            .filter_map(|(rod, side)| {
+                let method = Method::fine().with_effects(effects);
                 // Where the coarse steps find no fold, the fine ones may.
-                let sheet = Sheet::new(method, &rod, side, &distances)
-                    .or_else(|| Sheet::new(Method::fine(effects), &rod, side, &distances))?;
-                let condition = |tau, load| InitialCondition { rod, tau, load };
-                let solved = states(method, &sheet, &pushes).into_iter();
+                let sheet = Sheet::new(method.coarsely(), &rod, side, &distances)
+                    .or_else(|| Sheet::new(method, &rod, side, &distances))?;
+                let solved = states(method.coarsely(), &sheet, &pushes).into_iter();
                 // What ends at first touch does so at every resolution.
                 let crossings = sheet.crossings.iter().flatten();
                 let crossings = crossings.filter(|end| !end.is_at_touch());
-                let ends = crossings.map(|end| (condition(end.tau, end.load), end.edge));
-                let states = solved.map(|(_, state)| condition(state.tau, state.load));
-                Some((states.collect::<Vec<_>>(), ends.collect::<Vec<_>>()))
+                let end = |end: &Crossing| ((end.tau, end.load), end.edge);
+                Some(Sampled {
+                    states: solved.map(|(_, state)| (state.tau, state.load)).collect(),
+                    ends: crossings.map(end).collect(),
+                    rod,
+                })
             })
-            .unzip();
-        Self {
-            effects,
-            states: states.concat(),
-            ends: ends.concat(),
-        }
+            .collect();
+        Self { effects, rods }
     }
 
     /// The largest error at `resolution`, in radians, as twice as many steps see it.
     pub fn error(&self, resolution: Resolution) -> f64 {
-        let shot = |resolution, conditions: &[InitialCondition]| {
-            let effects = self.effects;
-            let method = Method {
-                effects,
-                resolution,
-            };
-            shoot::<Nystrom8, First>(method, conditions)
-        };
+        let method = Method::new(resolution).with_effects(self.effects);
+        let finer = method.with_resolution(resolution.doubled());
         let pairs = |conditions: &[InitialCondition]| {
-            let finer = shot(resolution.doubled(), conditions);
-            shot(resolution, conditions).into_iter().zip(finer)
+            let [rough, finer] =
+                [method, finer].map(|m| Batch::new(m).shoot::<ShootingMap>(conditions));
+            rough.into_iter().zip(finer)
         };
-        let states = pairs(&self.states).map(|(rough, fine)| rough.residual(fine.pole).length());
-        let conditions: Vec<InitialCondition> =
-            self.ends.iter().map(|(condition, _)| *condition).collect();
+        let rods = || self.rods.iter();
+        let states: Vec<InitialCondition> = rods()
+            .flat_map(|sampled| sampled.states.iter().map(|state| sampled.condition(*state)))
+            .collect();
+        let ends: Vec<(InitialCondition, Edge)> = rods()
+            .flat_map(|sampled| {
+                let ends = sampled.ends.iter();
+                ends.map(|(end, edge)| (sampled.condition(*end), *edge))
+            })
+            .collect();
+        let states = pairs(&states).map(|(rough, fine)| rough.residual(fine.pole).length());
+        let conditions: Vec<InitialCondition> = ends.iter().map(|(end, _)| *end).collect();
         let ends = pairs(&conditions)
-            .zip(&self.ends)
+            .zip(&ends)
             .map(|((rough, fine), (condition, edge))| shift(&rough, &fine, condition, *edge));
         states.chain(ends).fold(0.0, worse)
     }

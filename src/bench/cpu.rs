@@ -6,21 +6,13 @@ use super::{Engine, Report, Row, Rung, Stages};
 use crate::integrate::{EngineError, Hit, Solver};
 use crate::numerics::MultiplyAndAdd;
 use crate::numerics::Unit;
-use crate::shooting::batch::{InitialCondition, Kernel, flops};
-use crate::shooting::{First, Integrator, Nystrom8, Resolution, Rk4};
+use crate::shooting::Resolution;
+use crate::shooting::batch::{InitialCondition, flops_of_nystrom8};
 use std::convert::Infallible;
 use std::time::Instant;
 
 /// After a residual below this, in whisker lengths, one more Newton step reaches the rounding.
 const TOLERANCE: f64 = 1e-7;
-
-/// The classical method, to see what order is worth: on the widest engine.
-const RK4_LADDER: [Resolution; 4] = [
-    Resolution::of(16),
-    Resolution::of(32),
-    Resolution::of(64),
-    Resolution::of(128),
-];
 
 /// Rounds of the peak's kernel: milliseconds.
 const ROUNDS: u32 = 1 << 20;
@@ -38,8 +30,7 @@ pub fn measure(
     if all > 1 {
         engines.push((vectors, all));
     }
-    let widest = engines.len() - 1;
-    for (i, (unit, threads)) in engines.into_iter().enumerate() {
+    for (unit, threads) in engines {
         let name = format!("cpu {unit}");
         said(&format!("{name}, {threads} threads"));
         let pool = rayon::ThreadPoolBuilder::new()
@@ -54,7 +45,7 @@ pub fn measure(
         let start = Instant::now();
         pool.install(|| {
             let shots = task.shots.get(..1).unwrap_or_default();
-            solver(Resolution::FINE).solve::<Nystrom8>(task.effects, &task.rods, shots)
+            solver(Resolution::FINE).solve(task.effects, &task.rods, shots)
         });
         let first_result_s = start.elapsed().as_secs_f64();
         let peak_gflops = pool.install(|| peak(unit, runs));
@@ -68,16 +59,7 @@ pub fn measure(
         let rows = &mut report.rows;
         pool.install(|| {
             for resolution in Resolution::LADDER {
-                rows.push(row::<Nystrom8>(
-                    task,
-                    runs,
-                    &engine,
-                    "nystrom8",
-                    solver(resolution),
-                ));
-            }
-            for resolution in RK4_LADDER.into_iter().filter(|_| i == widest) {
-                rows.push(row::<Rk4>(task, runs, &engine, "rk4", solver(resolution)));
+                rows.push(row(task, runs, &engine, solver(resolution)));
             }
         });
         report.engines.push(engine);
@@ -85,32 +67,23 @@ pub fn measure(
     Ok(())
 }
 
-/// The row of `engine` with the integrator `M`, on the threads of the current pool.
-fn row<M: Integrator>(
-    task: &Task,
-    runs: usize,
-    engine: &Engine,
-    integrator: &'static str,
-    solver: Solver,
-) -> Row
-where
-    First: Kernel<M>,
-{
+/// The row of `engine`, on the threads of the current pool.
+fn row(task: &Task, runs: usize, engine: &Engine, solver: Solver) -> Row {
     let Ok((seconds, hits)) = watch(runs, || {
-        let hits = solver.solve::<M>(task.effects, &task.rods, &task.shots);
+        let hits = solver.solve(task.effects, &task.rods, &task.shots);
         Ok::<Vec<Hit>, Infallible>(hits)
     });
     let resolution = solver.resolution;
     let work = operations(task, &hits, |condition| {
-        let steps = resolution.steps(&condition.rod, condition.tau, condition.load);
-        flops::<M, First>(task.effects, steps, condition)
+        let steps = resolution.steps(condition.rod, condition.tau, condition.load);
+        flops_of_nystrom8(task.effects, steps, condition)
     });
     let points: Vec<(f64, f64)> = hits.iter().map(|hit| (hit.tau, hit.load)).collect();
     Row::new(
         &engine.name,
         engine.threads,
         Rung {
-            integrator,
+            integrator: "nystrom8",
             steps: resolution.least,
             newton_f64: 0,
         },
@@ -147,7 +120,7 @@ pub fn operations(task: &Task, hits: &[Hit], count: impl Fn(&InitialCondition) -
     let counted: f64 = pairs()
         .map(|(hit, shot)| {
             let condition = InitialCondition {
-                rod: task.rods[shot.rod as usize],
+                rod: &task.rods[shot.rod as usize],
                 tau: shot.tau,
                 load: shot.load,
             };

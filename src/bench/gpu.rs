@@ -7,8 +7,8 @@ use super::{Engine, Report, Row, Rung, Stages};
 use crate::integrate::gpu::{Gpu, Precision, adapters};
 use crate::integrate::{Engine as _, EngineError};
 use crate::rod::arclength;
-use crate::shooting::batch::{InitialCondition, Method, flops, shoot};
-use crate::shooting::{First, Nystrom8, Rk4};
+use crate::shooting::ShootingMap;
+use crate::shooting::batch::{Batch, InitialCondition, Method, flops_of_rk4};
 use std::time::Instant;
 
 /// Most Newton steps in `f64` after the shader's.
@@ -87,7 +87,7 @@ fn engine(
         // The first run warms up.
         let stages = Stages::medians(&stages[1..]);
         let steps = |condition: &InitialCondition| {
-            let measured = Some(&condition.rod).filter(|_| task.effects.profile);
+            let measured = Some(condition.rod).filter(|_| task.effects.profile);
             precision.steps(measured, condition.tau, condition.load)
         };
         let rung = Rung {
@@ -96,7 +96,7 @@ fn engine(
             newton_f64,
         };
         let work = operations(task, &hits, |condition| {
-            flops::<Rk4, First>(task.effects, steps(condition), condition)
+            flops_of_rk4(task.effects, steps(condition), condition)
         });
         // Only the shader's work counts against the shader's peak.
         let on_device = if stages.dispatch > 0.0 {
@@ -125,23 +125,16 @@ fn engine(
 
 /// A Newton step in `f64` for every state.
 fn newton(task: &Task, points: &mut [(f64, f64)]) {
-    let conditions: Vec<InitialCondition> = points
-        .iter()
-        .zip(&task.shots)
-        .map(|(&(tau, load), shot)| InitialCondition {
-            rod: task.rods[shot.rod as usize],
-            tau,
-            load,
-        })
-        .collect();
-    let shot = shoot::<Nystrom8, First>(Method::fine(task.effects), &conditions);
+    let conditions = task.conditions(points);
+    let shot =
+        Batch::new(Method::fine().with_effects(task.effects)).shoot::<ShootingMap>(&conditions);
     for (((point, map), condition), shot) in points
         .iter_mut()
         .zip(shot)
         .zip(&conditions)
         .zip(&task.shots)
     {
-        let s = arclength(&condition.rod, condition.tau);
+        let s = arclength(condition.rod, condition.tau);
         let step = map.newton_step(shot.pole, s, condition.load);
         *point = (condition.tau + step.x, condition.load + step.y);
     }

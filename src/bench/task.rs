@@ -7,8 +7,8 @@ use crate::refine::states;
 use crate::rod::{Effects, Rod, arclength};
 use crate::scene::{Scene, Whisker};
 use crate::sheet::Sheet;
-use crate::shooting::batch::{InitialCondition, Method, shoot};
-use crate::shooting::{First, Nystrom8, Resolution};
+use crate::shooting::batch::{Batch, InitialCondition, Method};
+use crate::shooting::{Resolution, ShootingMap};
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -20,8 +20,8 @@ pub struct Task {
     pub effects: Effects,
     pub rods: Vec<Rod>,
     pub shots: Vec<Shot>,
-    /// The answers.
-    exact: Vec<InitialCondition>,
+    /// The answers, `(tau, load)`.
+    exact: Vec<(f64, f64)>,
 }
 
 /// A number over all states.
@@ -81,7 +81,7 @@ impl Task {
             .flat_map(|whisker| sides.iter().map(move |side| (whisker, *side)))
             .map(|(whisker, side)| (whisker.rod(&scene.pole, side), side))
             .collect();
-        let rods: Vec<Rod> = pairs.iter().map(|(rod, _)| *rod).collect();
+        let rods: Vec<Rod> = pairs.iter().map(|(rod, _)| rod.clone()).collect();
         let effects = Effects::of(&rods);
         let length = scene.whisker.length_mm;
         let distances: Vec<f64> = scene.grid.distance_mm.iter().map(|d| d / length).collect();
@@ -89,7 +89,7 @@ impl Task {
             .par_iter()
             .enumerate()
             .map(|(index, (rod, side))| {
-                let method = Method::fine(effects);
+                let method = Method::fine().with_effects(effects);
                 let Some(sheet) = Sheet::new(method, rod, *side, &distances) else {
                     return Vec::new();
                 };
@@ -114,47 +114,39 @@ impl Task {
             resolution: EXACT,
             tolerance: 1e-13,
         };
-        let exact = solver.solve::<Nystrom8>(effects, &rods, &starts);
-        let exact = exact
-            .iter()
-            .zip(&shots)
-            .map(|(hit, shot)| InitialCondition {
-                rod: rods[shot.rod as usize],
-                tau: hit.tau,
-                load: hit.load,
-            });
+        let exact = solver.solve(effects, &rods, &starts);
         Self {
             effects,
-            exact: exact.collect(),
+            exact: exact.iter().map(|hit| (hit.tau, hit.load)).collect(),
             rods,
             shots,
         }
     }
 
+    /// The states `points`, `(tau, load)` of every shot, as conditions.
+    pub fn conditions(&self, points: &[(f64, f64)]) -> Vec<InitialCondition<'_>> {
+        let pairs = points.iter().zip(&self.shots);
+        let condition = |(&(tau, load), shot): (&(f64, f64), &Shot)| InitialCondition {
+            rod: &self.rods[shot.rod as usize],
+            tau,
+            load,
+        };
+        pairs.map(condition).collect()
+    }
+
     /// How far off the answers `points`, `(tau, load)` of every shot, are.
     pub fn errors(&self, points: &[(f64, f64)]) -> Errors {
-        let found: Vec<InitialCondition> = points
-            .iter()
-            .zip(&self.exact)
-            .map(|(&(tau, load), exact)| InitialCondition {
-                rod: exact.rod,
-                tau,
-                load,
-            })
-            .collect();
-        let method = Method {
-            effects: self.effects,
-            resolution: EXACT,
-        };
-        let shot = shoot::<Nystrom8, First>(method, &found);
+        let [found, exact] = [points, &self.exact].map(|points| self.conditions(points));
+        let method = Method::new(EXACT).with_effects(self.effects);
+        let shot = Batch::new(method).shoot::<ShootingMap>(&found);
         let angle = |i: usize| shot[i].residual(self.shots[i].pole).length().to_degrees();
-        let place = |condition: &InitialCondition| arclength(&condition.rod, condition.tau);
-        let arc = |i: usize| (place(&found[i]) - place(&self.exact[i])).abs();
+        let place = |condition: &InitialCondition| arclength(condition.rod, condition.tau);
+        let arc = |i: usize| (place(&found[i]) - place(&exact[i])).abs();
         let force = |condition: &InitialCondition| {
             condition.load * condition.rod.radius(condition.tau).powi(2)
         };
         let off = |i: usize| {
-            let exact = &self.exact[i];
+            let exact = &exact[i];
             let unit = (exact.rod.radius(exact.tau) / place(exact)).powi(2);
             (force(&found[i]) - force(exact)).abs() / (force(exact).abs() + unit)
         };

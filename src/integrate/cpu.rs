@@ -3,8 +3,8 @@
 use super::{Description, Engine, EngineError, Hit, MOST_STEPS, Outcome, Shot};
 use crate::numerics::Unit;
 use crate::rod::{Effects, Rod, arclength};
-use crate::shooting::batch::{InitialCondition, Kernel, Method, shoot_on};
-use crate::shooting::{First, Integrator, Nystrom8, Resolution, ShootingMap};
+use crate::shooting::batch::{Batch, InitialCondition, Method};
+use crate::shooting::{Resolution, ShootingMap};
 use glam::DVec2;
 use rayon::prelude::*;
 
@@ -36,31 +36,17 @@ pub struct Solver {
 }
 
 impl Solver {
-    /// Solves `shots`, each on one of `rods`, with the integrator `M`; answers in the same order.
+    /// Solves `shots`, each on one of `rods`; answers in the same order.
     #[must_use]
-    pub fn solve<M: Integrator>(self, effects: Effects, rods: &[Rod], shots: &[Shot]) -> Vec<Hit>
-    where
-        First: Kernel<M>,
-    {
+    pub fn solve(self, effects: Effects, rods: &[Rod], shots: &[Shot]) -> Vec<Hit> {
         shots
             .par_chunks(TOGETHER)
-            .flat_map_iter(|shots| self.solve_together::<M>(effects, rods, shots))
+            .flat_map_iter(|shots| self.solve_together(effects, rods, shots))
             .collect()
     }
 
-    fn solve_together<M: Integrator>(
-        self,
-        effects: Effects,
-        rods: &[Rod],
-        shots: &[Shot],
-    ) -> Vec<Hit>
-    where
-        First: Kernel<M>,
-    {
-        let method = Method {
-            effects,
-            resolution: self.resolution,
-        };
+    fn solve_together(self, effects: Effects, rods: &[Rod], shots: &[Shot]) -> Vec<Hit> {
+        let method = Method::new(self.resolution).with_effects(effects);
         let mut hits: Vec<Hit> = shots
             .iter()
             .map(|shot| Hit {
@@ -76,16 +62,18 @@ impl Solver {
             let conditions: Vec<InitialCondition> = open
                 .iter()
                 .map(|&i| InitialCondition {
-                    rod: rods[shots[i].rod as usize],
+                    rod: &rods[shots[i].rod as usize],
                     tau: hits[i].tau,
                     load: hits[i].load,
                 })
                 .collect();
-            let maps = shoot_on::<M, First>(self.unit, method, &conditions);
+            let maps = Batch::new(method)
+                .on(self.unit)
+                .shoot::<ShootingMap>(&conditions);
             let mut next = Vec::new();
             for ((&i, condition), map) in open.iter().zip(&conditions).zip(&maps) {
                 let hit = &mut hits[i];
-                self.step(&condition.rod, hit, map, shots[i].pole, round < MOST_STEPS);
+                self.step(condition.rod, hit, map, shots[i].pole, round < MOST_STEPS);
                 if hit.outcome == Outcome::Stalled {
                     next.push(i);
                 }
@@ -142,6 +130,6 @@ impl Engine for Cpu {
             resolution: RESOLUTION,
             tolerance: TOLERANCE,
         };
-        Ok(solver.solve::<Nystrom8>(effects, rods, shots))
+        Ok(solver.solve(effects, rods, shots))
     }
 }

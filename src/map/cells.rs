@@ -137,9 +137,9 @@ pub fn settle(
             shots.extend_from_slice(&of_row);
         }
     });
-    let rods: Vec<_> = sheets.iter().map(|sheet| sheet.rod).collect();
+    let rods: Vec<_> = sheets.iter().map(|sheet| sheet.rod.clone()).collect();
     let hits = summary.time(Stage::Shooting, || {
-        engine.shoot(method.effects, &rods, &shots)
+        engine.shoot(method.effects(), &rods, &shots)
     });
     summary.shots.all += shots.len() as u64;
     if engine.failure().is_some() {

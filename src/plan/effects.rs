@@ -151,7 +151,7 @@ mod tests {
         let scene = Scene::parse(&text, "scene").unwrap();
         let plan = Plan::new(&scene).unwrap();
         let sign = |on| if on { '+' } else { '-' };
-        effects(&scene, plan.method.effects)
+        effects(&scene, plan.method.effects())
             .iter()
             .map(|e| format!("{}{}: {}", sign(e.on), e.name, e.why))
             .collect()

@@ -105,7 +105,7 @@ impl Plan {
         let calls =
             |group: &[Whisker]| (group.len() * sides.len() * distances).div_ceil(rows_at_once);
         Ok(Self {
-            method: Method::fine(Effects::of(&rods)),
+            method: Method::fine().with_effects(Effects::of(&rods)),
             engine_calls: whiskers.chunks(panels_at_once).map(calls).sum(),
             cells: cells * whiskers.len(),
             sides,
@@ -127,12 +127,20 @@ impl Plan {
     /// States of a trajectory for the derivatives of the rod: those by the force, and where they do not follow, two by the contact.
     #[must_use]
     pub const fn derivative_states(&self) -> usize {
-        if self.method.effects.similar() { 3 } else { 5 }
+        if self.method.effects().similar() {
+            3
+        } else {
+            5
+        }
     }
 
     /// States of a trajectory for the rest shape: cos and sin of its tangent, if it is curved.
     #[must_use]
     pub const fn rest_states(&self) -> usize {
-        if self.method.effects.curvature { 2 } else { 0 }
+        if self.method.effects().curvature {
+            2
+        } else {
+            0
+        }
     }
 }

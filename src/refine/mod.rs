@@ -10,7 +10,7 @@ mod newton;
 use crate::integrate::Shot;
 use crate::sheet::Sheet;
 use crate::shooting::FullState;
-use crate::shooting::batch::{Method, together};
+use crate::shooting::batch::{Method, chunk_size};
 use near_fold::Verdict;
 use newton::newton;
 use rayon::prelude::*;
@@ -102,15 +102,15 @@ pub fn refine(
     starts: &[(f64, f64)],
 ) -> Vec<Refined> {
     let mut cells = vec![Refined::default(); shots.len()];
-    let together = together(shots.len());
+    let size = chunk_size(shots.len());
     cells
-        .par_chunks_mut(together)
-        .zip(shots.par_chunks(together).zip(starts.par_chunks(together)))
-        .for_each(|(cells, (shots, starts))| refine_together(method, sheets, shots, starts, cells));
+        .par_chunks_mut(size)
+        .zip(shots.par_chunks(size).zip(starts.par_chunks(size)))
+        .for_each(|(cells, (shots, starts))| refine_chunk(method, sheets, shots, starts, cells));
     cells
 }
 
-fn refine_together(
+fn refine_chunk(
     method: Method,
     sheets: &[&Sheet],
     shots: &[Shot],

@@ -27,7 +27,7 @@ pub fn decide(method: Method, sheets: &[&Sheet], shots: &[Shot]) -> Vec<Verdict>
     let wanted: Vec<Wanted> = shots
         .iter()
         .map(|shot| Wanted {
-            rod: sheets[shot.rod as usize].rod,
+            rod: &sheets[shot.rod as usize].rod,
             edge: Edge::Fold,
             pole_distance: shot.pole.length(),
             from: DVec2::new(shot.tau, shot.load),

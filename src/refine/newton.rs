@@ -4,8 +4,8 @@ use super::{End, GOAL, Refined, State, TOLERANCE};
 use crate::integrate::Shot;
 use crate::rod::arclength;
 use crate::sheet::Sheet;
-use crate::shooting::batch::{InitialCondition, Method, shoot_each};
-use crate::shooting::{FirstAndEnergy, Nystrom8, limited};
+use crate::shooting::batch::{Batch, InitialCondition, Method};
+use crate::shooting::{FirstVariation, limited};
 
 /// The length of a Newton step, as [`limited`] measures it, that needs no trajectory at its end.
 const LAST_STEP: f64 = 1.5e-7;
@@ -42,13 +42,13 @@ pub fn newton(
             break;
         }
         let condition = |(i, (tau, load)): (usize, (f64, f64))| InitialCondition {
-            rod: sheets[shots[i].rod as usize].rod,
+            rod: &sheets[shots[i].rod as usize].rod,
             tau,
             load,
         };
         let conditions = open.iter().copied().map(condition);
         let mut left = Vec::new();
-        shoot_each::<Nystrom8, FirstAndEnergy>(method, conditions, |place, moving| {
+        Batch::new(method).for_each::<FirstVariation>(conditions, |place, moving| {
             let i = open[place].0;
             let condition = condition(open[place]);
             let full = moving.full;
@@ -59,12 +59,12 @@ pub fn newton(
                 full,
                 residual,
             };
-            let s = arclength(&condition.rod, condition.tau);
+            let s = arclength(condition.rod, condition.tau);
             let step = full.map.solve(full.map.residual(shots[i].pole));
             let (step, length) = limited(step, s, condition.load);
             let sheet = sheets[shots[i].rod as usize];
             let columns = full.map.by_tau.length() * full.map.by_load.length();
-            let may_be_last = method.resolution.least >= LEAST_STEPS
+            let may_be_last = method.resolution().least >= LEAST_STEPS
                 && condition.rod.profile.is_none()
                 && condition.load.abs() * s * s <= LARGEST_Q
                 && full.map.det() > CLEAR_OF_FOLD * columns;

@@ -2,6 +2,7 @@
 
 use super::{Pole, Whisker};
 use crate::rod::{RadiusProfile, Rod, Side, Units};
+use std::sync::Arc;
 
 impl Whisker {
     /// This whisker with `pole` on `side`.
@@ -24,7 +25,7 @@ impl Whisker {
             profile: self
                 .profile
                 .as_ref()
-                .map(|rows| RadiusProfile::of(rows, self.arc_stretch)),
+                .map(|rows| Arc::new(RadiusProfile::new(rows, self.arc_stretch))),
         }
     }
 

@@ -73,7 +73,7 @@ impl Sheet {
             if !(crossings.is_empty() || pair && crossings.iter().all(Crossing::is_sound)) {
                 let level = LevelCurve {
                     method,
-                    rod: *rod,
+                    rod: rod.clone(),
                     side,
                     row: *row,
                     forward: true,
@@ -83,7 +83,7 @@ impl Sheet {
         }
         let tip = rod.tau_tip();
         Some(Self {
-            rod: *rod,
+            rod: rod.clone(),
             side,
             tip: [tip, rod.radius(tip)],
             rows,
@@ -106,7 +106,7 @@ impl Sheet {
     pub fn level(&self, row: usize) -> LevelCurve {
         LevelCurve {
             method: self.method,
-            rod: self.rod,
+            rod: self.rod.clone(),
             side: self.side,
             row: self.rows[row],
             forward: true,

@@ -3,7 +3,7 @@
 use super::columns::row;
 use super::resample::{interpolate, targets};
 use super::{FINER, Found, Mark, NoState};
-use crate::rod::{Effects, Rest, Rod, Side, Units};
+use crate::rod::{Rest, Rod, Side, Units};
 use crate::scene::{Pole, Whisker};
 use crate::sheet::{Edge, LevelCurve, Node, ON_CURVE, Row, Walk, walk};
 use crate::shooting::Reader;
@@ -68,22 +68,17 @@ impl Branch {
             });
         }
         let level = LevelCurve {
-            method: Method {
-                effects: Effects::of([&rod]),
-                resolution: FINER,
-            },
+            method: Method::new(FINER),
             rod,
             side,
             row,
             forward: true,
         };
+        let walk = level.touch().and_then(|touch| walk(&level, touch, true));
         Ok(Self {
-            level,
+            walk: walk.ok_or(NoState::Lost { push_deg: 0.0 })?,
             units: whisker.units(),
-            walk: level
-                .touch()
-                .and_then(|touch| walk(&level, touch, true))
-                .ok_or(NoState::Lost { push_deg: 0.0 })?,
+            level,
         })
     }
 

@@ -2,12 +2,12 @@
 
 use super::columns::row;
 use crate::classify::RowBoundary;
-use crate::rod::{Effects, Rest, Side};
+use crate::rod::{Rest, Side};
 use crate::scene::{Pole, Whisker};
 use crate::sheet::{Edge, Sheet};
 use crate::shooting::Reader;
-use crate::shooting::batch::{InitialCondition, Method, shoot};
-use crate::shooting::{FirstAndEnergy, FirstVariation, Nystrom8, Resolution};
+use crate::shooting::batch::{Batch, InitialCondition, Method};
+use crate::shooting::{FirstVariation, Resolution};
 use serde::Serialize;
 
 /// How a push from first touch ends.
@@ -102,10 +102,7 @@ pub fn curve_at(
     distances_mm: &[f64],
 ) -> Vec<Detachment> {
     let rod = whisker.rod(pole, side);
-    let method = Method {
-        effects: Effects::of([&rod]),
-        resolution,
-    };
+    let method = Method::new(resolution);
     let reader = Reader::new(whisker.units(), &rod);
     let rest = Rest::new(&rod);
     let distances: Vec<f64> = distances_mm.iter().map(|d| d / whisker.length_mm).collect();
@@ -133,12 +130,12 @@ pub fn curve_at(
     let conditions: Vec<InitialCondition> = ends
         .iter()
         .map(|(_, end)| InitialCondition {
-            rod,
+            rod: &rod,
             tau: end.tau,
             load: end.load,
         })
         .collect();
-    let states = shoot::<Nystrom8, FirstAndEnergy>(method, &conditions);
+    let states = Batch::new(method).shoot::<FirstVariation>(&conditions);
     for ((i, end), FirstVariation { full, .. }) in ends.into_iter().zip(&states) {
         let push = side.sign() * end.push;
         // The crossing's own residual foretells what its last step leaves; this trajectory has gone there.
@@ -212,7 +209,7 @@ fn corner_distance(
         return Err(NoCorner::AlwaysSlipsOff);
     }
     let length = whisker.length_mm;
-    let fold = Sheet::fold_at_tip(Method::fine(Effects::of([&rod])), &rod, side);
+    let fold = Sheet::fold_at_tip(Method::fine(), &rod, side);
     let pole = fold.ok_or(NoCorner::NotFound)?.variation.map.pole.length();
     let at_tip = Rest::new(&rod).distance_of_pole(pole) * length;
     let kinds = [-1.0, 1.0].map(|sign| end(at_tip + sign * CORNER_TOLERANCE * length).kind);

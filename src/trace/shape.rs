@@ -3,7 +3,7 @@
 use super::columns::row;
 use super::{Branch, FINER, Found};
 use crate::rod::{Rest, arclength};
-use crate::shooting::shape::{Place, profile};
+use crate::shooting::shape::{RodPoint, profile};
 use glam::DVec2;
 use serde::Serialize;
 
@@ -72,7 +72,7 @@ impl Shape {
         let length = units.length_mm;
         let mut angle = -found.push;
         let points = places.iter().enumerate().map(|(i, place)| {
-            let Place {
+            let RodPoint {
                 position, tangent, ..
             } = *place;
             let at = turn.rotate(position - base.position) * length;

@@ -6,11 +6,10 @@ use bytemuck::Pod;
 use whiskmap::integrate::gpu::{Precision, shaders};
 use whiskmap::numerics::Real;
 use whiskmap::rod::{Effects, Rod, Start, arclength};
-use whiskmap::shooting::sensitivity::general::First;
-use whiskmap::shooting::sensitivity::similar;
+use whiskmap::shooting::sensitivity::{GeneralFirst, SimilarFirst};
 use whiskmap::shooting::{
-    Bent, Even, Graded, Intrinsic, Material, Rk4, RodSystem, Scales, Section, Sensitivity, State,
-    Straight, integrate,
+    Bent, Graded, Intrinsic, Material, Rk4, RodSystem, Scales, Section, Sensitivity, State,
+    Straight, Uniform, integrate,
 };
 
 const PROBE: &str = include_str!("../../shaders/probe.wgsl");
@@ -59,17 +58,18 @@ fn steps<T: Number>(effects: Effects, steps: u32, case: &[T]) -> Vec<T> {
     };
     let graded = Graded { gradient };
     let (rest, (rod, carried)) = match (effects.curvature, effects.gradient) {
-        (true, false) => run.end::<First, _, _>(Bent { twice_bend }, Even, (rest, state)),
-        (true, true) => run.end::<First, _, _>(Bent { twice_bend }, graded, (rest, state)),
+        (true, false) => run.end::<GeneralFirst, _, _>(Bent { twice_bend }, Uniform, (rest, state)),
+        (true, true) => run.end::<GeneralFirst, _, _>(Bent { twice_bend }, graded, (rest, state)),
         (false, true) => (
             rest,
-            run.end::<First, _, _>(Straight, graded, ((), state)).1,
+            run.end::<GeneralFirst, _, _>(Straight, graded, ((), state))
+                .1,
         ),
         (false, false) => {
             // Derivatives by the arclength are not carried: they stay what they were.
             let state = ((), (rod, ([theta_f], ([x_f], [y_f]))));
             let (_, (rod, ([theta_f], ([x_f], y_f)))) =
-                run.end::<similar::First, _, _>(Straight, Even, state);
+                run.end::<SimilarFirst, _, _>(Straight, Uniform, state);
             (rest, (rod, ([theta_f, theta_s], ([x_f, x_s], y_f))))
         }
     };

@@ -1,10 +1,11 @@
 //! Shots with known answers: random states, shot in `f64` by the CPU.
 
 use glam::DVec2;
+use std::sync::Arc;
 use whiskmap::integrate::Shot;
 use whiskmap::rod::{Effects, RadiusProfile, Rod, arclength};
-use whiskmap::shooting::batch::{InitialCondition, Method, shoot};
-use whiskmap::shooting::{First, Nystrom8, ShootingMap};
+use whiskmap::shooting::ShootingMap;
+use whiskmap::shooting::batch::{Batch, InitialCondition, Method};
 
 /// A reproducible stream of numbers in `[0, 1)` (splitmix64).
 pub struct Random(pub u64);
@@ -63,7 +64,7 @@ pub fn rod(effects: Effects, random: &mut Random) -> Rod {
     if effects.profile {
         return Rod {
             taper: 1.0 - ROWS[ROWS.len() - 1][1],
-            profile: Some(RadiusProfile::of(&ROWS, 1.0)),
+            profile: Some(Arc::new(RadiusProfile::new(&ROWS, 1.0))),
             ..rod
         };
     }
@@ -71,27 +72,24 @@ pub fn rod(effects: Effects, random: &mut Random) -> Rod {
 }
 
 /// A contact on `rod` under `q = |load| s^2` up to `most_q`, on the side of its pole.
-pub fn condition(rod: Rod, most_q: f64, random: &mut Random) -> InitialCondition {
+pub fn condition<'a>(rod: &'a Rod, most_q: f64, random: &mut Random) -> InitialCondition<'a> {
     let tau = rod.tau_tip() * random.between(0.1, 1.0);
-    let s = arclength(&rod, tau);
+    let s = arclength(rod, tau);
     let load = rod.pole.signum() * random.between(0.0, most_q) / (s * s);
     InitialCondition { rod, tau, load }
 }
 
 /// The truth: the default steps are off by less than 1e-11 (`tests/model.rs`).
 pub fn maps(effects: Effects, conditions: &[InitialCondition]) -> Vec<ShootingMap> {
-    let method = Method {
-        effects,
-        resolution: whiskmap::shooting::Resolution::FINE,
-    };
-    shoot::<Nystrom8, First>(method, conditions)
+    let method = Method::new(whiskmap::shooting::Resolution::FINE).with_effects(effects);
+    Batch::new(method).shoot::<ShootingMap>(conditions)
 }
 
 /// Shots at the poles of random states, with guesses off by 1 to 3 %.
 pub struct Range {
     pub effects: Effects,
     pub rods: Vec<Rod>,
-    pub truth: Vec<InitialCondition>,
+    pub truth: Vec<InitialCondition<'static>>,
     pub shots: Vec<Shot>,
 }
 
@@ -101,8 +99,10 @@ impl Range {
         let rods: Vec<Rod> = (0..count.div_ceil(8))
             .map(|_| rod(effects, &mut random))
             .collect();
+        // A test ends soon: its states may keep their rods until then.
+        let kept: &'static [Rod] = rods.clone().leak();
         let truth: Vec<InitialCondition> = (0..count)
-            .map(|i| condition(rods[i / 8], most_q, &mut random))
+            .map(|i| condition(&kept[i / 8], most_q, &mut random))
             .collect();
         let mut off = || {
             let size = random.between(0.01, 0.03);

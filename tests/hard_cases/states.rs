@@ -7,8 +7,8 @@ use whiskmap::refine::{End, Refined, refine};
 use whiskmap::rod::{Effects, Rod, Side};
 use whiskmap::scene::Scene;
 use whiskmap::sheet::Sheet;
-use whiskmap::shooting::batch::{InitialCondition, Method, shoot};
-use whiskmap::shooting::{First, Nystrom8, Resolution, ShootingMap};
+use whiskmap::shooting::batch::{Batch, InitialCondition, Method};
+use whiskmap::shooting::{Resolution, ShootingMap};
 
 /// The cells of one whisker that have a guess, on both sides.
 pub struct Shots {
@@ -26,7 +26,9 @@ impl Shots {
         let pairs: Vec<(Side, Rod)> = Side::BOTH.into_iter().zip(rods).collect();
         let sheets: Vec<Sheet> = pairs
             .par_iter()
-            .map(|(side, rod)| Sheet::new(Method::fine(effects), rod, *side, &distances).unwrap())
+            .map(|(side, rod)| {
+                Sheet::new(Method::fine().with_effects(effects), rod, *side, &distances).unwrap()
+            })
             .collect();
         let mut shots = Vec::new();
         for (index, sheet) in (0..).zip(&sheets) {
@@ -54,7 +56,7 @@ impl Shots {
     }
 
     pub fn rods(&self) -> Vec<Rod> {
-        self.sheets.iter().map(|sheet| sheet.rod).collect()
+        self.sheets.iter().map(|sheet| sheet.rod.clone()).collect()
     }
 
     pub fn shoot(&self, engine: &mut dyn Engine) -> Vec<Hit> {
@@ -73,16 +75,21 @@ impl Shots {
         });
         let starts: Vec<(f64, f64)> = starts.collect();
         let sheets: Vec<&Sheet> = self.sheets.iter().collect();
-        refine(Method::fine(self.effects), &sheets, &self.shots, &starts)
+        refine(
+            Method::fine().with_effects(self.effects),
+            &sheets,
+            &self.shots,
+            &starts,
+        )
     }
 
     /// The trajectories that end at these states.
-    pub fn conditions(&self, cells: &[Refined]) -> Vec<InitialCondition> {
+    pub fn conditions(&self, cells: &[Refined]) -> Vec<InitialCondition<'_>> {
         let solved = cells.iter().zip(&self.shots);
         solved
             .filter(|(cell, _)| cell.end == End::Solved)
             .map(|(cell, shot)| InitialCondition {
-                rod: self.sheets[shot.rod as usize].rod,
+                rod: &self.sheets[shot.rod as usize].rod,
                 tau: cell.state.tau,
                 load: cell.state.load,
             })
@@ -90,18 +97,18 @@ impl Shots {
     }
 
     /// The converged `hits`, and how far from the wanted place, in whisker lengths, their poles really are.
-    pub fn misses(&self, hits: &[Hit]) -> Vec<(InitialCondition, f64)> {
+    pub fn misses(&self, hits: &[Hit]) -> Vec<(InitialCondition<'_>, f64)> {
         let found = hits.iter().zip(&self.shots);
         let found = found.filter(|(hit, _)| hit.outcome == Outcome::Converged);
         let (wanted, conditions): (Vec<DVec2>, Vec<InitialCondition>) = found
             .map(|(hit, shot)| {
-                let rod = self.sheets[shot.rod as usize].rod;
+                let rod = &self.sheets[shot.rod as usize].rod;
                 let (tau, load) = (hit.tau, hit.load);
                 (shot.pole, InitialCondition { rod, tau, load })
             })
             .unzip();
-        let method = Method::fine(self.effects);
-        let shot = shoot::<Nystrom8, First>(method, &conditions);
+        let method = Method::fine().with_effects(self.effects);
+        let shot = Batch::new(method).shoot::<ShootingMap>(&conditions);
         let missed = shot.iter().zip(wanted);
         let missed = missed.map(|(map, pole)| map.pole.distance(pole));
         conditions.iter().copied().zip(missed).collect()
@@ -115,11 +122,10 @@ pub fn halving(
     resolution: Resolution,
 ) -> Vec<f64> {
     let poles = |resolution| {
-        let method = Method {
-            effects,
-            resolution,
-        };
-        shoot::<Nystrom8, First>(method, conditions).into_iter()
+        let method = Method::new(resolution).with_effects(effects);
+        Batch::new(method)
+            .shoot::<ShootingMap>(conditions)
+            .into_iter()
     };
     let moved = |(a, b): (ShootingMap, ShootingMap)| a.pole.distance(b.pole);
     poles(resolution)

@@ -1,9 +1,9 @@
 //! Where the answer is known exactly.
 
-use whiskmap::rod::Side;
 use crate::{POINT, whisker};
 use whiskmap::paper::checks;
 use whiskmap::paper::elastica::{elastica, fold};
+use whiskmap::rod::Side;
 use whiskmap::trace::{Branch, DetachmentKind, curve};
 
 /// Ten turning angles of the straight cylinder at a point contact, up to the fold at 119 degrees.

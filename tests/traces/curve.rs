@@ -1,10 +1,10 @@
 //! Detachment curves and their corners.
 
-use whiskmap::shooting::batch::Method;
 use crate::{POLE, everything, whisker};
-use whiskmap::rod::{Effects, Side};
+use whiskmap::rod::Side;
 use whiskmap::scene::Curvature;
 use whiskmap::sheet::Sheet;
+use whiskmap::shooting::batch::Method;
 use whiskmap::trace::{Branch, DetachmentKind, NoCorner, corner, curve};
 
 /// 1e-8 mm before the corner a push ends at the fold, 1e-8 mm behind it at the tip.
@@ -124,13 +124,7 @@ fn the_branch_decides_where_rows_leave_the_sheet_more_than_once() {
                     );
                     compared += 1;
                     let rod = whisker.rod(&POLE, side);
-                    let sheet = Sheet::new(
-                        Method::fine(Effects::of([&rod])),
-                        &rod,
-                        side,
-                        &[distance / 20.0],
-                    )
-                    .unwrap();
+                    let sheet = Sheet::new(Method::fine(), &rod, side, &[distance / 20.0]).unwrap();
                     several += usize::from(sheet.crossings[0].len() > 1);
                 }
             }

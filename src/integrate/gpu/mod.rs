@@ -137,7 +137,7 @@ impl Gpu {
 
     /// Uploads the pieces of the profile that all rods share, and tells how many bytes they are.
     fn upload_pieces(&mut self, rod: &Rod) -> Result<(wgpu::Buffer, u64), EngineError> {
-        let pieces = match rod.profile {
+        let pieces = match &rod.profile {
             Some(profile) => &profile.pieces[..],
             None => &[Piece::cone(rod.taper)],
         };

@@ -135,7 +135,7 @@ fn edge(level: &LevelCurve, edge: Edge, from: &Node, to: &Node) -> Option<Node> 
         Edge::Tip => DVec2::new(level.rod.tau_tip(), start.y),
     };
     let wanted = Wanted {
-        rod: level.rod,
+        rod: &level.rod,
         edge,
         pole_distance: level.row.pole_distance,
         from: start,

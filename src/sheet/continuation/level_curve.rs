@@ -9,8 +9,8 @@ use crate::numerics::nearest_turn;
 use crate::rod::{Rod, Side, arclength};
 use crate::sheet::edges::crossings::Crossing;
 use crate::sheet::row::Row;
-use crate::shooting::batch::{InitialCondition, Method, shoot};
-use crate::shooting::{FirstAndEnergy, FullState, Nystrom8};
+use crate::shooting::batch::{Batch, InitialCondition, Method};
+use crate::shooting::{FirstVariation, FullState};
 use glam::{DVec2, DVec3};
 
 /// Rounds of the corrector; from a step's predictor 4 are the rule.
@@ -33,7 +33,7 @@ pub struct Node {
 }
 
 /// The level curve of one row.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct LevelCurve {
     /// How trajectories are integrated.
     pub method: Method,
@@ -130,12 +130,12 @@ impl LevelCurve {
         let conditions: Vec<InitialCondition> = points
             .iter()
             .map(|point| InitialCondition {
-                rod: self.rod,
+                rod: &self.rod,
                 tau: point.x,
                 load: point.y,
             })
             .collect();
-        let shot = shoot::<Nystrom8, FirstAndEnergy>(self.method, &conditions);
+        let shot = Batch::new(self.method).shoot::<FirstVariation>(&conditions);
         shot.iter().map(|moving| moving.full).collect()
     }
 

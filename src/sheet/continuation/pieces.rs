@@ -54,7 +54,7 @@ fn entry(level: &LevelCurve, crossing: &Crossing) -> Option<Crossing> {
 fn backward(level: &LevelCurve) -> LevelCurve {
     LevelCurve {
         forward: false,
-        ..*level
+        ..level.clone()
     }
 }
 

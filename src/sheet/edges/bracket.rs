@@ -4,8 +4,8 @@ use crate::rod::{Rod, Side};
 use crate::sheet::edges::Sample;
 use crate::sheet::edges::edge_newton::Edge;
 use crate::sheet::fold::first_folds;
-use crate::shooting::batch::{InitialCondition, Method, shoot};
-use crate::shooting::{Nystrom8, Second, SecondVariation};
+use crate::shooting::SecondVariation;
+use crate::shooting::batch::{Batch, InitialCondition, Method};
 use glam::DVec2;
 
 /// Halvings: more than a mantissa has bits.
@@ -28,8 +28,8 @@ pub fn bisect(
             return Some((DVec2::new(tau, fold.load), fold.variation));
         }
         let load = from.load + part * (to.load - from.load);
-        let rod = *rod;
-        let shot = shoot::<Nystrom8, Second>(method, &[InitialCondition { rod, tau, load }]);
+        let shot =
+            Batch::new(method).shoot::<SecondVariation>(&[InitialCondition { rod, tau, load }]);
         Some((DVec2::new(tau, load), *shot.first()?))
     };
     let is_nearer = |ln_distance: f64| ln_distance <= target;

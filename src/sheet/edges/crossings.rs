@@ -166,7 +166,7 @@ fn polish(
     let wanted: Vec<Wanted> = candidates
         .iter()
         .map(|c| Wanted {
-            rod: *rod,
+            rod,
             edge: c.edge,
             pole_distance: rows[c.row].pole_distance,
             from: DVec2::new(c.near.tau, c.near.load),

@@ -1,8 +1,8 @@
 //! Newton's method for the points in which a row leaves the sheet.
 
 use crate::rod::{Rod, arclength};
-use crate::shooting::batch::{InitialCondition, Method, shoot, shoot_padded};
-use crate::shooting::{First, Nystrom8, Second, SecondVariation, limited};
+use crate::shooting::batch::{Batch, InitialCondition, Method};
+use crate::shooting::{SecondVariation, ShootingMap, limited};
 use glam::DVec2;
 
 /// The edge that a point lies on.
@@ -16,9 +16,9 @@ pub enum Edge {
 
 /// A point that is wanted on an edge: a fold, or a state with the contact where it is, for a pole at a distance.
 #[derive(Clone, Copy, Debug)]
-pub struct Wanted {
+pub struct Wanted<'a> {
     /// The whisker and its pole.
-    pub rod: Rod,
+    pub rod: &'a Rod,
     /// The edge.
     pub edge: Edge,
     /// Distance of the pole's centre.
@@ -59,27 +59,31 @@ const BORROWED: f64 = 1e-2;
 /// at once next to the folds of a map depends on its strips.
 #[must_use]
 pub fn seek(method: Method, wanted: &[Wanted]) -> Vec<Sought> {
-    newton(method, wanted, COARSE_ROUNDS, shoot::<Nystrom8, Second>)
+    newton(method, wanted, COARSE_ROUNDS, Batch::new)
 }
 
 /// The same at the method's own resolution throughout: for starts that are good already, and for whiskers that friction lets
 /// coil up, where the coarse one leads astray.
 #[must_use]
 pub fn seek_finely(method: Method, wanted: &[Wanted]) -> Vec<Sought> {
-    newton(method, wanted, 0, shoot_padded::<Nystrom8, Second>)
+    newton(method, wanted, 0, |method| Batch::new(method).padded())
 }
 
 /// The same for starts whose second derivatives may be known from their neighbours (toward the tip those by the load are enough):
 /// most then need a single trajectory, with first derivatives.
 #[must_use]
 pub fn seek_nearby(method: Method, wanted: &[Wanted], bends: &[Option<Bends>]) -> Vec<Sought> {
-    let condition = |wanted: &Wanted| InitialCondition {
-        rod: wanted.rod,
-        tau: wanted.from.x,
-        load: wanted.from.y,
-    };
-    let conditions: Vec<InitialCondition> = wanted.iter().map(condition).collect();
-    let maps = shoot_padded::<Nystrom8, First>(method, &conditions);
+    let conditions: Vec<InitialCondition> = wanted
+        .iter()
+        .map(|wanted| InitialCondition {
+            rod: wanted.rod,
+            tau: wanted.from.x,
+            load: wanted.from.y,
+        })
+        .collect();
+    let maps = Batch::new(method)
+        .padded()
+        .shoot::<ShootingMap>(&conditions);
     let mut sought = Vec::with_capacity(wanted.len());
     let (mut left, mut again) = (Vec::new(), Vec::new());
     for (i, (goal, (map, bends))) in wanted.iter().zip(maps.iter().zip(bends)).enumerate() {
@@ -119,7 +123,7 @@ fn newton(
     method: Method,
     wanted: &[Wanted],
     coarse_rounds: usize,
-    shot: fn(Method, &[InitialCondition]) -> Vec<SecondVariation>,
+    batch: fn(Method) -> Batch,
 ) -> Vec<Sought> {
     let mut points: Vec<DVec2> = wanted.iter().map(|w| w.from).collect();
     let mut found: Vec<Option<Sought>> = vec![None; wanted.len()];
@@ -138,7 +142,7 @@ fn newton(
                 load: points[i].y,
             })
             .collect();
-        let mut maps = shot(method, &conditions).into_iter();
+        let mut maps = batch(method).shoot(&conditions).into_iter();
         open.retain(|&i| {
             let Some(here) = maps.next() else {
                 return false;
@@ -166,7 +170,7 @@ fn advance(
         Edge::Fold => fold_step(here, miss),
         Edge::Tip => DVec2::new(0.0, load_step(here, miss)),
     };
-    let (step, length) = limited(step, arclength(&goal.rod, point.x), point.y);
+    let (step, length) = limited(step, arclength(goal.rod, point.x), point.y);
     let next = point + step;
     let sought = if last_step.is_some_and(|last| length <= last) {
         let here = here.extrapolated(step);
@@ -216,7 +220,6 @@ fn fold_step(here: &SecondVariation, miss: f64) -> DVec2 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rod::Effects;
 
     /// Folds and places at the tip, from starts off by 1e-8 and 1e-5, with known second derivatives, with wrong ones and with none.
     #[test]
@@ -227,26 +230,28 @@ mod tests {
             pole: 0.0125,
             ..Rod::default()
         };
-        let method = Method::fine(Effects::of([&rod]));
+        let method = Method::fine();
         let goals = [
             (Edge::Fold, rod.tau(0.8), 12.0),
             (Edge::Tip, rod.tau_tip(), 3.0),
         ];
         for (edge, tau, load) in goals {
             let start = Wanted {
-                rod,
+                rod: &rod,
                 edge,
                 pole_distance: 0.75,
                 from: DVec2::new(tau, load),
             };
             let distance = match edge {
                 Edge::Fold => 0.75,
-                Edge::Tip => {
-                    shoot::<Nystrom8, Second>(method, &[InitialCondition { rod, tau, load }])[0]
-                        .map
-                        .pole
-                        .length()
-                }
+                Edge::Tip => Batch::new(method).shoot::<SecondVariation>(&[InitialCondition {
+                    rod: &rod,
+                    tau,
+                    load,
+                }])[0]
+                    .map
+                    .pole
+                    .length(),
             };
             let goal = Wanted {
                 pole_distance: distance,

@@ -14,8 +14,8 @@ use crate::sheet::fold::contact_nodes::Columns;
 use crate::sheet::fold::predictor::FoldLine;
 use crate::sheet::lattice::Lattice;
 use crate::sheet::lattice::directions;
-use crate::shooting::batch::{InitialCondition, Method, shoot, shoot_padded};
-use crate::shooting::{First, Nystrom8, Second, SecondVariation, ShootingMap};
+use crate::shooting::batch::{Batch, InitialCondition, Method};
+use crate::shooting::{SecondVariation, ShootingMap};
 use glam::DVec2;
 
 /// The Newton step, relative to the distance of the samples, after which an extremum is known: its square is left.
@@ -109,13 +109,15 @@ fn tip_samples(
     corner: &FoldPoint,
 ) -> (Vec<Sample>, TipLine, ShootingMap) {
     let condition = |load| InitialCondition {
-        rod: *rod,
+        rod,
         tau: corner.tau,
         load,
     };
     let loads = PARTS[..LOADS - 1].iter().map(|part| part * corner.load);
     let conditions: Vec<InitialCondition> = loads.map(condition).collect();
-    let mut maps = shoot_padded::<Nystrom8, First>(method, &conditions);
+    let mut maps = Batch::new(method)
+        .padded()
+        .shoot::<ShootingMap>(&conditions);
     maps.push(corner.variation.map);
     let phis = directions(corner.load, maps.iter());
     let line = TipLine::new(corner.tau, corner.load, &maps, &phis);
@@ -141,7 +143,8 @@ fn tip_samples(
 /// `turn`, and one trajectory with it all the rest.
 fn extremum(method: Method, at_tip: InitialCondition, turn: &Turn) -> (f64, ShootingMap) {
     let (near, [from, to], by_load_load) = (turn.load, turn.between, turn.bend);
-    let at = |load| shoot::<Nystrom8, First>(method, &[InitialCondition { load, ..at_tip }])[0];
+    let at =
+        |load| Batch::new(method).shoot::<ShootingMap>(&[InitialCondition { load, ..at_tip }])[0];
     let map = at(near);
     let step = -map.by_load.x / by_load_load.x;
     if step.abs() <= LAST_STEP * (to - from).abs() {
@@ -166,7 +169,9 @@ fn extremum(method: Method, at_tip: InitialCondition, turn: &Turn) -> (f64, Shoo
 
 /// The same load by Newton's method from `near` and second derivatives, bisecting where a step would leave the bracket.
 fn bracketed_extremum(method: Method, from: InitialCondition, to: f64, near: f64) -> f64 {
-    let at = |load: f64| shoot::<Nystrom8, Second>(method, &[InitialCondition { load, ..from }])[0];
+    let at = |load: f64| {
+        Batch::new(method).shoot::<SecondVariation>(&[InitialCondition { load, ..from }])[0]
+    };
     let (mut low, mut high) = (from.load, to);
     let mut load = near;
     let mut falling_at_low = None;

@@ -160,7 +160,7 @@ impl Columns {
         Some(Self {
             first_u: u_tip - SPACING * tip as f64,
             tip,
-            rod: *rod,
+            rod: rod.clone(),
             least_q: least_q(&values, &slopes),
             ln_tau: lines(0).collect(),
             ln_q: lines(1).collect(),
@@ -218,9 +218,9 @@ impl Columns {
 )]
 mod tests {
     use super::*;
-    use crate::rod::{Effects, Rest};
-    use crate::shooting::batch::{InitialCondition, shoot};
-    use crate::shooting::{First, Nystrom8};
+    use crate::rod::Rest;
+    use crate::shooting::ShootingMap;
+    use crate::shooting::batch::{Batch, InitialCondition};
 
     /// Slopes against differences between neighbours, columns in the middle and the one at the tip.
     #[test]
@@ -233,19 +233,24 @@ mod tests {
         };
         let of_gradient = |gradient| Rod {
             gradient,
-            ..slender
+            ..slender.clone()
         };
         let rubbing = Rod {
             friction: 0.3,
-            ..slender
+            ..slender.clone()
         };
-        for rod in [slender, rubbing, of_gradient(-0.6), of_gradient(2.0)] {
-            let method = Method::fine(Effects::of([&rod]));
+        for rod in [
+            of_gradient(0.0),
+            rubbing,
+            of_gradient(-0.6),
+            of_gradient(2.0),
+        ] {
+            let method = Method::fine();
             for side in Side::BOTH {
                 let rod = Rod {
                     pole: side.sign() * rod.pole,
                     friction: side.sign() * rod.friction,
-                    ..rod
+                    ..rod.clone()
                 };
                 let row = Row::new(&Rest::new(&rod), 0.3);
                 let columns = Columns::new(method, &rod, side, &row).unwrap();
@@ -258,10 +263,10 @@ mod tests {
 
     fn check(columns: &Columns, method: Method, side: Side, column: usize) {
         const STEP: f64 = 1e-3;
-        let rod = columns.rod;
-        let u = u_of(&rod, columns.folds[column].tau);
-        let around = [-STEP, STEP].map(|step| tau_of(&rod, step.mul_add(SPACING, u), 1.0));
-        let folds = first_folds(method, &rod, side, &around);
+        let rod = &columns.rod;
+        let u = u_of(rod, columns.folds[column].tau);
+        let around = [-STEP, STEP].map(|step| tau_of(rod, step.mul_add(SPACING, u), 1.0));
+        let folds = first_folds(method, rod, side, &around);
         let folds = [0, 1].map(|i| folds[i].unwrap());
         let differ = |[a, b]: [f64; 2]| (b - a) / (2.0 * STEP);
         let [ln_tau, ln_q] = columns.slopes[column];
@@ -270,7 +275,7 @@ mod tests {
         for part in [0.0, 0.5, 1.0] {
             let shot = |fold: &FoldPoint| {
                 let (tau, load) = (fold.tau, part * fold.load);
-                shoot::<Nystrom8, First>(method, &[InitialCondition { rod, tau, load }])[0]
+                Batch::new(method).shoot::<ShootingMap>(&[InitialCondition { rod, tau, load }])[0]
             };
             let slope = columns.slope(column, part, &shot(&columns.folds[column]));
             let maps = [0, 1].map(|i| shot(&folds[i]));

@@ -6,8 +6,8 @@ pub mod predictor;
 
 use crate::numerics::newton_form::{Polynomial, stencil};
 use crate::rod::{Rod, Side, arclength};
-use crate::shooting::batch::{InitialCondition, Method, shoot_padded};
-use crate::shooting::{First, Nystrom8, Second, SecondVariation, ShootingMap};
+use crate::shooting::batch::{Batch, InitialCondition, Method};
+use crate::shooting::{SecondVariation, ShootingMap};
 use glam::DVec2;
 
 /// A point of the fold edge.
@@ -115,13 +115,11 @@ fn bracket(
         let conditions: Vec<InitialCondition> = open
             .iter()
             .flat_map(|m| samples[from..].iter().map(|q| (taus[m.index], q * m.scale)))
-            .map(|(tau, load)| InitialCondition {
-                rod: *rod,
-                tau,
-                load,
-            })
+            .map(|(tau, load)| InitialCondition { rod, tau, load })
             .collect();
-        let maps = shoot_padded::<Nystrom8, First>(method, &conditions);
+        let maps = Batch::new(method)
+            .padded()
+            .shoot::<ShootingMap>(&conditions);
         let mut maps = maps.chunks(SAMPLES);
         open.retain_mut(|march| {
             let shot = maps.next().unwrap_or_default();
@@ -187,12 +185,14 @@ fn polish(method: Method, rod: &Rod, brackets: &[Option<Bracket>]) -> Vec<Option
         let conditions: Vec<InitialCondition> = all
             .iter()
             .map(|(_, b)| InitialCondition {
-                rod: *rod,
+                rod,
                 tau: b.tau,
                 load: b.guess,
             })
             .collect();
-        let variations = shoot_padded::<Nystrom8, Second>(method, &conditions);
+        let variations = Batch::new(method)
+            .padded()
+            .shoot::<SecondVariation>(&conditions);
         for (((i, b), is_open), variation) in all.iter_mut().zip(&mut is_open).zip(variations) {
             if !*is_open {
                 continue;

@@ -164,7 +164,7 @@ impl FoldLine {
 mod tests {
     use super::*;
     use crate::numerics::lobatto::LOADS;
-    use crate::rod::{Effects, Rest, Rod, Side};
+    use crate::rod::{Rest, Rod, Side};
     use crate::sheet::edges::Edges;
     use crate::sheet::edges::edge_newton::{Edge, Wanted, seek_finely};
     use crate::sheet::fold::contact_nodes::Columns;
@@ -182,7 +182,7 @@ mod tests {
                 pole: 0.0125 * side.sign(),
                 ..Rod::default()
             };
-            let method = Method::fine(Effects::of([&rod]));
+            let method = Method::fine();
             let row = Row::new(&Rest::new(&rod), 0.1);
             let columns = Columns::new(method, &rod, side, &row).unwrap();
             let lattice = Lattice::new(method.coarsely(), &rod, side, &columns);
@@ -201,7 +201,7 @@ mod tests {
                         Edge::Tip => edges.tip_line.at(pair, target),
                     };
                     let wanted = Wanted {
-                        rod,
+                        rod: &rod,
                         edge,
                         pole_distance: target.exp(),
                         from: DVec2::new(near.tau, near.load),

@@ -18,8 +18,8 @@ use crate::sheet::fold::contact_nodes::{AROUND, Columns, Line, TERMS, line};
 use crate::sheet::lattice::guesses::Level;
 use crate::sheet::lattice::simd_roots::{Across, Patch};
 use crate::sheet::row::Row;
-use crate::shooting::batch::{InitialCondition, Method, shoot_padded};
-use crate::shooting::{First, Nystrom8, ShootingMap};
+use crate::shooting::ShootingMap;
+use crate::shooting::batch::{Batch, InitialCondition, Method};
 
 /// Intervals between columns over which the loads of a row are looked for in one patch: one from its middle, interpolation is
 /// half as good.
@@ -78,13 +78,15 @@ impl Lattice {
             .iter()
             .flat_map(|part| {
                 columns.folds.iter().map(move |fold| InitialCondition {
-                    rod: *rod,
+                    rod,
                     tau: fold.tau,
                     load: part * fold.load,
                 })
             })
             .collect();
-        let maps = shoot_padded::<Nystrom8, First>(method, &conditions);
+        let maps = Batch::new(method)
+            .padded()
+            .shoot::<ShootingMap>(&conditions);
         let count = columns.folds.len();
         let nodes: Vec<Nodes> = (0..count)
             .map(|column| {

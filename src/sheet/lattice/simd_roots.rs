@@ -2,7 +2,7 @@
 
 use crate::numerics::lobatto::Curve;
 use crate::numerics::newton_form_simd::{Numbers, at, keep, part};
-use crate::numerics::{Lanes, Task, WIDTH};
+use crate::numerics::{Lanes, SimdTask, WIDTH};
 use crate::sheet::fold::contact_nodes::{Line, TERMS};
 use crate::shooting::contact::exp;
 
@@ -47,7 +47,7 @@ pub struct Crossed {
     pub q: Numbers,
 }
 
-impl Task for Across<'_> {
+impl SimdTask for Across<'_> {
     type Output = Crossed;
 
     #[inline(always)]
@@ -118,7 +118,7 @@ pub struct Found {
     pub load: Numbers,
 }
 
-impl Task for Along<'_> {
+impl SimdTask for Along<'_> {
     type Output = Found;
 
     #[inline(always)]

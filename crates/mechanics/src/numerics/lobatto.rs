@@ -3,7 +3,7 @@
 //! that leaves the lattice takes the nodes around.)
 
 use crate::numerics::newton_form::Polynomial;
-use crate::numerics::{Lanes, Task, Unit};
+use crate::numerics::{Lanes, SimdTask, Unit};
 use std::f64::consts::FRAC_PI_2;
 use std::sync::LazyLock;
 
@@ -63,7 +63,7 @@ struct Differences<const N: usize> {
     values: [[f64; LOADS]; N],
 }
 
-impl<const N: usize> Task for Differences<N> {
+impl<const N: usize> SimdTask for Differences<N> {
     type Output = [[f64; LOADS]; N];
 
     /// In no lanes of ours: loops over all loads, whatever the count, which the compiler turns into the unit's vectors.

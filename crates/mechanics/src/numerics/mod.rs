@@ -6,15 +6,13 @@ pub mod newton_form;
 pub mod newton_form_simd;
 mod peak;
 mod real;
-pub mod simd;
+mod simd;
 mod turn;
-mod unit;
 mod vector;
 
 pub use complex::Complex;
 pub use peak::MultiplyAndAdd;
-pub use real::{Real, expm1_over_small, hyperbolic_small, turned};
-pub use simd::{Lanes, WIDTH};
+pub use real::{Real, expm1_over_small, hyperbolic_small, rotated_by_small};
+pub use simd::{Lanes, SimdTask, Unit, WIDTH};
 pub use turn::nearest_turn;
-pub use unit::{Task, Unit};
 pub use vector::Vector;

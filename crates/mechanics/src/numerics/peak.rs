@@ -1,7 +1,7 @@
 //! What the processor could do at best: nothing but fused multiply-adds, in as many chains as hide their latency and fit
 //! into the registers.
 
-use super::{Lanes, Task, WIDTH};
+use super::{Lanes, SimdTask, WIDTH};
 use std::hint::black_box;
 
 /// Multiplies and adds `rounds` times in every chain, and tells how many operations that were: with a clock, the peak of one
@@ -12,7 +12,7 @@ pub struct MultiplyAndAdd {
     pub rounds: u32,
 }
 
-impl Task for MultiplyAndAdd {
+impl SimdTask for MultiplyAndAdd {
     type Output = u64;
 
     #[inline(always)]

@@ -97,9 +97,9 @@ const CIRCULAR: [[f64; 2]; 5] = {
     terms
 };
 
-/// The unit vector turned by a small `angle`.
+/// The unit vector rotated by a small `angle`, by the polynomials of sine and cosine.
 #[inline(always)]
-pub fn turned<T: Real>([x, y]: [T; 2], angle: T) -> [T; 2] {
+pub fn rotated_by_small<T: Real>([x, y]: [T; 2], angle: T) -> [T; 2] {
     let square = angle * angle;
     let fourth = square * square;
     // Pairs first: all that follows waits for this.

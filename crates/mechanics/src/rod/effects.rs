@@ -13,7 +13,7 @@ pub struct Effects {
     pub taper: bool,
     /// The whisker is curved at rest, as a parabola.
     pub curvature: bool,
-    /// It is an Euler spiral at rest; never together with `curvature`.
+    /// It is an Euler spiral at rest.
     pub spiral: bool,
     /// The modulus changes along the whisker.
     pub gradient: bool,
@@ -53,7 +53,7 @@ impl Effects {
         self.taper || self.spiral || self.gradient || self.profile
     }
 
-    /// Whether the rod looks the same from each of its points, but for its size: see [`order::similar`](super::order::similar).
+    /// Whether the rod looks the same from each of its points, but for its size: see `shooting::sensitivity::similar`.
     #[must_use]
     pub const fn similar(self) -> bool {
         !(self.curvature || self.spiral || self.gradient || self.profile)
@@ -72,11 +72,24 @@ impl Effects {
     /// The effects that at least one of `rods` has.
     pub fn of<'a>(rods: impl IntoIterator<Item = &'a Rod>) -> Self {
         rods.into_iter().fold(Self::default(), |set, rod| Self {
-            taper: set.taper || rod.taper != 0.0,
             curvature: set.curvature || rod.bend != 0.0,
             spiral: set.spiral || rod.spiral.is_some(),
-            gradient: set.gradient || rod.gradient != 0.0,
-            profile: set.profile || rod.profile.is_some(),
+            ..set.and(rod)
         })
+    }
+
+    /// These effects, and those of `rod`: none of its own is missing. No kernel has two rest shapes; that of the rod goes before.
+    #[inline]
+    #[must_use]
+    pub fn and(self, rod: &Rod) -> Self {
+        let spiral = rod.spiral.is_some();
+        let curvature = rod.bend != 0.0 && !spiral;
+        Self {
+            taper: self.taper | (rod.taper != 0.0),
+            curvature: curvature | (self.curvature & !spiral),
+            spiral: spiral | (self.spiral & !curvature),
+            gradient: self.gradient | (rod.gradient != 0.0),
+            profile: self.profile | rod.profile.is_some(),
+        }
     }
 }

@@ -5,7 +5,6 @@
 //! row, where the second derivative jumps, and a Runge-Kutta method keeps its order.
 
 use crate::rod::rod::{arclength_at, pointed, tau_at};
-use std::sync::{Mutex, PoisonError};
 
 /// A cubic piece of a profile.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -57,9 +56,6 @@ pub struct RadiusProfile {
     compliances: Vec<[f64; 2]>,
 }
 
-/// Every profile in use. A process reads few scenes, and trajectories by the million want to share one without counting.
-static KNOWN: Mutex<Vec<&'static RadiusProfile>> = Mutex::new(Vec::new());
-
 /// Places per piece at which its slope is looked at. `|radius'|/radius` peaks where a piece runs out into a thin end, over
 /// a fiftieth of it at a radius that falls to a thousandth.
 const LOOKS: u32 = 256;
@@ -74,18 +70,11 @@ const GAUSS: [[f64; 2]; 4] = [
 
 impl RadiusProfile {
     /// The profile through `rows` of arclength and radius, as fractions of the whisker's, of a whisker whose real
-    /// arclength is `stretch` times the one in the plane of contact. Equal profiles are one and stay until the end.
+    /// arclength is `stretch` times the one in the plane of contact.
     #[must_use]
-    pub fn of(rows: &[[f64; 2]], stretch: f64) -> &'static Self {
+    pub fn new(rows: &[[f64; 2]], stretch: f64) -> Self {
         let rows: Vec<[f64; 2]> = rows.iter().map(|[s, r]| [s / stretch, *r]).collect();
-        let profile = Self::through(&rows);
-        let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(equal) = known.iter().find(|other| ***other == profile) {
-            return equal;
-        }
-        let leaked: &'static Self = Box::leak(Box::new(profile));
-        known.push(leaked);
-        leaked
+        Self::through(&rows)
     }
 
     fn through(rows: &[[f64; 2]]) -> Self {
@@ -292,7 +281,7 @@ mod tests {
             )
         };
         for stretch in [1.0, 1.2, 1.6] {
-            let profile = RadiusProfile::of(&rows, stretch);
+            let profile = RadiusProfile::new(&rows, stretch);
             let (beyond, before) = ends(stretch);
             let [change, length] = profile.changes[2];
             assert!((length - beyond.max(before)).abs() < 1e-12, "{stretch}");
@@ -319,12 +308,5 @@ mod tests {
         }
         assert!((profile.largest_share(0.04) - 1.0).abs() < 1e-12);
         assert!((0.1..0.2).contains(&profile.largest_share(0.5)));
-    }
-
-    #[test]
-    fn equal_profiles_are_one() {
-        let (one, other) = (RadiusProfile::of(&ROWS, 1.0), RadiusProfile::of(&ROWS, 1.0));
-        assert!(std::ptr::eq(one, other));
-        assert!(!std::ptr::eq(one, RadiusProfile::of(&ROWS, 1.03)));
     }
 }

@@ -3,6 +3,7 @@
 use crate::rod::{RadiusProfile, arclength};
 use glam::DVec2;
 use serde::Serialize;
+use std::sync::Arc;
 
 /// The side of the whisker that the pole is on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
@@ -35,7 +36,7 @@ impl Side {
 }
 
 /// One whisker on one side of one pole; lengths in whisker lengths.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Rod {
     /// `beta = 1 - r_tip/r_base`, times the arc stretch; in `[0, 1]`.
     pub taper: f64,
@@ -52,7 +53,7 @@ pub struct Rod {
     /// `[k0, k1]` of an Euler spiral, whose curvature at rest is `k0 + k1 s`, in place of the parabola.
     pub spiral: Option<[f64; 2]>,
     /// Radii in place of those that fall linearly; `taper` is then only the scale of the coordinates.
-    pub profile: Option<&'static RadiusProfile>,
+    pub profile: Option<Arc<RadiusProfile>>,
 }
 
 /// A perfect cone is cut where its radius is this part of the base radius: below, the contact is closer to
@@ -86,18 +87,25 @@ impl Rod {
     /// Bending stiffness at arclength `s` over that at the base.
     #[must_use]
     pub fn stiffness(&self, s: f64) -> f64 {
-        let radius = match self.profile {
+        let radius = match &self.profile {
             Some(profile) => profile.radius(s),
             None => 1.0 - self.taper * s,
         };
         radius.powi(4) * self.modulus(s)
     }
 
+    /// Whether the radius falls linearly, or not at all, and the modulus is the same everywhere.
+    #[must_use]
+    #[inline]
+    pub fn is_uniform_cone(&self) -> bool {
+        self.profile.is_none() && self.gradient == 0.0
+    }
+
     /// Index of the piece of its profile on which the arclength `s` lies; 0 without one.
     #[must_use]
     #[inline]
     pub fn piece(&self, s: f64) -> usize {
-        self.profile.map_or(0, |profile| profile.piece(s))
+        self.profile.as_ref().map_or(0, |profile| profile.piece(s))
     }
 
     /// The sharpest bend of the whisker at rest, in radians per whisker length.
@@ -147,7 +155,7 @@ impl Rod {
     /// without a profile. Folds of all whiskers lie at similar `|load| s^2 softness`.
     #[must_use]
     pub fn softness(&self, tau: f64) -> f64 {
-        self.profile.map_or(1.0, |profile| {
+        self.profile.as_ref().map_or(1.0, |profile| {
             let s = arclength(self, tau);
             let scale = self.radius(tau);
             let cone = s * s * (1.0 + 2.0 * scale) / (6.0 * scale * scale);

@@ -11,7 +11,7 @@ pub struct Contact<T> {
     pub radius: T,
     /// The whole force `F L_w^2/(E I_base)`, signed; without friction it is the normal force.
     pub force: T,
-    /// The whisker's tangent there, see [`Rod::contact_tangent`](super::Rod::contact_tangent).
+    /// The whisker's tangent there, see [`Rod::contact_tangent`](crate::rod::Rod::contact_tangent).
     pub tangent: [T; 2],
     /// Stiffness over that at the base.
     pub stiffness: T,

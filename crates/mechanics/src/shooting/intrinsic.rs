@@ -1,6 +1,6 @@
 //! Rest shapes.
 
-use crate::numerics::turned;
+use crate::numerics::rotated_by_small;
 use crate::numerics::{Real, Vector};
 use crate::shooting::Section;
 
@@ -143,7 +143,7 @@ impl<T: Real> Intrinsic<T> for Bent<T> {
     #[inline(always)]
     fn after(course: &Series<T>, along: T) -> [T; 2] {
         match Self::turn(course, along) {
-            Some(turn) => turned(course.tangent, turn),
+            Some(turn) => rotated_by_small(course.tangent, turn),
             None => course.tangent,
         }
     }

@@ -4,15 +4,19 @@ use crate::numerics::Real;
 use crate::shooting::Section;
 use crate::shooting::Stage;
 
-/// How the rod swings at a stage of a step, with `m^2` its inverse compliance.
+/// Coefficients of the equation that Liouville's transformation leaves, at a stage of a step. With `m^2` the inverse
+/// compliance and `chi = m (theta - theta_0)/f` it is `chi'' = (m''/m) chi - (rho/m) cos(theta)`, see [`Nystrom8`].
+/// `m_0` and `rho_0` are values at the start of the step.
+///
+/// [`Nystrom8`]: crate::shooting::Nystrom8
 #[derive(Clone, Copy, Debug)]
-pub struct Swing<T> {
-    /// `m` at the start of the step over `m`.
-    pub light: T,
-    /// The same times the radius over that at the start of the step.
-    pub pull: T,
-    /// `m''/m`.
-    pub spring: Option<T>,
+pub struct Liouville<T> {
+    /// `m_0/m`: turns `chi` back into an angle.
+    pub inverse_scale: T,
+    /// `(rho/m)/(rho_0/m_0)`, the factor of `cos(theta)`.
+    pub forcing: T,
+    /// `m''/m`, the factor of `chi`; none where it is 0.
+    pub potential: Option<T>,
 }
 
 /// How the material stiffens along the rod.
@@ -20,40 +24,40 @@ pub trait Material<T: Real>: Copy {
     /// `rho/S` at a section: what turns a moment into `dtheta/dtau`.
     fn compliance(self, section: &Section<T>) -> T;
 
-    /// At a stage of a step that starts at `from`.
-    fn swing(self, taper: Option<T>, from: &Section<T>, stage: &Stage<T>) -> Swing<T>;
+    /// The coefficients at a stage of a step that starts at `from`.
+    fn liouville(self, taper: Option<T>, from: &Section<T>, stage: &Stage<T>) -> Liouville<T>;
 
-    /// `m'/m` there, and `m` over that at the start, whose inverse is `light`; none where they are 0 and 1.
-    fn settle(
+    /// `m'/m` and `m/m_0` there, which turn `chi'` back into a lever; none where they are 0 and 1.
+    fn liouville_scale(
         self,
         taper: Option<T>,
         from: &Section<T>,
         stage: &Stage<T>,
-        light: T,
+        inverse_scale: T,
     ) -> Option<[T; 2]>;
 }
 
 /// The same modulus everywhere: `S = rho^4`.
 #[derive(Clone, Copy, Debug)]
-pub struct Even;
+pub struct Uniform;
 
 #[allow(
     clippy::manual_map,
     reason = "a closure is not inlined into functions that are compiled for a SIMD unit"
 )]
-impl<T: Real> Material<T> for Even {
+impl<T: Real> Material<T> for Uniform {
     #[inline(always)]
     fn compliance(self, section: &Section<T>) -> T {
         section.inverse_cube
     }
 
     #[inline(always)]
-    fn swing(self, taper: Option<T>, _: &Section<T>, stage: &Stage<T>) -> Swing<T> {
+    fn liouville(self, taper: Option<T>, _: &Section<T>, stage: &Stage<T>) -> Liouville<T> {
         let shrunk = stage.shrunk;
-        Swing {
-            light: shrunk * shrunk * shrunk,
-            pull: shrunk,
-            spring: match taper {
+        Liouville {
+            inverse_scale: shrunk * shrunk * shrunk,
+            forcing: shrunk,
+            potential: match taper {
                 Some(taper) => Some(T::of(2.25) * taper * taper),
                 None => None,
             },
@@ -61,7 +65,13 @@ impl<T: Real> Material<T> for Even {
     }
 
     #[inline(always)]
-    fn settle(self, taper: Option<T>, _: &Section<T>, stage: &Stage<T>, _: T) -> Option<[T; 2]> {
+    fn liouville_scale(
+        self,
+        taper: Option<T>,
+        _: &Section<T>,
+        stage: &Stage<T>,
+        _: T,
+    ) -> Option<[T; 2]> {
         match taper {
             Some(taper) => Some([T::of(1.5) * taper, stage.grown * stage.grown * stage.shrunk]),
             None => None,
@@ -98,32 +108,32 @@ impl<T: Real> Material<T> for Graded<T> {
     }
 
     #[inline(always)]
-    fn swing(self, taper: Option<T>, from: &Section<T>, stage: &Stage<T>) -> Swing<T> {
+    fn liouville(self, taper: Option<T>, from: &Section<T>, stage: &Stage<T>) -> Liouville<T> {
         let taper = taper.unwrap_or(T::of(0.0));
         let [inverse, fall] = self.fall(&from.at(stage));
-        let even = Even.swing(Some(taper), from, stage);
+        let uniform = Uniform.liouville(Some(taper), from, stage);
         let softer = (self.modulus(from) * inverse).sqrt();
-        Swing {
-            light: even.light * softer,
-            pull: even.pull * softer,
-            spring: Some(
+        Liouville {
+            inverse_scale: uniform.inverse_scale * softer,
+            forcing: uniform.forcing * softer,
+            potential: Some(
                 T::of(2.25) * taper * taper - fall * T::of(0.25).mul_add(fall, taper + taper),
             ),
         }
     }
 
     #[inline(always)]
-    fn settle(
+    fn liouville_scale(
         self,
         taper: Option<T>,
         from: &Section<T>,
         stage: &Stage<T>,
-        light: T,
+        inverse_scale: T,
     ) -> Option<[T; 2]> {
         let taper = taper.unwrap_or(T::of(0.0));
         let [_, fall] = self.fall(&from.at(stage));
         let growth = T::of(1.5) * taper - T::of(0.5) * fall;
-        Some([growth, T::of(1.0) / light])
+        Some([growth, T::of(1.0) / inverse_scale])
     }
 }
 
@@ -168,13 +178,13 @@ impl<T: Real> Material<T> for Measured<T> {
     }
 
     #[inline(always)]
-    fn swing(self, taper: Option<T>, from: &Section<T>, stage: &Stage<T>) -> Swing<T> {
+    fn liouville(self, taper: Option<T>, from: &Section<T>, stage: &Stage<T>) -> Liouville<T> {
         let here = from.at(stage);
         let [inverse, fall] = self.graded().fall(&here);
         let [start, _, _] = self.radius(from);
         let [radius, slope, bend] = self.radius(&here);
         let thinner = start / radius;
-        let light =
+        let inverse_scale =
             thinner * thinner * (stage.grown * self.graded().modulus(from) * inverse).sqrt();
         let taper = taper.unwrap_or(T::of(0.0));
         let (half, two) = (T::of(0.5), T::of(2.0));
@@ -184,20 +194,20 @@ impl<T: Real> Material<T> for Measured<T> {
         // `-(m'/m)'`, to be taken from the square of `m'/m`.
         let change = two * (narrowing * (narrowing + taper) - here.rho * per_length * bend)
             + half * fall * (taper + fall);
-        Swing {
-            light,
-            pull: light * stage.grown,
-            spring: Some(growth * growth - change),
+        Liouville {
+            inverse_scale,
+            forcing: inverse_scale * stage.grown,
+            potential: Some(growth * growth - change),
         }
     }
 
     #[inline(always)]
-    fn settle(
+    fn liouville_scale(
         self,
         taper: Option<T>,
         from: &Section<T>,
         stage: &Stage<T>,
-        light: T,
+        inverse_scale: T,
     ) -> Option<[T; 2]> {
         let here = from.at(stage);
         let [_, fall] = self.graded().fall(&here);
@@ -205,6 +215,6 @@ impl<T: Real> Material<T> for Measured<T> {
         let taper = taper.unwrap_or(T::of(0.0));
         let narrowing = here.rho / radius * slope;
         let growth = -(narrowing + narrowing + T::of(0.5) * (fall + taper));
-        Some([growth, T::of(1.0) / light])
+        Some([growth, T::of(1.0) / inverse_scale])
     }
 }

@@ -20,14 +20,13 @@ mod rhs;
 pub mod sensitivity;
 pub mod shape;
 
-pub use batch::{First, FirstAndEnergy, Second};
 pub use integrator::{Integrator, Nystrom8, Rk4, STAGES, Scales, Stage, integrate};
 pub use intrinsic::{Bent, Intrinsic, Spiral, Straight};
 pub use map::{
     Base, FirstVariation, FullState, LONGEST_STEP, SecondVariation, ShootingMap, StateDerivative,
     limited,
 };
-pub use material::{Even, Graded, Material, Measured, Swing};
+pub use material::{Graded, Liouville, Material, Measured, Uniform};
 pub use reading::{Reader, Reading};
 pub use resolution::Resolution;
 pub use rhs::{Carried, Planar, RodSystem, Section, Sensitivity, Shape, State};

@@ -65,8 +65,8 @@ impl Resolution {
     #[inline(always)]
     pub(super) fn steps_from(&self, rod: &Rod, tau: f64, load: f64, s: f64) -> u32 {
         let bend = rod.sharpest_bend();
-        if rod.profile.is_none() && rod.gradient == 0.0 {
-            return self.steps_on_even(rod.taper, bend, [tau, load, s]);
+        if rod.is_uniform_cone() {
+            return self.steps_on_uniform(rod.taper, bend, [tau, load, s]);
         }
         let mut bending = load.abs() * s * s;
         if rod.profile.is_some() {
@@ -78,7 +78,7 @@ impl Resolution {
         let modulus = rod.gradient.abs() / (1.0 + rod.gradient).min(1.0);
         let fastest = fastest(rod.taper, bend).max(0.5 * modulus);
         let weight = weight(bending, bend * s);
-        let (weight, needed) = match rod.profile {
+        let (weight, needed) = match &rod.profile {
             Some(profile) => {
                 let [change, length] = profile.changes[profile.piece(s)];
                 let share = CONCENTRATED * profile.largest_share(s);
@@ -93,7 +93,7 @@ impl Resolution {
     /// Those on a rod of one modulus without a profile, from `tau`, load and arclength: without a branch, so that a compiler
     /// can work on several at once.
     #[inline(always)]
-    pub(super) fn steps_on_even(&self, taper: f64, bend: f64, [tau, load, s]: [f64; 3]) -> u32 {
+    pub(super) fn steps_on_uniform(&self, taper: f64, bend: f64, [tau, load, s]: [f64; 3]) -> u32 {
         let weight = weight(load.abs() * s * s, bend * s) + weight_of_taper(taper * tau);
         self.rounded(weight, fastest(taper, bend) * tau)
     }

@@ -1,4 +1,4 @@
-//! A trajectory seen at places along the whisker.
+//! A trajectory seen at points along the whisker.
 
 use crate::rod::{Rest, Rod, Start, arclength};
 use crate::shooting::{Bent, Intrinsic, Spiral};
@@ -7,10 +7,10 @@ use crate::shooting::{Nystrom8, Resolution, Scales, integrate};
 use crate::shooting::{RodSystem, Section, Shape, State};
 use glam::DVec2;
 
-/// The whisker at one place, as seen from the contact, in axes whose second one is along the force; lengths in whisker
+/// The whisker at one of its points, as seen from the contact, in axes whose second one is along the force; lengths in whisker
 /// lengths.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Place {
+pub struct RodPoint {
     /// Arclength from the base.
     pub arclength: f64,
     /// Position.
@@ -23,10 +23,16 @@ pub struct Place {
     pub moment: f64,
 }
 
-/// The places at growing arclengths `at` of the whisker in contact at `tau` under `load`; beyond the contact it keeps
+/// The points at growing arclengths `at` of the whisker in contact at `tau` under `load`; beyond the contact it keeps
 /// its rest shape.
 #[must_use]
-pub fn profile(rod: &Rod, tau: f64, load: f64, resolution: Resolution, at: &[f64]) -> Vec<Place> {
+pub fn profile(
+    rod: &Rod,
+    tau: f64,
+    load: f64,
+    resolution: Resolution,
+    at: &[f64],
+) -> Vec<RodPoint> {
     let start = Start::new(rod, tau, load);
     let way = Way {
         rod,
@@ -34,10 +40,10 @@ pub fn profile(rod: &Rod, tau: f64, load: f64, resolution: Resolution, at: &[f64
         steps: resolution.steps(rod, tau, load),
     };
     match rod.spiral {
-        Some([at_base, slope]) => way.places(Spiral { at_base, slope }, (), at),
+        Some([at_base, slope]) => way.points(Spiral { at_base, slope }, (), at),
         None => {
             let twice_bend = 2.0 * rod.bend;
-            way.places(Bent { twice_bend }, start.rest.to_array(), at)
+            way.points(Bent { twice_bend }, start.rest.to_array(), at)
         }
     }
 }
@@ -51,7 +57,7 @@ struct Way<'a> {
 }
 
 impl Way<'_> {
-    fn places<I: Intrinsic<f64>>(&self, intrinsic: I, rest: I::State, at: &[f64]) -> Vec<Place> {
+    fn points<I: Intrinsic<f64>>(&self, intrinsic: I, rest: I::State, at: &[f64]) -> Vec<RodPoint> {
         let contact = self.start.arclength;
         let deflected = at.partition_point(|s| *s < contact);
         let tangent = self.start.tangent;
@@ -60,7 +66,7 @@ impl Way<'_> {
             ([tangent.x, tangent.y, 0.0, 0.0, 0.0], ((), ((), ()))),
         );
         let mut from = self.start.tau;
-        let mut places: Vec<Place> = at[..deflected]
+        let mut points: Vec<RodPoint> = at[..deflected]
             .iter()
             .rev()
             .map(|s| {
@@ -71,9 +77,9 @@ impl Way<'_> {
                 self.loaded(*s, rod)
             })
             .collect();
-        places.reverse();
-        places.extend(at[deflected..].iter().map(|s| self.free(*s)));
-        places
+        points.reverse();
+        points.extend(at[deflected..].iter().map(|s| self.free(*s)));
+        points
     }
 
     /// Integrates `state` from one `tau` back to a smaller one, piece by piece.
@@ -84,7 +90,7 @@ impl Way<'_> {
         mut state: State<f64, I, Shape>,
     ) -> State<f64, I, Shape> {
         let gradient = self.rod.gradient;
-        let Some(profile) = self.rod.profile else {
+        let Some(profile) = &self.rod.profile else {
             let whole = self.start.tau;
             return self.integrate(intrinsic, Graded { gradient }, whole, (from, to), state);
         };
@@ -141,9 +147,9 @@ impl Way<'_> {
         integrate::<Nystrom8, f64, _, _, Shape>(&system, &scales, section, steps, state)
     }
 
-    fn loaded(&self, s: f64, [c, sin, x, y, _]: [f64; 5]) -> Place {
+    fn loaded(&self, s: f64, [c, sin, x, y, _]: [f64; 5]) -> RodPoint {
         let moment = -self.start.force * x;
-        Place {
+        RodPoint {
             arclength: s,
             position: DVec2::new(x, y),
             tangent: DVec2::new(c, sin),
@@ -152,12 +158,12 @@ impl Way<'_> {
         }
     }
 
-    fn free(&self, s: f64) -> Place {
+    fn free(&self, s: f64) -> RodPoint {
         let rest = Rest::new(self.rod);
         let (from, axis) = rest.at_arclength(self.start.arclength);
         let (to, tangent) = rest.at_arclength(s);
         let turn = self.start.tangent.rotate(DVec2::new(axis.x, -axis.y));
-        Place {
+        RodPoint {
             arclength: s,
             position: turn.rotate(to - from),
             tangent: turn.rotate(tangent),

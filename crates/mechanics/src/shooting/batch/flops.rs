@@ -3,10 +3,9 @@
 use crate::numerics::Real;
 use crate::numerics::{Lanes, WIDTH};
 use crate::rod::Effects;
-use crate::shooting::Integrator;
 use crate::shooting::batch::InitialCondition;
 use crate::shooting::batch::kernel::by_effects;
-use crate::shooting::batch::output::Derived;
+use crate::shooting::{Integrator, Nystrom8, Rk4, ShootingMap};
 use std::cell::Cell;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -16,7 +15,7 @@ thread_local! {
 
 /// A number that counts what is done with it: 1 for an addition, multiplication, division or root, 2 for a fused multiply-add.
 #[derive(Clone, Copy, Debug)]
-pub struct Counted(f64);
+struct Counted(f64);
 
 fn counted(operations: u64, x: f64) -> Counted {
     COUNT.set(COUNT.get() + operations);
@@ -72,16 +71,24 @@ impl Lanes for Counted {
     }
 }
 
-/// Operations of one trajectory in `steps` steps, from its contact to its answer. Stages whose results nothing needs are
-/// counted too; a compiler leaves them out.
+/// Operations of one trajectory in `steps` steps of [`Nystrom8`], from its contact to its answer. Stages whose results nothing
+/// needs are counted too; a compiler leaves them out.
 #[must_use]
-pub fn flops<M: Integrator, K: Derived<Counted>>(
-    effects: Effects,
-    steps: u32,
-    condition: &InitialCondition,
-) -> u64 {
-    let effects = effects.reaching(condition.rod.taper * condition.tau);
+pub fn flops_of_nystrom8(effects: Effects, steps: u32, condition: &InitialCondition) -> u64 {
+    flops::<Nystrom8>(effects, steps, condition)
+}
+
+/// The same for [`Rk4`], the shaders' method.
+#[must_use]
+pub fn flops_of_rk4(effects: Effects, steps: u32, condition: &InitialCondition) -> u64 {
+    flops::<Rk4>(effects, steps, condition)
+}
+
+fn flops<M: Integrator>(effects: Effects, steps: u32, condition: &InitialCondition) -> u64 {
+    let effects = effects
+        .and(condition.rod)
+        .reaching(condition.rod.taper * condition.tau);
     COUNT.set(0);
-    let _ = by_effects::<M, K, Counted>(effects, steps, &[condition; WIDTH]);
+    let _ = by_effects::<M, ShootingMap, Counted>(effects, steps, &[condition; WIDTH]);
     COUNT.get()
 }

@@ -4,14 +4,14 @@ use crate::numerics::{Lanes, WIDTH};
 use crate::rod::Piece;
 use crate::rod::Rod;
 use crate::shooting::batch::InitialCondition;
-use crate::shooting::batch::kernel::Block;
+use crate::shooting::batch::kernel::Conditions;
 use crate::shooting::contact::{arc, parabola_tangent};
 use crate::shooting::{Bent, Intrinsic, Spiral, Straight};
-use crate::shooting::{Even, Graded, Material, Measured};
+use crate::shooting::{Graded, Material, Measured, Uniform};
 
 /// What `number` tells of each condition. (`map` of an array is not inlined into functions for a SIMD unit.)
 #[inline(always)]
-pub fn numbers(conditions: &Block, number: impl Fn(&InitialCondition) -> f64) -> [f64; WIDTH] {
+pub fn numbers(conditions: &Conditions, number: impl Fn(&InitialCondition) -> f64) -> [f64; WIDTH] {
     let mut numbers = [0.0; WIDTH];
     for (lane, condition) in numbers.iter_mut().zip(conditions) {
         *lane = number(condition);
@@ -21,12 +21,12 @@ pub fn numbers(conditions: &Block, number: impl Fn(&InitialCondition) -> f64) ->
 
 /// The same in lanes.
 #[inline(always)]
-pub fn lanes<T: Lanes>(conditions: &Block, number: impl Fn(&InitialCondition) -> f64) -> T {
+pub fn lanes<T: Lanes>(conditions: &Conditions, number: impl Fn(&InitialCondition) -> f64) -> T {
     T::pack(numbers(conditions, number))
 }
 
-/// A place on each rod of a block.
-pub struct Place<T> {
+/// A place along each rod of a block.
+pub struct ArcPosition<T> {
     /// `tau` there.
     pub tau: T,
     /// Scale of the coordinates.
@@ -35,7 +35,7 @@ pub struct Place<T> {
     pub s: T,
 }
 
-impl<T: Lanes> Place<T> {
+impl<T: Lanes> ArcPosition<T> {
     #[inline(always)]
     fn base() -> Self {
         let zero = T::of(0.0);
@@ -50,69 +50,69 @@ impl<T: Lanes> Place<T> {
 /// A material that can be gathered from the rods of a block, and the way along it.
 pub trait GatherMaterial<T: Lanes>: Material<T> {
     /// The material on piece `piece` of a profile.
-    fn gather(conditions: &Block, piece: usize) -> Self;
+    fn gather(conditions: &Conditions, piece: usize) -> Self;
 
     /// Stiffness at the contacts, over that at the base; `radius` and `s` are those there.
-    fn stiffness(conditions: &Block, radius: T, s: T) -> T;
+    fn stiffness(conditions: &Conditions, radius: T, s: T) -> T;
 
     /// Where piece `piece` begins; the base for the first one.
-    fn begin(conditions: &Block, piece: usize) -> Place<T>;
+    fn begin(conditions: &Conditions, piece: usize) -> ArcPosition<T>;
 
     /// How many pieces the way from the contacts at the arclengths `s` to the base has.
-    fn pieces(conditions: &Block, s: T) -> usize;
+    fn pieces(conditions: &Conditions, s: T) -> usize;
 }
 
-impl<T: Lanes> GatherMaterial<T> for Even {
+impl<T: Lanes> GatherMaterial<T> for Uniform {
     #[inline(always)]
-    fn gather(_: &Block, _: usize) -> Self {
+    fn gather(_: &Conditions, _: usize) -> Self {
         Self
     }
 
     #[inline(always)]
-    fn stiffness(_: &Block, radius: T, _: T) -> T {
+    fn stiffness(_: &Conditions, radius: T, _: T) -> T {
         radius * radius * (radius * radius)
     }
 
     #[inline(always)]
-    fn begin(_: &Block, _: usize) -> Place<T> {
-        Place::base()
+    fn begin(_: &Conditions, _: usize) -> ArcPosition<T> {
+        ArcPosition::base()
     }
 
     #[inline(always)]
-    fn pieces(_: &Block, _: T) -> usize {
+    fn pieces(_: &Conditions, _: T) -> usize {
         1
     }
 }
 
 impl<T: Lanes> GatherMaterial<T> for Graded<T> {
     #[inline(always)]
-    fn gather(conditions: &Block, _: usize) -> Self {
+    fn gather(conditions: &Conditions, _: usize) -> Self {
         let gradient: T = lanes(conditions, |condition| condition.rod.gradient);
         Self { gradient }
     }
 
     #[inline(always)]
-    fn stiffness(conditions: &Block, radius: T, s: T) -> T {
+    fn stiffness(conditions: &Conditions, radius: T, s: T) -> T {
         let gradient: T = lanes(conditions, |condition| condition.rod.gradient);
         radius * radius * (radius * radius) * gradient.mul_add(s, T::of(1.0))
     }
 
     #[inline(always)]
-    fn begin(_: &Block, _: usize) -> Place<T> {
-        Place::base()
+    fn begin(_: &Conditions, _: usize) -> ArcPosition<T> {
+        ArcPosition::base()
     }
 
     #[inline(always)]
-    fn pieces(_: &Block, _: T) -> usize {
+    fn pieces(_: &Conditions, _: T) -> usize {
         1
     }
 }
 
 impl<T: Lanes> GatherMaterial<T> for Measured<T> {
     #[inline(always)]
-    fn gather(conditions: &Block, piece: usize) -> Self {
-        // A rod without a profile has no business in this kernel; its piece is its own cone.
-        let pieces = conditions.map(|condition| match condition.rod.profile {
+    fn gather(conditions: &Conditions, piece: usize) -> Self {
+        // A rod without a profile comes here only where the method has the effect; its piece is its own cone.
+        let pieces = conditions.map(|condition| match &condition.rod.profile {
             Some(profile) => profile.pieces[piece],
             None => Piece::cone(condition.rod.taper),
         });
@@ -124,18 +124,19 @@ impl<T: Lanes> GatherMaterial<T> for Measured<T> {
     }
 
     #[inline(always)]
-    fn stiffness(conditions: &Block, _: T, s: T) -> T {
+    fn stiffness(conditions: &Conditions, _: T, s: T) -> T {
         let s = s.unpack();
         T::pack(std::array::from_fn(|i| conditions[i].rod.stiffness(s[i])))
     }
 
     #[inline(always)]
-    fn begin(conditions: &Block, piece: usize) -> Place<T> {
+    fn begin(conditions: &Conditions, piece: usize) -> ArcPosition<T> {
         let begin = |rod: &Rod| {
             rod.profile
+                .as_ref()
                 .map_or(0.0, |profile| profile.pieces[piece].from)
         };
-        Place {
+        ArcPosition {
             tau: lanes(conditions, |InitialCondition { rod, .. }| {
                 rod.tau(begin(rod))
             }),
@@ -147,7 +148,7 @@ impl<T: Lanes> GatherMaterial<T> for Measured<T> {
     }
 
     #[inline(always)]
-    fn pieces(conditions: &Block, s: T) -> usize {
+    fn pieces(conditions: &Conditions, s: T) -> usize {
         conditions[0].rod.piece(s.unpack()[0]) + 1
     }
 }
@@ -155,7 +156,7 @@ impl<T: Lanes> GatherMaterial<T> for Measured<T> {
 /// A rest shape that can be gathered from the rods of a block.
 pub trait Gather<T: Lanes>: Intrinsic<T> {
     /// The rest shape, and what is known of it at the arclengths `s`.
-    fn gather(conditions: &Block, s: T) -> (Self, AtRest<T, Self::State>);
+    fn gather(conditions: &Conditions, s: T) -> (Self, AtRest<T, Self::State>);
 }
 
 /// The whisker at rest where the contact is.
@@ -170,7 +171,7 @@ pub struct AtRest<T, S> {
 
 impl<T: Lanes> Gather<T> for Straight {
     #[inline(always)]
-    fn gather(_: &Block, _: T) -> (Self, AtRest<T, ()>) {
+    fn gather(_: &Conditions, _: T) -> (Self, AtRest<T, ()>) {
         let zero = T::of(0.0);
         let at_rest = AtRest {
             state: (),
@@ -183,7 +184,7 @@ impl<T: Lanes> Gather<T> for Straight {
 
 impl<T: Lanes> Gather<T> for Bent<T> {
     #[inline(always)]
-    fn gather(conditions: &Block, s: T) -> (Self, AtRest<T, [T; 2]>) {
+    fn gather(conditions: &Conditions, s: T) -> (Self, AtRest<T, [T; 2]>) {
         let bend = lanes(conditions, |condition| condition.rod.bend);
         let twice_bend = bend + bend;
         let is_level = conditions
@@ -207,7 +208,7 @@ impl<T: Lanes> Gather<T> for Bent<T> {
 
 impl<T: Lanes> Gather<T> for Spiral<T> {
     #[inline(always)]
-    fn gather(conditions: &Block, s: T) -> (Self, AtRest<T, ()>) {
+    fn gather(conditions: &Conditions, s: T) -> (Self, AtRest<T, ()>) {
         let coefficient = |i: usize| {
             move |condition: &InitialCondition| condition.rod.spiral.unwrap_or_default()[i]
         };

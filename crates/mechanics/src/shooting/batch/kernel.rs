@@ -1,72 +1,126 @@
 //! One specialised kernel per set of effects: no branch on an effect is left inside.
 
-use crate::numerics::{Lanes, WIDTH};
+use super::block_key::BlockKey;
+use super::gather::{ArcPosition, Gather, GatherMaterial, lanes, numbers};
+use super::{InitialCondition, Method, OutputSet};
+use crate::numerics::{Lanes, SimdTask, WIDTH};
 use crate::rod::Effects;
-use crate::shooting::batch::gather::{Gather, GatherMaterial, Place, lanes, numbers};
-use crate::shooting::batch::output::Derived;
-use crate::shooting::batch::{InitialCondition, Method};
 use crate::shooting::contact::{Contact, radius_and_arclength};
-use crate::shooting::sensitivity::{Arrival, Order};
+use crate::shooting::sensitivity::{Arrival, SensitivitySet};
 use crate::shooting::{Bent, Spiral, Straight};
-use crate::shooting::{Even, Graded, Measured};
-use crate::shooting::{Integrator, Scales, integrate};
+use crate::shooting::{Graded, Measured, Uniform};
+use crate::shooting::{Integrator, Nystrom8, Scales, integrate};
 use crate::shooting::{RodSystem, Section};
+use std::marker::PhantomData;
 
-/// The conditions of one block.
-pub type Block<'a> = [&'a InitialCondition; WIDTH];
+/// One condition for every lane.
+pub type Conditions<'a> = [&'a InitialCondition<'a>; WIDTH];
 
-/// One specialised kernel per set of effects.
-#[inline(always)]
-pub fn by_effects<M: Integrator, K: Derived<T>, T: Lanes>(
-    effects: Effects,
-    steps: u32,
-    conditions: &Block,
-) -> [K::Answer; WIDTH] {
-    match (effects.curvature, effects.spiral) {
-        (_, true) => by_stiffness::<M, K, K::General, T, Spiral<_>>(effects, steps, conditions),
-        (true, false) => by_stiffness::<M, K, K::General, T, Bent<_>>(effects, steps, conditions),
-        (false, false) => by_stiffness::<M, K, K::Similar, T, Straight>(effects, steps, conditions),
+/// Up to as many conditions as there are lanes.
+pub struct Block<'a> {
+    /// The lanes after the last condition repeat it.
+    conditions: Conditions<'a>,
+    count: usize,
+}
+
+impl<'a> Block<'a> {
+    /// The first `count` conditions, at least 1.
+    pub fn new(count: usize, condition: impl Fn(usize) -> &'a InitialCondition<'a>) -> Self {
+        Self {
+            conditions: std::array::from_fn(|lane| condition(lane.min(count - 1))),
+            count,
+        }
+    }
+
+    /// What `compute` makes of as many conditions as there are lanes in `T`, again and again.
+    #[inline(always)]
+    fn in_parts<T: Lanes, A: Copy + Default>(
+        &self,
+        compute: impl Fn(&Conditions) -> [A; WIDTH],
+    ) -> [A; WIDTH] {
+        if T::LANES == WIDTH {
+            return compute(&self.conditions);
+        }
+        let mut answers = [A::default(); WIDTH];
+        for (conditions, answers) in self.conditions[..self.count]
+            .chunks(T::LANES)
+            .zip(answers.chunks_mut(T::LANES))
+        {
+            let part = compute(&std::array::from_fn(|lane| {
+                conditions[lane.min(conditions.len() - 1)]
+            }));
+            answers.copy_from_slice(&part[..answers.len()]);
+        }
+        answers
     }
 }
 
-/// The same for a rest shape; `E` is what an even cone of that shape has to carry. A profile has one kernel with a gradient
-/// or without: it costs one multiplication.
-#[inline(always)]
-fn by_stiffness<M: Integrator, K: Derived<T>, E, T: Lanes, I: Gather<T>>(
-    effects: Effects,
-    steps: u32,
-    conditions: &Block,
-) -> [K::Answer; WIDTH]
-where
-    E: Order<T, Known = <K::General as Order<T>>::Known>,
-{
-    match (effects.profile, effects.gradient, effects.advances()) {
-        (true, _, _) => block::<M, K, K::General, T, I, Measured<_>, true>(steps, conditions),
-        (false, true, _) => block::<M, K, K::General, T, I, Graded<_>, true>(steps, conditions),
-        (false, false, true) => block::<M, K, E, T, I, Even, true>(steps, conditions),
-        (false, false, false) => block::<M, K, E, T, I, Even, false>(steps, conditions),
+/// The trajectories of a block.
+pub struct Trajectories<'a, O> {
+    key: BlockKey,
+    block: &'a Block<'a>,
+    outputs: PhantomData<O>,
+}
+
+impl<'a, O> Trajectories<'a, O> {
+    /// Those of `block`, all with this `key`.
+    pub const fn new(key: BlockKey, block: &'a Block<'a>) -> Self {
+        Self {
+            key,
+            block,
+            outputs: PhantomData,
+        }
     }
 }
 
-/// Arclengths of the contacts, and the steps that the trajectories take.
+impl<O: OutputSet> SimdTask for Trajectories<'_, O> {
+    type Output = [O; WIDTH];
+
+    #[inline(always)]
+    fn run<T: Lanes>(self) -> Self::Output {
+        let BlockKey { effects, steps, .. } = self.key;
+        self.block
+            .in_parts::<T, _>(|conditions| by_effects::<Nystrom8, O, T>(effects, steps, conditions))
+    }
+}
+
+/// Arclengths of the contacts of a block, and the steps that its trajectories take.
+pub struct Steps<'a> {
+    /// How they are integrated.
+    pub method: Method,
+    /// The block.
+    pub block: &'a Block<'a>,
+}
+
+impl SimdTask for Steps<'_> {
+    type Output = [(f64, u32); WIDTH];
+
+    #[inline(always)]
+    fn run<T: Lanes>(self) -> Self::Output {
+        self.block
+            .in_parts::<T, _>(|conditions| steps::<T>(self.method, conditions))
+    }
+}
+
 #[inline(always)]
-pub fn steps<T: Lanes>(method: Method, conditions: &Block) -> [(f64, u32); WIDTH] {
+fn steps<T: Lanes>(method: Method, conditions: &Conditions) -> [(f64, u32); WIDTH] {
+    let resolution = method.resolution();
     let taper = numbers(conditions, |condition| condition.rod.taper);
     let tau = numbers(conditions, |condition| condition.tau);
     let [_, s] = radius_and_arclength(T::pack(taper), T::pack(tau));
     let s = s.unpack();
     let mut steps = [0; WIDTH];
-    if method.effects.profile || method.effects.gradient {
+    if conditions.iter().any(|c| !c.rod.is_uniform_cone()) {
         for (lane, condition) in conditions.iter().enumerate() {
             let InitialCondition { rod, tau, load } = condition;
-            steps[lane] = method.resolution.steps_from(rod, *tau, *load, s[lane]);
+            steps[lane] = resolution.steps_from(rod, *tau, *load, s[lane]);
         }
     } else {
         let bend = numbers(conditions, |condition| condition.rod.sharpest_bend());
         let load = numbers(conditions, |condition| condition.load);
         for lane in 0..WIDTH {
             let at = [tau[lane], load[lane], s[lane]];
-            steps[lane] = method.resolution.steps_on_even(taper[lane], bend[lane], at);
+            steps[lane] = resolution.steps_on_uniform(taper[lane], bend[lane], at);
         }
     }
     let mut pairs = [(0.0, 0); WIDTH];
@@ -76,13 +130,50 @@ pub fn steps<T: Lanes>(method: Method, conditions: &Block) -> [(f64, u32); WIDTH
     pairs
 }
 
-/// Integrates `WIDTH` trajectories in step.
+/// Integrates with the kernel for `effects`.
 #[inline(always)]
-fn block<M, K, O, T, I, C, const TAPER: bool>(steps: u32, conditions: &Block) -> [K::Answer; WIDTH]
+pub fn by_effects<M: Integrator, O: OutputSet, T: Lanes>(
+    effects: Effects,
+    steps: u32,
+    conditions: &Conditions,
+) -> [O; WIDTH] {
+    match (effects.curvature, effects.spiral) {
+        (_, true) => by_stiffness::<M, O, O::General<T>, T, Spiral<_>>(effects, steps, conditions),
+        (true, false) => {
+            by_stiffness::<M, O, O::General<T>, T, Bent<_>>(effects, steps, conditions)
+        }
+        (false, false) => {
+            by_stiffness::<M, O, O::Similar<T>, T, Straight>(effects, steps, conditions)
+        }
+    }
+}
+
+/// The same for a rest shape; `E` is what a uniform cone of that shape has to carry. A profile has one kernel with a gradient
+/// or without: it costs one multiplication.
+#[inline(always)]
+fn by_stiffness<M: Integrator, O: OutputSet, E, T: Lanes, I: Gather<T>>(
+    effects: Effects,
+    steps: u32,
+    conditions: &Conditions,
+) -> [O; WIDTH]
+where
+    E: SensitivitySet<T, AtBase = <O::General<T> as SensitivitySet<T>>::AtBase>,
+{
+    match (effects.profile, effects.gradient, effects.advances()) {
+        (true, _, _) => block::<M, O, O::General<T>, T, I, Measured<_>, true>(steps, conditions),
+        (false, true, _) => block::<M, O, O::General<T>, T, I, Graded<_>, true>(steps, conditions),
+        (false, false, true) => block::<M, O, E, T, I, Uniform, true>(steps, conditions),
+        (false, false, false) => block::<M, O, E, T, I, Uniform, false>(steps, conditions),
+    }
+}
+
+/// Integrates as many trajectories in step as there are lanes.
+#[inline(always)]
+fn block<M, O, S, T, I, C, const TAPER: bool>(steps: u32, conditions: &Conditions) -> [O; WIDTH]
 where
     M: Integrator,
-    K: Derived<T>,
-    O: Order<T, Known = <K::General as Order<T>>::Known>,
+    O: OutputSet,
+    S: SensitivitySet<T, AtBase = <O::General<T> as SensitivitySet<T>>::AtBase>,
     T: Lanes,
     I: Gather<T>,
     C: GatherMaterial<T>,
@@ -106,8 +197,8 @@ where
     };
     let [c, sin] = contact.tangent;
     let rod = [c, sin, zero, zero, zero];
-    let mut state = (at_rest.state, (rod, O::start(&contact)));
-    let mut here = Place { tau, radius, s };
+    let mut state = (at_rest.state, (rod, S::start(&contact)));
+    let mut here = ArcPosition { tau, radius, s };
     for piece in (0..C::pieces(conditions, s)).rev() {
         let there = C::begin(conditions, piece);
         let h = (here.tau - there.tau) / T::of(f64::from(steps));
@@ -126,7 +217,7 @@ where
             inverse_cube: one / (rho * rho * rho),
             arclength: here.s,
         };
-        state = integrate::<M, _, I, C, O>(&system, &scales, section, steps, state);
+        state = integrate::<M, _, I, C, S>(&system, &scales, section, steps, state);
         here = there;
     }
     let (_, (rod, carried)) = state;
@@ -138,5 +229,5 @@ where
     let pole: T = lanes(conditions, |condition| condition.rod.pole);
     // See `Rod::to_pole`.
     let to_pole = [pole * contact.tangent[1], -pole * contact.tangent[0]];
-    K::answers(&arrival, to_pole, O::known(&arrival, carried))
+    O::answers(&arrival, to_pole, S::at_base(&arrival, carried))
 }

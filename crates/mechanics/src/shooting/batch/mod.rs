@@ -1,240 +1,202 @@
 //! Thousands of trajectories in `f64`: lanes of the widest SIMD unit that the machine has, on all cores.
 //!
-//! The integrator is generic and inlined whole into three functions compiled for AVX-512, for AVX2 with FMA,
-//! and for the target's baseline (`unit`); which one runs is decided once per call from the processor's features.
-//! Results do not depend on the number of threads: every trajectory is computed by itself, or in company that does not (`company`).
+//! The integrator is generic and inlined whole into functions compiled for every [`Unit`]; which of them run is decided by
+//! the processor. Results do not depend on the number of threads: every trajectory is computed by itself, or in a block whose
+//! conditions do not.
 
-mod dispatch;
+mod block_key;
 mod flops;
 mod gather;
 mod kernel;
-mod output;
+mod output_set;
 mod padded;
 mod pole;
+mod stream;
 
-pub use dispatch::Kernel;
-pub use flops::flops;
-pub use output::{Derived, First, FirstAndEnergy, Kind, Second};
-pub use padded::shoot_padded;
+pub use flops::{flops_of_nystrom8, flops_of_rk4};
+pub use output_set::OutputSet;
 
-use super::{Integrator, Resolution};
-use crate::numerics::{Unit, WIDTH};
+use super::Resolution;
+use crate::numerics::Unit;
 use crate::rod::{Effects, Rod};
-use dispatch::Steps;
 use rayon::prelude::*;
-use std::borrow::Borrow;
 
 /// One trajectory: from the contact at `tau` under `load = f/radius^2` to the base.
 #[derive(Clone, Copy, Debug)]
-pub struct InitialCondition {
+pub struct InitialCondition<'a> {
     /// The rod.
-    pub rod: Rod,
+    pub rod: &'a Rod,
     /// `tau` of the contact.
     pub tau: f64,
     /// Signed load.
     pub load: f64,
 }
 
-/// How a batch integrates.
+/// How trajectories are integrated: how finely, and with which effects beside each rod's own.
 #[derive(Clone, Copy, Debug)]
 pub struct Method {
-    /// The effects of every rod in the batch.
-    pub effects: Effects,
-    /// How finely.
-    pub resolution: Resolution,
+    resolution: Resolution,
+    effects: Effects,
 }
 
 impl Method {
+    /// Every rod with the kernel for its own effects.
+    #[must_use]
+    pub const fn new(resolution: Resolution) -> Self {
+        Self {
+            resolution,
+            effects: Effects {
+                taper: false,
+                curvature: false,
+                spiral: false,
+                gradient: false,
+                profile: false,
+            },
+        }
+    }
+
     /// At [`Resolution::FINE`].
     #[must_use]
-    pub const fn fine(effects: Effects) -> Self {
-        Self {
-            effects,
-            resolution: Resolution::FINE,
-        }
+    pub const fn fine() -> Self {
+        Self::new(Resolution::FINE)
+    }
+
+    /// Kernels have at least these `effects`: with those of all rods of a scene, its rods share kernels, and round alike.
+    #[must_use]
+    pub const fn with_effects(self, effects: Effects) -> Self {
+        Self { effects, ..self }
+    }
+
+    /// The same at another resolution.
+    #[must_use]
+    pub const fn with_resolution(self, resolution: Resolution) -> Self {
+        Self { resolution, ..self }
     }
 
     /// The same at [`Resolution::COARSE`].
     #[must_use]
     pub const fn coarsely(self) -> Self {
-        Self {
-            resolution: Resolution::COARSE,
-            ..self
-        }
+        self.with_resolution(Resolution::COARSE)
     }
+
+    /// How finely.
+    #[must_use]
+    pub const fn resolution(&self) -> Resolution {
+        self.resolution
+    }
+
+    /// The effects that every kernel has.
+    #[must_use]
+    pub const fn effects(&self) -> Effects {
+        self.effects
+    }
+}
+
+/// Shoots many initial conditions at once.
+///
+/// ```
+/// use whiskmap_mechanics::rod::Rod;
+/// use whiskmap_mechanics::shooting::batch::{Batch, InitialCondition, Method};
+/// use whiskmap_mechanics::shooting::ShootingMap;
+///
+/// let rod = Rod { taper: 0.9, ..Rod::default() };
+/// let conditions = [0.5, 0.7].map(|s| InitialCondition { rod: &rod, tau: rod.tau(s), load: 6.0 });
+/// let maps: Vec<ShootingMap> = Batch::new(Method::fine()).shoot(&conditions);
+/// assert!(maps.iter().all(|map| map.det() > 0.0));
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct Batch {
+    method: Method,
+    unit: Unit,
+    is_padded: bool,
 }
 
 /// The fewest conditions for a thread, so that most of its blocks are full.
-const FEWEST_TOGETHER: usize = 1024;
+const SMALLEST_CHUNK: usize = 1024;
 
-/// Parts of a batch for each thread, so that threads end together.
-const PARTS: usize = 4;
+/// Chunks of a batch for each thread, so that threads end together.
+const CHUNKS_OF_A_THREAD: usize = 4;
 
-/// How many of `count` a thread of the current pool best works on together.
+/// Into chunks of how many a batch of `count` is best divided among the threads of the current pool.
 #[must_use]
-pub fn together(count: usize) -> usize {
+pub fn chunk_size(count: usize) -> usize {
     let threads = rayon::current_num_threads();
-    let parts = if threads == 1 { 1 } else { PARTS * threads };
-    count.div_ceil(parts).max(FEWEST_TOGETHER)
-}
-
-/// Computes `K` for every condition with the integrator `M`, on all threads of the current pool.
-#[must_use]
-pub fn shoot<M: Integrator, K: Kernel<M>>(
-    method: Method,
-    conditions: &[InitialCondition],
-) -> Vec<K::Answer> {
-    shoot_on::<M, K>(Unit::detect(), method, conditions)
-}
-
-/// The same on a given unit.
-#[must_use]
-pub fn shoot_on<M: Integrator, K: Kernel<M>>(
-    unit: Unit,
-    method: Method,
-    conditions: &[InitialCondition],
-) -> Vec<K::Answer> {
-    let mut answers = vec![K::Answer::default(); conditions.len()];
-    let together = together(conditions.len());
-    if conditions.len() <= together {
-        part::<M, K>(unit, method, conditions, &mut answers);
+    let chunks = if threads == 1 {
+        1
     } else {
-        answers
-            .par_chunks_mut(together)
-            .zip(conditions.par_chunks(together))
-            .for_each(|(answers, conditions)| part::<M, K>(unit, method, conditions, answers));
-    }
-    answers
-}
-
-/// The same on this thread.
-fn part<M: Integrator, K: Kernel<M>>(
-    unit: Unit,
-    method: Method,
-    conditions: &[InitialCondition],
-    answers: &mut [K::Answer],
-) {
-    stream::<M, K, _>(unit, method, conditions.iter(), |i, answer| {
-        answers[i] = *answer
-    });
-}
-
-/// Computes `K` for conditions as they come, on this thread, and hands each answer on with the place of its condition, in no order.
-pub fn shoot_each<M: Integrator, K: Kernel<M>>(
-    method: Method,
-    conditions: impl Iterator<Item = InitialCondition>,
-    take: impl FnMut(usize, &K::Answer),
-) {
-    stream::<M, K, _>(Unit::detect(), method, conditions, take);
-}
-
-fn stream<M: Integrator, K: Kernel<M>, L: Borrow<InitialCondition>>(
-    unit: Unit,
-    method: Method,
-    conditions: impl Iterator<Item = L>,
-    mut take: impl FnMut(usize, &K::Answer),
-) {
-    let mut compute = |kind: BlockKind, block: &mut Vec<(usize, L)>| {
-        let lane = |lane: usize| block[lane.min(block.len() - 1)].1.borrow();
-        let lanes = std::array::from_fn(lane);
-        let answers = K::block(unit, kind.effects, kind.steps, &lanes, block.len());
-        for ((i, _), answer) in block.iter().zip(&answers) {
-            take(*i, answer);
-        }
-        block.clear();
+        CHUNKS_OF_A_THREAD * threads
     };
-    // Lanes step together, so only trajectories of one kind share a block: company changes nothing.
-    let mut kinds = Kinds::default();
-    let mut open: Vec<Vec<(usize, L)>> = Vec::new();
-    let mut next: Vec<L> = Vec::with_capacity(WIDTH);
-    let mut conditions = conditions.fuse();
-    let mut from = 0;
-    loop {
-        next.extend(conditions.by_ref().take(WIDTH));
-        let Some(last) = next.len().checked_sub(1) else {
-            break;
-        };
-        let conditions = &std::array::from_fn(|lane| next[lane.min(last)].borrow());
-        let steps = unit.run(Steps { method, conditions });
-        for (i, (condition, steps)) in (from..).zip(next.drain(..).zip(steps)) {
-            let kind = BlockKind::new(method, condition.borrow(), steps);
-            let place = kinds.place(kind);
-            if place == open.len() {
-                open.push(Vec::with_capacity(WIDTH));
-            }
-            let block = &mut open[place];
-            block.push((i, condition));
-            if block.len() == WIDTH {
-                compute(kind, block);
-            }
-        }
-        from += WIDTH;
-    }
-    for (kind, block) in kinds.all.iter().zip(&mut open) {
-        if !block.is_empty() {
-            compute(*kind, block);
-        }
-    }
+    count.div_ceil(chunks).max(SMALLEST_CHUNK)
 }
 
-/// What trajectories of a block have in common.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-struct BlockKind {
-    effects: Effects,
-    /// Of a profile.
-    piece: usize,
-    steps: u32,
-}
-
-impl BlockKind {
-    /// That of a condition from arclength `s` that takes so many `steps`.
-    #[inline]
-    fn new(
-        method: Method,
-        InitialCondition { rod, tau, .. }: &InitialCondition,
-        (s, steps): (f64, u32),
-    ) -> Self {
+impl Batch {
+    /// By `method`, on the widest unit of this processor; every answer is independent of the rest of the batch.
+    #[must_use]
+    pub fn new(method: Method) -> Self {
         Self {
-            effects: method.effects.reaching(rod.taper * tau),
-            piece: rod.piece(s),
-            steps,
+            method,
+            unit: Unit::detect(),
+            is_padded: false,
         }
     }
 
-    /// Whether the two can share a block that takes the steps of the one that needs more.
-    fn may_join(&self, other: &Self) -> bool {
-        (self.effects, self.piece) == (other.effects, other.piece)
+    /// On a given unit.
+    #[must_use]
+    pub const fn on(self, unit: Unit) -> Self {
+        Self { unit, ..self }
     }
-}
 
-/// The kinds of a batch.
-struct Kinds {
-    all: Vec<BlockKind>,
-    /// Where the last one with as many steps on such a piece is, give or take multiples of 64.
-    likely: [usize; 64],
-}
-
-impl Default for Kinds {
-    fn default() -> Self {
+    /// Blocks are filled with trajectories that want different numbers of steps; all take the most. For small batches that are
+    /// always the same, like those of a sheet: an answer depends, by less than its error, on the whole batch.
+    #[must_use]
+    pub const fn padded(self) -> Self {
         Self {
-            all: Vec::new(),
-            likely: [0; 64],
+            is_padded: true,
+            ..self
         }
     }
-}
 
-impl Kinds {
-    /// Where `kind` is among all; it is the last one if it is new.
-    #[inline]
-    fn place(&mut self, kind: BlockKind) -> usize {
-        let likely = &mut self.likely[(kind.steps as usize + 7 * kind.piece) % 64];
-        if self.all.get(*likely) != Some(&kind) {
-            let place = self.all.iter().position(|other| *other == kind);
-            *likely = place.unwrap_or_else(|| {
-                self.all.push(kind);
-                self.all.len() - 1
-            });
+    /// The outputs of every condition, in the same order, on all threads of the current pool.
+    #[must_use]
+    pub fn shoot<O: OutputSet>(&self, conditions: &[InitialCondition]) -> Vec<O> {
+        let mut outputs = vec![O::default(); conditions.len()];
+        let size = chunk_size(conditions.len());
+        if self.is_padded {
+            padded::shoot(self.unit, self.method, conditions, &mut outputs);
+        } else if conditions.len() <= size {
+            self.chunk(conditions, &mut outputs);
+        } else {
+            outputs
+                .par_chunks_mut(size)
+                .zip(conditions.par_chunks(size))
+                .for_each(|(outputs, conditions)| self.chunk(conditions, outputs));
         }
-        *likely
+        outputs
+    }
+
+    /// The same on this thread.
+    fn chunk<O: OutputSet>(&self, conditions: &[InitialCondition], outputs: &mut [O]) {
+        stream::shoot(
+            self.unit,
+            self.method,
+            conditions.iter().copied(),
+            |i, output| outputs[i] = *output,
+        );
+    }
+
+    /// Shoots conditions as they come, on this thread, and hands the outputs of each on with its index, in no order. A padded
+    /// batch waits for all of them first.
+    pub fn for_each<'a, O: OutputSet>(
+        &self,
+        conditions: impl Iterator<Item = InitialCondition<'a>>,
+        mut take: impl FnMut(usize, &O),
+    ) {
+        if self.is_padded {
+            let conditions: Vec<InitialCondition> = conditions.collect();
+            let outputs = self.shoot(&conditions);
+            outputs.iter().enumerate().for_each(|(i, o)| take(i, o));
+        } else {
+            stream::shoot(self.unit, self.method, conditions, take);
+        }
     }
 }

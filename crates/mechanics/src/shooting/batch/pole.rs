@@ -7,7 +7,7 @@
 
 use crate::numerics::Complex;
 use crate::numerics::{Lanes, WIDTH};
-use crate::shooting::sensitivity::{Arrival, Slopes, Triple};
+use crate::shooting::sensitivity::{Arrival, BaseDerivatives, Triple};
 
 /// The pole's centre `w` seen from the base, in the axes of the contact.
 pub struct Centre<T> {
@@ -34,21 +34,24 @@ impl<T: Lanes> Centre<T> {
 
     /// `G_i`.
     #[inline(always)]
-    pub fn once(&self, of: Triple<T>) -> Complex<T> {
+    pub fn ln_pole_by(&self, of: Triple<T>) -> Complex<T> {
         let moved = self.moved(of);
         Complex::new(moved.re, moved.im - of[0])
     }
 
     /// `G_ij`; `by` are `w_i/w` and `w_j/w`.
     #[inline(always)]
-    pub fn twice(&self, of: Triple<T>, by: Complex<T>, and: Complex<T>) -> Complex<T> {
-        self.once(of).minus(by.times(and))
+    pub fn ln_pole_by_twice(&self, of: Triple<T>, by: Complex<T>, and: Complex<T>) -> Complex<T> {
+        self.ln_pole_by(of).minus(by.times(and))
     }
 
     /// The numbers of a [`ShootingMap`].
     #[inline(always)]
-    pub fn map(&self, slopes: &Slopes<T>) -> [T; 6] {
-        let (tau, load) = (self.once(slopes.by_tau), self.once(slopes.by_load));
+    pub fn map(&self, first: &BaseDerivatives<T>) -> [T; 6] {
+        let (tau, load) = (
+            self.ln_pole_by(first.by_tau),
+            self.ln_pole_by(first.by_load),
+        );
         [self.pole.re, self.pole.im, tau.re, tau.im, load.re, load.im]
     }
 }

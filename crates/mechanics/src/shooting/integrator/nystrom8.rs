@@ -10,7 +10,7 @@
 //! IMA Journal of Numerical Analysis 7 (1987) 423-430, with the corrigendum in 11 (1991) 297. The error weights are not
 //! needed: every map carries its residual, and accuracy is measured against finer runs.
 
-use crate::numerics::turned;
+use crate::numerics::rotated_by_small;
 use crate::numerics::{Real, Vector};
 use crate::shooting::Intrinsic;
 use crate::shooting::Material;
@@ -59,17 +59,17 @@ impl Integrator for Nystrom8 {
         let compliance = h * system.material.compliance(&from);
         let course = system.intrinsic.course(&from, rest);
         // Tangent, bend and angles at a stage where `chi` has come to `at`.
-        macro_rules! moved {
-            ($i:expr, $light:expr, $at:expr) => {{
+        macro_rules! at_chi {
+            ($i:expr, $inverse_scale:expr, $at:expr) => {{
                 let ([x], levers): Levers<T, S> = $at;
-                let per_moment = compliance * $light;
+                let per_moment = compliance * $inverse_scale;
                 let bend = per_moment * system.force * x;
                 let turn = match I::turn(&course, scales.stage($i).along) {
                     Some(turn) => turn + bend,
                     None => bend,
                 };
                 let angles = angles.plus(per_moment, S::moments(system.force, x, levers));
-                (turned([c, s], turn), bent + bend, angles)
+                (rotated_by_small([c, s], turn), bent + bend, angles)
             }};
         }
         let start = S::pull(c, s, bent, angles);
@@ -80,16 +80,16 @@ impl Integrator for Nystrom8 {
             ($i:literal, $weight:expr, $($sum:tt)*) => {{
                 let stage = scales.stage($i);
                 let at = sum!(speed.times(T::of(Self::NODES[$i])), $($sum)*);
-                let swing = system.material.swing(scales.taper, &from, stage);
-                let ([c, s], bent, angles) = moved!($i, swing.light, at);
+                let liouville = system.material.liouville(scales.taper, &from, stage);
+                let ([c, s], bent, angles) = at_chi!($i, liouville.inverse_scale, at);
                 let (pull, climb) = S::pull(c, s, bent, angles);
                 if const { $weight != 0.0 } {
                     rise = rise.plus(T::of($weight) * stage.grown, ([-s], climb));
                 }
                 let pull: Levers<T, S> = ([-c], pull);
-                let pull = pull.times(reach * swing.pull);
-                match swing.spring {
-                    Some(spring) => pull.plus(h * h * spring, at),
+                let pull = pull.times(reach * liouville.forcing);
+                match liouville.potential {
+                    Some(potential) => pull.plus(h * h * potential, at),
                     None => pull,
                 }
             }};
@@ -120,11 +120,11 @@ impl Integrator for Nystrom8 {
             ratio(223, 7938), k1, ratio(5875, 36288), k3, ratio(4625, 21168), k4,
             ratio(41, 224), k5, ratio(4625, 21168), k6, ratio(5875, 36288), k7,
             ratio(223, 7938), k8);
-        let swing = system.material.swing(scales.taper, &from, scales.end());
-        let ([c, s], bent, angles) = moved!(STAGES - 1, swing.light, chi);
+        let liouville = system.material.liouville(scales.taper, &from, scales.end());
+        let ([c, s], bent, angles) = at_chi!(STAGES - 1, liouville.inverse_scale, chi);
         // `X = m (chi' - (m'/m) chi)`.
-        let ([x], levers) = match system.material.settle(scales.taper, &from, scales.end(), swing.light) {
-            Some([growth, heavy]) => speed.plus(-h * growth, chi).times(heavy),
+        let ([x], levers) = match system.material.liouville_scale(scales.taper, &from, scales.end(), liouville.inverse_scale) {
+            Some([growth, scale]) => speed.plus(-h * growth, chi).times(scale),
             None => speed,
         };
         let ([climb], sums_climb) = rise;

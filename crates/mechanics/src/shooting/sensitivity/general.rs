@@ -6,18 +6,20 @@
 
 use crate::numerics::Real;
 use crate::shooting::contact::Contact;
-use crate::shooting::sensitivity::{Arrival, Curvatures, Order, Slopes, Triple, scaled, twice};
+use crate::shooting::sensitivity::{
+    Arrival, BaseDerivatives, SecondBaseDerivatives, SensitivitySet, Triple, scaled, twice,
+};
 use crate::shooting::{Carried, Sensitivity};
 
 /// First derivatives; carries `theta, X` by force and by arclength, and `Y_f`.
 #[derive(Clone, Copy, Debug)]
-pub struct First;
+pub struct GeneralFirst;
 
 /// First and second derivatives; carries `ff`, `fs` and `ss` of `theta, X` and `ff` of `Y`, too.
 #[derive(Clone, Copy, Debug)]
-pub struct Second;
+pub struct GeneralSecond;
 
-impl<T: Real> Sensitivity<T> for First {
+impl<T: Real> Sensitivity<T> for GeneralFirst {
     type Pairs = [T; 2];
     type Sums = [T; 1];
 
@@ -32,15 +34,15 @@ impl<T: Real> Sensitivity<T> for First {
     }
 }
 
-/// Derivatives by the force from those by the force, those by `tau` from both.
+/// Derivatives by the load from those by the force, those by `tau` from both.
 #[inline(always)]
-fn slopes<T: Real>(
+fn base_derivatives<T: Real>(
     arrival: &Arrival<T>,
     by_force: Triple<T>,
     by_arclength: Triple<T>,
-) -> Slopes<T> {
+) -> BaseDerivatives<T> {
     let (rho, load) = (arrival.contact.radius, load(arrival));
-    Slopes {
+    BaseDerivatives {
         by_tau: sum(scaled(rho, by_arclength), scaled(load, by_force)),
         by_load: scaled(rho * rho, by_force),
     }
@@ -57,8 +59,8 @@ fn load<T: Real>(arrival: &Arrival<T>) -> T {
     T::of(-2.0) * arrival.taper * arrival.contact.force
 }
 
-impl<T: Real> Order<T> for First {
-    type Known = Slopes<T>;
+impl<T: Real> SensitivitySet<T> for GeneralFirst {
+    type AtBase = BaseDerivatives<T>;
 
     #[inline(always)]
     fn start(contact: &Contact<T>) -> Carried<T, Self> {
@@ -67,16 +69,16 @@ impl<T: Real> Order<T> for First {
     }
 
     #[inline(always)]
-    fn known(arrival: &Arrival<T>, carried: Carried<T, Self>) -> Slopes<T> {
+    fn at_base(arrival: &Arrival<T>, carried: Carried<T, Self>) -> BaseDerivatives<T> {
         let ([theta_f, theta_s], ([x_f, x_s], [y_f])) = carried;
         let (f, x) = (arrival.contact.force, arrival.rod[2]);
         let [_, from] = arrival.contact.tangent;
         let y_s = theta_s * f.mul_add(x_f, x) - f * theta_f * x_s - from;
-        slopes(arrival, [theta_f, x_f, y_f], [theta_s, x_s, y_s])
+        base_derivatives(arrival, [theta_f, x_f, y_f], [theta_s, x_s, y_s])
     }
 }
 
-impl<T: Real> Sensitivity<T> for Second {
+impl<T: Real> Sensitivity<T> for GeneralSecond {
     type Pairs = ([T; 2], [T; 3]);
     type Sums = [T; 2];
 
@@ -84,14 +86,14 @@ impl<T: Real> Sensitivity<T> for Second {
     fn moments(f: T, x: T, (first, [x_ff, x_fs, x_ss]): Self::Pairs) -> Self::Pairs {
         let [x_f, x_s] = first;
         let twice = [f.mul_add(x_ff, x_f + x_f), f.mul_add(x_fs, x_s), f * x_ss];
-        (First::moments(f, x, first), twice)
+        (GeneralFirst::moments(f, x, first), twice)
     }
 
     #[inline(always)]
     fn pull(c: T, s: T, bent: T, (first, second): Self::Pairs) -> (Self::Pairs, [T; 2]) {
         let [theta_f, theta_s] = first;
         let [theta_ff, theta_fs, theta_ss] = second;
-        let (levers, [y_f]) = First::pull(c, s, bent, first);
+        let (levers, [y_f]) = GeneralFirst::pull(c, s, bent, first);
         let [(x_ff, y_ff), (x_fs, _), (x_ss, _)] = [
             twice(c, s, theta_f * theta_f, theta_ff),
             twice(c, s, theta_f * theta_s, theta_fs),
@@ -101,8 +103,8 @@ impl<T: Real> Sensitivity<T> for Second {
     }
 }
 
-impl<T: Real> Order<T> for Second {
-    type Known = Curvatures<T>;
+impl<T: Real> SensitivitySet<T> for GeneralSecond {
+    type AtBase = SecondBaseDerivatives<T>;
 
     #[inline(always)]
     fn start(contact: &Contact<T>) -> Carried<T, Self> {
@@ -110,7 +112,7 @@ impl<T: Real> Order<T> for Second {
         let kappa = contact.curvature;
         let theta_ss = -contact.curvature_slope - contact.force * x / contact.stiffness;
         let zero = T::of(0.0);
-        let (angles, (levers, _)) = First::start(contact);
+        let (angles, (levers, _)) = GeneralFirst::start(contact);
         (
             (angles, [zero, zero, theta_ss]),
             ((levers, [zero, zero, -kappa * y]), [zero, zero]),
@@ -118,7 +120,7 @@ impl<T: Real> Order<T> for Second {
     }
 
     #[inline(always)]
-    fn known(arrival: &Arrival<T>, carried: Carried<T, Self>) -> Curvatures<T> {
+    fn at_base(arrival: &Arrival<T>, carried: Carried<T, Self>) -> SecondBaseDerivatives<T> {
         let (angles, (levers, [y_f, y_ff])) = carried;
         let ([theta_f, theta_s], [theta_ff, theta_fs, theta_ss]) = angles;
         let ([x_f, x_s], [x_ff, x_fs, x_ss]) = levers;
@@ -147,8 +149,8 @@ impl<T: Real> Order<T> for Second {
             sum(scaled(load, ff), scaled(rho, fs)),
             scaled(-two * taper, by_force),
         );
-        Curvatures {
-            slopes: slopes(arrival, by_force, by_arclength),
+        SecondBaseDerivatives {
+            first: base_derivatives(arrival, by_force, by_arclength),
             by_tau_tau: sum(by_tau_tau, scaled(-taper, slanted)),
             by_tau_load: scaled(rho * rho, by_tau_load),
             by_load_load: scaled(rho * rho * (rho * rho), ff),

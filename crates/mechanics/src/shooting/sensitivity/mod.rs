@@ -4,8 +4,11 @@
 //! `f` and `s` in the names below are the force and the arclength of the contact. The start values follow from the rod
 //! being at the origin at the same tilt, whatever the contact: `y_s = -y'` there.
 
-pub mod general;
-pub mod similar;
+mod general;
+mod similar;
+
+pub use general::{GeneralFirst, GeneralSecond};
+pub use similar::{SimilarFirst, SimilarSecond};
 
 use crate::numerics::Real;
 use crate::shooting::contact::Contact;
@@ -16,15 +19,15 @@ use std::marker::PhantomData;
 pub type Triple<T> = [T; 3];
 
 /// A set of derivatives: where it starts, and what the base knows from it.
-pub trait Order<T: Real>: Sensitivity<T> + Sized {
-    /// In the coordinates of the sheet.
-    type Known;
+pub trait SensitivitySet<T: Real>: Sensitivity<T> + Sized {
+    /// Derivatives of the base by the coordinates of the sheet.
+    type AtBase;
 
     /// Values at the contact.
     fn start(contact: &Contact<T>) -> Carried<T, Self>;
 
     /// What follows at the base from the values there.
-    fn known(arrival: &Arrival<T>, carried: Carried<T, Self>) -> Self::Known;
+    fn at_base(arrival: &Arrival<T>, carried: Carried<T, Self>) -> Self::AtBase;
 }
 
 /// A trajectory that has come to the base.
@@ -40,7 +43,7 @@ pub struct Arrival<T> {
 
 /// First derivatives of the base by the coordinates of the sheet.
 #[derive(Clone, Copy, Debug)]
-pub struct Slopes<T> {
+pub struct BaseDerivatives<T> {
     /// By `tau` of the contact at fixed load.
     pub by_tau: Triple<T>,
     /// By the load.
@@ -49,9 +52,9 @@ pub struct Slopes<T> {
 
 /// First and second derivatives.
 #[derive(Clone, Copy, Debug)]
-pub struct Curvatures<T> {
+pub struct SecondBaseDerivatives<T> {
     /// First.
-    pub slopes: Slopes<T>,
+    pub first: BaseDerivatives<T>,
     /// Twice by `tau`.
     pub by_tau_tau: Triple<T>,
     /// By `tau` and load.
@@ -75,40 +78,40 @@ fn twice<T: Real>(c: T, s: T, turns: T, angle: T) -> (T, T) {
 /// A set of derivatives, and the bending energy in `E I_base/L_w`. Its relative error grows with the inverse of the radius at
 /// the contact, over that at the base: 2e-8 where that is 1e-6.
 #[derive(Clone, Copy, Debug)]
-pub struct Energetic<O>(PhantomData<O>);
+pub struct Energetic<S>(PhantomData<S>);
 
-impl<T: Real, O: Sensitivity<T>> Sensitivity<T> for Energetic<O> {
-    type Pairs = O::Pairs;
+impl<T: Real, S: Sensitivity<T>> Sensitivity<T> for Energetic<S> {
+    type Pairs = S::Pairs;
     /// Those of the set, and the integral of `psi` along `-X`, where `psi` is how far bending has turned the rod: the energy
     /// is the integral of `f X/2` along `psi`, and this is the rest of its integration by parts.
-    type Sums = (O::Sums, [T; 1]);
+    type Sums = (S::Sums, [T; 1]);
 
     #[inline(always)]
-    fn moments(f: T, x: T, levers: O::Pairs) -> O::Pairs {
-        O::moments(f, x, levers)
+    fn moments(f: T, x: T, levers: S::Pairs) -> S::Pairs {
+        S::moments(f, x, levers)
     }
 
     #[inline(always)]
-    fn pull(c: T, s: T, bent: T, angles: O::Pairs) -> (O::Pairs, Self::Sums) {
-        let (levers, sums) = O::pull(c, s, bent, angles);
+    fn pull(c: T, s: T, bent: T, angles: S::Pairs) -> (S::Pairs, Self::Sums) {
+        let (levers, sums) = S::pull(c, s, bent, angles);
         (levers, (sums, [c * bent]))
     }
 }
 
-impl<T: Real, O: Order<T>> Order<T> for Energetic<O> {
-    type Known = (O::Known, T);
+impl<T: Real, S: SensitivitySet<T>> SensitivitySet<T> for Energetic<S> {
+    type AtBase = (S::AtBase, T);
 
     #[inline(always)]
     fn start(contact: &Contact<T>) -> Carried<T, Self> {
-        let (angles, (levers, sums)) = O::start(contact);
+        let (angles, (levers, sums)) = S::start(contact);
         (angles, (levers, (sums, [T::of(0.0)])))
     }
 
     #[inline(always)]
-    fn known(arrival: &Arrival<T>, carried: Carried<T, Self>) -> Self::Known {
+    fn at_base(arrival: &Arrival<T>, carried: Carried<T, Self>) -> Self::AtBase {
         let (angles, (levers, (sums, [along]))) = carried;
         let [_, _, x, _, bent] = arrival.rod;
         let energy = T::of(0.5) * arrival.contact.force * x.mul_add(bent, along);
-        (O::known(arrival, (angles, (levers, sums))), energy)
+        (S::at_base(arrival, (angles, (levers, sums))), energy)
     }
 }

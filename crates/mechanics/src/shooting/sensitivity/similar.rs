@@ -7,18 +7,20 @@
 
 use crate::numerics::Real;
 use crate::shooting::contact::Contact;
-use crate::shooting::sensitivity::{Arrival, Curvatures, Order, Slopes, Triple, scaled, twice};
+use crate::shooting::sensitivity::{
+    Arrival, BaseDerivatives, SecondBaseDerivatives, SensitivitySet, Triple, scaled, twice,
+};
 use crate::shooting::{Carried, Sensitivity};
 
 /// First derivatives; carries those by the force.
 #[derive(Clone, Copy, Debug)]
-pub struct First;
+pub struct SimilarFirst;
 
 /// First and second derivatives; carries those by the force.
 #[derive(Clone, Copy, Debug)]
-pub struct Second;
+pub struct SimilarSecond;
 
-impl<T: Real> Sensitivity<T> for First {
+impl<T: Real> Sensitivity<T> for SimilarFirst {
     type Pairs = [T; 1];
     type Sums = [T; 1];
 
@@ -33,8 +35,8 @@ impl<T: Real> Sensitivity<T> for First {
     }
 }
 
-impl<T: Real> Order<T> for First {
-    type Known = Slopes<T>;
+impl<T: Real> SensitivitySet<T> for SimilarFirst {
+    type AtBase = BaseDerivatives<T>;
 
     #[inline(always)]
     fn start(_: &Contact<T>) -> Carried<T, Self> {
@@ -43,7 +45,7 @@ impl<T: Real> Order<T> for First {
     }
 
     #[inline(always)]
-    fn known(arrival: &Arrival<T>, carried: Carried<T, Self>) -> Slopes<T> {
+    fn at_base(arrival: &Arrival<T>, carried: Carried<T, Self>) -> BaseDerivatives<T> {
         let ([theta], ([x_f], [y_f])) = carried;
         let Arrival {
             contact,
@@ -51,7 +53,7 @@ impl<T: Real> Order<T> for First {
             rod: [c, s, x, y, _],
         } = *arrival;
         let by_load = contact.radius * contact.radius;
-        Slopes {
+        BaseDerivatives {
             by_tau: [
                 contact.force * x,
                 -taper.mul_add(x, c),
@@ -72,7 +74,7 @@ fn by_tau<T: Real>(f: T, taper: T, [c, s]: [T; 2], [theta, x, y]: Triple<T>) -> 
     ]
 }
 
-impl<T: Real> Sensitivity<T> for Second {
+impl<T: Real> Sensitivity<T> for SimilarSecond {
     type Pairs = [T; 2];
     type Sums = [T; 2];
 
@@ -88,8 +90,8 @@ impl<T: Real> Sensitivity<T> for Second {
     }
 }
 
-impl<T: Real> Order<T> for Second {
-    type Known = Curvatures<T>;
+impl<T: Real> SensitivitySet<T> for SimilarSecond {
+    type AtBase = SecondBaseDerivatives<T>;
 
     #[inline(always)]
     fn start(_: &Contact<T>) -> Carried<T, Self> {
@@ -98,20 +100,20 @@ impl<T: Real> Order<T> for Second {
     }
 
     #[inline(always)]
-    fn known(arrival: &Arrival<T>, carried: Carried<T, Self>) -> Curvatures<T> {
+    fn at_base(arrival: &Arrival<T>, carried: Carried<T, Self>) -> SecondBaseDerivatives<T> {
         let ([theta_f, theta_ff], ([x_f, x_ff], [y_f, y_ff])) = carried;
-        let slopes = First::known(arrival, ([theta_f], ([x_f], [y_f])));
+        let first = SimilarFirst::at_base(arrival, ([theta_f], ([x_f], [y_f])));
         let Arrival {
             contact,
             taper,
             rod: [c, s, x, ..],
         } = *arrival;
         let (f, by_load) = (contact.force, contact.radius * contact.radius);
-        let [theta_tau_tau, x_tau_tau, y_tau_tau] = by_tau(f, taper, [c, s], slopes.by_tau);
-        let [theta_tau_load, x_tau_load, y_tau_load] = by_tau(f, taper, [c, s], slopes.by_load);
+        let [theta_tau_tau, x_tau_tau, y_tau_tau] = by_tau(f, taper, [c, s], first.by_tau);
+        let [theta_tau_load, x_tau_load, y_tau_load] = by_tau(f, taper, [c, s], first.by_load);
         let two = T::of(2.0);
-        Curvatures {
-            slopes,
+        SecondBaseDerivatives {
+            first,
             // The force is the load times the square of the radius at the contact.
             by_tau_tau: [theta_tau_tau - two * taper * f * x, x_tau_tau, y_tau_tau],
             by_tau_load: [by_load.mul_add(x, theta_tau_load), x_tau_load, y_tau_load],

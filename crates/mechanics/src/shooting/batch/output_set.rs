@@ -1,79 +1,70 @@
 //! What a batch answers for each trajectory, worked out in lanes.
 
-use crate::numerics::{Lanes, WIDTH};
-use crate::shooting::batch::pole::{Centre, spread};
+use super::block_key::BlockKey;
+use super::kernel::{Block, Trajectories};
+use super::pole::{Centre, spread};
+use crate::numerics::{Lanes, Unit, WIDTH};
 use crate::shooting::contact::Contact;
 use crate::shooting::sensitivity::{
-    Arrival, Curvatures, Energetic, Order, Slopes, Triple, general, similar,
+    Arrival, BaseDerivatives, Energetic, GeneralFirst, GeneralSecond, SecondBaseDerivatives,
+    SensitivitySet, SimilarFirst, SimilarSecond, Triple,
 };
 use crate::shooting::{
     Base, FirstVariation, FullState, SecondVariation, ShootingMap, StateDerivative,
 };
 use glam::DVec2;
 
-/// What a batch computes for each trajectory.
-pub trait Kind: 'static {
-    /// The answer.
-    type Answer: Copy + Default + Send;
-}
-
-/// The derivatives carried for it, and the answer from their values at the base.
-pub trait Derived<T: Lanes>: Kind {
-    /// On any rod.
-    type General: Order<T>;
+/// What a batch computes for each trajectory: the derivatives carried for it, and the outputs from their values at the base.
+pub trait OutputSet: Copy + Default + Send + 'static {
+    /// The derivatives on any rod.
+    type General<T: Lanes>: SensitivitySet<T>;
     /// On rods that look the same from each of their points.
-    type Similar: Order<T, Known = <Self::General as Order<T>>::Known>;
+    type Similar<T: Lanes>: SensitivitySet<T, AtBase = <Self::General<T> as SensitivitySet<T>>::AtBase>;
 
-    /// The answers; `pole` is where its centre lies, seen from the contact.
-    fn answers(
+    /// The outputs; `pole` is where its centre lies, seen from the contact.
+    fn answers<T: Lanes>(
         arrival: &Arrival<T>,
         pole: [T; 2],
-        known: <Self::General as Order<T>>::Known,
-    ) -> [Self::Answer; WIDTH];
+        at_base: <Self::General<T> as SensitivitySet<T>>::AtBase,
+    ) -> [Self; WIDTH];
+
+    /// `unit.run(Trajectories::new(key, block))`: written out for each set, so that its kernels are compiled here, and not
+    /// wherever a batch is shot. There are many of them, and each is long.
+    #[doc(hidden)]
+    fn shoot(unit: Unit, key: BlockKey, block: &Block) -> [Self; WIDTH];
 }
 
-/// The pole, with the first derivatives of its place.
-#[derive(Clone, Copy, Debug)]
-pub struct First;
-
-/// The same, the base and the bending energy.
-#[derive(Clone, Copy, Debug)]
-pub struct FirstAndEnergy;
-
-/// The pole, with the first and second derivatives of its place.
-#[derive(Clone, Copy, Debug)]
-pub struct Second;
-
-impl Kind for First {
-    type Answer = ShootingMap;
-}
-
-impl<T: Lanes> Derived<T> for First {
-    type General = general::First;
-    type Similar = similar::First;
+impl OutputSet for ShootingMap {
+    type General<T: Lanes> = GeneralFirst;
+    type Similar<T: Lanes> = SimilarFirst;
 
     #[inline(always)]
-    fn answers(arrival: &Arrival<T>, pole: [T; 2], slopes: Slopes<T>) -> [ShootingMap; WIDTH] {
-        let numbers = Centre::new(arrival, pole).map(&slopes);
+    fn answers<T: Lanes>(
+        arrival: &Arrival<T>,
+        pole: [T; 2],
+        first: BaseDerivatives<T>,
+    ) -> [Self; WIDTH] {
+        let numbers = Centre::new(arrival, pole).map(&first);
         spread(numbers, map)
+    }
+
+    #[inline(never)]
+    fn shoot(unit: Unit, key: BlockKey, block: &Block) -> [Self; WIDTH] {
+        unit.run(Trajectories::new(key, block))
     }
 }
 
-impl Kind for FirstAndEnergy {
-    type Answer = FirstVariation;
-}
-
-impl<T: Lanes> Derived<T> for FirstAndEnergy {
-    type General = Energetic<general::First>;
-    type Similar = Energetic<similar::First>;
+impl OutputSet for FirstVariation {
+    type General<T: Lanes> = Energetic<GeneralFirst>;
+    type Similar<T: Lanes> = Energetic<SimilarFirst>;
 
     #[inline(always)]
-    fn answers(
+    fn answers<T: Lanes>(
         arrival: &Arrival<T>,
         pole: [T; 2],
-        (slopes, energy): (Slopes<T>, T),
+        (first, energy): (BaseDerivatives<T>, T),
     ) -> [FirstVariation; WIDTH] {
-        let [a, b, c, d, e, g] = Centre::new(arrival, pole).map(&slopes);
+        let [a, b, c, d, e, g] = Centre::new(arrival, pole).map(&first);
         let [cos, sin, x, y, _] = arrival.rod;
         let Contact {
             radius,
@@ -83,10 +74,10 @@ impl<T: Lanes> Derived<T> for FirstAndEnergy {
         } = arrival.contact;
         // The work done along the change: the moment at the base turns it, and the force moves it.
         let work = |[theta, _, y]: Triple<T>| force * x.mul_add(theta, -y);
-        let [theta_tau, x_tau, y_tau] = slopes.by_tau;
-        let [theta_load, x_load, y_load] = slopes.by_load;
+        let [theta_tau, x_tau, y_tau] = first.by_tau;
+        let [theta_load, x_load, y_load] = first.by_load;
         let force_tau = T::of(-2.0) * arrival.taper * force;
-        let energy_tau = work(slopes.by_tau) - force * radius * slant;
+        let energy_tau = work(first.by_tau) - force * radius * slant;
         let numbers = [
             a,
             b,
@@ -109,7 +100,7 @@ impl<T: Lanes> Derived<T> for FirstAndEnergy {
             x_load,
             y_load,
             radius * radius,
-            work(slopes.by_load),
+            work(first.by_load),
         ];
         spread(numbers, |numbers| {
             let [
@@ -148,31 +139,32 @@ impl<T: Lanes> Derived<T> for FirstAndEnergy {
             }
         })
     }
+
+    #[inline(never)]
+    fn shoot(unit: Unit, key: BlockKey, block: &Block) -> [Self; WIDTH] {
+        unit.run(Trajectories::new(key, block))
+    }
 }
 
-impl Kind for Second {
-    type Answer = SecondVariation;
-}
-
-impl<T: Lanes> Derived<T> for Second {
-    type General = general::Second;
-    type Similar = similar::Second;
+impl OutputSet for SecondVariation {
+    type General<T: Lanes> = GeneralSecond;
+    type Similar<T: Lanes> = SimilarSecond;
 
     #[inline(always)]
-    fn answers(
+    fn answers<T: Lanes>(
         arrival: &Arrival<T>,
         pole: [T; 2],
-        known: Curvatures<T>,
+        second: SecondBaseDerivatives<T>,
     ) -> [SecondVariation; WIDTH] {
         let centre = Centre::new(arrival, pole);
-        let [a, b, c, d, e, g] = centre.map(&known.slopes);
+        let [a, b, c, d, e, g] = centre.map(&second.first);
         let (by_tau, by_load) = (
-            centre.moved(known.slopes.by_tau),
-            centre.moved(known.slopes.by_load),
+            centre.moved(second.first.by_tau),
+            centre.moved(second.first.by_load),
         );
-        let tau_tau = centre.twice(known.by_tau_tau, by_tau, by_tau);
-        let tau_load = centre.twice(known.by_tau_load, by_tau, by_load);
-        let load_load = centre.twice(known.by_load_load, by_load, by_load);
+        let tau_tau = centre.ln_pole_by_twice(second.by_tau_tau, by_tau, by_tau);
+        let tau_load = centre.ln_pole_by_twice(second.by_tau_load, by_tau, by_load);
+        let load_load = centre.ln_pole_by_twice(second.by_load_load, by_load, by_load);
         let numbers = [
             a,
             b,
@@ -197,6 +189,11 @@ impl<T: Lanes> Derived<T> for Second {
                 by_load_load: pair(4),
             }
         })
+    }
+
+    #[inline(never)]
+    fn shoot(unit: Unit, key: BlockKey, block: &Block) -> [Self; WIDTH] {
+        unit.run(Trajectories::new(key, block))
     }
 }
 

@@ -1,0 +1,113 @@
+//! SIMD lanes as a scalar: numbers worked on in step, and arithmetic compiled for every SIMD unit.
+//!
+//! Each bundle waits for itself most of the time, so that two registers of each kind take hardly longer than one.
+
+#[cfg(target_arch = "x86_64")]
+mod x86;
+
+use super::Real;
+use std::fmt;
+#[cfg(target_arch = "x86_64")]
+use x86::{Avx2, Avx512};
+
+/// Most lanes of a bundle.
+pub const WIDTH: usize = 16;
+
+/// Numbers worked on in step, or one for comparison.
+pub trait Lanes: Real {
+    /// How many.
+    const LANES: usize;
+
+    /// From the first numbers of an array.
+    fn pack(lanes: [f64; WIDTH]) -> Self;
+    /// To the first numbers of an array.
+    fn unpack(self) -> [f64; WIDTH];
+}
+
+impl Lanes for f64 {
+    const LANES: usize = 1;
+
+    #[inline(always)]
+    fn pack(lanes: [f64; WIDTH]) -> Self {
+        lanes[0]
+    }
+
+    #[inline(always)]
+    fn unpack(self) -> [f64; WIDTH] {
+        [self; WIDTH]
+    }
+}
+
+/// Arithmetic in lanes.
+pub trait SimdTask {
+    /// What comes of it.
+    type Output;
+
+    /// Does it with the lanes of one unit; to be inlined into a function that is compiled for that unit.
+    fn run<T: Lanes>(self) -> Self::Output;
+}
+
+/// A SIMD unit that this processor has.
+#[derive(Clone, Copy, Debug)]
+pub struct Unit(Instructions);
+
+/// The vector units hold their proof that the processor has them.
+#[derive(Clone, Copy, Debug)]
+enum Instructions {
+    #[cfg(target_arch = "x86_64")]
+    Avx512(Avx512),
+    #[cfg(target_arch = "x86_64")]
+    Avx2(Avx2),
+    /// One number at a time, as the compiler's default target does arithmetic.
+    Scalar,
+}
+
+impl fmt::Display for Unit {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self.0 {
+            #[cfg(target_arch = "x86_64")]
+            Instructions::Avx512(_) => "AVX-512",
+            #[cfg(target_arch = "x86_64")]
+            Instructions::Avx2(_) => "AVX2",
+            Instructions::Scalar => "scalar",
+        })
+    }
+}
+
+impl Unit {
+    /// The units of this processor, the widest first, the scalar one last.
+    pub fn all() -> impl Iterator<Item = Self> {
+        let units = [
+            #[cfg(target_arch = "x86_64")]
+            Avx512::detect().map(Instructions::Avx512),
+            #[cfg(target_arch = "x86_64")]
+            Avx2::detect().map(Instructions::Avx2),
+            Some(Instructions::Scalar),
+        ];
+        units.into_iter().flatten().map(Self)
+    }
+
+    /// The widest unit of this processor.
+    #[must_use]
+    pub fn detect() -> Self {
+        Self::all().next().unwrap_or(Self::scalar())
+    }
+
+    /// Plain numbers: what vectors are compared with, and all that processors other than x86-64 are given.
+    #[must_use]
+    pub const fn scalar() -> Self {
+        Self(Instructions::Scalar)
+    }
+
+    /// Does `task` in this unit's lanes.
+    #[must_use]
+    pub fn run<K: SimdTask>(self, task: K) -> K::Output {
+        match self.0 {
+            #[cfg(target_arch = "x86_64")]
+            Instructions::Avx512(unit) => unit.run(task),
+            #[cfg(target_arch = "x86_64")]
+            Instructions::Avx2(unit) => unit.run(task),
+            Instructions::Scalar => task.run::<f64>(),
+        }
+    }
+}
