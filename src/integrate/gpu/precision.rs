@@ -23,7 +23,7 @@ impl fmt::Display for Precision {
 }
 
 impl Precision {
-    /// Steps of [`Rk4`](crate::model::Rk4) per trajectory.
+    /// Steps of [`Rk4`](crate::shooting::Rk4) per trajectory.
     ///
     /// Measured over taper up to 0.99, `A*` up to 0.8, both sides and `q` up to 6.5, worst distance of the
     /// pole from where `f64` finds it: in `f32` 3.6e-5, 7e-6, 4e-6 and 9e-6 whisker lengths for 32, 48, 64 and
