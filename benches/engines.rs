@@ -9,12 +9,14 @@ mod shots;
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use shots::{Range, USUAL};
+use std::convert::Infallible;
 use std::hint::black_box;
 use std::path::Path;
+use whiskmap::bench::Solver;
 use whiskmap::classify::Status;
+use whiskmap::integrate::Engine;
 use whiskmap::integrate::gpu::{Gpu, Precision};
-use whiskmap::integrate::{Cpu, Engine};
-use whiskmap::map::{self, Observer};
+use whiskmap::map::{self, Progress};
 use whiskmap::numerics::Unit;
 use whiskmap::plan::Plan;
 use whiskmap::refine::refine;
@@ -62,7 +64,12 @@ fn integrators(criterion: &mut Criterion) {
 /// Every engine by the number of shots in a call.
 fn engines(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("engines");
-    let mut engines: Vec<Box<dyn Engine>> = vec![Box::new(Cpu)];
+    let solver = Solver {
+        unit: Unit::detect(),
+        resolution: Resolution::COARSE,
+        tolerance: 1e-6,
+    };
+    let mut engines: Vec<Box<dyn Engine>> = Vec::new();
     for precision in [Precision::F32, Precision::F64] {
         // Without a driver the CPU is measured alone.
         engines.extend(Gpu::new(precision).map(|gpu| Box::new(gpu) as Box<dyn Engine>));
@@ -70,6 +77,9 @@ fn engines(criterion: &mut Criterion) {
     for size in [64, 1024, 16_384, 131_072] {
         let range = Range::new(USUAL, size, 6.5, 2);
         group.throughput(Throughput::Elements(size as u64));
+        group.bench_function(BenchmarkId::new("cpu f64", size), |b| {
+            b.iter(|| solver.solve(USUAL, &range.rods, black_box(&range.shots)));
+        });
         for engine in &mut engines {
             let name = engine.describe().engine;
             group.bench_function(BenchmarkId::new(name, size), |b| {
@@ -127,26 +137,18 @@ fn sheets(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// Keeps the panel.
-#[derive(Default)]
-struct Kept(Option<Panel>);
-
-impl Observer for Kept {
-    fn panels(&mut self, _: usize, panels: &[Panel]) -> Result<(), Error> {
-        self.0 = panels.first().cloned();
-        Ok(())
-    }
-
-    fn settled(&mut self, _: usize) {}
-}
-
 /// The file of a map.
 fn files(criterion: &mut Criterion) {
     let scene = scene();
     let plan = Plan::new(&scene).expect("the scene is small");
-    let mut kept = Kept::default();
-    map::run(&scene, &plan, &mut Cpu, &mut kept).expect("nothing is written");
-    let panel = kept.0.expect("the scene has a panel");
+    let mut kept: Option<Panel> = None;
+    let Ok(_) = map::run(&scene, &plan, None, &mut |progress| {
+        if let Progress::Panels(_, panels) = progress {
+            kept = panels.first().cloned();
+        }
+        Ok::<(), Infallible>(())
+    });
+    let panel = kept.expect("the scene has a panel");
     let folder = tempfile::tempdir().expect("there is a folder for temporary files");
     let about = Description {
         scene: &scene,

@@ -15,18 +15,17 @@ mod shots;
 use rayon::ThreadPool;
 use serde_json::{Value, json};
 use shots::Random;
+use std::convert::Infallible;
 use std::fmt::Write;
 use std::time::Instant;
 use whiskmap::accuracy;
-use whiskmap::integrate::Cpu;
-use whiskmap::map::{self, Observer};
+use whiskmap::map::{self, Stage};
 use whiskmap::numerics::Unit;
 use whiskmap::plan::Plan;
 use whiskmap::rod::{Effects, Rod, Side, arclength};
 use whiskmap::scene::Scene;
 use whiskmap::shooting::batch::{Batch, InitialCondition, Method};
 use whiskmap::shooting::{Resolution, ShootingMap};
-use whiskmap::store;
 use whiskmap::trace::curve_at;
 
 const TRAJECTORIES: usize = 20_000;
@@ -236,7 +235,8 @@ fn cell(pool: &ThreadPool) -> Value {
     plan.method = plan.method.with_resolution(steps.resolution);
     let mut summary = None;
     let seconds = seconds(pool, || {
-        summary = Some(map::run(&scene, &plan, &mut Cpu, &mut Nothing).unwrap());
+        let Ok(done) = map::run(&scene, &plan, None, &mut |_| Ok::<(), Infallible>(()));
+        summary = Some(done);
     });
     let summary = summary.unwrap();
     json!({
@@ -247,17 +247,6 @@ fn cell(pool: &ThreadPool) -> Value {
         "steps": steps.resolution.least,
         "cells": summary.cells(),
         "states": summary.refined,
-        "seconds": summary.seconds().map(|(stage, s)| json!({stage: s})).collect::<Vec<_>>(),
+        "seconds": Stage::ALL.map(|stage| json!({stage.to_string(): summary.seconds(stage)})),
     })
-}
-
-/// Keeps nothing.
-struct Nothing;
-
-impl Observer for Nothing {
-    fn panels(&mut self, _: usize, _: &[store::Panel]) -> Result<(), store::Error> {
-        Ok(())
-    }
-
-    fn settled(&mut self, _: usize) {}
 }

@@ -10,11 +10,10 @@
 )]
 #![allow(clippy::expect_used, reason = "a bench that cannot start should stop")]
 
-use whiskmap::integrate::Cpu;
-use whiskmap::map::{self, Observer};
+use std::convert::Infallible;
+use whiskmap::map::{self, Stage};
 use whiskmap::plan::Plan;
 use whiskmap::scene::Scene;
-use whiskmap::store::{Error, Panel};
 
 /// Cells of a run at least.
 const CELLS: usize = 1 << 18;
@@ -80,24 +79,13 @@ impl Map {
         let repeats = CELLS.div_ceil(self.plan.cells);
         let mut seconds = [0.0; 5];
         for _ in 0..repeats {
-            let summary = map::run(&self.scene, &self.plan, &mut Cpu, &mut Nothing)
-                .expect("nothing is written");
-            for (sum, (_, stage)) in seconds.iter_mut().zip(summary.seconds()) {
-                *sum += stage;
+            let discard = &mut |_: map::Progress| Ok::<(), Infallible>(());
+            let Ok(summary) = map::run(&self.scene, &self.plan, None, discard);
+            for (sum, stage) in seconds.iter_mut().zip(Stage::ALL) {
+                *sum += summary.seconds(stage);
             }
         }
         let cells = (repeats * self.plan.cells) as f64;
         seconds.iter().map(|stage| 1e6 * stage / cells).collect()
     }
-}
-
-/// Keeps nothing.
-struct Nothing;
-
-impl Observer for Nothing {
-    fn panels(&mut self, _: usize, _: &[Panel]) -> Result<(), Error> {
-        Ok(())
-    }
-
-    fn settled(&mut self, _: usize) {}
 }

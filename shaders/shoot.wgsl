@@ -1,4 +1,4 @@
-// Newton's method, one shot per invocation; the twin of `src/integrate/cpu.rs`.
+// Newton's method, one shot per invocation; the twin of `src/bench/solver.rs`.
 
 struct Shot {
     tau: real,

@@ -1,30 +1,15 @@
 //! Maps of whiskers whose level curves run along lines of constant load, turn back, or come in pieces.
-#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+#![allow(
+    clippy::unwrap_used,
+    clippy::print_stderr,
+    reason = "a test fails by panicking, and says aloud what it skipped"
+)]
 
+mod compute;
+
+use compute::compute;
 use whiskmap::classify::Regime;
-use whiskmap::integrate::Cpu;
-use whiskmap::map::{self, Observer};
-use whiskmap::plan::Plan;
 use whiskmap::scene::Scene;
-use whiskmap::store::{Error, Panel};
-
-/// Keeps nothing but the regimes.
-struct Regimes(Vec<u32>);
-
-impl Observer for Regimes {
-    fn panels(&mut self, _: usize, panels: &[Panel]) -> Result<(), Error> {
-        let contact = [Regime::Contact.code(), Regime::Unreachable.code()];
-        for panel in panels {
-            self.0.extend(&panel.regime);
-            for (regime, residual) in panel.regime.iter().zip(&panel.residual) {
-                assert!(!contact.contains(regime) || *residual <= 1e-11);
-            }
-        }
-        Ok(())
-    }
-
-    fn settled(&mut self, _: usize) {}
-}
 
 /// A map of a whisker of 20 mm without a cell in doubt.
 fn certain(tip_um: Option<f64>, rest: &str) {
@@ -35,14 +20,15 @@ fn certain(tip_um: Option<f64>, rest: &str) {
          youngs_modulus_gpa = 3\n{rest}"
     );
     let scene = Scene::parse(&text, "hard").unwrap();
-    let plan = Plan::new(&scene).unwrap();
-    let mut regimes = Regimes(Vec::new());
-    let summary = map::run(&scene, &plan, &mut Cpu, &mut regimes).unwrap();
-    let doubtful = regimes
-        .0
-        .iter()
-        .filter(|r| **r == Regime::Unresolved.code());
-    assert_eq!((doubtful.count(), summary.disagreements), (0, 0), "{text}");
+    let (summary, panels) = compute(&scene, None);
+    let doubtful = (summary.unresolved(), summary.disagreements);
+    assert_eq!(doubtful, (0, 0), "{text}");
+    let contact = [Regime::Contact.code(), Regime::Unreachable.code()];
+    for panel in panels {
+        for (regime, residual) in panel.regime.iter().zip(&panel.residual) {
+            assert!(!contact.contains(regime) || *residual <= 1e-11);
+        }
+    }
 }
 
 const TIP: &str = "[grid]\npush_angle_deg = { from = -14, to = 14, count = 201 }\n\

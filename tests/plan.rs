@@ -1,40 +1,25 @@
 //! What a plan promises is what a run does.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-use whiskmap::integrate::{Cpu, Description, Engine, EngineError, Hit, Shot};
-use whiskmap::map::{self, Observer};
+use std::convert::Infallible;
+use whiskmap::integrate::{Description, Engine, EngineError, Hit, Shot};
+use whiskmap::map;
 use whiskmap::plan::Plan;
 use whiskmap::rod::{Effects, Rod};
 use whiskmap::scene::Scene;
-use whiskmap::store::{Error, Panel};
 
-/// Counts the calls of the CPU engine.
+/// Counts its calls, and leaves all shots to the refinement.
 struct Counting(usize);
 
 impl Engine for Counting {
     fn describe(&self) -> Description {
-        Cpu.describe()
+        Description::of(None)
     }
 
-    fn shoot(
-        &mut self,
-        on: Effects,
-        rods: &[Rod],
-        shots: &[Shot],
-    ) -> Result<Vec<Hit>, EngineError> {
+    fn shoot(&mut self, _: Effects, _: &[Rod], shots: &[Shot]) -> Result<Vec<Hit>, EngineError> {
         self.0 += 1;
-        Cpu.shoot(on, rods, shots)
+        Ok(shots.iter().map(Hit::untouched).collect())
     }
-}
-
-struct Nothing;
-
-impl Observer for Nothing {
-    fn panels(&mut self, _: usize, _: &[Panel]) -> Result<(), Error> {
-        Ok(())
-    }
-
-    fn settled(&mut self, _: usize) {}
 }
 
 /// `(groups, calls)` of a plan whose calls and cells are those of its run.
@@ -46,7 +31,8 @@ fn kept(push_angles: &str, distances: &str, more: &str) -> (usize, usize) {
     let scene = Scene::parse(&text, "scene").unwrap();
     let plan = Plan::new(&scene).unwrap();
     let mut engine = Counting(0);
-    let summary = map::run(&scene, &plan, &mut engine, &mut Nothing).unwrap();
+    let discard = &mut |_: map::Progress| Ok::<(), Infallible>(());
+    let Ok(summary) = map::run(&scene, &plan, Some(&mut engine), discard);
     assert_eq!(engine.0, plan.engine_calls);
     assert_eq!(summary.cells(), plan.cells as u64);
     let groups = plan.whiskers.len().div_ceil(plan.panels_at_once);

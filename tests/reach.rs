@@ -6,7 +6,6 @@ mod compute;
 use compute::compute_as;
 use whiskmap::accuracy::cheapest;
 use whiskmap::classify::Regime;
-use whiskmap::integrate::Cpu;
 use whiskmap::plan::Plan;
 use whiskmap::rod::Side;
 use whiskmap::scene::Scene;
@@ -48,7 +47,7 @@ fn the_shape_at_rest_decides_at_the_straight_length() {
         for resolution in Resolution::LADDER.into_iter().chain([told]) {
             let mut plan = Plan::new(&scene).unwrap();
             plan.method = plan.method.with_resolution(resolution);
-            let (summary, panels) = compute_as(&scene, &plan, &mut Cpu);
+            let (summary, panels) = compute_as(&scene, &plan, None);
             let case = format!("pole {pole}, friction {friction}, {resolution:?}");
             assert_eq!(
                 (summary.unresolved(), summary.disagreements),

@@ -1,9 +1,10 @@
 //! The CPU: scalar, vectors on one thread, vectors on all.
 
+use super::solver::Solver;
 use super::task::Task;
 use super::watch::watch;
 use super::{Engine, Report, Row, Rung, Stages};
-use crate::integrate::{EngineError, Hit, Solver};
+use crate::integrate::{EngineError, Hit};
 use crate::numerics::MultiplyAndAdd;
 use crate::numerics::Unit;
 use crate::shooting::Resolution;

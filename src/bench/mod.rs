@@ -7,10 +7,12 @@ mod cpu;
 mod detachment;
 mod gpu;
 mod pareto;
+mod solver;
 mod task;
 mod watch;
 
 pub use detachment::Detachments;
+pub use solver::Solver;
 pub use task::{Errors, Spread};
 pub use watch::Timing;
 

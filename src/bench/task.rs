@@ -1,6 +1,7 @@
 //! The states of a scene, with exact answers.
 
-use crate::integrate::{Shot, Solver};
+use super::solver::Solver;
+use crate::integrate::Shot;
 use crate::numerics::Unit;
 use crate::plan::Plan;
 use crate::refine::states;

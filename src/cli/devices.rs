@@ -2,6 +2,7 @@
 
 use super::engine::{self, Choice};
 use super::failure::Failure;
+use crate::integrate::Description;
 use crate::integrate::gpu::{Precision, adapters, preferred};
 use std::io::Write;
 
@@ -37,7 +38,7 @@ pub fn run() -> Result<(), Failure> {
         writeln!(out, "* is what --engine gpu takes")?;
     }
     let (engine, why) = engine::open(Choice::Auto, None)?;
-    let description = engine.describe();
+    let description = Description::of(engine.as_deref());
     writeln!(
         out,
         "--engine auto takes {} on {} ({why})",

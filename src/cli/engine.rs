@@ -1,8 +1,8 @@
 //! Which engine a command takes.
 
 use super::failure::Failure;
-use crate::integrate::gpu::{Gpu, Kind, Precision, adapters, preferred};
-use crate::integrate::{Cpu, Engine, EngineError};
+use crate::integrate::gpu::{AdapterKind, Gpu, Precision, adapters, preferred};
+use crate::integrate::{Engine, EngineError};
 use clap::ValueEnum;
 
 /// Engines by name.
@@ -34,19 +34,19 @@ impl From<Shaders> for Precision {
     }
 }
 
-/// Opens the engine and says in one line what was chosen and why.
+/// Opens what shoots before the refinement, nothing for the CPU alone, and says in one line why.
 pub fn open(
     choice: Choice,
     shaders: Option<Shaders>,
-) -> Result<(Box<dyn Engine>, String), Failure> {
+) -> Result<(Option<Box<dyn Engine>>, String), Failure> {
     let precision = Precision::from(shaders.unwrap_or(Shaders::F32));
     match choice {
         Choice::Cpu if shaders == Some(Shaders::F32) => Err(Failure::Input(
             "--precision f32: the CPU engine computes in f64; allowed with --engine gpu".to_owned(),
         )),
-        Choice::Cpu => Ok((Box::new(Cpu), "asked for".to_owned())),
+        Choice::Cpu => Ok((None, "asked for".to_owned())),
         Choice::Gpu => match Gpu::new(precision) {
-            Ok(gpu) => Ok((Box::new(gpu), "asked for".to_owned())),
+            Ok(gpu) => Ok((Some(Box::new(gpu)), "asked for".to_owned())),
             Err(error @ EngineError::Unsupported { .. }) => Err(Failure::Input(format!(
                 "--engine gpu --precision {precision}: {error}; --precision f32 works on every adapter"
             ))),
@@ -57,11 +57,11 @@ pub fn open(
 }
 
 /// A hardware adapter with this precision, or else the CPU, always in f64.
-fn automatic(precision: Precision) -> (Box<dyn Engine>, String) {
+fn automatic(precision: Precision) -> (Option<Box<dyn Engine>>, String) {
     let reports = adapters();
     let why = match preferred(&reports, precision).map(|i| &reports[i]) {
-        Some(report) if report.kind != Kind::Software => match Gpu::new(precision) {
-            Ok(gpu) => return (Box::new(gpu), "auto: a hardware adapter".to_owned()),
+        Some(report) if report.kind != AdapterKind::Software => match Gpu::new(precision) {
+            Ok(gpu) => return (Some(Box::new(gpu)), "auto: a hardware adapter".to_owned()),
             Err(error) => format!("auto: {error}"),
         },
         Some(report) => format!(
@@ -70,5 +70,5 @@ fn automatic(precision: Precision) -> (Box<dyn Engine>, String) {
         ),
         None => format!("auto: no GPU adapter with {precision}"),
     };
-    (Box::new(Cpu), why)
+    (None, why)
 }

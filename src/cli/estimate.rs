@@ -1,11 +1,10 @@
 //! What a map would take, measured: a sample of it is computed on the CPU engine and thrown away.
 
 use super::failure::Failure;
-use crate::integrate::Cpu;
-use crate::map::{self, Observer};
+use crate::map::{self, Stage};
 use crate::plan::{Plan, SAMPLE_LINES, SAMPLE_VALUES};
 use crate::scene::Scene;
-use crate::store::{Error, Panel};
+use std::convert::Infallible;
 
 /// What a map would take.
 pub struct Estimate {
@@ -24,30 +23,19 @@ pub fn estimate(scene: &Scene, plan: &Plan) -> Result<Estimate, Failure> {
         method: plan.method,
         ..Plan::new(&small)?
     };
-    let summary = map::run(&small, &small_plan, &mut Cpu, &mut Nothing)?;
+    let Ok(summary) = map::run(&small, &small_plan, None, &mut |_| Ok::<(), Infallible>(()));
     let rows = |scene: &Scene, plan: &Plan| {
         (plan.whiskers.len() * plan.sides.len() * scene.grid.distance_mm.len()) as f64
     };
     let by_rows = rows(scene, plan) / rows(&small, &small_plan);
     let by_cells = plan.cells as f64 / small_plan.cells as f64;
-    let seconds = summary.seconds().map(|(stage, seconds)| match stage {
-        "sheets" => seconds * by_rows,
-        _ => seconds * by_cells,
+    let seconds = Stage::ALL.map(|stage| match stage {
+        Stage::Sheets => summary.seconds(stage) * by_rows,
+        _ => summary.seconds(stage) * by_cells,
     });
     Ok(Estimate {
-        seconds: seconds.sum(),
+        seconds: seconds.iter().sum(),
         threads: rayon::current_num_threads(),
         steps_per_cell: summary.steps as f64 / summary.cells() as f64,
     })
-}
-
-/// Keeps nothing.
-struct Nothing;
-
-impl Observer for Nothing {
-    fn panels(&mut self, _: usize, _: &[Panel]) -> Result<(), Error> {
-        Ok(())
-    }
-
-    fn settled(&mut self, _: usize) {}
 }

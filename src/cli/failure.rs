@@ -80,6 +80,16 @@ pub fn say(line: &str) {
     let _ = writeln!(std::io::stderr(), "{line}");
 }
 
+/// Keeps panics silent that [`integrate::gpu`](crate::integrate::gpu) expects of a driver and reports as errors.
+pub fn keep_expected_panics_silent() {
+    let before = std::panic::take_hook();
+    std::panic::set_hook(Box::new(move |info| {
+        if !crate::integrate::gpu::is_guarded() {
+            before(info);
+        }
+    }));
+}
+
 /// Whether messages may be coloured: on a terminal, unless `NO_COLOR` is set.
 fn color() -> bool {
     std::io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none_or(|v| v.is_empty())

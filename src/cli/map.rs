@@ -6,14 +6,13 @@ use super::progress;
 use super::tolerance::Tolerance;
 use crate::accuracy::{Accuracy, BOUNDED};
 use crate::classify::{Regime, Status};
-use crate::map::{self, Observer, Summary};
+use crate::map::{self, Progress, Stage, Summary};
 use crate::plan::Plan;
 use crate::refine::{GOAL, TOLERANCE};
 use crate::scene::Scene;
-use crate::store::{Description, MapWriter, Panel};
-use crate::{render, store};
+use crate::store::{Description, MapWriter};
+use crate::{integrate, render, store};
 use clap::Args;
-use indicatif::ProgressBar;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -57,7 +56,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         plan.method = plan.method.with_resolution(accuracy.resolution);
     }
     let (mut engine, why) = engine::open(options.engine, options.precision)?;
-    let description = engine.describe();
+    let about = integrate::Description::of(engine.as_deref());
     let file = options.output.join(format!("{}.exr", scene.name));
     let picture = (!options.no_png).then(|| file.with_extension("png"));
     writable(
@@ -66,27 +65,33 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     )?;
     say(&format!(
         "engine: {} on {} ({why})",
-        description.engine, description.adapter
+        about.engine, about.adapter
     ));
 
     let start = Instant::now();
-    let writer = MapWriter::create(
+    let mut writer = MapWriter::create(
         &file,
         &Description {
             scene: &scene,
-            engine: &description.engine,
-            adapter: &description.adapter,
+            engine: &about.engine,
+            adapter: &about.adapter,
             tolerances: &tolerances(accuracy),
             status_names: &Status::ALL.map(|status| (status.code(), status.name())),
         },
     )
     .map_err(|error| Failure::Input(error.to_string()))?;
     let bar = progress::bar(plan.cells as u64);
-    let mut keeper = Keeper { writer, bar };
-    let result = map::run(&scene, &plan, engine.as_mut(), &mut keeper);
-    keeper.bar.finish_and_clear();
+    let engine = engine.as_mut().map(|engine| &mut **engine as _);
+    let result = map::run(&scene, &plan, engine, &mut |progress| match progress {
+        Progress::Settled(cells) => {
+            bar.inc(cells as u64);
+            Ok(())
+        }
+        Progress::Panels(first, panels) => writer.write_panels(first, panels),
+    });
+    bar.finish_and_clear();
     let summary = result?;
-    keeper.writer.finish(summary.shots)?;
+    writer.finish(summary.shots)?;
     if let Some(failure) = &summary.engine_failure {
         say(&format!("warning: {failure}; the CPU went on in its stead"));
     }
@@ -109,22 +114,6 @@ fn tolerances(accuracy: Option<Accuracy>) -> serde_json::Value {
         tolerances["bounded"] = BOUNDED.into();
     }
     tolerances
-}
-
-/// Keeps panels in the file and moves the bar.
-struct Keeper {
-    writer: MapWriter,
-    bar: ProgressBar,
-}
-
-impl Observer for Keeper {
-    fn panels(&mut self, first: usize, panels: &[Panel]) -> Result<(), store::Error> {
-        self.writer.write_panels(first, panels)
-    }
-
-    fn settled(&mut self, cells: usize) {
-        self.bar.inc(cells as u64);
-    }
 }
 
 /// Makes the output folder and finds out, before any work, whether `files` can be made in it.
@@ -187,8 +176,8 @@ fn print(scene: &Scene, summary: &Summary, seconds: f64, files: &[PathBuf]) -> s
     )?;
     let rate = summary.cells() as f64 / seconds;
     write!(out, "{rate:>12.0}  cells/s; {seconds:.2} s:")?;
-    for (stage, seconds) in summary.seconds() {
-        write!(out, " {stage} {seconds:.2}")?;
+    for stage in Stage::ALL {
+        write!(out, " {stage} {:.2}", summary.seconds(stage))?;
     }
     writeln!(out)?;
     for file in files {

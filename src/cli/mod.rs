@@ -76,6 +76,7 @@ enum Command {
 #[must_use]
 pub fn main() -> ExitCode {
     let arguments = Arguments::parse();
+    failure::keep_expected_panics_silent();
     let threads = match &arguments.command {
         Command::Map(options) => options.threads,
         _ => None,

@@ -1,16 +1,16 @@
-//! The engines: two ways to solve thousands of shooting problems at once, behind one trait.
+//! Engines: what shoots before the refinement, thousands of shooting problems at once.
 //!
-//! A [`Shot`] asks for the contact and the load under which the pole is at a wanted place; the engine takes
+//! A [`Shot`] asks for the contact and the load under which the pole is at a wanted place; an engine takes
 //! Newton steps, each one trajectory with its sensitivities. What comes back is a start for the refinement in
 //! `f64`, which alone decides what is a solution: an engine can be fast, but it cannot make a map wrong.
+//! On the CPU nothing would be spared: the refinement takes the same steps, from the guesses.
 
-mod cpu;
 mod fallback;
 pub mod gpu;
 
-pub use cpu::{Cpu, Solver};
 pub use fallback::Fallback;
 
+use crate::numerics::Unit;
 use crate::rod::{Effects, Rod};
 use glam::DVec2;
 
@@ -42,6 +42,20 @@ pub struct Hit {
     pub outcome: Outcome,
 }
 
+impl Hit {
+    /// The guess of `shot`, before any step.
+    #[must_use]
+    pub const fn untouched(shot: &Shot) -> Self {
+        Self {
+            tau: shot.tau,
+            load: shot.load,
+            residual: f64::INFINITY,
+            steps: 0,
+            outcome: Outcome::Stalled,
+        }
+    }
+}
+
 /// How a shot ended. A failed shot is data, not an error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Outcome {
@@ -56,7 +70,7 @@ pub enum Outcome {
 /// Newton steps that an engine may take per shot.
 pub const MOST_STEPS: u32 = 4;
 
-/// Which engine, for people and for the record.
+/// What solves a map, for people and for the record.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Description {
     /// `cpu f64`, `gpu f32`, `gpu f64`.
@@ -65,20 +79,22 @@ pub struct Description {
     pub adapter: String,
 }
 
-/// Something that solves shots.
+impl Description {
+    /// Of `engine`, or of the CPU alone.
+    #[must_use]
+    pub fn of(engine: Option<&dyn Engine>) -> Self {
+        let cpu = || Self {
+            engine: "cpu f64".to_owned(),
+            adapter: Unit::detect().to_string(),
+        };
+        engine.map_or_else(cpu, Engine::describe)
+    }
+}
+
+/// Something that solves shots before the refinement.
 pub trait Engine {
     /// Which engine this is.
     fn describe(&self) -> Description;
-
-    /// How many shots it needs at once to be as fast as it gets; more only take more memory.
-    fn shots_at_once(&self) -> usize {
-        usize::MAX
-    }
-
-    /// Whether what it finds spares the refinement, which could start from the guesses as well, more than it costs.
-    fn spares_work(&self) -> bool {
-        true
-    }
 
     /// Solves `shots`, each on one of `rods`; answers in the same order. `effects` are those of the scene, a
     /// superset of every rod's own.

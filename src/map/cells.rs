@@ -1,53 +1,32 @@
-//! The cells of a few rows: guesses from the sheet, shots by the engine, refinement.
+//! The cells of a few rows, stage by stage: guesses from the sheet, shots by an engine if there is one, refinement.
 
-use super::{Face, Summary, pushes::Push, summary::Stage};
+use super::{Face, Stage, Summary, pushes::Push};
 use crate::classify::Status;
 use crate::integrate::{Fallback, Hit, Outcome, Shot};
-use crate::refine::{self, End, Refined, State};
+use crate::refine::{self, ContactState, End, Refined};
+use crate::rod::Rod;
 use crate::sheet::{Guess, Sheet};
 use crate::shooting::batch::Method;
 use rayon::prelude::*;
 
-/// Rows of some faces, settled together.
-pub struct Strip {
-    /// `(face, row)`.
-    rows: Vec<(usize, usize)>,
-}
-
-impl Strip {
-    /// Every row of every face, in pieces of `rows_at_once`.
-    pub fn all(faces: usize, rows: usize, rows_at_once: usize) -> impl Iterator<Item = Self> {
-        let all: Vec<(usize, usize)> = (0..faces)
-            .flat_map(|face| (0..rows).map(move |row| (face, row)))
-            .collect();
-        let pieces: Vec<Self> = all
-            .chunks(rows_at_once)
-            .map(|piece| Self {
-                rows: piece.to_vec(),
-            })
-            .collect();
-        pieces.into_iter()
-    }
-}
-
-/// The rows of a strip, settled.
+/// Some rows, settled.
 pub struct Settled {
     /// The rows.
-    pub rows: Vec<Row>,
-    /// Steps of the engine, shot by shot, if it took some.
+    pub rows: Vec<SettledRow>,
+    /// What the engine made of the shots, if one was asked.
     hits: Option<Vec<Hit>>,
-    /// What became of the shots.
+    /// What the refinement made of them.
     refined: Vec<Refined>,
 }
 
 /// A settled row of a face.
-pub struct Row {
+pub struct SettledRow {
     /// Index of the face.
     pub face: usize,
     /// Row of the panel.
     pub row: usize,
     /// Which of its cells have a shot, by growing push angle.
-    is_shot: Vec<bool>,
+    has_shot: Vec<bool>,
     /// Shots of the rows before.
     shots_before: usize,
 }
@@ -60,26 +39,30 @@ pub struct Cell {
     /// How it was settled; the boundary has not been asked yet.
     pub status: Status,
     /// The last state computed.
-    pub state: Option<State>,
+    pub state: Option<ContactState>,
     /// Newton steps, engine and refinement together.
     pub steps: u32,
 }
 
 impl Settled {
     /// The cells of `row`, which is one of `face`.
-    pub fn cells<'a>(&'a self, face: &'a Face, row: &'a Row) -> impl Iterator<Item = Cell> + 'a {
+    pub fn cells<'a>(
+        &'a self,
+        face: &'a Face,
+        row: &'a SettledRow,
+    ) -> impl Iterator<Item = Cell> + 'a {
         let mut shot = row.shots_before;
-        let without_state = if face.sheet.is_some() {
+        let without_shot = if face.sheet.is_some() {
             Status::Outside
         } else {
             Status::NoFold
         };
-        let cells = face.pushes.columns.iter().zip(&row.is_shot);
-        cells.map(move |(push, is_shot)| {
-            if !is_shot {
+        let cells = face.pushes.columns.iter().zip(&row.has_shot);
+        cells.map(move |(push, has_shot)| {
+            if !has_shot {
                 return Cell {
                     push: *push,
-                    status: without_state,
+                    status: without_shot,
                     state: None,
                     steps: 0,
                 };
@@ -102,62 +85,54 @@ impl Settled {
     }
 }
 
-/// Settles the cells of `strip`.
+/// Settles the cells of `rows`, pairs of a face and a row of its panel.
 pub fn settle(
     method: Method,
     faces: &[Face],
-    strip: &Strip,
+    rows: &[(usize, usize)],
     engine: &mut Fallback<'_>,
     summary: &mut Summary,
 ) -> Settled {
     // Only faces with a sheet take part; `sheets[shot.rod]` is the sheet of a shot.
-    let used: Vec<usize> = (0..faces.len())
-        .filter(|&i| faces[i].sheet.is_some() && strip.rows.iter().any(|(face, _)| *face == i))
-        .collect();
-    let sheets: Vec<&Sheet> = used
-        .iter()
-        .filter_map(|&i| faces[i].sheet.as_ref())
-        .collect();
-    let mut rows: Vec<Row> = Vec::with_capacity(strip.rows.len());
-    let mut shots: Vec<Shot> = Vec::new();
-    summary.time(Stage::Guesses, || {
-        let guessed: Vec<(Row, Vec<Shot>)> = strip
-            .rows
-            .par_iter()
-            .map(|&(face, row)| {
-                let rod = used.binary_search(&face).unwrap_or_default();
-                guess_row(&faces[face], face, row, rod)
-            })
-            .collect();
-        for (row, of_row) in guessed {
-            rows.push(Row {
-                shots_before: shots.len(),
-                ..row
-            });
+    let taking_part = |&i: &usize| faces[i].sheet.is_some() && rows.iter().any(|row| row.0 == i);
+    let used: Vec<usize> = (0..faces.len()).filter(taking_part).collect();
+    let sheets = used.iter().filter_map(|&i| faces[i].sheet.as_ref());
+    let sheets: Vec<&Sheet> = sheets.collect();
+    let rods: Vec<Rod> = sheets.iter().map(|sheet| sheet.rod.clone()).collect();
+
+    let (rows, shots) = summary.time(Stage::Guesses, || {
+        let guess = |&(face, row): &(usize, usize)| {
+            let rod = used.binary_search(&face).unwrap_or_default();
+            guess_row(&faces[face], face, row, rod)
+        };
+        let guessed: Vec<_> = rows.par_iter().map(guess).collect();
+        let mut shots: Vec<Shot> = Vec::new();
+        let mut rows = Vec::with_capacity(guessed.len());
+        for (mut row, of_row) in guessed {
+            row.shots_before = shots.len();
+            rows.push(row);
             shots.extend_from_slice(&of_row);
         }
+        (rows, shots)
     });
-    let rods: Vec<_> = sheets.iter().map(|sheet| sheet.rod.clone()).collect();
     let hits = summary.time(Stage::Shooting, || {
         engine.shoot(method.effects(), &rods, &shots)
     });
-    summary.shots.all += shots.len() as u64;
-    if engine.failure().is_some() {
-        summary.shots.on_cpu_instead += shots.len() as u64;
-    }
     let refined = summary.time(Stage::Refinement, || {
         // What an engine could not finish starts again from the lattice's guess.
-        let hit = |i: usize| hits.as_ref().map(|hits| hits[i]);
-        let found = |i: usize| hit(i).filter(|hit| hit.outcome == Outcome::Converged);
-        let start = |(i, shot): (usize, &Shot)| {
-            found(i).map_or((shot.tau, shot.load), |hit| (hit.tau, hit.load))
+        let start = |(i, shot): (usize, &Shot)| match &hits {
+            Some(hits) if hits[i].outcome == Outcome::Converged => (hits[i].tau, hits[i].load),
+            _ => (shot.tau, shot.load),
         };
         let starts: Vec<(f64, f64)> = shots.iter().enumerate().map(start).collect();
         refine::refine(method, &sheets, &shots, &starts)
     });
+
+    let count = shots.len() as u64;
+    summary.shots.all += count;
+    summary.shots.on_cpu_instead += engine.failure().map_or(0, |_| count);
     let unfinished = |hit: &&Hit| hit.outcome != Outcome::Converged;
-    let restarted = hits.iter().flatten().filter(unfinished).count();
-    summary.shots.restarted += restarted as u64;
+    summary.shots.restarted += hits.iter().flatten().filter(unfinished).count() as u64;
     Settled {
         rows,
         hits,
@@ -166,18 +141,18 @@ pub fn settle(
 }
 
 /// The shots of one row of a face.
-fn guess_row(face: &Face, index: usize, row: usize, rod: usize) -> (Row, Vec<Shot>) {
+fn guess_row(face: &Face, index: usize, row: usize, rod: usize) -> (SettledRow, Vec<Shot>) {
     let columns = &face.pushes.columns;
-    let mut is_shot = vec![false; columns.len()];
+    let mut has_shot = vec![false; columns.len()];
     let mut shots = Vec::with_capacity(columns.len());
     if let Some(sheet) = &face.sheet {
         let at_touch = sheet.rows[row].pole(0.0);
         let guesses = sheet.guesses(row, columns.iter().map(|push| push.angle.abs()));
-        for ((is_shot, push), guess) in is_shot.iter_mut().zip(columns).zip(guesses) {
+        for ((has_shot, push), guess) in has_shot.iter_mut().zip(columns).zip(guesses) {
             let Some(Guess { tau, load }) = guess else {
                 continue;
             };
-            *is_shot = true;
+            *has_shot = true;
             shots.push(Shot {
                 #[allow(clippy::cast_possible_truncation, reason = "panels at once are few")]
                 rod: rod as u32,
@@ -187,10 +162,10 @@ fn guess_row(face: &Face, index: usize, row: usize, rod: usize) -> (Row, Vec<Sho
             });
         }
     }
-    let row = Row {
+    let row = SettledRow {
         face: index,
         row,
-        is_shot,
+        has_shot,
         shots_before: 0,
     };
     (row, shots)

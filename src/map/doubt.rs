@@ -6,7 +6,7 @@
 
 use super::cells::Cell;
 use crate::classify::{RowBoundary, Status, TIE};
-use crate::refine::{State, TOLERANCE};
+use crate::refine::{ContactState, TOLERANCE};
 use crate::sheet::{Edge, LevelCurve, Node, Sheet, walk};
 
 /// How far, in radians, the end of a walk may be from the boundary, which was computed apart from it.
@@ -78,8 +78,8 @@ fn beyond(edge: Edge) -> Status {
     }
 }
 
-fn state(level: &LevelCurve, node: &Node, push: f64) -> State {
-    State {
+fn state(level: &LevelCurve, node: &Node, push: f64) -> ContactState {
+    ContactState {
         tau: node.point.x,
         load: node.point.y,
         full: node.full,

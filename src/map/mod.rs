@@ -1,12 +1,14 @@
 //! The stages in order, for a whole scene: sheets, guesses, shooting, refinement, regimes, panels.
 
+mod answers;
 mod cells;
 mod doubt;
 mod panel;
 mod pushes;
 mod summary;
 
-pub use summary::Summary;
+pub use panel::{Panel, STATE_CHANNELS};
+pub use summary::{Shots, Stage, Summary};
 
 use crate::integrate::{Engine, Fallback};
 use crate::plan::Plan;
@@ -14,22 +16,21 @@ use crate::rod::Side;
 use crate::scene::{Scene, Whisker};
 use crate::sheet::Sheet;
 use crate::shooting::batch::Method;
-use crate::store::Panel;
-use cells::{Row, Strip};
+use cells::SettledRow;
 use pushes::Pushes;
 use rayon::prelude::*;
-use summary::Stage;
+
+/// Cells in flight for each thread where no engine shoots: so many that nearly all blocks of the refinement are full, and
+/// hardly a page of memory is new for them.
+const CELLS_OF_A_THREAD: usize = 8192;
 
 /// What a run reports while it goes on.
-pub trait Observer {
-    /// Takes the next finished panels, in atlas order; `first` is the index of the first one.
-    ///
-    /// # Errors
-    /// Whatever keeps the panels from being kept; the run stops with it.
-    fn panels(&mut self, first: usize, panels: &[Panel]) -> Result<(), crate::store::Error>;
-
-    /// `cells` more cells are settled.
-    fn settled(&mut self, cells: usize);
+#[derive(Clone, Copy, Debug)]
+pub enum Progress<'a> {
+    /// So many more cells are settled.
+    Settled(usize),
+    /// The next finished panels, in atlas order, and the index of the first one.
+    Panels(usize, &'a [Panel]),
 }
 
 /// One side of one whisker.
@@ -54,50 +55,67 @@ impl<'a> Face<'a> {
 }
 
 /// Computes every panel of `scene` as `plan` says, on the threads of the current pool, best from within it
-/// (`rayon::ThreadPool::install`): from outside, every stage of every strip wakes it up. Where the engine fails the CPU goes on in its stead.
+/// (`rayon::ThreadPool::install`): from outside, every stage of every strip of rows wakes it up. `engine` shoots before the
+/// refinement; without one, or where it fails, the CPU does it all.
 ///
 /// # Errors
-/// When the observer refuses a panel; a cell without an answer is no error.
-pub fn run(
+/// What `observe` refuses panels with, which ends the run; a cell without an answer is no error.
+pub fn run<E>(
     scene: &Scene,
     plan: &Plan,
-    engine: &mut dyn Engine,
-    observer: &mut dyn Observer,
-) -> Result<Summary, crate::store::Error> {
+    engine: Option<&mut dyn Engine>,
+    observe: &mut dyn FnMut(Progress<'_>) -> Result<(), E>,
+) -> Result<Summary, E> {
+    let (width, height) = (
+        scene.grid.push_angle_deg.len(),
+        scene.grid.distance_mm.len(),
+    );
+    let rows_at_once = match engine {
+        Some(_) => plan.rows_at_once,
+        None => {
+            let rows = CELLS_OF_A_THREAD * rayon::current_num_threads() / width;
+            rows.clamp(1, plan.rows_at_once)
+        }
+    };
     let mut engine = Fallback::new(engine);
     let mut summary = Summary::default();
-    let width = scene.grid.push_angle_deg.len();
     let pushes = |side: &Side| Pushes::new(&scene.grid.push_angle_deg, *side);
     let sides: Vec<Pushes> = plan.sides.iter().map(pushes).collect();
-    let rows_at_once = engine.shots_at_once() / width;
-    let rows_at_once = rows_at_once.clamp(1, plan.rows_at_once);
     for (group, whiskers) in plan.whiskers.chunks(plan.panels_at_once).enumerate() {
-        let faces: Vec<Face> = summary.time(Stage::Sheets, || {
-            let sides = &sides;
-            let pairs: Vec<(&Whisker, &Pushes)> = whiskers
-                .iter()
-                .flat_map(|whisker| sides.iter().map(move |side| (whisker, side)))
-                .collect();
-            pairs
-                .par_iter()
-                .map(|(whisker, side)| Face::new(scene, plan.method, whisker, side))
-                .collect()
+        let faces = summary.time(Stage::Sheets, || {
+            faces(scene, plan.method, whiskers, &sides)
         });
-        let mut panels: Vec<Panel> = whiskers.iter().map(|_| panel::blank(scene)).collect();
-        for strip in Strip::all(faces.len(), scene.grid.distance_mm.len(), rows_at_once) {
-            let settled = cells::settle(plan.method, &faces, &strip, &mut engine, &mut summary);
+        let mut panels = vec![Panel::unresolved(width * height); whiskers.len()];
+        let rows = (0..faces.len()).flat_map(|face| (0..height).map(move |row| (face, row)));
+        for strip in rows.collect::<Vec<_>>().chunks(rows_at_once) {
+            let settled = cells::settle(plan.method, &faces, strip, &mut engine, &mut summary);
             summary.time(Stage::Regimes, || {
-                panel::fill(width, whiskers, &faces, sides.len(), &settled, &mut panels);
+                answers::fill(width, whiskers, &faces, sides.len(), &settled, &mut panels);
             });
-            let columns = |row: &Row| faces[row.face].pushes.columns.len();
-            observer.settled(settled.rows.iter().map(columns).sum());
+            let columns = |row: &SettledRow| faces[row.face].pushes.columns.len();
+            observe(Progress::Settled(settled.rows.iter().map(columns).sum()))?;
         }
         for panel in &panels {
             summary.count(panel);
         }
         let first = group * plan.panels_at_once;
-        summary.time(Stage::Files, || observer.panels(first, &panels))?;
+        summary.time(Stage::Files, || observe(Progress::Panels(first, &panels)))?;
     }
     summary.engine_failure = engine.failure().cloned();
     Ok(summary)
+}
+
+/// Every side of every whisker, in order.
+fn faces<'a>(
+    scene: &Scene,
+    method: Method,
+    whiskers: &[Whisker],
+    sides: &'a [Pushes],
+) -> Vec<Face<'a>> {
+    let of_whisker = |whisker| sides.iter().map(move |side| (whisker, side));
+    let pairs: Vec<(&Whisker, &Pushes)> = whiskers.iter().flat_map(of_whisker).collect();
+    pairs
+        .par_iter()
+        .map(|(whisker, side)| Face::new(scene, method, whisker, side))
+        .collect()
 }

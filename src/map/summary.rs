@@ -1,8 +1,10 @@
 //! What a run says about itself when it is done.
 
+use super::Panel;
 use crate::classify::{Regime, Status};
 use crate::integrate::EngineError;
-use crate::store::{Panel, Shots};
+use serde::{Deserialize, Serialize};
+use std::fmt;
 use std::time::{Duration, Instant};
 
 /// The stages of a run.
@@ -24,14 +26,39 @@ pub enum Stage {
 
 impl Stage {
     /// Every stage, in order.
-    pub const ALL: [(Self, &'static str); 6] = [
-        (Self::Sheets, "sheets"),
-        (Self::Guesses, "guesses"),
-        (Self::Shooting, "shooting"),
-        (Self::Refinement, "refinement"),
-        (Self::Regimes, "regimes"),
-        (Self::Files, "files"),
+    pub const ALL: [Self; 6] = [
+        Self::Sheets,
+        Self::Guesses,
+        Self::Shooting,
+        Self::Refinement,
+        Self::Regimes,
+        Self::Files,
     ];
+}
+
+impl fmt::Display for Stage {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Sheets => "sheets",
+            Self::Guesses => "guesses",
+            Self::Shooting => "shooting",
+            Self::Refinement => "refinement",
+            Self::Regimes => "regimes",
+            Self::Files => "files",
+        })
+    }
+}
+
+/// What became of the shots of a run, one for each cell with a guess.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Shots {
+    /// How many there were.
+    pub all: u64,
+    /// Those that ended without a solution, or with numbers that are not finite: the refinement in `f64` started them
+    /// again from their guess.
+    pub restarted: u64,
+    /// Those that no engine solved because that of the run had failed: the refinement started from their guesses.
+    pub on_cpu_instead: u64,
 }
 
 /// Counts and times of a run.
@@ -65,12 +92,9 @@ impl Summary {
 
     /// Adds a finished panel.
     pub(super) fn count(&mut self, panel: &Panel) {
-        for (slot, regime) in self.regimes.iter_mut().zip(Regime::ALL) {
-            *slot += panel
-                .regime
-                .iter()
-                .filter(|code| **code == regime.code())
-                .count() as u64;
+        for (cells, regime) in self.regimes.iter_mut().zip(Regime::ALL) {
+            let codes = panel.regime.iter();
+            *cells += codes.filter(|code| **code == regime.code()).count() as u64;
         }
         let verdicts = panel.regime.iter().zip(&panel.status);
         for (residual, (regime, status)) in panel.residual.iter().zip(verdicts) {
@@ -83,7 +107,8 @@ impl Summary {
         self.steps += panel
             .newton_steps
             .iter()
-            .map(|steps| u64::from(*steps))
+            .copied()
+            .map(u64::from)
             .sum::<u64>();
     }
 
@@ -99,11 +124,9 @@ impl Summary {
         self.regimes[Regime::ALL.len() - 1]
     }
 
-    /// Seconds per stage, in order, with their names.
-    pub fn seconds(&self) -> impl Iterator<Item = (&'static str, f64)> {
-        Stage::ALL
-            .iter()
-            .zip(self.times)
-            .map(|((_, name), time)| (*name, time.as_secs_f64()))
+    /// What `stage` took.
+    #[must_use]
+    pub fn seconds(&self, stage: Stage) -> f64 {
+        self.times[stage as usize].as_secs_f64()
     }
 }

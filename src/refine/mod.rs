@@ -34,7 +34,7 @@ const STEPS_NEAR_FOLD: u32 = 30;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Refined {
     /// The last state computed.
-    pub state: State,
+    pub state: ContactState,
     /// Newton steps taken here.
     pub steps: u32,
     /// The verdict.
@@ -45,7 +45,7 @@ impl Default for Refined {
     /// Nothing computed yet.
     fn default() -> Self {
         Self {
-            state: State {
+            state: ContactState {
                 tau: f64::NAN,
                 load: f64::NAN,
                 full: FullState::default(),
@@ -59,7 +59,7 @@ impl Default for Refined {
 
 /// A state of the whisker.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct State {
+pub struct ContactState {
     /// `tau` of the contact.
     pub tau: f64,
     /// Signed load.
@@ -71,7 +71,7 @@ pub struct State {
     pub residual: f64,
 }
 
-impl State {
+impl ContactState {
     /// Whether the contact is at the tip of the rod of `sheet`, as far as residual and resolution tell.
     #[must_use]
     pub fn is_at_tip(&self, sheet: &Sheet) -> bool {
@@ -118,45 +118,41 @@ fn refine_chunk(
     cells: &mut [Refined],
 ) {
     newton(method, sheets, shots, starts, STEPS, cells);
-    let lost: Vec<usize> = (0..cells.len())
-        .filter(|&i| cells[i].end == End::NotConverged)
-        .collect();
-    let lost_shots: Vec<Shot> = lost.iter().map(|&i| shots[i]).collect();
-    let verdicts = near_fold::decide(method, sheets, &lost_shots);
-    let mut again = Vec::new();
-    let mut restarts = Vec::new();
-    for (&i, verdict) in lost.iter().zip(&verdicts) {
+    let failed = (0..cells.len()).filter(|&i| cells[i].end == End::NotConverged);
+    let failed: Vec<usize> = failed.collect();
+    let failed_shots: Vec<Shot> = failed.iter().map(|&i| shots[i]).collect();
+    let verdicts = near_fold::decide(method, sheets, &failed_shots);
+    let (mut again, mut again_shots, mut again_starts) = (Vec::new(), Vec::new(), Vec::new());
+    for (i, verdict) in failed.into_iter().zip(verdicts) {
         match verdict {
             Verdict::Beyond => cells[i].end = End::BeyondFold,
             Verdict::Start(start) => {
                 again.push(i);
-                restarts.push(*start);
+                again_shots.push(shots[i]);
+                again_starts.push(start);
             }
             Verdict::Unknown => {}
         }
     }
-    let again_shots: Vec<Shot> = again.iter().map(|&i| shots[i]).collect();
     let mut second = vec![Refined::default(); again.len()];
     newton(
         method,
         sheets,
         &again_shots,
-        &restarts,
+        &again_starts,
         STEPS_NEAR_FOLD,
         &mut second,
     );
-    for (&i, cell) in again.iter().zip(second) {
-        cells[i] = Refined {
-            steps: cells[i].steps + cell.steps,
-            ..cell
-        };
+    for (i, cell) in again.into_iter().zip(second) {
+        let steps = cells[i].steps + cell.steps;
+        cells[i] = Refined { steps, ..cell };
     }
 }
 
-/// The states of `sheet` at those of the signed push angles that are on its side, from the lattice's guesses, with what
-/// they were aimed at.
+/// Shots from the lattice's guesses at those of the signed push angles that are on the side of `sheet`, row by row, by growing
+/// magnitude of the push angle; `rod` is the index of the sheet's.
 #[must_use]
-pub fn states(method: Method, sheet: &Sheet, pushes_deg: &[f64]) -> Vec<(Shot, State)> {
+pub fn shots(sheet: &Sheet, rod: u32, pushes_deg: &[f64]) -> Vec<Shot> {
     let sign = sheet.side.sign();
     let pushes = pushes_deg.iter().map(|push| push * sign);
     let mut pushes: Vec<f64> = pushes.filter(|p| *p >= 0.0).map(f64::to_radians).collect();
@@ -166,13 +162,20 @@ pub fn states(method: Method, sheet: &Sheet, pushes_deg: &[f64]) -> Vec<(Shot, S
         let guesses = sheet.guesses(row, pushes.iter().copied());
         for (guess, push) in guesses.iter().zip(&pushes) {
             shots.extend(guess.map(|guess| Shot {
-                rod: 0,
+                rod,
                 tau: guess.tau,
                 load: guess.load,
                 pole: place.pole(sign * push),
             }));
         }
     }
+    shots
+}
+
+/// The states of `sheet` at those of the signed push angles that are on its side, with what they were aimed at.
+#[must_use]
+pub fn states(method: Method, sheet: &Sheet, pushes_deg: &[f64]) -> Vec<(Shot, ContactState)> {
+    let shots = shots(sheet, 0, pushes_deg);
     let starts: Vec<_> = shots.iter().map(|shot| (shot.tau, shot.load)).collect();
     let cells = refine(method, &[sheet], &shots, &starts);
     let solved = shots.into_iter().zip(cells);

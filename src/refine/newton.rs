@@ -1,14 +1,14 @@
 //! Newton's method on many cells at once, and when it may stop.
 
-use super::{End, GOAL, Refined, State, TOLERANCE};
+use super::{ContactState, End, GOAL, Refined, TOLERANCE};
 use crate::integrate::Shot;
 use crate::rod::arclength;
 use crate::sheet::Sheet;
 use crate::shooting::batch::{Batch, InitialCondition, Method};
 use crate::shooting::{FirstVariation, limited};
 
-/// The length of a Newton step, as [`limited`] measures it, that needs no trajectory at its end.
-const LAST_STEP: f64 = 1.5e-7;
+/// The longest Newton step, as [`limited`] measures it, at whose end the state is extrapolated instead of integrated.
+const EXTRAPOLATED_STEP: f64 = 1.5e-7;
 
 /// The residual after such a step at most, in squares of its length and in sums of the contact's arclength and the pole's
 /// distance: of 400,000 random states (taper up to 0.995, `A*` up to 1.5, poles up to a tenth of the length, friction up to
@@ -24,7 +24,7 @@ const ROUNDING: f64 = 6e-14;
 /// The determinant of the Jacobian, over the lengths of its columns, from which on such a step cannot cross the fold.
 const CLEAR_OF_FOLD: f64 = 1e-5;
 
-/// Fewest steps, as in [`Resolution::least`](crate::model::Resolution::least), whose derivatives are good enough for it.
+/// Fewest steps, as in [`Resolution::least`](crate::shooting::Resolution::least), whose derivatives are good enough for it.
 const LEAST_STEPS: u32 = 5;
 
 /// Newton's method with at most `most` steps per cell.
@@ -53,7 +53,7 @@ pub fn newton(
             let condition = condition(open[place]);
             let full = moving.full;
             let residual = full.map.pole.distance(shots[i].pole);
-            let state = State {
+            let state = ContactState {
                 tau: condition.tau,
                 load: condition.load,
                 full,
@@ -68,8 +68,8 @@ pub fn newton(
                 && condition.rod.profile.is_none()
                 && condition.load.abs() * s * s <= LARGEST_Q
                 && full.map.det() > CLEAR_OF_FOLD * columns;
-            if residual > GOAL && length <= LAST_STEP && may_be_last {
-                let state = State {
+            if residual > GOAL && length <= EXTRAPOLATED_STEP && may_be_last {
+                let state = ContactState {
                     tau: condition.tau + step.x,
                     load: condition.load + step.y,
                     full: moving.extrapolated(step),
@@ -102,7 +102,7 @@ pub fn newton(
 }
 
 /// Whether a converged state counts.
-fn verdict(sheet: &Sheet, state: &State) -> End {
+fn verdict(sheet: &Sheet, state: &ContactState) -> End {
     if !sheet.is_stable(state.tau, state.load, &state.full.map) {
         End::NotConverged
     } else if state.tau > sheet.tip[0] && !state.is_at_tip(sheet) {

@@ -1,7 +1,8 @@
 //! The attributes: ASCII JSON, every one of them.
 
 use super::layout::Layout;
-use super::tally::{Counts, Shots, Tally};
+use super::tally::{Counts, Tally};
+use crate::map::Shots;
 use crate::scene::{Grid, Setup};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};

@@ -1,5 +1,6 @@
 //! How many cells there are of each regime and status.
 
+use crate::map::Shots;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -14,18 +15,6 @@ pub struct Counts {
     pub worst_residual: Option<f64>,
     /// What the engine did for them.
     pub shots: Shots,
-}
-
-/// What became of the shots of a run, one for each cell with a guess.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Shots {
-    /// How many there were.
-    pub all: u64,
-    /// Those that ended without a solution, or with numbers that are not finite: the refinement in `f64` started them
-    /// again from their guess.
-    pub restarted: u64,
-    /// Those that no engine solved because that of the run had failed: the refinement started from their guesses.
-    pub on_cpu_instead: u64,
 }
 
 /// Counts the codes of one channel.

@@ -2,9 +2,10 @@
 
 use super::attributes::{self, Description};
 use super::layout::{self, Layout, SAMPLE_BYTES};
-use super::tally::{Counts, Shots, Tally};
+use super::tally::{Counts, Tally};
 use super::{Error, Panel, fresh, header};
 use crate::classify::Regime;
+use crate::map::Shots;
 use exr::block::UncompressedBlock;
 use exr::meta::Headers;
 use exr::meta::attribute::{AttributeValue, Text};

@@ -1,32 +1,145 @@
-//! Whole maps in memory, and how far two of them are apart.
+//! Whole maps in memory, how far two of them are apart, and engines that are looked after.
 #![allow(dead_code, reason = "each test program uses its own share")]
 
-use whiskmap::integrate::Engine;
-use whiskmap::map::{self, Observer, Summary};
+use std::convert::Infallible;
+use whiskmap::integrate::gpu::{Gpu, Precision};
+use whiskmap::integrate::{Description, Engine, EngineError, Hit, Outcome, Shot};
+use whiskmap::map::{self, Panel, Progress, STATE_CHANNELS, Summary};
 use whiskmap::plan::Plan;
+use whiskmap::rod::{Effects, Rod};
 use whiskmap::scene::Scene;
-use whiskmap::store::{self, Panel};
+use whiskmap::shooting::ShootingMap;
+use whiskmap::shooting::batch::{Batch, InitialCondition, Method};
 
-#[derive(Default)]
-struct Panels(Vec<Panel>);
-
-impl Observer for Panels {
-    fn panels(&mut self, first: usize, panels: &[Panel]) -> Result<(), store::Error> {
-        assert_eq!(first, self.0.len());
-        self.0.extend_from_slice(panels);
-        Ok(())
-    }
-    fn settled(&mut self, _: usize) {}
-}
-
-pub fn compute(scene: &Scene, engine: &mut dyn Engine) -> (Summary, Vec<Panel>) {
+/// The map of `scene`: by the CPU alone, or with an engine before it.
+pub fn compute(scene: &Scene, engine: Option<&mut dyn Engine>) -> (Summary, Vec<Panel>) {
     compute_as(scene, &Plan::new(scene).unwrap(), engine)
 }
 
-pub fn compute_as(scene: &Scene, plan: &Plan, engine: &mut dyn Engine) -> (Summary, Vec<Panel>) {
-    let mut panels = Panels::default();
-    let summary = map::run(scene, plan, engine, &mut panels).unwrap();
-    (summary, panels.0)
+pub fn compute_as(
+    scene: &Scene,
+    plan: &Plan,
+    engine: Option<&mut dyn Engine>,
+) -> (Summary, Vec<Panel>) {
+    let mut all = Vec::new();
+    let Ok(summary) = map::run(scene, plan, engine, &mut |progress| {
+        if let Progress::Panels(first, panels) = progress {
+            assert_eq!(first, all.len());
+            all.extend_from_slice(panels);
+        }
+        Ok::<(), Infallible>(())
+    });
+    (summary, all)
+}
+
+/// The GPU engine, or `None` (said aloud) where there is none; `WHISKMAP_REQUIRE_GPU=1` makes that a failure, but for `f64`.
+pub fn open(precision: Precision) -> Option<Gpu> {
+    opened(precision, Gpu::new(precision))
+}
+
+/// The same with this shader.
+pub fn open_with(precision: Precision, shader: String) -> Option<Gpu> {
+    opened(precision, Gpu::with_shader(precision, shader))
+}
+
+fn opened(precision: Precision, gpu: Result<Gpu, EngineError>) -> Option<Gpu> {
+    match gpu {
+        Ok(gpu) => Some(gpu),
+        Err(error) => {
+            let required = std::env::var_os("WHISKMAP_REQUIRE_GPU").is_some_and(|x| x == "1");
+            let optional = match error {
+                EngineError::NoAdapter(_) => !required,
+                EngineError::Unsupported { .. } => precision == Precision::F64,
+                EngineError::Device(_) => false,
+            };
+            assert!(optional, "{error}");
+            eprintln!("SKIPPED, NOT TESTED: gpu {precision}: {error}");
+            None
+        }
+    }
+}
+
+/// An engine whose hits are kept, and looked at in `f64`.
+pub struct Watched<E> {
+    pub engine: E,
+    pub hits: Vec<Hit>,
+    /// How far from the wanted place, in whisker lengths, the poles of the guesses and of the hits really are, shot by shot.
+    misses: [Vec<f64>; 2],
+}
+
+impl<E: Engine> Watched<E> {
+    pub fn new(engine: E) -> Self {
+        Self {
+            engine,
+            hits: Vec::new(),
+            misses: [Vec::new(), Vec::new()],
+        }
+    }
+
+    /// Whether the engine did its work in runs that counted so many shots as restarted, or what is wrong: maps are right
+    /// without an engine too.
+    pub fn works(&self, restarted: u64) -> Result<(), String> {
+        let unfinished = self.hits.iter().filter(|h| h.outcome != Outcome::Converged);
+        let (all, unfinished) = (self.hits.len(), unfinished.count());
+        let [guesses, hits] = self.misses.each_ref().map(|misses| {
+            let mut sorted = misses.clone();
+            sorted.sort_by(f64::total_cmp);
+            sorted[sorted.len() / 2]
+        });
+        let found = format!(
+            "{unfinished} of {all} shots unfinished, {restarted} restarted; in the median off by {hits:.1e}, from {guesses:.1e}"
+        );
+        eprintln!("{found}");
+        let good = unfinished * 50 <= all && hits * 10.0 <= guesses;
+        if good && restarted == unfinished as u64 {
+            Ok(())
+        } else {
+            Err(found)
+        }
+    }
+}
+
+impl<E: Engine> Engine for Watched<E> {
+    fn describe(&self) -> Description {
+        self.engine.describe()
+    }
+
+    fn shoot(
+        &mut self,
+        effects: Effects,
+        rods: &[Rod],
+        shots: &[Shot],
+    ) -> Result<Vec<Hit>, EngineError> {
+        let hits = self.engine.shoot(effects, rods, shots)?;
+        let guesses: Vec<Hit> = shots.iter().map(Hit::untouched).collect();
+        for (misses, found) in self.misses.iter_mut().zip([&guesses, &hits]) {
+            let conditions = found.iter().zip(shots).map(|(hit, shot)| InitialCondition {
+                rod: &rods[shot.rod as usize],
+                tau: hit.tau,
+                load: hit.load,
+            });
+            let conditions: Vec<InitialCondition> = conditions.collect();
+            let method = Method::fine().with_effects(effects);
+            let maps: Vec<ShootingMap> = Batch::new(method).shoot(&conditions);
+            let pairs = maps.iter().zip(shots);
+            misses.extend(pairs.map(|(map, shot)| map.pole.distance(shot.pole)));
+        }
+        self.hits.extend_from_slice(&hits);
+        Ok(hits)
+    }
+}
+
+/// Asserts that regimes are equal, and states as far as their last digit in the file goes: where a GPU prepared the
+/// refinement, that ends on the same state from another start.
+pub fn assert_close(wanted: &[Panel], found: &[Panel], what: &str) {
+    assert_eq!(wanted.len(), found.len());
+    for (a, b) in wanted.iter().zip(found) {
+        assert!(a.regime == b.regime, "{what}");
+        for (channel, (x, y)) in STATE_CHANNELS.iter().zip(a.state.iter().zip(&b.state)) {
+            let miss = difference(x, y);
+            assert!(miss <= 2e-7, "{channel} of {what}: {miss:.1e}");
+        }
+    }
 }
 
 /// Largest difference of two stored channels, relative to the largest value; infinite where only one is NaN.

@@ -7,7 +7,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Output;
 use tempfile::TempDir;
-use whiskmap::store::{STATE_CHANNELS, Samples, StoredMap};
+use whiskmap::map::STATE_CHANNELS;
+use whiskmap::store::{Samples, StoredMap};
 
 /// The library of a Vulkan driver of this machine, lavapipe's if it is there; `None` (said aloud) without any.
 fn real_driver() -> Option<String> {

@@ -1,11 +1,11 @@
 //! Kernels that are spoilt.
 
-use crate::compute::compute;
-use crate::{assert_identical, assert_same, cone, open, sound};
-use whiskmap::integrate::gpu::{Gpu, Precision, shaders};
-use whiskmap::integrate::{Cpu, Description, Engine, EngineError, Hit, Outcome, Shot};
-use whiskmap::rod::{Effects, Rod};
-use whiskmap::store::Shots;
+use crate::compute::{Watched, compute, open_with};
+use crate::{assert_identical, assert_same, cone, sound};
+use whiskmap::integrate::Outcome;
+use whiskmap::integrate::gpu::{Precision, shaders};
+use whiskmap::map::Shots;
+use whiskmap::rod::Effects;
 
 /// The shader of the engine with the last line of its entry point replaced.
 fn spoilt(precision: Precision, with: &str) -> String {
@@ -29,51 +29,32 @@ const SPOILT: [&str; 2] = [
      hits[id.x] = solve(rods[shot.rod], start);",
 ];
 
-/// An engine whose outcomes are written down.
-struct Recorded(Gpu, Vec<Outcome>);
-
-impl Engine for Recorded {
-    fn describe(&self) -> Description {
-        self.0.describe()
-    }
-
-    fn shoot(
-        &mut self,
-        effects: Effects,
-        rods: &[Rod],
-        shots: &[Shot],
-    ) -> Result<Vec<Hit>, EngineError> {
-        let hits = self.0.shoot(effects, rods, shots)?;
-        self.1.extend(hits.iter().map(|hit| hit.outcome));
-        Ok(hits)
-    }
-}
-
 /// 64 x 64 cells go out in a single dispatch, so that the shader's index is the index of the shot. Next to the tip and
 /// the fold a few shots stall without any fault.
 #[test]
 fn numbers_that_are_none_are_restarted_in_f64_and_counted() {
     let scene = cone(64);
-    let (_, cpu) = compute(&scene, &mut Cpu);
+    let (_, cpu) = compute(&scene, None);
     for precision in [Precision::F32, Precision::F64] {
-        let Some(gpu) = open(precision, shaders::shoot(precision, Effects::default())) else {
+        let Some(gpu) = sound(precision) else {
             continue;
         };
-        let mut sound = Recorded(gpu, Vec::new());
-        let all = compute(&scene, &mut sound).0.shots.all;
-        assert!((1000..=4096).contains(&all) && all == sound.1.len() as u64);
-        let restarted =
-            sound.1.iter().enumerate().filter(|&(i, outcome)| {
-                i % 7 == 0 || i % 11 == 0 || *outcome != Outcome::Converged
-            });
+        let mut gpu = Watched::new(gpu);
+        let (summary, _) = compute(&scene, Some(&mut gpu));
+        gpu.works(summary.shots.restarted).unwrap();
+        assert!((1000..=4096).contains(&gpu.hits.len()));
+        let spoilt_or_stalled = |(i, outcome): (usize, Outcome)| {
+            i % 7 == 0 || i % 11 == 0 || outcome != Outcome::Converged
+        };
+        let outcomes = gpu.hits.iter().map(|hit| hit.outcome).enumerate();
         let wanted = Shots {
-            all,
-            restarted: restarted.count() as u64,
+            all: gpu.hits.len() as u64,
+            restarted: outcomes.filter(|&shot| spoilt_or_stalled(shot)).count() as u64,
             on_cpu_instead: 0,
         };
         for with in SPOILT {
-            let mut gpu = open(precision, spoilt(precision, with)).unwrap();
-            let (summary, panels) = compute(&scene, &mut gpu);
+            let mut gpu = open_with(precision, spoilt(precision, with)).unwrap();
+            let (summary, panels) = compute(&scene, Some(&mut gpu));
             assert!(summary.engine_failure.is_none(), "{summary:?}");
             assert_eq!(summary.shots, wanted, "{with}");
             assert_same(&cpu, &panels);
@@ -88,27 +69,55 @@ fn a_kernel_that_answers_nothing_but_nan_costs_time_only() {
         Precision::F32,
         "var hit = solve(rods[shot.rod], shot); hit.tau = nan; hits[id.x] = hit;",
     );
-    let Some(mut gpu) = open(Precision::F32, shader) else {
+    let Some(mut gpu) = open_with(Precision::F32, shader) else {
         return;
     };
-    let (summary, panels) = compute(&scene, &mut gpu);
+    let (summary, panels) = compute(&scene, Some(&mut gpu));
     assert!(summary.engine_failure.is_none(), "{summary:?}");
     assert_eq!(summary.shots.restarted, summary.shots.all);
-    assert_same(&compute(&scene, &mut Cpu).1, &panels);
+    assert_same(&compute(&scene, None).1, &panels);
+}
+
+/// The map is right, so only what the engine did for it tells.
+#[test]
+fn a_kernel_that_does_nothing_is_noticed() {
+    let scene = cone(64);
+    let (_, cpu) = compute(&scene, None);
+    for (does, restarted) in [
+        ("", true),
+        (
+            "hits[id.x] = Hit(shot.tau, shot.load, 0.0, 1u, CONVERGED);",
+            false,
+        ),
+    ] {
+        let keeps_bindings = format!(
+            "if shot.rod > 0u {{ hits[id.x] = solve(rods[shot.rod], shot); }} else {{ {does} }}"
+        );
+        let shader = spoilt(Precision::F32, &keeps_bindings);
+        let Some(gpu) = open_with(Precision::F32, shader) else {
+            return;
+        };
+        let mut gpu = Watched::new(gpu);
+        let (summary, panels) = compute(&scene, Some(&mut gpu));
+        assert_same(&cpu, &panels);
+        let shots = summary.shots;
+        assert_eq!(shots.restarted, if restarted { shots.all } else { 0 });
+        assert!(gpu.works(summary.shots.restarted).is_err());
+    }
 }
 
 #[test]
 fn a_kernel_that_the_driver_refuses_leaves_all_to_the_cpu() {
     let scene = cone(64);
-    if sound().is_none() {
+    if sound(Precision::F32).is_none() {
         return;
     }
     for (shader, why) in [("fn shoot() {", "expected"), ("fn other() {}", "shoot")] {
-        let mut gpu = open(Precision::F32, shader.to_owned()).unwrap();
-        let (summary, panels) = compute(&scene, &mut gpu);
+        let mut gpu = open_with(Precision::F32, shader.to_owned()).unwrap();
+        let (summary, panels) = compute(&scene, Some(&mut gpu));
         let failure = summary.engine_failure.unwrap().to_string();
         assert!(failure.contains(why), "{failure}");
         assert_eq!(summary.shots.on_cpu_instead, summary.shots.all);
-        assert_identical(&compute(&scene, &mut Cpu).1, &panels);
+        assert_identical(&compute(&scene, None).1, &panels);
     }
 }

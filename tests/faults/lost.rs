@@ -2,8 +2,8 @@
 
 use crate::compute::{compute, compute_as};
 use crate::{assert_identical, assert_same, cone, sound};
-use whiskmap::integrate::gpu::Gpu;
-use whiskmap::integrate::{Cpu, Description, Engine, EngineError, Hit, Shot};
+use whiskmap::integrate::gpu::{Gpu, Precision};
+use whiskmap::integrate::{Description, Engine, EngineError, Hit, Shot};
 use whiskmap::plan::Plan;
 use whiskmap::rod::{Effects, Rod};
 
@@ -61,13 +61,13 @@ fn in_strips(scene: &whiskmap::scene::Scene) -> Plan {
 fn lost_between_two_calls() {
     let scene = cone(64);
     let plan = in_strips(&scene);
-    let (_, cpu) = compute_as(&scene, &plan, &mut Cpu);
+    let (_, cpu) = compute_as(&scene, &plan, None);
     for call in [0, 1, 7, 12] {
-        let Some(gpu) = sound() else {
+        let Some(gpu) = sound(Precision::F32) else {
             return;
         };
         let mut engine = Sabotaged::new(gpu, call, wgpu::Device::destroy);
-        let (summary, panels) = compute_as(&scene, &plan, &mut engine);
+        let (summary, panels) = compute_as(&scene, &plan, Some(&mut engine));
         assert_eq!(engine.calls, call + 1, "a lost device is not asked again");
         assert!(matches!(
             summary.engine_failure,
@@ -112,15 +112,15 @@ fn again(device: wgpu::Device, buffer: wgpu::Buffer, looks: usize) {
 #[test]
 fn lost_within_a_call() {
     let scene = cone(128);
-    let (_, cpu) = compute(&scene, &mut Cpu);
+    let (_, cpu) = compute(&scene, None);
     for looks in 0..4 {
-        let Some(gpu) = sound() else {
+        let Some(gpu) = sound(Precision::F32) else {
             return;
         };
         let mut engine = Sabotaged::new(gpu, 0, |device: &wgpu::Device| {
             destroy_within(device, looks);
         });
-        let (summary, panels) = compute(&scene, &mut engine);
+        let (summary, panels) = compute(&scene, Some(&mut engine));
         let failure = summary.engine_failure.unwrap();
         assert!(matches!(failure, EngineError::Device(_)), "{failure}");
         assert!(summary.shots.all > 8192, "{:?}", summary.shots);
@@ -134,9 +134,9 @@ fn lost_within_a_call() {
 fn lost_to_another_thread() {
     let scene = cone(64);
     let plan = in_strips(&scene);
-    let (_, cpu) = compute_as(&scene, &plan, &mut Cpu);
+    let (_, cpu) = compute_as(&scene, &plan, None);
     for _ in 0..10 {
-        let Some(gpu) = sound() else {
+        let Some(gpu) = sound(Precision::F32) else {
             return;
         };
         let mut thread = None;
@@ -144,7 +144,7 @@ fn lost_to_another_thread() {
             let device = device.clone();
             thread = Some(std::thread::spawn(move || device.destroy()));
         });
-        let (summary, panels) = compute_as(&scene, &plan, &mut engine);
+        let (summary, panels) = compute_as(&scene, &plan, Some(&mut engine));
         let left = summary.shots.all - engine.solved;
         assert_eq!(summary.shots.on_cpu_instead, left);
         thread.unwrap().join().unwrap();

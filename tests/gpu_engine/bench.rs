@@ -13,7 +13,7 @@ pub struct Bench {
 impl Bench {
     /// `None` (said aloud) where the engine is not to be had either.
     pub fn open(precision: Precision) -> Option<Self> {
-        crate::open(precision)?;
+        crate::compute::open(precision)?;
         let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
         let options = wgpu::RequestAdapterOptions {
             power_preference: wgpu::PowerPreference::HighPerformance,

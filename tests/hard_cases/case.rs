@@ -1,12 +1,9 @@
 //! One whisker in front of a few poles; lengths in whisker lengths.
 
 use std::fmt::Write;
-use whiskmap::integrate::gpu::{Gpu, Precision};
-use whiskmap::integrate::{Engine, EngineError};
-use whiskmap::map::{self, Observer, Summary};
-use whiskmap::plan::Plan;
+use whiskmap::integrate::Engine;
+use whiskmap::map::{Panel, Summary};
 use whiskmap::scene::Scene;
-use whiskmap::store::{self, Panel};
 
 /// A scene, but for its text.
 #[derive(Clone, Debug)]
@@ -81,37 +78,8 @@ impl Case {
     }
 }
 
-/// The only panel of a scene.
-#[derive(Default)]
-struct Kept(Option<Panel>);
-
-impl Observer for Kept {
-    fn panels(&mut self, _: usize, panels: &[Panel]) -> Result<(), store::Error> {
-        self.0 = panels.first().cloned();
-        Ok(())
-    }
-
-    fn settled(&mut self, _: usize) {}
-}
-
 /// The map of a scene without sweep.
-pub fn compute(scene: &Scene, engine: &mut dyn Engine) -> (Summary, Panel) {
-    let mut kept = Kept::default();
-    let plan = Plan::new(scene).unwrap();
-    let summary = map::run(scene, &plan, engine, &mut kept).unwrap();
-    (summary, kept.0.unwrap())
-}
-
-/// The GPU engine; its absence is loud, and a failure where it is required.
-pub fn open(precision: Precision) -> Option<Gpu> {
-    match Gpu::new(precision) {
-        Ok(gpu) => Some(gpu),
-        Err(error) => {
-            let required = std::env::var_os("WHISKMAP_REQUIRE_GPU").is_some_and(|x| x == "1");
-            let optional = matches!(error, EngineError::Unsupported { .. });
-            assert!(optional || !required, "WHISKMAP_REQUIRE_GPU=1, but {error}");
-            eprintln!("SKIPPED, NOT TESTED: gpu {precision}: {error}");
-            None
-        }
-    }
+pub fn compute(scene: &Scene, engine: Option<&mut dyn Engine>) -> (Summary, Panel) {
+    let (summary, mut panels) = crate::compute::compute(scene, engine);
+    (summary, panels.remove(0))
 }

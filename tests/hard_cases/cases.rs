@@ -1,14 +1,15 @@
 //! The named hard cases: whole maps of them, and cells exactly at their edges.
 
-use crate::case::{Case, compute, open};
+use crate::case::{Case, compute};
+use crate::compute::{Watched, open};
 use crate::named::named;
 use whiskmap::classify::Regime;
+use whiskmap::integrate::Engine;
 use whiskmap::integrate::gpu::{Gpu, Precision};
-use whiskmap::integrate::{Cpu, Engine};
+use whiskmap::map::Panel;
 use whiskmap::refine::TOLERANCE;
 use whiskmap::rod::Side;
 use whiskmap::scene::Scene;
-use whiskmap::store::Panel;
 use whiskmap::trace::{DetachmentKind, corner, curve};
 
 /// Every cell has all its numbers or none.
@@ -21,25 +22,35 @@ pub fn is_complete(panel: &Panel) -> bool {
 }
 
 /// The map of `case` without a doubtful cell.
-fn certain(name: &str, case: &Case, engine: &mut dyn Engine) -> Panel {
+fn certain(name: &str, case: &Case) -> Panel {
+    certain_with(name, case, None).0
+}
+
+/// The same with an engine, and how many of its shots were restarted.
+fn certain_with(name: &str, case: &Case, engine: Option<&mut dyn Engine>) -> (Panel, u64) {
     let (summary, panel) = compute(&case.scene(), engine);
     let doubt = (summary.unresolved(), summary.disagreements);
     assert_eq!(doubt, (0, 0), "{name}: {case:?}\n{:?}", panel.status);
     assert!(is_complete(&panel), "{name}");
-    panel
+    (panel, summary.shots.restarted)
 }
 
 #[test]
 fn engines_agree_on_every_named_case() {
-    let mut gpus: Vec<Gpu> = [Precision::F32, Precision::F64]
+    let gpus = [Precision::F32, Precision::F64]
         .into_iter()
-        .filter_map(open)
-        .collect();
+        .filter_map(open);
+    let mut gpus: Vec<(Watched<Gpu>, u64)> = gpus.map(|gpu| (Watched::new(gpu), 0)).collect();
     for (name, case) in named() {
-        let panel = certain(name, &case, &mut Cpu);
-        for gpu in &mut gpus {
-            assert_eq!(certain(name, &case, gpu).regime, panel.regime, "{name}");
+        let panel = certain(name, &case);
+        for (gpu, restarted) in &mut gpus {
+            let (from_gpu, more) = certain_with(name, &case, Some(gpu));
+            assert_eq!(from_gpu.regime, panel.regime, "{name}");
+            *restarted += more;
         }
+    }
+    for (gpu, restarted) in gpus {
+        gpu.works(restarted).unwrap();
     }
 }
 
@@ -62,7 +73,7 @@ fn ends_at(name: &str, case: &Case, distance: f64, end_deg: f64, kind: Detachmen
         distances: vec![distance],
         ..case.clone()
     };
-    let panel = certain(name, &row, &mut Cpu);
+    let panel = certain(name, &row);
     for (push, regime) in pushes.iter().zip(&panel.regime) {
         let swapped = case.friction > 0.0 && *regime == Regime::Unreachable.code();
         let right = if push.abs() < end_deg.abs() {

@@ -9,6 +9,8 @@
 
 mod case;
 mod cases;
+#[path = "../compute/mod.rs"]
+mod compute;
 mod limits;
 mod named;
 mod random;

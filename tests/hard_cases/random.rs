@@ -1,13 +1,13 @@
 //! Two thousand random whiskers on small grids, always the same ones, and some with measured radii.
 
-use crate::case::{Case, compute, open};
+use crate::case::{Case, compute};
 use crate::cases::is_complete;
+use crate::compute::open;
 use crate::single::STABLE;
 use crate::states::{Shots, halving};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngSeed, TestRunner};
 use std::cell::RefCell;
-use whiskmap::integrate::Cpu;
 use whiskmap::integrate::gpu::Precision;
 use whiskmap::refine::End;
 use whiskmap::rod::arclength;
@@ -145,13 +145,13 @@ fn scan(count: u32, whiskers: &impl Strategy<Value = Case>) -> Seen {
     let seen = RefCell::new(Seen::default());
     let holds = |case: Case| {
         let scene = case.scene();
-        let (summary, panel) = compute(&scene, &mut Cpu);
+        let (summary, panel) = compute(&scene, None);
         prop_assert_eq!((summary.unresolved(), summary.disagreements), (0, 0));
         prop_assert!(is_complete(&panel));
 
         let seen = &mut *seen.borrow_mut();
         let shots = Shots::new(&scene);
-        let cells = shots.refined(&shots.shoot(&mut Cpu));
+        let cells = shots.refined(&shots.guesses());
         let states = shots.conditions(&cells);
         let fine = halving(shots.effects, &states, Resolution::FINE);
         let half = halving(shots.effects, &states, HALF);

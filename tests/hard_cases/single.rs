@@ -1,11 +1,11 @@
 //! What the GPU finds in `f32`, before the refinement, against the states in `f64`.
 
-use crate::case::open;
+use crate::compute::open;
 use crate::named::named;
 use crate::states::Shots;
 use std::fmt::Write;
 use whiskmap::integrate::gpu::Precision;
-use whiskmap::integrate::{Cpu, Engine, Outcome};
+use whiskmap::integrate::{Engine, Outcome};
 use whiskmap::refine::End;
 use whiskmap::rod::arclength;
 
@@ -38,7 +38,7 @@ fn single_precision_is_stable_or_handed_over() {
         let pole = misses.iter().map(|(_, miss)| *miss).fold(0.0, f64::max);
         let rods = shots.rods();
         let (mut contacts, mut loads) = (Vec::new(), Vec::new());
-        let cells = shots.refined(&shots.shoot(&mut Cpu));
+        let cells = shots.refined(&shots.guesses());
         for ((hit, cell), shot) in hits.iter().zip(&cells).zip(&shots.shots) {
             if hit.outcome == Outcome::Converged && cell.end == End::Solved {
                 let rod = &rods[shot.rod as usize];

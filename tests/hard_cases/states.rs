@@ -3,7 +3,7 @@
 use glam::DVec2;
 use rayon::prelude::*;
 use whiskmap::integrate::{Engine, Hit, Outcome, Shot};
-use whiskmap::refine::{End, Refined, refine};
+use whiskmap::refine::{self, End, Refined};
 use whiskmap::rod::{Effects, Rod, Side};
 use whiskmap::scene::Scene;
 use whiskmap::sheet::Sheet;
@@ -32,21 +32,7 @@ impl Shots {
             .collect();
         let mut shots = Vec::new();
         for (index, sheet) in (0..).zip(&sheets) {
-            let side = sheet.side;
-            let pushes = scene.grid.push_angle_deg.iter().map(|p| p * side.sign());
-            let mut pushes: Vec<f64> = pushes.filter(|p| *p >= 0.0).map(f64::to_radians).collect();
-            pushes.sort_by(f64::total_cmp);
-            for (row, place) in sheet.rows.iter().enumerate() {
-                let guesses = sheet.guesses(row, pushes.iter().copied());
-                for (guess, push) in guesses.iter().zip(&pushes) {
-                    shots.extend(guess.map(|guess| Shot {
-                        rod: index,
-                        tau: guess.tau,
-                        load: guess.load,
-                        pole: place.pole(side.sign() * push),
-                    }));
-                }
-            }
+            shots.extend(refine::shots(sheet, index, &scene.grid.push_angle_deg));
         }
         Self {
             effects,
@@ -57,6 +43,11 @@ impl Shots {
 
     pub fn rods(&self) -> Vec<Rod> {
         self.sheets.iter().map(|sheet| sheet.rod.clone()).collect()
+    }
+
+    /// What the refinement starts from without an engine.
+    pub fn guesses(&self) -> Vec<Hit> {
+        self.shots.iter().map(Hit::untouched).collect()
     }
 
     pub fn shoot(&self, engine: &mut dyn Engine) -> Vec<Hit> {
@@ -75,7 +66,7 @@ impl Shots {
         });
         let starts: Vec<(f64, f64)> = starts.collect();
         let sheets: Vec<&Sheet> = self.sheets.iter().collect();
-        refine(
+        refine::refine(
             Method::fine().with_effects(self.effects),
             &sheets,
             &self.shots,

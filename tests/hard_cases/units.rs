@@ -2,9 +2,8 @@
 
 use crate::case::{Case, compute};
 use crate::named::named;
-use whiskmap::integrate::Cpu;
+use whiskmap::map::{Panel, STATE_CHANNELS};
 use whiskmap::scene::Scene;
-use whiskmap::store::{Panel, STATE_CHANNELS};
 
 /// By what power of the length a channel grows, at the same proportions and modulus.
 const POWERS: [(&str, i32); STATE_CHANNELS.len()] = [
@@ -38,7 +37,7 @@ fn difference(a: &[f32], b: &[f32], factor: f64) -> f64 {
 
 fn map(case: &Case, gpa: &str) -> Panel {
     let text = case.text().replace("youngs_modulus_gpa = 3", gpa);
-    compute(&Scene::parse(&text, "hard").unwrap(), &mut Cpu).1
+    compute(&Scene::parse(&text, "hard").unwrap(), None).1
 }
 
 /// Measured 8.5e-8; two roundings to f32 are 1.2e-7.

@@ -4,8 +4,9 @@
 use serde_json::{Value, json};
 use std::path::Path;
 use whiskmap::classify::Regime;
+use whiskmap::map::{Panel, STATE_CHANNELS, Shots};
 use whiskmap::scene::{Grid, Pole, Setup, Whisker};
-use whiskmap::store::{Counts, Description, MapWriter, Panel, STATE_CHANNELS, Shots};
+use whiskmap::store::{Counts, Description, MapWriter};
 
 pub const STATUS_NAMES: [(u32, &str); 3] =
     [(0, "solved"), (1, "beyond an edge"), (7, "refined twice")];

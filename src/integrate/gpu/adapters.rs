@@ -5,7 +5,7 @@ use std::fmt;
 
 /// What an adapter is, in order of preference.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Kind {
+pub enum AdapterKind {
     /// A card of its own.
     Discrete,
     /// Part of the processor.
@@ -18,7 +18,7 @@ pub enum Kind {
     Software,
 }
 
-impl From<wgpu::DeviceType> for Kind {
+impl From<wgpu::DeviceType> for AdapterKind {
     fn from(kind: wgpu::DeviceType) -> Self {
         match kind {
             wgpu::DeviceType::DiscreteGpu => Self::Discrete,
@@ -30,7 +30,7 @@ impl From<wgpu::DeviceType> for Kind {
     }
 }
 
-impl fmt::Display for Kind {
+impl fmt::Display for AdapterKind {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Discrete => "discrete GPU",
@@ -50,7 +50,7 @@ pub struct AdapterReport {
     /// The interface: `vulkan`, `metal`, `dx12`.
     pub backend: String,
     /// What it is.
-    pub kind: Kind,
+    pub kind: AdapterKind,
     /// Driver.
     pub driver: String,
     /// Version and whatever else the driver tells.
@@ -104,7 +104,7 @@ pub fn preferred(reports: &[AdapterReport], precision: Precision) -> Option<usiz
 mod tests {
     use super::*;
 
-    fn report(kind: Kind) -> AdapterReport {
+    fn report(kind: AdapterKind) -> AdapterReport {
         AdapterReport {
             name: String::new(),
             backend: String::new(),
@@ -120,14 +120,14 @@ mod tests {
     #[test]
     fn software_comes_last_and_the_first_of_equals_wins() {
         let kinds = [
-            Kind::Software,
-            Kind::Integrated,
-            Kind::Discrete,
-            Kind::Discrete,
+            AdapterKind::Software,
+            AdapterKind::Integrated,
+            AdapterKind::Discrete,
+            AdapterKind::Discrete,
         ];
         assert_eq!(preferred(&kinds.map(report), Precision::F32), Some(2));
         assert_eq!(
-            preferred(&[report(Kind::Software)], Precision::F32),
+            preferred(&[report(AdapterKind::Software)], Precision::F32),
             Some(0)
         );
         assert_eq!(preferred(&[], Precision::F32), None);
@@ -135,7 +135,7 @@ mod tests {
 
     #[test]
     fn f64_is_asked_of_an_adapter_that_has_it() {
-        let mut reports = [Kind::Discrete, Kind::Software].map(report);
+        let mut reports = [AdapterKind::Discrete, AdapterKind::Software].map(report);
         assert_eq!(preferred(&reports, Precision::F64), None);
         reports[1].shader_f64 = true;
         assert_eq!(preferred(&reports, Precision::F64), Some(1));

@@ -140,4 +140,30 @@ impl Device {
         });
         self.check().map(|()| buffer)
     }
+
+    /// Uploads `bytes`, `what` they are, to `kept`, a buffer that grows when it must.
+    pub fn upload<'a>(
+        &self,
+        what: &'static str,
+        kept: &'a mut Option<wgpu::Buffer>,
+        bytes: &[u8],
+    ) -> Result<&'a wgpu::Buffer, EngineError> {
+        let size = bytes.len() as u64;
+        let most = self.most_bytes();
+        if size > most {
+            return Err(EngineError::Unsupported {
+                adapter: self.report.name.clone(),
+                what: format!("hold {size} bytes of {what}, at most {most}"),
+            });
+        }
+        let buffer = match kept.take() {
+            Some(buffer) if buffer.size() >= size => buffer,
+            _ => {
+                let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST;
+                self.buffer(what, size, usage)?
+            }
+        };
+        self.queue.write_buffer(&buffer, 0, bytes);
+        Ok(kept.insert(buffer))
+    }
 }

@@ -1,13 +1,14 @@
-//! Rods, shots and hits as bytes, in the layout of `shaders/rod.wgsl` and `shaders/shoot.wgsl`.
+//! Rods, shots and hits as bytes: the structs of `shaders/rod.wgsl` and `shaders/shoot.wgsl`.
 
 use super::Precision;
 use crate::integrate::{Hit, Outcome, Shot};
+use crate::numerics::Real;
 use crate::rod::{Piece, Rod};
-use bytemuck::Pod;
+use bytemuck::{Pod, Zeroable};
 
-/// Sizes, and the ways in and out.
+/// What buffers hold, for shaders of one precision.
 #[derive(Debug)]
-pub struct Layout {
+pub struct BufferLayout {
     /// Bytes of a shot.
     pub shot: usize,
     /// Bytes of a hit.
@@ -15,179 +16,158 @@ pub struct Layout {
     /// Rods to bytes.
     pub rods: fn(&[Rod]) -> Vec<u8>,
     /// The pieces of a rod's profile to bytes.
-    pub pieces: fn(&[Stretch]) -> Vec<u8>,
-    /// Shots to bytes.
-    pub shots: fn(&[Task]) -> Vec<u8>,
-    /// Hits from bytes.
+    pub pieces: fn(&Rod) -> Vec<u8>,
+    /// Shots to bytes, and in how many steps the trajectories of each are integrated; with a profile, steps for every piece.
+    pub shots: fn(&[Shot], &dyn Fn(&Shot) -> u32) -> Vec<u8>,
+    /// Hits from bytes, appended.
     pub hits: fn(&[u8], &mut Vec<Hit>),
 }
 
-impl Layout {
+impl BufferLayout {
     /// The layout for shaders of this precision.
-    pub fn of(precision: Precision) -> &'static Self {
+    pub const fn of(precision: Precision) -> Self {
         match precision {
-            Precision::F32 => &single::LAYOUT,
-            Precision::F64 => &double::LAYOUT,
+            Precision::F32 => Self::with::<f32>(),
+            Precision::F64 => Self::with::<f64>(),
+        }
+    }
+
+    const fn with<T: Scalar>() -> Self {
+        Self {
+            shot: size_of::<GpuShot<T>>(),
+            hit: size_of::<GpuHit<T>>(),
+            rods: |rods| bytes(rods.iter().map(GpuRod::<T>::from)),
+            pieces: |rod| match &rod.profile {
+                Some(profile) => bytes(profile.pieces.iter().map(|p| GpuPiece::<T>::of(rod, p))),
+                None => bytes([GpuPiece::<T>::of(rod, &Piece::cone(rod.taper))].into_iter()),
+            },
+            shots: |shots, steps| bytes(shots.iter().map(|s| GpuShot::<T>::of(s, steps(s)))),
+            hits: |bytes, hits| {
+                let each = bytes.chunks_exact(size_of::<GpuHit<T>>());
+                hits.extend(
+                    each.map(|hit| Hit::from(bytemuck::pod_read_unaligned::<GpuHit<T>>(hit))),
+                );
+            },
         }
     }
 }
 
-/// A piece of a profile, and `tau` where it begins.
-#[derive(Clone, Copy, Debug)]
-pub struct Stretch {
-    pub tau: f64,
-    pub piece: Piece,
-}
+/// A scalar of the shaders.
+trait Scalar: Real + Pod + Into<f64> {}
 
-/// A shot, and in how many steps its trajectories are integrated; with a profile, steps for every piece.
-#[derive(Clone, Copy, Debug)]
-pub struct Task {
-    pub shot: Shot,
-    pub steps: u32,
-}
+impl<T: Real + Pod + Into<f64>> Scalar for T {}
 
-/// The codes that the shaders write.
-pub const OUTCOMES: [(&str, Outcome); 3] = [
-    ("CONVERGED", Outcome::Converged),
-    ("STALLED", Outcome::Stalled),
-    ("NOT_FINITE", Outcome::NotFinite),
-];
-
-/// Things as bytes, in the shape `P`.
-fn write<T, P: Pod + for<'a> From<&'a T>>(things: &[T]) -> Vec<u8> {
-    let mut bytes = Vec::with_capacity(size_of_val(things));
+fn bytes<P: Pod>(things: impl ExactSizeIterator<Item = P>) -> Vec<u8> {
+    let mut bytes = Vec::with_capacity(things.len() * size_of::<P>());
     for thing in things {
-        bytes.extend_from_slice(bytemuck::bytes_of(&P::from(thing)));
+        bytes.extend_from_slice(bytemuck::bytes_of(&thing));
     }
     bytes
 }
 
-/// Appends things read from bytes in the shape `P`.
-fn read<T, P: Pod + Into<T>>(bytes: &[u8], things: &mut Vec<T>) {
-    let each = bytes.chunks_exact(size_of::<P>());
-    things.extend(each.map(|bytes| bytemuck::pod_read_unaligned::<P>(bytes).into()));
+/// The codes that the shaders write, from 0. A kernel that writes nothing leaves zeros, which are no solution.
+pub const OUTCOMES: [(&str, Outcome); 3] = [
+    ("NOT_FINITE", Outcome::NotFinite),
+    ("CONVERGED", Outcome::Converged),
+    ("STALLED", Outcome::Stalled),
+];
+
+#[derive(Clone, Copy, Pod, Zeroable)]
+#[repr(C, packed)]
+struct GpuRod<T> {
+    taper: T,
+    bend: T,
+    slope: T,
+    pole: T,
+    friction: T,
+    gradient: T,
+    spiral: [T; 2],
 }
 
-macro_rules! layout {
-    ($module:ident, $real:ident) => {
-        mod $module {
-            use super::{Layout, OUTCOMES, read, write};
-            use crate::integrate::{self as host, Outcome};
-            use crate::rod;
-            use bytemuck::{Pod, Zeroable};
-
-            #[derive(Clone, Copy, Pod, Zeroable)]
-            #[repr(C)]
-            pub struct Rod {
-                pub taper: $real,
-                pub bend: $real,
-                pub slope: $real,
-                pub pole: $real,
-                pub friction: $real,
-                pub gradient: $real,
-                pub spiral: [$real; 2],
-            }
-
-            #[derive(Clone, Copy, Pod, Zeroable)]
-            #[repr(C)]
-            pub struct Piece {
-                pub tau: $real,
-                pub begin: $real,
-                pub cubic: [$real; 4],
-            }
-
-            #[derive(Clone, Copy, Pod, Zeroable)]
-            #[repr(C)]
-            pub struct Shot {
-                pub tau: $real,
-                pub load: $real,
-                pub pole_x: $real,
-                pub pole_y: $real,
-                pub rod: u32,
-                pub steps: u32,
-            }
-
-            #[derive(Clone, Copy, Pod, Zeroable)]
-            #[repr(C)]
-            pub struct Hit {
-                pub tau: $real,
-                pub load: $real,
-                pub residual: $real,
-                pub steps: u32,
-                pub outcome: u32,
-            }
-
-            impl From<&rod::Rod> for Rod {
-                fn from(rod: &rod::Rod) -> Self {
-                    Self {
-                        taper: rod.taper as $real,
-                        bend: rod.bend as $real,
-                        slope: rod.slope as $real,
-                        pole: rod.pole as $real,
-                        friction: rod.friction as $real,
-                        gradient: rod.gradient as $real,
-                        spiral: rod.spiral.unwrap_or_default().map(|k| k as $real),
-                    }
-                }
-            }
-
-            impl From<&super::Stretch> for Piece {
-                fn from(stretch: &super::Stretch) -> Self {
-                    Self {
-                        tau: stretch.tau as $real,
-                        begin: stretch.piece.from as $real,
-                        cubic: stretch.piece.cubic.map(|c| c as $real),
-                    }
-                }
-            }
-
-            impl From<&super::Task> for Shot {
-                fn from(super::Task { shot, steps }: &super::Task) -> Self {
-                    Self {
-                        tau: shot.tau as $real,
-                        load: shot.load as $real,
-                        pole_x: shot.pole.x as $real,
-                        pole_y: shot.pole.y as $real,
-                        rod: shot.rod,
-                        steps: *steps,
-                    }
-                }
-            }
-
-            impl From<Hit> for host::Hit {
-                // Whatever the shader says, a number that is not finite is not a solution.
-                fn from(hit: Hit) -> Self {
-                    let finite = [hit.tau, hit.load, hit.residual]
-                        .iter()
-                        .all(|x| x.is_finite());
-                    let outcome = OUTCOMES
-                        .get(hit.outcome as usize)
-                        .filter(|_| finite)
-                        .map_or(Outcome::NotFinite, |&(_, outcome)| outcome);
-                    Self {
-                        tau: hit.tau.into(),
-                        load: hit.load.into(),
-                        residual: hit.residual.into(),
-                        steps: hit.steps,
-                        outcome,
-                    }
-                }
-            }
-
-            pub const LAYOUT: Layout = Layout {
-                shot: size_of::<Shot>(),
-                hit: size_of::<Hit>(),
-                rods: write::<_, Rod>,
-                pieces: write::<_, Piece>,
-                shots: write::<_, Shot>,
-                hits: read::<_, Hit>,
-            };
+impl<T: Scalar> From<&Rod> for GpuRod<T> {
+    fn from(rod: &Rod) -> Self {
+        Self {
+            taper: T::of(rod.taper),
+            bend: T::of(rod.bend),
+            slope: T::of(rod.slope),
+            pole: T::of(rod.pole),
+            friction: T::of(rod.friction),
+            gradient: T::of(rod.gradient),
+            spiral: rod.spiral.unwrap_or_default().map(T::of),
         }
-    };
+    }
 }
 
-layout!(single, f32);
-layout!(double, f64);
+#[derive(Clone, Copy, Pod, Zeroable)]
+#[repr(C, packed)]
+struct GpuPiece<T> {
+    tau: T,
+    begin: T,
+    cubic: [T; 4],
+}
+
+impl<T: Scalar> GpuPiece<T> {
+    fn of(rod: &Rod, piece: &Piece) -> Self {
+        Self {
+            tau: T::of(rod.tau(piece.from)),
+            begin: T::of(piece.from),
+            cubic: piece.cubic.map(T::of),
+        }
+    }
+}
+
+#[derive(Clone, Copy, Pod, Zeroable)]
+#[repr(C, packed)]
+struct GpuShot<T> {
+    tau: T,
+    load: T,
+    pole_x: T,
+    pole_y: T,
+    rod: u32,
+    steps: u32,
+}
+
+impl<T: Scalar> GpuShot<T> {
+    fn of(shot: &Shot, steps: u32) -> Self {
+        Self {
+            tau: T::of(shot.tau),
+            load: T::of(shot.load),
+            pole_x: T::of(shot.pole.x),
+            pole_y: T::of(shot.pole.y),
+            rod: shot.rod,
+            steps,
+        }
+    }
+}
+
+#[derive(Clone, Copy, Pod, Zeroable)]
+#[repr(C, packed)]
+struct GpuHit<T> {
+    tau: T,
+    load: T,
+    residual: T,
+    steps: u32,
+    outcome: u32,
+}
+
+impl<T: Scalar> From<GpuHit<T>> for Hit {
+    // Whatever the shader says, a number that is not finite is not a solution.
+    fn from(hit: GpuHit<T>) -> Self {
+        let numbers: [f64; 3] = [hit.tau.into(), hit.load.into(), hit.residual.into()];
+        let outcome = OUTCOMES
+            .get(hit.outcome as usize)
+            .filter(|_| numbers.iter().all(|x| x.is_finite()))
+            .map_or(Outcome::NotFinite, |&(_, outcome)| outcome);
+        let [tau, load, residual] = numbers;
+        Self {
+            tau,
+            load,
+            residual,
+            steps: hit.steps,
+            outcome,
+        }
+    }
+}
 
 #[cfg(test)]
 #[allow(clippy::unwrap_used, reason = "a test fails by panicking")]
@@ -220,61 +200,50 @@ mod tests {
     }
 
     macro_rules! in_rust {
-        ($type:ty, $name:literal, $($member:ident),+) => {
+        ($type:ident, $name:literal, $($member:ident)+) => {
             (
                 $name.to_owned(),
-                size_of::<$type>(),
-                vec![$((stringify!($member).to_owned(), offset_of!($type, $member))),+],
+                size_of::<$type<T>>(),
+                vec![$((stringify!($member).to_owned(), offset_of!($type<T>, $member))),+],
             )
         };
     }
 
-    macro_rules! agrees {
-        ($module:ident, $precision:expr) => {
-            let shader = in_shader($precision);
-            for rust in [
-                in_rust!(
-                    $module::Rod,
-                    "Rod",
-                    taper,
-                    bend,
-                    slope,
-                    pole,
-                    friction,
-                    gradient,
-                    spiral
-                ),
-                in_rust!($module::Piece, "Piece", tau, begin, cubic),
-                in_rust!($module::Shot, "Shot", tau, load, pole_x, pole_y, rod, steps),
-                in_rust!($module::Hit, "Hit", tau, load, residual, steps, outcome),
-            ] {
-                assert_eq!(shader.iter().find(|s| s.0 == rust.0), Some(&rust));
-            }
-        };
+    fn agrees<T: Scalar>(precision: Precision) {
+        let shader = in_shader(precision);
+        for rust in [
+            in_rust!(GpuRod, "Rod", taper bend slope pole friction gradient spiral),
+            in_rust!(GpuPiece, "Piece", tau begin cubic),
+            in_rust!(GpuShot, "Shot", tau load pole_x pole_y rod steps),
+            in_rust!(GpuHit, "Hit", tau load residual steps outcome),
+        ] {
+            assert_eq!(shader.iter().find(|s| s.0 == rust.0), Some(&rust));
+        }
     }
 
     #[test]
     fn shaders_and_rust_agree_on_every_offset() {
-        agrees!(single, Precision::F32);
-        agrees!(double, Precision::F64);
+        agrees::<f32>(Precision::F32);
+        agrees::<f64>(Precision::F64);
     }
 
     #[test]
-    fn a_hit_that_is_not_finite_is_no_solution() {
+    fn a_hit_that_is_not_finite_or_not_written_is_no_solution() {
         for (tau, code, outcome) in [
-            (1.0, 0, Outcome::Converged),
-            (f32::NAN, 0, Outcome::NotFinite),
+            (1.0, 1, Outcome::Converged),
+            (f32::NAN, 1, Outcome::NotFinite),
             (1.0, 9, Outcome::NotFinite),
+            (0.0, 0, Outcome::NotFinite),
         ] {
-            let hit = single::Hit {
+            let hit = GpuHit {
                 tau,
-                load: 1.0,
+                load: 0.0,
                 residual: 0.0,
-                steps: 1,
+                steps: 0,
                 outcome: code,
             };
             let mut hits = Vec::new();
-            (single::LAYOUT.hits)(bytemuck::bytes_of(&hit), &mut hits);
+            (BufferLayout::of(Precision::F32).hits)(bytemuck::bytes_of(&hit), &mut hits);
             assert_eq!(hits[0].outcome, outcome);
         }
     }

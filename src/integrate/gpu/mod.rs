@@ -2,12 +2,13 @@
 //!
 //! The shaders are joined from whole pieces ([`shaders`]), in `f32` or `f64` by a type alias; each set of
 //! effects has a pipeline of its own, made from `override` constants. Work goes out in dispatches short
-//! enough for any watchdog, at most two in flight; nothing here panics when a device fails.
+//! enough for any watchdog, at most two in flight; a device that fails is an error.
 //!
 //! Absent on purpose: a second try on a lost device. [`Fallback`](super::Fallback) does without it.
 
 mod adapters;
 mod device;
+mod flight;
 mod guard;
 mod layout;
 mod pace;
@@ -15,19 +16,19 @@ mod peak;
 mod pipeline;
 mod precision;
 pub mod shaders;
-mod slot;
 mod stamps;
 
-pub use adapters::{AdapterReport, Kind, adapters, preferred};
+pub use adapters::{AdapterKind, AdapterReport, adapters, preferred};
+pub use flight::Times;
+pub use guard::is_guarded;
 pub use precision::Precision;
 
 use super::{Description, Engine, EngineError, Hit, Outcome, Shot};
-use crate::rod::{Effects, Piece, Rod, arclength};
+use crate::rod::{Effects, Rod, arclength};
 use device::Device;
-use layout::{Layout, Stretch, Task};
+use flight::{Buffers, Call, Flight};
+use layout::BufferLayout;
 use pipeline::Pipeline;
-pub use slot::Times;
-use slot::{Flight, Shared, Slot};
 use std::collections::hash_map::Entry;
 use std::collections::{HashMap, VecDeque};
 use std::time::Instant;
@@ -38,11 +39,12 @@ pub struct Gpu {
     precision: Precision,
     /// In place of [`shaders::shoot`].
     shader: Option<String>,
-    layout: &'static Layout,
+    layout: BufferLayout,
     device: Device,
     rods: Option<wgpu::Buffer>,
     pieces: Option<wgpu::Buffer>,
-    slots: Vec<Slot>,
+    /// Those of no flight.
+    buffers: Vec<Buffers>,
     pipelines: HashMap<Effects, Pipeline>,
     /// The stages of the last call, for those who ask.
     times: Option<Times>,
@@ -76,11 +78,11 @@ impl Gpu {
         Self {
             precision,
             shader: None,
-            layout: Layout::of(precision),
+            layout: BufferLayout::of(precision),
             device,
             rods: None,
             pieces: None,
-            slots: Vec::new(),
+            buffers: Vec::new(),
             pipelines: HashMap::new(),
             times: None,
         }
@@ -109,52 +111,6 @@ impl Gpu {
         &self.device.handle
     }
 
-    /// Uploads `bytes`, `what` they are, in a buffer that grows when it must.
-    fn upload(
-        &self,
-        what: &'static str,
-        last: Option<wgpu::Buffer>,
-        bytes: &[u8],
-    ) -> Result<wgpu::Buffer, EngineError> {
-        let size = bytes.len() as u64;
-        let most = self.device.most_bytes();
-        if size > most {
-            return Err(EngineError::Unsupported {
-                adapter: self.device.report.name.clone(),
-                what: format!("hold {size} bytes of {what}, at most {most}"),
-            });
-        }
-        let buffer = match last {
-            Some(buffer) if buffer.size() >= size => buffer,
-            _ => {
-                let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST;
-                self.device.buffer(what, size, usage)?
-            }
-        };
-        self.device.queue.write_buffer(&buffer, 0, bytes);
-        Ok(buffer)
-    }
-
-    /// Uploads the pieces of the profile that all rods share, and tells how many bytes they are.
-    fn upload_pieces(&mut self, rod: &Rod) -> Result<(wgpu::Buffer, u64), EngineError> {
-        let pieces = match &rod.profile {
-            Some(profile) => &profile.pieces[..],
-            None => &[Piece::cone(rod.taper)],
-        };
-        let stretches: Vec<Stretch> = pieces
-            .iter()
-            .map(|piece| Stretch {
-                tau: rod.tau(piece.from),
-                piece: *piece,
-            })
-            .collect();
-        let bytes = (self.layout.pieces)(&stretches);
-        let last = self.pieces.take();
-        let buffer = self.upload("pieces of a profile", last, &bytes)?;
-        self.pieces = Some(buffer.clone());
-        Ok((buffer, bytes.len() as u64))
-    }
-
     fn run(
         &mut self,
         effects: Effects,
@@ -163,33 +119,35 @@ impl Gpu {
     ) -> Result<Vec<Hit>, EngineError> {
         let most = rods.iter().map(|rod| rod.taper * rod.tau_tip());
         let effects = effects.reaching(most.fold(0.0, f64::max));
-        let measured = rods.first().filter(|_| effects.profile);
-        let pieces = measured.map(|rod| self.upload_pieces(rod)).transpose()?;
-        let precision = self.precision;
-        let task = |shot: &Shot| Task {
-            shot: *shot,
-            steps: precision.steps(
-                rods.get(shot.rod as usize).filter(|_| effects.profile),
-                shot.tau,
-                shot.load,
-            ),
+        let (device, layout, precision) = (&self.device, &self.layout, self.precision);
+        // All rods share one profile.
+        let pieces = match rods.first().filter(|_| effects.profile) {
+            Some(rod) => {
+                let bytes = (layout.pieces)(rod);
+                let buffer = device.upload("pieces of a profile", &mut self.pieces, &bytes)?;
+                Some((buffer, bytes.len() as u64))
+            }
+            None => None,
         };
-        let last = self.rods.take();
-        let buffer = self.upload("rods", last, &(self.layout.rods)(rods))?;
-        self.rods = Some(buffer.clone());
-        let shader = || shaders::shoot(self.precision, effects);
-        let pipeline = match self.pipelines.entry(effects) {
+        let steps = |shot: &Shot| {
+            let measured = rods.get(shot.rod as usize).filter(|_| effects.profile);
+            precision.steps(measured, shot.tau, shot.load)
+        };
+        let rods = device.upload("rods", &mut self.rods, &(layout.rods)(rods))?;
+        let shader = || shaders::shoot(precision, effects);
+        let Pipeline { handle, pace } = match self.pipelines.entry(effects) {
             Entry::Occupied(known) => known.into_mut(),
-            Entry::Vacant(new) => new.insert(Pipeline::new(
-                &self.device,
-                &self.shader.clone().unwrap_or_else(shader),
-                self.layout,
-                effects,
-            )?),
+            Entry::Vacant(new) => {
+                let text = self.shader.clone().unwrap_or_else(shader);
+                new.insert(Pipeline::new(device, &text, layout, effects)?)
+            }
         };
-        let shared = Shared {
-            rods: &buffer,
-            pieces: pieces.as_ref(),
+        let call = Call {
+            device,
+            layout,
+            pipeline: handle,
+            rods,
+            pieces,
             timed: self.times.is_some(),
         };
         let mut times = Times::default();
@@ -199,20 +157,17 @@ impl Gpu {
         let mut idle_since = Instant::now();
         loop {
             if flights.len() < IN_FLIGHT && !waiting.is_empty() {
-                let (now, later) = waiting.split_at(pipeline.pace.shots.min(waiting.len()));
+                let (now, later) = waiting.split_at(pace.shots.min(waiting.len()));
                 waiting = later;
-                let slot = self.slots.pop().unwrap_or_default();
-                let (device, layout) = (&self.device, self.layout);
                 let begun = Instant::now();
-                let tasks: Vec<Task> = now.iter().map(task).collect();
-                flights.push_back(slot.condition(device, layout, pipeline, &shared, &tasks)?);
+                flights.push_back(Flight::dispatch(&call, self.buffers.pop(), now, &steps)?);
                 times.upload += begun.elapsed();
             } else if let Some(flight) = flights.pop_front() {
                 let (count, started) = (flight.shots, flight.submitted.max(idle_since));
-                self.slots
-                    .push(flight.shoot(&self.device, self.layout, &mut hits, &mut times)?);
+                self.buffers
+                    .push(flight.finish(&call, &mut hits, &mut times)?);
                 idle_since = Instant::now();
-                pipeline.pace.learn(count, idle_since - started);
+                pace.learn(count, idle_since - started);
             } else {
                 self.times = self.times.map(|_| times);
                 return Ok(hits);

@@ -2,7 +2,7 @@
 
 use super::EngineError;
 use super::device::Device;
-use super::layout::Layout;
+use super::layout::BufferLayout;
 use super::pace::Pace;
 use super::shaders::{WORKGROUP, overrides};
 use crate::rod::Effects;
@@ -18,7 +18,7 @@ impl Pipeline {
     pub fn new(
         device: &Device,
         shader: &str,
-        layout: &Layout,
+        layout: &BufferLayout,
         effects: Effects,
     ) -> Result<Self, EngineError> {
         let module = device

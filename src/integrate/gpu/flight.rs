@@ -1,22 +1,24 @@
-//! The buffers of one dispatch, used again and again.
+//! A dispatch under way, in buffers that are used again and again.
 
 use super::EngineError;
 use super::device::Device;
-use super::layout::{Layout, Task};
-use super::pipeline::Pipeline;
+use super::layout::BufferLayout;
 use super::shaders::WORKGROUP;
 use super::stamps::Stamps;
-use crate::integrate::Hit;
+use crate::integrate::{Hit, Shot};
 use std::time::{Duration, Instant};
 use wgpu::BufferUsages as Usage;
 
-/// What all dispatches of a call read.
+/// What all dispatches of a call share.
 #[derive(Clone, Copy, Debug)]
-pub struct Shared<'a> {
+pub struct Call<'a> {
+    pub device: &'a Device,
+    pub layout: &'a BufferLayout,
+    pub pipeline: &'a wgpu::ComputePipeline,
     /// The rods.
     pub rods: &'a wgpu::Buffer,
     /// The pieces of their profile, and how many bytes they are.
-    pub pieces: Option<&'a (wgpu::Buffer, u64)>,
+    pub pieces: Option<(&'a wgpu::Buffer, u64)>,
     /// Whether dispatches are timed by the device.
     pub timed: bool,
 }
@@ -33,13 +35,8 @@ pub struct Times {
 }
 
 /// Room for a number of shots and their hits.
-#[derive(Debug, Default)]
-pub struct Slot {
-    buffers: Option<Buffers>,
-}
-
 #[derive(Debug)]
-struct Buffers {
+pub struct Buffers {
     stamps: Option<Stamps>,
     capacity: usize,
     shots: wgpu::Buffer,
@@ -48,17 +45,16 @@ struct Buffers {
 }
 
 impl Buffers {
-    fn new(
-        device: &Device,
-        layout: &Layout,
-        capacity: usize,
-        timed: bool,
-    ) -> Result<Self, EngineError> {
+    fn new(call: &Call, capacity: usize) -> Result<Self, EngineError> {
+        let device = call.device;
         let bytes = |each: usize| (capacity * each) as u64;
-        let (shots, hits) = (bytes(layout.shot), bytes(layout.hit));
-        let stamps = if timed { Stamps::new(device)? } else { None };
+        let (shots, hits) = (bytes(call.layout.shot), bytes(call.layout.hit));
         Ok(Self {
-            stamps,
+            stamps: call
+                .timed
+                .then(|| Stamps::new(device))
+                .transpose()?
+                .flatten(),
             capacity,
             shots: device.buffer("shots", shots, Usage::STORAGE | Usage::COPY_DST)?,
             hits: device.buffer("hits", hits, Usage::STORAGE | Usage::COPY_SRC)?,
@@ -90,35 +86,31 @@ fn part(binding: u32, buffer: &wgpu::Buffer, size: u64) -> wgpu::BindGroupEntry<
     }
 }
 
-impl Slot {
-    /// Sends shots on their way.
-    pub fn condition(
-        self,
-        device: &Device,
-        layout: &Layout,
-        pipeline: &Pipeline,
-        shared: &Shared,
-        tasks: &[Task],
-    ) -> Result<Flight, EngineError> {
-        let count = tasks.len();
-        let buffers = match self.buffers {
+impl Flight {
+    /// Sends shots, and the steps of their trajectories, on their way, in buffers of a finished flight if they are large enough.
+    pub fn dispatch(
+        call: &Call,
+        buffers: Option<Buffers>,
+        shots: &[Shot],
+        steps: &dyn Fn(&Shot) -> u32,
+    ) -> Result<Self, EngineError> {
+        let (device, layout, count) = (call.device, call.layout, shots.len());
+        let buffers = match buffers {
             Some(buffers) if buffers.capacity >= count => buffers,
-            _ => Buffers::new(device, layout, count, shared.timed)?,
+            _ => Buffers::new(call, count)?,
         };
-        let shots_size = (count * layout.shot) as u64;
+        let bytes = (layout.shots)(shots, steps);
+        device.queue.write_buffer(&buffers.shots, 0, &bytes);
         let hits_size = (count * layout.hit) as u64;
-        device
-            .queue
-            .write_buffer(&buffers.shots, 0, &(layout.shots)(tasks));
         let mut entries = vec![
-            part(0, shared.rods, shared.rods.size()),
-            part(1, &buffers.shots, shots_size),
+            part(0, call.rods, call.rods.size()),
+            part(1, &buffers.shots, bytes.len() as u64),
             part(2, &buffers.hits, hits_size),
         ];
-        entries.extend(shared.pieces.map(|(pieces, size)| part(3, pieces, *size)));
+        entries.extend(call.pieces.map(|(pieces, size)| part(3, pieces, size)));
         let bindings = device.handle.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("shoot"),
-            layout: &pipeline.handle.get_bind_group_layout(0),
+            layout: &call.pipeline.get_bind_group_layout(0),
             entries: &entries,
         });
         let mut commands = device.handle.create_command_encoder(&Default::default());
@@ -127,7 +119,7 @@ impl Slot {
                 label: Some("shoot"),
                 timestamp_writes: buffers.stamps.as_ref().map(Stamps::writes),
             });
-            pass.set_pipeline(&pipeline.handle);
+            pass.set_pipeline(call.pipeline);
             pass.set_bind_group(0, &bindings, &[]);
             // The pace keeps the shots below what `u32` can count.
             pass.dispatch_workgroups((count as u32).div_ceil(WORKGROUP), 1, 1);
@@ -146,40 +138,35 @@ impl Slot {
             stamps.request();
         }
         device.check()?;
-        Ok(Flight {
+        Ok(Self {
             shots: count,
             submitted,
             index,
             buffers,
         })
     }
-}
 
-impl Flight {
     /// Waits for the hits, appends them, and gives the buffers back.
-    pub fn shoot(
+    pub fn finish(
         self,
-        device: &Device,
-        layout: &Layout,
+        call: &Call,
         hits: &mut Vec<Hit>,
         times: &mut Times,
-    ) -> Result<Slot, EngineError> {
-        device.wait(self.index)?;
+    ) -> Result<Buffers, EngineError> {
+        call.device.wait(self.index)?;
         let arrived = Instant::now();
-        let size = (self.shots * layout.hit) as u64;
+        let size = (self.shots * call.layout.hit) as u64;
         let readback = &self.buffers.readback;
         let bytes = readback
             .get_mapped_range(..size)
             .map_err(|error| EngineError::Device(error.to_string()))?;
-        (layout.hits)(&bytes, hits);
+        (call.layout.hits)(&bytes, hits);
         drop(bytes);
         readback.unmap();
         times.readback += arrived.elapsed();
         if let Some(stamps) = &self.buffers.stamps {
-            times.dispatch += stamps.read(device)?;
+            times.dispatch += stamps.read(call.device)?;
         }
-        Ok(Slot {
-            buffers: Some(self.buffers),
-        })
+        Ok(self.buffers)
     }
 }

@@ -1,0 +1,148 @@
+//! From settled cells to the answers of a panel, in the units of the map.
+
+use super::cells::{Cell, Settled};
+use super::{Face, Panel, STATE_CHANNELS, doubt};
+use crate::classify::{Regime, RowBoundary, Status};
+use crate::rod::Units;
+use crate::scene::Whisker;
+use crate::sheet::Sheet;
+use crate::shooting::{Reader, Reading};
+use rayon::prelude::*;
+
+/// Judges the cells of `settled` and writes them into `panels`; face `i` belongs to panel `i / faces_per_panel`.
+pub fn fill(
+    width: usize,
+    whiskers: &[Whisker],
+    faces: &[Face],
+    faces_per_panel: usize,
+    settled: &Settled,
+    panels: &mut [Panel],
+) {
+    let answers: Vec<Vec<Answer>> = settled
+        .rows
+        .par_iter()
+        .map(|row| {
+            let face = &faces[row.face];
+            let units = whiskers[row.face / faces_per_panel].units();
+            answers(&units, face, row.row, || settled.cells(face, row))
+        })
+        .collect();
+    for (row, answers) in settled.rows.iter().zip(&answers) {
+        let panel = &mut panels[row.face / faces_per_panel];
+        for (push, answer) in faces[row.face].pushes.columns.iter().zip(answers) {
+            let at = row.row * width + push.column;
+            panel.regime[at] = answer.regime.code();
+            panel.status[at] = answer.status.code();
+            panel.newton_steps[at] = answer.steps;
+            panel.residual[at] = answer.residual;
+            panel.margin_deg[at] = answer.margin_deg;
+            for (channel, value) in panel.state.iter_mut().zip(answer.state) {
+                channel[at] = value;
+            }
+        }
+    }
+}
+
+/// The answers for the `cells` of `row`, which are settled once more where they are in doubt.
+fn answers<C: Iterator<Item = Cell>>(
+    units: &Units,
+    face: &Face,
+    row: usize,
+    cells: impl Fn() -> C,
+) -> Vec<Answer> {
+    let Some(sheet) = &face.sheet else {
+        let unresolved = |cell: Cell| Answer::new(Regime::Unresolved, Status::NoFold, cell.steps);
+        return cells().map(unresolved).collect();
+    };
+    let reader = Reader::new(*units, &sheet.rod);
+    let boundary = RowBoundary::new(sheet.touches(row), &sheet.crossings[row]);
+    let answer = |cell: &Cell| answer(cell, sheet, row, &boundary, &reader);
+    let answers: Vec<Answer> = cells().map(|cell| answer(&cell)).collect();
+    let in_doubt = |answer: &Answer| answer.regime == Regime::Unresolved;
+    if !answers.iter().any(in_doubt) {
+        return answers;
+    }
+    let mut again: Vec<Cell> = cells().collect();
+    let doubtful = again.iter_mut().zip(&answers);
+    let doubtful = doubtful.filter(|(_, answer)| in_doubt(answer));
+    doubt::settle(sheet, row, &boundary, doubtful.map(|(cell, _)| cell));
+    again.iter().map(answer).collect()
+}
+
+/// What a panel holds of one cell.
+struct Answer {
+    regime: Regime,
+    status: Status,
+    state: [f32; STATE_CHANNELS.len()],
+    residual: f32,
+    margin_deg: f32,
+    steps: u32,
+}
+
+impl Answer {
+    /// Without a state.
+    const fn new(regime: Regime, status: Status, steps: u32) -> Self {
+        Self {
+            regime,
+            status,
+            state: [f32::NAN; STATE_CHANNELS.len()],
+            residual: f32::NAN,
+            margin_deg: f32::NAN,
+            steps,
+        }
+    }
+}
+
+fn answer(
+    cell: &Cell,
+    sheet: &Sheet,
+    row: usize,
+    boundary: &RowBoundary,
+    reader: &Reader,
+) -> Answer {
+    let push = cell.push.angle;
+    let span = boundary.span(push.abs());
+    let at_tip = cell.state.is_some_and(|state| state.is_at_tip(sheet));
+    // At the tip both verdicts are right; the boundary's is taken.
+    let status = if at_tip && cell.status == Status::Solved && span.is_none() {
+        Status::BeyondTip
+    } else {
+        cell.status
+    };
+    let (regime, status) = boundary.judge(push.abs(), status);
+    let mut answer = Answer::new(regime, status, cell.steps);
+    let Some(state) = &cell.state else {
+        return answer;
+    };
+    if matches!(regime, Regime::Contact | Regime::Unreachable) {
+        let touch = sheet.rows[row].touch;
+        answer.state = channels(&reader.read(state.tau, &state.full, touch, push)).map(narrow);
+        answer.residual = narrow(state.residual);
+        answer.margin_deg = span.map_or(f32::NAN, |span| {
+            narrow((span.to - push.abs()).max(0.0).to_degrees())
+        });
+    } else if regime == Regime::Unresolved {
+        answer.residual = narrow(state.residual);
+    }
+    answer
+}
+
+#[allow(clippy::cast_possible_truncation, reason = "maps are stored in f32")]
+fn narrow(x: f64) -> f32 {
+    x as f32
+}
+
+/// The channels of [`STATE_CHANNELS`].
+fn channels(reading: &Reading) -> [f64; STATE_CHANNELS.len()] {
+    [
+        reading.arc_length_mm,
+        reading.contact_angle_deg,
+        reading.force_un,
+        reading.base_force_un.x,
+        reading.base_force_un.y,
+        reading.base_moment_nnm,
+        reading.push_chord_deg,
+        reading.contact_distance_mm,
+        reading.energy_nj,
+    ]
+}
