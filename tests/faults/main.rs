@@ -16,7 +16,6 @@ mod kernel;
 mod lost;
 
 use compute::difference;
-use std::path::Path;
 use whiskmap::integrate::EngineError;
 use whiskmap::integrate::gpu::{Gpu, Precision, shaders};
 use whiskmap::model::Effects;
