@@ -34,9 +34,9 @@ row! {
         pub arc_length_mm: f64,
         /// Angle of the tangent at the contact, from the base's tangent.
         pub contact_angle_deg: f64,
-        /// Size of the force between pole and whisker.
+        /// Size of the force between pole and whisker, normal to both.
         pub force_un: f64,
-        /// Moment that the pole puts on the base.
+        /// Moment that the pole puts on the base: positive turns it to the left.
         pub base_moment_nnm: f64,
         /// det d(D, phi)/d(s_obj, f) with f = F L^2/(E I_base): 0 at a fold.
         pub det: f64,
