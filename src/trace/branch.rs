@@ -75,13 +75,16 @@ impl Branch {
             row,
             forward: true,
         };
+        let followed = level.touch().and_then(|touch| walk(&level, touch, true));
+        // From the very tip a push may lead nowhere.
+        let none = match row.is_at_reach() {
+            true => NoState::PulledOff { at_deg: 0.0 },
+            false => NoState::Lost { push_deg: 0.0 },
+        };
         Ok(Self {
             level,
             units: Units::new(whisker),
-            walk: level
-                .touch()
-                .and_then(|touch| walk(&level, touch, true))
-                .ok_or(NoState::Lost { push_deg: 0.0 })?,
+            walk: followed.ok_or(none)?,
         })
     }
 

@@ -1,15 +1,16 @@
-//! Distances at the reach of the resting whisker: its shape at rest decides, whatever taper and resolution.
+//! Verdicts on cells: by their row's boundary, and at the reach of the resting whisker by its shape at rest.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod compute;
 
 use compute::compute_as;
 use whiskmap::accuracy::cheapest;
-use whiskmap::classify::Regime;
+use whiskmap::classify::{Regime, RowBoundary, Status, TIE};
 use whiskmap::integrate::Cpu;
 use whiskmap::model::{Resolution, Side};
 use whiskmap::plan::Plan;
 use whiskmap::scene::Scene;
+use whiskmap::sheet::{Crossing, Edge};
 use whiskmap::trace::{DetachmentKind, curve_at};
 
 const LENGTH_MM: f64 = 20.0;
@@ -95,4 +96,78 @@ fn the_shape_at_rest_decides_at_the_straight_length() {
             }
         }
     }
+}
+
+fn crossing(edge: Edge, push: f64) -> Crossing {
+    Crossing {
+        edge,
+        tau: 1.0,
+        load: 1.0,
+        push,
+        residual: 0.0,
+    }
+}
+
+#[test]
+fn a_row_that_touches_ends_at_its_edge() {
+    let row = RowBoundary::new(true, &[crossing(Edge::Fold, 0.5)]);
+    assert_eq!(
+        row.judge(0.3, Status::Solved),
+        (Regime::Contact, Status::Solved)
+    );
+    assert_eq!(
+        row.judge(0.6, Status::Outside),
+        (Regime::SlipOff, Status::Outside)
+    );
+    let row = RowBoundary::new(true, &[crossing(Edge::Tip, 0.5)]);
+    assert_eq!(
+        row.judge(0.6, Status::BeyondTip),
+        (Regime::PullOff, Status::BeyondTip)
+    );
+}
+
+#[test]
+fn a_row_beyond_reach_is_entered_over_an_edge() {
+    let row = RowBoundary::new(
+        false,
+        &[crossing(Edge::Tip, 0.2), crossing(Edge::Fold, 0.5)],
+    );
+    assert_eq!(
+        row.judge(0.3, Status::Solved),
+        (Regime::Unreachable, Status::Solved)
+    );
+    for push in [0.1, 0.6] {
+        assert_eq!(
+            row.judge(push, Status::Outside),
+            (Regime::OutOfReach, Status::Outside)
+        );
+    }
+}
+
+#[test]
+fn contradictions_are_unresolved() {
+    let row = RowBoundary::new(true, &[crossing(Edge::Fold, 0.5)]);
+    for (push, status) in [
+        (0.6, Status::Solved),
+        (0.3, Status::Outside),
+        (0.0, Status::BeyondFold),
+    ] {
+        assert_eq!(
+            row.judge(push, status),
+            (Regime::Unresolved, Status::Disagreement)
+        );
+    }
+    let odd = RowBoundary::new(false, &[crossing(Edge::Fold, 0.5)]);
+    assert_eq!(
+        odd.judge(0.3, Status::Solved),
+        (Regime::Unresolved, Status::NoBoundary)
+    );
+}
+
+#[test]
+fn both_verdicts_are_right_on_the_edge() {
+    let row = RowBoundary::new(true, &[crossing(Edge::Fold, 0.5)]);
+    let at = 0.5 + 0.5 * TIE;
+    assert_eq!(row.judge(at, Status::Solved).0, Regime::Contact);
+    assert_eq!(row.judge(at, Status::BeyondFold).0, Regime::SlipOff);
 }
