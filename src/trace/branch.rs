@@ -2,9 +2,9 @@
 
 use super::columns::row;
 use super::resample::{interpolate, targets};
-use super::{FINER, Found, Mark, NoState};
+use super::{FINER, Mark, NoState};
 use crate::model::batch::Method;
-use crate::model::{Effects, Reading, Rest, Rod, Side, Units};
+use crate::model::{Effects, Rest, Rod, Side, Units};
 use crate::scene::{Pole, Whisker};
 use crate::sheet::{Edge, LevelCurve, Node, ON_CURVE, Row, Walk, walk};
 use glam::DVec2;
@@ -14,7 +14,7 @@ use serde::Serialize;
 #[derive(Clone, Debug)]
 pub struct Branch {
     pub(super) level: LevelCurve,
-    units: Units,
+    pub(super) units: Units,
     pub(super) walk: Walk,
 }
 
@@ -143,15 +143,6 @@ impl Branch {
                 Ok(self.point(&node, fold_at.is_none_or(|fold| i <= fold), mark))
             })
             .collect()
-    }
-
-    /// A state of the branch in the units of people.
-    #[must_use]
-    pub fn read(&self, state: &Found) -> Reading {
-        let LevelCurve { rod, row, .. } = &self.level;
-        self.units
-            .reader(rod)
-            .read(state.tau, &state.full, row.touch, state.push)
     }
 
     pub(super) fn lost(&self) -> NoState {
