@@ -4,7 +4,7 @@
 use std::convert::Infallible;
 use whiskmap::integrate::{Description, Engine, EngineError, Hit, Shot};
 use whiskmap::map;
-use whiskmap::plan::Plan;
+use whiskmap::plan::{Plan, effects};
 use whiskmap::rod::{Effects, Rod};
 use whiskmap::scene::Scene;
 
@@ -51,4 +51,99 @@ fn engine_calls_and_cells_are_counted_before_they_are_made() {
     // At most 64 whiskers are computed together.
     let sweep = "taper = { from = 0, to = 0.9, count = 70 }";
     assert_eq!(kept("[-5, 5]", "[5, 9]", sweep), (2, 2));
+}
+
+/// Every effect as `+name: why` or `-name: why`; `more` are lines after those of a straight cylinder.
+fn listed(tip_radius_um: f64, more: &str) -> Vec<String> {
+    let text = format!(
+        "title = \"t\"\ngrid.push_angle_deg = [1, 2]\ngrid.distance_mm = [5]\n\
+         whisker.length_mm = 20\nwhisker.base_radius_um = 30\nwhisker.tip_radius_um = {tip_radius_um}\n\
+         whisker.youngs_modulus_gpa = 3\n{more}"
+    );
+    let scene = Scene::parse(&text, "scene").unwrap();
+    let plan = Plan::new(&scene).unwrap();
+    let sign = |on| if on { '+' } else { '-' };
+    effects(&scene, plan.method.effects())
+        .iter()
+        .map(|e| format!("{}{}: {}", sign(e.on), e.name, e.why))
+        .collect()
+}
+
+#[test]
+fn nothing_is_on_that_no_line_asks_for() {
+    let neutral = "whisker.curvature.parabola_per_mm = 0\nwhisker.modulus_gradient.tip_to_base = 1\n\
+                   whisker.projection.arc_stretch = 1\npole.radius_mm = 0\ncontact.friction = 0\n";
+    for more in ["", neutral] {
+        let expected = [
+            "-taper: tip_radius_um 30 = base_radius_um 30",
+            "-measured radii: no whisker.profile",
+            "-curvature: parabola_per_mm is 0 or left out",
+            "-euler spiral: euler_spiral is 0 or left out",
+            "-modulus gradient: tip_to_base is 1 or left out",
+            "-pole radius: radius_mm is 0 or left out",
+            "-friction: friction is 0 or left out",
+            "-projection: arc_stretch is 1 or left out",
+        ];
+        assert_eq!(listed(30.0, more), expected);
+    }
+}
+
+#[test]
+fn every_line_turns_its_own_effect_on() {
+    let lines = [
+        (
+            "whisker.curvature.parabola_per_mm = 0.02",
+            2,
+            "parabola_per_mm 0.02",
+        ),
+        (
+            "whisker.curvature.euler_spiral = { per_mm = 0.02, per_mm2 = -0.001 }",
+            3,
+            "per_mm 0.02, per_mm2 -0.001",
+        ),
+        (
+            "whisker.modulus_gradient.tip_to_base = 1.5",
+            4,
+            "tip_to_base 1.5",
+        ),
+        ("pole.radius_mm = 0.25", 5, "radius_mm 0.25"),
+        ("contact.friction = 0.2", 6, "friction 0.2"),
+        (
+            "whisker.projection.arc_stretch = 1.03",
+            7,
+            "arc_stretch 1.03",
+        ),
+    ];
+    let bare = listed(1.5, "");
+    assert_eq!(bare[0], "+taper: tip_radius_um 1.5 < base_radius_um 30");
+    for (line, at, why) in lines {
+        let mut expected = bare.clone();
+        let name = bare[at][1..].split(':').next().unwrap();
+        expected[at] = format!("+{name}: {why}");
+        assert_eq!(listed(1.5, line), expected);
+    }
+}
+
+#[test]
+fn axes_stand_in_for_the_whiskers_own_values() {
+    let axis = |line| listed(1.5, line);
+    assert_eq!(
+        axis("grid.taper = [0, 0.5]")[0],
+        "+taper: grid.taper 0 to 0.5"
+    );
+    assert_eq!(axis("grid.taper = [0]")[0], "-taper: grid.taper 0");
+    let curvature = "+curvature: grid.curvature_per_mm 0 to 0.04";
+    assert_eq!(
+        axis("grid.curvature_per_mm = [0, 0.01, 0.04]")[2],
+        curvature
+    );
+}
+
+#[test]
+fn a_projected_cylinder_is_a_cylinder() {
+    let projection = "-projection: arc_stretch 1.03 does nothing without taper";
+    assert_eq!(
+        listed(30.0, "whisker.projection.arc_stretch = 1.03")[7],
+        projection
+    );
 }

@@ -6,108 +6,71 @@ mod row;
 
 pub use row::{RowBoundary, Span, TIE};
 
-/// What becomes of a whisker at `(push angle, distance)`. The discriminants are the codes of the stored map.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-#[repr(u32)]
-pub enum Regime {
-    /// No touch at this distance, and no stable state.
-    OutOfReach = 0,
-    /// In contact, connected to first touch at constant pole distance.
-    Contact = 1,
-    /// Beyond the fold: the whisker has slipped off.
-    SlipOff = 2,
-    /// The tip reached the pole before the fold.
-    PullOff = 3,
-    /// A stable state that no push from rest reaches.
-    Unreachable = 4,
-    /// No answer; the cell's status says why.
-    Unresolved = 255,
-}
+/// An enum whose variants each have a code, for files, and a name, for files and people.
+macro_rules! named {
+    ($(#[$outer:meta])* pub enum $kind:ident {
+        $($(#[$inner:meta])* $variant:ident = $code:literal, $name:literal;)*
+    }) => {
+        $(#[$outer])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+        #[repr(u32)]
+        pub enum $kind { $($(#[$inner])* $variant = $code,)* }
 
-impl Regime {
-    /// Every regime, in the order of its code.
-    pub const ALL: [Self; 6] = [
-        Self::OutOfReach,
-        Self::Contact,
-        Self::SlipOff,
-        Self::PullOff,
-        Self::Unreachable,
-        Self::Unresolved,
-    ];
+        impl $kind {
+            /// All of them, in the order of their codes.
+            pub const ALL: [Self; [$($code),*].len()] = [$(Self::$variant),*];
 
-    /// The code written to files.
-    #[must_use]
-    pub const fn code(self) -> u32 {
-        self as u32
-    }
+            /// The code written to files.
+            #[must_use]
+            pub const fn code(self) -> u32 {
+                self as u32
+            }
 
-    /// The name written to files and shown to people.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::OutOfReach => "out of reach",
-            Self::Contact => "contact",
-            Self::SlipOff => "slip-off",
-            Self::PullOff => "pull-off",
-            Self::Unreachable => "contact, not reachable by pushing",
-            Self::Unresolved => "unresolved",
+            /// The name written to files and shown to people.
+            #[must_use]
+            pub const fn name(self) -> &'static str {
+                match self { $(Self::$variant => $name),* }
+            }
         }
+    };
+}
+
+named! {
+    /// What becomes of a whisker at `(push angle, distance)`. The discriminants are the codes of the stored map.
+    pub enum Regime {
+        /// No touch at this distance, and no stable state.
+        OutOfReach = 0, "out of reach";
+        /// In contact, connected to first touch at constant pole distance.
+        Contact = 1, "contact";
+        /// Beyond the fold: the whisker has slipped off.
+        SlipOff = 2, "slip-off";
+        /// The tip reached the pole before the fold.
+        PullOff = 3, "pull-off";
+        /// A stable state that no push from rest reaches.
+        Unreachable = 4, "contact, not reachable by pushing";
+        /// No answer; the cell's status says why.
+        Unresolved = 255, "unresolved";
     }
 }
 
-/// How a cell was settled, or why it was not. The discriminants are the codes of the stored map.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-#[repr(u32)]
-pub enum Status {
-    /// A state was found on the stable sheet.
-    Solved = 0,
-    /// The lattice has no solution near: no trajectory was needed.
-    Outside = 1,
-    /// The fold at this distance lies before the push angle.
-    BeyondFold = 2,
-    /// The state found lies beyond the tip.
-    BeyondTip = 3,
-    /// Unresolved: Newton's method failed, and the fold did not decide.
-    NotConverged = 101,
-    /// Unresolved: the cell and the boundary of its row contradict each other.
-    Disagreement = 102,
-    /// Unresolved: the boundary of the row was not found.
-    NoBoundary = 103,
-    /// Unresolved: the whisker has no fold at some contact.
-    NoFold = 104,
-}
-
-impl Status {
-    /// Every status, in the order of its code.
-    pub const ALL: [Self; 8] = [
-        Self::Solved,
-        Self::Outside,
-        Self::BeyondFold,
-        Self::BeyondTip,
-        Self::NotConverged,
-        Self::Disagreement,
-        Self::NoBoundary,
-        Self::NoFold,
-    ];
-
-    /// The code written to files.
-    #[must_use]
-    pub const fn code(self) -> u32 {
-        self as u32
-    }
-
-    /// The name written to files and shown to people.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Solved => "state found",
-            Self::Outside => "outside the sheet",
-            Self::BeyondFold => "beyond the fold",
-            Self::BeyondTip => "beyond the tip",
-            Self::NotConverged => "unresolved: Newton's method did not converge",
-            Self::Disagreement => "unresolved: cell and boundary disagree",
-            Self::NoBoundary => "unresolved: boundary not found",
-            Self::NoFold => "unresolved: no fold found",
-        }
+named! {
+    /// How a cell was settled, or why it was not. The discriminants are the codes of the stored map.
+    pub enum Status {
+        /// A state was found on the stable sheet.
+        Solved = 0, "state found";
+        /// The lattice has no solution near: no trajectory was needed.
+        Outside = 1, "outside the sheet";
+        /// The fold at this distance lies before the push angle.
+        BeyondFold = 2, "beyond the fold";
+        /// The state found lies beyond the tip.
+        BeyondTip = 3, "beyond the tip";
+        /// Newton's method failed, and the fold did not decide.
+        NotConverged = 101, "unresolved: Newton's method did not converge";
+        /// The cell and the boundary of its row contradict each other.
+        Disagreement = 102, "unresolved: cell and boundary disagree";
+        /// The boundary of the row was not found.
+        NoBoundary = 103, "unresolved: boundary not found";
+        /// The whisker has no fold at some contact.
+        NoFold = 104, "unresolved: no fold found";
     }
 }

@@ -36,59 +36,22 @@ fn straight_cylinder() -> Vec<Check> {
         .map(|(state, branch)| branch.read(state).contact_angle_deg);
     let state = turned.map(|(state, _)| state);
     let at_60 = "straight cylinder, pushed by 39.75122968 deg";
-    vec![
-        near(
-            case,
-            "slip-off (deg)",
-            CLOSED,
-            (99.568_498_75, 5e-9),
-            end.push_angle_deg,
-        ),
-        near(
-            case,
-            "slip-off (deg)",
-            "elastica",
-            (fold().push.to_degrees(), 1e-10),
-            end.push_angle_deg,
-        ),
-        near(
-            case,
-            "s_obj/d at slip-off",
-            CLOSED,
-            (1.790_383_51, 5e-9),
-            arc,
-        ),
-        near(
-            case,
-            "pulled off beyond d/L_w",
-            CLOSED,
-            (0.558_54, 5e-6),
-            reach,
-        ),
-        // 39.75122968 is known to 5e-9, and the turning angle grows 1.6 times as fast.
+    let (tau, load) = (state.map(|state| state.tau), state.map(|state| state.load));
+    let (arc_60, load_60) = (tau.map(|tau| tau / 0.4), load.map(|load| load * 0.16));
+    let push = end.push_angle_deg;
+    // 39.75122968 is known to 5e-9, and the turning angle grows 1.6 times as fast.
+    #[rustfmt::skip]
+    let checks = vec![
+        near(case, "slip-off (deg)", CLOSED, (99.568_498_75, 5e-9), push),
+        near(case, "slip-off (deg)", "elastica", (fold().push.to_degrees(), 1e-10), push),
+        near(case, "s_obj/d at slip-off", CLOSED, (1.790_383_51, 5e-9), arc),
+        near(case, "pulled off beyond d/L_w", CLOSED, (0.558_54, 5e-6), reach),
         near(at_60, "turning angle (deg)", CLOSED, (60.0, 1e-8), angle),
-        near(
-            at_60,
-            "s_obj/d",
-            CLOSED,
-            (1.051_451_76, 5e-9),
-            state.map(|state| state.tau / 0.4),
-        ),
-        near(
-            at_60,
-            "F d^2/(E I)",
-            CLOSED,
-            (1.967_754_50, 5e-9),
-            state.map(|state| state.load * 0.16),
-        ),
-        near(
-            at_60,
-            "F d^2/(E I)",
-            "elastica",
-            (exact.load, 5e-9),
-            state.map(|state| state.load * 0.16),
-        ),
-    ]
+        near(at_60, "s_obj/d", CLOSED, (1.051_451_76, 5e-9), arc_60),
+        near(at_60, "F d^2/(E I)", CLOSED, (1.967_754_50, 5e-9), load_60),
+        near(at_60, "F d^2/(E I)", "elastica", (exact.load, 5e-9), load_60),
+    ];
+    checks
 }
 
 /// The limit of small loads: `M = 3 E I_base theta (L - a)/(a L)`, `L` the virtual cone's length; the next term is
@@ -128,69 +91,29 @@ fn symmetries() -> Vec<Check> {
     let mut thin = CYLINDER;
     (thin.base_radius_um, thin.tip_radius_um) = (3.0, 3.0);
     let distances: Vec<f64> = (1..=64).map(|i| 0.3 * f64::from(i)).collect();
+    let perfect = whisker([20.0, 30.0, 0.0], 0.02, 0.0);
     let pulled = Side::BOTH
         .iter()
-        .flat_map(|side| {
-            curve(
-                &whisker([20.0, 30.0, 0.0], 0.02, 0.0),
-                &POLE,
-                *side,
-                &distances,
-            )
-        })
+        .flat_map(|side| curve(&perfect, &POLE, *side, &distances))
         .filter(|end| end.kind == DetachmentKind::PullOff)
         .count();
+    #[allow(clippy::cast_precision_loss, reason = "at most 128")]
+    let pulled = Some(pulled as f64);
+    let thick = Pole::smooth(50.0 * POLE.radius_mm);
     let cone = push(&CONE, &POLE, Side::Cb, 14.0);
     let mirror = |side| push(&STRAIGHT_WHISKER, &POLE, side, 14.0);
-    vec![
-        near(
-            "straight whisker",
-            "slip-off, CB and CF together (deg)",
-            EXACT,
-            (0.0, 0.0),
-            sum(mirror(Side::Cb), mirror(Side::Cf), 1.0),
-        ),
-        near(
-            "cone, Young's modulus over 3",
-            "slip-off, change (deg)",
-            EXACT,
-            (0.0, 0.0),
-            sum(push(&soft, &POLE, Side::Cb, 14.0), cone, -1.0),
-        ),
-        near(
-            "cylinder, radius over 10",
-            "pull-off, change (deg)",
-            EXACT,
-            (0.0, 0.0),
-            sum(
-                push(&thin, &POLE, Side::Cb, 14.0),
-                push(&CYLINDER, &POLE, Side::Cb, 14.0),
-                -1.0,
-            ),
-        ),
-        near(
-            "cone, every length times 50",
-            "slip-off, change (deg)",
-            EXACT,
-            (0.0, 1e-10),
-            sum(
-                push(
-                    &scaled,
-                    &Pole::smooth(50.0 * POLE.radius_mm),
-                    Side::Cb,
-                    700.0,
-                ),
-                cone,
-                -1.0,
-            ),
-        ),
-        #[allow(clippy::cast_precision_loss, reason = "at most 128")]
-        near(
-            "perfect cone, 128 pushes",
-            "pull-offs",
-            EXACT,
-            (0.0, 0.0),
-            Some(pulled as f64),
-        ),
-    ]
+    let mirrored = sum(mirror(Side::Cb), mirror(Side::Cf), 1.0);
+    let softer = sum(push(&soft, &POLE, Side::Cb, 14.0), cone, -1.0);
+    let cylinders = [thin, CYLINDER].map(|whisker| push(&whisker, &POLE, Side::Cb, 14.0));
+    let thinner = sum(cylinders[0], cylinders[1], -1.0);
+    let larger = sum(push(&scaled, &thick, Side::Cb, 700.0), cone, -1.0);
+    #[rustfmt::skip]
+    let checks = vec![
+        near("straight whisker", "slip-off, CB and CF together (deg)", EXACT, (0.0, 0.0), mirrored),
+        near("cone, Young's modulus over 3", "slip-off, change (deg)", EXACT, (0.0, 0.0), softer),
+        near("cylinder, radius over 10", "pull-off, change (deg)", EXACT, (0.0, 0.0), thinner),
+        near("cone, every length times 50", "slip-off, change (deg)", EXACT, (0.0, 1e-10), larger),
+        near("perfect cone, 128 pushes", "pull-offs", EXACT, (0.0, 0.0), pulled),
+    ];
+    checks
 }

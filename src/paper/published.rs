@@ -12,55 +12,29 @@ const TOUCH_MM: f64 = 15.660_459_763_365_8;
 /// The checks.
 pub fn checks() -> Vec<Check> {
     let mut checks = Vec::new();
-    for (case, whisker, kind, quantity, published, exact) in [
-        (
-            "Fig. 2B, cone CB",
-            CONE,
-            DetachmentKind::SlipOff,
-            "slip-off (deg)",
-            (15.6, 0.05),
-            (15.59975, 5e-6),
-        ),
-        (
-            "Fig. 2D, cylinder CB",
-            CYLINDER,
-            DetachmentKind::PullOff,
-            "pull-off (deg)",
-            // Cut, not rounded: it is 62.75.
-            (62.7, 0.1),
-            (62.7532, 5e-5),
-        ),
-    ] {
+    // Published, cut rather than rounded: 62.7 for 62.75.
+    #[rustfmt::skip]
+    let fig2 = [
+        ("Fig. 2B, cone CB", CONE, SLIPS, "slip-off (deg)", (15.6, 0.05), (15.59975, 5e-6)),
+        ("Fig. 2D, cylinder CB", CYLINDER, PULLS, "pull-off (deg)", (62.7, 0.1), (62.7532, 5e-5)),
+    ];
+    for (case, whisker, kind, quantity, published, exact) in fig2 {
         let end = end(&whisker, &POLE, Side::Cb, fig2_distance_mm(&whisker));
         let push = push_if(kind, &end);
         checks.push(near(case, quantity, PAPER, published, push));
         checks.push(near(case, quantity, AUTO, exact, push));
     }
-    for (case, side, values) in [
-        (
-            "cone CB, touched at 15.66 mm",
-            Side::Cb,
-            [
-                (15.60793, 5e-6),
-                (17.4303, 5e-5),
-                (1.2898, 5e-5),
-                (5.5572, 5e-5),
-            ],
-        ),
-        (
-            "cone CF, touched at 15.66 mm",
-            Side::Cf,
-            [
-                (-24.9168, 5e-5),
-                (16.3284, 5e-5),
-                (2.958, 5e-4),
-                (-25.70, 5e-3),
-            ],
-        ),
-    ] {
+    #[rustfmt::skip]
+    let states = [
+        ("cone CB, touched at 15.66 mm", Side::Cb,
+            [(15.60793, 5e-6), (17.4303, 5e-5), (1.2898, 5e-5), (5.5572, 5e-5)]),
+        ("cone CF, touched at 15.66 mm", Side::Cf,
+            [(-24.9168, 5e-5), (16.3284, 5e-5), (2.958, 5e-4), (-25.70, 5e-3)]),
+    ];
+    for (case, side, values) in states {
         let end = end(&CONE, &POLE, side, TOUCH_MM);
         let quantities = [
-            ("slip-off (deg)", push_if(DetachmentKind::SlipOff, &end)),
+            ("slip-off (deg)", push_if(SLIPS, &end)),
             ("contact s_obj (mm)", end.arc_length_mm),
             ("force (uN)", end.force_un),
             ("base moment (nN m)", end.base_moment_nnm),
@@ -69,21 +43,14 @@ pub fn checks() -> Vec<Check> {
             checks.push(near(case, quantity, AUTO, expected, computed));
         }
     }
-    checks.push(near(
-        "cone CB",
-        "slip-off turns into pull-off at (mm)",
-        AUTO,
-        (19.09, 5e-3),
-        corner(&CONE, &POLE, Side::Cb).distance_mm,
-    ));
+    let corner = corner(&CONE, &POLE, Side::Cb).distance_mm;
     let cylinder = |side| end(&CYLINDER, &POLE, side, 10.0).push_angle_deg;
-    checks.push(near(
-        "cylinder CB, touched at 10 mm",
-        "slip-off (deg)",
-        AUTO,
-        (89.22, 5e-3),
-        cylinder(Side::Cb),
-    ));
+    let at_10 = "cylinder CB, touched at 10 mm";
+    #[rustfmt::skip]
+    checks.extend([
+        near("cone CB", "slip-off turns into pull-off at (mm)", AUTO, (19.09, 5e-3), corner),
+        near(at_10, "slip-off (deg)", AUTO, (89.22, 5e-3), cylinder(Side::Cb)),
+    ]);
     checks.push(Check {
         case: "cylinder CF, touched at 10 mm".to_owned(),
         quantity: "slip-off, magnitude (deg)",
@@ -94,6 +61,9 @@ pub fn checks() -> Vec<Check> {
     checks.extend(friction());
     checks
 }
+
+const SLIPS: DetachmentKind = DetachmentKind::SlipOff;
+const PULLS: DetachmentKind = DetachmentKind::PullOff;
 
 fn push_if(kind: DetachmentKind, end: &Detachment) -> Option<f64> {
     end.push_angle_deg.filter(|_| end.kind == kind)
@@ -113,14 +83,8 @@ fn friction() -> impl Iterator<Item = Check> {
             ("slip-off CF (deg)", Side::Cf, cf),
         ]
         .map(|(quantity, side, expected)| {
-            let end = end(&CONE, &pole, side, TOUCH_MM);
-            near(
-                case,
-                quantity,
-                FORWARD,
-                (expected, 5e-5),
-                push_if(DetachmentKind::SlipOff, &end),
-            )
+            let push = push_if(SLIPS, &end(&CONE, &pole, side, TOUCH_MM));
+            near(case, quantity, FORWARD, (expected, 5e-5), push)
         })
     })
 }

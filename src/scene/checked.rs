@@ -149,20 +149,3 @@ fn thin(values: &mut Vec<f64>, most: usize) {
         .map(|i| values[(2 * i + 1) * all / (2 * kept)])
         .collect();
 }
-
-#[cfg(test)]
-mod tests {
-    use super::thin;
-
-    #[test]
-    fn few_values_stay_and_many_are_represented() {
-        let thinned = |count: u32, most| {
-            let mut values: Vec<f64> = (0..count).map(f64::from).collect();
-            thin(&mut values, most);
-            values
-        };
-        assert_eq!(thinned(3, 4), [0.0, 1.0, 2.0]);
-        assert_eq!(thinned(16, 2), [4.0, 12.0]);
-        assert_eq!(thinned(7, 2), [1.0, 5.0]);
-    }
-}

@@ -127,7 +127,12 @@ fn from_csv(path: &Path) -> Result<Vec<CsvRow>, String> {
 /// What a row's error says, without the place, which is said already.
 fn said(why: &csv::Error) -> String {
     match why.kind() {
-        csv::ErrorKind::Deserialize { err, .. } => err.to_string(),
+        csv::ErrorKind::Deserialize { err, .. } => match (err.kind(), err.field()) {
+            (csv::DeserializeErrorKind::ParseFloat(_), Some(field)) => {
+                format!("column {}: must be a number", field + 1)
+            }
+            _ => err.to_string(),
+        },
         _ => why.to_string(),
     }
 }

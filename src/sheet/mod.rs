@@ -64,7 +64,7 @@ impl Sheet {
             .min_by(|a, b| a.pole_distance.total_cmp(&b.pole_distance))?;
         let columns = Columns::new(method, rod, side, nearest)?;
         let lattice = Lattice::new(method.coarsely(), rod, side, &columns);
-        let edges = Edges::new(method, rod, &rest, &columns, &lattice);
+        let edges = Edges::new(method, rod, &columns, &lattice);
         let mut crossings = crossings::crossings(method, rod, side, &edges, &rows);
         let fold_grows = edges.fold_grows;
         for (row, crossings) in rows.iter().zip(&mut crossings) {

@@ -2,12 +2,14 @@
 
 use super::columns::row;
 use super::resample::{interpolate, targets};
-use super::{FINER, Found, Mark, NoState};
-use crate::rod::{Rest, Rod, Side, Units};
+use super::{FINER, Mark, NoState};
+use crate::rod::Rest;
+use crate::rod::Rod;
+use crate::rod::Side;
+use crate::rod::Units;
 use crate::scene::{Pole, Whisker};
 use crate::sheet::{Edge, LevelCurve, Node, ON_CURVE, Row, Walk, walk};
 use crate::shooting::Reader;
-use crate::shooting::Reading;
 use crate::shooting::batch::Method;
 use glam::DVec2;
 use serde::Serialize;
@@ -16,7 +18,7 @@ use serde::Serialize;
 #[derive(Clone, Debug)]
 pub struct Branch {
     pub(super) level: LevelCurve,
-    units: Units,
+    pub(super) units: Units,
     pub(super) walk: Walk,
 }
 
@@ -36,9 +38,9 @@ row! {
         pub arc_length_mm: f64,
         /// Angle of the tangent at the contact, from the base's tangent.
         pub contact_angle_deg: f64,
-        /// Size of the force between pole and whisker.
+        /// Size of the force between pole and whisker, normal to both.
         pub force_un: f64,
-        /// Moment that the pole puts on the base.
+        /// Moment that the pole puts on the base: positive turns it to the left.
         pub base_moment_nnm: f64,
         /// det d(D, phi)/d(s_obj, f) with f = F L^2/(E I_base): 0 at a fold.
         pub det: f64,
@@ -74,9 +76,14 @@ impl Branch {
             row,
             forward: true,
         };
-        let walk = level.touch().and_then(|touch| walk(&level, touch, true));
+        let followed = level.touch().and_then(|touch| walk(&level, touch, true));
+        // From the very tip a push may lead nowhere.
+        let none = match row.is_at_reach() {
+            true => NoState::PulledOff { at_deg: 0.0 },
+            false => NoState::Lost { push_deg: 0.0 },
+        };
         Ok(Self {
-            walk: walk.ok_or(NoState::Lost { push_deg: 0.0 })?,
+            walk: followed.ok_or(none)?,
             units: whisker.units(),
             level,
         })
@@ -137,13 +144,6 @@ impl Branch {
                 Ok(self.point(&node, fold_at.is_none_or(|fold| i <= fold), mark))
             })
             .collect()
-    }
-
-    /// A state of the branch in the units of people.
-    #[must_use]
-    pub fn read(&self, state: &Found) -> Reading {
-        let LevelCurve { rod, row, .. } = &self.level;
-        Reader::new(self.units, rod).read(state.tau, &state.full, row.touch, state.push)
     }
 
     pub(super) fn lost(&self) -> NoState {

@@ -4,10 +4,9 @@ use super::columns::row;
 use crate::classify::RowBoundary;
 use crate::rod::{Rest, Side};
 use crate::scene::{Pole, Whisker};
-use crate::sheet::{Edge, Sheet};
-use crate::shooting::Reader;
+use crate::sheet::{Crossing, Edge, Row, Sheet};
 use crate::shooting::batch::{Batch, InitialCondition, Method};
-use crate::shooting::{FirstVariation, Resolution};
+use crate::shooting::{FirstVariation, Reader, Reading, Resolution};
 use serde::Serialize;
 
 /// How a push from first touch ends.
@@ -44,13 +43,13 @@ row! {
         pub contact_distance_mm: Option<f64>,
         /// Arclength from the base to the contact.
         pub arc_length_mm: Option<f64>,
-        /// Size of the force between pole and whisker.
+        /// Size of the force between pole and whisker, normal to both.
         pub force_un: Option<f64>,
         /// Force that the pole puts on the base, along the base's tangent.
         pub base_force_x_un: Option<f64>,
         /// The same across the base's tangent, to the left.
         pub base_force_y_un: Option<f64>,
-        /// Moment that the pole puts on the base.
+        /// Moment that the pole puts on the base: positive turns it to the left.
         pub base_moment_nnm: Option<f64>,
         /// Angle of the tangent at the contact, from the base's tangent.
         pub contact_angle_deg: Option<f64>,
@@ -107,79 +106,62 @@ pub fn curve_at(
     let rest = Rest::new(&rod);
     let distances: Vec<f64> = distances_mm.iter().map(|d| d / whisker.length_mm).collect();
     let sheet = Sheet::new(method, &rod, side, &distances);
-    let mut rows: Vec<Detachment> = distances_mm
-        .iter()
-        .zip(&distances)
-        .map(|(distance_mm, distance)| {
-            let pole = rest.pole_at_distance(*distance).length() * whisker.length_mm;
-            blank(side, *distance_mm, pole)
+    let ends: Vec<Result<&Crossing, DetachmentKind>> = (0..distances.len())
+        .map(|row| {
+            let sheet = sheet.as_ref().ok_or(DetachmentKind::Unresolved)?;
+            if !sheet.touches(row) {
+                return Err(DetachmentKind::OutOfReach);
+            }
+            let boundary = RowBoundary::new(true, &sheet.crossings[row]);
+            let end = boundary.detachment().and(sheet.crossings[row].first());
+            end.ok_or(DetachmentKind::Unresolved)
         })
         .collect();
-    let Some(sheet) = sheet else {
-        return rows;
-    };
-    let mut ends = Vec::new();
-    for (i, row) in rows.iter_mut().enumerate() {
-        let boundary = RowBoundary::new(sheet.touches(i), &sheet.crossings[i]);
-        if !sheet.touches(i) {
-            row.kind = DetachmentKind::OutOfReach;
-        } else if let (Some(_), Some(end)) = (boundary.detachment(), sheet.crossings[i].first()) {
-            ends.push((i, end));
-        }
-    }
     let conditions: Vec<InitialCondition> = ends
         .iter()
-        .map(|(_, end)| InitialCondition {
+        .flatten()
+        .map(|end| InitialCondition {
             rod: &rod,
             tau: end.tau,
             load: end.load,
         })
         .collect();
     let states = Batch::new(method).shoot::<FirstVariation>(&conditions);
-    for ((i, end), FirstVariation { full, .. }) in ends.into_iter().zip(&states) {
-        let push = side.sign() * end.push;
-        // The crossing's own residual foretells what its last step leaves; this trajectory has gone there.
-        let distance = full.map.pole.length();
-        let off = (sheet.rows[i].pole_distance / distance).ln().abs();
-        let reading = reader.read(end.tau, full, sheet.rows[i].touch, push);
-        rows[i] = Detachment {
-            kind: match end.edge {
-                Edge::Fold => DetachmentKind::SlipOff,
-                Edge::Tip => DetachmentKind::PullOff,
+    let mut states = states.into_iter();
+    let rows = distances_mm.iter().zip(&distances).zip(&ends);
+    rows.map(|((distance_mm, distance), end)| {
+        let row = Row::new(&rest, *distance);
+        let reached = end.ok().and_then(|end| Some((end, states.next()?)));
+        let reading = reached.as_ref().map(|(end, FirstVariation { full, .. })| {
+            let push = side.sign() * end.push;
+            // The crossing's own residual foretells what its last step leaves; this trajectory has gone there.
+            let off = (row.pole_distance / full.map.pole.length()).ln().abs();
+            let reading = reader.read(end.tau, full, row.touch, push);
+            (push.to_degrees(), end.residual + off, reading)
+        });
+        let value = |of: fn(&Reading) -> f64| reading.as_ref().map(|(.., reading)| of(reading));
+        Detachment {
+            side,
+            distance_mm: *distance_mm,
+            pole_distance_mm: row.pole_distance * whisker.length_mm,
+            kind: match end.map(|end| end.edge) {
+                Ok(Edge::Fold) => DetachmentKind::SlipOff,
+                Ok(Edge::Tip) => DetachmentKind::PullOff,
+                Err(kind) => kind,
             },
-            push_angle_deg: Some(push.to_degrees()),
-            push_chord_deg: Some(reading.push_chord_deg),
-            contact_distance_mm: Some(reading.contact_distance_mm),
-            arc_length_mm: Some(reading.arc_length_mm),
-            force_un: Some(reading.force_un),
-            base_force_x_un: Some(reading.base_force_un.x),
-            base_force_y_un: Some(reading.base_force_un.y),
-            base_moment_nnm: Some(reading.base_moment_nnm),
-            contact_angle_deg: Some(reading.contact_angle_deg),
-            residual: Some(end.residual + off),
-            ..rows[i]
-        };
-    }
-    rows
-}
-
-fn blank(side: Side, distance_mm: f64, pole_distance_mm: f64) -> Detachment {
-    Detachment {
-        side,
-        distance_mm,
-        pole_distance_mm,
-        kind: DetachmentKind::Unresolved,
-        push_angle_deg: None,
-        push_chord_deg: None,
-        contact_distance_mm: None,
-        arc_length_mm: None,
-        force_un: None,
-        base_force_x_un: None,
-        base_force_y_un: None,
-        base_moment_nnm: None,
-        contact_angle_deg: None,
-        residual: None,
-    }
+            push_angle_deg: reading.as_ref().map(|(push_deg, ..)| *push_deg),
+            push_chord_deg: value(|reading| reading.push_chord_deg),
+            contact_distance_mm: value(|reading| reading.contact_distance_mm),
+            arc_length_mm: value(|reading| reading.arc_length_mm),
+            force_un: value(|reading| reading.force_un),
+            base_force_x_un: value(|reading| reading.base_force_un.x),
+            base_force_y_un: value(|reading| reading.base_force_un.y),
+            base_moment_nnm: value(|reading| reading.base_moment_nnm),
+            contact_angle_deg: value(|reading| reading.contact_angle_deg),
+            residual: reading.as_ref().map(|(_, residual, _)| *residual),
+        }
+    })
+    .collect()
 }
 
 /// The corner of `whisker` on one side of `pole`.

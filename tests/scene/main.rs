@@ -242,3 +242,17 @@ fn the_chord_grows_along_the_whisker_up_to_the_last_vertex_allowed() {
         );
     }
 }
+
+#[test]
+fn few_values_stay_and_many_are_represented() {
+    let scene = parse(&sweep()).unwrap();
+    let pushes: Vec<f64> = (0..16).map(f64::from).collect();
+    let thinned = scene
+        .with("grid.push_angle_deg", pushes)
+        .unwrap()
+        .thinned(2, 1);
+    assert_eq!(thinned.grid.push_angle_deg, [4.0, 12.0]);
+    assert_eq!(thinned.grid.distance_mm, [2.0, 20.0]);
+    assert_eq!(thinned.grid.taper, Some(vec![0.5]));
+    assert_eq!(scene.thinned(9, 9), scene);
+}

@@ -134,7 +134,7 @@ fn unreadable_files_are_told_apart() {
     ]
     .concat();
     assert!(
-        Scene::read(&file("full.toml", &full)).is_ok(),
+        Scene::read(file("full.toml", &full)).is_ok(),
         "1 MiB is allowed"
     );
 }

@@ -141,6 +141,7 @@ fn radii_that_are_refused() {
         ("5", "expected the name of a CSV file or a list"),
         ("[]", "must be 2 to 256 rows, are 0"),
         ("[[0, 30], [20]]", "expected"),
+        ("[[0, 30], [20, \"thin\"]]", "expected a number"),
         ("[[0, 30], [20, 0]]", "rows[1]: the radius must be between"),
         (
             "[[0, 30], [20, nan]]",
@@ -198,7 +199,7 @@ fn a_bad_csv_file_is_named_with_its_line() {
         ("arc_length_mm,radius\n0,30\n", "missing field `radius_um`"),
         (
             "arc_length_mm,radius_um\n0,30\n1,thin\n",
-            "line 3: field 1: invalid float",
+            "line 3: column 2: must be a number",
         ),
         ("arc_length_mm,radius_um\n0,30\n1\n", "line: 3"),
         (

@@ -67,14 +67,8 @@ pub struct Edges {
 }
 
 impl Edges {
-    /// Samples both edges of a whisker that is at `rest` without load; `lattice` knows the whole turns of the pole's direction.
-    pub fn new(
-        method: Method,
-        rod: &Rod,
-        rest: &Rest,
-        columns: &Columns,
-        lattice: &Lattice,
-    ) -> Self {
+    /// Samples both edges; `lattice` knows the whole turns of the pole's direction.
+    pub fn new(method: Method, rod: &Rod, columns: &Columns, lattice: &Lattice) -> Self {
         let fold: Vec<Sample> = columns.folds[..=columns.tip]
             .iter()
             .zip(lattice.phi_at_fold())
@@ -84,6 +78,7 @@ impl Edges {
             })
             .collect();
         let (mut tip, tip_line, at_touch) = tip_samples(method, rod, &columns.folds[columns.tip]);
+        let rest = Rest::new(rod);
         let (tip_at_rest, _) = rest.at_arclength(arclength(rod, rod.tau_tip()));
         let pole = rest.pole_at_distance(tip_at_rest.length()).length();
         tip.extend(fold.last().map(|corner| Sample {

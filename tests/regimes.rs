@@ -1,0 +1,202 @@
+//! Verdicts on cells: by their row's boundary, and at the reach of the resting whisker by its shape at rest.
+#![allow(
+    clippy::unwrap_used,
+    clippy::panic,
+    reason = "a test fails by panicking"
+)]
+
+mod compute;
+
+use compute::compute_as;
+use whiskmap::accuracy::cheapest;
+use whiskmap::classify::{Regime, RowBoundary, Status, TIE};
+use whiskmap::plan::Plan;
+use whiskmap::rod::Side;
+use whiskmap::scene::{Scene, Whisker};
+use whiskmap::sheet::{Crossing, Edge};
+use whiskmap::shooting::Resolution;
+use whiskmap::trace::{Detachment, DetachmentKind, curve_at};
+
+const LENGTH_MM: f64 = 20.0;
+
+/// Distances over the length: well within reach, as near as a tenth of a micrometre, at it but for rounding, and beyond.
+const DISTANCES: [f64; 7] = [
+    0.9,
+    1.0 - 5e-9,
+    1.0 - 1e-15,
+    1.0,
+    1.0 + 1e-15,
+    1.0 + 5e-9,
+    1.01,
+];
+
+/// How many of them are reached.
+const REACHED: usize = 5;
+
+/// Straight whiskers from cylinder to perfect cone.
+fn straight(pole: f64, friction: f64) -> Scene {
+    let distances = DISTANCES.map(|d| d * LENGTH_MM);
+    let text = format!(
+        "title = \"straight\"\n[whisker]\nlength_mm = {LENGTH_MM:?}\nbase_radius_um = 30\nyoungs_modulus_gpa = 3\n\
+         [pole]\nradius_mm = {pole:?}\n[contact]\nfriction = {friction:?}\n[grid]\n\
+         push_angle_deg = [-120, -70, -10, -1, 0, 1, 10, 70, 120]\ndistance_mm = {distances:?}\n\
+         taper = [0, 1e-9, 0.3, 0.7, 0.9, 0.95, 0.98, 0.999, 0.999999, 1]"
+    );
+    Scene::parse(&text, "straight").unwrap()
+}
+
+/// At every resolution, and with the one that a tolerance of a thousandth of a degree asks for.
+#[test]
+fn the_shape_at_rest_decides_at_the_straight_length() {
+    for (pole, friction) in [(0.0, 0.0), (0.25, 0.0), (1.0, 0.0), (0.25, 0.4)] {
+        let scene = straight(pole, friction);
+        let told = cheapest(&scene, &Side::BOTH, 1e-3).unwrap().resolution;
+        let mut first: Option<Vec<Vec<u32>>> = None;
+        for resolution in Resolution::LADDER.into_iter().rev().chain([told]) {
+            let mut plan = Plan::new(&scene).unwrap();
+            plan.method = plan.method.with_resolution(resolution);
+            let (summary, panels) = compute_as(&scene, &plan, None);
+            let case = format!("pole {pole}, friction {friction}, {resolution:?}");
+            assert_eq!(
+                (summary.unresolved(), summary.disagreements),
+                (0, 0),
+                "{case}"
+            );
+            let regimes: Vec<Vec<u32>> = panels.into_iter().map(|panel| panel.regime).collect();
+            for ((morphology, whisker), regimes) in scene.whiskers().zip(&regimes) {
+                let case = format!("{case}, taper {}", morphology.taper);
+                for side in Side::BOTH {
+                    let case = format!("{case}, {side:?}");
+                    agrees_with_its_curve(&scene, &whisker, side, resolution, regimes, &case);
+                }
+            }
+            let first = first.get_or_insert_with(|| regimes.clone());
+            assert_eq!(*first, regimes, "{case}");
+        }
+    }
+}
+
+/// Asserts that the curve of `whisker` is that of the map, and the same for every distance at the reach.
+fn agrees_with_its_curve(
+    scene: &Scene,
+    whisker: &Whisker,
+    side: Side,
+    resolution: Resolution,
+    regimes: &[u32],
+    case: &str,
+) {
+    let pushes = &scene.grid.push_angle_deg;
+    let ends = curve_at(
+        resolution,
+        whisker,
+        &scene.pole,
+        side,
+        &scene.grid.distance_mm,
+    );
+    for (end, regimes) in ends.iter().zip(regimes.chunks(pushes.len())) {
+        let case = format!("{case}: {end:?}");
+        let (beyond, at) = match (end.kind, end.push_angle_deg) {
+            (DetachmentKind::SlipOff, Some(at)) => (Regime::SlipOff, at.abs()),
+            (DetachmentKind::PullOff, Some(at)) => (Regime::PullOff, at.abs()),
+            (DetachmentKind::OutOfReach, None) => (Regime::OutOfReach, -1.0),
+            _ => panic!("{case}"),
+        };
+        for (push, regime) in pushes.iter().zip(regimes) {
+            if Side::of_push(*push) == side {
+                let expected = if push.abs() <= at {
+                    Regime::Contact
+                } else {
+                    beyond
+                };
+                // A thick pole can be touched from farther away, but not by pushing.
+                let entered = beyond == Regime::OutOfReach && *regime == Regime::Unreachable.code();
+                assert!(
+                    entered || *regime == expected.code(),
+                    "{case}, push {push}: {regime}"
+                );
+            }
+        }
+    }
+    let reached = |end: &Detachment| end.kind != DetachmentKind::OutOfReach;
+    assert!(ends[..REACHED].iter().all(reached), "{case}");
+    assert!(!ends[REACHED..].iter().any(reached), "{case}");
+    let kind = ends[REACHED - 1].kind;
+    assert!(
+        ends[1..REACHED].iter().all(|end| end.kind == kind),
+        "{case}"
+    );
+}
+
+fn crossing(edge: Edge, push: f64) -> Crossing {
+    Crossing {
+        edge,
+        tau: 1.0,
+        load: 1.0,
+        push,
+        residual: 0.0,
+    }
+}
+
+#[test]
+fn a_row_that_touches_ends_at_its_edge() {
+    let row = RowBoundary::new(true, &[crossing(Edge::Fold, 0.5)]);
+    assert_eq!(
+        row.judge(0.3, Status::Solved),
+        (Regime::Contact, Status::Solved)
+    );
+    assert_eq!(
+        row.judge(0.6, Status::Outside),
+        (Regime::SlipOff, Status::Outside)
+    );
+    let row = RowBoundary::new(true, &[crossing(Edge::Tip, 0.5)]);
+    assert_eq!(
+        row.judge(0.6, Status::BeyondTip),
+        (Regime::PullOff, Status::BeyondTip)
+    );
+}
+
+#[test]
+fn a_row_beyond_reach_is_entered_over_an_edge() {
+    let row = RowBoundary::new(
+        false,
+        &[crossing(Edge::Tip, 0.2), crossing(Edge::Fold, 0.5)],
+    );
+    assert_eq!(
+        row.judge(0.3, Status::Solved),
+        (Regime::Unreachable, Status::Solved)
+    );
+    for push in [0.1, 0.6] {
+        assert_eq!(
+            row.judge(push, Status::Outside),
+            (Regime::OutOfReach, Status::Outside)
+        );
+    }
+}
+
+#[test]
+fn contradictions_are_unresolved() {
+    let row = RowBoundary::new(true, &[crossing(Edge::Fold, 0.5)]);
+    for (push, status) in [
+        (0.6, Status::Solved),
+        (0.3, Status::Outside),
+        (0.0, Status::BeyondFold),
+    ] {
+        assert_eq!(
+            row.judge(push, status),
+            (Regime::Unresolved, Status::Disagreement)
+        );
+    }
+    let odd = RowBoundary::new(false, &[crossing(Edge::Fold, 0.5)]);
+    assert_eq!(
+        odd.judge(0.3, Status::Solved),
+        (Regime::Unresolved, Status::NoBoundary)
+    );
+}
+
+#[test]
+fn both_verdicts_are_right_on_the_edge() {
+    let row = RowBoundary::new(true, &[crossing(Edge::Fold, 0.5)]);
+    let at = 0.5 + 0.5 * TIE;
+    assert_eq!(row.judge(at, Status::Solved).0, Regime::Contact);
+    assert_eq!(row.judge(at, Status::BeyondFold).0, Regime::SlipOff);
+}
