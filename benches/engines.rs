@@ -14,7 +14,7 @@ use std::path::Path;
 use whiskmap::classify::Status;
 use whiskmap::integrate::gpu::{Gpu, Precision};
 use whiskmap::integrate::{Cpu, Engine};
-use whiskmap::map::{self, Observer};
+use whiskmap::map::{self, Progress};
 use whiskmap::model::batch::{Launch, Method, Unit, land, land_on};
 use whiskmap::model::{Effects, First, FirstAndEnergy, Nystrom8, Resolution, Rod, Second, Side};
 use whiskmap::plan::Plan;
@@ -124,26 +124,19 @@ fn sheets(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// Keeps the panel.
-#[derive(Default)]
-struct Kept(Option<Panel>);
-
-impl Observer for Kept {
-    fn panels(&mut self, _: usize, panels: &[Panel]) -> Result<(), Error> {
-        self.0 = panels.first().cloned();
-        Ok(())
-    }
-
-    fn settled(&mut self, _: usize) {}
-}
-
 /// The file of a map.
 fn files(criterion: &mut Criterion) {
     let scene = scene();
     let plan = Plan::new(&scene).expect("the scene is small");
-    let mut kept = Kept::default();
-    map::run(&scene, &plan, &mut Cpu, &mut kept).expect("nothing is written");
-    let panel = kept.0.expect("the scene has a panel");
+    let mut kept = None;
+    let mut keep = |progress: Progress| {
+        if let Progress::Panels(_, panels) = progress {
+            kept = panels.first().cloned();
+        }
+        Ok(())
+    };
+    map::run(&scene, &plan, &mut Cpu, &mut keep).expect("nothing is written");
+    let panel: Panel = kept.expect("the scene has a panel");
     let folder = tempfile::tempdir().expect("there is a folder for temporary files");
     let about = Description {
         scene: &scene,

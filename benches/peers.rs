@@ -19,12 +19,11 @@ use std::fmt::Write;
 use std::time::Instant;
 use whiskmap::accuracy;
 use whiskmap::integrate::Cpu;
-use whiskmap::map::{self, Observer};
+use whiskmap::map;
 use whiskmap::model::batch::{Launch, Method, Unit, land_on};
 use whiskmap::model::{Effects, First, Landing, Nystrom8, Resolution, Rod, Side, arclength};
 use whiskmap::plan::Plan;
 use whiskmap::scene::Scene;
-use whiskmap::store;
 use whiskmap::trace::curve_at;
 
 const TRAJECTORIES: usize = 20_000;
@@ -235,7 +234,7 @@ fn cell(pool: &ThreadPool) -> Value {
     plan.method.resolution = steps.resolution;
     let mut summary = None;
     let seconds = seconds(pool, || {
-        summary = Some(map::run(&scene, &plan, &mut Cpu, &mut Nothing).unwrap());
+        summary = Some(map::run(&scene, &plan, &mut Cpu, &mut |_| Ok(())).unwrap());
     });
     let summary = summary.unwrap();
     json!({
@@ -248,15 +247,4 @@ fn cell(pool: &ThreadPool) -> Value {
         "states": summary.refined,
         "seconds": summary.seconds().map(|(stage, s)| json!({stage: s})).collect::<Vec<_>>(),
     })
-}
-
-/// Keeps nothing.
-struct Nothing;
-
-impl Observer for Nothing {
-    fn panels(&mut self, _: usize, _: &[store::Panel]) -> Result<(), store::Error> {
-        Ok(())
-    }
-
-    fn settled(&mut self, _: usize) {}
 }

@@ -11,10 +11,9 @@
 #![allow(clippy::expect_used, reason = "a bench that cannot start should stop")]
 
 use whiskmap::integrate::Cpu;
-use whiskmap::map::{self, Observer};
+use whiskmap::map;
 use whiskmap::plan::Plan;
 use whiskmap::scene::Scene;
-use whiskmap::store::{Error, Panel};
 
 /// Cells of a run at least.
 const CELLS: usize = 1 << 18;
@@ -79,7 +78,7 @@ impl Map {
         let repeats = CELLS.div_ceil(self.plan.cells);
         let mut seconds = [0.0; 5];
         for _ in 0..repeats {
-            let summary = map::run(&self.scene, &self.plan, &mut Cpu, &mut Nothing)
+            let summary = map::run(&self.scene, &self.plan, &mut Cpu, &mut |_| Ok(()))
                 .expect("nothing is written");
             for (sum, (_, stage)) in seconds.iter_mut().zip(summary.seconds()) {
                 *sum += stage;
@@ -88,15 +87,4 @@ impl Map {
         let cells = (repeats * self.plan.cells) as f64;
         seconds.iter().map(|stage| 1e6 * stage / cells).collect()
     }
-}
-
-/// Keeps nothing.
-struct Nothing;
-
-impl Observer for Nothing {
-    fn panels(&mut self, _: usize, _: &[Panel]) -> Result<(), Error> {
-        Ok(())
-    }
-
-    fn settled(&mut self, _: usize) {}
 }

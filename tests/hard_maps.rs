@@ -3,28 +3,9 @@
 
 use whiskmap::classify::Regime;
 use whiskmap::integrate::Cpu;
-use whiskmap::map::{self, Observer};
+use whiskmap::map::{self, Progress};
 use whiskmap::plan::Plan;
 use whiskmap::scene::Scene;
-use whiskmap::store::{Error, Panel};
-
-/// Keeps nothing but the regimes.
-struct Regimes(Vec<u32>);
-
-impl Observer for Regimes {
-    fn panels(&mut self, _: usize, panels: &[Panel]) -> Result<(), Error> {
-        let contact = [Regime::Contact.code(), Regime::Unreachable.code()];
-        for panel in panels {
-            self.0.extend(&panel.regime);
-            for (regime, residual) in panel.regime.iter().zip(&panel.residual) {
-                assert!(!contact.contains(regime) || *residual <= 1e-11);
-            }
-        }
-        Ok(())
-    }
-
-    fn settled(&mut self, _: usize) {}
-}
 
 /// A map of a whisker of 20 mm without a cell in doubt.
 fn certain(tip_um: f64, rest: &str) {
@@ -34,13 +15,23 @@ fn certain(tip_um: f64, rest: &str) {
     );
     let scene = Scene::parse(&text, "hard", "hard").unwrap();
     let plan = Plan::new(&scene).unwrap();
-    let mut regimes = Regimes(Vec::new());
-    let summary = map::run(&scene, &plan, &mut Cpu, &mut regimes).unwrap();
-    let doubtful = regimes
-        .0
-        .iter()
-        .filter(|r| **r == Regime::Unresolved.code());
-    assert_eq!((doubtful.count(), summary.disagreements), (0, 0), "{text}");
+    let contact = [Regime::Contact.code(), Regime::Unreachable.code()];
+    let mut check = |progress: Progress| {
+        if let Progress::Panels(_, panels) = progress {
+            for panel in panels {
+                for (regime, residual) in panel.regime.iter().zip(&panel.residual) {
+                    assert!(!contact.contains(regime) || *residual <= 1e-11);
+                }
+            }
+        }
+        Ok(())
+    };
+    let summary = map::run(&scene, &plan, &mut Cpu, &mut check).unwrap();
+    assert_eq!(
+        (summary.unresolved(), summary.disagreements),
+        (0, 0),
+        "{text}"
+    );
 }
 
 const TIP: &str = "[grid]\npush_angle_deg = { from = -14, to = 14, count = 201 }\n\

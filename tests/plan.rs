@@ -2,11 +2,11 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use whiskmap::integrate::{Cpu, Description, Engine, EngineError, Hit, Shot};
-use whiskmap::map::{self, Observer};
+use whiskmap::map;
 use whiskmap::model::{Effects, Rod};
 use whiskmap::plan::Plan;
 use whiskmap::scene::Scene;
-use whiskmap::store::{Error, Panel};
+use whiskmap::store::STATE_CHANNELS;
 
 /// Counts the calls of the CPU engine.
 struct Counting(usize);
@@ -27,16 +27,6 @@ impl Engine for Counting {
     }
 }
 
-struct Nothing;
-
-impl Observer for Nothing {
-    fn panels(&mut self, _: usize, _: &[Panel]) -> Result<(), Error> {
-        Ok(())
-    }
-
-    fn settled(&mut self, _: usize) {}
-}
-
 /// `(groups, calls)` of a plan whose calls and cells are those of its run.
 fn kept(push_angles: &str, distances: &str, more: &str) -> (usize, usize) {
     let text = format!(
@@ -46,11 +36,27 @@ fn kept(push_angles: &str, distances: &str, more: &str) -> (usize, usize) {
     let scene = Scene::parse(&text, "scene", "scene").unwrap();
     let plan = Plan::new(&scene).unwrap();
     let mut engine = Counting(0);
-    let summary = map::run(&scene, &plan, &mut engine, &mut Nothing).unwrap();
+    let summary = map::run(&scene, &plan, &mut engine, &mut |_| Ok(())).unwrap();
     assert_eq!(engine.0, plan.engine_calls);
     assert_eq!(summary.cells(), plan.cells as u64);
     let groups = plan.whiskers.len().div_ceil(plan.panels_at_once);
     (groups, plan.engine_calls)
+}
+
+/// A panel is kept twice, with 4 bytes a channel: the state's, and `regime`, `status`, `residual`, `margin_deg`,
+/// `newton_steps`.
+#[test]
+fn memory_is_that_of_the_channels_there_are() {
+    let [small, large] = ["count = 100", "count = 300"].map(|count| {
+        let text = format!(
+            "title = \"t\"\n[whisker]\nlength_mm = 20\nbase_radius_um = 30\ntip_radius_um = 3\n\
+             youngs_modulus_gpa = 3\n[grid]\npush_angle_deg = {{ from = 0, to = 9, {count} }}\ndistance_mm = [5, 9]"
+        );
+        let scene = Scene::parse(&text, "scene", "scene").unwrap();
+        Plan::new(&scene).unwrap().bytes
+    });
+    let channels = STATE_CHANNELS.len() as u64 + 5;
+    assert_eq!(large - small, 400 * 2 * 4 * channels);
 }
 
 #[test]

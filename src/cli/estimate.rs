@@ -2,10 +2,9 @@
 
 use super::failure::Failure;
 use crate::integrate::Cpu;
-use crate::map::{self, Observer};
+use crate::map;
 use crate::plan::{Plan, SAMPLE_LINES, sample};
 use crate::scene::Scene;
-use crate::store::{Error, Panel};
 
 /// What a map would take.
 pub struct Estimate {
@@ -24,7 +23,7 @@ pub fn estimate(scene: &Scene, plan: &Plan) -> Result<Estimate, Failure> {
         method: plan.method,
         ..Plan::new(&small)?
     };
-    let summary = map::run(&small, &small_plan, &mut Cpu, &mut Nothing)?;
+    let summary = map::run(&small, &small_plan, &mut Cpu, &mut |_| Ok(()))?;
     let rows = |scene: &Scene, plan: &Plan| {
         (plan.whiskers.len() * plan.sides.len() * scene.grid.distance_mm.len()) as f64
     };
@@ -39,15 +38,4 @@ pub fn estimate(scene: &Scene, plan: &Plan) -> Result<Estimate, Failure> {
         threads: rayon::current_num_threads(),
         steps_per_cell: summary.steps as f64 / summary.cells() as f64,
     })
-}
-
-/// Keeps nothing.
-struct Nothing;
-
-impl Observer for Nothing {
-    fn panels(&mut self, _: usize, _: &[Panel]) -> Result<(), Error> {
-        Ok(())
-    }
-
-    fn settled(&mut self, _: usize) {}
 }

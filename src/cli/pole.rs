@@ -1,6 +1,7 @@
 //! One whisker in front of one pole.
 
 use super::failure::Failure;
+use super::numbers::number;
 use crate::scene::{Scene, Whisker};
 use crate::trace::NoState;
 use clap::Args;
@@ -12,7 +13,7 @@ pub struct Pole {
     /// Scene file; - reads it from standard input
     scene: PathBuf,
     /// Distance from the base to the contact at first touch
-    #[arg(long, value_name = "MM", allow_hyphen_values = true)]
+    #[arg(long, value_name = "MM", allow_hyphen_values = true, value_parser = number)]
     pub distance: f64,
 }
 

@@ -1,6 +1,7 @@
 //! `whiskmap shape`.
 
 use super::failure::Failure;
+use super::numbers::{number, whole};
 use super::outputs::Outputs;
 use super::pole::Pole;
 use crate::model::Side;
@@ -23,7 +24,7 @@ pub struct Options {
     #[command(flatten)]
     pole: Pole,
     /// Rotation of the base since first touch: positive CB, negative CF
-    #[arg(long, value_name = "DEG", allow_hyphen_values = true)]
+    #[arg(long, value_name = "DEG", allow_hyphen_values = true, value_parser = number)]
     push_angle: f64,
     /// Side of the whisker that the pole is on [default: that of the push angle's sign]
     #[arg(long, value_enum)]
@@ -32,7 +33,7 @@ pub struct Options {
     #[arg(long, value_enum, default_value = "stable")]
     branch: Part,
     /// Places along the whisker, besides the contact
-    #[arg(long, value_name = "N", default_value = "200", value_parser = clap::value_parser!(u32).range(2..=1_000_000))]
+    #[arg(long, value_name = "N", default_value = "200", value_parser = whole(2..=1_000_000))]
     points: u32,
     #[command(flatten)]
     outputs: Outputs,

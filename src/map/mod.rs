@@ -14,22 +14,19 @@ use crate::model::{Rod, Side};
 use crate::plan::Plan;
 use crate::scene::{Scene, Whisker};
 use crate::sheet::Sheet;
-use crate::store::Panel;
+use crate::store::{Error, Panel};
 use cells::{Row, Strip};
 use pushes::Pushes;
 use rayon::prelude::*;
 use summary::Stage;
 
 /// What a run reports while it goes on.
-pub trait Observer {
-    /// Takes the next finished panels, in atlas order; `first` is the index of the first one.
-    ///
-    /// # Errors
-    /// Whatever keeps the panels from being kept; the run stops with it.
-    fn panels(&mut self, first: usize, panels: &[Panel]) -> Result<(), crate::store::Error>;
-
-    /// `cells` more cells are settled.
-    fn settled(&mut self, cells: usize);
+#[derive(Clone, Copy, Debug)]
+pub enum Progress<'a> {
+    /// So many more cells are settled.
+    Settled(usize),
+    /// The next finished panels, in atlas order, and the index of the first one.
+    Panels(usize, &'a [Panel]),
 }
 
 /// One side of one whisker.
@@ -57,13 +54,13 @@ impl<'a> Face<'a> {
 /// (`rayon::ThreadPool::install`): from outside, every stage of every strip wakes it up. Where the engine fails the CPU goes on in its stead.
 ///
 /// # Errors
-/// When the observer refuses a panel; a cell without an answer is no error.
+/// What `observe` refuses panels with, which ends the run; a cell without an answer is no error.
 pub fn run(
     scene: &Scene,
     plan: &Plan,
     engine: &mut dyn Engine,
-    observer: &mut dyn Observer,
-) -> Result<Summary, crate::store::Error> {
+    observe: &mut dyn FnMut(Progress<'_>) -> Result<(), Error>,
+) -> Result<Summary, Error> {
     let mut engine = Fallback::new(engine);
     let mut summary = Summary::default();
     let width = scene.grid.push_angle_deg.len();
@@ -90,13 +87,13 @@ pub fn run(
                 panel::fill(width, whiskers, &faces, sides.len(), &settled, &mut panels);
             });
             let columns = |row: &Row| faces[row.face].pushes.columns.len();
-            observer.settled(settled.rows.iter().map(columns).sum());
+            observe(Progress::Settled(settled.rows.iter().map(columns).sum()))?;
         }
         for panel in &panels {
             summary.count(panel);
         }
         let first = group * plan.panels_at_once;
-        summary.time(Stage::Files, || observer.panels(first, &panels))?;
+        summary.time(Stage::Files, || observe(Progress::Panels(first, &panels)))?;
     }
     summary.engine_failure = engine.failure().cloned();
     Ok(summary)

@@ -104,3 +104,17 @@ pub enum Error {
         panels: usize,
     },
 }
+
+impl Error {
+    /// Whether a file is no map that can be read, however that came to light.
+    #[must_use]
+    pub fn is_unreadable(&self) -> bool {
+        matches!(
+            self,
+            Self::Io { action: "read", .. }
+                | Self::NotExr { .. }
+                | Self::NotAMap { .. }
+                | Self::Damaged { .. }
+        )
+    }
+}

@@ -3,7 +3,7 @@
 use super::attributes::{self, Description};
 use super::layout::{self, Layout, SAMPLE_BYTES};
 use super::tally::{Counts, Shots, Tally};
-use super::{Error, Panel, fresh, header};
+use super::{Error, Output, Panel, header};
 use crate::classify::Regime;
 use exr::block::UncompressedBlock;
 use exr::meta::Headers;
@@ -11,13 +11,12 @@ use exr::meta::attribute::{AttributeValue, Text};
 use rayon::prelude::*;
 use std::io::{self, BufWriter, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
-use tempfile::NamedTempFile;
 
-/// A map on its way to disk. It bears a temporary name until [`MapWriter::finish`]; dropped before that, it vanishes.
+/// A map on its way to disk, by an [`Output`]: there is none until [`MapWriter::finish`].
 #[derive(Debug)]
 pub struct MapWriter {
     path: PathBuf,
-    file: BufWriter<NamedTempFile>,
+    file: BufWriter<Output>,
     /// Bytes written so far.
     position: u64,
     layout: Layout,
@@ -49,7 +48,7 @@ impl MapWriter {
         let headers = layout.headers(&attributes);
 
         let preamble = header::encode(&headers, &Default::default()).map_err(refused(path))?;
-        let file = fresh::beside(path, ".exr").map_err(unwritable(path))?;
+        let file = Output::create(path).map_err(unwritable(path))?;
         let mut writer = Self {
             path: path.to_owned(),
             file: BufWriter::new(file),
@@ -147,8 +146,7 @@ impl MapWriter {
             .file
             .into_inner()
             .map_err(|error| unwritable(&self.path)(error.into_error()))?;
-        file.persist(&self.path)
-            .map_err(|error| unwritable(&self.path)(error.error))?;
+        file.finish().map_err(unwritable(&self.path))?;
         Ok(counts)
     }
 

@@ -2,31 +2,26 @@
 #![allow(dead_code, reason = "each test program uses its own share")]
 
 use whiskmap::integrate::Engine;
-use whiskmap::map::{self, Observer, Summary};
+use whiskmap::map::{self, Progress, Summary};
 use whiskmap::plan::Plan;
 use whiskmap::scene::Scene;
-use whiskmap::store::{self, Panel};
-
-#[derive(Default)]
-struct Panels(Vec<Panel>);
-
-impl Observer for Panels {
-    fn panels(&mut self, first: usize, panels: &[Panel]) -> Result<(), store::Error> {
-        assert_eq!(first, self.0.len());
-        self.0.extend_from_slice(panels);
-        Ok(())
-    }
-    fn settled(&mut self, _: usize) {}
-}
+use whiskmap::store::Panel;
 
 pub fn compute(scene: &Scene, engine: &mut dyn Engine) -> (Summary, Vec<Panel>) {
     compute_as(scene, &Plan::new(scene).unwrap(), engine)
 }
 
 pub fn compute_as(scene: &Scene, plan: &Plan, engine: &mut dyn Engine) -> (Summary, Vec<Panel>) {
-    let mut panels = Panels::default();
-    let summary = map::run(scene, plan, engine, &mut panels).unwrap();
-    (summary, panels.0)
+    let mut kept = Vec::new();
+    let mut keep = |progress: Progress| {
+        if let Progress::Panels(first, panels) = progress {
+            assert_eq!(first, kept.len());
+            kept.extend_from_slice(panels);
+        }
+        Ok(())
+    };
+    let summary = map::run(scene, plan, engine, &mut keep).unwrap();
+    (summary, kept)
 }
 
 /// `count` values of an axis, both ends among them.

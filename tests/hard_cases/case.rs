@@ -3,10 +3,10 @@
 use std::fmt::Write;
 use whiskmap::integrate::gpu::{Gpu, Precision};
 use whiskmap::integrate::{Engine, EngineError};
-use whiskmap::map::{self, Observer, Summary};
+use whiskmap::map::{self, Progress, Summary};
 use whiskmap::plan::Plan;
 use whiskmap::scene::Scene;
-use whiskmap::store::{self, Panel};
+use whiskmap::store::Panel;
 
 /// A scene, but for its text.
 #[derive(Clone, Debug)]
@@ -81,25 +81,18 @@ impl Case {
     }
 }
 
-/// The only panel of a scene.
-#[derive(Default)]
-struct Kept(Option<Panel>);
-
-impl Observer for Kept {
-    fn panels(&mut self, _: usize, panels: &[Panel]) -> Result<(), store::Error> {
-        self.0 = panels.first().cloned();
-        Ok(())
-    }
-
-    fn settled(&mut self, _: usize) {}
-}
-
 /// The map of a scene without sweep.
 pub fn compute(scene: &Scene, engine: &mut dyn Engine) -> (Summary, Panel) {
-    let mut kept = Kept::default();
+    let mut kept = None;
+    let mut keep = |progress: Progress| {
+        if let Progress::Panels(_, panels) = progress {
+            kept = panels.first().cloned();
+        }
+        Ok(())
+    };
     let plan = Plan::new(scene).unwrap();
-    let summary = map::run(scene, &plan, engine, &mut kept).unwrap();
-    (summary, kept.0.unwrap())
+    let summary = map::run(scene, &plan, engine, &mut keep).unwrap();
+    (summary, kept.unwrap())
 }
 
 /// The GPU engine; its absence is loud, and a failure where it is required.
