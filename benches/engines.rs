@@ -130,7 +130,7 @@ fn files(criterion: &mut Criterion) {
     let plan = Plan::new(&scene).expect("the scene is small");
     let mut kept = None;
     let mut keep = |progress: Progress| {
-        if let Progress::Panels(_, panels) = progress {
+        if let Progress::Panels(panels) = progress {
             kept = panels.first().cloned();
         }
         Ok(())
@@ -147,7 +147,7 @@ fn files(criterion: &mut Criterion) {
     };
     let write = |path: &Path| -> Result<(), Error> {
         let mut writer = MapWriter::create(path, &about)?;
-        writer.write_panels(0, std::slice::from_ref(&panel))?;
+        writer.write_panels(std::slice::from_ref(&panel))?;
         writer.finish(Shots::default())?;
         Ok(())
     };

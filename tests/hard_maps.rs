@@ -17,7 +17,7 @@ fn certain(tip_um: f64, rest: &str) {
     let plan = Plan::new(&scene).unwrap();
     let contact = [Regime::Contact.code(), Regime::Unreachable.code()];
     let mut check = |progress: Progress| {
-        if let Progress::Panels(_, panels) = progress {
+        if let Progress::Panels(panels) = progress {
             for panel in panels {
                 for (regime, residual) in panel.regime.iter().zip(&panel.residual) {
                     assert!(!contact.contains(regime) || *residual <= 1e-11);

@@ -99,7 +99,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
                 bar.inc(cells as u64);
                 Ok(())
             }
-            Progress::Panels(first, panels) => writer.write_panels(first, panels),
+            Progress::Panels(panels) => writer.write_panels(panels),
         },
     );
     bar.finish_and_clear();

@@ -25,8 +25,8 @@ use summary::Stage;
 pub enum Progress<'a> {
     /// So many more cells are settled.
     Settled(usize),
-    /// The next finished panels, in atlas order, and the index of the first one.
-    Panels(usize, &'a [Panel]),
+    /// The next finished panels, in atlas order.
+    Panels(&'a [Panel]),
 }
 
 /// One side of one whisker.
@@ -68,7 +68,7 @@ pub fn run(
     let sides: Vec<Pushes> = plan.sides.iter().map(pushes).collect();
     let rows_at_once = engine.shots_at_once() / width;
     let rows_at_once = rows_at_once.clamp(1, plan.rows_at_once);
-    for (group, whiskers) in plan.whiskers.chunks(plan.panels_at_once).enumerate() {
+    for whiskers in plan.whiskers.chunks(plan.panels_at_once) {
         let faces: Vec<Face> = summary.time(Stage::Sheets, || {
             let sides = &sides;
             let pairs: Vec<(&Whisker, &Pushes)> = whiskers
@@ -92,8 +92,7 @@ pub fn run(
         for panel in &panels {
             summary.count(panel);
         }
-        let first = group * plan.panels_at_once;
-        summary.time(Stage::Files, || observe(Progress::Panels(first, &panels)))?;
+        summary.time(Stage::Files, || observe(Progress::Panels(&panels)))?;
     }
     summary.engine_failure = engine.failure().cloned();
     Ok(summary)

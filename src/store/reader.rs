@@ -69,7 +69,7 @@ impl StoredMap {
     ///
     /// The file cannot be read, is not EXR, is not a map of this program, or is damaged.
     pub fn open(path: &Path) -> Result<Self, Error> {
-        let mut file = BufReader::new(File::open(path).map_err(unreadable(path))?);
+        let mut file = BufReader::new(File::open(path).map_err(Error::io("read", path))?);
         let meta = header::read(path, &mut file)?;
         let foreign = |reason| Error::NotAMap {
             path: path.to_owned(),
@@ -182,7 +182,8 @@ impl StoredMap {
 
     fn read(&self, name: &str, panels: std::ops::Range<usize>) -> Result<Samples, Error> {
         let (part, channel, kind) = self.find(name)?;
-        let mut file = BufReader::new(File::open(&self.path).map_err(unreadable(&self.path))?);
+        let mut file =
+            BufReader::new(File::open(&self.path).map_err(Error::io("read", &self.path))?);
         let mut bytes = Vec::new();
         for panel in panels {
             for block in 0..self.layout.blocks_per_panel() {
@@ -244,13 +245,4 @@ fn series(version: &str) -> Vec<&str> {
     let zeros = version.split('.').take_while(|number| *number == "0");
     let length = zeros.count() + 1;
     version.split('.').take(length).collect()
-}
-
-fn unreadable(path: &Path) -> impl Fn(io::Error) -> Error {
-    let path = path.to_owned();
-    move |cause| Error::Io {
-        action: "read",
-        path: path.clone(),
-        cause,
-    }
 }

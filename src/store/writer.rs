@@ -66,23 +66,18 @@ impl MapWriter {
         Ok(writer)
     }
 
-    /// Compresses, side by side, and appends the next panels; `first` is the index of the first one, `curvature * tapers + taper`.
+    /// Compresses, side by side, and appends the next panels: taper after taper, for one curvature after another.
     ///
     /// # Errors
     ///
-    /// A panel is not the next one, has the wrong size or a code without a name, or the disk is full.
-    pub fn write_panels(&mut self, first: usize, panels: &[Panel]) -> Result<(), Error> {
-        let all = self.layout.panels();
-        let order = |index, due| Error::PanelOrder {
-            index,
-            due,
-            panels: all,
-        };
-        if first != self.written {
-            return Err(order(first, self.written));
-        }
+    /// A panel is one too many, has the wrong size or a code without a name, or the disk is full.
+    pub fn write_panels(&mut self, panels: &[Panel]) -> Result<(), Error> {
+        let (first, all) = (self.written, self.layout.panels());
         if first + panels.len() > all {
-            return Err(order(all, all));
+            return Err(Error::NoSuchPanel {
+                index: all,
+                panels: all,
+            });
         }
         let channels: Vec<_> = panels.iter().map(layout::channel_bytes).collect();
         for (i, channels) in channels.iter().enumerate() {
@@ -232,18 +227,12 @@ impl MapWriter {
 }
 
 fn unwritable(path: &Path) -> impl Fn(io::Error) -> Error {
-    let path = path.to_owned();
-    move |cause| Error::Io {
-        action: "write",
-        path: path.clone(),
-        cause,
-    }
+    Error::io("write", path)
 }
 
 fn refused(path: &Path) -> impl Fn(exr::error::Error) -> Error {
-    let path = path.to_owned();
     move |cause| Error::Encode {
-        path: path.clone(),
+        path: path.to_owned(),
         cause,
     }
 }

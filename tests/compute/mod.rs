@@ -14,8 +14,7 @@ pub fn compute(scene: &Scene, engine: &mut dyn Engine) -> (Summary, Vec<Panel>) 
 pub fn compute_as(scene: &Scene, plan: &Plan, engine: &mut dyn Engine) -> (Summary, Vec<Panel>) {
     let mut kept = Vec::new();
     let mut keep = |progress: Progress| {
-        if let Progress::Panels(first, panels) = progress {
-            assert_eq!(first, kept.len());
+        if let Progress::Panels(panels) = progress {
             kept.extend_from_slice(panels);
         }
         Ok(())

@@ -85,7 +85,7 @@ impl Case {
 pub fn compute(scene: &Scene, engine: &mut dyn Engine) -> (Summary, Panel) {
     let mut kept = None;
     let mut keep = |progress: Progress| {
-        if let Progress::Panels(_, panels) = progress {
+        if let Progress::Panels(panels) = progress {
             kept = panels.first().cloned();
         }
         Ok(())
