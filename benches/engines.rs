@@ -143,7 +143,7 @@ fn files(criterion: &mut Criterion) {
     let plan = Plan::new(&scene).expect("the scene is small");
     let mut kept: Option<Panel> = None;
     let Ok(_) = map::run(&scene, &plan, None, &mut |progress| {
-        if let Progress::Panels(_, panels) = progress {
+        if let Progress::Panels(panels) = progress {
             kept = panels.first().cloned();
         }
         Ok::<(), Infallible>(())
@@ -159,7 +159,7 @@ fn files(criterion: &mut Criterion) {
     };
     let write = |path: &Path| -> Result<(), Error> {
         let mut writer = MapWriter::create(path, &about)?;
-        writer.write_panels(0, std::slice::from_ref(&panel))?;
+        writer.write_panels(std::slice::from_ref(&panel))?;
         writer.finish(Shots::default())?;
         Ok(())
     };

@@ -3,7 +3,7 @@
 
 use std::convert::Infallible;
 use whiskmap::integrate::{Description, Engine, EngineError, Hit, Shot};
-use whiskmap::map;
+use whiskmap::map::{self, STATE_CHANNELS};
 use whiskmap::plan::{Plan, effects};
 use whiskmap::rod::{Effects, Rod};
 use whiskmap::scene::Scene;
@@ -37,6 +37,22 @@ fn kept(push_angles: &str, distances: &str, more: &str) -> (usize, usize) {
     assert_eq!(summary.cells(), plan.cells as u64);
     let groups = plan.whiskers.len().div_ceil(plan.panels_at_once);
     (groups, plan.engine_calls)
+}
+
+/// A panel is kept twice, with 4 bytes a channel: the state's, and `regime`, `status`, `residual`, `margin_deg`,
+/// `newton_steps`.
+#[test]
+fn memory_is_that_of_the_channels_there_are() {
+    let [small, large] = ["count = 100", "count = 300"].map(|count| {
+        let text = format!(
+            "title = \"t\"\n[whisker]\nlength_mm = 20\nbase_radius_um = 30\ntip_radius_um = 3\n\
+             youngs_modulus_gpa = 3\n[grid]\npush_angle_deg = {{ from = 0, to = 9, {count} }}\ndistance_mm = [5, 9]"
+        );
+        let scene = Scene::parse(&text, "scene").unwrap();
+        Plan::new(&scene).unwrap().bytes
+    });
+    let channels = STATE_CHANNELS.len() as u64 + 5;
+    assert_eq!(large - small, 400 * 2 * 4 * channels);
 }
 
 #[test]

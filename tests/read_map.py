@@ -1,38 +1,44 @@
-"""Rebuilds every array of a map from the file alone. Usage: python3 read_map.py FILE
+"""Reads a map by the Python of the documentation, and holds it against the file's own counts.
 
-Needs `pip install OpenEXR numpy`.
+Usage: python3 tests/read_map.py FILE. Needs `pip install OpenEXR numpy`.
 """
-import json
+import pathlib
+import re
 import sys
 
 import numpy as np
-import OpenEXR
+
+SHOWN = '"outputs/cone.exr"'
 
 
-def read_map(path):
-    """Axes, all attributes, and every channel as array[curvature, taper, distance, push angle]."""
-    parts = OpenEXR.File(path, separate_channels=True).parts
-    names = "axes scene title whiskmap_version engine adapter tolerances regime_names status_names counts panels"
-    about = {name: json.loads(parts[0].header[name]) for name in names.split()}
-    axes = {axis["name"]: np.array(axis["values"]) for axis in about["axes"]}
-    columns, rows = about["panels"]
-    shape = rows, len(axes["distance_mm"]), columns, len(axes["push_angle_deg"])
-    channels = {
-        name: channel.pixels.reshape(shape).transpose(0, 2, 1, 3)
-        for part in parts
-        for name, channel in part.channels.items()
-    }
-    return axes, about, channels
+def snippet():
+    """The only block of Python in the documentation that reads a map."""
+    root = pathlib.Path(__file__).resolve().parents[1]
+    pages = [root / "README.md", *sorted(root.glob("docs/**/*.md"))]
+    texts = [page.read_text(encoding="utf-8") for page in pages]
+    blocks = [block for text in texts for block in re.findall(r"^```python\n(.*?)^```", text, re.M | re.S)]
+    (found,) = [block for block in blocks if SHOWN in block]
+    return found
+
+
+def check(axes, about, channels):
+    """Every channel has every cell, the counts are those of the cells, and quantities are where there is contact."""
+    names = "curvature_per_mm", "taper", "distance_mm", "push_angle_deg"
+    shape = tuple(axes[name].size if name in axes else 1 for name in names)
+    assert len(channels) == 14, sorted(channels)
+    for name, array in channels.items():
+        kind = np.uint32 if name in ("regime", "status", "newton_steps") else np.float32
+        assert (array.shape, array.dtype) == (shape, kind), (name, array.shape, array.dtype)
+    for code, name in about["regime_names"].items():
+        cells = int((channels["regime"] == int(code)).sum())
+        assert cells == about["counts"]["regimes"][name], (name, cells)
+    codes = [int(code) for code, name in about["regime_names"].items() if name.startswith("contact")]
+    contact = np.isin(channels["regime"], codes)
+    assert contact.any() and (np.isfinite(channels["force_un"]) == contact).all()
+    print(f"{sys.argv[1]}: {contact.size} cells of {len(channels)} channels, {contact.sum()} in contact")
 
 
 if __name__ == "__main__":
-    axes, about, channels = read_map(sys.argv[1])
-    print(about["title"])
-    for name, values in axes.items():
-        print(f"axis {name}: {values.size} values, {values[0]!r} to {values[-1]!r}")
-    for name, array in channels.items():
-        print(f"channel {name}: {array.dtype} {array.shape}")
-    for code, name in about["regime_names"].items():
-        cells = int((channels["regime"] == int(code)).sum())
-        print(f"regime {name}: {cells} cells")
-        assert cells == about["counts"]["regimes"][name], "the counts of the header differ from the cells"
+    found = {}
+    exec(snippet().replace(SHOWN, repr(sys.argv[1])), found)
+    check(*(found[name] for name in ("axes", "about", "channels")))

@@ -65,7 +65,7 @@ fn draw(scene: &Setup, panels: &[Panel], channel: Option<&str>) -> Picture {
     let [file, out] = ["map.exr", "map.png"].map(|name| folder.path().join(name));
     let tolerances = serde_json::json!(null);
     let mut writer = MapWriter::create(&file, &map::describe(scene, &tolerances)).unwrap();
-    writer.write_panels(0, panels).unwrap();
+    writer.write_panels(panels).unwrap();
     writer.finish(Shots::default()).unwrap();
     let map = StoredMap::open(&file).unwrap();
     match channel {

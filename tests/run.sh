@@ -1,16 +1,17 @@
 #!/usr/bin/env bash
-# Everything that must hold: format, lints, documentation, tests. On Debian or Ubuntu it installs Mesa's software
-# Vulkan driver (lavapipe) first where no Vulkan driver is found, so that the shaders run on any machine.
+# Everything that must hold: format, lints, documentation, tests, and that Python reads a map. On Debian or Ubuntu it
+# installs Mesa's software Vulkan driver (lavapipe) first where no Vulkan driver is found, so that the shaders run on any
+# machine, and pip where Python has neither OpenEXR nor that.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
+as_root() { if [ "$(id -u)" = 0 ]; then "$@"; else sudo "$@"; fi; }
 has_driver() {
     [ -n "${VK_DRIVER_FILES:-}${VK_ICD_FILENAMES:-}" ] ||
         compgen -G '/usr/share/vulkan/icd.d/*.json' >/dev/null ||
         compgen -G '/etc/vulkan/icd.d/*.json' >/dev/null
 }
 if [ "$(uname -s)" = Linux ] && ! has_driver; then
-    as_root() { if [ "$(id -u)" = 0 ]; then "$@"; else sudo "$@"; fi; }
     echo "no Vulkan driver found: installing lavapipe"
     as_root apt-get update -q
     as_root apt-get install -y -q --no-install-recommends mesa-vulkan-drivers
@@ -22,3 +23,15 @@ cargo fmt --check
 cargo clippy --all-targets --profile checked --locked -- -D warnings
 RUSTDOCFLAGS="-D warnings" cargo doc --no-deps --locked
 WHISKMAP_REQUIRE_GPU=1 cargo test --profile checked --locked --no-fail-fast
+
+# The documentation's Python reads what the tests' program writes.
+target="${CARGO_TARGET_DIR:-target}"
+export PYTHONPATH="$target/python${PYTHONPATH:+:$PYTHONPATH}"
+if ! python3 -c 'import numpy, OpenEXR' 2>/dev/null; then
+    python3 -m pip --version >/dev/null || as_root apt-get install -y -q --no-install-recommends python3-pip
+    python3 -m pip install -q --target "$target/python" numpy OpenEXR
+fi
+for scene in cone morphology; do
+    "$target/checked/whiskmap" map "scenes/$scene.toml" --engine cpu --no-png -o "$target/maps"
+    python3 tests/read_map.py "$target/maps/$scene.exr"
+done

@@ -1,11 +1,10 @@
 //! `whiskmap bench`.
 
 use super::failure::{Failure, say};
-use super::outputs::{picture, refused, same};
+use super::outputs::{STDOUT, open, unwritten};
 use crate::bench::{self, Detachments, Effort, Report, Row};
 use crate::render::{Chart, Dot, Ink, Line, Plot, Stroke};
 use crate::scene::Scene;
-use crate::store::beside;
 use clap::Args;
 use std::io::{self, IsTerminal, Write};
 use std::path::{Path, PathBuf};
@@ -41,22 +40,8 @@ pub struct Options {
 /// Runs `bench`.
 pub fn run(options: &Options) -> Result<(), Failure> {
     let scene = Scene::read(&options.scene)?;
-    let plot = options.plot.as_deref().map(picture).transpose()?;
-    let stdout = Path::new("-");
-    if let (Some(json), Some(plot)) = (&options.json, &options.plot)
-        && same(json, plot)
-    {
-        let json = json.display();
-        return Err(Failure::Input(format!(
-            "--json {json} and --plot {json}: must be two files"
-        )));
-    }
-    let file = options.json.as_deref().filter(|path| *path != stdout);
-    let file = file.map(|path| match beside(path, ".json") {
-        Ok(file) => Ok((file, path)),
-        Err(error) => Err(refused("--json", path, &error)),
-    });
-    let file = file.transpose()?;
+    let json = options.json.as_deref();
+    let (output, picture) = open("--json", json, options.plot.as_deref())?;
     let effort = if options.quick {
         Effort::QUICK
     } else {
@@ -73,22 +58,17 @@ pub fn run(options: &Options) -> Result<(), Failure> {
             "grid: no cell of the sample has a state; give push angles and distances that keep the contact".to_owned(),
         )
     })?;
-    let json = || serde_json::to_string_pretty(&report).unwrap_or_default() + "\n";
-    if let Some((mut file, path)) = file {
-        let written = file.write_all(json().as_bytes());
+    if let (Some(mut output), Some(path)) = (output, json) {
+        let text = serde_json::to_string_pretty(&report).unwrap_or_default() + "\n";
+        let written = output.write_all(text.as_bytes());
         written
-            .and_then(|()| Ok(file.persist(path)?))
-            .map_err(|cause| Failure::Write {
-                path: path.to_owned(),
-                cause,
-            })?;
+            .and_then(|()| output.finish())
+            .map_err(|cause| unwritten(path, cause))?;
     }
-    if let Some((path, format)) = &plot {
-        chart(&report).save(path, *format)?;
+    if let Some(picture) = picture {
+        picture.save(&chart(&report))?;
     }
-    if options.json.as_deref() == Some(stdout) {
-        io::stdout().lock().write_all(json().as_bytes())?;
-    } else {
+    if json != Some(Path::new(STDOUT)) {
         tables(&report)?;
     }
     Ok(())

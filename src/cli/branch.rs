@@ -2,6 +2,7 @@
 
 use super::columns;
 use super::failure::Failure;
+use super::numbers::whole;
 use super::outputs::Outputs;
 use super::pole::Pole;
 use crate::render::{BranchAxis, Chart, branches};
@@ -31,7 +32,7 @@ pub struct Options {
     #[arg(long, value_enum, default_value = "both")]
     side: Choice,
     /// Points per side
-    #[arg(long, value_name = "N", default_value = "200", value_parser = clap::value_parser!(u32).range(3..=1_000_000))]
+    #[arg(long, value_name = "N", default_value = "200", value_parser = whole(3..=1_000_000))]
     points: u32,
     #[command(flatten)]
     outputs: Outputs,

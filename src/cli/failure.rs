@@ -2,7 +2,9 @@
 
 use crate::integrate::EngineError;
 use crate::plan::PlanError;
+use crate::render;
 use crate::scene::SceneError;
+use crate::store;
 use crate::trace::NoState;
 use std::io::{IsTerminal, Write};
 use std::path::PathBuf;
@@ -25,10 +27,10 @@ pub enum Failure {
     Engine(#[from] EngineError),
     /// A stored map could not be read or written.
     #[error(transparent)]
-    Store(#[from] crate::store::Error),
+    Store(#[from] store::Error),
     /// A picture could not be drawn.
     #[error(transparent)]
-    Render(#[from] crate::render::Error),
+    Render(#[from] render::Error),
     /// A solution branch could not be followed.
     #[error(transparent)]
     State(NoState),
@@ -57,6 +59,11 @@ impl Failure {
     fn code(&self) -> u8 {
         match self {
             Self::Scene(_) | Self::Plan(_) | Self::Input(_) => 2,
+            Self::Store(error) | Self::Render(render::Error::Map(error))
+                if error.is_unreadable() =>
+            {
+                2
+            }
             _ => 1,
         }
     }
@@ -65,7 +72,9 @@ impl Failure {
     pub fn report(&self) -> ExitCode {
         match self {
             // A reader that has seen enough, like `head`, is no failure of ours.
-            Self::Output(error) if error.kind() == std::io::ErrorKind::BrokenPipe => {
+            Self::Output(error) | Self::Write { cause: error, .. }
+                if error.kind() == std::io::ErrorKind::BrokenPipe =>
+            {
                 return ExitCode::SUCCESS;
             }
             Self::Scene(error) => say(&error.render(color())),

@@ -2,19 +2,22 @@
 
 use super::engine::{self, Choice, Shaders};
 use super::failure::{Failure, say};
+use super::numbers::whole;
+use super::outputs;
 use super::progress;
 use super::tolerance::Tolerance;
 use crate::accuracy::{Accuracy, BOUNDED};
 use crate::classify::{Regime, Status};
-use crate::map::{self, Progress, Stage, Summary};
+use crate::map::Stage;
+use crate::map::{self, Progress, Summary};
 use crate::plan::Plan;
 use crate::refine::{GOAL, TOLERANCE};
+use crate::render;
 use crate::scene::Scene;
-use crate::store::{Description, MapWriter};
-use crate::{integrate, render, store};
+use crate::store::{Description, MapWriter, StoredMap};
 use clap::Args;
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::Instant;
 
 /// Options of `map`.
@@ -38,8 +41,8 @@ pub struct Options {
     #[arg(long, value_enum)]
     precision: Option<Shaders>,
     /// Threads of the CPU [default: all cores]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    pub threads: Option<u16>,
+    #[arg(long, value_name = "N", value_parser = whole(1..=1024))]
+    pub threads: Option<u32>,
     #[command(flatten)]
     tolerance: Tolerance,
     /// Write no picture
@@ -56,13 +59,20 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         plan.method = plan.method.with_resolution(accuracy.resolution);
     }
     let (mut engine, why) = engine::open(options.engine, options.precision)?;
-    let about = integrate::Description::of(engine.as_deref());
+    let about = crate::integrate::Description::of(engine.as_deref());
     let file = options.output.join(format!("{}.exr", scene.name));
     let picture = (!options.no_png).then(|| file.with_extension("png"));
-    writable(
-        &options.output,
-        [Some(&file), picture.as_ref()].into_iter().flatten(),
-    )?;
+    outputs::folder("--output", &options.output)?;
+    let is_regular = outputs::create("--output", &file)?.is_regular();
+    if let Some(picture) = &picture {
+        outputs::create("--output", picture)?;
+        if !is_regular {
+            return Err(Failure::Input(format!(
+                "--output {}: is no regular file, so no picture can be drawn of it; give --no-png",
+                file.display()
+            )));
+        }
+    }
     say(&format!(
         "engine: {} on {} ({why})",
         about.engine, about.adapter
@@ -87,7 +97,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
             bar.inc(cells as u64);
             Ok(())
         }
-        Progress::Panels(first, panels) => writer.write_panels(first, panels),
+        Progress::Panels(panels) => writer.write_panels(panels),
     });
     bar.finish_and_clear();
     let summary = result?;
@@ -96,7 +106,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         say(&format!("warning: {failure}; the CPU went on in its stead"));
     }
     if let Some(picture) = &picture {
-        render::regimes(&store::StoredMap::open(&file)?, picture)?;
+        render::regimes(&StoredMap::open(&file)?, picture)?;
     }
     let written: Vec<PathBuf> = [Some(file), picture].into_iter().flatten().collect();
     print(&scene, &summary, start.elapsed().as_secs_f64(), &written)?;
@@ -114,30 +124,6 @@ fn tolerances(accuracy: Option<Accuracy>) -> serde_json::Value {
         tolerances["bounded"] = BOUNDED.into();
     }
     tolerances
-}
-
-/// Makes the output folder and finds out, before any work, whether `files` can be made in it.
-fn writable<'a>(path: &Path, mut files: impl Iterator<Item = &'a PathBuf>) -> Result<(), Failure> {
-    let refuse = |what: &str, error: std::io::Error| {
-        let path = path.display();
-        Failure::Input(format!(
-            "--output {path}: {what}: {error}; give a folder that can be written"
-        ))
-    };
-    if path.is_file() {
-        let path = path.display();
-        return Err(Failure::Input(format!(
-            "--output {path}: is a file; give a folder that can be written"
-        )));
-    }
-    std::fs::create_dir_all(path).map_err(|error| refuse("cannot make the folder", error))?;
-    tempfile::tempfile_in(path).map_err(|error| refuse("cannot write there", error))?;
-    if let Some(file) = files.find(|file| file.is_dir()).map(|file| file.display()) {
-        return Err(Failure::Input(format!(
-            "{file}: is a folder; remove it or choose another --output"
-        )));
-    }
-    Ok(())
 }
 
 fn print(scene: &Scene, summary: &Summary, seconds: f64, files: &[PathBuf]) -> std::io::Result<()> {

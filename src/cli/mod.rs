@@ -1,7 +1,7 @@
 //! The command line: the only place that prints, and that knows exit codes.
 //!
 //! Answers go to standard output, everything said along the way to standard error. Exit code 2 is for input
-//! that cannot be right, 1 for what fails while running.
+//! that cannot be right, 1 for what fails while running, 128 and the signal's number for an interrupt.
 
 mod bench;
 mod branch;
@@ -12,6 +12,7 @@ mod engine;
 mod estimate;
 mod failure;
 mod map;
+mod numbers;
 mod outputs;
 mod plan;
 mod pole;
@@ -19,6 +20,7 @@ mod progress;
 mod render;
 mod reproduce;
 mod shape;
+mod signals;
 mod tolerance;
 mod verify;
 
@@ -77,13 +79,14 @@ enum Command {
 pub fn main() -> ExitCode {
     let arguments = Arguments::parse();
     failure::keep_expected_panics_silent();
+    signals::handle();
     let threads = match &arguments.command {
         Command::Map(options) => options.threads,
         _ => None,
     };
     // All of a command runs on a thread of the pool: from outside, every piece of parallel work would wake one up first.
     let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(threads.unwrap_or_default().into())
+        .num_threads(threads.unwrap_or_default() as usize)
         .stack_size(STACK)
         .build();
     let result = match pool {

@@ -2,7 +2,7 @@
 
 use super::failure::Failure;
 use crate::render::{Chart, ChartFormat};
-use crate::store::Table;
+use crate::store::{Output, Table};
 use clap::Args;
 use serde::Serialize;
 use std::io::{self, Write};
@@ -21,10 +21,10 @@ pub struct Outputs {
 
 /// The outputs of a run, found to be possible before any work.
 pub struct Opened {
-    table: Option<Table>,
-    /// The table's file; standard output has none.
-    csv: Option<PathBuf>,
-    plot: Option<(PathBuf, ChartFormat)>,
+    table: Option<(Table, PathBuf)>,
+    picture: Option<Picture>,
+    /// Regular files, to be named when they are there.
+    files: Vec<PathBuf>,
 }
 
 impl Outputs {
@@ -35,31 +35,21 @@ impl Outputs {
 
     /// Opens the table, and finds out whether the picture can be made.
     pub fn open(&self) -> Result<Opened, Failure> {
-        let plot = self.plot.as_deref().map(picture).transpose()?;
-        let stdout = Path::new("-");
-        let csv = match (&self.csv, &plot) {
-            (Some(csv), _) => Some(csv.as_path()),
-            (None, None) => Some(stdout),
-            (None, Some(_)) => None,
-        };
-        if let (Some(csv), Some((plot, _))) = (csv, &plot)
-            && same(csv, plot)
-        {
-            let csv = csv.display();
-            return Err(Failure::Input(format!(
-                "--csv {csv} and --plot {csv}: must be two files"
-            )));
-        }
-        let table = csv.map(|csv| {
-            if csv == stdout {
-                return Ok(Table::stream(Box::new(io::stdout().lock())));
-            }
-            Table::create(csv).map_err(|error| refused("--csv", csv, &error))
-        });
+        let stdout = self.plot.is_none().then(|| PathBuf::from(STDOUT));
+        let csv = self.csv.clone().or(stdout);
+        let (table, picture) = open("--csv", csv.as_deref(), self.plot.as_deref())?;
+        let is_regular = table.as_ref().is_some_and(Output::is_regular);
+        let files = [
+            csv.clone().filter(|_| is_regular),
+            picture
+                .as_ref()
+                .filter(|own| own.is_regular)
+                .map(|own| own.path.clone()),
+        ];
         Ok(Opened {
-            table: table.transpose()?,
-            csv: csv.filter(|csv| *csv != stdout).map(Path::to_owned),
-            plot,
+            table: table.map(Table::new).zip(csv),
+            picture,
+            files: files.into_iter().flatten().collect(),
         })
     }
 }
@@ -67,71 +57,106 @@ impl Outputs {
 impl Opened {
     /// Appends rows to the table, if there is one.
     pub fn rows<R: Serialize>(&mut self, rows: impl IntoIterator<Item = R>) -> Result<(), Failure> {
-        let written = self.table.as_mut().map_or(Ok(()), |table| table.rows(rows));
-        written.map_err(|cause| self.unwritten(cause))
+        self.table.as_mut().map_or(Ok(()), |(table, path)| {
+            table.rows(rows).map_err(|cause| unwritten(path, cause))
+        })
     }
 
     /// Finishes the table, draws the picture, and names the files.
-    pub fn finish(mut self, chart: impl FnOnce() -> Chart) -> Result<(), Failure> {
-        let finished = self.table.take().map_or(Ok(()), Table::finish);
-        finished.map_err(|cause| self.unwritten(cause))?;
-        if let Some((path, format)) = &self.plot {
-            chart().save(path, *format)?;
+    pub fn finish(self, chart: impl FnOnce() -> Chart) -> Result<(), Failure> {
+        if let Some((table, path)) = self.table {
+            table.finish().map_err(|cause| unwritten(&path, cause))?;
+        }
+        if let Some(picture) = self.picture {
+            picture.save(&chart())?;
         }
         let mut out = io::stdout().lock();
-        let files = [self.csv, self.plot.map(|(path, _)| path)];
-        for file in files.into_iter().flatten() {
+        for file in self.files {
             writeln!(out, "{}", file.display())?;
         }
         Ok(())
     }
+}
 
-    fn unwritten(&self, cause: io::Error) -> Failure {
-        match &self.csv {
-            Some(path) => Failure::Write {
-                path: path.clone(),
-                cause,
-            },
-            None => Failure::Output(cause),
-        }
+/// What names standard output.
+pub const STDOUT: &str = "-";
+
+/// `--plot`: a picture that can be made.
+pub struct Picture {
+    path: PathBuf,
+    format: ChartFormat,
+    is_regular: bool,
+}
+
+impl Picture {
+    /// Draws and writes it.
+    pub fn save(&self, chart: &Chart) -> Result<(), Failure> {
+        Ok(chart.save(&self.path, self.format)?)
     }
 }
 
-/// Whether two paths name one file, there or not.
-pub fn same(one: &Path, other: &Path) -> bool {
-    let place = |path: &Path| {
-        let folder = path
-            .parent()
-            .filter(|folder| !folder.as_os_str().is_empty());
-        let folder = folder.unwrap_or(Path::new(".")).canonicalize().ok();
-        (folder, path.file_name().map(ToOwned::to_owned))
+/// Opens the file of `option` and finds out whether the picture can be made; they must be two files.
+pub fn open(
+    option: &str,
+    data: Option<&Path>,
+    plot: Option<&Path>,
+) -> Result<(Option<Output>, Option<Picture>), Failure> {
+    let format = |path: &Path| {
+        let must = || format!("--plot {}: must end in .png or .svg", path.display());
+        ChartFormat::of(path).ok_or_else(|| Failure::Input(must()))
     };
-    place(one) == place(other)
-}
-
-/// The picture's file and format; its folder must be there.
-pub fn picture(path: &Path) -> Result<(PathBuf, ChartFormat), Failure> {
-    let Some(format) = ChartFormat::of(path) else {
-        let path = path.display();
+    let format = plot.map(format).transpose()?;
+    let output = data.map(|path| create(option, path)).transpose()?;
+    let place = plot.map(|path| create("--plot", path)).transpose()?;
+    if let (Some(data), Some(plot)) = (data, plot)
+        && output == place
+    {
         return Err(Failure::Input(format!(
-            "--plot {path}: must end in .png or .svg"
+            "{option} {} and --plot {}: must be two files",
+            data.display(),
+            plot.display()
         )));
-    };
-    let folder = path
-        .parent()
-        .filter(|folder| !folder.as_os_str().is_empty());
-    let folder = folder.unwrap_or(Path::new("."));
-    if path.is_dir() {
-        return Err(refused("--plot", path, &io::ErrorKind::IsADirectory.into()));
     }
-    tempfile::tempfile_in(folder).map_err(|error| refused("--plot", path, &error))?;
-    Ok((path.to_owned(), format))
+    let picture = plot.zip(format).zip(place);
+    let picture = picture.map(|((path, format), place)| Picture {
+        path: path.to_owned(),
+        format,
+        is_regular: place.is_regular(),
+    });
+    Ok((output, picture))
 }
 
-/// A file that cannot be made.
-pub fn refused(option: &str, path: &Path, error: &io::Error) -> Failure {
-    let path = path.display();
-    Failure::Input(format!(
-        "{option} {path}: {error}; name a file in a folder that can be written"
-    ))
+/// The output that `option` names.
+pub fn create(option: &str, path: &Path) -> Result<Output, Failure> {
+    if path == Path::new(STDOUT) {
+        return Ok(Output::stdout());
+    }
+    Output::create(path).map_err(|error| {
+        let path = path.display();
+        Failure::Input(format!(
+            "{option} {path}: {error}; name a file in a folder that can be written"
+        ))
+    })
+}
+
+/// Makes the folder that `option` names, and finds out whether files can be made in it.
+pub fn folder(option: &str, path: &Path) -> Result<(), Failure> {
+    let made = std::fs::create_dir_all(path).and_then(|()| tempfile::tempfile_in(path));
+    made.map(drop).map_err(|error| {
+        let path = path.display();
+        Failure::Input(format!(
+            "{option} {path}: {error}; give a folder that can be written"
+        ))
+    })
+}
+
+/// Why the file at `path` is not written.
+pub fn unwritten(path: &Path, cause: io::Error) -> Failure {
+    if path == Path::new(STDOUT) {
+        return Failure::Output(cause);
+    }
+    Failure::Write {
+        path: path.to_owned(),
+        cause,
+    }
 }

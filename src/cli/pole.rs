@@ -1,6 +1,7 @@
 //! One whisker in front of one pole.
 
 use super::failure::Failure;
+use super::numbers::number;
 use crate::scene::{Scene, Whisker};
 use crate::trace::NoState;
 use clap::Args;
@@ -14,12 +15,6 @@ pub struct Pole {
     /// Distance from the base to the contact at first touch
     #[arg(long, value_name = "MM", allow_hyphen_values = true, value_parser = number)]
     pub distance: f64,
-}
-
-/// An option's number.
-pub fn number(text: &str) -> Result<f64, String> {
-    text.parse()
-        .map_err(|_| "must be a number, such as 15.66".to_owned())
 }
 
 impl Pole {

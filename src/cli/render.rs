@@ -1,6 +1,6 @@
 //! `whiskmap render`.
 
-use super::failure::Failure;
+use super::failure::{Failure, say};
 use crate::render;
 use crate::store::StoredMap;
 use clap::Args;
@@ -26,8 +26,14 @@ pub struct Options {
 
 /// Runs `render`.
 pub fn run(options: &Options) -> Result<(), Failure> {
-    let input = |error: crate::store::Error| Failure::Input(error.to_string());
-    let map = StoredMap::open(&options.file).map_err(input)?;
+    let map = StoredMap::open(&options.file)?;
+    if let Some(version) = map.foreign_version() {
+        let file = options.file.display();
+        say(&format!(
+            "warning: {file} was written by whiskmap {version}, not by {}; what it holds may mean something else",
+            env!("CARGO_PKG_VERSION")
+        ));
+    }
     let channels = map.channels();
     if let Some(name) = &options.channel
         && !channels.contains(&name.as_str())

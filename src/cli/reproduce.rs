@@ -1,9 +1,10 @@
 //! `whiskmap reproduce`.
 
 use super::failure::Failure;
+use super::outputs::{self, unwritten};
 use crate::paper;
 use crate::render::ChartFormat;
-use crate::store::Table;
+use crate::store::{Output, Table};
 use clap::Args;
 use std::io::Write;
 use std::path::PathBuf;
@@ -25,14 +26,7 @@ pub struct Options {
 /// Runs `reproduce`.
 pub fn run(options: &Options) -> Result<(), Failure> {
     let folder = &options.folder;
-    let refuse = |error: std::io::Error| {
-        let folder = folder.display();
-        Failure::Input(format!(
-            "{folder}: {error}; give a folder that can be written"
-        ))
-    };
-    std::fs::create_dir_all(folder).map_err(refuse)?;
-    tempfile::tempfile_in(folder).map_err(refuse)?;
+    outputs::folder("DIR", folder)?;
     let mut out = std::io::stdout().lock();
     for figure in paper::figures().map_err(Failure::State)? {
         for (ending, format) in [("png", ChartFormat::Png), ("svg", ChartFormat::Svg)] {
@@ -42,14 +36,11 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         }
         for (name, rows) in &figure.tables {
             let path = folder.join(name).with_extension("csv");
-            let written = Table::create(&path).and_then(|mut table| {
+            let written = Output::create(&path).map(Table::new).and_then(|mut table| {
                 rows.write(&mut table)?;
                 table.finish()
             });
-            written.map_err(|cause| Failure::Write {
-                path: path.clone(),
-                cause,
-            })?;
+            written.map_err(|cause| unwritten(&path, cause))?;
             writeln!(out, "{}", path.display())?;
         }
     }

@@ -2,8 +2,9 @@
 
 use super::columns;
 use super::failure::Failure;
+use super::numbers::{number, whole};
 use super::outputs::Outputs;
-use super::pole::{Pole, number};
+use super::pole::Pole;
 use crate::render::{Chart, Drawn, Ink, Stroke, shapes};
 use crate::rod::Side;
 use crate::trace::{Branch, NoState, Shape, ShapePoint};
@@ -37,7 +38,7 @@ pub struct Options {
     #[arg(long, value_enum, default_value = "stable")]
     branch: Part,
     /// Places along the whisker, besides the contact
-    #[arg(long, value_name = "N", default_value = "200", value_parser = clap::value_parser!(u32).range(2..=1_000_000))]
+    #[arg(long, value_name = "N", default_value = "200", value_parser = whole(2..=1_000_000))]
     points: u32,
     #[command(flatten)]
     outputs: Outputs,

@@ -7,9 +7,6 @@ mod panel;
 mod pushes;
 mod summary;
 
-pub use panel::{Panel, STATE_CHANNELS};
-pub use summary::{Shots, Stage, Summary};
-
 use crate::integrate::{Engine, Fallback};
 use crate::plan::Plan;
 use crate::rod::Side;
@@ -17,8 +14,10 @@ use crate::scene::{Scene, Whisker};
 use crate::sheet::Sheet;
 use crate::shooting::batch::Method;
 use cells::SettledRow;
+pub use panel::{Panel, STATE_CHANNELS};
 use pushes::Pushes;
 use rayon::prelude::*;
+pub use summary::{Shots, Stage, Summary};
 
 /// Cells in flight for each thread where no engine shoots: so many that nearly all blocks of the refinement are full, and
 /// hardly a page of memory is new for them.
@@ -29,8 +28,8 @@ const CELLS_OF_A_THREAD: usize = 8192;
 pub enum Progress<'a> {
     /// So many more cells are settled.
     Settled(usize),
-    /// The next finished panels, in atlas order, and the index of the first one.
-    Panels(usize, &'a [Panel]),
+    /// The next finished panels, in atlas order.
+    Panels(&'a [Panel]),
 }
 
 /// One side of one whisker.
@@ -81,7 +80,7 @@ pub fn run<E>(
     let mut summary = Summary::default();
     let pushes = |side: &Side| Pushes::new(&scene.grid.push_angle_deg, *side);
     let sides: Vec<Pushes> = plan.sides.iter().map(pushes).collect();
-    for (group, whiskers) in plan.whiskers.chunks(plan.panels_at_once).enumerate() {
+    for whiskers in plan.whiskers.chunks(plan.panels_at_once) {
         let faces = summary.time(Stage::Sheets, || {
             faces(scene, plan.method, whiskers, &sides)
         });
@@ -98,8 +97,7 @@ pub fn run<E>(
         for panel in &panels {
             summary.count(panel);
         }
-        let first = group * plan.panels_at_once;
-        summary.time(Stage::Files, || observe(Progress::Panels(first, &panels)))?;
+        summary.time(Stage::Files, || observe(Progress::Panels(&panels)))?;
     }
     summary.engine_failure = engine.failure().cloned();
     Ok(summary)

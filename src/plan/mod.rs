@@ -11,8 +11,8 @@ use crate::shooting::batch::Method;
 /// Bytes that a run may take for its panels.
 pub const MEMORY_LIMIT: u64 = 4 << 30;
 
-/// Bytes per cell of a panel: 15 channels of 4 bytes, once as computed and once more while they are packed.
-const BYTES_PER_CELL: u64 = 2 * 15 * 4;
+/// Bytes per cell of a panel: 14 channels of 4 bytes, once as computed and once more while they are packed.
+const BYTES_PER_CELL: u64 = 2 * 14 * 4;
 
 /// Bytes per cell in flight: shots, answers and states of the refinement.
 const BYTES_IN_FLIGHT: u64 = 1024;

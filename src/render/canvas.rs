@@ -3,7 +3,7 @@
 use super::Error;
 use super::brush::Cover;
 use super::palette::{Fill, INK, Rgb, WHITE};
-use crate::store;
+use crate::store::Output;
 use plotters::backend::BitMapBackend;
 use plotters::prelude::{DrawingBackend, FontStyle, FontTransform, IntoFont, TextStyle};
 use plotters::style::text_anchor::{HPos, Pos, VPos};
@@ -150,15 +150,16 @@ impl Canvas {
             .map_err(|cause| unwritten(text, cause))
     }
 
-    /// Encodes the picture under a temporary name and renames it to `out`.
+    /// Encodes the picture into the file `out`.
     pub(super) fn save(&self, out: &Path) -> Result<(), Error> {
-        whole(out, ".png", |file| {
-            let size = (self.width as u32, self.height as u32);
-            let mut backend = BitMapBackend::new(file, size);
-            backend
-                .blit_bitmap((0, 0), size, &self.averaged())
-                .and_then(|()| backend.present())
-                .map_err(|cause| cause.to_string())
+        whole(out, |file| {
+            let mut encoder = png::Encoder::new(file, self.width as u32, self.height as u32);
+            encoder.set_color(png::ColorType::Rgb);
+            encoder.set_compression(png::Compression::Fast);
+            encoder.set_adaptive_filter(png::AdaptiveFilterType::Adaptive);
+            let mut writer = encoder.write_header()?;
+            writer.write_image_data(&self.averaged())?;
+            Ok(writer.finish()?)
         })
     }
 
@@ -183,21 +184,19 @@ impl Canvas {
     }
 }
 
-/// Has `write` fill a temporary file next to `out` and renames that to `out`: whole or not at all.
+/// Has `write` fill the file `out`, whole or not at all.
 pub(super) fn whole(
     out: &Path,
-    suffix: &str,
-    write: impl FnOnce(&Path) -> Result<(), String>,
+    write: impl FnOnce(&mut Output) -> std::io::Result<()>,
 ) -> Result<(), Error> {
-    let failed = |cause: String| Error::Write {
+    let written = Output::create(out).and_then(|mut output| {
+        write(&mut output)?;
+        output.finish()
+    });
+    written.map_err(|cause| Error::Write {
         path: out.to_owned(),
         cause,
-    };
-    let file = store::beside(out, suffix).map_err(|cause| failed(cause.to_string()))?;
-    write(file.path()).map_err(failed)?;
-    file.persist(out)
-        .map_err(|cause| failed(cause.to_string()))?;
-    Ok(())
+    })
 }
 
 /// How far a text of this size reaches along its line.

@@ -14,8 +14,8 @@ pub enum Error {
     Write {
         /// The picture.
         path: PathBuf,
-        /// What the system or the encoder said.
-        cause: String,
+        /// What the system said.
+        cause: std::io::Error,
     },
     /// The built-in font cannot be used.
     #[error("cannot draw the text {text:?}: {cause}")]

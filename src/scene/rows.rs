@@ -117,7 +117,7 @@ fn from_csv(path: &Path) -> Result<Vec<CsvRow>, String> {
             radius_um,
         } = record
             .deserialize(Some(&headers))
-            .map_err(|why| format!("line {line}: {}", said(&why)))?;
+            .map_err(|why| format!("line {line}: {}", said(&why, &headers)))?;
         let values = [arc_length_mm, radius_um];
         Ok(CsvRow { line, values })
     };
@@ -125,15 +125,16 @@ fn from_csv(path: &Path) -> Result<Vec<CsvRow>, String> {
 }
 
 /// What a row's error says, without the place, which is said already.
-fn said(why: &csv::Error) -> String {
-    match why.kind() {
-        csv::ErrorKind::Deserialize { err, .. } => match (err.kind(), err.field()) {
-            (csv::DeserializeErrorKind::ParseFloat(_), Some(field)) => {
-                format!("column {}: must be a number", field + 1)
-            }
-            _ => err.to_string(),
-        },
-        _ => why.to_string(),
+fn said(why: &csv::Error, columns: &csv::StringRecord) -> String {
+    let csv::ErrorKind::Deserialize { err, .. } = why.kind() else {
+        return why.to_string();
+    };
+    let column = err.field().and_then(|field| columns.get(field as usize));
+    match (err.kind(), column) {
+        (csv::DeserializeErrorKind::ParseFloat(_), Some(column)) => {
+            format!("{column} must be a number")
+        }
+        _ => err.to_string(),
     }
 }
 

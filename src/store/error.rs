@@ -1,6 +1,7 @@
 //! What can go wrong with a stored map.
 
-use std::path::PathBuf;
+use std::io;
+use std::path::{Path, PathBuf};
 
 /// A map that cannot be written or read. Every message is complete; there is no chain of sources to print.
 #[derive(Debug, thiserror::Error)]
@@ -13,7 +14,7 @@ pub enum Error {
         /// The map.
         path: PathBuf,
         /// What the system said.
-        cause: std::io::Error,
+        cause: io::Error,
     },
     /// The map cannot be expressed as EXR, such as an atlas wider than 2^30 pixels.
     #[error("cannot write {} as EXR: {cause}", path.display())]
@@ -55,21 +56,11 @@ pub enum Error {
         /// The names there are, separated by commas.
         known: String,
     },
-    /// A panel that the atlas does not have.
+    /// A panel that the atlas does not have, wanted or written.
     #[error("there is no panel {index}; the map has {panels}")]
     NoSuchPanel {
         /// The index asked for.
         index: usize,
-        /// The number of panels.
-        panels: usize,
-    },
-    /// Panels must be written one after the other.
-    #[error("panel {index} was written where panel {due} of {panels} is due")]
-    PanelOrder {
-        /// The index that came.
-        index: usize,
-        /// The index that is due.
-        due: usize,
         /// The number of panels.
         panels: usize,
     },
@@ -103,4 +94,27 @@ pub enum Error {
         /// Panels due.
         panels: usize,
     },
+}
+
+impl Error {
+    /// That the file system refused to `action` the map at `path`.
+    pub(super) fn io(action: &'static str, path: &Path) -> impl Fn(io::Error) -> Self {
+        move |cause| Self::Io {
+            action,
+            path: path.to_owned(),
+            cause,
+        }
+    }
+
+    /// Whether a file is no map that can be read, however that came to light.
+    #[must_use]
+    pub fn is_unreadable(&self) -> bool {
+        matches!(
+            self,
+            Self::Io { action: "read", .. }
+                | Self::NotExr { .. }
+                | Self::NotAMap { .. }
+                | Self::Damaged { .. }
+        )
+    }
 }

@@ -36,11 +36,7 @@ pub(super) fn encode(headers: &[Header], offsets: &[Vec<u64>; 3]) -> exr::error:
 
 /// The headers, not yet checked against the layout.
 pub(super) fn read(path: &Path, file: &mut BufReader<File>) -> Result<MetaData, Error> {
-    let unreadable = |cause| Error::Io {
-        action: "read",
-        path: path.to_owned(),
-        cause,
-    };
+    let unreadable = Error::io("read", path);
     let mut magic = [0; 4];
     match file.read_exact(&mut magic) {
         Ok(()) if magic == magic_number::BYTES => {}
@@ -53,7 +49,7 @@ pub(super) fn read(path: &Path, file: &mut BufReader<File>) -> Result<MetaData, 
             });
         }
     }
-    file.rewind().map_err(unreadable)?;
+    file.rewind().map_err(&unreadable)?;
     MetaData::read_from_buffered(file, true).map_err(|cause| Error::Damaged {
         path: path.to_owned(),
         reason: format!("header: {cause}"),

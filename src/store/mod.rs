@@ -10,21 +10,23 @@
 
 mod attributes;
 mod error;
-mod fresh;
 mod header;
 mod layout;
+mod output;
 mod reader;
 mod table;
 mod tally;
+mod unfinished;
 mod writer;
 
 pub use attributes::Description;
 pub use error::Error;
-pub(crate) use fresh::beside;
 pub use layout::Layout;
+pub use output::Output;
 pub use reader::{Samples, StoredMap};
 pub use table::Table;
 pub use tally::Counts;
+pub use unfinished::abandon;
 pub use writer::MapWriter;
 
 /// What a file holds of one whisker, and of the whole run.

@@ -56,6 +56,7 @@ pub struct StoredMap {
     layout: Layout,
     grid: Grid,
     title: String,
+    version: String,
     regime_names: BTreeMap<u32, String>,
     status_names: BTreeMap<u32, String>,
     counts: Counts,
@@ -68,7 +69,7 @@ impl StoredMap {
     ///
     /// The file cannot be read, is not EXR, is not a map of this program, or is damaged.
     pub fn open(path: &Path) -> Result<Self, Error> {
-        let mut file = BufReader::new(File::open(path).map_err(unreadable(path))?);
+        let mut file = BufReader::new(File::open(path).map_err(Error::io("read", path))?);
         let meta = header::read(path, &mut file)?;
         let foreign = |reason| Error::NotAMap {
             path: path.to_owned(),
@@ -81,6 +82,7 @@ impl StoredMap {
         Ok(Self {
             offsets: header::read_offsets(path, &mut file, &meta)?,
             title: header::parse(&meta, "title").map_err(foreign)?,
+            version: header::parse(&meta, "whiskmap_version").map_err(foreign)?,
             regime_names: header::parse(&meta, "regime_names").map_err(foreign)?,
             status_names: header::parse(&meta, "status_names").map_err(foreign)?,
             counts: header::parse(&meta, "counts").map_err(foreign)?,
@@ -125,6 +127,13 @@ impl StoredMap {
     #[must_use]
     pub const fn counts(&self) -> &Counts {
         &self.counts
+    }
+
+    /// The version of the program that wrote the map, if it is not compatible with this one.
+    #[must_use]
+    pub fn foreign_version(&self) -> Option<&str> {
+        let own = series(env!("CARGO_PKG_VERSION"));
+        Some(&*self.version).filter(|version| series(version) != own)
     }
 
     /// Any attribute, such as `tolerances`; a text, such as `scene` or `adapter`, is a JSON string.
@@ -173,7 +182,8 @@ impl StoredMap {
 
     fn read(&self, name: &str, panels: std::ops::Range<usize>) -> Result<Samples, Error> {
         let (part, channel, kind) = self.find(name)?;
-        let mut file = BufReader::new(File::open(&self.path).map_err(unreadable(&self.path))?);
+        let mut file =
+            BufReader::new(File::open(&self.path).map_err(Error::io("read", &self.path))?);
         let mut bytes = Vec::new();
         for panel in panels {
             for block in 0..self.layout.blocks_per_panel() {
@@ -230,11 +240,9 @@ impl StoredMap {
     }
 }
 
-fn unreadable(path: &Path) -> impl Fn(io::Error) -> Error {
-    let path = path.to_owned();
-    move |cause| Error::Io {
-        action: "read",
-        path: path.clone(),
-        cause,
-    }
+/// What compatible versions have in common: the numbers up to the first that is not 0.
+fn series(version: &str) -> Vec<&str> {
+    let zeros = version.split('.').take_while(|number| *number == "0");
+    let length = zeros.count() + 1;
+    version.split('.').take(length).collect()
 }

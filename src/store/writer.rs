@@ -3,7 +3,7 @@
 use super::attributes::{self, Description};
 use super::layout::{self, Layout, SAMPLE_BYTES};
 use super::tally::{Counts, Tally};
-use super::{Error, Panel, fresh, header};
+use super::{Error, Output, Panel, header};
 use crate::classify::Regime;
 use crate::map::Shots;
 use exr::block::UncompressedBlock;
@@ -12,13 +12,12 @@ use exr::meta::attribute::{AttributeValue, Text};
 use rayon::prelude::*;
 use std::io::{self, BufWriter, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
-use tempfile::NamedTempFile;
 
-/// A map on its way to disk. It bears a temporary name until [`MapWriter::finish`]; dropped before that, it vanishes.
+/// A map on its way to disk, by an [`Output`]: there is none until [`MapWriter::finish`].
 #[derive(Debug)]
 pub struct MapWriter {
     path: PathBuf,
-    file: BufWriter<NamedTempFile>,
+    file: BufWriter<Output>,
     /// Bytes written so far.
     position: u64,
     layout: Layout,
@@ -50,7 +49,7 @@ impl MapWriter {
         let headers = layout.headers(&attributes);
 
         let preamble = header::encode(&headers, &Default::default()).map_err(refused(path))?;
-        let file = fresh::beside(path, ".exr").map_err(unwritable(path))?;
+        let file = Output::create(path).map_err(unwritable(path))?;
         let mut writer = Self {
             path: path.to_owned(),
             file: BufWriter::new(file),
@@ -68,23 +67,18 @@ impl MapWriter {
         Ok(writer)
     }
 
-    /// Compresses, side by side, and appends the next panels; `first` is the index of the first one, `curvature * tapers + taper`.
+    /// Compresses, side by side, and appends the next panels: taper after taper, for one curvature after another.
     ///
     /// # Errors
     ///
-    /// A panel is not the next one, has the wrong size or a code without a name, or the disk is full.
-    pub fn write_panels(&mut self, first: usize, panels: &[Panel]) -> Result<(), Error> {
-        let all = self.layout.panels();
-        let order = |index, due| Error::PanelOrder {
-            index,
-            due,
-            panels: all,
-        };
-        if first != self.written {
-            return Err(order(first, self.written));
-        }
+    /// A panel is one too many, has the wrong size or a code without a name, or the disk is full.
+    pub fn write_panels(&mut self, panels: &[Panel]) -> Result<(), Error> {
+        let (first, all) = (self.written, self.layout.panels());
         if first + panels.len() > all {
-            return Err(order(all, all));
+            return Err(Error::NoSuchPanel {
+                index: all,
+                panels: all,
+            });
         }
         let channels: Vec<_> = panels.iter().map(layout::channel_bytes).collect();
         for (i, channels) in channels.iter().enumerate() {
@@ -148,8 +142,7 @@ impl MapWriter {
             .file
             .into_inner()
             .map_err(|error| unwritable(&self.path)(error.into_error()))?;
-        file.persist(&self.path)
-            .map_err(|error| unwritable(&self.path)(error.error))?;
+        file.finish().map_err(unwritable(&self.path))?;
         Ok(counts)
     }
 
@@ -235,18 +228,12 @@ impl MapWriter {
 }
 
 fn unwritable(path: &Path) -> impl Fn(io::Error) -> Error {
-    let path = path.to_owned();
-    move |cause| Error::Io {
-        action: "write",
-        path: path.clone(),
-        cause,
-    }
+    Error::io("write", path)
 }
 
 fn refused(path: &Path) -> impl Fn(exr::error::Error) -> Error {
-    let path = path.to_owned();
     move |cause| Error::Encode {
-        path: path.clone(),
+        path: path.to_owned(),
         cause,
     }
 }

@@ -75,6 +75,9 @@ fn errors_fall_from_rung_to_rung() {
 #[test]
 fn tables_fit_a_terminal_and_pictures_are_drawn() {
     let place = Place::with(SCENE);
+    // A link stays where it is.
+    #[cfg(unix)]
+    std::os::unix::fs::symlink("real.json", place.path("b.json")).unwrap();
     let run = good(
         &place,
         &[
@@ -92,6 +95,7 @@ fn tables_fit_a_terminal_and_pictures_are_drawn() {
     let widest = rows.map(|line| line.chars().count()).max();
     assert!(widest <= Some(80), "{}", run.out);
     assert!(run.out.contains("\n* "), "{}", run.out);
+    assert_eq!(place.path("b.json").is_symlink(), cfg!(unix));
     let json: Value = serde_json::from_slice(&place.bytes("b.json")).unwrap();
     assert_eq!(json["scene"], "A small map");
     let picture = String::from_utf8(place.bytes("b.svg")).unwrap();

@@ -7,12 +7,16 @@
 mod bench;
 mod branch;
 mod curve;
+#[cfg(unix)]
+mod files;
 mod map;
 mod other;
 mod paper;
 mod plan;
 mod refused;
 mod shape;
+#[cfg(unix)]
+mod signals;
 mod sweep;
 mod tolerance;
 mod traces;
@@ -69,8 +73,8 @@ impl Place {
         command
             .args(arguments)
             .current_dir(self.0.path())
-            // Software adapters complain on standard error where it is not set.
-            .env("XDG_RUNTIME_DIR", self.0.path());
+            // Where it is not set, the libraries of software adapters complain on standard error.
+            .env_remove("XDG_RUNTIME_DIR");
         command
     }
 

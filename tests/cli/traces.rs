@@ -99,29 +99,6 @@ fn help_defines_the_columns() {
     assert!(!short.contains("Columns"), "{short}");
 }
 
-/// What is not a plain file is written to, not replaced.
-#[cfg(unix)]
-#[test]
-fn links_and_devices_stay_what_they_are() {
-    let place = Place::with(SCENE);
-    let run = good(&place, &["curve", "scene.toml", "--csv", "/dev/null"]);
-    assert_eq!(run.out, "/dev/null\n");
-    place.write("real.csv", "");
-    std::os::unix::fs::symlink("real.csv", place.path("link.csv")).unwrap();
-    good(&place, &["curve", "scene.toml", "--csv", "link.csv"]);
-    assert!(place.path("link.csv").is_symlink());
-    assert!(place.bytes("real.csv").starts_with(CURVE.as_bytes()));
-    let full = place.run(&["curve", "scene.toml", "--csv", "/dev/full"]);
-    assert_eq!(full.code, Some(1), "{full:?}");
-    assert!(
-        full.err.contains("cannot write /dev/full: No space left"),
-        "{full:?}"
-    );
-    place
-        .run(&["curve", "scene.toml", "--csv", "a.svg", "--plot", "./a.svg"])
-        .assert_refused(&["must be two files"]);
-}
-
 #[test]
 fn wrong_arguments_are_refused_before_any_work() {
     let place = Place::with(SCENE);

@@ -23,8 +23,7 @@ pub fn compute_as(
 ) -> (Summary, Vec<Panel>) {
     let mut all = Vec::new();
     let Ok(summary) = map::run(scene, plan, engine, &mut |progress| {
-        if let Progress::Panels(first, panels) = progress {
-            assert_eq!(first, all.len());
+        if let Progress::Panels(panels) = progress {
             all.extend_from_slice(panels);
         }
         Ok::<(), Infallible>(())

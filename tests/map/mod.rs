@@ -125,7 +125,7 @@ pub fn write(path: &Path, scene: &Setup) -> Counts {
         .collect();
     // Not always as many at once.
     let (some, others) = panels.split_at(panels.len() / 3);
-    writer.write_panels(0, some).unwrap();
-    writer.write_panels(some.len(), others).unwrap();
+    writer.write_panels(some).unwrap();
+    writer.write_panels(others).unwrap();
     writer.finish(Shots::default()).unwrap()
 }

@@ -199,7 +199,7 @@ fn a_bad_csv_file_is_named_with_its_line() {
         ("arc_length_mm,radius\n0,30\n", "missing field `radius_um`"),
         (
             "arc_length_mm,radius_um\n0,30\n1,thin\n",
-            "line 3: column 2: must be a number",
+            "line 3: radius_um must be a number",
         ),
         ("arc_length_mm,radius_um\n0,30\n1\n", "line: 3"),
         (

@@ -23,14 +23,14 @@ fn a_map_appears_only_when_it_is_finished() {
     let about = map::describe(&scene, &tolerances);
 
     let mut dropped = MapWriter::create(&path, &about).unwrap();
-    dropped.write_panels(0, &[panel(&scene, 0)]).unwrap();
+    dropped.write_panels(&[panel(&scene, 0)]).unwrap();
     assert_eq!(listing(folder.path()).len(), 1);
     assert!(!path.exists());
     drop(dropped);
     assert!(listing(folder.path()).is_empty());
 
     let mut short = MapWriter::create(&path, &about).unwrap();
-    short.write_panels(0, &[panel(&scene, 0)]).unwrap();
+    short.write_panels(&[panel(&scene, 0)]).unwrap();
     let error = short.finish(Shots::default()).unwrap_err().to_string();
     assert_eq!(error, "the map was finished after 1 of 2 panels");
     assert!(listing(folder.path()).is_empty());
@@ -66,35 +66,26 @@ fn a_panel_that_does_not_fit_is_refused() {
     let tolerances = json!(null);
     let mut writer = MapWriter::create(&path, &map::describe(&scene, &tolerances)).unwrap();
     let good = panel(&scene, 0);
-    let mut refusals = |first, panels: &[Panel]| {
-        let refused = writer.write_panels(first, panels);
-        refused.unwrap_err().to_string()
-    };
+    let mut refusal = |panels: &[Panel]| writer.write_panels(panels).unwrap_err().to_string();
     assert_eq!(
-        refusals(0, &[good.clone(), good.clone(), good.clone()]),
-        "panel 2 was written where panel 2 of 2 is due"
-    );
-    let mut refusal = |index, panel: &Panel| refusals(index, std::slice::from_ref(panel));
-    assert_eq!(
-        refusal(1, &good),
-        "panel 1 was written where panel 0 of 2 is due"
+        refusal(&[good.clone(), good.clone(), good.clone()]),
+        "there is no panel 2; the map has 2"
     );
     let mut small = good.clone();
     small.state[3].pop();
     assert_eq!(
-        refusal(0, &small),
+        refusal(&[small]),
         "panel 0: channel `base_force_x_un` has 19 cells instead of 20"
     );
     let mut strange = good.clone();
     strange.regime[7] = 99;
     assert_eq!(
-        refusal(0, &strange),
+        refusal(&[strange.clone()]),
         "panel 0: channel `regime` holds the code 99, which has no name"
     );
     // None of them was counted.
-    let refused = writer.write_panels(0, &[good.clone(), strange]);
-    assert!(refused.unwrap_err().to_string().starts_with("panel 1: "));
-    writer.write_panels(0, &[good.clone(), good]).unwrap();
+    assert!(refusal(&[good.clone(), strange]).starts_with("panel 1: "));
+    writer.write_panels(&[good.clone(), good]).unwrap();
     let counts = writer.finish(Shots::default()).unwrap();
     assert_eq!(counts.regimes.values().sum::<u64>(), 40);
 }

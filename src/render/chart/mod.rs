@@ -17,6 +17,7 @@ mod window;
 use super::Error;
 use super::canvas::{Canvas, whole};
 use sheet::Sheet;
+use std::io::Write;
 use std::path::Path;
 use svg::Svg;
 
@@ -145,9 +146,7 @@ impl Chart {
             }
             ChartFormat::Svg => {
                 let svg = self.svg()?;
-                whole(out, ".svg", |file| {
-                    std::fs::write(file, svg).map_err(|cause| cause.to_string())
-                })
+                whole(out, |file| file.write_all(svg.as_bytes()))
             }
         }
     }

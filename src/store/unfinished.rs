@@ -1,0 +1,111 @@
+//! Temporary files, which nobody should ever find: they vanish when dropped, when the process is interrupted, and, after it
+//! was killed, when the next one writes into their folder.
+
+use std::fs::{self, File};
+use std::io;
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use tempfile::NamedTempFile;
+
+/// A temporary file on its way to its name.
+#[derive(Debug)]
+pub(super) struct Unfinished {
+    file: NamedTempFile,
+    _listed: Listed,
+}
+
+/// The temporary files of this process.
+static LIST: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+
+fn list() -> MutexGuard<'static, Vec<PathBuf>> {
+    LIST.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// A place in the list.
+#[derive(Debug)]
+struct Listed(PathBuf);
+
+impl Drop for Listed {
+    fn drop(&mut self) {
+        list().retain(|path| *path != self.0);
+    }
+}
+
+/// Removes all temporary files of this process, for one that is about to end without unwinding. Threads that begin or
+/// finish a file after this wait forever.
+pub fn abandon() {
+    let list = list();
+    for path in list.iter() {
+        let _ = fs::remove_file(path);
+    }
+    std::mem::forget(list);
+}
+
+impl Unfinished {
+    /// A new file in `folder`, from which those that killed runs have left are removed.
+    pub(super) fn create(folder: &Path) -> io::Result<Self> {
+        let prefix = prefix();
+        sweep(folder, &prefix);
+        let mut builder = tempfile::Builder::new();
+        builder.prefix(&prefix);
+        // Temporary files are private by default; the result has the permissions that the umask gives any new file.
+        #[cfg(unix)]
+        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+        loop {
+            let mut list = list();
+            let file = builder.tempfile_in(folder)?;
+            list.push(file.path().to_owned());
+            drop(list);
+            let listed = Listed(file.path().to_owned());
+            // Without locks, a killed run's file stays.
+            let _ = file.as_file().lock();
+            // Before it was locked, another process may have taken it for a leftover.
+            if !matches!(file.path().try_exists(), Ok(false)) {
+                return Ok(Self {
+                    file,
+                    _listed: listed,
+                });
+            }
+        }
+    }
+
+    pub(super) fn file(&mut self) -> &mut File {
+        self.file.as_file_mut()
+    }
+
+    /// Gives the file its name, in place of what has it.
+    pub(super) fn persist(self, name: &Path) -> io::Result<()> {
+        self.file.persist(name)?;
+        Ok(())
+    }
+}
+
+/// Removes the files of this host in `folder` whose process is gone: its lock is.
+fn sweep(folder: &Path, prefix: &str) {
+    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+        let name = entry.file_name();
+        let is_ours = name.to_str().is_some_and(|name| name.starts_with(prefix));
+        if !is_ours || !entry.file_type().is_ok_and(|kind| kind.is_file()) {
+            continue;
+        }
+        // Kept open, and so locked, until it is removed.
+        let file = File::options().write(true).open(entry.path());
+        if file.as_ref().is_ok_and(|file| file.try_lock().is_ok()) {
+            let _ = fs::remove_file(entry.path());
+        }
+    }
+}
+
+/// How the names begin. They name the host, because there are shared folders whose locks only one host sees.
+fn prefix() -> String {
+    #[cfg(unix)]
+    let host = rustix::system::uname()
+        .nodename()
+        .to_string_lossy()
+        .into_owned();
+    #[cfg(not(unix))]
+    let host = std::env::var("COMPUTERNAME").unwrap_or_default();
+    let plain = |c: &char| c.is_ascii_alphanumeric() || "-_.".contains(*c);
+    let host: String = host.chars().filter(plain).take(64).collect();
+    format!(".whiskmap-{host}-")
+}

@@ -1,0 +1,113 @@
+//! Interrupted and killed runs leave nothing, at the latest when the next one comes.
+
+use crate::{Place, Run, SCENE, names};
+use std::fs;
+use std::process::{Child, Command, Stdio};
+
+/// A sweep that takes minutes.
+fn long() -> String {
+    let axes = "taper = { from = 0, to = 0.9, count = 400 }\ncurvature_per_mm = { from = 0, to = 0.04, count = 400 }";
+    format!("{SCENE}{axes}\n")
+}
+
+/// A run in the middle of its work: its unfinished file is in `folder`.
+fn begun(place: &Place, command: &mut Command, folder: &str) -> Child {
+    let mut child = command
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    while unfinished(place, folder).is_empty() {
+        assert!(child.try_wait().unwrap().is_none(), "it ended early");
+        std::thread::yield_now();
+    }
+    child
+}
+
+fn unfinished(place: &Place, folder: &str) -> Vec<String> {
+    let mut names = names(&place.path(folder));
+    names.retain(|name| name.starts_with(".whiskmap-"));
+    names
+}
+
+fn send(signal: &str, child: &Child) {
+    let kill = format!("kill -{signal} {}", child.id());
+    assert!(
+        Command::new("sh")
+            .args(["-c", &kill])
+            .status()
+            .unwrap()
+            .success()
+    );
+}
+
+#[test]
+fn an_interrupted_run_cleans_up() {
+    let place = Place::with(&long());
+    let map = ["map", "scene.toml", "--engine=cpu"];
+    for (signal, code) in [("HUP", 129), ("INT", 130), ("TERM", 143)] {
+        let child = begun(&place, &mut place.plain_command(&map), "outputs");
+        send(signal, &child);
+        let run = Run::of(&child.wait_with_output().unwrap());
+        assert_eq!((run.code, &*run.out), (Some(code), ""), "{run:?}");
+        let said = format!("\nerror: interrupted by SIG{signal}; unfinished files are removed\n");
+        assert!(run.err.ends_with(&said), "{run:?}");
+        assert_eq!(names(&place.path("outputs")), [""; 0]);
+    }
+}
+
+/// A run that waits for the reader of a pipe has its table in the folder for temporary files.
+#[test]
+fn a_waiting_run_is_interrupted_and_an_ignored_signal_is_not_handled() {
+    let place = Place::with(SCENE);
+    place.pipe("t.csv");
+    fs::create_dir(place.path("tmp")).unwrap();
+    let curve = ["curve", "scene.toml", "--csv", "t.csv"];
+    let mut command = place.plain_command(&curve);
+    let child = begun(&place, command.env("TMPDIR", place.path("tmp")), "tmp");
+    send("TERM", &child);
+    assert_eq!(child.wait_with_output().unwrap().status.code(), Some(143));
+    assert_eq!(names(&place.path("tmp")), [""; 0]);
+
+    // As `nohup` starts it.
+    let mut shell = Command::new("sh");
+    shell.args([
+        "-c",
+        "trap '' HUP; exec \"$0\" \"$@\"",
+        env!("CARGO_BIN_EXE_whiskmap"),
+    ]);
+    shell
+        .args(curve)
+        .current_dir(place.path(""))
+        .env("TMPDIR", place.path("tmp"));
+    let child = begun(&place, &mut shell, "tmp");
+    send("HUP", &child);
+    assert!(fs::read(place.path("t.csv")).unwrap().len() > 1000);
+    let run = Run::of(&child.wait_with_output().unwrap());
+    assert_eq!((run.code, &*run.err), (Some(0), ""), "{run:?}");
+}
+
+#[test]
+fn what_a_killed_run_leaves_is_removed_by_the_next_one() {
+    let place = Place::with(&long());
+    place.write("small.toml", SCENE);
+    let mut killed = begun(
+        &place,
+        &mut place.plain_command(&["map", "scene.toml", "--engine=cpu"]),
+        "outputs",
+    );
+    // What has its process is left alone.
+    place.map(&["small.toml"]);
+    let left = unfinished(&place, "outputs");
+    assert_eq!(left.len(), 1);
+    killed.kill().unwrap();
+    killed.wait().unwrap();
+    assert_eq!(unfinished(&place, "outputs"), left);
+    // Other hosts may see no lock of ours, and we none of theirs.
+    place.write("outputs/.whiskmap-another.host-abc123", "");
+    place.map(&["small.toml"]);
+    assert_eq!(
+        unfinished(&place, "outputs"),
+        [".whiskmap-another.host-abc123"]
+    );
+}
