@@ -2,6 +2,7 @@
 
 use super::failure::{Failure, say};
 use super::outputs::{picture, refused, same};
+use super::render::save;
 use crate::bench::{self, Detachments, Effort, Report, Row};
 use crate::render::{Chart, Dot, Ink, Line, Plot, Stroke};
 use crate::scene::Scene;
@@ -84,7 +85,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
             })?;
     }
     if let Some((path, format)) = &plot {
-        chart(&report).save(path, *format)?;
+        save(&chart(&report).picture(), path, *format)?;
     }
     if options.json.as_deref() == Some(stdout) {
         io::stdout().lock().write_all(json().as_bytes())?;

@@ -3,15 +3,16 @@
 use super::engine::{self, Choice, Shaders};
 use super::failure::{Failure, say};
 use super::progress;
+use super::render::save;
 use super::tolerance::Tolerance;
 use crate::accuracy::Accuracy;
 use crate::classify::{Regime, Status};
 use crate::map::{self, Observer, Summary};
 use crate::plan::Plan;
 use crate::refine::{GOAL, TOLERANCE};
+use crate::render::{self, Format, MapOptions};
 use crate::scene::Scene;
-use crate::store::{Description, MapWriter, Panel};
-use crate::{render, store};
+use crate::store::{self, Description, MapWriter, Panel, StoredMap};
 use clap::Args;
 use indicatif::ProgressBar;
 use std::io::Write;
@@ -91,7 +92,8 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         say(&format!("warning: {failure}; the CPU went on in its stead"));
     }
     if let Some(picture) = &picture {
-        render::regimes(&store::StoredMap::open(&file)?, picture)?;
+        let regimes = render::map(&StoredMap::open(&file)?, &MapOptions::default())?;
+        save(&regimes, picture, Format::Png)?;
     }
     let written: Vec<PathBuf> = [Some(file), picture].into_iter().flatten().collect();
     print(&scene, &summary, start.elapsed().as_secs_f64(), &written)?;

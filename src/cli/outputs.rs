@@ -1,7 +1,8 @@
 //! Where the tables and plots of a command go.
 
 use super::failure::Failure;
-use crate::render::{Chart, ChartFormat};
+use super::render::save;
+use crate::render::{Chart, Format};
 use crate::store::Table;
 use clap::Args;
 use serde::Serialize;
@@ -24,7 +25,7 @@ pub struct Opened {
     table: Option<Table>,
     /// The table's file; standard output has none.
     csv: Option<PathBuf>,
-    plot: Option<(PathBuf, ChartFormat)>,
+    plot: Option<(PathBuf, Format)>,
 }
 
 impl Outputs {
@@ -76,7 +77,7 @@ impl Opened {
         let finished = self.table.take().map_or(Ok(()), Table::finish);
         finished.map_err(|cause| self.unwritten(cause))?;
         if let Some((path, format)) = &self.plot {
-            chart().save(path, *format)?;
+            save(&chart().picture(), path, *format)?;
         }
         let mut out = io::stdout().lock();
         let files = [self.csv, self.plot.map(|(path, _)| path)];
@@ -110,8 +111,8 @@ pub fn same(one: &Path, other: &Path) -> bool {
 }
 
 /// The picture's file and format; its folder must be there.
-pub fn picture(path: &Path) -> Result<(PathBuf, ChartFormat), Failure> {
-    let Some(format) = ChartFormat::of(path) else {
+pub fn picture(path: &Path) -> Result<(PathBuf, Format), Failure> {
+    let Some(format) = Format::of(path) else {
         let path = path.display();
         return Err(Failure::Input(format!(
             "--plot {path}: must end in .png or .svg"

@@ -9,20 +9,18 @@ pub enum Error {
     /// The map does not have what is to be drawn.
     #[error(transparent)]
     Map(#[from] store::Error),
+    /// The wanted colour scale cannot be had; the text says why, and what is allowed.
+    #[error("{0}")]
+    Scale(String),
+    /// The pixels cannot be encoded.
+    #[error("cannot encode the picture as PNG: {0}")]
+    Encode(#[from] png::EncodingError),
     /// The picture cannot be written.
     #[error("cannot write {}: {cause}", path.display())]
     Write {
         /// The picture.
         path: PathBuf,
-        /// What the system or the encoder said.
-        cause: String,
-    },
-    /// The built-in font cannot be used.
-    #[error("cannot draw the text {text:?}: {cause}")]
-    Font {
-        /// The text.
-        text: String,
-        /// What the drawing library said.
-        cause: String,
+        /// What the system said.
+        cause: std::io::Error,
     },
 }

@@ -12,6 +12,7 @@ mod other;
 mod paper;
 mod plan;
 mod refused;
+mod render;
 mod shape;
 mod sweep;
 mod tolerance;
