@@ -455,7 +455,7 @@ fn an_svg_document_has_the_cells_as_pixels_and_the_rest_as_such() {
 fn the_width_is_what_was_asked_for() {
     let scene = scene(6, 5, None, None);
     let panels = [flat(&scene, &[2; 30], 3.0)];
-    for width in [300, 1001, 8000] {
+    for width in [300, 1001, 3000] {
         let options = MapOptions {
             width: Some(width),
             ..MapOptions::default()
