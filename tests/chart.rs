@@ -7,15 +7,20 @@
 
 mod drawn;
 
-use drawn::{Picture, frame, line, polylines, single, well_formed};
+use drawn::{Pixels, frame, line, polylines, single, svg, well_formed};
 use std::fs;
 use std::path::Path;
-use whiskmap::render::{self, Chart, ChartFormat, Disc, Dot, Ink, Line, Plot, Stroke};
+use whiskmap::render::{self, Chart, Disc, Dot, Format, Ink, Line, Plot, Stroke};
 
 const WHITE: [u8; 3] = [255; 3];
 const BLACK: [u8; 3] = [0x22, 0x2b, 0x33];
 const BLUE: [u8; 3] = [0x1c, 0x6c, 0xc4];
 const BODY: [u8; 3] = [0xdc, 0xdd, 0xde];
+
+/// A chart as SVG and as pixels.
+fn both(chart: &Chart) -> (String, Pixels) {
+    (svg(&chart.picture()), Pixels::of(&chart.picture()))
+}
 
 /// A quarter of a circle of radius 100 in a thousand pieces.
 fn arc() -> Vec<[f64; 2]> {
@@ -32,7 +37,7 @@ fn a_line_is_where_its_numbers_are() {
         lines: vec![line(&corners, Ink::Blue, Stroke::Solid)],
         ..Plot::default()
     });
-    let (svg, picture) = (chart.svg().unwrap(), Picture::of(&chart));
+    let (svg, picture) = both(&chart);
     let [left, top, right, bottom] = frame(&svg);
     assert_eq!([right - left, bottom - top], [1280.0, 880.0]);
     // The data take 1 of 1.08 parts of the axes.
@@ -70,7 +75,7 @@ fn dashes_are_even_along_a_curve_and_solid_lines_have_none() {
             equal_axes: true,
             ..Plot::default()
         });
-        let (svg, picture) = (chart.svg().unwrap(), Picture::of(&chart));
+        let (svg, picture) = both(&chart);
         let (points, dashed) = &polylines(&svg)[0];
         assert_eq!(*dashed, stroke == Stroke::Dashed);
         assert_eq!(points.len(), 1001);
@@ -117,15 +122,17 @@ fn points_that_are_not_finite_break_a_line() {
         }],
         ..Plot::default()
     });
-    let svg = chart.svg().unwrap();
+    let svg = svg(&chart.picture());
     let stretches = polylines(&svg);
     assert_eq!([stretches[0].0.len(), stretches[1].0.len()], [2, 2]);
     assert_eq!(svg.matches("<circle").count(), 1, "the point on its own");
     let [left, _, right, bottom] = frame(&svg);
     let across = left + (right - left) * (2.0 / 5.0 + 0.04) / 1.08;
     let alone = [across, bottom - 880.0 * 0.04 / 1.08];
-    let picture = Picture::of(&chart);
-    assert_eq!(picture.at(alone), BLUE);
+    let picture = Pixels::of(&chart.picture());
+    for away in [-4.0, 0.0, 4.0] {
+        assert_eq!(picture.at([alone[0] + away, alone[1]]), BLUE);
+    }
     assert_eq!(picture.at([alone[0] + 20.0, alone[1]]), WHITE);
 }
 
@@ -151,7 +158,7 @@ fn dots_and_discs_are_drawn_and_axes_are_equal() {
         equal_axes: true,
         ..Plot::default()
     });
-    let (svg, picture) = (chart.svg().unwrap(), Picture::of(&chart));
+    let (svg, picture) = both(&chart);
     let [left, top, _, bottom] = frame(&svg);
     let unit = 1280.0 / 10.8;
     let place = |x: f64, y: f64| {
@@ -194,7 +201,7 @@ fn the_legend_has_each_name_once_and_wraps() {
     ]
     .map(|name| name.repeat(2));
     let names: Vec<&str> = long.iter().map(String::as_str).collect();
-    let svg = |names: &[&str]| single(plot(names)).svg().unwrap();
+    let svg = |names: &[&str]| drawn::svg(&single(plot(names)).picture());
     let twice = svg(&["stable", "unstable", "stable"]);
     assert_eq!(twice.matches(">stable<").count(), 1);
     assert_eq!(twice.matches(">unstable<").count(), 1);
@@ -207,7 +214,7 @@ fn the_legend_has_each_name_once_and_wraps() {
 
 #[test]
 fn a_document_is_well_formed_whatever_the_texts() {
-    let text = "a<b & \"c\"> \u{2212}\u{7}";
+    let text = "a<b & \"c\"> \u{2212}\u{7}\u{fffe}";
     let chart = Chart {
         title: text.to_owned(),
         plots: vec![Plot {
@@ -225,9 +232,9 @@ fn a_document_is_well_formed_whatever_the_texts() {
         }],
         columns: 3,
     };
-    let svg = chart.svg().unwrap();
+    let svg = svg(&chart.picture());
     assert!(well_formed(&svg), "{svg}");
-    let shown = "a&lt;b &amp; &quot;c&quot;&gt; \u{2212}\u{fffd}</text>";
+    let shown = "a&lt;b &amp; &quot;c&quot;&gt; \u{2212} \u{fffd}</text>";
     assert_eq!(svg.matches(shown).count(), 5);
     for damage in ["</text>", "</svg>", "amp;", "/>"] {
         assert!(
@@ -289,7 +296,7 @@ fn degenerate_data_give_pictures_without_nan() {
         }
     }
     for plot in plots {
-        let svg = single(plot.clone()).svg().unwrap();
+        let svg = svg(&single(plot.clone()).picture());
         assert!(
             well_formed(&svg) && !svg.contains("NaN") && !svg.contains("inf"),
             "{plot:?}"
@@ -307,11 +314,14 @@ fn degenerate_data_give_pictures_without_nan() {
         let plots = vec![Plot::default(); plots];
         let (title, columns) = (String::new(), 0);
         assert!(
-            Picture::of(&Chart {
-                title,
-                plots,
-                columns
-            })
+            Pixels::of(
+                &Chart {
+                    title,
+                    plots,
+                    columns
+                }
+                .picture()
+            )
             .width
                 > 500
         );
@@ -330,7 +340,7 @@ fn plots_stand_in_rows() {
         plots: ('A'..='H').map(plot).collect(),
         columns: 2,
     };
-    let (svg, picture) = (chart.svg().unwrap(), Picture::of(&chart));
+    let (svg, picture) = both(&chart);
     let size = format!("width=\"{}\" height=\"{}\"", picture.width, picture.height);
     assert!(svg.contains(&size), "{size}");
     let lines = polylines(&svg)
@@ -356,37 +366,157 @@ fn equal_charts_give_equal_bytes() {
                 ..Plot::default()
             });
             let path = folder.path().join(name);
-            chart.save(&path, ChartFormat::of(&path).unwrap()).unwrap();
+            let format = Format::of(&path).unwrap();
+            chart.picture().save(&path, format).unwrap();
             fs::read(path).unwrap()
         });
         assert!(bytes[0] == bytes[1] && bytes[0].len() > 1000, "{name}");
     }
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2);
     for (name, format) in [
-        ("a/b.Png", Some(ChartFormat::Png)),
+        ("a/b.Png", Some(Format::Png)),
         ("c.svg.exr", None),
         ("svg", None),
     ] {
-        assert_eq!(ChartFormat::of(Path::new(name)), format);
+        assert_eq!(Format::of(Path::new(name)), format);
     }
 }
 
 #[test]
 fn errors_leave_no_chart() {
     let folder = tempfile::tempdir().unwrap();
-    for (name, format) in [
-        ("chart.png", ChartFormat::Png),
-        ("chart.svg", ChartFormat::Svg),
-    ] {
+    for (name, format) in [("chart.png", Format::Png), ("chart.svg", Format::Svg)] {
         let nowhere = folder.path().join("no such folder").join(name);
-        let error = single(Plot::default()).save(&nowhere, format).unwrap_err();
+        let error = single(Plot::default())
+            .picture()
+            .save(&nowhere, format)
+            .unwrap_err();
         assert!(matches!(error, render::Error::Write { .. }), "{error}");
         // A folder in the way: the temporary file must go.
         let taken = folder.path().join(name);
         fs::create_dir(&taken).unwrap();
-        let error = single(Plot::default()).save(&taken, format).unwrap_err();
+        let error = single(Plot::default())
+            .picture()
+            .save(&taken, format)
+            .unwrap_err();
         assert!(matches!(error, render::Error::Write { .. }), "{error}");
         fs::remove_dir(&taken).unwrap();
     }
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+}
+
+#[test]
+fn a_line_of_one_point_is_a_dot_and_so_it_is_in_the_legend() {
+    let point = |y: f64, ink: Ink| Line {
+        name: Some("slip-off".to_owned()),
+        ..line(&[[15.0, y]], ink, Stroke::Solid)
+    };
+    let chart = single(Plot {
+        lines: vec![point(-20.0, Ink::Black), point(20.0, Ink::Black)],
+        ..Plot::default()
+    });
+    let (svg, picture) = both(&chart);
+    let circles: Vec<[f64; 3]> = svg
+        .lines()
+        .filter(|line| line.starts_with("<circle"))
+        .map(|tag| {
+            let quoted: Vec<&str> = tag.split('"').collect();
+            [1, 3, 5].map(|value| quoted[value].parse().unwrap())
+        })
+        .collect();
+    assert_eq!(circles.len(), 3, "two points and the legend");
+    for [x, y, radius] in circles {
+        assert!(radius >= 5.0);
+        for away in [-0.8 * radius, 0.0, 0.8 * radius] {
+            assert_eq!(picture.at([x + away, y]), BLACK);
+        }
+    }
+}
+
+#[test]
+fn axes_choose_the_unit_that_suits_their_numbers() {
+    let chart = |points: &[[f64; 2]], equal_axes: bool| {
+        svg(&single(Plot {
+            x_label: "x (mm)".to_owned(),
+            y_label: "force (\u{b5}N)".to_owned(),
+            lines: vec![line(points, Ink::Black, Stroke::Solid)],
+            equal_axes,
+            ..Plot::default()
+        })
+        .picture())
+    };
+    let large = chart(&[[0.0, 0.0], [2000.0, 4e7]], false);
+    for text in [">x (m)<", ">force (N)<", ">2.0<", ">40<"] {
+        assert!(large.contains(text), "{text}");
+    }
+    let usual = chart(&[[0.0, 0.0], [20.0, 400.0]], false);
+    for text in [">x (mm)<", ">force (\u{b5}N)<", ">400<"] {
+        assert!(usual.contains(text), "{text}");
+    }
+    // A whisker that is hardly bent: both axes stay in millimetres.
+    let equal = chart(&[[0.0, 0.0], [20.0, 0.01]], true);
+    assert!(equal.contains(">x (mm)<") && equal.contains(">force (\u{b5}N)<"));
+}
+
+#[test]
+fn characters_that_the_font_lacks_are_named() {
+    assert!(render::missing_glyphs("\u{b5}N \u{2264} \u{3b8}p\n").is_empty());
+    let title = "\u{9f20} hair \u{9f20}\u{1f400}";
+    assert_eq!(render::missing_glyphs(title), ['\u{9f20}', '\u{1f400}']);
+    let picture = single(Plot {
+        title: title.to_owned(),
+        ..Plot::default()
+    })
+    .picture();
+    assert_eq!(picture.missing_glyphs(), ['\u{9f20}', '\u{1f400}']);
+    let svg = svg(&picture);
+    assert!(svg.contains(title) && svg.contains("sans-serif"));
+}
+
+#[test]
+fn a_line_looks_the_same_however_many_points_it_has() {
+    let corners = [[0.0, 0.0], [60.0, 0.0], [60.0, 40.0]];
+    let at = |part: f64| {
+        let [from, to] = [corners[part as usize], corners[(part as usize + 1).min(2)]];
+        [0, 1].map(|axis| from[axis] + part.fract() * (to[axis] - from[axis]))
+    };
+    let many: Vec<_> = (0..=4000)
+        .map(|step| at(f64::from(step) / 2000.0))
+        .collect();
+    for stroke in [Stroke::Solid, Stroke::Dashed] {
+        let [few, many] = [&corners[..], &many].map(|points| {
+            let lines = vec![line(points, Ink::Black, stroke)];
+            Pixels::of(
+                &single(Plot {
+                    lines,
+                    ..Plot::default()
+                })
+                .picture(),
+            )
+        });
+        let pairs = few.pixels.iter().zip(&many.pixels);
+        // A point is off by rounding alone, a hundredth of a grey level.
+        let most = pairs.map(|(few, many)| few[0].abs_diff(many[0])).max();
+        assert!(most <= Some(1), "{stroke:?}: {most:?}");
+    }
+}
+
+#[test]
+fn a_large_disc_widens_both_axes() {
+    let chart = |radius: f64| {
+        single(Plot {
+            lines: vec![line(&[[0.0, 0.0], [100.0, 0.0]], Ink::Black, Stroke::Solid)],
+            discs: vec![Disc {
+                centre: [50.0, 30.0],
+                radius,
+            }],
+            equal_axes: true,
+            ..Plot::default()
+        })
+    };
+    for (radius, unit) in [(20.0, 1280.0 / 108.0), (70.0, 880.0 / 151.2)] {
+        let svg = svg(&chart(radius).picture());
+        let points = &polylines(&svg)[0].0;
+        assert!((points[1][0] - points[0][0] - 100.0 * unit).abs() < 0.02);
+    }
 }

@@ -5,6 +5,7 @@ use super::failure::{Failure, say};
 use super::numbers::whole;
 use super::outputs;
 use super::progress;
+use super::render::save;
 use super::tolerance::Tolerance;
 use crate::accuracy::{Accuracy, BOUNDED};
 use crate::classify::{Regime, Status};
@@ -13,6 +14,7 @@ use crate::map::{self, Progress, Summary};
 use crate::plan::Plan;
 use crate::refine::{GOAL, TOLERANCE};
 use crate::render;
+use crate::render::{Format, MapOptions};
 use crate::scene::Scene;
 use crate::store::{Description, MapWriter, StoredMap};
 use clap::Args;
@@ -106,7 +108,8 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         say(&format!("warning: {failure}; the CPU went on in its stead"));
     }
     if let Some(picture) = &picture {
-        render::regimes(&StoredMap::open(&file)?, picture)?;
+        let regimes = render::map(&StoredMap::open(&file)?, &MapOptions::default())?;
+        save(&regimes, picture, Format::Png)?;
     }
     let written: Vec<PathBuf> = [Some(file), picture].into_iter().flatten().collect();
     print(&scene, &summary, start.elapsed().as_secs_f64(), &written)?;

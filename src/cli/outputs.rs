@@ -1,7 +1,8 @@
 //! Where the tables and plots of a command go.
 
 use super::failure::Failure;
-use crate::render::{Chart, ChartFormat};
+use super::render::save;
+use crate::render::{Chart, Format};
 use crate::store::{Output, Table};
 use clap::Args;
 use serde::Serialize;
@@ -22,7 +23,7 @@ pub struct Outputs {
 /// The outputs of a run, found to be possible before any work.
 pub struct Opened {
     table: Option<(Table, PathBuf)>,
-    picture: Option<Picture>,
+    picture: Option<PlotFile>,
     /// Regular files, to be named when they are there.
     files: Vec<PathBuf>,
 }
@@ -82,16 +83,16 @@ impl Opened {
 pub const STDOUT: &str = "-";
 
 /// `--plot`: a picture that can be made.
-pub struct Picture {
+pub struct PlotFile {
     path: PathBuf,
-    format: ChartFormat,
+    format: Format,
     is_regular: bool,
 }
 
-impl Picture {
+impl PlotFile {
     /// Draws and writes it.
     pub fn save(&self, chart: &Chart) -> Result<(), Failure> {
-        Ok(chart.save(&self.path, self.format)?)
+        save(&chart.picture(), &self.path, self.format)
     }
 }
 
@@ -100,10 +101,10 @@ pub fn open(
     option: &str,
     data: Option<&Path>,
     plot: Option<&Path>,
-) -> Result<(Option<Output>, Option<Picture>), Failure> {
+) -> Result<(Option<Output>, Option<PlotFile>), Failure> {
     let format = |path: &Path| {
         let must = || format!("--plot {}: must end in .png or .svg", path.display());
-        ChartFormat::of(path).ok_or_else(|| Failure::Input(must()))
+        Format::of(path).ok_or_else(|| Failure::Input(must()))
     };
     let format = plot.map(format).transpose()?;
     let output = data.map(|path| create(option, path)).transpose()?;
@@ -118,7 +119,7 @@ pub fn open(
         )));
     }
     let picture = plot.zip(format).zip(place);
-    let picture = picture.map(|((path, format), place)| Picture {
+    let picture = picture.map(|((path, format), place)| PlotFile {
         path: path.to_owned(),
         format,
         is_regular: place.is_regular(),

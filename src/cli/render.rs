@@ -1,27 +1,52 @@
 //! `whiskmap render`.
 
 use super::failure::{Failure, say};
-use crate::render;
+use crate::render::{self, Format, MapOptions, Picture};
 use crate::store::StoredMap;
 use clap::Args;
-use std::io::Write;
-use std::path::PathBuf;
+use std::io::{IsTerminal, Write};
+use std::path::{Path, PathBuf};
 
 /// Options of `render`.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
   whiskmap render outputs/cone.exr
-  whiskmap render outputs/cone.exr --channel force_un -o force.png")]
+  whiskmap render outputs/cone.exr -o cone.svg
+  whiskmap render outputs/cone.exr --channel force_un -o force.png --width 3000
+  whiskmap render outputs/cone.exr --channel force_un --log --range 1,1000
+  whiskmap render outputs/cone.exr -o - | display
+
+An SVG has the cells as pixels, and text and lines as such. The ends of --range are in the unit that the channel's \
+name ends in; the colour bar shows them in the unit that suits them.")]
 pub struct Options {
     /// Map written by `whiskmap map`
     file: PathBuf,
     /// Channel to draw with a colour bar; without it the regimes are drawn
     #[arg(long, value_name = "NAME")]
     channel: Option<String>,
-    /// Picture to write [default: FILE.png or FILE.NAME.png beside the map]
-    #[arg(short, long, value_name = "PNG")]
+    /// Logarithmic colour scale; cells at or below 0 stay blank
+    #[arg(long, requires = "channel")]
+    log: bool,
+    /// Ends of the colour bar; values beyond them take the colours of the ends
+    #[arg(long, value_name = "A,B", requires = "channel", value_parser = range, allow_hyphen_values = true)]
+    range: Option<[f64; 2]>,
+    /// Width of the picture in pixels, from 300 to 8000 [default: by the map, about 1500]
+    #[arg(long, value_name = "PX", value_parser = clap::value_parser!(u32).range(300..=8000))]
+    width: Option<u32>,
+    /// Picture to write, PNG or SVG by its ending; - is PNG on standard output [default: FILE.png or FILE.NAME.png
+    /// beside the map]
+    #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
+}
+
+/// Two numbers with a comma between them.
+fn range(text: &str) -> Result<[f64; 2], String> {
+    let ends = text.split_once(',').and_then(|(low, high)| {
+        let [low, high] = [low, high].map(|end| end.trim().parse().ok());
+        Some([low?, high?])
+    });
+    ends.ok_or_else(|| "must be two numbers with a comma between them, such as 0,100".to_owned())
 }
 
 /// Runs `render`.
@@ -43,34 +68,79 @@ pub fn run(options: &Options) -> Result<(), Failure> {
             "--channel {name}: must be one of {channels}"
         )));
     }
-    let picture = options.output.clone().unwrap_or_else(|| {
-        let ending = options
-            .channel
-            .as_ref()
-            .map_or("png".to_owned(), |name| format!("{name}.png"));
+    let target = target(options)?;
+    let drawn = render::map(
+        &map,
+        &MapOptions {
+            channel: options.channel.as_deref(),
+            log: options.log,
+            range: options.range,
+            width: options.width,
+        },
+    );
+    let picture = drawn.map_err(|error| match error {
+        render::Error::Scale(why) => Failure::Input(why),
+        error => Failure::Render(error),
+    })?;
+    let mut out = std::io::stdout().lock();
+    if let Some((path, format)) = target {
+        save(&picture, &path, format)?;
+        writeln!(out, "{}", path.display())?;
+    } else {
+        warn_of_boxes(&picture);
+        out.write_all(&picture.encode(Format::Png)?)?;
+        out.flush()?;
+    }
+    Ok(())
+}
+
+/// The file to write and its format, found to be possible; `None` is standard output.
+fn target(options: &Options) -> Result<Option<(PathBuf, Format)>, Failure> {
+    let path = options.output.clone().unwrap_or_else(|| {
+        let name = options.channel.as_ref();
+        let ending = name.map_or("png".to_owned(), |name| format!("{name}.png"));
         options.file.with_extension(ending)
     });
-    let folder = picture
+    let refuse = |why: &str| {
+        let path = path.display();
+        Err(Failure::Input(format!("--output {path}: {why}")))
+    };
+    if path == Path::new("-") {
+        return if std::io::stdout().is_terminal() {
+            refuse("standard output is a terminal; send it to a file or a program")
+        } else {
+            Ok(None)
+        };
+    }
+    let folder = path
         .parent()
         .filter(|folder| !folder.as_os_str().is_empty());
-    let same = picture
-        .canonicalize()
-        .is_ok_and(|path| options.file.canonicalize().is_ok_and(|map| map == path));
-    if same || picture.is_dir() || folder.is_some_and(|folder| !folder.is_dir()) {
-        let why = if same {
-            "is the map itself"
-        } else {
-            "is not a file in an existing folder"
-        };
-        let picture = picture.display();
-        return Err(Failure::Input(format!(
-            "--output {picture}: {why}; name a picture to write"
-        )));
+    let real = |path: &Path| path.canonicalize().ok();
+    if real(&path).is_some_and(|path| Some(path) == real(&options.file)) {
+        refuse("is the map itself; name a picture to write")
+    } else if path.is_dir() || folder.is_some_and(|folder| !folder.is_dir()) {
+        refuse("is not a file in an existing folder; name a picture to write")
+    } else if let Some(format) = Format::of(&path) {
+        Ok(Some((path, format)))
+    } else {
+        refuse("must end in .png or .svg, or be - for PNG on standard output")
     }
-    match &options.channel {
-        Some(name) => render::channel(&map, name, &picture)?,
-        None => render::regimes(&map, &picture)?,
+}
+
+/// Saves a picture, and says so where its pixels lack characters.
+pub fn save(picture: &Picture, path: &Path, format: Format) -> Result<(), Failure> {
+    if format == Format::Png {
+        warn_of_boxes(picture);
     }
-    writeln!(std::io::stdout(), "{}", picture.display())?;
-    Ok(())
+    Ok(picture.save(path, format)?)
+}
+
+/// Names the characters of a picture that its pixels show as boxes.
+fn warn_of_boxes(picture: &Picture) {
+    let missing: String = picture.missing_glyphs().into_iter().collect();
+    if !missing.is_empty() {
+        say(&format!(
+            "warning: the built-in font lacks \u{201c}{missing}\u{201d}: the PNG shows boxes; an SVG has the text itself"
+        ));
+    }
 }

@@ -3,7 +3,7 @@
 use super::failure::Failure;
 use super::outputs::{self, unwritten};
 use crate::paper;
-use crate::render::ChartFormat;
+use crate::render::Format;
 use crate::store::{Output, Table};
 use clap::Args;
 use std::io::Write;
@@ -29,9 +29,9 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     outputs::folder("DIR", folder)?;
     let mut out = std::io::stdout().lock();
     for figure in paper::figures().map_err(Failure::State)? {
-        for (ending, format) in [("png", ChartFormat::Png), ("svg", ChartFormat::Svg)] {
+        for (ending, format) in [("png", Format::Png), ("svg", Format::Svg)] {
             let path = folder.join(figure.name).with_extension(ending);
-            figure.chart.save(&path, format)?;
+            figure.chart.picture().save(&path, format)?;
             writeln!(out, "{}", path.display())?;
         }
         for (name, rows) in &figure.tables {

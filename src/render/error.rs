@@ -9,6 +9,12 @@ pub enum Error {
     /// The map does not have what is to be drawn.
     #[error(transparent)]
     Map(#[from] store::Error),
+    /// The wanted colour scale cannot be had; the text says why, and what is allowed.
+    #[error("{0}")]
+    Scale(String),
+    /// The pixels cannot be encoded.
+    #[error("cannot encode the picture as PNG: {0}")]
+    Encode(#[from] png::EncodingError),
     /// The picture cannot be written.
     #[error("cannot write {}: {cause}", path.display())]
     Write {
@@ -16,13 +22,5 @@ pub enum Error {
         path: PathBuf,
         /// What the system said.
         cause: std::io::Error,
-    },
-    /// The built-in font cannot be used.
-    #[error("cannot draw the text {text:?}: {cause}")]
-    Font {
-        /// The text.
-        text: String,
-        /// What the drawing library said.
-        cause: String,
     },
 }

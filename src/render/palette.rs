@@ -14,12 +14,14 @@ pub(super) const GREY: Rgb = [0x9a, 0xa1, 0xa8];
 /// Cells without a value, and bodies in charts.
 pub(super) const BLANK: Rgb = [0xdc, 0xdd, 0xde];
 
-const CONTACT: Rgb = [0x8c, 0xcb, 0xae];
-const CONTACT_PALE: Rgb = [0xd9, 0xee, 0xe3];
-const SLIP_OFF: Rgb = [0xec, 0xa0, 0x72];
-const PULL_OFF: Rgb = [0x5b, 0x8f, 0xc7];
-const OUT_OF_REACH: Rgb = [0xe6, 0xe8, 0xea];
-const UNRESOLVED: Rgb = [0xd0, 0x00, 0x8f];
+// Regimes that are found side by side differ by 20 in lightness (CIE L*): 96, 74, 53 and 31. Any two of these, and
+// unresolved, stay apart for people who lack one of the three cones; a test of the pictures tells by how much.
+const OUT_OF_REACH: Rgb = [0xf2, 0xf3, 0xf4];
+const CONTACT: Rgb = [0x83, 0xc4, 0xa4];
+const CONTACT_PALE: Rgb = [0xd3, 0xec, 0xdf];
+const SLIP_OFF: Rgb = [0xc8, 0x60, 0x2a];
+const PULL_OFF: Rgb = [0x22, 0x47, 0x8a];
+const UNRESOLVED: Rgb = [0xf0, 0xe4, 0x42];
 
 /// A colour, or stripes of two.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,9 +40,9 @@ impl Fill {
         }
     }
 
-    /// The colour of a drawn pixel; stripes run from the lower left to the upper right.
-    pub(super) const fn at(self, x: usize, y: usize) -> Rgb {
-        if (x + y) % 20 < 6 {
+    /// The colour at a sum of the coordinates: stripes run from the lower left to the upper right.
+    pub(super) fn at(self, sum: f64) -> Rgb {
+        if sum % 10.0 < 3.0 {
             self.stripes
         } else {
             self.ground
@@ -79,57 +81,33 @@ pub(super) fn qualitative(place: usize) -> Fill {
     Fill::plain(COLOURS[place % COLOURS.len()])
 }
 
-/// From dark blue at 0 through green to yellow at 1: the polynomial that M. Zucker fitted to matplotlib's viridis
-/// (<https://www.shadertoy.com/view/WlfXRN>), at most 4 of 255 away from it.
+/// From dark blue at 0 through green to yellow at 1 (viridis by S. van der Walt and N. Smith, every ninth of the way).
 pub(super) fn sequential(at: f64) -> Rgb {
-    const COEFFICIENTS: [[f64; 7]; 3] = [
-        [
-            0.2777273, 0.1050931, -0.3308618, -4.6342305, 6.2282699, 4.7763850, -5.4354559,
+    between(
+        &[
+            0x440154, 0x482878, 0x3e4989, 0x31688e, 0x26828e, 0x1f9e89, 0x35b779, 0x6ece58,
+            0xb5de2b, 0xfde725,
         ],
-        [
-            0.0054073,
-            1.4046135,
-            0.2148476,
-            -5.7991010,
-            14.1799334,
-            -13.7451454,
-            4.6458526,
-        ],
-        [
-            0.3340998,
-            1.3845902,
-            0.0950952,
-            -19.3324410,
-            56.6905526,
-            -65.3530326,
-            26.3124352,
-        ],
-    ];
-    COEFFICIENTS.map(|coefficients| {
-        let value = coefficients
-            .iter()
-            .rev()
-            .fold(0.0, |sum, next| sum * at + next);
-        (value.clamp(0.0, 1.0) * 255.0).round() as u8
-    })
+        at,
+    )
 }
 
 /// From blue at 0 through white to red at 1 (ColorBrewer, RdBu).
 pub(super) fn diverging(at: f64) -> Rgb {
-    const STOPS: [Rgb; 7] = [
-        [0x21, 0x66, 0xac],
-        [0x67, 0xa9, 0xcf],
-        [0xd1, 0xe5, 0xf0],
-        [0xf7, 0xf7, 0xf7],
-        [0xfd, 0xdb, 0xc7],
-        [0xef, 0x8a, 0x62],
-        [0xb2, 0x18, 0x2b],
-    ];
-    let place = at.clamp(0.0, 1.0) * (STOPS.len() - 1) as f64;
-    let stop = (place as usize).min(STOPS.len() - 2);
-    let part = place - stop as f64;
-    std::array::from_fn(|channel| {
-        let [from, to] = [stop, stop + 1].map(|stop| f64::from(STOPS[stop][channel]));
-        (from + part * (to - from)).round() as u8
+    between(
+        &[
+            0x2166ac, 0x67a9cf, 0xd1e5f0, 0xf7f7f7, 0xfddbc7, 0xef8a62, 0xb2182b,
+        ],
+        at,
+    )
+}
+
+/// The colour at a part of the way along equidistant ones.
+fn between(stops: &[u32], at: f64) -> Rgb {
+    let place = at.clamp(0.0, 1.0) * (stops.len() - 1) as f64;
+    let stop = (place as usize).min(stops.len() - 2);
+    [16, 8, 0].map(|shift| {
+        let [from, to] = [stop, stop + 1].map(|stop| f64::from(stops[stop] >> shift & 0xff));
+        (from + (place - stop as f64) * (to - from)).round() as u8
     })
 }

@@ -19,26 +19,17 @@ pub fn curves(title: &str, rows: &[Detachment], [x, y]: [CurveAxis; 2]) -> Plot 
     let mut plot = empty(title, x.label, y.label);
     let place = |row: &Detachment| Some([(x.value)(row)?, (y.value)(row)?]);
     for side in rows.chunk_by(|a, b| a.side == b.side && a.distance_mm < b.distance_mm) {
-        let mut before = None;
-        for part in side.chunk_by(|a, b| a.kind == b.kind) {
+        let kinds = side.chunk_by(|a, b| a.kind == b.kind);
+        let parts = kinds.filter_map(|part| {
             let (ink, name) = match part[0].kind {
                 DetachmentKind::SlipOff => (Ink::Black, "slip-off"),
                 DetachmentKind::PullOff => (Ink::Blue, "pull-off"),
-                DetachmentKind::OutOfReach | DetachmentKind::Unresolved => continue,
+                DetachmentKind::OutOfReach | DetachmentKind::Unresolved => return None,
             };
-            // A line begins where the one of the other kind has ended.
-            let points: Vec<[f64; 2]> = before
-                .into_iter()
-                .chain(part.iter().filter_map(place))
-                .collect();
-            before = points.last().copied();
-            plot.lines.push(Line {
-                points,
-                ink,
-                stroke: Stroke::Solid,
-                name: Some(name.to_owned()),
-            });
-        }
+            let points = part.iter().filter_map(place).collect();
+            Some(line(points, ink, Stroke::Solid, name))
+        });
+        plot.lines.extend(joined(parts));
     }
     plot
 }
@@ -58,22 +49,15 @@ pub fn branches(title: &str, points: &[BranchPoint], [x, y]: [BranchAxis; 2]) ->
     let mut plot = empty(title, x.label, y.label);
     let place = |point: &BranchPoint| [(x.value)(point), (y.value)(point)];
     for side in points.chunk_by(|a, b| a.side == b.side) {
-        let mut fold = None;
-        for part in side.chunk_by(|a, b| a.stable == b.stable) {
+        let parts = side.chunk_by(|a, b| a.stable == b.stable).map(|part| {
             let (stroke, name) = if part[0].stable {
                 (Stroke::Solid, "stable")
             } else {
                 (Stroke::Dashed, "unstable")
             };
-            let points: Vec<[f64; 2]> = fold.into_iter().chain(part.iter().map(place)).collect();
-            fold = points.last().copied();
-            plot.lines.push(Line {
-                points,
-                ink: Ink::Black,
-                stroke,
-                name: Some(name.to_owned()),
-            });
-        }
+            line(part.iter().map(place).collect(), Ink::Black, stroke, name)
+        });
+        plot.lines.extend(joined(parts));
         for point in side {
             let (ink, name) = match point.mark {
                 Some(Mark::Fold) => (Ink::Black, "slip-off"),
@@ -108,26 +92,12 @@ pub struct Drawn<'a> {
 pub fn shapes(title: &str, at_rest: Vec<[f64; 2]>, drawn: &[Drawn]) -> Plot {
     let mut plot = empty(title, "x (mm)", "y (mm)");
     plot.equal_axes = true;
-    plot.lines.push(Line {
-        points: at_rest,
-        ink: Ink::Grey,
-        stroke: Stroke::Solid,
-        name: Some("first touch".to_owned()),
-    });
-    for Drawn {
-        shape,
-        ink,
-        stroke,
-        name,
-    } in drawn
-    {
-        plot.lines.push(Line {
-            points: shape.points.iter().map(|p| [p.x_mm, p.y_mm]).collect(),
-            ink: *ink,
-            stroke: *stroke,
-            name: Some(name.clone()),
-        });
-    }
+    plot.lines
+        .push(line(at_rest, Ink::Grey, Stroke::Solid, "first touch"));
+    plot.lines.extend(drawn.iter().map(|drawn| {
+        let points = drawn.shape.points.iter().map(|p| [p.x_mm, p.y_mm]);
+        line(points.collect(), drawn.ink, drawn.stroke, &drawn.name)
+    }));
     plot.discs.extend(drawn.first().map(|drawn| Disc {
         centre: drawn.shape.pole_mm,
         radius: drawn.shape.pole_radius_mm,
@@ -142,4 +112,24 @@ fn empty(title: &str, x_label: &str, y_label: &str) -> Plot {
         y_label: y_label.to_owned(),
         ..Plot::default()
     }
+}
+
+fn line(points: Vec<[f64; 2]>, ink: Ink, stroke: Stroke, name: &str) -> Line {
+    let name = Some(name.to_owned());
+    Line {
+        points,
+        ink,
+        stroke,
+        name,
+    }
+}
+
+/// Lines each of which begins where the one before it has ended.
+fn joined(parts: impl Iterator<Item = Line>) -> impl Iterator<Item = Line> {
+    let mut end = None;
+    parts.map(move |mut part| {
+        part.points.splice(..0, end);
+        end = part.points.last().copied();
+        part
+    })
 }

@@ -14,6 +14,7 @@ mod other;
 mod paper;
 mod plan;
 mod refused;
+mod render;
 mod shape;
 #[cfg(unix)]
 mod signals;

@@ -36,7 +36,9 @@ fn single(taper: f64, curvature_per_mm: f64) -> String {
 
 fn png_size(path: &Path) -> (u32, u32) {
     let file = std::fs::File::open(path).unwrap();
-    let reader = png::Decoder::new(file).read_info().unwrap();
+    let reader = png::Decoder::new(std::io::BufReader::new(file))
+        .read_info()
+        .unwrap();
     (reader.info().width, reader.info().height)
 }
 

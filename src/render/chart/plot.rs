@@ -1,29 +1,23 @@
 //! One plot: frame, ticks and what is inside.
 
-use super::heading::{Heading, fitted};
-use super::surface::{DASHES, Pen, Surface};
-use super::ticks::{self, Tick};
+use super::data::{Ink, Line, Plot, Stroke};
 use super::window::{Window, drawable, drawable_disc};
-use super::{Ink, Line, Plot, Stroke};
-use crate::render::Error;
-use crate::render::canvas::{Anchor, Area};
-use crate::render::legend::{LABEL, TICK};
+use crate::render::axes::{Axes, FRAME};
+use crate::render::heading::{DOT, Heading, Sample};
 use crate::render::palette::{BLANK, BLUE, GREY, INK, Rgb, WHITE};
+use crate::render::picture::{Area, Pen, Picture};
+use crate::render::{ticks, units};
 
-/// Widths of lines.
+/// Width of lines.
 const LINE: f64 = 3.0;
-const FRAME: f64 = 1.5;
-/// Radius of a dot, and width of the white ring that sets it off.
-const DOT: f64 = 8.0;
+/// Width of the white ring that sets a dot off.
 const RING: f64 = 2.0;
-/// The smallest disc.
+/// Radius of a point of a line that has no neighbour, and of the smallest disc.
+const POINT: f64 = 5.0;
 const DISC: f64 = 3.0;
-/// From the frame to the middle of the label below, and from the left end of the plot's room to that on its side.
-const X_LABEL: f64 = 76.0;
-const Y_LABEL: f64 = 34.0;
 
 /// The colour that an ink stands for.
-pub(super) const fn colour(ink: Ink) -> Rgb {
+const fn colour(ink: Ink) -> Rgb {
     match ink {
         Ink::Black => INK,
         Ink::Blue => BLUE,
@@ -32,7 +26,7 @@ pub(super) const fn colour(ink: Ink) -> Rgb {
 }
 
 /// What a line is drawn with.
-pub(super) fn pen(line: &Line) -> Pen {
+fn pen(line: &Line) -> Pen {
     Pen {
         width: LINE,
         colour: colour(line.ink),
@@ -40,132 +34,85 @@ pub(super) fn pen(line: &Line) -> Pen {
     }
 }
 
-/// What stands before a name in the legend.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Sample {
-    Line(Pen),
-    Dot(Rgb),
-}
-
-impl Sample {
-    /// Room for three dashes, or for a dot.
-    pub(super) const fn width(self) -> f64 {
-        match self {
-            Self::Line(_) => 3.0 * DASHES[0] + 2.0 * DASHES[1],
-            Self::Dot(_) => 2.0 * DOT,
-        }
-    }
-
-    /// Draws it to the right of a point.
-    pub(super) fn draw(self, surface: &mut dyn Surface, [x, y]: [f64; 2]) {
-        match self {
-            Self::Line(pen) => surface.polyline(&[[x, y], [x + self.width(), y]], pen),
-            Self::Dot(colour) => surface.circle([x + DOT, y], DOT, colour, None),
-        }
-    }
-}
-
 /// A plot laid out for a body of a size.
 pub(super) struct Layout<'a> {
     plot: &'a Plot,
     window: Window,
-    x_ticks: Vec<Tick>,
-    y_ticks: Vec<Tick>,
-    x_label: Option<(String, f64)>,
-    y_label: Option<(String, f64)>,
+    pub(super) axes: Axes,
 }
 
 impl<'a> Layout<'a> {
     /// Decides what the axes show.
-    pub(super) fn plan(plot: &'a Plot, size: [f64; 2]) -> Result<Self, Error> {
+    pub(super) fn plan(plot: &'a Plot, size: [f64; 2]) -> Self {
         let window = Window::of(plot, size);
-        Ok(Self {
+        let [across, upwards] = window.largest;
+        let (x_label, x_unit) = units::readable(&plot.x_label, across);
+        let (y_label, y_unit) = units::readable(&plot.y_label, upwards);
+        let x_ticks = ticks::across(window.x.map(|end| end / x_unit), size[0]);
+        let y_ticks = ticks::upwards(window.y.map(|end| end / y_unit), size[1]);
+        Self {
             plot,
             window,
-            x_ticks: ticks::across(window.x, size[0])?,
-            y_ticks: ticks::upwards(window.y, size[1])?,
-            x_label: fitted(Some(&plot.x_label), LABEL, size[0])?,
-            y_label: fitted(Some(&plot.y_label), LABEL, size[1])?,
-        })
-    }
-
-    /// Room that the labels take to the left of the body and, from the last tick across, to the right of it.
-    pub(super) fn sides(&self) -> [f64; 2] {
-        let beside = Y_LABEL + 0.5 * LABEL + 16.0;
-        let ends = self.x_ticks.last().map_or(0.0, |last| 0.5 * last.width);
-        [beside + ticks::widest(&self.y_ticks) + 15.0, ends + 8.0]
+            axes: Axes::new([(x_ticks, &x_label), (y_ticks, &y_label)], size),
+        }
     }
 
     /// Letter, title and legend, for a body of this width with this much room to the left of it.
-    pub(super) fn heading(&self, left: f64, width: f64) -> Result<Heading, Error> {
-        Heading::plan(self.plot, left, width)
+    pub(super) fn heading(&self, left: f64, width: f64) -> Heading {
+        let letter = self.plot.letter.as_deref().unwrap_or_default();
+        Heading::plan([letter, &self.plot.title], self.samples(), [left, width])
     }
 
     /// Draws the plot into `body`, with `left` pixels of room to the left of it.
-    pub(super) fn draw(
-        &self,
-        surface: &mut dyn Surface,
-        body: Area,
-        left: f64,
-    ) -> Result<(), Error> {
-        self.discs(surface, body);
-        for line in &self.plot.lines {
-            self.line(surface, body, line);
-        }
-        for dot in self.plot.dots.iter().filter(|dot| drawable(dot.at)) {
-            let at = self.window.place(body, dot.at);
-            surface.circle(at, DOT, colour(dot.ink), Some(Pen::solid(RING, WHITE)));
-        }
-        let corners = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0), (0.0, 0.0)];
-        let corners = corners.map(|(x, y)| body.point(x, y));
-        surface.polyline(&corners, Pen::solid(FRAME, INK));
-        self.axes(surface, body, left)
-    }
-
-    fn discs(&self, surface: &mut dyn Surface, body: Area) {
+    pub(super) fn draw(&self, picture: &mut Picture, body: Area, left: f64) {
         for disc in self.plot.discs.iter().filter(|disc| drawable_disc(disc)) {
             let centre = self.window.place(body, disc.centre);
             let radius = self.window.pixels(body, disc.radius).max(DISC);
-            surface.circle(centre, radius, BLANK, Some(Pen::solid(FRAME, INK)));
+            picture.circle(centre, radius, BLANK, Some(Pen::solid(FRAME, INK)));
         }
+        for line in &self.plot.lines {
+            self.line(picture, body, line);
+        }
+        for dot in self.plot.dots.iter().filter(|dot| drawable(dot.at)) {
+            let at = self.window.place(body, dot.at);
+            picture.circle(at, DOT, colour(dot.ink), Some(Pen::solid(RING, WHITE)));
+        }
+        picture.frame(body, FRAME);
+        self.axes.draw(picture, body, left);
     }
 
-    /// The stretches of a line between points that cannot be drawn; a point on its own is as wide as the line.
-    fn line(&self, surface: &mut dyn Surface, body: Area, line: &Line) {
+    /// The stretches of a line between points that cannot be drawn.
+    fn line(&self, picture: &mut Picture, body: Area, line: &Line) {
         let pen = pen(line);
         for stretch in line.points.split(|point| !drawable(*point)) {
-            let places: Vec<_> = stretch
-                .iter()
-                .map(|point| self.window.place(body, *point))
-                .collect();
-            match places[..] {
+            let places = stretch.iter().map(|point| self.window.place(body, *point));
+            match places.collect::<Vec<_>>()[..] {
                 [] => {}
-                [only] => surface.circle(only, 0.5 * pen.width, pen.colour, None),
-                _ => surface.polyline(&places, pen),
+                [only] => picture.circle(only, POINT, pen.colour, None),
+                ref places => picture.polyline(places, pen),
             }
         }
     }
 
-    fn axes(&self, surface: &mut dyn Surface, body: Area, left: f64) -> Result<(), Error> {
-        let pen = Pen::solid(FRAME, INK);
-        for tick in &self.x_ticks {
-            let [x, y] = body.point(tick.at, 0.0);
-            surface.polyline(&[[x, y], [x, y + 8.0]], pen);
-            surface.text(&tick.label, [x, y + 26.0], TICK, Anchor::Centre)?;
+    /// What is in the legend: each name once, with what bears it first.
+    fn samples(&self) -> Vec<(Sample, String)> {
+        let lines = self.plot.lines.iter().map(|line| {
+            let sample = match line.points[..] {
+                [_] => Sample::Dot(colour(line.ink)),
+                _ => Sample::Line(pen(line)),
+            };
+            (sample, &line.name)
+        });
+        let dots = self.plot.dots.iter();
+        let dots = dots.map(|dot| (Sample::Dot(colour(dot.ink)), &dot.name));
+        let mut samples: Vec<(Sample, String)> = Vec::new();
+        for (sample, name) in lines.chain(dots) {
+            if let Some(name) = name.as_deref().filter(|name| !name.is_empty())
+                && samples.iter().all(|(_, known)| known != name)
+            {
+                samples.push((sample, name.to_owned()));
+            }
         }
-        for tick in &self.y_ticks {
-            let [x, y] = body.point(0.0, tick.at);
-            surface.polyline(&[[x - 8.0, y], [x, y]], pen);
-            surface.text(&tick.label, [x - 15.0, y], TICK, Anchor::Right)?;
-        }
-        if let Some((label, size)) = &self.x_label {
-            let [x, y] = body.point(0.5, 0.0);
-            surface.text(label, [x, y + X_LABEL], *size, Anchor::Centre)?;
-        }
-        if let Some((label, size)) = &self.y_label {
-            let [x, y] = body.point(0.0, 0.5);
-            surface.text(label, [x - left + Y_LABEL, y], *size, Anchor::Upwards)?;
-        }
-        Ok(())
+        samples
     }
 }

@@ -1,7 +1,8 @@
 //! Which stretches of the numbers the axes of a plot show.
 
-use super::{Disc, Plot};
-use crate::render::canvas::Area;
+use super::data::{Disc, Plot};
+use crate::render::picture::Area;
+use crate::render::ticks::fraction;
 
 /// Room beside the data, as a part of their extent.
 const MARGIN: f64 = 0.04;
@@ -17,18 +18,24 @@ const EQUAL: f64 = 1e-9;
 pub(super) struct Window {
     pub(super) x: [f64; 2],
     pub(super) y: [f64; 2],
+    /// The size of the largest numbers of both axes, in which equal axes are alike.
+    pub(super) largest: [f64; 2],
 }
 
 impl Window {
     /// Everything in a plot, for a body of this width and height.
-    pub(super) fn of(plot: &Plot, size: [f64; 2]) -> Self {
+    pub(super) fn of(plot: &Plot, pixels: [f64; 2]) -> Self {
         let extents = [0, 1].map(|axis| extent(plot, axis));
         let [x, y] = if plot.equal_axes {
-            alike(extents, size)
+            alike(extents, pixels)
         } else {
             extents.map(widened)
         };
-        Self { x, y }
+        let mut largest = extents.map(size);
+        if plot.equal_axes {
+            largest = [largest[0].max(largest[1]); 2];
+        }
+        Self { x, y, largest }
     }
 
     /// Where a point lies on the picture.
@@ -57,11 +64,6 @@ fn corners(disc: &Disc) -> [[f64; 2]; 2] {
 /// Whether a disc is drawn at all.
 pub(super) fn drawable_disc(disc: &Disc) -> bool {
     corners(disc).into_iter().all(drawable)
-}
-
-/// How far along a range a value lies.
-pub(super) fn fraction([low, high]: [f64; 2], value: f64) -> f64 {
-    (value - low) / (high - low)
 }
 
 /// The least and the greatest of what is drawn along an axis; 0 and 1 if nothing is.
@@ -120,88 +122,4 @@ fn alike(extents: [[f64; 2]; 2], pixels: [f64; 2]) -> [[f64; 2]; 2] {
         let (middle, half) = (0.5 * low + 0.5 * high, 0.5 * unit * pixels[axis]);
         [middle - half, middle + half]
     })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::super::Line;
-    use super::*;
-
-    fn plot(points: &[[f64; 2]], equal_axes: bool) -> Plot {
-        let points = points.to_vec();
-        let line = Line {
-            points,
-            ..Line::default()
-        };
-        Plot {
-            lines: vec![line],
-            equal_axes,
-            ..Plot::default()
-        }
-    }
-
-    fn close(range: [f64; 2], expected: [f64; 2]) {
-        let near = |(at, expected): (f64, f64)| (at - expected).abs() < 1e-12;
-        assert!(
-            range.into_iter().zip(expected).all(near),
-            "{range:?} is not {expected:?}"
-        );
-    }
-
-    #[test]
-    fn data_have_room_beside_them() {
-        let window = Window::of(
-            &plot(&[[0.0, 10.0], [f64::NAN, 99.0], [100.0, 20.0]], false),
-            [4.0, 2.0],
-        );
-        close(window.x, [-4.0, 104.0]);
-        close(window.y, [9.6, 20.4]);
-    }
-
-    #[test]
-    fn equal_axes_have_one_scale_and_discs_count() {
-        let mut plot = plot(&[[0.0, 0.0], [100.0, 0.0]], true);
-        plot.discs = vec![Disc {
-            centre: [50.0, 30.0],
-            radius: 20.0,
-        }];
-        let window = Window::of(&plot, [1000.0, 500.0]);
-        close(window.x, [-4.0, 104.0]);
-        close(window.y, [-2.0, 52.0]);
-        plot.discs[0].radius = 70.0;
-        close(
-            Window::of(&plot, [1000.0, 500.0]).y,
-            [30.0 - 75.6, 30.0 + 75.6],
-        );
-    }
-
-    #[test]
-    fn every_range_can_be_divided_by() {
-        let values = [
-            0.0,
-            1.0,
-            -1.0,
-            1e-320,
-            1e-295,
-            1e300,
-            -1e300,
-            1.0 + 1e-15,
-            5e9,
-            f64::MAX,
-            f64::INFINITY,
-        ];
-        for equal in [false, true] {
-            for (one, other) in values
-                .iter()
-                .flat_map(|one| values.map(|other| (*one, other)))
-            {
-                let Window { x, y } =
-                    Window::of(&plot(&[[one, other], [other, 3.0]], equal), [1280.0, 880.0]);
-                for range in [x, y] {
-                    let span = range[1] - range[0];
-                    assert!(span.is_finite() && span > 1e-10 * size(range), "{range:?}");
-                }
-            }
-        }
-    }
 }

@@ -1,0 +1,90 @@
+//! What a chart is made of: plain data.
+
+/// The colour of a line or a dot.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Ink {
+    /// Stable states, and slip-off.
+    #[default]
+    Black,
+    /// Pull-off.
+    Blue,
+    /// The rest shape, and whatever else stays behind.
+    Grey,
+}
+
+/// The way in which a line is drawn.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Stroke {
+    /// Without gaps.
+    #[default]
+    Solid,
+    /// Equal dashes along the whole line, however many points it has.
+    Dashed,
+}
+
+/// A curve through points.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Line {
+    /// Across and up, in data units. A point that is not finite, or beyond 1e300, breaks the line; one without a
+    /// neighbour is a small dot.
+    pub points: Vec<[f64; 2]>,
+    /// Its colour.
+    pub ink: Ink,
+    /// Solid or dashed.
+    pub stroke: Stroke,
+    /// Its name in the legend, where equal names stand once; without one it is not in the legend.
+    pub name: Option<String>,
+}
+
+/// A point that stands out, such as a fold.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Dot {
+    /// Across and up, in data units; not drawn unless finite.
+    pub at: [f64; 2],
+    /// Its colour.
+    pub ink: Ink,
+    /// Its name in the legend, as that of a [`Line`].
+    pub name: Option<String>,
+}
+
+/// A body of known size, such as a pole, meant for [`Plot::equal_axes`]: on other axes its size is right along the
+/// coarser one.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Disc {
+    /// Across and up, in data units; not drawn unless finite.
+    pub centre: [f64; 2],
+    /// In data units; small ones are drawn with 3 pixels.
+    pub radius: f64,
+}
+
+/// Curves over one pair of axes.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Plot {
+    /// What the plot is called by, such as `A`.
+    pub letter: Option<String>,
+    /// May be empty.
+    pub title: String,
+    /// What is shown across, with its unit.
+    pub x_label: String,
+    /// What is shown upwards, with its unit.
+    pub y_label: String,
+    /// Drawn in this order, over the discs.
+    pub lines: Vec<Line>,
+    /// Drawn over the lines.
+    pub dots: Vec<Dot>,
+    /// Drawn first.
+    pub discs: Vec<Disc>,
+    /// A unit has the same length across and upwards.
+    pub equal_axes: bool,
+}
+
+/// Plots in rows.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Chart {
+    /// May be empty.
+    pub title: String,
+    /// From left to right, then downwards.
+    pub plots: Vec<Plot>,
+    /// How many plots stand in a row, at least one.
+    pub columns: usize,
+}

@@ -1,0 +1,106 @@
+//! What colour a value gets, and what the reader of the picture is told about it.
+
+use super::boundary;
+use super::options::MapOptions;
+use super::scale::Scale;
+use crate::render::error::Error;
+use crate::render::heading::Sample;
+use crate::render::palette::{self, Fill, INK};
+use crate::render::picture::Pen;
+use crate::store::StoredMap;
+use std::collections::BTreeMap;
+
+/// How the values of a channel are shown.
+#[derive(Debug)]
+pub(super) enum Shading {
+    /// Codes that have names.
+    Names {
+        /// Of every code.
+        fills: BTreeMap<u32, Fill>,
+        /// What occurs in the map.
+        present: Vec<(Sample, String)>,
+        /// The detachment boundary is drawn over them, and there is one.
+        boundary: bool,
+    },
+    /// Quantities.
+    Scale(Scale),
+}
+
+impl Shading {
+    /// Decides from the whole map, so that the panels of an atlas can be compared.
+    pub(super) fn of(
+        map: &StoredMap,
+        channel: &str,
+        options: &MapOptions<'_>,
+    ) -> Result<Self, Error> {
+        let (names, cells) = match channel {
+            "regime" => (map.regime_names(), &map.counts().regimes),
+            "status" => (map.status_names(), &map.counts().statuses),
+            _ => return Ok(Self::Scale(Scale::of(map, channel, options)?)),
+        };
+        if options.log || options.range.is_some() {
+            return Err(Error::Scale(format!(
+                "a colour scale of `{channel}`: it is made of codes; choose a channel of quantities, such as force_un"
+            )));
+        }
+        let fills: BTreeMap<u32, Fill> = names
+            .keys()
+            .enumerate()
+            .map(|(place, &code)| match channel {
+                "regime" => (code, palette::regime(code)),
+                _ => (code, palette::qualitative(place)),
+            })
+            .collect();
+        let occurs = |name: &String| cells.get(name).is_some_and(|cells| *cells > 0);
+        let present = names.iter().filter(|(_, name)| occurs(name));
+        let mut present: Vec<_> = present
+            .map(|(code, name)| (Sample::Swatch(fills[code]), name.clone()))
+            .collect();
+        let boundary = channel == "regime" && has_boundary(map)?;
+        if boundary {
+            let line = Sample::Line(Pen::solid(3.0, INK));
+            present.push((line, "detachment boundary".to_owned()));
+        }
+        Ok(Self::Names {
+            fills,
+            present,
+            boundary,
+        })
+    }
+
+    /// The fill of a cell.
+    pub(super) fn fill(&self, value: f64) -> Fill {
+        match self {
+            // Codes are stored as u32, so the conversion is exact.
+            Self::Names { fills, .. } => {
+                let fill = fills.get(&(value as u32)).copied();
+                fill.unwrap_or(palette::regime(u32::MAX))
+            }
+            Self::Scale(scale) => scale.fill(value),
+        }
+    }
+
+    /// The legend.
+    pub(super) fn samples(&self) -> Vec<(Sample, String)> {
+        match self {
+            Self::Names { present, .. } => present.clone(),
+            Self::Scale(scale) => {
+                let blank = scale.blank.iter().cloned();
+                blank
+                    .map(|name| (Sample::Swatch(Fill::BLANK), name))
+                    .collect()
+            }
+        }
+    }
+}
+
+/// Whether any panel shows a stretch of the detachment boundary.
+fn has_boundary(map: &StoredMap) -> Result<bool, Error> {
+    for index in 0..map.layout().panels() {
+        let margin_deg = map.read_panel("margin_deg", index)?;
+        if !boundary::stretches(map.grid(), &margin_deg).is_empty() {
+            return Ok(true);
+        }
+    }
+    Ok(false)
+}

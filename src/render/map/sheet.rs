@@ -1,0 +1,165 @@
+//! Where the panels of a map stand: one whisker alone, or a contact sheet with taper to the right and curvature upwards.
+
+use super::cells::Cells;
+use super::panel;
+use super::scale::BAR_ROOM;
+use super::shading::Shading;
+use crate::render::axes::{Axes, BELOW};
+use crate::render::error::Error;
+use crate::render::font::{self, fitted};
+use crate::render::heading::{Heading, TICK, TITLE};
+use crate::render::picture::{Anchor, Area, Picture};
+use crate::render::ticks::{self, Tick};
+use crate::render::units;
+use crate::store::{Layout, StoredMap};
+
+/// Size of the panel of one whisker.
+const ALONE: [f64; 2] = [1280.0, 880.0];
+/// All panels of a contact sheet together are at most this wide and high, whatever their number.
+const SHEET: [f64; 2] = [1720.0, 1500.0];
+/// A panel of a contact sheet is at most this wide and high.
+const PANEL: f64 = 560.0;
+/// Least room to the left and to the right.
+const SIDES: [f64; 2] = [136.0, 48.0];
+/// Height of the title's line, and from one note to the next.
+const HEAD: f64 = 74.0;
+const NOTE: f64 = 34.0;
+
+const PUSH_ANGLE: &str = "push angle (deg)   CF < 0 < CB";
+const DISTANCE: &str = "distance at first touch (mm)";
+
+/// The panels of a map laid out.
+pub(super) struct Sheet {
+    layout: Layout,
+    /// Width and height of all panels together.
+    size: [f64; 2],
+    /// From one panel to the next, and the part of it that is left free.
+    pitch: [f64; 2],
+    gap: f64,
+    axes: Axes,
+    /// What lies inside a panel, where the axes do not say it.
+    notes: Vec<String>,
+    /// Width of the lines in a panel.
+    line: f64,
+}
+
+impl Sheet {
+    pub(super) fn of(map: &StoredMap) -> Self {
+        if map.layout().panels() == 1 {
+            Self::alone(map)
+        } else {
+            Self::atlas(map)
+        }
+    }
+
+    fn alone(map: &StoredMap) -> Self {
+        let (label, unit) = distance(map);
+        let across = Cells::new(&map.grid().push_angle_deg).ticks(1.0);
+        let upwards = Cells::new(&map.grid().distance_mm).ticks(unit);
+        Self {
+            layout: map.layout(),
+            size: ALONE,
+            pitch: ALONE,
+            gap: 0.0,
+            axes: Axes::new([(across, PUSH_ANGLE), (upwards, &label)], ALONE),
+            notes: Vec::new(),
+            line: 3.0,
+        }
+    }
+
+    fn atlas(map: &StoredMap) -> Self {
+        let (layout, grid) = (map.layout(), map.grid());
+        let panels = [layout.columns, layout.rows].map(|panels| panels as f64);
+        let pitch = PANEL.min(SHEET[0] / panels[0]).min(SHEET[1] / panels[1]);
+        let gap = (0.06 * pitch).min(10.0);
+        let size = panels.map(|panels| pitch * panels - gap);
+        let middles = |values: Option<&Vec<f64>>, size: f64| -> Vec<Tick> {
+            let labels = values.map_or_else(Vec::new, |values| ticks::labels(values));
+            let middle = |place: usize| (pitch * place as f64 + 0.5 * (pitch - gap)) / size;
+            let labels = labels.into_iter().enumerate();
+            labels
+                .map(|(place, label)| Tick::new(middle(place), label))
+                .collect()
+        };
+        let label = |there: bool, label: &'static str| if there { label } else { "" };
+        let taper = label(grid.taper.is_some(), "taper (1 \u{2212} tip/base radius)");
+        let curvature = label(grid.curvature_per_mm.is_some(), "curvature (1/mm)");
+        let axes = [
+            (middles(grid.taper.as_ref(), size[0]), taper),
+            (middles(grid.curvature_per_mm.as_ref(), size[1]), curvature),
+        ];
+        let ends = |values: &[f64], unit: f64| {
+            ticks::labels(&[values[0] / unit, values[values.len() - 1] / unit]).join(" to ")
+        };
+        let (distance, unit) = distance(map);
+        let angles = ends(&grid.push_angle_deg, 1.0);
+        let distances = ends(&grid.distance_mm, unit);
+        Self {
+            layout,
+            size,
+            pitch: [pitch; 2],
+            gap,
+            axes: Axes::new(axes, size),
+            notes: vec![
+                format!("each panel, to the right: {PUSH_ANGLE}, {angles}"),
+                format!("each panel, upwards: {distance}, {distances}"),
+            ],
+            line: (pitch / 140.0).clamp(0.8, 2.5),
+        }
+    }
+
+    /// Draws every panel with what stands around them.
+    pub(super) fn draw(
+        &self,
+        map: &StoredMap,
+        channel: &str,
+        shading: &Shading,
+        wanted: Option<u32>,
+    ) -> Result<Picture, Error> {
+        let [left, right] = self.axes.sides();
+        let left = left.max(SIDES[0]);
+        let right = match shading {
+            Shading::Scale(scale) if scale.range.is_some() => BAR_ROOM,
+            _ => right.max(SIDES[1]),
+        };
+        let notes = self.notes.iter().map(|note| font::width(note, TICK));
+        let noted = notes.fold(0.0, f64::max) + SIDES[1];
+        let width = left + (self.size[0] + right).max(noted);
+        let room = width - left - SIDES[1];
+        let heading = Heading::plan([""; 2], shading.samples(), [left, room]);
+        let body = Area::new([left, HEAD + heading.height], self.size);
+        let below = BELOW + NOTE * self.notes.len() as f64;
+        let mut picture = Picture::new([width, body.bottom() + below], wanted);
+        let (title, size) = fitted(map.title(), TITLE, room);
+        picture.text(&title, [left, 46.0], size, Anchor::Left);
+        heading.draw(&mut picture, [left, HEAD], left);
+        for index in 0..self.layout.panels() {
+            let area = self.panel(body, index);
+            let cells = (map, channel, index);
+            panel::draw(&mut picture, area, cells, shading, self.line)?;
+        }
+        if let Shading::Scale(scale) = shading {
+            scale.bar(&mut picture, body);
+        }
+        self.axes.draw(&mut picture, body, left);
+        for (line, note) in self.notes.iter().enumerate() {
+            let y = body.bottom() + BELOW + NOTE * (line as f64 + 0.2);
+            picture.text(note, [left, y], TICK, Anchor::Left);
+        }
+        Ok(picture)
+    }
+
+    /// Where a panel stands.
+    fn panel(&self, body: Area, index: usize) -> Area {
+        let (column, row) = (index % self.layout.columns, index / self.layout.columns);
+        let left = body.left + self.pitch[0] * column as f64;
+        let top = body.top + self.pitch[1] * (self.layout.rows - 1 - row) as f64;
+        Area::new([left, top], self.pitch.map(|pitch| pitch - self.gap))
+    }
+}
+
+/// The label of the distances and its unit in mm.
+fn distance(map: &StoredMap) -> (String, f64) {
+    let largest = map.grid().distance_mm.last().copied().unwrap_or_default();
+    units::readable(DISTANCE, largest)
+}

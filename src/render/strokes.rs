@@ -1,0 +1,94 @@
+//! Lines as pixels: how much of each is covered, and where dashes begin and end.
+
+use std::collections::HashMap;
+use std::ops::Range;
+
+/// The pixels that a polyline with round ends and corners touches on a picture of size `limit`, each with the part of
+/// it that is covered. A single point is a disc; a pixel that several segments touch counts once.
+pub(super) fn cover(
+    points: &[[f64; 2]],
+    radius: f64,
+    limit: [usize; 2],
+) -> HashMap<[usize; 2], f64> {
+    let mut parts = HashMap::new();
+    let disc = (points.len() == 1).then(|| [points[0]; 2]);
+    let segments = points.windows(2).map(|pair| [pair[0], pair[1]]);
+    for ends in segments.chain(disc) {
+        let [across, down] = [0, 1].map(|axis| reach(ends, axis, radius, limit[axis]));
+        for (x, y) in down.flat_map(|y| across.clone().map(move |x| (x, y))) {
+            let away = distance([x as f64 + 0.5, y as f64 + 0.5], ends);
+            let part = (radius + 0.5 - away).clamp(0.0, 1.0);
+            if part > 0.0 {
+                let most = parts.entry([x, y]).or_insert(part);
+                *most = part.max(*most);
+            }
+        }
+    }
+    parts
+}
+
+/// The pixels along one axis that a stroke along a segment can touch.
+fn reach([from, to]: [[f64; 2]; 2], axis: usize, radius: f64, limit: usize) -> Range<usize> {
+    let edge = |at: f64| at.clamp(0.0, limit as f64) as usize;
+    let low = from[axis].min(to[axis]) - radius - 1.0;
+    let high = from[axis].max(to[axis]) + radius + 2.0;
+    edge(low)..edge(high)
+}
+
+/// From a point to a segment.
+fn distance(point: [f64; 2], [from, to]: [[f64; 2]; 2]) -> f64 {
+    let along = [to[0] - from[0], to[1] - from[1]];
+    let away = [point[0] - from[0], point[1] - from[1]];
+    let length = along[0] * along[0] + along[1] * along[1];
+    let dot = along[0] * away[0] + along[1] * away[1];
+    let nearest = if length > 0.0 {
+        (dot / length).clamp(0.0, 1.0)
+    } else {
+        0.0
+    };
+    (away[0] - nearest * along[0]).hypot(away[1] - nearest * along[1])
+}
+
+/// The dashes of a polyline: `on` drawn, `off` left out, along the whole of it and around its corners.
+pub(super) fn dashes(points: &[[f64; 2]], [on, off]: [f64; 2]) -> Vec<Vec<[f64; 2]>> {
+    let mut dashes = Vec::new();
+    let mut dash: Vec<_> = points.first().copied().into_iter().collect();
+    let (mut drawn, mut left) = (true, on);
+    for pair in points.windows(2) {
+        let [mut from, to] = [pair[0], pair[1]];
+        let mut length = (to[0] - from[0]).hypot(to[1] - from[1]);
+        while length > left {
+            let part = left / length;
+            from = [0, 1].map(|axis| from[axis] + part * (to[axis] - from[axis]));
+            length -= left;
+            dash.push(from);
+            if drawn {
+                dashes.push(std::mem::take(&mut dash));
+            }
+            drawn = !drawn;
+            left = if drawn { on } else { off };
+        }
+        left -= length;
+        if drawn {
+            dash.push(to);
+        }
+    }
+    if drawn {
+        dashes.push(dash);
+    }
+    dashes
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_lies_outside_of_the_picture_is_not_covered() {
+        let count = |points: &[[f64; 2]]| cover(points, 2.0, [10, 10]).len();
+        assert_eq!(count(&[[-50.0, 5.0], [-40.0, 5.0]]), 0);
+        assert_eq!(count(&[[50.0, 5.0]]), 0);
+        assert_eq!(count(&[]), 0);
+        assert_eq!(count(&[[-50.0, 5.0], [50.0, 5.0]]), 10 * 4);
+    }
+}

@@ -1,0 +1,115 @@
+//! A picture as an SVG document with native lines, circles and text; rasters are embedded as PNG.
+
+use super::bitmap;
+use super::error::Error;
+use super::font::CAPITALS;
+use super::palette::{INK, Rgb, WHITE};
+use super::picture::{Anchor, DASHES, Mark, Pen, Picture};
+
+/// The document of a picture.
+pub(super) fn document(picture: &Picture) -> Result<String, Error> {
+    let [width, height] = picture.pixels();
+    let ([across, down], white) = (picture.size.map(number), colour(WHITE));
+    let mut document = format!(
+        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n\
+         <svg xmlns=\"http://www.w3.org/2000/svg\" xmlns:xlink=\"http://www.w3.org/1999/xlink\" version=\"1.1\" \
+         width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {across} {down}\" xml:space=\"preserve\">\n\
+         <rect width=\"{across}\" height=\"{down}\" fill=\"{white}\"/>\n"
+    );
+    for mark in &picture.marks {
+        document += &match mark {
+            Mark::Polyline(points, pen) => polyline(points, *pen),
+            Mark::Circle(centre, radius, fill, outline) => {
+                let ([x, y], radius) = (centre.map(number), number(*radius));
+                let (fill, outline) = (colour(*fill), outline.map(stroke).unwrap_or_default());
+                format!("<circle cx=\"{x}\" cy=\"{y}\" r=\"{radius}\" fill=\"{fill}\"{outline}/>\n")
+            }
+            Mark::Text(text, at, size, anchor) => words(text, *at, *size, *anchor),
+            Mark::Raster(corner, size, pixels) => {
+                let units = |pixels: usize| number(pixels as f64 / picture.scale);
+                let ([x, y], [width, height]) = (corner.map(units), size.map(units));
+                let png = base64(&bitmap::encode(*size, pixels)?);
+                format!(
+                    "<image x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" preserveAspectRatio=\"none\" \
+                     style=\"image-rendering:pixelated\" xlink:href=\"data:image/png;base64,{png}\"/>\n"
+                )
+            }
+        };
+    }
+    Ok(document + "</svg>\n")
+}
+
+fn polyline(points: &[[f64; 2]], pen: Pen) -> String {
+    let points: Vec<_> = points
+        .iter()
+        .map(|[x, y]| format!("{},{}", number(*x), number(*y)))
+        .collect();
+    let dashes = if pen.dashed {
+        let [dash, gap] = DASHES.map(number);
+        format!(" stroke-dasharray=\"{dash} {gap}\"")
+    } else {
+        String::new()
+    };
+    format!(
+        "<polyline points=\"{}\" fill=\"none\"{} stroke-linecap=\"round\" stroke-linejoin=\"round\"{dashes}/>\n",
+        points.join(" "),
+        stroke(pen),
+    )
+}
+
+fn words(text: &str, at: [f64; 2], size: f64, anchor: Anchor) -> String {
+    let [x, y] = at.map(number);
+    let (side, turn) = match anchor {
+        Anchor::Left => ("start", String::new()),
+        Anchor::Centre => ("middle", String::new()),
+        Anchor::Right => ("end", String::new()),
+        Anchor::Upwards => ("middle", format!(" transform=\"rotate(-90 {x} {y})\"")),
+    };
+    let (baseline, size) = (number(at[1] + 0.5 * CAPITALS * size), number(size));
+    format!(
+        "<text x=\"{x}\" y=\"{baseline}\" font-family=\"DejaVu Sans, Verdana, sans-serif\" font-size=\"{size}\" \
+         text-anchor=\"{side}\" fill=\"{}\"{turn}>{}</text>\n",
+        colour(INK),
+        escaped(text),
+    )
+}
+
+/// The attributes of a line.
+fn stroke(pen: Pen) -> String {
+    let (colour, width) = (colour(pen.colour), number(pen.width));
+    format!(" stroke=\"{colour}\" stroke-width=\"{width}\"")
+}
+
+fn colour([red, green, blue]: Rgb) -> String {
+    format!("#{red:02x}{green:02x}{blue:02x}")
+}
+
+/// A number with at most two decimals.
+fn number(value: f64) -> String {
+    let text = format!("{value:.2}");
+    let text = text.trim_end_matches('0').trim_end_matches('.');
+    if text == "-0" { "0" } else { text }.to_owned()
+}
+
+/// A text between tags; the two characters that XML does not allow are replaced.
+fn escaped(text: &str) -> String {
+    let text = text.replace('&', "&amp;").replace('<', "&lt;");
+    let text = text.replace('>', "&gt;").replace('"', "&quot;");
+    text.replace(['\u{fffe}', '\u{ffff}'], "\u{fffd}")
+}
+
+/// Bytes as text (RFC 4648).
+fn base64(bytes: &[u8]) -> String {
+    const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);
+    for three in bytes.chunks(3) {
+        let byte = |place: usize| u32::from(three.get(place).copied().unwrap_or(0));
+        let word = byte(0) << 16 | byte(1) << 8 | byte(2);
+        for digit in 0..4 {
+            let place = (word >> (18 - 6 * digit) & 63) as usize;
+            let used = digit <= three.len();
+            text.push(if used { char::from(DIGITS[place]) } else { '=' });
+        }
+    }
+    text
+}

@@ -1,0 +1,167 @@
+//! `whiskmap render`.
+
+use crate::{Place, Run, SCENE, names};
+
+#[test]
+fn render_draws_the_picture_again() {
+    let place = Place::with(SCENE);
+    place.map(&["scene.toml"]);
+    let drawn = place.bytes("outputs/scene.png");
+    std::fs::remove_file(place.path("outputs/scene.png")).unwrap();
+
+    let run = place.run(&["render", "outputs/scene.exr"]);
+    assert_eq!((run.code, &*run.err), (Some(0), ""), "{run:?}");
+    assert!(run.out.trim_end().ends_with("scene.png"), "{run:?}");
+    assert!(place.bytes("outputs/scene.png") == drawn);
+
+    let run = place.run(&["render", "outputs/scene.exr", "--channel", "force_un"]);
+    assert_eq!((run.code, &*run.err), (Some(0), ""), "{run:?}");
+    let force = place.bytes("outputs/scene.force_un.png");
+    assert!(force.starts_with(b"\x89PNG") && force != drawn);
+
+    let run = place.run(&["render", "outputs/scene.exr", "-o", "elsewhere.png"]);
+    assert_eq!(
+        (run.code, &*run.out),
+        (Some(0), "elsewhere.png\n"),
+        "{run:?}"
+    );
+    assert!(place.bytes("elsewhere.png") == drawn);
+}
+
+#[test]
+fn every_channel_can_be_drawn() {
+    let place = Place::with(&SCENE.replace("count = 24", "count = 7"));
+    place.map(&["scene.toml", "--no-png"]);
+    let map = whiskmap::store::StoredMap::open(&place.path("outputs/scene.exr")).unwrap();
+    for channel in map.channels() {
+        let run = place.run(&["render", "outputs/scene.exr", "--channel", channel]);
+        assert_eq!((run.code, &*run.err), (Some(0), ""), "{channel}: {run:?}");
+    }
+    assert_eq!(
+        names(&place.path("outputs")).len(),
+        1 + map.channels().len()
+    );
+}
+
+#[test]
+fn render_refuses_what_is_no_map() {
+    let place = Place::with(SCENE);
+    place.map(&["scene.toml", "--no-png"]);
+    let run = place.run(&["render", "outputs/scene.exr", "--channel", "colour"]);
+    let known = [
+        "--channel colour",
+        "must be one of",
+        "regime, ",
+        "force_un",
+        "margin_deg",
+    ];
+    run.assert_refused(&known);
+
+    let run = place.run(&["render", "scene.toml"]);
+    run.assert_refused(&["scene.toml", "not an EXR file"]);
+    let run = place.run(&["render", "nowhere.exr"]);
+    run.assert_refused(&["nowhere.exr", "No such file"]);
+    place
+        .run(&["render", "outputs"])
+        .assert_refused(&["outputs"]);
+
+    let whole = place.bytes("outputs/scene.exr");
+    for bytes in [0, 4, 100, whole.len() / 2, whole.len() - 1] {
+        std::fs::write(place.path("outputs/cut.exr"), &whole[..bytes]).unwrap();
+        let run = place.run(&["render", "outputs/cut.exr"]);
+        assert!(matches!(run.code, Some(1 | 2)), "{bytes} bytes: {run:?}");
+        assert!(run.err.starts_with("error: outputs/cut.exr"), "{run:?}");
+    }
+    assert_eq!(names(&place.path("outputs")), ["cut.exr", "scene.exr"]);
+}
+
+/// A place with a map in it.
+fn mapped(scene: &str) -> Place {
+    let place = Place::with(scene);
+    place.map(&["scene.toml", "--no-png"]);
+    place
+}
+
+#[test]
+fn the_ending_decides_what_is_written() {
+    let place = mapped(SCENE);
+    for (name, start) in [
+        ("a.png", &b"\x89PNG"[..]),
+        ("b.PNG", b"\x89PNG"),
+        ("c.svg", b"<?xml"),
+        ("d.Svg", b"<?xml"),
+    ] {
+        let run = place.run(&["render", "outputs/scene.exr", "-o", name]);
+        assert_eq!((run.code, &*run.out), (Some(0), &*format!("{name}\n")));
+        assert!(place.bytes(name).starts_with(start), "{name}");
+    }
+    for name in ["e.jpg", "f", "g.svg.gz"] {
+        let run = place.run(&["render", "outputs/scene.exr", "-o", name]);
+        run.assert_refused(&[&format!("--output {name}: must end in .png or .svg")]);
+        assert!(!place.path(name).exists());
+    }
+    let mut piped = place.plain_command(&["render", "outputs/scene.exr", "-o", "-"]);
+    let output = piped.output().unwrap();
+    assert_eq!(output.status.code(), Some(0));
+    assert!(output.stdout == place.bytes("a.png") && output.stderr.is_empty());
+}
+
+#[test]
+fn scale_and_width_are_chosen() {
+    let place = mapped(SCENE);
+    let force = ["render", "outputs/scene.exr", "--channel", "force_un"];
+    let draw = |more: &[&str]| {
+        let run = place.run(&[&force[..], &["-o", "force.svg"], more].concat());
+        assert_eq!((run.code, &*run.err), (Some(0), ""), "{run:?}");
+        String::from_utf8(place.bytes("force.svg")).unwrap()
+    };
+    let plain = draw(&[]);
+    assert_ne!(draw(&["--log"]), plain);
+    let ranged = draw(&["--range", "-10,2e6"]);
+    assert!(ranged.contains(">force (N)<") && ranged.contains(">2.0<"));
+    assert!(draw(&["--width", "640"]).contains(" width=\"640\" "));
+
+    let refused = |more: &[&str], parts: &[&str]| {
+        let run = place.run(&[&["render", "outputs/scene.exr"], more].concat());
+        run.assert_refused(parts);
+    };
+    refused(&["--log"], &["--channel <NAME>"]);
+    refused(&["--range", "1,2"], &["--channel <NAME>"]);
+    refused(
+        &["--channel", "status", "--log"],
+        &["`status`", "made of codes"],
+    );
+    let force = ["--channel", "force_un"];
+    let refused = |more: &[&str], parts: &[&str]| refused(&[&force[..], more].concat(), parts);
+    for range in ["1", "a,2", "1;2", "1,2,3"] {
+        refused(&["--range", range], &[range, "two numbers with a comma"]);
+    }
+    refused(&["--range", "2,1"], &["range 2,1", "smaller one first"]);
+    refused(&["--range", "0,inf"], &["range 0,inf", "finite"]);
+    refused(&["--log", "--range", "-1,1"], &["range -1,1", "above 0"]);
+    for width in ["299", "8001", "wide"] {
+        refused(&["--width", width], &["--width <PX>", width]);
+    }
+    refused(&["--width", "9"], &["300..=8000"]);
+    assert_eq!(names(&place.path("outputs")), ["scene.exr"]);
+}
+
+#[test]
+fn boxes_are_not_drawn_without_a_word() {
+    let place = Place::with(&SCENE.replace("A small map", "A small \u{5730}\u{56f3}"));
+    let warned = |run: &Run| {
+        let line = run.err.lines().last().unwrap_or_default();
+        line.starts_with("warning: ") && line.contains("\u{201c}\u{5730}\u{56f3}\u{201d}")
+    };
+    let run = place.map(&["scene.toml"]);
+    assert!(warned(&run), "{run:?}");
+    let run = place.run(&["render", "outputs/scene.exr"]);
+    assert!(run.code == Some(0) && warned(&run), "{run:?}");
+    assert_eq!(run.err.lines().count(), 1, "{run:?}");
+    let run = place.run(&["curve", "scene.toml", "--plot", "curve.png"]);
+    assert!(run.code == Some(0) && warned(&run), "{run:?}");
+    let run = place.run(&["render", "outputs/scene.exr", "-o", "map.svg"]);
+    assert_eq!((run.code, &*run.err), (Some(0), ""));
+    let document = String::from_utf8(place.bytes("map.svg")).unwrap();
+    assert!(document.contains("A small \u{5730}\u{56f3}<"));
+}
