@@ -1,18 +1,18 @@
-//! Cells in doubt, settled once more by walking along the level curve of their row.
+//! Cells in doubt, settled once more by continuation along the level curve of their row.
 //!
-//! The lattice follows a row from load to load. Where a level curve runs almost along a line of constant load, as near
-//! the tip of a perfect cone, or turns back, as with friction, its guesses can miss. A walk needs no guesses; it costs
-//! some hundred trajectories a row, so only rows with a cell in doubt are walked.
+//! The lattice follows a row from load to load, and its guesses can miss in two places: where a level curve runs almost
+//! along a line of constant load, as near the tip of a perfect cone, and where it turns back, as with friction.
+//! Continuation needs no guesses. It costs some hundred trajectories a row, so only rows with a cell in doubt are followed.
 
 use super::cells::Cell;
 use crate::classify::{RowBoundary, Status, TIE};
 use crate::refine::{ContactState, TOLERANCE};
 use crate::sheet::{Edge, LevelCurve, Node, Sheet, walk};
 
-/// How far, in radians, the end of a walk may be from the boundary, which was computed apart from it.
+/// How far, in radians, the end of a continuation may be from the boundary, which was computed apart from it.
 const SAME_END: f64 = 1e-9;
 
-/// Settles `cells` of `row` again. Cells that a walk does not reach keep what they have.
+/// Settles `cells` of `row` again. Cells that no continuation reaches keep what they have.
 pub fn settle<'a>(
     sheet: &Sheet,
     row: usize,
@@ -61,7 +61,7 @@ pub fn settle<'a>(
                     }
                 }
             }
-            // Every piece of the level curve has been walked from end to end, and none has this push angle.
+            // Every piece of the level curve has been followed from end to end, and none has this push angle.
             None if parts.iter().all(Option::is_some) => {
                 let end = boundary.detachment();
                 cell.status = end.map_or(Status::Outside, |span| beyond(span.edge));

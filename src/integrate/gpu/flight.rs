@@ -2,7 +2,7 @@
 
 use super::EngineError;
 use super::device::Device;
-use super::layout::BufferLayout;
+use super::layout::{BufferLayout, Steps};
 use super::shaders::WORKGROUP;
 use super::stamps::Stamps;
 use crate::integrate::{Hit, Shot};
@@ -92,7 +92,7 @@ impl Flight {
         call: &Call,
         buffers: Option<Buffers>,
         shots: &[Shot],
-        steps: &dyn Fn(&Shot) -> u32,
+        steps: Steps,
     ) -> Result<Self, EngineError> {
         let (device, layout, count) = (call.device, call.layout, shots.len());
         let buffers = match buffers {

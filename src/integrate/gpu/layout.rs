@@ -17,11 +17,14 @@ pub struct BufferLayout {
     pub rods: fn(&[Rod]) -> Vec<u8>,
     /// The pieces of a rod's profile to bytes.
     pub pieces: fn(&Rod) -> Vec<u8>,
-    /// Shots to bytes, and in how many steps the trajectories of each are integrated; with a profile, steps for every piece.
-    pub shots: fn(&[Shot], &dyn Fn(&Shot) -> u32) -> Vec<u8>,
+    /// Shots to bytes.
+    pub shots: fn(&[Shot], Steps) -> Vec<u8>,
     /// Hits from bytes, appended.
     pub hits: fn(&[u8], &mut Vec<Hit>),
 }
+
+/// In how many steps the trajectories of a shot are integrated; with a profile, steps for every piece.
+pub type Steps<'a> = &'a dyn Fn(&Shot) -> u32;
 
 impl BufferLayout {
     /// The layout for shaders of this precision.

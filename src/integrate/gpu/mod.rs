@@ -176,9 +176,9 @@ impl Gpu {
     }
 }
 
-/// The largest `|load| s^2`, times the softness, under which the steps of the shaders do; without friction and gradient no
-/// fold of a cone lies beyond. Under more a whisker coils up, and the residual would not tell that the trajectory is wrong
-/// (by 1e-4 whisker lengths beyond 30, 8e-4 beyond 100, measured).
+/// The largest `|load| s^2`, times the softness, for which the shaders take enough steps. No cone has a fold beyond, unless it
+/// has friction or a gradient. Under larger loads a whisker coils up, and trajectories are wrong by more than the residual
+/// tells: measured 1e-4 whisker lengths beyond 30, 8e-4 beyond 100.
 const MOST_Q: f64 = 30.0;
 
 fn coils_up(rod: &Rod, hit: &Hit) -> bool {

@@ -1,5 +1,6 @@
 //! What the device could do at best.
 
+use super::pipeline::compile;
 use super::shaders::WORKGROUP;
 use super::{EngineError, Gpu, shaders};
 use std::time::Instant;
@@ -24,23 +25,7 @@ impl Gpu {
     /// When the device fails.
     pub fn peak(&self, runs: usize) -> Result<f64, EngineError> {
         let device = &self.device;
-        let text = shaders::peak(self.precision);
-        let module = device
-            .handle
-            .create_shader_module(wgpu::ShaderModuleDescriptor {
-                label: Some("peak"),
-                source: wgpu::ShaderSource::Wgsl(text.into()),
-            });
-        let pipeline = device
-            .handle
-            .create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-                label: Some("peak"),
-                layout: None,
-                module: &module,
-                entry_point: Some("peak"),
-                compilation_options: wgpu::PipelineCompilationOptions::default(),
-                cache: None,
-            });
+        let pipeline = compile(device, "peak", &shaders::peak(self.precision), &[])?;
         let invocations = u64::from(GROUPS * WORKGROUP);
         let usage = wgpu::BufferUsages::STORAGE;
         let ends = device.buffer("ends", 8 * invocations, usage)?;

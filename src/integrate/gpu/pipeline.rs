@@ -1,4 +1,4 @@
-//! The compiled shader of one set of effects.
+//! Shaders, compiled.
 
 use super::EngineError;
 use super::device::Device;
@@ -7,7 +7,7 @@ use super::pace::Pace;
 use super::shaders::{WORKGROUP, overrides};
 use crate::rod::Effects;
 
-/// A pipeline, and what has been learnt about its speed.
+/// The engine's shader for a set of effects, and what has been learnt about its speed.
 #[derive(Debug)]
 pub struct Pipeline {
     pub handle: wgpu::ComputePipeline,
@@ -21,32 +21,41 @@ impl Pipeline {
         layout: &BufferLayout,
         effects: Effects,
     ) -> Result<Self, EngineError> {
-        let module = device
-            .handle
-            .create_shader_module(wgpu::ShaderModuleDescriptor {
-                label: Some("shoot"),
-                source: wgpu::ShaderSource::Wgsl(shader.into()),
-            });
-        device.check()?;
-        let handle = device
-            .handle
-            .create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-                label: Some("shoot"),
-                layout: None,
-                module: &module,
-                entry_point: Some("shoot"),
-                compilation_options: wgpu::PipelineCompilationOptions {
-                    constants: &overrides(effects),
-                    ..Default::default()
-                },
-                cache: None,
-            });
-        device.check()?;
         let largest = layout.shot.max(layout.hit);
         let groups = device.handle.limits().max_compute_workgroups_per_dimension;
         Ok(Self {
-            handle,
+            handle: compile(device, "shoot", shader, &overrides(effects))?,
             pace: Pace::new(device.most_bytes(), largest, groups, WORKGROUP),
         })
     }
+}
+
+/// The pipeline of the entry point `entry` of `shader`.
+pub fn compile(
+    device: &Device,
+    entry: &str,
+    shader: &str,
+    constants: &[(&str, f64)],
+) -> Result<wgpu::ComputePipeline, EngineError> {
+    let module = device
+        .handle
+        .create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some(entry),
+            source: wgpu::ShaderSource::Wgsl(shader.into()),
+        });
+    device.check()?;
+    let pipeline = device
+        .handle
+        .create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label: Some(entry),
+            layout: None,
+            module: &module,
+            entry_point: Some(entry),
+            compilation_options: wgpu::PipelineCompilationOptions {
+                constants,
+                ..Default::default()
+            },
+            cache: None,
+        });
+    device.check().map(|()| pipeline)
 }
