@@ -1,18 +1,18 @@
-//! Cells in doubt, settled once more by walking along the level curve of their row.
+//! Cells in doubt, settled once more by continuation along the level curve of their row.
 //!
 //! The lattice follows a row from load to load. Where a level curve runs almost along a line of constant load, as near
-//! the tip of a perfect cone, or turns back, as with friction, its guesses can miss. A walk needs no guesses; it costs
-//! some hundred trajectories a row, so only rows with a cell in doubt are walked.
+//! the tip of a perfect cone, or turns back, as with friction, its guesses can miss. Continuation needs no
+//! guesses; it costs some hundred trajectories a row, so only rows with a cell in doubt are followed.
 
 use super::cells::Cell;
 use crate::classify::{RowBoundary, Status, TIE};
 use crate::refine::{State, TOLERANCE};
-use crate::sheet::{Edge, LevelCurve, Node, Sheet, walk};
+use crate::sheet::{Edge, LevelCurve, Node, Sheet};
 
-/// How far, in radians, the end of a walk may be from the boundary, which was computed apart from it.
+/// How far, in radians, the end of a continuation may be from the boundary, which was computed apart from it.
 const SAME_END: f64 = 1e-9;
 
-/// Settles `cells` of `row` again. Cells that a walk does not reach keep what they have.
+/// Settles `cells` of `row` again. Cells that it does not reach keep what they have.
 pub fn settle<'a>(
     sheet: &Sheet,
     row: usize,
@@ -30,12 +30,12 @@ pub fn settle<'a>(
                 level.touch()?
             } else {
                 let entry = sheet.crossings[row].iter().find(|c| c.push == span.from)?;
-                level.at(entry)?
+                level.at_crossing(entry)?
             };
-            let walked = walk(&level, start, false)?;
-            let end = walked.nodes.last()?;
-            let agrees = (sign * end.push - span.to).abs() < SAME_END && walked.end == span.edge;
-            agrees.then_some(walked.nodes)
+            let piece = level.continuation(start, false)?;
+            let end = piece.nodes.last()?;
+            let agrees = (sign * end.push - span.to).abs() < SAME_END && piece.end == span.edge;
+            agrees.then_some(piece.nodes)
         })
         .collect();
     for cell in cells {
@@ -52,7 +52,8 @@ pub fn settle<'a>(
                 let (first, last) = (nodes[0].push, nodes[nodes.len() - 1].push);
                 if sign * push > sign * last {
                     cell.status = beyond(boundary.spans()[index].edge);
-                } else if let Some(node) = level.find(nodes, sign * (sign * push).max(sign * first))
+                } else if let Some(node) =
+                    level.state_at_push(nodes, sign * (sign * push).max(sign * first))
                 {
                     let state = state(&level, &node, push);
                     if state.residual <= TOLERANCE {
@@ -61,7 +62,7 @@ pub fn settle<'a>(
                     }
                 }
             }
-            // Every piece of the level curve has been walked from end to end, and none has this push angle.
+            // Every piece of the level curve has been followed from end to end, and none has this push angle.
             None if parts.iter().all(Option::is_some) => {
                 let end = boundary.detachment();
                 cell.status = end.map_or(Status::Outside, |span| beyond(span.edge));

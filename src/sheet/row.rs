@@ -1,8 +1,11 @@
-//! The rows of a map: distances at first touch, and where the pole stands for each.
+//! A row of a map: a distance at first touch, where the pole stands for it, and where the row leaves the stable sheet.
 
 use crate::rod::{Rest, Rod};
-use crate::sheet::edges::REACH_SLACK;
 use glam::DVec2;
+
+/// Relative slack with which a distance counts as reached, so that a whisker whose resting tip just touches
+/// the pole does touch it, whatever the rounding.
+pub const REACH_SLACK: f64 = 1e-12;
 
 /// One distance of a map for one whisker and side; lengths in whisker lengths.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,5 +40,41 @@ impl Row {
     #[must_use]
     pub fn pole(&self, push: f64) -> DVec2 {
         self.pole_distance * DVec2::from_angle(self.touch + push)
+    }
+}
+
+/// An edge over which a row leaves the sheet.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Edge {
+    /// The saddle-node: the whisker slips off.
+    Fold,
+    /// The contact reaches the tip: the whisker is pulled off.
+    Tip,
+}
+
+/// A row's crossing of an edge.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Crossing {
+    /// Which edge.
+    pub edge: Edge,
+    /// `tau` of the contact.
+    pub tau: f64,
+    /// Signed load.
+    pub load: f64,
+    /// Push angle since first touch, in radians, as a magnitude on the row's side.
+    pub push: f64,
+    /// Remaining error, relative: the distance in `ln D`, and the square of how far the point still is (the push angle is flat
+    /// at a fold).
+    pub residual: f64,
+}
+
+/// The largest error, relative to the distance of the pole, of a crossing that is taken for one.
+const SOUND: f64 = 1e-10;
+
+impl Crossing {
+    /// Whether it was found: a crossing that was not is only near the level curve.
+    #[must_use]
+    pub fn is_sound(&self) -> bool {
+        self.residual <= SOUND
     }
 }

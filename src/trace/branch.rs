@@ -4,7 +4,7 @@ use super::even::{interpolate, targets};
 use super::{FINER, Found, Mark, NoState};
 use crate::rod::{Effects, Rest, Rod, Side, Units};
 use crate::scene::{Pole, Whisker};
-use crate::sheet::{Edge, LevelCurve, Node, ON_CURVE, Row, Walk, walk};
+use crate::sheet::{Continuation, Edge, LevelCurve, Node, ON_CURVE, Row};
 use crate::shooting::Reader;
 use crate::shooting::Reading;
 use crate::shooting::batch::Method;
@@ -16,7 +16,7 @@ use serde::Serialize;
 pub struct Branch {
     pub(super) level: LevelCurve,
     units: Units,
-    pub(super) walk: Walk,
+    pub(super) walk: Continuation,
 }
 
 /// A state on a branch, in the units of people.
@@ -64,23 +64,19 @@ impl Branch {
                 reach_mm: tip.length() * whisker.length_mm,
             });
         }
-        let level = LevelCurve {
-            method: Method {
-                effects: Effects::of([&rod]),
-                resolution: FINER,
-            },
-            rod,
-            side,
-            row,
-            forward: true,
+        let method = Method {
+            effects: Effects::of([&rod]),
+            resolution: FINER,
         };
+        let level = LevelCurve::new(method, &rod, side, &row);
+        let walk = level
+            .touch()
+            .and_then(|touch| level.continuation(touch, true))
+            .ok_or(NoState::Lost { push_deg: 0.0 })?;
         Ok(Self {
             level,
             units: whisker.units(),
-            walk: level
-                .touch()
-                .and_then(|touch| walk(&level, touch, true))
-                .ok_or(NoState::Lost { push_deg: 0.0 })?,
+            walk,
         })
     }
 
@@ -108,7 +104,7 @@ impl Branch {
     /// # Errors
     /// When a point between two nodes of the continuation cannot be brought onto the curve.
     pub fn points(&self, count: usize) -> Result<Vec<BranchPoint>, NoState> {
-        let Walk { nodes, fold, end } = &self.walk;
+        let Continuation { nodes, fold, end } = &self.walk;
         let lengths = self.lengths();
         let (targets, fold_at) = targets(&lengths, *fold, count.max(3));
         let guesses: Vec<(usize, DVec2)> = targets
@@ -116,11 +112,11 @@ impl Branch {
             .map(|target| interpolate(nodes, &lengths, *target))
             .collect();
         let starts: Vec<DVec2> = guesses.iter().map(|(_, start)| *start).collect();
-        let settled = self.level.settle(&starts, ON_CURVE);
+        let corrected = self.level.correct(&starts, ON_CURVE);
         let last = targets.len() - 1;
-        let on_curve = guesses.iter().zip(settled).enumerate();
+        let on_curve = guesses.iter().zip(corrected).enumerate();
         on_curve
-            .map(|(i, ((near, _), settled))| {
+            .map(|(i, ((near, _), corrected))| {
                 // The ends and the fold are known better than any corrector knows them.
                 let exact = match i {
                     0 => Some((nodes[0], Mark::Touch)),
@@ -132,7 +128,7 @@ impl Branch {
                 let (node, mark) = match exact {
                     Some((node, mark)) => (node, Some(mark)),
                     None => {
-                        let (point, full) = settled.ok_or_else(|| self.lost())?;
+                        let (point, full) = corrected.ok_or_else(|| self.lost())?;
                         (self.level.node(point, &full, near.push, near.angle), None)
                     }
                 };

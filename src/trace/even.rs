@@ -1,4 +1,4 @@
-//! Even spacing along a walk.
+//! Even spacing along a branch.
 
 use crate::sheet::Node;
 use glam::DVec2;
