@@ -2,7 +2,7 @@
 
 use crate::numerics::Bracket;
 use crate::numerics::newton_form::{
-    Polynomial, even_nodes, stencil, through_slopes, through_values,
+    Polynomial, RootProblem, even_nodes, stencil, through_slopes, through_values,
 };
 use crate::sheet::fold::contact_nodes::ContactNodes;
 use crate::sheet::fold::coordinate::{Hermite, STENCIL, hermite};
@@ -66,8 +66,12 @@ pub fn place_between<const N: usize>(
 ) -> f64 {
     let [from, to] = pair.map(|sample| sample.ln_distance);
     let near = ends[0] + (target - from) / (to - from) * (ends[1] - ends[0]);
-    let bracket = Bracket::new(ends, [from, to]);
-    ln_distance.solve(target, near, bracket, LAST_STEP_ALONG_EDGE)
+    let problem = RootProblem {
+        target,
+        near,
+        bracket: Bracket::new(ends, [from, to]),
+    };
+    ln_distance.solve(&problem, LAST_STEP_ALONG_EDGE)
 }
 
 /// The fold edge over one stencil of contact nodes.

@@ -2,6 +2,7 @@
 //! Chebyshev-Lobatto nodes of the load, and where the distance has an extremum: between samples it then grows or falls throughout.
 
 use crate::numerics::lobatto::{LOBATTO_COUNT, LOBATTO_NODES, LobattoPolynomial, through_lobatto};
+use crate::numerics::newton_form::RootProblem;
 use crate::numerics::{Bracket, nearest_turn};
 use crate::rod::Rod;
 use crate::sheet::edges::predictor::{LAST_STEP_ALONG_EDGE, Prediction, Sample, place_between};
@@ -123,7 +124,12 @@ impl TipEdge {
                 if at_from * at_to < 0.0 {
                     let near = from + at_from / (at_from - at_to) * (to - from);
                     let parts = Bracket::new([from, to], [at_from, at_to]);
-                    let part = slope.solve(0.0, near, parts, LAST_STEP_ALONG_EDGE);
+                    let problem = RootProblem {
+                        target: 0.0,
+                        near,
+                        bracket: parts,
+                    };
+                    let part = slope.solve(&problem, LAST_STEP_ALONG_EDGE);
                     extrema.push(Extremum {
                         after,
                         load: self.corner * part,

@@ -4,7 +4,7 @@ pub mod contact_nodes;
 pub mod coordinate;
 
 use crate::numerics::Bracket;
-use crate::numerics::newton_form::{Polynomial, stencil};
+use crate::numerics::newton_form::{Polynomial, RootProblem, stencil};
 use crate::rod::{Rod, Side, arclength};
 use crate::shooting::batch::{InitialCondition, Method, shoot_padded};
 use crate::shooting::{First, Nystrom8, Second, SecondVariation, ShootingMap};
@@ -156,11 +156,15 @@ fn root(samples: &[f64], dets: &[f64], at: usize) -> f64 {
     let part = if samples[around.end - 1] <= EVEN_UP_TO {
         let offset = (at - start) as f64;
         let polynomial = Polynomial::<DET_STENCIL>::through(&dets[around]);
-        let bracket = Bracket {
-            below: offset + 1.0,
-            above: offset,
+        let problem = RootProblem {
+            target: 0.0,
+            near: offset + secant,
+            bracket: Bracket {
+                below: offset + 1.0,
+                above: offset,
+            },
         };
-        polynomial.solve(0.0, offset + secant, bracket, LAST_STEP_BETWEEN_SAMPLES) - offset
+        polynomial.solve(&problem, LAST_STEP_BETWEEN_SAMPLES) - offset
     } else {
         secant
     };

@@ -4,8 +4,9 @@
 //! first one is solved for the load, the others are evaluated there. Sixteen cells of a row are solved side by side.
 
 use crate::numerics::lobatto::{LOBATTO_COUNT, LOBATTO_NODES, LobattoPolynomial, through_lobatto};
-use crate::numerics::newton_form_simd::{Numbers, Roots, Terms};
-use crate::numerics::{Bracket, Unit, WIDTH};
+use crate::numerics::newton_form::RootProblem;
+use crate::numerics::newton_form_simd::{Numbers, SimdRoots, Terms};
+use crate::numerics::{Bracket, WIDTH};
 
 /// A guess for one cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -65,49 +66,55 @@ impl RowCurve {
     /// The guesses of a row from first touch to the fold: one polynomial is as good at its ends as in its middle.
     fn whole(
         &self,
-        problems: impl Iterator<Item = Option<(usize, Problem)>>,
+        problems: impl Iterator<Item = Option<(usize, RootProblem)>>,
     ) -> Vec<Option<Guess>> {
         let polynomials = self.polynomials(0, LOBATTO_COUNT);
+        let roots = roots(&polynomials);
         let mut guesses = Vec::with_capacity(problems.size_hint().0);
-        let mut block = Block::default();
+        let (mut cells, mut block) = (Vec::new(), Vec::new());
         for problem in problems {
             if let Some((_, problem)) = problem {
-                block.push(guesses.len(), problem);
+                cells.push(guesses.len());
+                block.push(problem);
             }
             guesses.push(None);
-            if block.count == WIDTH {
-                block.solve(&polynomials, &mut guesses);
+        }
+        for (cells, block) in cells.chunks(WIDTH).zip(block.chunks(WIDTH)) {
+            let [tau, load] = roots.solve(0, block, LAST_PART_STEP);
+            for (&cell, (tau, load)) in cells.iter().zip(tau.into_iter().zip(load)) {
+                guesses[cell] = Some(Guess { tau, load });
             }
         }
-        block.solve(&polynomials, &mut guesses);
         guesses
     }
 
     /// Those of a row that leaves the lattice, from the points around.
-    fn cut(&self, problems: impl Iterator<Item = Option<(usize, Problem)>>) -> Vec<Option<Guess>> {
+    fn cut(
+        &self,
+        problems: impl Iterator<Item = Option<(usize, RootProblem)>>,
+    ) -> Vec<Option<Guess>> {
         let count = self.count.min(NEAR_CUT);
-        let mut known: Option<(usize, Polynomials)> = None;
-        let mut guess = |(i, problem): (usize, Problem)| {
+        let mut known: Option<(usize, [LobattoPolynomial; 3])> = None;
+        let mut guess = |(i, problem): (usize, RootProblem)| {
             let from = i.saturating_sub(NEAR_CUT / 2 - 1).min(self.count - count);
             let (_, polynomials) = match &known {
                 Some(there) if there.0 == from => there,
                 _ => known.insert((from, self.polynomials(from, count))),
             };
-            polynomials.solve(&problem)
+            let [tau, load] = roots(polynomials).solve_alone(0, &problem, LAST_PART_STEP);
+            Guess { tau, load }
         };
         problems.map(|problem| problem.map(&mut guess)).collect()
     }
 
-    /// Polynomials through `count` points from the point `from` on.
-    fn polynomials(&self, from: usize, count: usize) -> Polynomials {
-        let values = |numbers: &Numbers| {
+    /// Push angle, contact and load by the part of the fold's load, through `count` points from the point `from` on.
+    fn polynomials(&self, from: usize, count: usize) -> [LobattoPolynomial; 3] {
+        let values = [&self.push, &self.tau, &self.load].map(|numbers| {
             let mut values = [0.0; LOBATTO_COUNT];
             values[..count].copy_from_slice(&numbers[from..from + count]);
             values
-        };
-        let values = [&self.push, &self.tau, &self.load].map(values);
-        let [push, tau, load] = through_lobatto(self.first + from, count, values);
-        Polynomials { push, tau, load }
+        });
+        through_lobatto(self.first + from, count, values)
     }
 
     /// The intervals between the points. A row leaves the lattice between two loads: its end is moved to the next one, unless the
@@ -119,14 +126,14 @@ impl RowCurve {
         part[..count].copy_from_slice(&LOBATTO_NODES[first..first + count]);
         if let Some(before) = first.checked_sub(1) {
             let node = LOBATTO_NODES[before];
-            let at_node = self.polynomials(0, near_cut).push.at(node).0;
+            let at_node = self.polynomials(0, near_cut)[0].at(node).0;
             if at_node < self.push[0] {
                 (part[0], push[0]) = (node, at_node);
             }
         }
         if let Some(node) = LOBATTO_NODES.get(first + count) {
             let ending = self.polynomials(count - near_cut, near_cut);
-            let at_node = ending.push.at(*node).0;
+            let at_node = ending[0].at(*node).0;
             if at_node > self.push[count - 1] {
                 (part[count - 1], push[count - 1]) = (*node, at_node);
             }
@@ -156,20 +163,9 @@ struct Intervals {
     below: Numbers,
 }
 
-/// A push angle that is looked for.
-#[derive(Clone, Copy, Debug, Default)]
-struct Problem {
-    /// The push angle.
-    target: f64,
-    /// Where to start.
-    near: f64,
-    /// Parts of the load around it.
-    parts: Bracket,
-}
-
 impl Intervals {
     /// Where to look for `push` between the point `i` and the next one; `None` where it is not near them.
-    fn problem(&self, i: usize, push: f64) -> Option<Problem> {
+    fn problem(&self, i: usize, push: f64) -> Option<RootProblem> {
         let pair = |numbers: &Numbers| [numbers[i], numbers[i + 1]];
         let ([low, high], [from, to]) = (pair(&self.part), pair(&self.push));
         if push < from - MARGIN || push > to + MARGIN {
@@ -183,75 +179,20 @@ impl Intervals {
         } else {
             1.0
         };
-        Some(Problem {
+        Some(RootProblem {
             target,
             near: low + between * (high - low),
-            parts: Bracket::new([low, high], [from, to]),
+            bracket: Bracket::new([low, high], [from, to]),
         })
     }
 }
 
-/// The level curve of a row by the load, as a part of the fold's.
-struct Polynomials {
-    push: LobattoPolynomial,
-    tau: LobattoPolynomial,
-    load: LobattoPolynomial,
-}
-
-impl Polynomials {
-    fn solve(&self, problem: &Problem) -> Guess {
-        let Problem {
-            target,
-            near,
-            parts,
-        } = *problem;
-        let part = self.push.solve(target, near, parts, LAST_PART_STEP);
-        Guess {
-            tau: self.tau.at(part).0,
-            load: self.load.at(part).0,
-        }
-    }
-}
-
-/// Problems that are solved side by side, each with the index of its guess.
-#[derive(Default)]
-struct Block {
-    count: usize,
-    problems: [(usize, Problem); WIDTH],
-}
-
-impl Block {
-    fn push(&mut self, cell: usize, problem: Problem) {
-        self.problems[self.count] = (cell, problem);
-        self.count += 1;
-    }
-
-    fn solve(&mut self, polynomials: &Polynomials, guesses: &mut [Option<Guess>]) {
-        if self.count == 0 {
-            return;
-        }
-        let Polynomials { push, tau, load } = polynomials;
-        let found = Unit::detect().run(Roots {
-            nodes: &push.nodes,
-            terms: Terms::Same(&push.differences),
-            targets: self.problems.map(|(_, problem)| problem.target),
-            near: self.problems.map(|(_, problem)| problem.near),
-            others: [tau, load].map(|other| Terms::Same(&other.differences)),
-        });
-        let [taus, loads] = found.others;
-        for (i, (cell, problem)) in self.problems[..self.count].iter().enumerate() {
-            let is_known =
-                found.step[i].abs() < LAST_PART_STEP && problem.parts.contains(found.place[i]);
-            guesses[*cell] = Some(if is_known {
-                Guess {
-                    tau: taus[i],
-                    load: loads[i],
-                }
-            } else {
-                polynomials.solve(problem)
-            });
-        }
-        self.count = 0;
+/// Contact and load where the push angle is as wanted.
+fn roots([push, tau, load]: &[LobattoPolynomial; 3]) -> SimdRoots<'_, LOBATTO_COUNT, 2> {
+    SimdRoots {
+        nodes: &push.nodes,
+        terms: Terms::Same(&push.differences),
+        others: [tau, load].map(|other| Terms::Same(&other.differences)),
     }
 }
 

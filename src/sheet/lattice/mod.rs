@@ -7,12 +7,12 @@
 pub mod guesses;
 
 use crate::numerics::lobatto::{LOBATTO_COUNT, LOBATTO_NODES};
-use crate::numerics::newton_form::{stencil, through_slopes};
-use crate::numerics::newton_form_simd::{Found, Numbers, Roots, Terms, keep, pack};
+use crate::numerics::newton_form::{RootProblem, stencil, through_slopes};
+use crate::numerics::newton_form_simd::{Numbers, SimdRoots, Terms, keep, pack};
 use crate::numerics::{Bracket, Lanes, Task, Unit, WIDTH, nearest_turn};
 use crate::rod::{Rod, Side};
 use crate::sheet::fold::contact_nodes::ContactNodes;
-use crate::sheet::fold::coordinate::{Hermite, STENCIL, TERMS, hermite};
+use crate::sheet::fold::coordinate::{STENCIL, TERMS};
 use crate::sheet::lattice::guesses::RowCurve;
 use crate::sheet::row::Row;
 use crate::shooting::batch::{InitialCondition, Method, shoot_padded};
@@ -48,7 +48,7 @@ struct LoadLine {
     slopes: [Numbers; 2],
 }
 
-/// Along one stencil of contact nodes: [`Hermite`] polynomials by their divided differences, one for every load.
+/// Along one stencil of contact nodes: Hermite polynomials by their divided differences, one for every load.
 #[derive(Clone, Copy, Debug)]
 struct Patch {
     ln_distance: [Numbers; TERMS],
@@ -173,52 +173,34 @@ impl Lattice {
         curve: &mut RowCurve,
     ) {
         let (patch, target) = (&self.patches[start], row.pole_distance.ln());
-        let ends = |i: usize| {
+        let problem = |(m, &i): (usize, &usize)| {
             let offset = i as f64 - start as f64;
-            [offset, offset + 1.0]
+            let ends = [i, i + 1].map(|i| self.lines[i].ln_distance[m]);
+            RootProblem {
+                target,
+                near: offset + (target - ends[0]) / (ends[1] - ends[0]),
+                bracket: Bracket::new([offset, offset + 1.0], ends),
+            }
         };
-        let ln_distances = |m: usize, i: usize| [i, i + 1].map(|i| self.lines[i].ln_distance[m]);
-        let mut near = [0.0; WIDTH];
-        for (m, &i) in (from..).zip(after) {
-            let [here, next] = ln_distances(m, i);
-            near[m] = ends(i)[0] + (target - here) / (next - here);
-        }
-        let (ln_tau, ln_q) = (&contacts.ln_tau[start], &contacts.ln_q[start]);
-        let unit = Unit::detect();
-        let found = unit.run(Roots {
-            nodes: &ln_tau.nodes,
+        let problems: Vec<RootProblem> = (from..).zip(after).map(problem).collect();
+        let folds = [&contacts.ln_tau[start], &contacts.ln_q[start]];
+        let roots = SimdRoots {
+            nodes: &folds[0].nodes,
             terms: Terms::Each(&patch.ln_distance),
-            targets: [target; WIDTH],
-            near,
             others: [
                 Terms::Each(&patch.phi),
-                Terms::Same(&ln_tau.differences),
-                Terms::Same(&ln_q.differences),
+                Terms::Same(&folds[0].differences),
+                Terms::Same(&folds[1].differences),
             ],
-        });
-        let Found {
-            place,
-            step,
-            others: [phis, ln_taus, ln_qs],
-        } = found;
-        let [taus, qs] = unit.run(Exponentials([ln_taus, ln_qs]));
+        };
+        let [phi, ln_tau, ln_q] = roots.solve(from, &problems, LAST_CONTACT_STEP);
+        let [tau, q] = Unit::detect().run(Exponentials([ln_tau, ln_q]));
         let sign = self.side.sign();
-        for (m, &i) in (from..).zip(after) {
-            let bracket = Bracket::new(ends(i), ln_distances(m, i));
-            let is_known = step[m].abs() < LAST_CONTACT_STEP && bracket.contains(place[m]);
-            let [phi, tau, q] = if is_known {
-                [phis[m], taus[m], qs[m]]
-            } else {
-                let lane = |terms: &[Numbers; TERMS]| hermite(terms.map(|term| term[m]));
-                let ln_distance = lane(&patch.ln_distance);
-                let place = ln_distance.solve(target, near[m], bracket, LAST_CONTACT_STEP);
-                let at = |line: &Hermite| line.at(place).0;
-                [at(&lane(&patch.phi)), at(ln_tau).exp(), at(ln_q).exp()]
-            };
+        for m in from..from + after.len() {
             let point = m - curve.first;
-            curve.push[point] = sign * (phi - row.touch);
-            curve.tau[point] = tau;
-            curve.load[point] = sign * q / (tau * tau) * LOBATTO_NODES[m];
+            curve.push[point] = sign * (phi[m] - row.touch);
+            curve.tau[point] = tau[m];
+            curve.load[point] = sign * q[m] / (tau[m] * tau[m]) * LOBATTO_NODES[m];
         }
     }
 }

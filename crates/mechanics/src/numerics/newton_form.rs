@@ -36,10 +36,14 @@ impl<const N: usize> Polynomial<N> {
         (value, slope)
     }
 
-    /// Where the polynomial is `target` in `bracket`, by Newton's method from `near`, or from the middle if that is not inside.
-    /// The last step is at most `last_step`: its square is left.
+    /// The root by Newton's method. Its last step is at most `last_step`: the square is left.
     #[must_use]
-    pub fn solve(&self, target: f64, near: f64, bracket: Bracket, last_step: f64) -> f64 {
+    pub fn solve(&self, problem: &RootProblem, last_step: f64) -> f64 {
+        let RootProblem {
+            target,
+            near,
+            bracket,
+        } = *problem;
         let start = if bracket.is_inside(near) {
             near
         } else {
@@ -51,6 +55,17 @@ impl<const N: usize> Polynomial<N> {
         };
         bracket.newton(start, |_| last_step, iterate).x
     }
+}
+
+/// Where a function is asked to be `target`.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct RootProblem {
+    /// The value.
+    pub target: f64,
+    /// Where to start, if it is inside the bracket.
+    pub near: f64,
+    /// Two places with the target between their values.
+    pub bracket: Bracket,
 }
 
 /// The nodes 0, 1, ..., of which each counts `each` times.
@@ -168,8 +183,12 @@ mod tests {
                 for target in [sample.next_down(), *sample, sample.next_up()] {
                     for low in [k.saturating_sub(1), k.min(COUNT - 2)] {
                         let ends = [low as f64, (low + 1) as f64];
-                        let between = Bracket::new(ends, [samples[low], samples[low + 1]]);
-                        let t = polynomial.solve(target, low as f64 + 0.3, between, 1e-4);
+                        let problem = RootProblem {
+                            target,
+                            near: low as f64 + 0.3,
+                            bracket: Bracket::new(ends, [samples[low], samples[low + 1]]),
+                        };
+                        let t = polynomial.solve(&problem, 1e-4);
                         assert!((t - k as f64).abs() < 1e-6, "{t} instead of {k}");
                     }
                 }

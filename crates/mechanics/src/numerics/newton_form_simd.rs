@@ -1,6 +1,7 @@
 //! Roots of polynomials in Newton's form, side by side: one alone would wait for its own products most of the time.
 
-use crate::numerics::{Lanes, Task, WIDTH};
+use crate::numerics::newton_form::{Polynomial, RootProblem};
+use crate::numerics::{Lanes, Task, Unit, WIDTH};
 
 /// A number for every lane.
 pub type Numbers = [f64; WIDTH];
@@ -63,57 +64,105 @@ fn horner<T: Lanes, C: Term, const N: usize>(
     (value, slope)
 }
 
-/// Where polynomials on the same `nodes` are as large as wanted, and what `others` are there.
+/// Polynomials on the same nodes: one that is solved, and others that are wanted at its root.
 #[derive(Clone, Copy, Debug)]
-pub struct Roots<'a, const N: usize, const M: usize> {
+pub struct SimdRoots<'a, const N: usize, const M: usize> {
     /// The nodes of all of them.
     pub nodes: &'a [f64; N],
     /// The polynomial that is solved.
     pub terms: Terms<'a, N>,
-    /// What it is to be.
-    pub targets: Numbers,
-    /// Where to start.
-    pub near: Numbers,
-    /// The polynomials that are evaluated there.
+    /// Those that are evaluated there.
     pub others: [Terms<'a, N>; M],
 }
 
-/// What [`Roots`] finds.
-#[derive(Clone, Copy, Debug)]
-pub struct Found<const M: usize> {
-    /// The places.
-    pub place: Numbers,
-    /// The last steps toward them.
-    pub step: Numbers,
-    /// The other polynomials there.
-    pub others: [Numbers; M],
-}
-
-impl<const N: usize, const M: usize> Task for Roots<'_, N, M> {
-    type Output = Found<M>;
-
-    #[inline(always)]
-    fn run<T: Lanes>(self) -> Found<M> {
-        let mut found = Found {
-            place: [0.0; WIDTH],
+impl<const N: usize, const M: usize> SimdRoots<'_, N, M> {
+    /// The others at the roots of the `problems`, which belong to the lanes from `first` on. What a few iterations side by side do not
+    /// find is solved alone.
+    #[must_use]
+    pub fn solve(&self, first: usize, problems: &[RootProblem], last_step: f64) -> [Numbers; M] {
+        let numbers = |number: fn(&RootProblem) -> f64| {
+            let mut numbers = [0.0; WIDTH];
+            for (slot, problem) in numbers[first..].iter_mut().zip(problems) {
+                *slot = number(problem);
+            }
+            numbers
+        };
+        let Newton {
+            place,
+            step,
+            mut others,
+            ..
+        } = Unit::detect().run(Newton {
+            roots: self,
+            targets: numbers(|problem| problem.target),
+            place: numbers(|problem| problem.near),
             step: [0.0; WIDTH],
             others: [[0.0; WIDTH]; M],
+        });
+        for (lane, problem) in (first..).zip(problems) {
+            if step[lane].abs() < last_step && problem.bracket.contains(place[lane]) {
+                continue;
+            }
+            for (numbers, other) in others
+                .iter_mut()
+                .zip(self.solve_alone(lane, problem, last_step))
+            {
+                numbers[lane] = other;
+            }
+        }
+        others
+    }
+
+    /// The others at the root of the polynomial of one lane.
+    #[must_use]
+    pub fn solve_alone(&self, lane: usize, problem: &RootProblem, last_step: f64) -> [f64; M] {
+        let polynomial = |terms: &Terms<N>| Polynomial {
+            nodes: *self.nodes,
+            differences: match terms {
+                Terms::Same(terms) => **terms,
+                Terms::Each(terms) => terms.map(|term| term[lane]),
+            },
         };
+        let place = polynomial(&self.terms).solve(problem, last_step);
+        std::array::from_fn(|i| polynomial(&self.others[i]).at(place).0)
+    }
+}
+
+/// Newton's method side by side, and what it has come to.
+struct Newton<'a, const N: usize, const M: usize> {
+    roots: &'a SimdRoots<'a, N, M>,
+    targets: Numbers,
+    place: Numbers,
+    /// The last step.
+    step: Numbers,
+    others: [Numbers; M],
+}
+
+impl<const N: usize, const M: usize> Task for Newton<'_, N, M> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn run<T: Lanes>(mut self) -> Self {
+        let SimdRoots {
+            nodes,
+            terms,
+            others,
+        } = self.roots;
         for from in (0..WIDTH).step_by(T::LANES) {
             let target: T = pack(&self.targets, from);
-            let (mut place, mut step): (T, T) = (pack(&self.near, from), T::of(0.0));
+            let (mut place, mut step): (T, T) = (pack(&self.place, from), T::of(0.0));
             for _ in 0..ITERATIONS {
-                let (value, slope) = self.terms.at(self.nodes, from, place);
+                let (value, slope) = terms.at(nodes, from, place);
                 step = (target - value) / slope;
                 place = place + step;
             }
-            keep(&mut found.place, from, place);
-            keep(&mut found.step, from, step);
-            for (numbers, other) in found.others.iter_mut().zip(&self.others) {
-                keep(numbers, from, other.at(self.nodes, from, place).0);
+            keep(&mut self.place, from, place);
+            keep(&mut self.step, from, step);
+            for (numbers, other) in self.others.iter_mut().zip(others) {
+                keep(numbers, from, other.at(nodes, from, place).0);
             }
         }
-        found
+        self
     }
 }
 
@@ -134,8 +183,7 @@ pub fn keep<T: Lanes>(numbers: &mut Numbers, from: usize, lanes: T) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::numerics::newton_form::Polynomial;
-    use crate::numerics::{Bracket, Unit};
+    use crate::numerics::Bracket;
 
     const N: usize = 12;
 
@@ -146,7 +194,7 @@ mod tests {
         Polynomial::through(&std::array::from_fn::<_, N, _>(value))
     }
 
-    /// With a polynomial for every lane, and with one for all.
+    /// With a polynomial for every lane and with one for all, on every unit; and from a place so far that most are solved alone.
     #[test]
     fn what_is_found_together_is_found_alone() {
         let mut each = [[[0.0; WIDTH]; N]; 2];
@@ -157,33 +205,48 @@ mod tests {
             }
         }
         let [same, other] = [1, WIDTH + 1].map(rising);
-        let targets: Numbers = std::array::from_fn(|lane| 0.1 + 0.15 * lane as f64);
-        for unit in Unit::all() {
-            for is_same in [false, true] {
-                let of_lane = |lane| if is_same { same } else { rising(lane) };
-                let alone: Numbers = std::array::from_fn(|lane| {
-                    let bracket = Bracket::new([0.0, (N - 1) as f64], [0.0, 3.0]);
-                    of_lane(lane).solve(targets[lane], 4.5, bracket, 1e-4)
+        for is_same in [false, true] {
+            let terms = [Terms::Each(&each[0]), Terms::Same(&same.differences)];
+            let roots = SimdRoots {
+                nodes: &same.nodes,
+                terms: terms[usize::from(is_same)],
+                others: [Terms::Each(&each[1]), Terms::Same(&other.differences)],
+            };
+            let far: [RootProblem; WIDTH] = std::array::from_fn(|lane| RootProblem {
+                target: 0.1 + 0.15 * lane as f64,
+                near: 10.9,
+                bracket: Bracket::new([0.0, (N - 1) as f64], [0.0, 3.0]),
+            });
+            let places: Numbers = std::array::from_fn(|lane| {
+                let polynomial = if is_same { same } else { rising(lane) };
+                polynomial.solve(&far[lane], 1e-4)
+            });
+            for unit in Unit::all() {
+                let newton = unit.run(Newton {
+                    roots: &roots,
+                    targets: far.map(|problem| problem.target),
+                    place: places.map(|place| place + 0.1),
+                    step: [1.0; WIDTH],
+                    others: [[0.0; WIDTH]; 2],
                 });
-                let found = unit.run(Roots {
-                    nodes: &same.nodes,
-                    terms: if is_same {
-                        Terms::Same(&same.differences)
-                    } else {
-                        Terms::Each(&each[0])
-                    },
-                    targets,
-                    near: alone.map(|place| place + 0.1),
-                    others: [Terms::Each(&each[1]), Terms::Same(&other.differences)],
-                });
-                for (lane, place) in alone.into_iter().enumerate() {
-                    assert!(found.step[lane].abs() < 1e-4, "{unit} {lane}");
-                    let near = |found: f64, value: f64| (found - value).abs() < 1e-6;
-                    assert!(near(found.place[lane], place), "{unit} {lane}");
-                    let [each, same] = found.others.map(|numbers| numbers[lane]);
-                    assert!(near(each, rising(lane + 1).at(place).0), "{unit} {lane}");
-                    assert!(near(same, other.at(place).0), "{unit} {lane}");
+                for (lane, place) in places.into_iter().enumerate() {
+                    assert!(newton.step[lane].abs() < 1e-4, "{unit} {lane}");
+                    assert!((newton.place[lane] - place).abs() < 1e-6, "{unit} {lane}");
                 }
+                check(newton.others, &places);
+            }
+            check(roots.solve(0, &far, 1e-4), &places);
+            let [_, last] = roots.solve(WIDTH - 1, &far[WIDTH - 1..], 1e-4);
+            assert!((last[WIDTH - 1] - other.at(places[WIDTH - 1]).0).abs() < 1e-6);
+        }
+    }
+
+    /// The other polynomials at `places`.
+    fn check(others: [Numbers; 2], places: &Numbers) {
+        for (lane, place) in places.iter().enumerate() {
+            let wanted = [lane + 1, WIDTH + 1].map(|other| rising(other).at(*place).0);
+            for (numbers, wanted) in others.iter().zip(wanted) {
+                assert!((numbers[lane] - wanted).abs() < 1e-6, "{lane}");
             }
         }
     }
