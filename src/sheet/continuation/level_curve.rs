@@ -5,7 +5,7 @@
 //! continuation has its predictor along the tangent, its corrector along the gradient. Lengths are measured where people look at the
 //! curve: in push angle, contact angle (both in radians) and arclength of the contact (in whisker lengths).
 
-use crate::numerics::{illinois, nearest_turn};
+use crate::numerics::{Root, illinois, nearest_turn};
 use crate::rod::{Rod, Side, arclength};
 use crate::sheet::row::{Crossing, Row};
 use crate::shooting::batch::{InitialCondition, Method, shoot};
@@ -18,7 +18,7 @@ const CORRECTOR_ITERATIONS: usize = 12;
 /// `ln D` at which a point lies on the curve, to rounding.
 pub const ON_CURVE: f64 = 1e-14;
 
-/// What rounding may leave of a push angle, in radians.
+/// What rounding may leave of a push angle, relative to it or in radians.
 const PUSH_ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 /// A state on the level curve.
@@ -91,9 +91,14 @@ impl LevelCurve {
     }
 
     /// The state at the signed `push` (radians) between two of the `nodes`, along which the push angle grows or falls throughout;
-    /// `None` outside, or where the curve is lost. It needs no Jacobian, and so is as good at the fold as elsewhere.
+    /// `None` outside, or where the curve is lost.
     #[must_use]
     pub fn state_at_push(&self, nodes: &[Node], push: f64) -> Option<Node> {
+        Some(self.bracketed_push(nodes, push)?.0)
+    }
+
+    /// The same, and how it was found: without slopes, because that of the push angle is zero at the fold.
+    pub(super) fn bracketed_push(&self, nodes: &[Node], push: f64) -> Option<(Node, Root)> {
         let miss = |node: &Node| node.push - push;
         let is_between = |pair: &&[Node]| miss(&pair[0]) * miss(&pair[1]) <= 0.0;
         let [from, to] = nodes.windows(2).find(is_between)? else {
@@ -102,7 +107,8 @@ impl LevelCurve {
         let is_from_closer = miss(from).abs() < miss(to).abs();
         let mut best = if is_from_closer { *from } else { *to };
         let ends = [[0.0, miss(from)], [1.0, miss(to)]];
-        illinois(ends, PUSH_ROUNDING, |part| {
+        let rounding = PUSH_ROUNDING * push.abs().max(1.0);
+        let root = illinois(ends, rounding, |part| {
             let start = from.point.lerp(to.point, part);
             let (point, full) = self.correct(&[start], ON_CURVE).pop()??;
             let node = self.node(point, &full, from.push, from.angle);
@@ -111,7 +117,7 @@ impl LevelCurve {
             }
             Some(miss(&node))
         })?;
-        Some(best)
+        Some((best, root))
     }
 
     /// The state `full` at `point`, its angles continued from `push` and `angle`.

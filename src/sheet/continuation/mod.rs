@@ -224,3 +224,46 @@ fn same(one: &Crossing, other: &Crossing) -> bool {
     let load = (one.load - other.load).abs() / one.load.abs();
     one.edge == other.edge && load + (one.tau / other.tau - 1.0).abs() < SAME
 }
+
+#[cfg(test)]
+#[allow(
+    clippy::unwrap_used,
+    reason = "a branch that is not there fails the test"
+)]
+mod tests {
+    use super::*;
+    use crate::rod::{Effects, Rest, Rod, Side};
+    use crate::sheet::row::Row;
+    use crate::shooting::batch::Method;
+
+    /// Stable and unstable states of branches, up to their folds, where the push angle is flat.
+    #[test]
+    fn a_state_at_a_push_takes_few_iterations() {
+        for side in Side::BOTH {
+            let rod = Rod {
+                taper: 0.95,
+                bend: 0.4,
+                pole: 0.0125 * side.sign(),
+                ..Rod::default()
+            };
+            let row = Row::new(&Rest::new(&rod), 0.75);
+            let level = LevelCurve::new(Method::fine(Effects::of([&rod])), &rod, side, &row);
+            let branch = level.continuation(level.touch().unwrap(), true).unwrap();
+            let fold = branch.fold.unwrap();
+            for part in [&branch.nodes[..=fold], &branch.nodes[fold..]] {
+                let [from, to] = [part[0].push, part[part.len() - 1].push];
+                let mut counts = Vec::new();
+                for i in 0..=200 {
+                    let push = from + (to - from) * f64::from(i) / 200.0;
+                    let (node, root) = level.bracketed_push(part, push).unwrap();
+                    println!("{i} {root:?} {:e}", node.push - push);
+                    assert!((node.push - push).abs() < 1e-15, "{push} {root:?}");
+                    counts.push(root.iterations);
+                }
+                counts.sort_unstable();
+                println!("{counts:?}");
+                assert!(counts[100] <= 8 && counts[200] <= 12, "{counts:?}");
+            }
+        }
+    }
+}

@@ -92,47 +92,55 @@ fn slopes_at(rod: &Rod, fold: &FoldPoint) -> [f64; 2] {
     [ln_tau, ln_q * ln_tau]
 }
 
-impl ContactNodes {
-    /// Nodes from beyond the tip of `rod` down to some nearer to the base than `nearest`, the nearest row: at the last ones the
-    /// pole is nearer than that at first touch and at the fold. `None` where a fold is missing.
-    pub fn new(method: Method, rod: &Rod, side: Side, nearest: &Row) -> Option<Self> {
-        let (u_tip, tau_tip) = (u_of(rod, rod.tau_tip()), rod.tau_tip());
-        let mut near = tau_tip;
-        let mut tau = |from_end: usize| {
-            let inward = from_end as f64 - BEYOND_TIP as f64;
-            near = if from_end == BEYOND_TIP {
-                tau_tip
-            } else {
-                tau_of(rod, u_tip - SPACING * inward, near)
-            };
-            near
+/// The folds of nodes from the base outward. At the first ones the pole is nearer than that of `nearest`, at first touch and at the
+/// fold.
+fn folds_down_to(method: Method, rod: &Rod, side: Side, nearest: &Row) -> Option<Vec<FoldPoint>> {
+    let tau_tip = rod.tau_tip();
+    let u_tip = u_of(rod, tau_tip);
+    let mut near = tau_tip;
+    let mut tau = |from_end: usize| {
+        let inward = from_end as f64 - BEYOND_TIP as f64;
+        near = if from_end == BEYOND_TIP {
+            tau_tip
+        } else {
+            tau_of(rod, u_tip - SPACING * inward, near)
         };
-        let touch = rod.tau(nearest.contact.min(1.0));
-        // The least that are needed, the one at the tip among them.
-        #[allow(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "the cast saturates, and a batch is bounded"
-        )]
-        let mut batch = ((u_tip - u_of(rod, touch)) / SPACING) as usize;
-        batch = batch.min(MOST) + BEYOND_TIP + BEYOND_NEAREST + 2;
-        let mut folds = Vec::new();
-        loop {
-            let from = folds.len();
-            let taus: Vec<f64> = (from..from + batch).map(&mut tau).collect();
-            let found: Option<Vec<FoldPoint>> =
-                first_folds(method, rod, side, &taus).into_iter().collect();
-            folds.extend(found?);
-            let reached = folds.iter().rev().nth(BEYOND_NEAREST).is_some_and(|fold| {
-                let distance = fold.variation.map.pole.length();
-                distance < nearest.pole_distance && fold.tau < touch
-            });
-            if reached || folds.len() > MOST {
-                break;
-            }
-            batch = FURTHER;
+        near
+    };
+    let touch = rod.tau(nearest.contact.min(1.0));
+    // The least that are needed, the one at the tip among them.
+    #[allow(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "the cast saturates, and a batch is bounded"
+    )]
+    let mut batch = ((u_tip - u_of(rod, touch)) / SPACING) as usize;
+    batch = batch.min(MOST) + BEYOND_TIP + BEYOND_NEAREST + 2;
+    let mut folds: Vec<FoldPoint> = Vec::new();
+    loop {
+        let from = folds.len();
+        let taus: Vec<f64> = (from..from + batch).map(&mut tau).collect();
+        for fold in first_folds(method, rod, side, &taus) {
+            folds.push(fold?);
         }
-        folds.reverse();
+        let is_reached = folds.iter().rev().nth(BEYOND_NEAREST).is_some_and(|fold| {
+            let distance = fold.variation.map.pole.length();
+            distance < nearest.pole_distance && fold.tau < touch
+        });
+        if is_reached || folds.len() > MOST {
+            break;
+        }
+        batch = FURTHER;
+    }
+    folds.reverse();
+    Some(folds)
+}
+
+impl ContactNodes {
+    /// The nodes of `rod` from its tip down to `nearest`, the row nearest to the base, and some beyond both. `None` where a fold is
+    /// missing.
+    pub fn new(method: Method, rod: &Rod, side: Side, nearest: &Row) -> Option<Self> {
+        let folds = folds_down_to(method, rod, side, nearest)?;
         let values: Vec<[f64; 2]> = folds.iter().map(|f| [f.tau.ln(), q(f).ln()]).collect();
         let slopes: Vec<[f64; 2]> = folds.iter().map(|fold| slopes_at(rod, fold)).collect();
         let both = through_slopes(&values, &slopes);
@@ -142,7 +150,7 @@ impl ContactNodes {
         };
         let tip = folds.len() - 1 - BEYOND_TIP;
         Some(Self {
-            first_u: u_tip - SPACING * tip as f64,
+            first_u: u_of(rod, rod.tau_tip()) - SPACING * tip as f64,
             tip,
             rod: *rod,
             least_q: least_q(&values, &slopes),
@@ -216,22 +224,15 @@ mod tests {
             pole: 0.01,
             ..Rod::default()
         };
-        let of_gradient = |gradient| Rod {
-            gradient,
-            ..slender
-        };
-        let rubbing = Rod {
-            friction: 0.3,
-            ..slender
-        };
-        for rod in [slender, rubbing, of_gradient(-0.6), of_gradient(2.0)] {
-            let method = Method::fine(Effects::of([&rod]));
+        for (gradient, friction) in [(0.0, 0.0), (0.0, 0.3), (-0.6, 0.0), (2.0, 0.0)] {
             for side in Side::BOTH {
                 let rod = Rod {
-                    pole: side.sign() * rod.pole,
-                    friction: side.sign() * rod.friction,
-                    ..rod
+                    gradient,
+                    pole: side.sign() * slender.pole,
+                    friction: side.sign() * friction,
+                    ..slender
                 };
+                let method = Method::fine(Effects::of([&rod]));
                 let row = Row::new(&Rest::new(&rod), 0.3);
                 let nodes = ContactNodes::new(method, &rod, side, &row).unwrap();
                 for i in [2, nodes.tip] {

@@ -4,7 +4,7 @@
 //! first one is solved for the load, the others are evaluated there. Sixteen cells of a row are solved side by side.
 
 use crate::numerics::lobatto::{LOBATTO_COUNT, LOBATTO_NODES, LobattoPolynomial, through_lobatto};
-use crate::numerics::newton_form::RootProblem;
+use crate::numerics::newton_form::{RootProblem, stencil};
 use crate::numerics::newton_form_simd::{Numbers, SimdRoots, Terms};
 use crate::numerics::{Bracket, WIDTH};
 
@@ -49,62 +49,57 @@ impl RowCurve {
             return pushes.map(|_| None).collect();
         }
         let intervals = self.intervals();
+        let mut guesses = Vec::with_capacity(pushes.size_hint().0);
+        let (mut cells, mut after, mut problems) = (Vec::new(), Vec::new(), Vec::new());
         let mut i = 0;
-        let problems = pushes.map(|push| {
+        for push in pushes {
             while i + 2 < self.count && push > intervals.push[i + 1] {
                 i += 1;
             }
-            Some((i, intervals.problem(i, push)?))
-        });
-        if self.count == LOBATTO_COUNT {
-            self.whole(problems)
-        } else {
-            self.cut(problems)
-        }
-    }
-
-    /// The guesses of a row from first touch to the fold: one polynomial is as good at its ends as in its middle.
-    fn whole(
-        &self,
-        problems: impl Iterator<Item = Option<(usize, RootProblem)>>,
-    ) -> Vec<Option<Guess>> {
-        let polynomials = self.polynomials(0, LOBATTO_COUNT);
-        let roots = roots(&polynomials);
-        let mut guesses = Vec::with_capacity(problems.size_hint().0);
-        let (mut cells, mut block) = (Vec::new(), Vec::new());
-        for problem in problems {
-            if let Some((_, problem)) = problem {
+            if let Some(problem) = intervals.problem(i, push) {
                 cells.push(guesses.len());
-                block.push(problem);
+                after.push(i);
+                problems.push(problem);
             }
             guesses.push(None);
         }
-        for (cells, block) in cells.chunks(WIDTH).zip(block.chunks(WIDTH)) {
-            let [tau, load] = roots.solve(0, block, LAST_PART_STEP);
-            for (&cell, (tau, load)) in cells.iter().zip(tau.into_iter().zip(load)) {
-                guesses[cell] = Some(Guess { tau, load });
-            }
+        let known = if self.count == LOBATTO_COUNT {
+            self.whole(&problems)
+        } else {
+            self.cut(&after, &problems)
+        };
+        for (cell, guess) in cells.into_iter().zip(known) {
+            guesses[cell] = Some(guess);
         }
         guesses
     }
 
-    /// Those of a row that leaves the lattice, from the points around.
-    fn cut(
-        &self,
-        problems: impl Iterator<Item = Option<(usize, RootProblem)>>,
-    ) -> Vec<Option<Guess>> {
+    /// The guesses of a row from first touch to the fold: one polynomial is as good at its ends as in its middle.
+    fn whole(&self, problems: &[RootProblem]) -> Vec<Guess> {
+        let polynomials = self.polynomials(0, LOBATTO_COUNT);
+        let roots = roots(&polynomials);
+        let blocks = problems.chunks(WIDTH).flat_map(|block| {
+            let [tau, load] = roots.solve(0, block, LAST_PART_STEP);
+            let pairs = tau.into_iter().zip(load).take(block.len());
+            pairs.map(|(tau, load)| Guess { tau, load })
+        });
+        blocks.collect()
+    }
+
+    /// Those of a row that leaves the lattice, from the points around the one `after` which each lies.
+    fn cut(&self, after: &[usize], problems: &[RootProblem]) -> Vec<Guess> {
         let count = self.count.min(NEAR_CUT);
         let mut known: Option<(usize, [LobattoPolynomial; 3])> = None;
-        let mut guess = |(i, problem): (usize, RootProblem)| {
-            let from = i.saturating_sub(NEAR_CUT / 2 - 1).min(self.count - count);
+        let guess = |(i, problem): (&usize, &RootProblem)| {
+            let from = stencil(*i, NEAR_CUT, self.count);
             let (_, polynomials) = match &known {
                 Some(there) if there.0 == from => there,
                 _ => known.insert((from, self.polynomials(from, count))),
             };
-            let [tau, load] = roots(polynomials).solve_alone(0, &problem, LAST_PART_STEP);
+            let [tau, load] = roots(polynomials).solve_alone(0, problem, LAST_PART_STEP);
             Guess { tau, load }
         };
-        problems.map(|problem| problem.map(&mut guess)).collect()
+        after.iter().zip(problems).map(guess).collect()
     }
 
     /// Push angle, contact and load by the part of the fold's load, through `count` points from the point `from` on.
@@ -207,10 +202,9 @@ mod tests {
             count: pushes.len(),
             ..RowCurve::default()
         };
-        for (i, (push, part)) in pushes.iter().zip(&LOBATTO_NODES[first..]).enumerate() {
-            curve.push[i] = *push;
-            curve.tau[i] = 0.1f64.mul_add(*part, 0.5);
-            curve.load[i] = *part;
+        for (i, push) in pushes.iter().enumerate() {
+            let part = LOBATTO_NODES[first + i];
+            (curve.push[i], curve.tau[i], curve.load[i]) = (*push, 0.5 + 0.1 * part, part);
         }
         curve
     }
@@ -277,17 +271,13 @@ mod tests {
     #[test]
     fn few_nodes_and_falling_pushes_make_no_number_of_none() {
         let falling = [0.3, 0.29, 0.27, 0.24];
-        let constant = [0.1; 3];
         let turning = [0.0, 0.1, 0.2, 0.15, 0.1, 0.3, 0.2, 0.1, 0.0, -0.1];
-        for push in [
-            &falling[..],
-            &falling[..2],
-            &turning,
-            &turning[..3],
-            &constant,
-            &[0.1],
-            &[],
-        ] {
+        let (constant, one, none) = ([0.1; 3], [0.1], []);
+        let few: [&[f64]; 3] = [&falling[..2], &turning[..3], &one];
+        for push in [&falling[..], &turning, &constant, &none]
+            .into_iter()
+            .chain(few)
+        {
             for first in [0, 1, LOBATTO_COUNT - push.len()] {
                 let pushes = (0..=400).map(|i| f64::from(i) / 1000.0);
                 for guess in curve(first, push).guesses(pushes).into_iter().flatten() {

@@ -39,7 +39,7 @@ pub struct Lattice {
 }
 
 /// The points of one contact node, by load.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 struct LoadLine {
     ln_distance: Numbers,
     /// Direction of the pole, continuous from first touch.
@@ -63,11 +63,7 @@ impl LoadLine {
         i: usize,
         maps: impl Iterator<Item = &'a ShootingMap> + Clone,
     ) -> Self {
-        let mut line = Self {
-            ln_distance: [0.0; WIDTH],
-            phi: [0.0; WIDTH],
-            slopes: [[0.0; WIDTH]; 2],
-        };
+        let mut line = Self::default();
         let phis = directions(contacts.folds[i].load, maps.clone());
         line.phi[..LOBATTO_COUNT].copy_from_slice(&phis);
         for (m, (map, part)) in maps.zip(LOBATTO_NODES.iter()).enumerate() {
