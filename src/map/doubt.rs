@@ -7,7 +7,7 @@
 use super::cells::Cell;
 use crate::classify::{RowBoundary, Status, TIE};
 use crate::refine::{ContactState, TOLERANCE};
-use crate::sheet::{Edge, LevelCurve, Node, Sheet, walk};
+use crate::sheet::{Edge, LevelCurve, Node, Sheet};
 
 /// How far, in radians, the end of a continuation may be from the boundary, which was computed apart from it.
 const SAME_END: f64 = 1e-9;
@@ -30,12 +30,12 @@ pub fn settle<'a>(
                 level.touch()?
             } else {
                 let entry = sheet.crossings[row].iter().find(|c| c.push == span.from)?;
-                level.at(entry)?
+                level.at_crossing(entry)?
             };
-            let walked = walk(&level, start, false)?;
-            let end = walked.nodes.last()?;
-            let agrees = (sign * end.push - span.to).abs() < SAME_END && walked.end == span.edge;
-            agrees.then_some(walked.nodes)
+            let piece = level.continuation(start, false)?;
+            let end = piece.nodes.last()?;
+            let agrees = (sign * end.push - span.to).abs() < SAME_END && piece.end == span.edge;
+            agrees.then_some(piece.nodes)
         })
         .collect();
     for cell in cells {
@@ -52,7 +52,8 @@ pub fn settle<'a>(
                 let (first, last) = (nodes[0].push, nodes[nodes.len() - 1].push);
                 if sign * push > sign * last {
                     cell.status = beyond(boundary.spans()[index].edge);
-                } else if let Some(node) = level.find(nodes, sign * (sign * push).max(sign * first))
+                } else if let Some(node) =
+                    level.state_at_push(nodes, sign * (sign * push).max(sign * first))
                 {
                     let state = state(&level, &node, push);
                     if state.residual <= TOLERANCE {

@@ -6,7 +6,7 @@
 
 use crate::integrate::Shot;
 use crate::numerics::nearest_turn;
-use crate::sheet::{Edge, Sheet, Wanted, seek};
+use crate::sheet::{Edge, EdgeProblem, Sheet, edge_newton};
 use crate::shooting::SecondVariation;
 use crate::shooting::batch::Method;
 use glam::DVec2;
@@ -24,19 +24,20 @@ pub enum Verdict {
 
 /// Finds, for every shot, the fold at its distance, from its own guess, and compares.
 pub fn decide(method: Method, sheets: &[&Sheet], shots: &[Shot]) -> Vec<Verdict> {
-    let wanted: Vec<Wanted> = shots
+    let problems: Vec<EdgeProblem> = shots
         .iter()
-        .map(|shot| Wanted {
+        .map(|shot| EdgeProblem {
             rod: &sheets[shot.rod as usize].rod,
             edge: Edge::Fold,
             pole_distance: shot.pole.length(),
-            from: DVec2::new(shot.tau, shot.load),
+            start: DVec2::new(shot.tau, shot.load),
+            second: None,
         })
         .collect();
-    let folds = seek(method, &wanted).into_iter().zip(shots);
+    let folds = edge_newton(method, &problems).into_iter().zip(shots);
     folds
         .map(|(fold, shot)| {
-            if fold.is_found {
+            if fold.has_converged {
                 compare(sheets[shot.rod as usize], shot, fold.point, &fold.here)
             } else {
                 Verdict::Unknown

@@ -5,6 +5,9 @@
 //! give the exact boundary of a regime map ([`Sheet::crossings`]), and a lattice of trajectories over the
 //! rectangle gives every cell of the map a guess, or the certainty that it has no solution
 //! ([`Sheet::guesses`]). The two are computed independently of each other.
+//!
+//! `fold/` finds the first folds of sampled contacts, `lattice/` makes guesses, `edges/` decides where a row leaves the sheet, and
+//! `continuation/` follows a row where these do not suffice.
 
 mod continuation;
 mod edges;
@@ -12,20 +15,20 @@ mod fold;
 mod lattice;
 mod row;
 
-pub use continuation::branch_steps::{Walk, walk};
+pub use continuation::Continuation;
 pub use continuation::level_curve::{LevelCurve, Node, ON_CURVE};
-pub use edges::crossings::Crossing;
-pub use edges::edge_newton::{Edge, Sought, Wanted, seek};
+pub use edges::edge_newton::{EdgeIterate, EdgeProblem, edge_newton};
 pub use fold::FoldPoint;
 pub use lattice::guesses::Guess;
-pub use row::Row;
+pub use row::{Crossing, Edge, Row};
 
 use crate::rod::{Rest, Rod, Side};
 use crate::shooting::ShootingMap;
 use crate::shooting::batch::Method;
-use continuation::pieces;
-use edges::{Edges, crossings};
-use fold::contact_nodes::Columns;
+use continuation::pair_crossings;
+use edges::Edges;
+use edges::crossings::crossings;
+use fold::contact_nodes::ContactNodes;
 use lattice::Lattice;
 
 /// How far below zero the load of an unloaded whisker may come out, relative to the fold's: at the soft tip of a
@@ -47,7 +50,7 @@ pub struct Sheet {
     /// then the ends of each other piece of the row, in the direction of growing push angles.
     pub crossings: Vec<Vec<Crossing>>,
     method: Method,
-    columns: Columns,
+    contacts: ContactNodes,
     lattice: Lattice,
     edges: Edges,
 }
@@ -62,23 +65,17 @@ impl Sheet {
         let nearest = rows
             .iter()
             .min_by(|a, b| a.pole_distance.total_cmp(&b.pole_distance))?;
-        let columns = Columns::new(method, rod, side, nearest)?;
-        let lattice = Lattice::new(method.coarsely(), rod, side, &columns);
-        let edges = Edges::new(method, rod, &columns, &lattice);
-        let mut crossings = crossings::crossings(method, rod, side, &edges, &rows);
+        let contacts = ContactNodes::new(method, rod, side, nearest)?;
+        let lattice = Lattice::new(method.coarsely(), rod, side, &contacts);
+        let edges = Edges::new(method, rod, &contacts, &lattice);
+        let mut crossings = crossings(method, rod, side, &edges, &rows);
         let fold_grows = edges.fold_grows;
         for (row, crossings) in rows.iter().zip(&mut crossings) {
             let touches = row.is_reached();
             let pair = fold_grows && usize::from(touches) + crossings.len() == 2;
             if !(crossings.is_empty() || pair && crossings.iter().all(Crossing::is_sound)) {
-                let level = LevelCurve {
-                    method,
-                    rod: rod.clone(),
-                    side,
-                    row: *row,
-                    forward: true,
-                };
-                *crossings = pieces::connect(&level, touches, crossings);
+                let level = LevelCurve::new(method, rod, side, row);
+                *crossings = pair_crossings(&level, touches, crossings);
             }
         }
         let tip = rod.tau_tip();
@@ -89,7 +86,7 @@ impl Sheet {
             rows,
             crossings,
             method,
-            columns,
+            contacts,
             lattice,
             edges,
         })
@@ -104,13 +101,7 @@ impl Sheet {
     /// The level curve of `row`.
     #[must_use]
     pub fn level(&self, row: usize) -> LevelCurve {
-        LevelCurve {
-            method: self.method,
-            rod: self.rod.clone(),
-            side: self.side,
-            row: self.rows[row],
-            forward: true,
-        }
+        LevelCurve::new(self.method, &self.rod, self.side, &self.rows[row])
     }
 
     /// Whether the whisker at rest reaches the pole of `row`.
@@ -127,9 +118,8 @@ impl Sheet {
 
     /// Guesses for the cells of `row` at growing `pushes` (magnitudes, in radians); `None` outside the sheet.
     pub fn guesses(&self, row: usize, pushes: impl Iterator<Item = f64>) -> Vec<Option<Guess>> {
-        self.lattice
-            .level(&self.columns, &self.rows[row])
-            .guesses(pushes)
+        let row = &self.rows[row];
+        self.lattice.row_curve(&self.contacts, row).guesses(pushes)
     }
 
     /// Whether a state, as far as the fold goes, is on the sheet: loaded toward the pole, on the stable side of
@@ -137,8 +127,8 @@ impl Sheet {
     #[must_use]
     pub fn is_stable(&self, tau: f64, load: f64, map: &ShootingMap) -> bool {
         let load = self.side.sign() * load;
-        let is_loaded = load >= 0.0 && self.columns.is_below_folds(tau, load) || {
-            let part = load / self.columns.fold_load(tau);
+        let is_loaded = load >= 0.0 && self.contacts.is_below_folds(tau, load) || {
+            let part = load / self.contacts.fold_load(tau);
             part > -UNLOADED && part < 1.0 + 1e-4
         };
         let scale = map.by_tau.length() * map.by_load.length();

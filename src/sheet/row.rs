@@ -1,6 +1,6 @@
-//! The rows of a map: distances at first touch, and where the pole stands for each.
+//! A row of a map: a distance at first touch, where the pole stands for it, and where the row leaves the stable sheet.
 
-use crate::rod::Rest;
+use crate::rod::{PERFECT_CONE_CUT, Rest, Rod};
 use glam::DVec2;
 
 /// First touch this far beyond the tip, in whisker lengths, still counts as at it: the rounding of a distance in
@@ -47,5 +47,61 @@ impl Row {
     #[must_use]
     pub fn pole(&self, push: f64) -> DVec2 {
         self.pole_distance * DVec2::from_angle(self.touch + push)
+    }
+}
+
+/// An edge over which a row leaves the sheet.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Edge {
+    /// The saddle-node: the whisker slips off.
+    Fold,
+    /// The contact reaches the tip: the whisker is pulled off.
+    Tip,
+}
+
+/// A row's crossing of an edge.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Crossing {
+    /// Which edge.
+    pub edge: Edge,
+    /// `tau` of the contact.
+    pub tau: f64,
+    /// Signed load.
+    pub load: f64,
+    /// Push angle since first touch, in radians, as a magnitude on the row's side.
+    pub push: f64,
+    /// Remaining error, relative: the distance in `ln D`, and the square of how far the point still is (the push angle is flat
+    /// at a fold).
+    pub residual: f64,
+}
+
+/// The largest error, relative to the distance of the pole, of a crossing that is taken for one.
+const SOUND: f64 = 1e-10;
+
+impl Crossing {
+    /// Whether it was found: a crossing that was not is only near the level curve.
+    #[must_use]
+    pub fn is_sound(&self) -> bool {
+        self.residual <= SOUND
+    }
+
+    /// Of a row that meets the tip edge at first touch: without a load, whatever the resolution. The point of a perfect
+    /// cone yields to any force, so it slips off.
+    #[must_use]
+    pub fn at_touch(rod: &Rod) -> Self {
+        let pointed = rod.taper > 1.0 - PERFECT_CONE_CUT;
+        Self {
+            edge: if pointed { Edge::Fold } else { Edge::Tip },
+            tau: rod.tau_tip(),
+            load: 0.0,
+            push: 0.0,
+            residual: 0.0,
+        }
+    }
+
+    /// Whether it is one of those.
+    #[must_use]
+    pub fn is_at_touch(&self) -> bool {
+        self.load == 0.0
     }
 }

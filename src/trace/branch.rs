@@ -8,7 +8,7 @@ use crate::rod::Rod;
 use crate::rod::Side;
 use crate::rod::Units;
 use crate::scene::{Pole, Whisker};
-use crate::sheet::{Edge, LevelCurve, Node, ON_CURVE, Row, Walk, walk};
+use crate::sheet::{Continuation, Edge, LevelCurve, Node, ON_CURVE, Row};
 use crate::shooting::Reader;
 use crate::shooting::batch::Method;
 use glam::DVec2;
@@ -19,7 +19,7 @@ use serde::Serialize;
 pub struct Branch {
     pub(super) level: LevelCurve,
     pub(super) units: Units,
-    pub(super) walk: Walk,
+    pub(super) walk: Continuation,
 }
 
 row! {
@@ -69,14 +69,9 @@ impl Branch {
                 reach_mm: tip.length() * whisker.length_mm,
             });
         }
-        let level = LevelCurve {
-            method: Method::new(FINER),
-            rod,
-            side,
-            row,
-            forward: true,
-        };
-        let followed = level.touch().and_then(|touch| walk(&level, touch, true));
+        let level = LevelCurve::new(Method::new(FINER), &rod, side, &row);
+        let touch = level.touch();
+        let followed = touch.and_then(|touch| level.continuation(touch, true));
         // From the very tip a push may lead nowhere.
         let none = match row.is_at_reach() {
             true => NoState::PulledOff { at_deg: 0.0 },
@@ -113,7 +108,7 @@ impl Branch {
     /// # Errors
     /// When a point between two nodes of the continuation cannot be brought onto the curve.
     pub fn points(&self, count: usize) -> Result<Vec<BranchPoint>, NoState> {
-        let Walk { nodes, fold, end } = &self.walk;
+        let Continuation { nodes, fold, end } = &self.walk;
         let lengths = self.lengths();
         let (targets, fold_at) = targets(&lengths, *fold, count.max(3));
         let guesses: Vec<(usize, DVec2)> = targets
@@ -121,11 +116,11 @@ impl Branch {
             .map(|target| interpolate(nodes, &lengths, *target))
             .collect();
         let starts: Vec<DVec2> = guesses.iter().map(|(_, start)| *start).collect();
-        let settled = self.level.settle(&starts, ON_CURVE);
+        let corrected = self.level.correct(&starts, ON_CURVE);
         let last = targets.len() - 1;
-        let on_curve = guesses.iter().zip(settled).enumerate();
+        let on_curve = guesses.iter().zip(corrected).enumerate();
         on_curve
-            .map(|(i, ((near, _), settled))| {
+            .map(|(i, ((near, _), corrected))| {
                 // The ends and the fold are known better than any corrector knows them.
                 let exact = match i {
                     0 => Some((nodes[0], Mark::Touch)),
@@ -137,7 +132,7 @@ impl Branch {
                 let (node, mark) = match exact {
                     Some((node, mark)) => (node, Some(mark)),
                     None => {
-                        let (point, full) = settled.ok_or_else(|| self.lost())?;
+                        let (point, full) = corrected.ok_or_else(|| self.lost())?;
                         (self.level.node(point, &full, near.push, near.angle), None)
                     }
                 };

@@ -1,7 +1,7 @@
 //! The state of a branch at a push angle.
 
 use super::{Branch, NoState};
-use crate::sheet::{LevelCurve, Walk};
+use crate::sheet::{Continuation, LevelCurve};
 use crate::shooting::{FullState, Reader, Reading};
 
 /// A state found on a branch.
@@ -30,7 +30,7 @@ impl Branch {
     /// # Errors
     /// When there is no such state: the message tells how the whisker has left the pole, and at which push angle.
     pub fn state(&self, push: f64, stable: bool) -> Result<Found, NoState> {
-        let Walk { nodes, fold, end } = &self.walk;
+        let Continuation { nodes, fold, end } = &self.walk;
         let part = match (fold, stable) {
             (Some(fold), true) => &nodes[..=*fold],
             (Some(fold), false) => &nodes[*fold..],
@@ -50,7 +50,7 @@ impl Branch {
         } else {
             push
         };
-        let Some(node) = self.level.find(part, push) else {
+        let Some(node) = self.level.state_at_push(part, push) else {
             let at_deg = last.push.to_degrees();
             let within = (first.push - push) * (last.push - push) <= 0.0;
             let sign = self.level.side.sign();

@@ -1,23 +1,25 @@
-//! The level curve of `D`: every state of the whisker in front of one pole, by pseudo-arclength continuation.
+//! The level curve of `D`: every state of the whisker in front of one pole.
 //!
-//! Neither the load nor the push angle can be stepped: the load peaks, the push angle turns at the fold. The curve is
-//! followed in the plane of contact and load, where it is the level set of one smooth function whose gradient every
-//! trajectory brings along; predictor along the tangent, corrector along the gradient. Its length is measured where
-//! people look at it: in push angle, contact angle (both in radians) and arclength of the contact (in whisker lengths).
+//! Neither the load nor the push angle can be stepped: the load peaks, the push angle turns at the fold. In the plane of contact and
+//! load the curve is the level set of one smooth function, whose gradient every trajectory brings along. So a step of pseudo-arclength
+//! continuation has its predictor along the tangent, its corrector along the gradient. Lengths are measured where people look at the
+//! curve: in push angle, contact angle (both in radians) and arclength of the contact (in whisker lengths).
 
-use crate::numerics::nearest_turn;
+use crate::numerics::{Root, illinois, nearest_turn};
 use crate::rod::{Rod, Side, arclength};
-use crate::sheet::edges::crossings::Crossing;
-use crate::sheet::row::Row;
+use crate::sheet::row::{Crossing, Row};
 use crate::shooting::batch::{Batch, InitialCondition, Method};
 use crate::shooting::{FirstVariation, FullState};
 use glam::{DVec2, DVec3};
 
-/// Rounds of the corrector; from a step's predictor 4 are the rule.
-const ROUNDS: usize = 12;
+/// Iterations of the corrector; from a step's predictor 4 are the rule.
+const CORRECTOR_ITERATIONS: usize = 12;
 
 /// `ln D` at which a point lies on the curve, to rounding.
 pub const ON_CURVE: f64 = 1e-14;
+
+/// What rounding may leave of a push angle, relative to it or in radians.
+const PUSH_ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 /// A state on the level curve.
 #[derive(Clone, Copy, Debug)]
@@ -44,10 +46,31 @@ pub struct LevelCurve {
     /// Where the pole stands.
     pub row: Row,
     /// Whether it is followed in the direction of growing push angles.
-    pub forward: bool,
+    forward: bool,
 }
 
 impl LevelCurve {
+    /// The curve of `row`, to be followed in the direction of growing push angles.
+    #[must_use]
+    pub fn new(method: Method, rod: &Rod, side: Side, row: &Row) -> Self {
+        Self {
+            method,
+            rod: rod.clone(),
+            side,
+            row: *row,
+            forward: true,
+        }
+    }
+
+    /// The same, followed the other way.
+    #[must_use]
+    pub fn backward(&self) -> Self {
+        Self {
+            forward: !self.forward,
+            ..self.clone()
+        }
+    }
+
     /// First touch, from where pushes are counted.
     #[must_use]
     pub fn touch(&self) -> Option<Node> {
@@ -61,10 +84,40 @@ impl LevelCurve {
 
     /// The state at a crossing.
     #[must_use]
-    pub fn at(&self, crossing: &Crossing) -> Option<Node> {
+    pub fn at_crossing(&self, crossing: &Crossing) -> Option<Node> {
         let at = DVec2::new(crossing.tau, crossing.load);
-        let (point, full) = self.settle(&[at], ON_CURVE).pop()??;
+        let (point, full) = self.correct(&[at], ON_CURVE).pop()??;
         Some(self.node(point, &full, self.side.sign() * crossing.push, 0.0))
+    }
+
+    /// The state at the signed `push` (radians) between two of the `nodes`, along which the push angle grows or falls throughout;
+    /// `None` outside, or where the curve is lost.
+    #[must_use]
+    pub fn state_at_push(&self, nodes: &[Node], push: f64) -> Option<Node> {
+        Some(self.bracketed_push(nodes, push)?.0)
+    }
+
+    /// The same, and how it was found: without slopes, because that of the push angle is zero at the fold.
+    pub(super) fn bracketed_push(&self, nodes: &[Node], push: f64) -> Option<(Node, Root)> {
+        let miss = |node: &Node| node.push - push;
+        let is_between = |pair: &&[Node]| miss(&pair[0]) * miss(&pair[1]) <= 0.0;
+        let [from, to] = nodes.windows(2).find(is_between)? else {
+            return None;
+        };
+        let is_from_closer = miss(from).abs() < miss(to).abs();
+        let mut best = if is_from_closer { *from } else { *to };
+        let ends = [[0.0, miss(from)], [1.0, miss(to)]];
+        let rounding = PUSH_ROUNDING * push.abs().max(1.0);
+        let root = illinois(ends, rounding, |part| {
+            let start = from.point.lerp(to.point, part);
+            let (point, full) = self.correct(&[start], ON_CURVE).pop()??;
+            let node = self.node(point, &full, from.push, from.angle);
+            if miss(&node).abs() < miss(&best).abs() {
+                best = node;
+            }
+            Some(miss(&node))
+        })?;
+        Some((best, root))
     }
 
     /// The state `full` at `point`, its angles continued from `push` and `angle`.
@@ -90,20 +143,20 @@ impl LevelCurve {
         let heading = if self.forward { 1.0 } else { -1.0 };
         let along = -heading * self.side.sign() * DVec2::new(gradient.y, -gradient.x).normalize();
         let predicted = from.point + step * scale * along;
-        let (point, full) = self.settle(&[predicted], ON_CURVE).pop()??;
+        let (point, full) = self.correct(&[predicted], ON_CURVE).pop()??;
         let turned = (point - from.point) / scale;
         let node = self.node(point, &full, from.push, from.angle);
         (turned.dot(along) > 0.5 * turned.length()).then_some(node)
     }
 
-    /// Brings every point onto the curve, to `tolerance` in `ln D` or to rounding; `None` where that fails.
+    /// The corrector: brings every point onto the curve, to `tolerance` in `ln D` or to rounding; `None` where that fails.
     #[must_use]
-    pub fn settle(&self, points: &[DVec2], tolerance: f64) -> Vec<Option<(DVec2, FullState)>> {
+    pub fn correct(&self, points: &[DVec2], tolerance: f64) -> Vec<Option<(DVec2, FullState)>> {
         let mut points = points.to_vec();
-        let mut settled = vec![None; points.len()];
+        let mut corrected = vec![None; points.len()];
         let mut misses = vec![f64::INFINITY; points.len()];
         let mut open: Vec<usize> = (0..points.len()).collect();
-        for _ in 0..ROUNDS {
+        for _ in 0..CORRECTOR_ITERATIONS {
             let at: Vec<DVec2> = open.iter().map(|&i| points[i]).collect();
             let mut fulls = self.shoot(&at).into_iter();
             open.retain(|&i| {
@@ -113,7 +166,7 @@ impl LevelCurve {
                 let miss = (self.row.pole_distance / full.map.pole.length()).ln();
                 let stuck = miss.abs() < 1e3 * tolerance && miss.abs() > 0.5 * misses[i];
                 if miss.abs() <= tolerance || stuck {
-                    settled[i] = Some((points[i], full));
+                    corrected[i] = Some((points[i], full));
                     return false;
                 }
                 misses[i] = miss.abs();
@@ -123,7 +176,7 @@ impl LevelCurve {
                 points[i].is_finite() && points[i].x > 0.0
             });
         }
-        settled
+        corrected
     }
 
     fn shoot(&self, points: &[DVec2]) -> Vec<FullState> {

@@ -2,80 +2,35 @@
 //!
 //! The edges form one closed line, touch - tip - corner - fold; consecutive samples share their computed
 //! distance, and a row crosses between two samples when exactly one of them is at most its own distance. So
-//! the number of crossings has the right parity whatever the rounding.
+//! the number of crossings has the right parity whatever the rounding. Where a row crosses is predicted, and then corrected.
 
-use crate::numerics::nearest_turn;
-use crate::rod::{PERFECT_CONE_CUT, Rod, Side};
-use crate::sheet::edges::bracket::bisect;
-use crate::sheet::edges::edge_newton::{Bends, Edge, Wanted, seek_nearby};
-use crate::sheet::edges::{Edges, Sample};
-use crate::sheet::fold::predictor::Near;
-use crate::sheet::row::REACH_SLACK;
-use crate::sheet::row::Row;
-use crate::shooting::ShootingMap;
-use crate::shooting::batch::Method;
+use crate::numerics::{Bracket, nearest_turn};
+use crate::rod::{Rod, Side};
+use crate::sheet::edges::Edges;
+use crate::sheet::edges::edge_newton::{EdgeProblem, edge_newton_predicted};
+use crate::sheet::edges::predictor::{Prediction, Sample};
+use crate::sheet::fold::first_folds;
+use crate::sheet::row::{Crossing, Edge, REACH_SLACK, Row};
+use crate::shooting::batch::{Batch, InitialCondition, Method};
+use crate::shooting::{SecondVariation, ShootingMap};
 use glam::DVec2;
 
-/// A row's crossing of an edge.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Crossing {
-    /// Which edge.
-    pub edge: Edge,
-    /// `tau` of the contact.
-    pub tau: f64,
-    /// Signed load.
-    pub load: f64,
-    /// Push angle since first touch, in radians, as a magnitude on the row's side.
-    pub push: f64,
-    /// Remaining error, relative: the distance in `ln D`, and the square of how far the point still is (the push angle is flat
-    /// at a fold).
-    pub residual: f64,
-}
-
-/// The largest error, relative to the distance of the pole, of a crossing that is taken for one.
-const SOUND: f64 = 1e-10;
-
-impl Crossing {
-    /// Whether Newton's method found it.
-    #[must_use]
-    pub fn is_sound(&self) -> bool {
-        self.residual <= SOUND
-    }
-
-    /// Of a row that meets the tip edge at first touch: without a load, whatever the resolution. The point of a perfect
-    /// cone yields to any force, so it slips off.
-    fn at_touch(rod: &Rod) -> Self {
-        let pointed = rod.taper > 1.0 - PERFECT_CONE_CUT;
-        Self {
-            edge: if pointed { Edge::Fold } else { Edge::Tip },
-            tau: rod.tau_tip(),
-            load: 0.0,
-            push: 0.0,
-            residual: 0.0,
-        }
-    }
-
-    /// Whether it is one of those.
-    #[must_use]
-    pub fn is_at_touch(&self) -> bool {
-        self.load == 0.0
-    }
-}
-
-/// A row and a place near its crossing.
+/// A row, and two samples of an edge between which it crosses.
 struct Candidate {
     row: usize,
     edge: Edge,
-    near: Near,
-    /// The samples on both sides of it.
+    predicted: Prediction,
     between: [Sample; 2],
 }
 
+/// How far, in parts of their distance, a crossing may be outside of the samples that it is between but for rounding.
+const OUTSIDE: f64 = 1e-9;
+
 impl Candidate {
-    /// Whether `point` is between the samples, or next to them.
+    /// Whether `point` is between the samples.
     fn holds(&self, point: DVec2) -> bool {
         let [a, b] = self.between;
-        let is_between = |x: f64, a: f64, b: f64| (x - a) * (x - b) <= NEXT_TO * (b - a).powi(2);
+        let is_between = |x: f64, a: f64, b: f64| (x - a) * (x - b) <= OUTSIDE * (b - a).powi(2);
         match self.edge {
             Edge::Fold => is_between(point.x, a.tau, b.tau),
             Edge::Tip => is_between(point.y, a.load, b.load),
@@ -83,26 +38,18 @@ impl Candidate {
     }
 }
 
-/// How far, in parts of their distance, a crossing may be outside of the samples that it is between but for rounding.
-const NEXT_TO: f64 = 1e-9;
-
 /// How much the load of a fold between two samples, as all samples around tell it, may differ from what the two alone tell: more
 /// is a jump of the first fold.
 const ASTRAY: f64 = 0.15;
 
-/// The place on `edge` where `ln D` is `target` between two samples.
-fn near(edges: &Edges, edge: Edge, pair: [&Sample; 2], target: f64) -> Near {
-    match edge {
-        Edge::Fold => {
-            let by_all = edges.fold_line.at(pair, target);
-            let by_two = Near::between(pair, target);
-            if (by_all.load / by_two.load - 1.0).abs() < ASTRAY {
-                by_all
-            } else {
-                by_two
-            }
-        }
-        Edge::Tip => edges.tip_line.at(pair, target),
+/// Where `ln D` is `target` on `edge` between two samples.
+fn predict(edges: &Edges, edge: Edge, pair: [&Sample; 2], target: f64) -> Prediction {
+    let by_all = edges.predict(edge, pair, target);
+    let by_two = Prediction::linear(pair, target);
+    if edge == Edge::Tip || (by_all.load / by_two.load - 1.0).abs() < ASTRAY {
+        by_all
+    } else {
+        by_two
     }
 }
 
@@ -136,17 +83,15 @@ pub fn crossings(
                     candidates.push(Candidate {
                         row: index,
                         edge,
-                        near: near(edges, edge, [&a, &b], *target),
+                        predicted: predict(edges, edge, [&a, &b], *target),
                         between: [a, b],
                     });
                 }
             }
         }
     }
-    for (candidate, crossing) in candidates
-        .iter()
-        .zip(polish(method, rod, side, rows, &candidates))
-    {
+    let corrected = correct(method, rod, side, rows, &candidates);
+    for (candidate, crossing) in candidates.iter().zip(corrected) {
         found[candidate.row].push(crossing);
     }
     for row in &mut found {
@@ -155,63 +100,95 @@ pub fn crossings(
     found
 }
 
-/// The crossings that the candidates lead to.
-fn polish(
+/// The crossings that the candidates lead to: by Newton's method, else by bisection between the samples.
+fn correct(
     method: Method,
     rod: &Rod,
     side: Side,
     rows: &[Row],
     candidates: &[Candidate],
 ) -> Vec<Crossing> {
-    let wanted: Vec<Wanted> = candidates
+    let problems: Vec<EdgeProblem> = candidates
         .iter()
-        .map(|c| Wanted {
+        .map(|c| EdgeProblem {
             rod,
             edge: c.edge,
             pole_distance: rows[c.row].pole_distance,
-            from: DVec2::new(c.near.tau, c.near.load),
+            start: DVec2::new(c.predicted.tau, c.predicted.load),
+            second: c.predicted.second,
         })
         .collect();
-    let bends: Vec<Option<Bends>> = candidates.iter().map(|c| c.near.bends).collect();
-    let polished = seek_nearby(method, &wanted, &bends)
-        .into_iter()
-        .zip(candidates);
-    polished
-        .map(|(sought, c)| {
-            let row = &rows[c.row];
-            let crossing = |point: DVec2, map: &ShootingMap, residual: f64| {
-                let phi = nearest_turn(map.pole.to_angle(), c.near.phi);
-                Crossing {
-                    edge: c.edge,
-                    tau: point.x,
-                    load: point.y,
-                    push: side.sign() * (phi - row.touch),
-                    residual,
-                }
-            };
-            let residual = sought.miss.abs() + sought.left * sought.left;
-            let newton = crossing(sought.point, &sought.here.map, residual);
-            if newton.is_sound() && c.holds(sought.point) {
-                return newton;
-            }
-            let bisected = bisect(method, rod, side, c.edge, row.pole_distance.ln(), c.between);
-            let bisected = bisected.map(|(point, here)| {
-                let distance = here.map.pole.length();
-                let residual = (row.pole_distance / distance).ln().abs();
-                crossing(point, &here.map, residual)
-            });
-            if let Some(bisected) = bisected.filter(Crossing::is_sound) {
-                return bisected;
-            }
-            // The first fold jumps from contact to contact, and there is nothing between the samples. What Newton's
-            // method has found may be on another sheet: the row must be walked.
+    let iterates = edge_newton_predicted(method, &problems);
+    let corrected = iterates.into_iter().zip(candidates).map(|(iterate, c)| {
+        let row = &rows[c.row];
+        let crossing = |point: DVec2, map: &ShootingMap, residual: f64| {
+            let phi = nearest_turn(map.pole.to_angle(), c.predicted.phi);
             Crossing {
                 edge: c.edge,
-                tau: c.near.tau,
-                load: c.near.load,
-                push: side.sign() * (c.near.phi - row.touch),
-                residual: f64::INFINITY,
+                tau: point.x,
+                load: point.y,
+                push: side.sign() * (phi - row.touch),
+                residual,
             }
+        };
+        let residual = iterate.miss.abs() + iterate.left * iterate.left;
+        let newton = crossing(iterate.point, &iterate.here.map, residual);
+        if newton.is_sound() && c.holds(iterate.point) {
+            return newton;
+        }
+        let bisected = bisect(method, rod, side, c, row.pole_distance.ln());
+        let bisected = bisected.map(|(point, here)| {
+            let distance = here.map.pole.length();
+            let residual = (row.pole_distance / distance).ln().abs();
+            crossing(point, &here.map, residual)
+        });
+        // Where the first fold jumps from contact to contact, there is nothing between the samples. What Newton's method
+        // has found may be on another sheet: continuation must tell.
+        bisected.filter(Crossing::is_sound).unwrap_or(Crossing {
+            edge: c.edge,
+            tau: c.predicted.tau,
+            load: c.predicted.load,
+            push: side.sign() * (c.predicted.phi - row.touch),
+            residual: f64::INFINITY,
         })
-        .collect()
+    });
+    corrected.collect()
+}
+
+/// Halvings: more than a mantissa has bits.
+const HALVINGS: usize = 64;
+
+/// The point `(tau, load)` of an edge at which `ln D` is `target`, where Newton's method loses it because the distance turns nearby.
+/// If both samples are on the same side of it, the one that is closer. `None` where a fold is missing.
+fn bisect(
+    method: Method,
+    rod: &Rod,
+    side: Side,
+    candidate: &Candidate,
+    target: f64,
+) -> Option<(DVec2, SecondVariation)> {
+    let [from, to] = candidate.between;
+    let between = |part: f64| -> Option<(DVec2, SecondVariation)> {
+        let tau = from.tau + part * (to.tau - from.tau);
+        if candidate.edge == Edge::Fold {
+            let fold = first_folds(method, rod, side, &[tau]).pop()??;
+            return Some((DVec2::new(tau, fold.load), fold.variation));
+        }
+        let load = from.load + part * (to.load - from.load);
+        let shot =
+            Batch::new(method).shoot::<SecondVariation>(&[InitialCondition { rod, tau, load }]);
+        Some((DVec2::new(tau, load), *shot.first()?))
+    };
+    let misses = [from, to].map(|sample| sample.ln_distance - target);
+    if (misses[0] <= 0.0) == (misses[1] <= 0.0) {
+        let is_from_closer = misses[0].abs() <= misses[1].abs();
+        return between(if is_from_closer { 0.0 } else { 1.0 });
+    }
+    let mut parts = Bracket::new([0.0, 1.0], misses);
+    for _ in 0..HALVINGS {
+        let middle = parts.middle();
+        let (_, here) = between(middle)?;
+        parts.shrink(middle, here.map.pole.length().ln() - target);
+    }
+    between(parts.middle())
 }

@@ -1,22 +1,16 @@
-//! Newton's method for the points in which a row leaves the sheet.
+//! Edge Newton, the corrector: solves for the point of an edge at which the pole is at a distance. On the fold edge two equations
+//! hold, `D` and `det = 0`, for contact and load; on the tip edge `D` alone, for the load.
 
 use crate::rod::{Rod, arclength};
+use crate::sheet::edges::predictor::SecondDerivatives;
+use crate::sheet::row::Edge;
 use crate::shooting::batch::{Batch, InitialCondition, Method};
 use crate::shooting::{SecondVariation, ShootingMap, limited};
 use glam::DVec2;
 
-/// The edge that a point lies on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Edge {
-    /// The saddle-node: the whisker slips off.
-    Fold,
-    /// The contact reaches the tip: the whisker is pulled off.
-    Tip,
-}
-
-/// A point that is wanted on an edge: a fold, or a state with the contact where it is, for a pole at a distance.
+/// A point of an edge to solve for.
 #[derive(Clone, Copy, Debug)]
-pub struct Wanted<'a> {
+pub struct EdgeProblem<'a> {
     /// The whisker and its pole.
     pub rod: &'a Rod,
     /// The edge.
@@ -24,12 +18,14 @@ pub struct Wanted<'a> {
     /// Distance of the pole's centre.
     pub pole_distance: f64,
     /// `(tau, load)` to start from.
-    pub from: DVec2,
+    pub start: DVec2,
+    /// Second derivatives there, if the start is a good prediction.
+    pub second: Option<SecondDerivatives>,
 }
 
-/// Where Newton's method has led on the way to a [`Wanted`].
+/// Where Newton's method stands.
 #[derive(Clone, Copy, Debug)]
-pub struct Sought {
+pub struct EdgeIterate {
     /// `(tau, load)`.
     pub point: DVec2,
     /// The pole there.
@@ -38,164 +34,152 @@ pub struct Sought {
     pub miss: f64,
     /// How far it still is, as [`limited`] measures lengths: the square of the last step, or the step not taken any more.
     pub left: f64,
-    /// Whether the method came to its end.
-    pub is_found: bool,
+    /// Whether a step was short enough to be the last one.
+    pub has_converged: bool,
 }
 
-/// Rounds of Newton's method at the coarse resolution: from the guess of a cell next to the fold they lead to its error.
-const COARSE_ROUNDS: usize = 2;
+/// Iterations at the coarse resolution: from the guess of a cell next to the fold they lead to its error.
+const COARSE_ITERATIONS: usize = 2;
 
-/// Rounds at the method's own resolution; 1 or 2 are the rule.
-const ROUNDS: usize = 20;
+/// Iterations at the method's own resolution; 1 or 2 are the rule.
+const FINE_ITERATIONS: usize = 20;
 
 /// The length of a step that needs no trajectory at its end: what is left after it is its square, and second derivatives
 /// tell the rest to its cube.
-const LAST_STEP: f64 = 3e-7;
+const LAST_EDGE_STEP: f64 = 3e-7;
 
-/// How far off, relatively, second derivatives of the neighbours are at the most; 1e-3 is the rule.
-const BORROWED: f64 = 1e-2;
+/// How far off, relatively, predicted second derivatives are at the most; 1e-3 is the rule.
+const SECOND_OFF: f64 = 1e-2;
 
-/// Newton's method for all `wanted` at once; the caller judges what is left in `miss` and `left`. Each is alone: what is wanted
-/// at once next to the folds of a map depends on its strips.
+/// Solves all `problems`, first at the coarse resolution; the caller judges what is left in `miss` and `left`. Trajectories are not
+/// padded: which problems next to the folds of a map come together depends on its strips, and no answer may.
 #[must_use]
-pub fn seek(method: Method, wanted: &[Wanted]) -> Vec<Sought> {
-    newton(method, wanted, COARSE_ROUNDS, Batch::new)
+pub fn edge_newton(method: Method, problems: &[EdgeProblem]) -> Vec<EdgeIterate> {
+    iterate(method, problems, COARSE_ITERATIONS, Batch::new)
 }
 
 /// The same at the method's own resolution throughout: for starts that are good already, and for whiskers that friction lets
 /// coil up, where the coarse one leads astray.
 #[must_use]
-pub fn seek_finely(method: Method, wanted: &[Wanted]) -> Vec<Sought> {
-    newton(method, wanted, 0, |method| Batch::new(method).padded())
+pub fn edge_newton_fine(method: Method, problems: &[EdgeProblem]) -> Vec<EdgeIterate> {
+    iterate(method, problems, 0, |method| Batch::new(method).padded())
 }
 
-/// The same for starts whose second derivatives may be known from their neighbours (toward the tip those by the load are enough):
-/// most then need a single trajectory, with first derivatives.
+/// The same from predictions. With their second derivatives most need a single trajectory, with first derivatives; toward the tip
+/// those by the load are enough.
 #[must_use]
-pub fn seek_nearby(method: Method, wanted: &[Wanted], bends: &[Option<Bends>]) -> Vec<Sought> {
-    let conditions: Vec<InitialCondition> = wanted
+pub fn edge_newton_predicted(method: Method, problems: &[EdgeProblem]) -> Vec<EdgeIterate> {
+    let conditions: Vec<InitialCondition> = problems
         .iter()
-        .map(|wanted| InitialCondition {
-            rod: wanted.rod,
-            tau: wanted.from.x,
-            load: wanted.from.y,
-        })
+        .map(|problem| condition(problem, problem.start))
         .collect();
     let maps = Batch::new(method)
         .padded()
         .shoot::<ShootingMap>(&conditions);
-    let mut sought = Vec::with_capacity(wanted.len());
+    let mut iterates = Vec::with_capacity(problems.len());
     let (mut left, mut again) = (Vec::new(), Vec::new());
-    for (i, (goal, (map, bends))) in wanted.iter().zip(maps.iter().zip(bends)).enumerate() {
-        let [by_tau_tau, by_tau_load, by_load_load] = bends.unwrap_or_default();
+    for (i, (problem, map)) in problems.iter().zip(maps).enumerate() {
+        let [by_tau_tau, by_tau_load, by_load_load] = problem.second.unwrap_or_default();
         let here = SecondVariation {
-            map: *map,
+            map,
             by_tau_tau,
             by_tau_load,
             by_load_load,
         };
-        let last_step = bends.map(|_| LAST_STEP);
-        let (mut found, next) = advance(goal, goal.from, &here, last_step);
-        if found.is_found {
-            found.left += BORROWED * found.left.sqrt();
+        let last_step = problem.second.map(|_| LAST_EDGE_STEP);
+        let (mut iterate, next) = newton_step(problem, problem.start, &here, last_step);
+        if iterate.has_converged {
+            iterate.left += SECOND_OFF * iterate.left.sqrt();
         } else {
-            // A long step, or one of second derivatives that nobody knows, can lead astray.
-            let from = if bends.is_some() && found.left < BORROWED {
+            // A long step, or one of unknown second derivatives, can lead astray.
+            let start = if problem.second.is_some() && iterate.left < SECOND_OFF {
                 next
             } else {
-                goal.from
+                problem.start
             };
             left.push(i);
-            again.push(Wanted { from, ..*goal });
+            again.push(EdgeProblem { start, ..*problem });
         }
-        sought.push(found);
+        iterates.push(iterate);
     }
-    for (i, found) in left.into_iter().zip(seek_finely(method, &again)) {
-        sought[i] = found;
+    for (i, iterate) in left.into_iter().zip(edge_newton_fine(method, &again)) {
+        iterates[i] = iterate;
     }
-    sought
+    iterates
 }
 
-/// Second derivatives of `(ln D, phi)`: twice by `tau`, by `tau` and load, twice by load.
-pub type Bends = [DVec2; 3];
+fn condition<'a>(problem: &EdgeProblem<'a>, point: DVec2) -> InitialCondition<'a> {
+    InitialCondition {
+        rod: problem.rod,
+        tau: point.x,
+        load: point.y,
+    }
+}
 
-fn newton(
+fn iterate(
     method: Method,
-    wanted: &[Wanted],
-    coarse_rounds: usize,
+    problems: &[EdgeProblem],
+    coarse_iterations: usize,
     batch: fn(Method) -> Batch,
-) -> Vec<Sought> {
-    let mut points: Vec<DVec2> = wanted.iter().map(|w| w.from).collect();
-    let mut found: Vec<Option<Sought>> = vec![None; wanted.len()];
-    let mut open: Vec<usize> = (0..wanted.len()).collect();
-    for round in 0..coarse_rounds + ROUNDS {
+) -> Vec<EdgeIterate> {
+    let mut points: Vec<DVec2> = problems.iter().map(|problem| problem.start).collect();
+    let mut iterates: Vec<Option<EdgeIterate>> = vec![None; problems.len()];
+    let mut open: Vec<usize> = (0..problems.len()).collect();
+    for i in 0..coarse_iterations + FINE_ITERATIONS {
         if open.is_empty() {
             break;
         }
-        let is_coarse = round < coarse_rounds;
+        let is_coarse = i < coarse_iterations;
         let method = if is_coarse { method.coarsely() } else { method };
+        let last_step = (!is_coarse).then_some(LAST_EDGE_STEP);
         let conditions: Vec<InitialCondition> = open
             .iter()
-            .map(|&i| InitialCondition {
-                rod: wanted[i].rod,
-                tau: points[i].x,
-                load: points[i].y,
-            })
+            .map(|&i| condition(&problems[i], points[i]))
             .collect();
-        let mut maps = batch(method).shoot(&conditions).into_iter();
+        let shots: Vec<SecondVariation> = batch(method).shoot(&conditions);
+        let mut shots = shots.into_iter();
         open.retain(|&i| {
-            let Some(here) = maps.next() else {
+            let Some(here) = shots.next() else {
                 return false;
             };
-            let last_step = (!is_coarse).then_some(LAST_STEP);
-            let (sought, next) = advance(&wanted[i], points[i], &here, last_step);
+            let (iterate, next) = newton_step(&problems[i], points[i], &here, last_step);
             points[i] = next;
-            found[i] = Some(sought);
-            !sought.is_found && is_inside(next)
+            iterates[i] = Some(iterate);
+            !iterate.has_converged && next.is_finite() && next.x > 0.0
         });
     }
-    found.into_iter().flatten().collect()
+    iterates.into_iter().flatten().collect()
 }
 
-/// A step from `point`, which is `here`, toward the goal, where it leads, and where it ends; up to the length `last_step` there is
-/// nothing more to find.
-fn advance(
-    goal: &Wanted,
+/// The iterate at `point`, where the pole is `here`, and the next point. A step of at most `last_step` is taken already: the iterate
+/// is then the one at its end.
+fn newton_step(
+    problem: &EdgeProblem,
     point: DVec2,
     here: &SecondVariation,
     last_step: Option<f64>,
-) -> (Sought, DVec2) {
-    let miss = (goal.pole_distance / here.map.pole.length()).ln();
-    let step = match goal.edge {
-        Edge::Fold => fold_step(here, miss),
-        Edge::Tip => DVec2::new(0.0, load_step(here, miss)),
+) -> (EdgeIterate, DVec2) {
+    let miss = |here: &SecondVariation| (problem.pole_distance / here.map.pole.length()).ln();
+    let step = match problem.edge {
+        Edge::Fold => fold_step(here, miss(here)),
+        Edge::Tip => DVec2::new(0.0, load_step(here, miss(here))),
     };
-    let (step, length) = limited(step, arclength(goal.rod, point.x), point.y);
+    let (step, length) = limited(step, arclength(problem.rod, point.x), point.y);
     let next = point + step;
-    let sought = if last_step.is_some_and(|last| length <= last) {
-        let here = here.extrapolated(step);
-        Sought {
-            point: next,
-            here,
-            miss: (goal.pole_distance / here.map.pole.length()).ln(),
-            left: length * length,
-            is_found: true,
-        }
+    let has_converged = last_step.is_some_and(|last| length <= last);
+    let (point, here, left) = if has_converged {
+        (next, here.extrapolated(step), length * length)
     } else {
-        Sought {
-            point,
-            here: *here,
-            miss,
-            left: length,
-            is_found: false,
-        }
+        (point, *here, length)
     };
-    (sought, next)
-}
-
-/// Whether a step has led to a place that a whisker has.
-fn is_inside(point: DVec2) -> bool {
-    point.is_finite() && point.x > 0.0
+    let iterate = EdgeIterate {
+        point,
+        here,
+        miss: miss(&here),
+        left,
+        has_converged,
+    };
+    (iterate, next)
 }
 
 /// The step in load toward the point at the same contact whose `ln D` is larger by `miss`, to second order: where the distance is
@@ -221,9 +205,9 @@ fn fold_step(here: &SecondVariation, miss: f64) -> DVec2 {
 mod tests {
     use super::*;
 
-    /// Folds and places at the tip, from starts off by 1e-8 and 1e-5, with known second derivatives, with wrong ones and with none.
+    /// Folds and points at the tip, from starts off by 1e-8 and 1e-5, with known second derivatives, with wrong ones and with none.
     #[test]
-    fn neighbours_lead_to_the_same_place() {
+    fn predictions_lead_to_the_same_point() {
         let rod = Rod {
             taper: 0.95,
             bend: 0.4,
@@ -231,45 +215,45 @@ mod tests {
             ..Rod::default()
         };
         let method = Method::fine();
-        let goals = [
+        let points = [
             (Edge::Fold, rod.tau(0.8), 12.0),
             (Edge::Tip, rod.tau_tip(), 3.0),
         ];
-        for (edge, tau, load) in goals {
-            let start = Wanted {
+        for (edge, tau, load) in points {
+            let start = DVec2::new(tau, load);
+            let mut problem = EdgeProblem {
                 rod: &rod,
                 edge,
                 pole_distance: 0.75,
-                from: DVec2::new(tau, load),
+                start,
+                second: None,
             };
-            let distance = match edge {
-                Edge::Fold => 0.75,
-                Edge::Tip => Batch::new(method).shoot::<SecondVariation>(&[InitialCondition {
-                    rod: &rod,
-                    tau,
-                    load,
-                }])[0]
-                    .map
-                    .pole
-                    .length(),
-            };
-            let goal = Wanted {
-                pole_distance: distance,
-                ..start
-            };
-            let known = seek_finely(method, &[goal])[0];
-            assert!(known.is_found && known.miss.abs() < 1e-12, "{edge:?}");
+            if edge == Edge::Tip {
+                let at_start = [condition(&problem, start)];
+                let here = Batch::new(method).shoot::<SecondVariation>(&at_start)[0];
+                problem.pole_distance = here.map.pole.length();
+            }
+            let known = edge_newton_fine(method, &[problem])[0];
+            assert!(known.has_converged && known.miss.abs() < 1e-12, "{edge:?}");
             let here = &known.here;
-            let bends = [here.by_tau_tau, here.by_tau_load, here.by_load_load];
+            let seconds = [here.by_tau_tau, here.by_tau_load, here.by_load_load];
             for off in [1e-8, 1e-5] {
                 let moved = DVec2::new(if edge == Edge::Fold { off } else { 0.0 }, off);
-                let from = known.point * (DVec2::ONE + moved);
-                for bends in [Some(bends), Some(bends.map(|bend| 1.1 * bend)), None] {
-                    let found = seek_nearby(method, &[Wanted { from, ..goal }], &[bends])[0];
+                let start = known.point * (DVec2::ONE + moved);
+                for second in [Some(seconds), Some(seconds.map(|by| 1.1 * by)), None] {
+                    let predicted = EdgeProblem {
+                        start,
+                        second,
+                        ..problem
+                    };
+                    let found = edge_newton_predicted(method, &[predicted])[0];
                     let away = (found.point / known.point - DVec2::ONE).abs();
-                    assert!(found.is_found && found.miss.abs() < 1e-12, "{edge:?} {off}");
+                    assert!(
+                        found.has_converged && found.miss.abs() < 1e-12,
+                        "{edge:?} {off}"
+                    );
                     assert!(away.max_element() < 2e-9, "{edge:?} {off}: {away}");
-                    let [a, b] = [&found, &known].map(|sought| sought.here.map.pole.to_angle());
+                    let [a, b] = [&found, &known].map(|iterate| iterate.here.map.pole.to_angle());
                     assert!((a - b).abs() < 1e-12, "{edge:?} {off}: {a} {b}");
                 }
             }

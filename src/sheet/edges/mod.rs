@@ -1,83 +1,57 @@
-//! The edges of the stable sheet, sampled: the fold at every column, the tip from first touch to the corner.
+//! The edges of the stable sheet, sampled: the fold at every contact node, the tip from first touch to the corner.
 
-mod bracket;
 pub mod crossings;
 pub mod edge_newton;
-pub mod tip_edge;
+mod predictor;
+mod tip_edge;
 
-use crate::numerics::lobatto::{LOADS, PARTS};
 use crate::numerics::nearest_turn;
-use crate::rod::{Rest, Rod, arclength};
-use crate::sheet::edges::tip_edge::{TipLine, Turn};
-use crate::sheet::fold::FoldPoint;
-use crate::sheet::fold::contact_nodes::Columns;
-use crate::sheet::fold::predictor::FoldLine;
+use crate::rod::Rest;
+use crate::rod::Rod;
+use crate::rod::arclength;
+use crate::sheet::edges::predictor::{FoldEdge, Prediction, Sample};
+use crate::sheet::edges::tip_edge::TipEdge;
+use crate::sheet::fold::contact_nodes::ContactNodes;
 use crate::sheet::lattice::Lattice;
-use crate::sheet::lattice::directions;
-use crate::shooting::batch::{Batch, InitialCondition, Method};
-use crate::shooting::{SecondVariation, ShootingMap};
-use glam::DVec2;
-
-/// The Newton step, relative to the distance of the samples, after which an extremum is known: its square is left.
-const LAST_STEP: f64 = 1e-7;
-
-/// A computed point of an edge.
-#[derive(Clone, Copy, Debug)]
-pub struct Sample {
-    /// The column, or the part of the load at the corner.
-    pub place: f64,
-    /// `tau` of the contact.
-    pub tau: f64,
-    /// Signed load.
-    pub load: f64,
-    /// `ln D`.
-    pub ln_distance: f64,
-    /// Direction of the pole, continuous from first touch.
-    pub phi: f64,
-}
-
-impl Sample {
-    fn new(place: f64, tau: f64, load: f64, map: &ShootingMap, phi_near: f64) -> Self {
-        Self {
-            place,
-            tau,
-            load,
-            ln_distance: map.pole.length().ln(),
-            phi: nearest_turn(map.pole.to_angle(), phi_near),
-        }
-    }
-}
+use crate::sheet::row::Edge;
+use crate::shooting::batch::Method;
 
 /// The sampled edges of a sheet.
 #[derive(Clone, Debug)]
 pub struct Edges {
     /// From the base to the corner.
     pub fold: Vec<Sample>,
-    /// The same between the samples.
-    pub fold_line: FoldLine,
+    fold_edge: FoldEdge,
     /// Whether the distance grows along the fold from the base to the tip, so that no row crosses it twice. Where the
     /// first fold jumps from contact to contact, there is more of it than the samples show.
     pub fold_grows: bool,
     /// From first touch to the corner.
     pub tip: Vec<Sample>,
-    /// The same between the samples.
-    pub tip_line: TipLine,
+    tip_edge: TipEdge,
     /// How far, in `tau`, the integration puts the tip of the resting whisker from where its shape at rest has it.
     pub tip_error: f64,
 }
 
 impl Edges {
     /// Samples both edges; `lattice` knows the whole turns of the pole's direction.
-    pub fn new(method: Method, rod: &Rod, columns: &Columns, lattice: &Lattice) -> Self {
-        let fold: Vec<Sample> = columns.folds[..=columns.tip]
+    pub fn new(method: Method, rod: &Rod, contacts: &ContactNodes, lattice: &Lattice) -> Self {
+        let fold: Vec<Sample> = contacts.folds[..=contacts.tip]
             .iter()
             .zip(lattice.phi_at_fold())
             .enumerate()
             .map(|(i, (fold, phi))| {
-                Sample::new(i as f64, fold.tau, fold.load, &fold.variation.map, phi)
+                let pole = fold.variation.map.pole;
+                Sample {
+                    place: i as f64,
+                    tau: fold.tau,
+                    load: fold.load,
+                    ln_distance: pole.length().ln(),
+                    phi: nearest_turn(pole.to_angle(), phi),
+                }
             })
             .collect();
-        let (mut tip, tip_line, at_touch) = tip_samples(method, rod, &columns.folds[columns.tip]);
+        let corner = &contacts.folds[contacts.tip];
+        let (mut tip, tip_edge, at_touch) = TipEdge::sampled(method, rod, corner);
         let rest = Rest::new(rod);
         let (tip_at_rest, _) = rest.at_arclength(arclength(rod, rod.tau_tip()));
         let pole = rest.pole_at_distance(tip_at_rest.length()).length();
@@ -87,108 +61,89 @@ impl Edges {
         }));
         Self {
             fold,
-            fold_line: FoldLine::new(columns, lattice.phi_at_fold()),
-            fold_grows: (0..columns.tip).all(|column| columns.grow_after(column)),
-            tip_error: ((at_touch.pole.length() / pole).ln() / at_touch.by_tau.x).abs(),
+            fold_edge: FoldEdge::new(contacts, lattice.phi_at_fold()),
+            fold_grows: (0..contacts.tip).all(|i| contacts.grow_after(i)),
             tip,
-            tip_line,
+            tip_edge,
+            tip_error: ((at_touch.pole.length() / pole).ln() / at_touch.by_tau.x).abs(),
+        }
+    }
+
+    /// Where `ln D` is `target` between two neighbouring samples of `edge`.
+    pub fn predict(&self, edge: Edge, pair: [&Sample; 2], target: f64) -> Prediction {
+        match edge {
+            Edge::Fold => self.fold_edge.predict(pair, target),
+            Edge::Tip => self.tip_edge.predict(pair, target),
         }
     }
 }
 
-/// The tip edge from first touch to before the `corner`, with its extrema of distance among the samples, and the line through the
-/// others and the corner, and first touch.
-fn tip_samples(
-    method: Method,
-    rod: &Rod,
-    corner: &FoldPoint,
-) -> (Vec<Sample>, TipLine, ShootingMap) {
-    let condition = |load| InitialCondition {
-        rod,
-        tau: corner.tau,
-        load,
-    };
-    let loads = PARTS[..LOADS - 1].iter().map(|part| part * corner.load);
-    let conditions: Vec<InitialCondition> = loads.map(condition).collect();
-    let mut maps = Batch::new(method)
-        .padded()
-        .shoot::<ShootingMap>(&conditions);
-    maps.push(corner.variation.map);
-    let phis = directions(corner.load, maps.iter());
-    let line = TipLine::new(corner.tau, corner.load, &maps, &phis);
-    let turns = line.turns();
-    let mut samples: Vec<Sample> = Vec::new();
-    for (m, condition) in conditions.iter().enumerate() {
-        let sample = |load: f64, map: &ShootingMap| {
-            Sample::new(load / corner.load, corner.tau, load, map, phis[m])
-        };
-        samples.push(Sample {
-            place: PARTS[m],
-            ..sample(condition.load, &maps[m])
-        });
-        for turn in turns.iter().filter(|turn| turn.after == m) {
-            let (load, map) = extremum(method, *condition, turn);
-            samples.push(sample(load, &map));
-        }
-    }
-    (samples, line, maps[0])
-}
+#[cfg(test)]
+#[allow(
+    clippy::unwrap_used,
+    reason = "a sheet that is not there fails the test"
+)]
+mod tests {
+    use super::*;
+    use crate::numerics::lobatto::LOBATTO_COUNT;
+    use crate::rod::{Rest, Side};
+    use crate::sheet::edges::edge_newton::{EdgeProblem, edge_newton_fine};
+    use crate::sheet::row::Edge;
+    use crate::sheet::row::Row;
+    use glam::DVec2;
 
-/// The load at which the distance turns with the contact at the tip, and the map there: mostly the line along the tip knows the
-/// `turn`, and one trajectory with it all the rest.
-fn extremum(method: Method, at_tip: InitialCondition, turn: &Turn) -> (f64, ShootingMap) {
-    let (near, [from, to], by_load_load) = (turn.load, turn.between, turn.bend);
-    let at =
-        |load| Batch::new(method).shoot::<ShootingMap>(&[InitialCondition { load, ..at_tip }])[0];
-    let map = at(near);
-    let step = -map.by_load.x / by_load_load.x;
-    if step.abs() <= LAST_STEP * (to - from).abs() {
-        let here = SecondVariation {
-            map,
-            by_load_load,
-            ..SecondVariation::default()
-        };
-        return (near + step, here.extrapolated(DVec2::new(0.0, step)).map);
+    /// Predictions in the middle between samples, against what trajectories find from there.
+    #[test]
+    fn edges_are_known_between_their_samples() {
+        for side in Side::BOTH {
+            let rod = Rod {
+                taper: 0.95,
+                bend: 0.4,
+                pole: 0.0125 * side.sign(),
+                ..Rod::default()
+            };
+            let method = Method::fine();
+            let row = Row::new(&Rest::new(&rod), 0.1);
+            let contacts = ContactNodes::new(method, &rod, side, &row).unwrap();
+            let lattice = Lattice::new(method.coarsely(), &rod, side, &contacts);
+            let edges = Edges::new(method, &rod, &contacts, &lattice);
+            let mut checked = 0;
+            for (edge, samples) in [(Edge::Fold, &edges.fold), (Edge::Tip, &edges.tip)] {
+                for pair in samples.windows(2) {
+                    let pair = [&pair[0], &pair[1]];
+                    let target = pair[0].ln_distance.midpoint(pair[1].ln_distance);
+                    // The nearest row.
+                    if target < row.pole_distance.ln() {
+                        continue;
+                    }
+                    let predicted = edges.predict(edge, pair, target);
+                    let problem = EdgeProblem {
+                        rod: &rod,
+                        edge,
+                        pole_distance: target.exp(),
+                        start: DVec2::new(predicted.tau, predicted.load),
+                        second: None,
+                    };
+                    let found = edge_newton_fine(method, &[problem])[0];
+                    let away = (found.point / problem.start - DVec2::ONE).abs();
+                    assert!(
+                        found.has_converged && away.max_element() < 1e-7,
+                        "{edge:?} {away}"
+                    );
+                    let phi = found.here.map.pole.to_angle();
+                    assert!((predicted.phi - phi).abs() < 1e-6, "{edge:?}");
+                    let second = predicted.second.unwrap()[2];
+                    let known = found.here.by_load_load;
+                    assert!(
+                        second.distance(known) < 1e-2 * known.length(),
+                        "{edge:?} {second}"
+                    );
+                    checked += 1;
+                }
+            }
+            assert!(checked > 20);
+            let extrema = edges.tip.len() - LOBATTO_COUNT;
+            assert_eq!(edges.tip_edge.extrema().len(), extrema);
+        }
     }
-    let load = bracketed_extremum(
-        method,
-        InitialCondition {
-            load: from,
-            ..at_tip
-        },
-        to,
-        near,
-    );
-    (load, at(load))
-}
-
-/// The same load by Newton's method from `near` and second derivatives, bisecting where a step would leave the bracket.
-fn bracketed_extremum(method: Method, from: InitialCondition, to: f64, near: f64) -> f64 {
-    let at = |load: f64| {
-        Batch::new(method).shoot::<SecondVariation>(&[InitialCondition { load, ..from }])[0]
-    };
-    let (mut low, mut high) = (from.load, to);
-    let mut load = near;
-    let mut falling_at_low = None;
-    for _ in 0..60 {
-        let here = at(load);
-        let slope = here.map.by_load.x;
-        let newton = load - slope / here.by_load_load.x;
-        let inside = (newton - low) * (newton - high) < 0.0;
-        if inside && (newton - load).abs() <= LAST_STEP * (to - from.load).abs() {
-            return newton;
-        }
-        let falls = *falling_at_low.get_or_insert_with(|| at(from.load).map.by_load.x < 0.0);
-        if (slope < 0.0) == falls {
-            low = load;
-        } else {
-            high = load;
-        }
-        let next = if inside { newton } else { 0.5 * (low + high) };
-        if next == load {
-            return next;
-        }
-        load = next;
-    }
-    load
 }

@@ -1,78 +1,60 @@
-//! Where along the whisker the sheet is sampled.
+//! The contact nodes: the contacts along the whisker at which the sheet is sampled, each with its first fold.
 //!
-//! Columns are evenly spaced in `u = ln tau + tau`, but for a modulus that falls toward the tip: toward the base the sheet depends on the contact through
-//! its logarithm (everything scales), toward a slender tip through `tau`. One column lies exactly at the tip;
-//! one lies beyond it, because a trajectory does not know where the whisker ends, so that interpolation is
-//! nearly as good at the tip as elsewhere. Lines along the columns go through values and slopes.
+//! They are evenly spaced in the coordinate `u` ([`u_of`]). One lies exactly at the tip, and one beyond it: a trajectory does
+//! not know where the whisker ends, and so interpolation is nearly as good at the tip as elsewhere. Every trajectory brings
+//! slopes along, so what lies between the nodes is known by Hermite interpolation.
 
-use crate::numerics::newton_form::{Polynomial, places, stencil, through_slopes};
+use crate::numerics::newton_form::{stencil, through_slopes};
 use crate::rod::{Rod, Side};
-use crate::sheet::fold::coordinate::{slope_of_u, tau_of, u_of};
+use crate::sheet::fold::coordinate::{Hermite, STENCIL, hermite, slope_of_u, tau_of, u_of};
 use crate::sheet::fold::{FoldPoint, first_folds};
 use crate::sheet::row::Row;
 use crate::shooting::ShootingMap;
 use crate::shooting::batch::Method;
 use glam::DVec2;
 
-/// Distance of the columns in `u`.
+/// Distance of the nodes in `u`.
 const SPACING: f64 = 0.68;
 
-/// Columns beyond the tip.
-pub const BEYOND_TIP: usize = 1;
+/// Nodes beyond the tip.
+const BEYOND_TIP: usize = 1;
 
-/// Columns between the row nearest to the base and the end of the lattice.
+/// Nodes between the row nearest to the base and the end of the lattice.
 const BEYOND_NEAREST: usize = 1;
 
-/// Columns of a further batch.
+/// Nodes of a further batch.
 const FURTHER: usize = 4;
 
-/// Columns that a [`Line`] goes through.
-pub const AROUND: usize = 6;
-
-/// Terms of a [`Line`]: values and slopes.
-pub const TERMS: usize = 2 * AROUND;
-
-/// Along the columns, from 0 at the first one that it goes through.
-pub type Line = Polynomial<TERMS>;
-
-/// The line with these divided differences.
-pub const fn line(differences: [f64; TERMS]) -> Line {
-    Line {
-        places: places(2),
-        differences,
-    }
-}
-
-/// Most columns: the smallest `tau` is then below 1e-12 of the tip's.
+/// Most nodes: the smallest `tau` is then below 1e-12 of the tip's.
 const MOST: usize = 100;
 
-/// The sampled contacts with their folds, from the base outward.
+/// The contact nodes, from the base outward.
 #[derive(Clone, Debug)]
-pub struct Columns {
-    /// The fold at each contact.
+pub struct ContactNodes {
+    /// The fold at each.
     pub folds: Vec<FoldPoint>,
-    /// Index of the column at the tip.
+    /// Index of the node at the tip.
     pub tip: usize,
     first_u: f64,
     rod: Rod,
     /// See [`least_q`].
     least_q: f64,
-    /// Slopes of `ln tau` and `ln(|load| tau^2)` of the folds, per column.
+    /// Slopes of `ln tau` and `ln(|load| tau^2)` of the folds, per node.
     slopes: Vec<[f64; 2]>,
-    /// `ln tau` of the folds, by the first column of the stencil.
-    pub ln_tau: Vec<Line>,
+    /// `ln tau` of the folds, by the first node of the stencil.
+    pub ln_tau: Vec<Hermite>,
     /// `ln(|load| tau^2)` of them.
-    pub ln_q: Vec<Line>,
+    pub ln_q: Vec<Hermite>,
 }
 
-/// How much the change of `ln q` of the fold from a column to the next one differs from the slope at one of them at the least where the
-/// fold jumps (with friction, from 29 to 15); `scenes/measured.toml` has 0.19.
+/// The first fold jumps between two nodes if the change of `ln q` differs by this much from the slope at one of them. A jump
+/// with friction led from 29 to 15; without one, `scenes/measured.toml` has 0.19.
 const JUMP: f64 = 0.25;
 
 /// What rounding may leave of the slope of `ln D` where it is 0: at the tip of a perfect cone.
-const LEVEL: f64 = 1e-6;
+const FLAT: f64 = 1e-6;
 
-/// Whether the fold jumps between two columns from one to the other of which `ln q` changes by `change`.
+/// Whether the fold jumps between two nodes from one to the other of which `ln q` changes by `change`.
 fn jumps(change: f64, slopes: [f64; 2]) -> bool {
     let astray = slopes.map(|slope| (change - slope).abs());
     astray[0].max(astray[1]) >= JUMP
@@ -81,12 +63,11 @@ fn jumps(change: f64, slopes: [f64; 2]) -> bool {
 /// The most that `d ln q/d ln tau` of a fold counts for; it is 2 toward a slender tip.
 const STEEPEST: f64 = 4.0;
 
-/// A load is surely below the folds where `|load| tau^2` is this part of the smallest: the rest is for a fold that jumps between two
-/// columns.
-const BELOW: f64 = 0.75;
+/// A load is surely below the folds where `|load| tau^2` is this part of the smallest; the rest allows for a jump between nodes.
+const SURELY_BELOW: f64 = 0.75;
 
-/// The smallest `|load| tau^2` of the folds, between the columns, too: how far a cubic between two of them, with their slopes, may be
-/// below both.
+/// A lower bound of `|load| tau^2` of the folds, at the nodes and between them: a cubic through two values with their slopes falls
+/// below both by no more than this.
 fn least_q(values: &[[f64; 2]], slopes: &[[f64; 2]]) -> f64 {
     let pairs = values.windows(2).zip(slopes.windows(2));
     let least = pairs.map(|(values, slopes)| {
@@ -101,69 +82,80 @@ fn q(fold: &FoldPoint) -> f64 {
     fold.load.abs() * fold.tau * fold.tau
 }
 
-/// Slopes of `ln tau` and `ln(|load| tau^2)` of the folds at `fold`, per column.
+/// Slopes of `ln tau` and `ln(|load| tau^2)` of the folds at `fold`, per node.
 fn slopes_at(rod: &Rod, fold: &FoldPoint) -> [f64; 2] {
     let ln_tau = SPACING / slope_of_u(rod, fold.tau);
     let by_det = fold.variation.det_gradient();
     let ln_load = -by_det.x / by_det.y * fold.tau / fold.load;
-    // Where the first fold jumps from contact to contact it may stand still there, and no line is of any use.
+    // Next to a jump the fold edge may be vertical in load, and no polynomial is of any use.
     let ln_q = (2.0 + ln_load).clamp(-STEEPEST, STEEPEST);
     [ln_tau, ln_q * ln_tau]
 }
 
-impl Columns {
-    /// Columns from the tip of `rod` down to some beyond `nearest`, the row nearest to the base: at the last
-    /// ones the pole is nearer than that at first touch and at the fold. `None` where a fold is missing.
-    pub fn new(method: Method, rod: &Rod, side: Side, nearest: &Row) -> Option<Self> {
-        let u_tip = u_of(rod, rod.tau_tip());
-        let tip = rod.tau_tip();
-        let mut near = tip;
-        let mut tau = |column: usize| {
-            near = match column.checked_sub(BEYOND_TIP) {
-                Some(0) => tip,
-                Some(below) => tau_of(rod, u_tip - SPACING * below as f64, near),
-                None => tau_of(rod, u_tip + SPACING * (BEYOND_TIP - column) as f64, near),
-            };
-            near
+/// The folds of nodes from the base outward. At the first ones the pole is nearer than that of `nearest`, at first touch and at the
+/// fold.
+fn folds_down_to(method: Method, rod: &Rod, side: Side, nearest: &Row) -> Option<Vec<FoldPoint>> {
+    let tau_tip = rod.tau_tip();
+    let u_tip = u_of(rod, tau_tip);
+    let mut near = tau_tip;
+    let mut tau = |from_end: usize| {
+        let inward = from_end as f64 - BEYOND_TIP as f64;
+        near = if from_end == BEYOND_TIP {
+            tau_tip
+        } else {
+            tau_of(rod, u_tip - SPACING * inward, near)
         };
-        let touch = rod.tau(nearest.contact.min(1.0));
-        // As many as there are at least, with the one at the tip.
-        #[allow(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "the cast saturates, and a batch is bounded"
-        )]
-        let mut batch = ((u_tip - u_of(rod, touch)) / SPACING) as usize;
-        batch = batch.min(MOST) + BEYOND_TIP + BEYOND_NEAREST + 2;
-        let mut folds = Vec::new();
-        loop {
-            let from = folds.len();
-            let taus: Vec<f64> = (from..from + batch).map(&mut tau).collect();
-            let found: Option<Vec<FoldPoint>> =
-                first_folds(method, rod, side, &taus).into_iter().collect();
-            folds.extend(found?);
-            let reached = folds.iter().rev().nth(BEYOND_NEAREST).is_some_and(|fold| {
-                let distance = fold.variation.map.pole.length();
-                distance < nearest.pole_distance && fold.tau < touch
-            });
-            if reached || folds.len() > MOST {
-                break;
-            }
-            batch = FURTHER;
+        near
+    };
+    let touch = rod.tau(nearest.contact.min(1.0));
+    // The least that are needed, the one at the tip among them.
+    #[allow(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "the cast saturates, and a batch is bounded"
+    )]
+    let mut batch = ((u_tip - u_of(rod, touch)) / SPACING) as usize;
+    batch = batch.min(MOST) + BEYOND_TIP + BEYOND_NEAREST + 2;
+    let mut folds: Vec<FoldPoint> = Vec::new();
+    loop {
+        let from = folds.len();
+        let taus: Vec<f64> = (from..from + batch).map(&mut tau).collect();
+        for fold in first_folds(method, rod, side, &taus) {
+            folds.push(fold?);
         }
-        folds.reverse();
+        let is_reached = folds.iter().rev().nth(BEYOND_NEAREST).is_some_and(|fold| {
+            let distance = fold.variation.map.pole.length();
+            distance < nearest.pole_distance && fold.tau < touch
+        });
+        if is_reached || folds.len() > MOST {
+            break;
+        }
+        batch = FURTHER;
+    }
+    folds.reverse();
+    Some(folds)
+}
+
+impl ContactNodes {
+    /// The nodes of `rod` from its tip down to `nearest`, the row nearest to the base, and some beyond both. `None` where a fold is
+    /// missing.
+    pub fn new(method: Method, rod: &Rod, side: Side, nearest: &Row) -> Option<Self> {
+        let folds = folds_down_to(method, rod, side, nearest)?;
         let values: Vec<[f64; 2]> = folds.iter().map(|f| [f.tau.ln(), q(f).ln()]).collect();
         let slopes: Vec<[f64; 2]> = folds.iter().map(|fold| slopes_at(rod, fold)).collect();
         let both = through_slopes(&values, &slopes);
-        let lines = |which: usize| both.iter().map(move |of| line(of.map(|term| term[which])));
+        let polynomials = |which: usize| {
+            both.iter()
+                .map(move |of| hermite(of.map(|term| term[which])))
+        };
         let tip = folds.len() - 1 - BEYOND_TIP;
         Some(Self {
-            first_u: u_tip - SPACING * tip as f64,
+            first_u: u_of(rod, rod.tau_tip()) - SPACING * tip as f64,
             tip,
             rod: rod.clone(),
             least_q: least_q(&values, &slopes),
-            ln_tau: lines(0).collect(),
-            ln_q: lines(1).collect(),
+            ln_tau: polynomials(0).collect(),
+            ln_q: polynomials(1).collect(),
             folds,
             slopes,
         })
@@ -172,26 +164,27 @@ impl Columns {
     /// Whether the load is surely less than that of the fold for the contact at `tau`.
     #[must_use]
     pub fn is_below_folds(&self, tau: f64, load: f64) -> bool {
-        load.abs() * tau * tau < BELOW * self.least_q
+        load.abs() * tau * tau < SURELY_BELOW * self.least_q
     }
 
-    /// The slope, per column, of `(ln D, phi)` where the load is this `part` of the fold's: that of the `map` at `column`.
+    /// Slopes of `(ln D, phi)`, per node, along the line on which the load is this `part` of the fold's: those of the `map` at the
+    /// node `i`.
     #[must_use]
-    pub fn slope(&self, column: usize, part: f64, map: &ShootingMap) -> DVec2 {
-        let (fold, [ln_tau, ln_q]) = (&self.folds[column], self.slopes[column]);
+    pub fn slope(&self, i: usize, part: f64, map: &ShootingMap) -> DVec2 {
+        let (fold, [ln_tau, ln_q]) = (&self.folds[i], self.slopes[i]);
         let ln_load = ln_q - 2.0 * ln_tau;
         map.by_tau * (fold.tau * ln_tau) + map.by_load * (part * fold.load * ln_load)
     }
 
-    /// Whether the distance at the fold grows from `column` to the next one, and the fold does not jump.
+    /// Whether the distance at the fold grows from the node `i` to the next one, and the fold does not jump.
     #[must_use]
-    pub fn grow_after(&self, column: usize) -> bool {
-        let ends = [column, column + 1];
-        let maps = ends.map(|column| &self.folds[column].variation.map);
+    pub fn grow_after(&self, i: usize) -> bool {
+        let ends = [i, i + 1];
+        let maps = ends.map(|i| &self.folds[i].variation.map);
         let [here, next] = maps.map(|map| map.pole.length());
-        let grows = |i: usize| self.slope(ends[i], 1.0, maps[i]).x > -LEVEL;
-        let [from, to] = ends.map(|column| q(&self.folds[column]).ln());
-        let slopes = ends.map(|column| self.slopes[column][1]);
+        let grows = |end: usize| self.slope(ends[end], 1.0, maps[end]).x > -FLAT;
+        let [from, to] = ends.map(|i| q(&self.folds[i]).ln());
+        let slopes = ends.map(|i| self.slopes[i][1]);
         here < next && grows(0) && grows(1) && !jumps(to - from, slopes)
     }
 
@@ -203,10 +196,10 @@ impl Columns {
         #[allow(
             clippy::cast_possible_truncation,
             clippy::cast_sign_loss,
-            reason = "the cast saturates, and the result is clamped to the columns"
+            reason = "the cast saturates, and the result is clamped to the nodes"
         )]
-        let k = (place as usize).min(last);
-        let start = stencil(k, AROUND, self.folds.len());
+        let before = (place as usize).min(last);
+        let start = stencil(before, STENCIL, self.folds.len());
         self.ln_q[start].at(place - start as f64).0.exp() / (tau * tau)
     }
 }
@@ -222,7 +215,7 @@ mod tests {
     use crate::shooting::ShootingMap;
     use crate::shooting::batch::{Batch, InitialCondition};
 
-    /// Slopes against differences between neighbours, columns in the middle and the one at the tip.
+    /// Slopes against differences between neighbours, at a node in the middle and at the one at the tip.
     #[test]
     fn slopes_are_those_between_neighbours() {
         let slender = Rod {
@@ -231,45 +224,33 @@ mod tests {
             pole: 0.01,
             ..Rod::default()
         };
-        let of_gradient = |gradient| Rod {
-            gradient,
-            ..slender.clone()
-        };
-        let rubbing = Rod {
-            friction: 0.3,
-            ..slender.clone()
-        };
-        for rod in [
-            of_gradient(0.0),
-            rubbing,
-            of_gradient(-0.6),
-            of_gradient(2.0),
-        ] {
-            let method = Method::fine();
+        for (gradient, friction) in [(0.0, 0.0), (0.0, 0.3), (-0.6, 0.0), (2.0, 0.0)] {
             for side in Side::BOTH {
                 let rod = Rod {
-                    pole: side.sign() * rod.pole,
-                    friction: side.sign() * rod.friction,
-                    ..rod.clone()
+                    gradient,
+                    pole: side.sign() * slender.pole,
+                    friction: side.sign() * friction,
+                    ..slender.clone()
                 };
+                let method = Method::fine();
                 let row = Row::new(&Rest::new(&rod), 0.3);
-                let columns = Columns::new(method, &rod, side, &row).unwrap();
-                for column in [2, columns.tip] {
-                    check(&columns, method, side, column);
+                let nodes = ContactNodes::new(method, &rod, side, &row).unwrap();
+                for i in [2, nodes.tip] {
+                    check(&nodes, method, side, i);
                 }
             }
         }
     }
 
-    fn check(columns: &Columns, method: Method, side: Side, column: usize) {
+    fn check(nodes: &ContactNodes, method: Method, side: Side, i: usize) {
         const STEP: f64 = 1e-3;
-        let rod = &columns.rod;
-        let u = u_of(rod, columns.folds[column].tau);
+        let rod = &nodes.rod;
+        let u = u_of(rod, nodes.folds[i].tau);
         let around = [-STEP, STEP].map(|step| tau_of(rod, step.mul_add(SPACING, u), 1.0));
         let folds = first_folds(method, rod, side, &around);
-        let folds = [0, 1].map(|i| folds[i].unwrap());
+        let folds = [0, 1].map(|end| folds[end].unwrap());
         let differ = |[a, b]: [f64; 2]| (b - a) / (2.0 * STEP);
-        let [ln_tau, ln_q] = columns.slopes[column];
+        let [ln_tau, ln_q] = nodes.slopes[i];
         assert!((differ(folds.map(|fold| fold.tau.ln())) - ln_tau).abs() < 1e-5);
         assert!((differ(folds.map(|fold| q(&fold).ln())) - ln_q).abs() < 1e-5);
         for part in [0.0, 0.5, 1.0] {
@@ -277,12 +258,12 @@ mod tests {
                 let (tau, load) = (fold.tau, part * fold.load);
                 Batch::new(method).shoot::<ShootingMap>(&[InitialCondition { rod, tau, load }])[0]
             };
-            let slope = columns.slope(column, part, &shot(&columns.folds[column]));
-            let maps = [0, 1].map(|i| shot(&folds[i]));
+            let slope = nodes.slope(i, part, &shot(&nodes.folds[i]));
+            let maps = folds.map(|fold| shot(&fold));
             let ln_distance = differ(maps.map(|map| map.pole.length().ln()));
             let phi = differ(maps.map(|map| map.pole.to_angle()));
-            assert!((ln_distance - slope.x).abs() < 1e-5, "{column} {part}");
-            assert!((phi - slope.y).abs() < 1e-5, "{column} {part}");
+            assert!((ln_distance - slope.x).abs() < 1e-5, "{i} {part}");
+            assert!((phi - slope.y).abs() < 1e-5, "{i} {part}");
         }
     }
 

@@ -1,9 +1,12 @@
-//! The coordinate `u` along the whisker in which the columns of a sheet are even.
+//! The coordinate `u` along the whisker in which contact nodes are evenly spaced, and polynomials from node to node.
 
+use crate::numerics::Bracket;
+use crate::numerics::newton_form::{Polynomial, even_nodes};
 use crate::rod::{Rod, arclength};
 
-/// `ln tau + tau`, and minus the logarithm of the modulus where that falls toward the tip: continued beyond the tip, it
-/// would become 0.
+/// `u = ln tau + tau`. Toward the base the sheet depends on the contact through its logarithm, because everything scales; toward a
+/// slender tip through `tau`. Where the modulus falls toward the tip its logarithm is subtracted: continued beyond the tip, it would
+/// become 0.
 pub fn u_of(rod: &Rod, tau: f64) -> f64 {
     let softening = if rod.gradient < 0.0 {
         rod.modulus(arclength(rod, tau)).ln()
@@ -23,7 +26,10 @@ pub fn slope_of_u(rod: &Rod, tau: f64) -> f64 {
     slope
 }
 
-/// Inverse of [`u_of`] by Newton's method for `ln tau` from `near`, bisecting where a step would leave the bracket.
+/// The last Newton step toward a `tau`, relatively: its square is left.
+const LAST_TAU_STEP: f64 = 1e-9;
+
+/// Inverse of [`u_of`] by Newton's method for `ln tau` from `near`.
 pub fn tau_of(rod: &Rod, u: f64, near: f64) -> f64 {
     let softening = (-rod.gradient).max(0.0);
     let end = if softening > rod.taper {
@@ -32,26 +38,35 @@ pub fn tau_of(rod: &Rod, u: f64, near: f64) -> f64 {
         f64::INFINITY
     };
     let most = if u < 1.0 { u.exp() } else { u };
-    let (mut low, mut high) = (0.0, most.min(end));
-    let mut tau = if near < high { near } else { 0.5 * high };
-    for _ in 0..100 {
+    let bracket = Bracket {
+        below: 0.0,
+        above: most.min(end),
+    };
+    let start = if near < bracket.above {
+        near
+    } else {
+        bracket.middle()
+    };
+    let newton = |tau: f64| {
         let miss = u_of(rod, tau) - u;
-        if miss > 0.0 {
-            high = tau;
-        } else {
-            low = tau;
-        }
-        let newton = tau * (-miss / slope_of_u(rod, tau)).exp();
-        let next = if low < newton && newton < high {
-            newton
-        } else {
-            0.5 * (low + high)
-        };
-        // The square of the step is left.
-        if (next - tau).abs() <= 1e-9 * tau {
-            return next;
-        }
-        tau = next;
+        (miss, tau * (-miss / slope_of_u(rod, tau)).exp())
+    };
+    bracket.newton(start, |tau| LAST_TAU_STEP * tau, newton).x
+}
+
+/// Nodes that a [`Hermite`] polynomial goes through.
+pub const STENCIL: usize = 6;
+
+/// Its terms: values and slopes.
+pub const TERMS: usize = 2 * STENCIL;
+
+/// A function of the contact, by the number of nodes (a fraction between them) from the first one of a stencil.
+pub type Hermite = Polynomial<TERMS>;
+
+/// The polynomial with these divided differences.
+pub const fn hermite(differences: [f64; TERMS]) -> Hermite {
+    Polynomial {
+        nodes: even_nodes(2),
+        differences,
     }
-    tau
 }

@@ -1,10 +1,10 @@
 //! The fold edge: the first load at which the Jacobian becomes singular, contact by contact.
 
 pub mod contact_nodes;
-mod coordinate;
-pub mod predictor;
+pub mod coordinate;
 
-use crate::numerics::newton_form::{Polynomial, stencil};
+use crate::numerics::Bracket;
+use crate::numerics::newton_form::{Polynomial, RootProblem, stencil};
 use crate::rod::{Rod, Side, arclength};
 use crate::shooting::batch::{Batch, InitialCondition, Method};
 use crate::shooting::{SecondVariation, ShootingMap};
@@ -21,21 +21,21 @@ pub struct FoldPoint {
     pub variation: SecondVariation,
 }
 
-/// Samples of `q = |load| s^2` per round of the search; measured radii add their softness as a factor.
+/// Samples of `q = |load| s^2` per round of the march; measured radii add their softness as a factor.
 const SAMPLES: usize = 11;
 
 /// Distance of the first samples: the second fold is farther from the first than this.
-const FIRST_STEP: f64 = 0.75;
+const FIRST_SPACING: f64 = 0.75;
 
-/// Where the search begins. Without measured radii and moduli that fall toward the tip, which `q` does not know of, the sheet is
+/// Where the march begins. Without measured radii and moduli that fall toward the tip, which `q` does not know of, the sheet is
 /// wider: no first fold of 2,000 random whiskers with friction up to 2 and `A*` up to 2 lay below 6.5.
 const SURELY_STABLE: f64 = 4.5;
 
 /// How much wider a bracket is than the samples say, relatively: their signs come from the coarse resolution.
 const SLACK: f64 = 1e-2;
 
-/// The last step between two samples, in parts of their distance: its square is left.
-const LAST_PART: f64 = 1e-4;
+/// The last step toward the root between two samples, in parts of their distance: its square is left.
+const LAST_STEP_BETWEEN_SAMPLES: f64 = 1e-4;
 
 /// Beyond this `q` the samples spread out. The largest first fold known of a cone lies at 24.15: the limit at the tip of a
 /// perfect one that is slender against the pole.
@@ -45,14 +45,14 @@ const EVEN_UP_TO: f64 = 64.0;
 /// cone rounding of `det` leaves 2e-7; elsewhere it is below 1e-13.
 const STEP_LEFT: f64 = 1e-5;
 
-/// The Newton step, relative to the load, that needs no trajectory at its end: its square is left.
-const LAST_STEP: f64 = 1e-6;
+/// The Newton step in load, relative to it, that needs no trajectory at its end: its square is left.
+const LAST_LOAD_STEP: f64 = 1e-6;
 
-/// Where the search is given up.
+/// Where the march is given up.
 const LARGEST_Q: f64 = 1e6;
 
-/// Rounds of the safeguarded Newton method; bisection alone would need 50.
-const ROUNDS: usize = 60;
+/// Rounds of Newton's method; bisection alone would need 50.
+const POLISH_ROUNDS: usize = 60;
 
 /// First folds of `rod` at the contacts `taus`; `None` where there is none up to [`LARGEST_Q`], or no stable state at first
 /// touch.
@@ -62,38 +62,29 @@ pub fn first_folds(method: Method, rod: &Rod, side: Side, taus: &[f64]) -> Vec<O
     } else {
         0.0
     };
-    let mut folds = polish(
-        method,
-        rod,
-        &bracket(method.coarsely(), rod, side, taus, begin),
-    );
+    let marched = march(method.coarsely(), rod, side, taus, begin);
+    let mut folds = polish(method, rod, marched);
     // With friction and a stiff tip the first fold can lie at `q` of 1000, where the coarse resolution is lost.
     let lost: Vec<usize> = (0..taus.len()).filter(|&i| folds[i].is_none()).collect();
     let again: Vec<f64> = lost.iter().map(|&i| taus[i]).collect();
-    let fine = polish(method, rod, &bracket(method, rod, side, &again, 0.0));
+    let fine = polish(method, rod, march(method, rod, side, &again, 0.0));
     for (i, fold) in lost.into_iter().zip(fine) {
         folds[i] = fold;
     }
     folds
 }
 
-/// A stretch of load over which `det` changes its sign for the first time.
+/// A contact, and the loads between which its `det` first falls below zero.
 #[derive(Clone, Copy, Debug)]
-struct Bracket {
+struct Marched {
     tau: f64,
-    stable: f64,
-    beyond: f64,
+    /// Of `-det`.
+    loads: Bracket,
     guess: f64,
 }
 
 /// Marches every contact out from `q = begin` until `det` has changed its sign; `None` also where that is not stable.
-fn bracket(
-    method: Method,
-    rod: &Rod,
-    side: Side,
-    taus: &[f64],
-    begin: f64,
-) -> Vec<Option<Bracket>> {
+fn march(method: Method, rod: &Rod, side: Side, taus: &[f64], begin: f64) -> Vec<Option<Marched>> {
     struct March {
         index: usize,
         scale: f64,
@@ -107,7 +98,7 @@ fn bracket(
             dets: Vec::new(),
         })
         .collect();
-    let (mut samples, mut step) = (Vec::new(), FIRST_STEP);
+    let (mut samples, mut step) = (Vec::new(), FIRST_SPACING);
     while !open.is_empty() && samples.last().is_none_or(|q| *q < LARGEST_Q) {
         let from = samples.len();
         let first = samples.last().map_or(begin, |q| q + step);
@@ -134,10 +125,12 @@ fn bracket(
                 return true;
             };
             let slack = SLACK * (samples[at + 1] - samples[at]);
-            found[march.index] = Some(Bracket {
+            found[march.index] = Some(Marched {
                 tau: taus[march.index],
-                stable: (samples[at] - slack) * march.scale,
-                beyond: (samples[at + 1] + slack) * march.scale,
+                loads: Bracket {
+                    below: (samples[at] - slack) * march.scale,
+                    above: (samples[at + 1] + slack) * march.scale,
+                },
                 guess: root(&samples, &march.dets, at) * march.scale,
             });
             false
@@ -150,18 +143,26 @@ fn bracket(
 }
 
 /// Samples that tell where between two of them `det` vanishes.
-const AROUND: usize = 10;
+const DET_STENCIL: usize = 10;
 
 /// Where `dets` vanishes between the sample `at` and the next one.
 fn root(samples: &[f64], dets: &[f64], at: usize) -> f64 {
     let [low, high] = [dets[at], dets[at + 1]];
     let secant = low / (low - high);
-    let start = stencil(at, AROUND, dets.len());
-    let around = start..(start + AROUND).min(samples.len());
+    let start = stencil(at, DET_STENCIL, dets.len());
+    let around = start..(start + DET_STENCIL).min(samples.len());
     let part = if samples[around.end - 1] <= EVEN_UP_TO {
         let offset = (at - start) as f64;
-        let polynomial = Polynomial::<AROUND>::through(&dets[around]);
-        polynomial.solve(0.0, offset + secant, [offset + 1.0, offset], LAST_PART) - offset
+        let polynomial = Polynomial::<DET_STENCIL>::through(&dets[around]);
+        let problem = RootProblem {
+            target: 0.0,
+            near: offset + secant,
+            bracket: Bracket {
+                below: offset + 1.0,
+                above: offset,
+            },
+        };
+        polynomial.solve(&problem, LAST_STEP_BETWEEN_SAMPLES) - offset
     } else {
         secant
     };
@@ -169,64 +170,53 @@ fn root(samples: &[f64], dets: &[f64], at: usize) -> f64 {
 }
 
 /// Newton's method on `det(load) = 0` inside the brackets.
-fn polish(method: Method, rod: &Rod, brackets: &[Option<Bracket>]) -> Vec<Option<FoldPoint>> {
-    let mut points = vec![None; brackets.len()];
-    let mut all: Vec<(usize, Bracket)> = brackets
-        .iter()
+fn polish(method: Method, rod: &Rod, marched: Vec<Option<Marched>>) -> Vec<Option<FoldPoint>> {
+    let mut points = vec![None; marched.len()];
+    let mut all: Vec<(usize, Marched)> = marched
+        .into_iter()
         .enumerate()
-        .filter_map(|(i, bracket)| bracket.map(|b| (i, b)))
+        .filter_map(|(i, marched)| Some((i, marched?)))
         .collect();
     let mut is_open = vec![true; all.len()];
-    for _ in 0..ROUNDS {
+    for _ in 0..POLISH_ROUNDS {
         if !is_open.contains(&true) {
             break;
         }
-        // Those that are done keep company: with fewer steps, at the tip of a perfect cone, `det` may have its root elsewhere.
+        // Those that are done stay in the batch: with fewer steps, at the tip of a perfect cone, `det` may have its root elsewhere.
         let conditions: Vec<InitialCondition> = all
             .iter()
-            .map(|(_, b)| InitialCondition {
+            .map(|(_, marched)| InitialCondition {
                 rod,
-                tau: b.tau,
-                load: b.guess,
+                tau: marched.tau,
+                load: marched.guess,
             })
             .collect();
         let variations = Batch::new(method)
             .padded()
             .shoot::<SecondVariation>(&conditions);
-        for (((i, b), is_open), variation) in all.iter_mut().zip(&mut is_open).zip(variations) {
+        for (((i, marched), is_open), variation) in all.iter_mut().zip(&mut is_open).zip(variations)
+        {
             if !*is_open {
                 continue;
             }
-            let (det, slope) = (variation.map.det(), variation.det_gradient().y);
-            let newton = b.guess - det / slope;
-            let step = newton - b.guess;
-            let is_last = step.abs() <= LAST_STEP * b.guess.abs();
-            points[*i] = Some(if is_last {
-                FoldPoint {
-                    tau: b.tau,
-                    load: newton,
-                    variation: variation.extrapolated(DVec2::new(0.0, step)),
-                }
+            let Marched { tau, loads, guess } = marched;
+            let det = variation.map.det();
+            let newton = *guess - det / variation.det_gradient().y;
+            let step = newton - *guess;
+            let is_last = step.abs() <= LAST_LOAD_STEP * guess.abs();
+            let (load, variation) = if is_last {
+                (newton, variation.extrapolated(DVec2::new(0.0, step)))
             } else {
-                FoldPoint {
-                    tau: b.tau,
-                    load: b.guess,
-                    variation,
-                }
-            });
-            if det > 0.0 {
-                b.stable = b.guess;
-            } else {
-                b.beyond = b.guess;
-            }
-            let inside = (newton - b.stable) * (newton - b.beyond) < 0.0;
-            let next = if inside {
-                newton
-            } else {
-                0.5 * (b.stable + b.beyond)
+                (*guess, variation)
             };
-            *is_open = !is_last && next != b.guess;
-            b.guess = next;
+            points[*i] = Some(FoldPoint {
+                tau: *tau,
+                load,
+                variation,
+            });
+            let next = loads.next(*guess, -det, newton);
+            *is_open = !is_last && next != *guess;
+            *guess = next;
         }
     }
     // A bracket that closed on something else than a root, or did not close, is no fold.

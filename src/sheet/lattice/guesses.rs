@@ -1,10 +1,12 @@
-//! Guesses: a row of a map as a curve through the nodes of its level curve on the lattice, asked for push angles.
+//! What a guess is: contact and load of a cell, read off the row's level curve on the lattice at the cell's push angle.
+//!
+//! The curve is known at the Chebyshev-Lobatto nodes of the load. Between them push angle, contact and load are polynomials; the
+//! first one is solved for the load, the others are evaluated there. Sixteen cells of a row are solved side by side.
 
-use crate::numerics::lobatto::{Curve, LAST_STEP, LOADS, PARTS, through};
-use crate::numerics::newton_form_simd::Numbers;
-use crate::numerics::{Unit, WIDTH};
-use crate::sheet::lattice::bracket::{Nodes, Search};
-use crate::sheet::lattice::simd_roots::Along;
+use crate::numerics::lobatto::{LOBATTO_COUNT, LOBATTO_NODES, LobattoPolynomial, through_lobatto};
+use crate::numerics::newton_form::{RootProblem, stencil};
+use crate::numerics::newton_form_simd::{Numbers, SimdRoots, Terms};
+use crate::numerics::{Bracket, WIDTH};
 
 /// A guess for one cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,14 +17,14 @@ pub struct Guess {
     pub load: f64,
 }
 
-/// A level curve of `D`, sampled at neighbouring loads of the lattice.
+/// The level curve of `D` of one row, at neighbouring loads of the lattice.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Level {
-    /// Which load the first node has.
+pub struct RowCurve {
+    /// Which load the first point has.
     pub first: usize,
-    /// Nodes.
+    /// Points.
     pub count: usize,
-    /// Push angle since first touch at each node, in radians, as a magnitude on the sheet's side.
+    /// Push angle since first touch at each point, in radians, as a magnitude on the sheet's side.
     pub push: Numbers,
     /// `tau` of the contact.
     pub tau: Numbers,
@@ -30,208 +32,185 @@ pub struct Level {
     pub load: Numbers,
 }
 
-/// Nodes of a polynomial near the end of a row that leaves the lattice.
+/// Points of a polynomial near the end of a row that leaves the lattice.
 const NEAR_CUT: usize = 7;
 
-impl Level {
+/// The last Newton step along a row, in parts of the fold's load: its square is left, and interpolation leaves more than that.
+const LAST_PART_STEP: f64 = 1e-5;
+
+/// How far beyond the lattice's own detachment angle, in radians, a guess is still made: on most whiskers many times the
+/// interpolation error. A row with a cell that is missed for all that is followed by continuation.
+const MARGIN: f64 = 1e-4;
+
+impl RowCurve {
     /// Guesses for growing push angles (at least 0, in radians, as magnitudes); `None` outside the sheet.
     pub fn guesses(&self, pushes: impl Iterator<Item = f64>) -> Vec<Option<Guess>> {
         if self.count < 2 {
             return pushes.map(|_| None).collect();
         }
-        let nodes = self.nodes();
-        let mut piece = 0;
-        let searches = pushes.map(|push| {
-            while piece + 2 < self.count && push > nodes.push[piece + 1] {
-                piece += 1;
+        let intervals = self.intervals();
+        let mut guesses = Vec::with_capacity(pushes.size_hint().0);
+        let (mut cells, mut after, mut problems) = (Vec::new(), Vec::new(), Vec::new());
+        let mut i = 0;
+        for push in pushes {
+            while i + 2 < self.count && push > intervals.push[i + 1] {
+                i += 1;
             }
-            nodes.search(piece, push).map(|search| (piece, search))
-        });
-        if self.count == LOADS {
-            self.whole(searches)
-        } else {
-            self.cut(searches)
-        }
-    }
-
-    /// The guesses of a row from first touch to the fold: one polynomial is as good at its ends as in its middle.
-    fn whole(&self, searches: impl Iterator<Item = Option<(usize, Search)>>) -> Vec<Option<Guess>> {
-        let curves = self.curves(0, LOADS);
-        let mut guesses = Vec::with_capacity(searches.size_hint().0);
-        let mut block = Block::default();
-        for search in searches {
-            if let Some((_, search)) = search {
-                block.take(guesses.len(), search);
+            if let Some(problem) = intervals.problem(i, push) {
+                cells.push(guesses.len());
+                after.push(i);
+                problems.push(problem);
             }
             guesses.push(None);
-            if block.count == WIDTH {
-                block.find(&curves, &mut guesses);
-            }
         }
-        block.find(&curves, &mut guesses);
+        let known = if self.count == LOBATTO_COUNT {
+            self.whole(&problems)
+        } else {
+            self.cut(&after, &problems)
+        };
+        for (cell, guess) in cells.into_iter().zip(known) {
+            guesses[cell] = Some(guess);
+        }
         guesses
     }
 
-    /// Those of a row that leaves the lattice, from the nodes around.
-    fn cut(&self, searches: impl Iterator<Item = Option<(usize, Search)>>) -> Vec<Option<Guess>> {
-        let count = self.count.min(NEAR_CUT);
-        let mut known: Option<(usize, Curves)> = None;
-        let mut guess = |(piece, search): (usize, Search)| {
-            let from = piece
-                .saturating_sub(NEAR_CUT / 2 - 1)
-                .min(self.count - count);
-            let (_, curves) = match &known {
-                Some(there) if there.0 == from => there,
-                _ => known.insert((from, self.curves(from, count))),
-            };
-            curves.alone(&search)
-        };
-        searches.map(|search| search.map(&mut guess)).collect()
+    /// The guesses of a row from first touch to the fold: one polynomial is as good at its ends as in its middle.
+    fn whole(&self, problems: &[RootProblem]) -> Vec<Guess> {
+        let polynomials = self.polynomials(0, LOBATTO_COUNT);
+        let roots = roots(&polynomials);
+        let blocks = problems.chunks(WIDTH).flat_map(|block| {
+            let [tau, load] = roots.solve(0, block, LAST_PART_STEP);
+            let pairs = tau.into_iter().zip(load).take(block.len());
+            pairs.map(|(tau, load)| Guess { tau, load })
+        });
+        blocks.collect()
     }
 
-    /// Polynomials through `count` nodes from the node `from` on.
-    fn curves(&self, from: usize, count: usize) -> Curves {
-        let values = |numbers: &Numbers| {
-            let mut values = [0.0; LOADS];
+    /// Those of a row that leaves the lattice, from the points around the one `after` which each lies.
+    fn cut(&self, after: &[usize], problems: &[RootProblem]) -> Vec<Guess> {
+        let count = self.count.min(NEAR_CUT);
+        let mut known: Option<(usize, [LobattoPolynomial; 3])> = None;
+        let guess = |(i, problem): (&usize, &RootProblem)| {
+            let from = stencil(*i, NEAR_CUT, self.count);
+            let (_, polynomials) = match &known {
+                Some(there) if there.0 == from => there,
+                _ => known.insert((from, self.polynomials(from, count))),
+            };
+            let [tau, load] = roots(polynomials).solve_alone(0, problem, LAST_PART_STEP);
+            Guess { tau, load }
+        };
+        after.iter().zip(problems).map(guess).collect()
+    }
+
+    /// Push angle, contact and load by the part of the fold's load, through `count` points from the point `from` on.
+    fn polynomials(&self, from: usize, count: usize) -> [LobattoPolynomial; 3] {
+        let values = [&self.push, &self.tau, &self.load].map(|numbers| {
+            let mut values = [0.0; LOBATTO_COUNT];
             values[..count].copy_from_slice(&numbers[from..from + count]);
             values
-        };
-        let [push, tau, load] = through(
-            self.first + from,
-            count,
-            [&self.push, &self.tau, &self.load].map(values),
-        );
-        Curves { push, tau, load }
+        });
+        through_lobatto(self.first + from, count, values)
     }
 
-    /// The nodes. Where the row leaves the lattice, the one there is one load farther, if the push angle falls before it or grows
-    /// after it.
-    fn nodes(&self) -> Nodes {
+    /// The intervals between the points. A row leaves the lattice between two loads: its end is moved to the next one, unless the
+    /// push angle turns on the way there.
+    fn intervals(&self) -> Intervals {
         let (first, count) = (self.first, self.count);
         let near_cut = count.min(NEAR_CUT);
-        let mut nodes = Nodes {
-            part: [0.0; WIDTH],
-            push: self.push,
-            summit: 0.0,
-            below: [0.0; WIDTH],
-        };
-        nodes.part[..count].copy_from_slice(&PARTS[first..first + count]);
+        let (mut part, mut push) = ([0.0; WIDTH], self.push);
+        part[..count].copy_from_slice(&LOBATTO_NODES[first..first + count]);
         if let Some(before) = first.checked_sub(1) {
-            let push = self.curves(0, near_cut).push.at(PARTS[before]).0;
-            if push < self.push[0] {
-                (nodes.part[0], nodes.push[0]) = (PARTS[before], push);
+            let node = LOBATTO_NODES[before];
+            let at_node = self.polynomials(0, near_cut)[0].at(node).0;
+            if at_node < self.push[0] {
+                (part[0], push[0]) = (node, at_node);
             }
         }
-        if let Some(after) = PARTS.get(first + count) {
-            let push = self.curves(count - near_cut, near_cut).push.at(*after).0;
-            if push > self.push[count - 1] {
-                (nodes.part[count - 1], nodes.push[count - 1]) = (*after, push);
+        if let Some(node) = LOBATTO_NODES.get(first + count) {
+            let ending = self.polynomials(count - near_cut, near_cut);
+            let at_node = ending[0].at(*node).0;
+            if at_node > self.push[count - 1] {
+                (part[count - 1], push[count - 1]) = (*node, at_node);
             }
         }
-        let pushes = &nodes.push[..count];
-        let summit = pushes.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        nodes.summit = summit;
-        nodes.below = nodes.push.map(|push| (summit - push).max(0.0).sqrt());
-        nodes
-    }
-}
-
-/// The level curve of a row, as polynomials in the load.
-struct Curves {
-    push: Curve,
-    tau: Curve,
-    load: Curve,
-}
-
-impl Curves {
-    /// What is looked for, by itself.
-    fn alone(&self, search: &Search) -> Guess {
-        let place = self
-            .push
-            .solve(search.target, search.near, search.between, LAST_STEP);
-        Guess {
-            tau: self.tau.at(place).0,
-            load: self.load.at(place).0,
+        let summit = push[..count]
+            .iter()
+            .copied()
+            .fold(f64::NEG_INFINITY, f64::max);
+        Intervals {
+            part,
+            push,
+            summit,
+            below: push.map(|push| (summit - push).max(0.0).sqrt()),
         }
     }
 }
 
-/// Searches that go together.
-#[derive(Default)]
-struct Block {
-    count: usize,
-    targets: Numbers,
-    near: Numbers,
-    between: [[f64; 2]; WIDTH],
-    /// Indices of their guesses.
-    cells: [usize; WIDTH],
+/// The points between which push angles are looked for.
+struct Intervals {
+    /// The loads, as parts of the fold's.
+    part: Numbers,
+    /// The push angles.
+    push: Numbers,
+    /// The largest of them.
+    summit: f64,
+    /// The roots of how far they are below it: at the fold the push angle is flat, and the load goes with this root.
+    below: Numbers,
 }
 
-impl Block {
-    fn take(&mut self, cell: usize, search: Search) {
-        self.targets[self.count] = search.target;
-        self.near[self.count] = search.near;
-        self.between[self.count] = search.between;
-        self.cells[self.count] = cell;
-        self.count += 1;
+impl Intervals {
+    /// Where to look for `push` between the point `i` and the next one; `None` where it is not near them.
+    fn problem(&self, i: usize, push: f64) -> Option<RootProblem> {
+        let pair = |numbers: &Numbers| [numbers[i], numbers[i + 1]];
+        let ([low, high], [from, to]) = (pair(&self.part), pair(&self.push));
+        if push < from - MARGIN || push > to + MARGIN {
+            return None;
+        }
+        let target = push.max(from).min(to);
+        let [below_low, below_high] = pair(&self.below);
+        let below = (self.summit - target).max(0.0).sqrt();
+        let between = if below_high < below_low {
+            (below_low - below) / (below_low - below_high)
+        } else {
+            1.0
+        };
+        Some(RootProblem {
+            target,
+            near: low + between * (high - low),
+            bracket: Bracket::new([low, high], [from, to]),
+        })
     }
+}
 
-    /// Finds what is looked for.
-    fn find(&mut self, curves: &Curves, guesses: &mut [Option<Guess>]) {
-        if self.count == 0 {
-            return;
-        }
-        let found = Unit::detect().run(Along {
-            push: &curves.push,
-            tau: &curves.tau,
-            load: &curves.load,
-            targets: self.targets,
-            near: self.near,
-        });
-        for i in 0..self.count {
-            let place = found.place[i];
-            let [below, above] = self.between[i];
-            let is_inside = (place - below) * (place - above) <= 0.0;
-            let is_known = found.step[i].abs() < LAST_STEP && is_inside;
-            guesses[self.cells[i]] = Some(if is_known {
-                Guess {
-                    tau: found.tau[i],
-                    load: found.load[i],
-                }
-            } else {
-                curves.alone(&Search {
-                    target: self.targets[i],
-                    near: self.near[i],
-                    between: self.between[i],
-                })
-            });
-        }
-        self.count = 0;
+/// Contact and load where the push angle is as wanted.
+fn roots([push, tau, load]: &[LobattoPolynomial; 3]) -> SimdRoots<'_, LOBATTO_COUNT, 2> {
+    SimdRoots {
+        nodes: &push.nodes,
+        terms: Terms::Same(&push.differences),
+        others: [tau, load].map(|other| Terms::Same(&other.differences)),
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sheet::lattice::bracket::MARGIN;
     use std::f64::consts::FRAC_PI_2;
 
-    fn level(first: usize, pushes: &[f64]) -> Level {
-        let mut level = Level {
+    fn curve(first: usize, pushes: &[f64]) -> RowCurve {
+        let mut curve = RowCurve {
             first,
             count: pushes.len(),
-            ..Level::default()
+            ..RowCurve::default()
         };
-        for (i, (push, part)) in pushes.iter().zip(&PARTS[first..]).enumerate() {
-            level.push[i] = *push;
-            level.tau[i] = 0.1f64.mul_add(*part, 0.5);
-            level.load[i] = *part;
+        for (i, push) in pushes.iter().enumerate() {
+            let part = LOBATTO_NODES[first + i];
+            (curve.push[i], curve.tau[i], curve.load[i]) = (*push, 0.5 + 0.1 * part, part);
         }
-        level
+        curve
     }
 
-    fn guess(level: &Level, push: f64) -> Option<Guess> {
-        level.guesses([push].into_iter())[0]
+    fn guess(curve: &RowCurve, push: f64) -> Option<Guess> {
+        curve.guesses([push].into_iter())[0]
     }
 
     #[test]
@@ -239,23 +218,33 @@ mod tests {
         // The push angle grows to 1 at the fold, where it is flat.
         let push = |load: f64| (FRAC_PI_2 * load).sin();
         let load = |push: f64| push.asin() / FRAC_PI_2;
-        for (first, count) in [(0, LOADS), (1, LOADS - 1), (4, 12), (0, 9), (5, 4), (3, 2)] {
-            let pushes: Vec<f64> = PARTS[first..first + count]
+        for (first, count) in [
+            (0, LOBATTO_COUNT),
+            (1, LOBATTO_COUNT - 1),
+            (4, 12),
+            (0, 9),
+            (5, 4),
+            (3, 2),
+        ] {
+            let pushes: Vec<f64> = LOBATTO_NODES[first..first + count]
                 .iter()
                 .map(|part| push(*part))
                 .collect();
-            let level = level(first, &pushes);
+            let curve = curve(first, &pushes);
             // Rows that leave the lattice are known one load farther than their nodes, and less well.
-            let error = if count == LOADS {
+            let error = if count == LOBATTO_COUNT {
                 1e-6
             } else {
                 1e-2 / count as f64
             };
-            let ends = [first.saturating_sub(1), (first + count).min(LOADS - 1)];
-            let [least, most] = ends.map(|m| push(PARTS[m]));
+            let ends = [
+                first.saturating_sub(1),
+                (first + count).min(LOBATTO_COUNT - 1),
+            ];
+            let [least, most] = ends.map(|m| push(LOBATTO_NODES[m]));
             for i in 0..=1000 {
                 let push = 1e-3 * f64::from(i);
-                let found = guess(&level, push);
+                let found = guess(&curve, push);
                 let slack = 0.02;
                 if push > least + slack && push < most - slack || push == 1.0 && most == 1.0 {
                     assert!(found.is_some(), "{first} {count} {push}");
@@ -270,8 +259,8 @@ mod tests {
                 }
             }
         }
-        let whole: Vec<f64> = PARTS.iter().map(|part| push(*part)).collect();
-        let whole = level(0, &whole);
+        let whole: Vec<f64> = LOBATTO_NODES.iter().map(|part| push(*part)).collect();
+        let whole = curve(0, &whole);
         let at_summit = guess(&whole, 1.0 + 0.5 * MARGIN);
         assert!(at_summit.is_some_and(|guess| (guess.load - 1.0).abs() < 1e-4));
         assert_eq!(guess(&whole, 1.0 + 2.0 * MARGIN), None);
@@ -282,20 +271,16 @@ mod tests {
     #[test]
     fn few_nodes_and_falling_pushes_make_no_number_of_none() {
         let falling = [0.3, 0.29, 0.27, 0.24];
-        let level_pushes = [0.1; 3];
         let turning = [0.0, 0.1, 0.2, 0.15, 0.1, 0.3, 0.2, 0.1, 0.0, -0.1];
-        for push in [
-            &falling[..],
-            &falling[..2],
-            &turning,
-            &turning[..3],
-            &level_pushes,
-            &[0.1],
-            &[],
-        ] {
-            for first in [0, 1, LOADS - push.len()] {
+        let (constant, one, none) = ([0.1; 3], [0.1], []);
+        let few: [&[f64]; 3] = [&falling[..2], &turning[..3], &one];
+        for push in [&falling[..], &turning, &constant, &none]
+            .into_iter()
+            .chain(few)
+        {
+            for first in [0, 1, LOBATTO_COUNT - push.len()] {
                 let pushes = (0..=400).map(|i| f64::from(i) / 1000.0);
-                for guess in level(first, push).guesses(pushes).into_iter().flatten() {
+                for guess in curve(first, push).guesses(pushes).into_iter().flatten() {
                     assert!(push.len() > 1 && guess.tau.is_finite() && guess.load.is_finite());
                     assert!(guess.load != 0.0 || guess.tau == 0.5);
                 }

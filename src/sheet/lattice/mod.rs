@@ -1,83 +1,86 @@
-//! The lattice of trajectories over the stable sheet.
+//! The lattice of trajectories over the stable sheet, from which the guesses come.
 //!
-//! Nodes lie at the columns and at [`LOADS`] loads from first touch to the fold, so many that most guesses are a last Newton
-//! step away from the state. A row of a map is a level curve of `D` on the lattice; along it the push angle grows from
-//! first touch to detachment.
+//! Its points lie at the contact nodes, and for each of them at Chebyshev-Lobatto nodes of the load from first touch to the fold:
+//! so many that most guesses are a last Newton step away from the state. A row of a map is a level curve of `D` on the lattice;
+//! along it the push angle grows from first touch to detachment.
 
-mod bracket;
 pub mod guesses;
-mod simd_roots;
 
-use crate::numerics::lobatto::{LOADS, PARTS};
-use crate::numerics::nearest_turn;
-use crate::numerics::newton_form::{oriented, stencil, through_slopes};
-use crate::numerics::newton_form_simd::Numbers;
-use crate::numerics::{Unit, WIDTH};
+use crate::numerics::lobatto::{LOBATTO_COUNT, LOBATTO_NODES};
+use crate::numerics::newton_form::{RootProblem, stencil, through_slopes};
+use crate::numerics::newton_form_simd::{Numbers, SimdRoots, Terms, keep, pack};
+use crate::numerics::{Bracket, Lanes, SimdTask, Unit, WIDTH, nearest_turn};
 use crate::rod::{Rod, Side};
-use crate::sheet::fold::contact_nodes::{AROUND, Columns, Line, TERMS, line};
-use crate::sheet::lattice::guesses::Level;
-use crate::sheet::lattice::simd_roots::{Across, Patch};
+use crate::sheet::fold::contact_nodes::ContactNodes;
+use crate::sheet::fold::coordinate::{STENCIL, TERMS};
+use crate::sheet::lattice::guesses::RowCurve;
 use crate::sheet::row::Row;
 use crate::shooting::ShootingMap;
 use crate::shooting::batch::{Batch, InitialCondition, Method};
+use crate::shooting::contact::exp;
 
-/// Intervals between columns over which the loads of a row are looked for in one patch: one from its middle, interpolation is
+/// Intervals between contact nodes over which one patch serves the loads of a row: one interval from its middle, interpolation is
 /// half as good.
 const SPAN: usize = 3;
 
-/// The last step of Newton's method, in distances of columns: its square is left, and interpolation leaves more than that.
-const LAST_STEP: f64 = 5e-5;
+/// The last Newton step toward the contact of a row, in contact nodes: its square is left, and interpolation leaves more than that.
+const LAST_CONTACT_STEP: f64 = 5e-5;
 
-const _: () = assert!(LOADS <= WIDTH, "a row's loads go together");
+const _: () = assert!(LOBATTO_COUNT <= WIDTH, "a row's loads go together");
 
-/// The nodes.
+/// The lattice.
 #[derive(Clone, Debug)]
 pub struct Lattice {
     side: Side,
-    /// By column.
-    nodes: Vec<Nodes>,
-    /// By their first column.
+    /// By contact node.
+    lines: Vec<LoadLine>,
+    /// By the first node of their stencils.
     patches: Vec<Patch>,
 }
 
-/// The nodes of one column, by load.
-#[derive(Clone, Copy, Debug)]
-struct Nodes {
+/// The points of one contact node, by load.
+#[derive(Clone, Copy, Debug, Default)]
+struct LoadLine {
     ln_distance: Numbers,
     /// Direction of the pole, continuous from first touch.
     phi: Numbers,
-    /// Slopes of both, per column.
+    /// Slopes of both, per contact node.
     slopes: [Numbers; 2],
 }
 
-impl Nodes {
-    /// The `maps`, load by load, at `column`.
+/// Along one stencil of contact nodes: Hermite polynomials by their divided differences, one for every load.
+#[derive(Clone, Copy, Debug)]
+struct Patch {
+    ln_distance: [Numbers; TERMS],
+    /// Of the direction of the pole.
+    phi: [Numbers; TERMS],
+}
+
+impl LoadLine {
+    /// The `maps`, load by load, at the contact node `i`.
     fn new<'a>(
-        columns: &Columns,
-        column: usize,
+        contacts: &ContactNodes,
+        i: usize,
         maps: impl Iterator<Item = &'a ShootingMap> + Clone,
     ) -> Self {
-        let mut nodes = Self {
-            ln_distance: [0.0; WIDTH],
-            phi: [0.0; WIDTH],
-            slopes: [[0.0; WIDTH]; 2],
-        };
-        nodes.phi[..LOADS].copy_from_slice(&directions(columns.folds[column].load, maps.clone()));
-        for (m, (map, part)) in maps.zip(PARTS.iter()).enumerate() {
-            nodes.ln_distance[m] = map.pole.length().ln();
-            [nodes.slopes[0][m], nodes.slopes[1][m]] = columns.slope(column, *part, map).to_array();
+        let mut line = Self::default();
+        let phis = directions(contacts.folds[i].load, maps.clone());
+        line.phi[..LOBATTO_COUNT].copy_from_slice(&phis);
+        for (m, (map, part)) in maps.zip(LOBATTO_NODES.iter()).enumerate() {
+            line.ln_distance[m] = map.pole.length().ln();
+            [line.slopes[0][m], line.slopes[1][m]] = contacts.slope(i, *part, map).to_array();
         }
-        nodes
+        line
     }
 }
 
 impl Lattice {
-    /// The lattice over `columns`.
-    pub fn new(method: Method, rod: &Rod, side: Side, columns: &Columns) -> Self {
-        let conditions: Vec<InitialCondition> = PARTS
+    /// The lattice over the `contacts`.
+    pub fn new(method: Method, rod: &Rod, side: Side, contacts: &ContactNodes) -> Self {
+        let conditions: Vec<InitialCondition> = LOBATTO_NODES
             .iter()
             .flat_map(|part| {
-                columns.folds.iter().map(move |fold| InitialCondition {
+                contacts.folds.iter().map(move |fold| InitialCondition {
                     rod,
                     tau: fold.tau,
                     load: part * fold.load,
@@ -87,31 +90,27 @@ impl Lattice {
         let maps = Batch::new(method)
             .padded()
             .shoot::<ShootingMap>(&conditions);
-        let count = columns.folds.len();
-        let nodes: Vec<Nodes> = (0..count)
-            .map(|column| {
-                let of_column = maps[column..].iter().step_by(count);
-                Nodes::new(columns, column, of_column)
-            })
+        let count = contacts.folds.len();
+        let lines: Vec<LoadLine> = (0..count)
+            .map(|i| LoadLine::new(contacts, i, maps[i..].iter().step_by(count)))
             .collect();
-        let patches = patches(&nodes);
         Self {
             side,
-            nodes,
-            patches,
+            patches: patches(&lines),
+            lines,
         }
     }
 
-    /// Direction of the pole at the fold, column by column, continuous from first touch.
+    /// Direction of the pole at the fold, contact node by contact node, continuous from first touch.
     pub fn phi_at_fold(&self) -> impl Iterator<Item = f64> {
-        self.nodes.iter().map(|nodes| nodes.phi[LOADS - 1])
+        self.lines.iter().map(|line| line.phi[LOBATTO_COUNT - 1])
     }
 
-    /// The column after which `ln D` crosses `target` at the load `m`; the one nearest to `near` if there are several.
+    /// The contact node after which `ln D` crosses `target` at the load `m`; the one nearest to `near` if there are several.
     fn crossing(&self, m: usize, target: f64, near: usize) -> Option<usize> {
-        let last = self.nodes.len() - 1;
-        let is_before = |k: usize| self.nodes[k].ln_distance[m] <= target;
-        let crosses = |k: usize| k < last && is_before(k) != is_before(k + 1);
+        let last = self.lines.len() - 1;
+        let is_before = |i: usize| self.lines[i].ln_distance[m] <= target;
+        let crosses = |i: usize| i < last && is_before(i) != is_before(i + 1);
         for away in 0..=last {
             if near >= away && crosses(near - away) {
                 return Some(near - away);
@@ -125,27 +124,27 @@ impl Lattice {
 
     /// The level curve of `row` on the lattice.
     #[must_use]
-    pub fn level(&self, columns: &Columns, row: &Row) -> Level {
+    pub fn row_curve(&self, contacts: &ContactNodes, row: &Row) -> RowCurve {
         let target = row.pole_distance.ln();
-        let mut level = Level::default();
-        let mut after = [0; LOADS];
+        let mut curve = RowCurve::default();
+        let mut after = [0; LOBATTO_COUNT];
         let mut near = 0;
         for (m, after) in after.iter_mut().enumerate() {
-            let Some(k) = self.crossing(m, target, near) else {
-                if level.count == 0 {
+            let Some(i) = self.crossing(m, target, near) else {
+                if curve.count == 0 {
                     continue;
                 }
                 break;
             };
-            if level.count == 0 {
-                level.first = m;
+            if curve.count == 0 {
+                curve.first = m;
             }
-            near = k;
-            *after = k;
-            level.count += 1;
+            near = i;
+            *after = i;
+            curve.count += 1;
         }
-        let end = level.first + level.count;
-        let mut from = level.first;
+        let end = curve.first + curve.count;
+        let mut from = curve.first;
         while from < end {
             let [mut low, mut high] = [after[from]; 2];
             let mut to = from + 1;
@@ -153,85 +152,95 @@ impl Lattice {
                 [low, high] = [low.min(after[to]), high.max(after[to])];
                 to += 1;
             }
-            let start = stencil((low + high) / 2, AROUND, self.nodes.len());
-            self.cross(columns, row, start, &after[from..to], from, &mut level);
+            let start = stencil((low + high) / 2, STENCIL, self.lines.len());
+            self.cross(contacts, row, start, &after[from..to], from, &mut curve);
             from = to;
         }
-        level
+        curve
     }
 
-    /// Sets the nodes of `level` from the load `from` on, where `ln D` crosses that of `row` after the columns `after`.
+    /// Sets the points of `curve` from the load `from` on, where `ln D` crosses that of `row` after the contact nodes `after`. The
+    /// patch from the node `start` on serves them all.
     fn cross(
         &self,
-        columns: &Columns,
+        contacts: &ContactNodes,
         row: &Row,
         start: usize,
         after: &[usize],
         from: usize,
-        level: &mut Level,
+        curve: &mut RowCurve,
     ) {
         let (patch, target) = (&self.patches[start], row.pole_distance.ln());
-        let between = |k: usize| {
-            let offset = k as f64 - start as f64;
-            [offset, offset + 1.0]
+        let problem = |(m, &i): (usize, &usize)| {
+            let offset = i as f64 - start as f64;
+            let ends = [i, i + 1].map(|i| self.lines[i].ln_distance[m]);
+            RootProblem {
+                target,
+                near: offset + (target - ends[0]) / (ends[1] - ends[0]),
+                bracket: Bracket::new([offset, offset + 1.0], ends),
+            }
         };
-        let mut near = [0.0; WIDTH];
-        for (m, &k) in (from..).zip(after) {
-            let [here, next] = [k, k + 1].map(|k| self.nodes[k].ln_distance[m]);
-            near[m] = between(k)[0] + (target - here) / (next - here);
-        }
-        let (ln_tau, ln_q) = (&columns.ln_tau[start], &columns.ln_q[start]);
-        let crossed = Unit::detect().run(Across {
-            patch,
-            ln_tau,
-            ln_q,
-            target,
-            near,
-        });
+        let problems: Vec<RootProblem> = (from..).zip(after).map(problem).collect();
+        let folds = [&contacts.ln_tau[start], &contacts.ln_q[start]];
+        let roots = SimdRoots {
+            nodes: &folds[0].nodes,
+            terms: Terms::Each(&patch.ln_distance),
+            others: [
+                Terms::Each(&patch.phi),
+                Terms::Same(&folds[0].differences),
+                Terms::Same(&folds[1].differences),
+            ],
+        };
+        let [phi, ln_tau, ln_q] = roots.solve(from, &problems, LAST_CONTACT_STEP);
+        let [tau, q] = Unit::detect().run(Exponentials([ln_tau, ln_q]));
         let sign = self.side.sign();
-        for (m, &k) in (from..).zip(after) {
-            let place = crossed.place[m];
-            let [low, high] = between(k);
-            let is_known = crossed.step[m].abs() < LAST_STEP && low <= place && place <= high;
-            let [phi, tau, q] = if is_known {
-                [crossed.phi[m], crossed.tau[m], crossed.q[m]]
-            } else {
-                let lane = |differences: &[Numbers; TERMS]| line(differences.map(|term| term[m]));
-                let distances = lane(&patch.ln_distance);
-                let ends = oriented(
-                    [low, high],
-                    [k, k + 1].map(|k| self.nodes[k].ln_distance[m]),
-                );
-                let place = distances.solve(target, near[m], ends, LAST_STEP);
-                let at = |line: &Line| line.at(place).0;
-                [at(&lane(&patch.phi)), at(ln_tau).exp(), at(ln_q).exp()]
-            };
-            let i = m - level.first;
-            level.push[i] = sign * (phi - row.touch);
-            level.tau[i] = tau;
-            level.load[i] = sign * q / (tau * tau) * PARTS[m];
+        for m in from..from + after.len() {
+            let point = m - curve.first;
+            curve.push[point] = sign * (phi[m] - row.touch);
+            curve.tau[point] = tau[m];
+            curve.load[point] = sign * q[m] / (tau[m] * tau[m]) * LOBATTO_NODES[m];
         }
     }
 }
 
-/// Through each [`AROUND`] neighbours of `nodes`, or through all where there are fewer.
-fn patches(nodes: &[Nodes]) -> Vec<Patch> {
-    let lines = |value: fn(&Nodes) -> Numbers, slope: usize| {
-        let values: Vec<Numbers> = nodes.iter().map(value).collect();
-        let slopes: Vec<Numbers> = nodes.iter().map(|nodes| nodes.slopes[slope]).collect();
+/// The exponentials of some numbers.
+struct Exponentials([Numbers; 2]);
+
+impl SimdTask for Exponentials {
+    type Output = [Numbers; 2];
+
+    #[inline(always)]
+    fn run<T: Lanes>(mut self) -> [Numbers; 2] {
+        for numbers in &mut self.0 {
+            for from in (0..WIDTH).step_by(T::LANES) {
+                keep(numbers, from, exp::<T>(pack(numbers, from)));
+            }
+        }
+        self.0
+    }
+}
+
+/// Through each [`STENCIL`] neighbours of `lines`, or through all where there are fewer.
+fn patches(lines: &[LoadLine]) -> Vec<Patch> {
+    let through = |value: fn(&LoadLine) -> Numbers, slope: usize| {
+        let values: Vec<Numbers> = lines.iter().map(value).collect();
+        let slopes: Vec<Numbers> = lines.iter().map(|line| line.slopes[slope]).collect();
         through_slopes(&values, &slopes).into_iter()
     };
-    lines(|nodes| nodes.ln_distance, 0)
-        .zip(lines(|nodes| nodes.phi, 1))
+    through(|line| line.ln_distance, 0)
+        .zip(through(|line| line.phi, 1))
         .map(|(ln_distance, phi)| Patch { ln_distance, phi })
         .collect()
 }
 
 /// Directions of the pole, continuous from first touch, of `maps` of one contact under these parts of its fold's `load`.
-pub fn directions<'a>(load: f64, maps: impl Iterator<Item = &'a ShootingMap>) -> [f64; LOADS] {
-    let mut phis = [0.0; LOADS];
+pub fn directions<'a>(
+    load: f64,
+    maps: impl Iterator<Item = &'a ShootingMap>,
+) -> [f64; LOBATTO_COUNT] {
+    let mut phis = [0.0; LOBATTO_COUNT];
     let mut before: Option<(&ShootingMap, f64, f64)> = None;
-    for (slot, (map, part)) in phis.iter_mut().zip(maps.zip(PARTS.iter())) {
+    for (slot, (map, part)) in phis.iter_mut().zip(maps.zip(LOBATTO_NODES.iter())) {
         let near = before.map_or(0.0, |(there, phi, part_there)| {
             let slopes = there.by_load.y + map.by_load.y;
             0.5f64.mul_add(slopes * load * (part - part_there), phi)

@@ -1,47 +1,48 @@
-//! The loads at which a column is sampled, as parts of its fold's load: Chebyshev's extreme points between no load and the
-//! fold, so that one polynomial through all of them is as good at its ends as in its middle. (One through a part of them is not: a row
-//! that leaves the lattice takes the nodes around.)
+//! Chebyshev-Lobatto nodes on `[0, 1]`: Chebyshev's extreme points, both ends among them, so that one polynomial through all of
+//! them is as good at its ends as in its middle. A polynomial through a part of them is not.
 
 use crate::numerics::newton_form::Polynomial;
 use crate::numerics::{Lanes, SimdTask, Unit};
 use std::f64::consts::FRAC_PI_2;
 use std::sync::LazyLock;
 
-/// Loads per column, first touch and the fold among them.
-pub const LOADS: usize = 16;
+/// How many there are.
+pub const LOBATTO_COUNT: usize = 16;
 
-/// The last step of Newton's method along a level curve: its square is left, and interpolation leaves more than that.
-pub const LAST_STEP: f64 = 1e-5;
-
-/// The loads, growing, as parts of the fold's.
-pub static PARTS: LazyLock<[f64; LOADS]> = LazyLock::new(|| {
-    let part = |m: usize| (FRAC_PI_2 * m as f64 / (LOADS - 1) as f64).sin().powi(2);
-    std::array::from_fn(part)
+/// The nodes, growing.
+pub static LOBATTO_NODES: LazyLock<[f64; LOBATTO_COUNT]> = LazyLock::new(|| {
+    let node = |m: usize| {
+        (FRAC_PI_2 * m as f64 / (LOBATTO_COUNT - 1) as f64)
+            .sin()
+            .powi(2)
+    };
+    std::array::from_fn(node)
 });
 
-/// One over the distance of the load `i` from the load `level` further on, by `level`; 0 where there is none.
-static INVERSE_DISTANCES: LazyLock<[[f64; 2 * LOADS]; LOADS]> = LazyLock::new(|| {
-    let mut inverse = [[0.0; 2 * LOADS]; LOADS];
-    for (level, inverse) in inverse.iter_mut().enumerate().skip(1) {
-        for (inverse, pair) in inverse.iter_mut().zip(PARTS.windows(level + 1)) {
-            *inverse = 1.0 / (pair[level] - pair[0]);
+/// One over the distance of the node `i` from the node `level` further on, by `level`; 0 where there is none.
+static INVERSE_DISTANCES: LazyLock<[[f64; 2 * LOBATTO_COUNT]; LOBATTO_COUNT]> =
+    LazyLock::new(|| {
+        let mut inverse = [[0.0; 2 * LOBATTO_COUNT]; LOBATTO_COUNT];
+        for (level, inverse) in inverse.iter_mut().enumerate().skip(1) {
+            for (inverse, pair) in inverse.iter_mut().zip(LOBATTO_NODES.windows(level + 1)) {
+                *inverse = 1.0 / (pair[level] - pair[0]);
+            }
         }
-    }
-    inverse
-});
+        inverse
+    });
 
-/// Along a row, by the load.
-pub type Curve = Polynomial<LOADS>;
+/// A polynomial through the nodes, or some neighbours among them.
+pub type LobattoPolynomial = Polynomial<LOBATTO_COUNT>;
 
-/// The curves through the first `count` of some values each, `values[0]` at the load `first`, `values[1]` at the next one, ...
+/// The polynomials through the first `count` of some values each: `values[0]` at the node `first`, `values[1]` at the next one, ...
 #[must_use]
-pub fn through<const N: usize>(
+pub fn through_lobatto<const N: usize>(
     first: usize,
     count: usize,
-    values: [[f64; LOADS]; N],
-) -> [Curve; N] {
-    let mut places = [0.0; LOADS];
-    places[..count].copy_from_slice(&PARTS[first..first + count]);
+    values: [[f64; LOBATTO_COUNT]; N],
+) -> [LobattoPolynomial; N] {
+    let mut nodes = [0.0; LOBATTO_COUNT];
+    nodes[..count].copy_from_slice(&LOBATTO_NODES[first..first + count]);
     let inverse_distances = &INVERSE_DISTANCES;
     let differences = Unit::detect().run(Differences {
         first,
@@ -49,36 +50,33 @@ pub fn through<const N: usize>(
         inverse_distances,
         values,
     });
-    differences.map(|differences| Curve {
-        places,
-        differences,
-    })
+    differences.map(|differences| LobattoPolynomial { nodes, differences })
 }
 
-/// Divided differences of values at neighbouring loads.
+/// Divided differences of values at neighbouring nodes.
 struct Differences<const N: usize> {
     first: usize,
     count: usize,
-    inverse_distances: &'static [[f64; 2 * LOADS]; LOADS],
-    values: [[f64; LOADS]; N],
+    inverse_distances: &'static [[f64; 2 * LOBATTO_COUNT]; LOBATTO_COUNT],
+    values: [[f64; LOBATTO_COUNT]; N],
 }
 
 impl<const N: usize> SimdTask for Differences<N> {
-    type Output = [[f64; LOADS]; N];
+    type Output = [[f64; LOBATTO_COUNT]; N];
 
-    /// In no lanes of ours: loops over all loads, whatever the count, which the compiler turns into the unit's vectors.
+    /// Plain loops over all nodes, whatever the count, which the compiler turns into the unit's vectors.
     #[inline(always)]
-    fn run<T: Lanes>(self) -> [[f64; LOADS]; N] {
-        let mut differences = [[0.0; LOADS]; N];
+    fn run<T: Lanes>(self) -> [[f64; LOBATTO_COUNT]; N] {
+        let mut differences = [[0.0; LOBATTO_COUNT]; N];
         for (differences, values) in differences.iter_mut().zip(&self.values) {
-            let mut column = [0.0; LOADS + 1];
-            column[..LOADS].copy_from_slice(values);
+            let mut column = [0.0; LOBATTO_COUNT + 1];
+            column[..LOBATTO_COUNT].copy_from_slice(values);
             differences[0] = column[0];
             let levels = differences.iter_mut().zip(self.inverse_distances);
             for (difference, inverse) in levels.take(self.count).skip(1) {
-                let inverse = &inverse[self.first..self.first + LOADS];
+                let inverse = &inverse[self.first..self.first + LOBATTO_COUNT];
                 let before = column;
-                for i in 0..LOADS {
+                for i in 0..LOBATTO_COUNT {
                     column[i] = (before[i + 1] - before[i]) * inverse[i];
                 }
                 *difference = column[0];
@@ -93,24 +91,27 @@ mod tests {
     use super::*;
 
     #[test]
-    fn curves_go_through_their_values() {
-        let f = |part: f64| (2.0 * part).sin();
-        for first in [0, 3, LOADS - 2] {
-            let count = LOADS - first;
-            let mut values = [0.0; LOADS];
-            for (value, part) in values.iter_mut().zip(&PARTS[first..]) {
-                *value = f(*part);
+    fn polynomials_go_through_their_values() {
+        let f = |x: f64| (2.0 * x).sin();
+        for first in [0, 3, LOBATTO_COUNT - 2] {
+            let count = LOBATTO_COUNT - first;
+            let mut values = [0.0; LOBATTO_COUNT];
+            for (value, node) in values.iter_mut().zip(&LOBATTO_NODES[first..]) {
+                *value = f(*node);
             }
-            let [curve] = through(first, count, [values]);
-            for (part, value) in PARTS[first..].iter().zip(&values) {
-                assert!((curve.at(*part).0 - value).abs() < 1e-13, "{first} {part}");
+            let [polynomial] = through_lobatto(first, count, [values]);
+            for (node, value) in LOBATTO_NODES[first..].iter().zip(&values) {
+                assert!(
+                    (polynomial.at(*node).0 - value).abs() < 1e-13,
+                    "{first} {node}"
+                );
             }
-            if count == LOADS {
+            if count == LOBATTO_COUNT {
                 for i in 0..=100 {
-                    let part = 0.01 * f64::from(i);
-                    let (value, slope) = curve.at(part);
-                    assert!((value - f(part)).abs() < 1e-12, "{part}");
-                    assert!((slope - 2.0 * (2.0 * part).cos()).abs() < 1e-10, "{part}");
+                    let x = 0.01 * f64::from(i);
+                    let (value, slope) = polynomial.at(x);
+                    assert!((value - f(x)).abs() < 1e-12, "{x}");
+                    assert!((slope - 2.0 * (2.0 * x).cos()).abs() < 1e-10, "{x}");
                 }
             }
         }

@@ -1,5 +1,6 @@
-//! Numbers, and what can be said of them without a whisker: scalars and SIMD lanes, vectors, polynomials.
+//! Numbers, and what can be said of them without a whisker: scalars and SIMD lanes, vectors, polynomials, roots.
 
+mod bracket;
 mod complex;
 pub mod lobatto;
 pub mod newton_form;
@@ -10,6 +11,7 @@ mod simd;
 mod turn;
 mod vector;
 
+pub use bracket::{Bracket, Root, illinois};
 pub use complex::Complex;
 pub use peak::MultiplyAndAdd;
 pub use real::{Real, expm1_over_small, hyperbolic_small, rotated_by_small};

@@ -1,12 +1,14 @@
-//! Polynomials in Newton's form, which takes slopes for values that coincide: what a trajectory tells about its neighbours is not
-//! computed twice.
+//! Interpolating polynomials in Newton's form. A node may count twice, with a value and a slope (Hermite interpolation), so that
+//! what a trajectory tells about its neighbours is not computed again.
+
+use crate::numerics::Bracket;
 
 /// A polynomial with `N` terms.
 #[derive(Clone, Copy, Debug)]
 pub struct Polynomial<const N: usize> {
-    /// Where it is known; each term but the first has the places of those before as zeros.
-    pub places: [f64; N],
-    /// Divided differences, 0 where fewer than `N` are known.
+    /// Where it interpolates. The term `i` is zero at the nodes before the node `i`.
+    pub nodes: [f64; N],
+    /// Divided differences, the factors of the terms; 0 where there are fewer than `N` nodes.
     pub differences: [f64; N],
 }
 
@@ -16,7 +18,7 @@ impl<const N: usize> Polynomial<N> {
     pub fn through(values: &[f64]) -> Self {
         let values: Vec<[f64; 1]> = values.iter().map(|value| [*value]).collect();
         Self {
-            places: places(1),
+            nodes: even_nodes(1),
             differences: through_values(&values)[0].map(|[difference]| difference),
         }
     }
@@ -27,86 +29,75 @@ impl<const N: usize> Polynomial<N> {
     pub fn at(&self, t: f64) -> (f64, f64) {
         let (mut value, mut slope) = (self.differences[N - 1], 0.0);
         for i in (0..N - 1).rev() {
-            let x = t - self.places[i];
+            let x = t - self.nodes[i];
             slope = slope * x + value;
             value = value * x + self.differences[i];
         }
         (value, slope)
     }
 
-    /// Where the polynomial is `target` between two places, at most that at the first and at least that at the second one, but for
-    /// rounding: Newton's method from `near` down to `last_step`, bisecting where a step would leave the bracket.
+    /// The root by Newton's method. Its last step is at most `last_step`: the square is left.
     #[must_use]
-    pub fn solve(
-        &self,
-        target: f64,
-        near: f64,
-        [mut below, mut above]: [f64; 2],
-        last_step: f64,
-    ) -> f64 {
-        let is_inside = |t: f64, below: f64, above: f64| (t - below) * (t - above) < 0.0;
-        let middle = 0.5 * (below + above);
-        let mut t = if is_inside(near, below, above) {
+    pub fn solve(&self, problem: &RootProblem, last_step: f64) -> f64 {
+        let RootProblem {
+            target,
+            near,
+            bracket,
+        } = *problem;
+        let start = if bracket.is_inside(near) {
             near
         } else {
-            middle
+            bracket.middle()
         };
-        for _ in 0..60 {
+        let iterate = |t| {
             let (value, slope) = self.at(t);
-            if value < target {
-                below = t;
-            } else {
-                above = t;
-            }
-            let newton = t - (value - target) / slope;
-            let inside = is_inside(newton, below, above);
-            if inside && (newton - t).abs() < last_step {
-                return newton;
-            }
-            let next = if inside {
-                newton
-            } else {
-                0.5 * (below + above)
-            };
-            if next == t {
-                return next;
-            }
-            t = next;
-        }
-        t
+            (value - target, t - (value - target) / slope)
+        };
+        bracket.newton(start, |_| last_step, iterate).x
     }
 }
 
-/// Places of the terms of a polynomial through the samples 0, 1, ..., of which each has `each` terms.
+/// Where a function is asked to be `target`.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct RootProblem {
+    /// The value.
+    pub target: f64,
+    /// Where to start, if it is inside the bracket.
+    pub near: f64,
+    /// Two places with the target between their values.
+    pub bracket: Bracket,
+}
+
+/// The nodes 0, 1, ..., of which each counts `each` times.
 #[must_use]
-pub const fn places<const N: usize>(each: usize) -> [f64; N] {
-    let mut places = [0.0; N];
+pub const fn even_nodes<const N: usize>(each: usize) -> [f64; N] {
+    let mut nodes = [0.0; N];
     let mut i = 0;
     while i < N {
-        places[i] = (i / each) as f64;
+        nodes[i] = (i / each) as f64;
         i += 1;
     }
-    places
+    nodes
 }
 
-/// Divided differences of `F` functions at once on even samples, through each `N` neighbours of their `values`, or through all where
-/// there are fewer: the first ones count from sample 0, the next ones from sample 1, ...
+/// Divided differences of `F` functions at once, known by `values` at the nodes 0, 1, ...: the first ones belong to the polynomials
+/// through the `N` nodes from 0 on, the next ones to those from 1 on, ... Where there are fewer nodes, one goes through all.
 #[must_use]
 pub fn through_values<const F: usize, const N: usize>(values: &[[f64; F]]) -> Vec<[[f64; F]; N]> {
-    runs(1, values, &[])
+    divided_differences(1, values, &[])
 }
 
-/// The same through each `N / 2` neighbours of their `values` and `slopes`.
+/// The same through `values` and `slopes` at each `N / 2` nodes.
 #[must_use]
 pub fn through_slopes<const F: usize, const N: usize>(
     values: &[[f64; F]],
     slopes: &[[f64; F]],
 ) -> Vec<[[f64; F]; N]> {
-    runs(2, values, slopes)
+    divided_differences(2, values, slopes)
 }
 
-/// The same with `each` terms for every sample.
-fn runs<const F: usize, const N: usize>(
+/// The same with `each` terms for every node.
+fn divided_differences<const F: usize, const N: usize>(
     each: usize,
     values: &[[f64; F]],
     slopes: &[[f64; F]],
@@ -136,28 +127,18 @@ fn runs<const F: usize, const N: usize>(
     runs
 }
 
-/// The first of the `around` (or fewer) of `count` samples that surround the interval `at, at + 1`.
+/// The first of the `around` (or fewer) of `count` nodes that surround the interval `at, at + 1`.
 #[must_use]
 pub fn stencil(at: usize, around: usize, count: usize) -> usize {
     at.saturating_sub(around / 2 - 1)
         .min(count.saturating_sub(around))
 }
 
-/// Two places, the one with the smaller of two `values` first.
-#[must_use]
-pub fn oriented([a, b]: [f64; 2], values: [f64; 2]) -> [f64; 2] {
-    if values[0] <= values[1] {
-        [a, b]
-    } else {
-        [b, a]
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// Through their values, and where they are known through their slopes; a sheet has four columns at least.
+    /// Through their values, and where they are known through their slopes.
     #[test]
     fn runs_go_through_their_samples() {
         let f = |t: usize| (0.3 * t as f64).sin();
@@ -171,11 +152,11 @@ mod tests {
             assert_eq!(slanted.len(), plain.len());
             for start in 0..plain.len() {
                 let plain = Polynomial {
-                    places: places(1),
+                    nodes: even_nodes(1),
                     differences: plain[start].map(|[difference]| difference),
                 };
                 let slanted = Polynomial {
-                    places: places(2),
+                    nodes: even_nodes(2),
                     differences: slanted[start].map(|[difference]| difference),
                 };
                 for t in 0..count.min(6) {
@@ -202,8 +183,12 @@ mod tests {
                 for target in [sample.next_down(), *sample, sample.next_up()] {
                     for low in [k.saturating_sub(1), k.min(COUNT - 2)] {
                         let ends = [low as f64, (low + 1) as f64];
-                        let between = oriented(ends, [samples[low], samples[low + 1]]);
-                        let t = polynomial.solve(target, low as f64 + 0.3, between, 1e-4);
+                        let problem = RootProblem {
+                            target,
+                            near: low as f64 + 0.3,
+                            bracket: Bracket::new(ends, [samples[low], samples[low + 1]]),
+                        };
+                        let t = polynomial.solve(&problem, 1e-4);
                         assert!((t - k as f64).abs() < 1e-6, "{t} instead of {k}");
                     }
                 }

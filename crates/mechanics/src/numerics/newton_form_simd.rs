@@ -1,57 +1,253 @@
-//! Polynomials in Newton's form, in lanes.
+//! Roots of polynomials in Newton's form, side by side: one alone would wait for its own products most of the time.
 
-use crate::numerics::{Lanes, WIDTH};
+use crate::numerics::newton_form::{Polynomial, RootProblem};
+use crate::numerics::{Lanes, SimdTask, Unit, WIDTH};
 
 /// A number for every lane.
 pub type Numbers = [f64; WIDTH];
 
-/// What a polynomial has as its terms: a number, or one for every lane.
-pub trait Term {
-    /// The lanes from `from` on.
-    fn lanes<T: Lanes>(&self, from: usize) -> T;
+/// Iterations of Newton's method. The last step of each lane tells whether they were enough.
+const ITERATIONS: usize = 3;
+
+/// The divided differences of a polynomial.
+#[derive(Clone, Copy, Debug)]
+pub enum Terms<'a, const N: usize> {
+    /// The same polynomial in every lane.
+    Same(&'a [f64; N]),
+    /// One for each lane.
+    Each(&'a [Numbers; N]),
+}
+
+impl<const N: usize> Terms<'_, N> {
+    /// Value and slope at `t`, in the lanes from `from` on.
+    #[inline(always)]
+    fn at<T: Lanes>(&self, nodes: &[f64; N], from: usize, t: T) -> (T, T) {
+        match self {
+            Self::Same(terms) => horner(nodes, *terms, from, t),
+            Self::Each(terms) => horner(nodes, *terms, from, t),
+        }
+    }
+}
+
+/// A term in the lanes from `from` on.
+trait Term {
+    fn pack<T: Lanes>(&self, from: usize) -> T;
 }
 
 impl Term for f64 {
     #[inline(always)]
-    fn lanes<T: Lanes>(&self, _: usize) -> T {
+    fn pack<T: Lanes>(&self, _: usize) -> T {
         T::of(*self)
     }
 }
 
 impl Term for Numbers {
     #[inline(always)]
-    fn lanes<T: Lanes>(&self, from: usize) -> T {
-        T::pack(part(self, from))
+    fn pack<T: Lanes>(&self, from: usize) -> T {
+        pack(self, from)
     }
 }
 
-/// Value and slope at `place` of polynomials in Newton's form, in the lanes from `from` on.
 #[inline(always)]
-pub fn at<T: Lanes, C: Term, const N: usize>(
-    places: &[f64; N],
-    differences: &[C; N],
+fn horner<T: Lanes, C: Term, const N: usize>(
+    nodes: &[f64; N],
+    terms: &[C; N],
     from: usize,
-    place: T,
+    t: T,
 ) -> (T, T) {
-    let (mut value, mut slope): (T, T) = (differences[N - 1].lanes(from), T::of(0.0));
+    let (mut value, mut slope): (T, T) = (terms[N - 1].pack(from), T::of(0.0));
     for i in (0..N - 1).rev() {
-        let x = place - T::of(places[i]);
+        let x = t - T::of(nodes[i]);
         slope = slope.mul_add(x, value);
-        value = value.mul_add(x, differences[i].lanes(from));
+        value = value.mul_add(x, terms[i].pack(from));
     }
     (value, slope)
 }
 
-/// The numbers from `from` on, and nothing after them.
+/// Polynomials on the same nodes: one that is solved, and others that are wanted at its root.
+#[derive(Clone, Copy, Debug)]
+pub struct SimdRoots<'a, const N: usize, const M: usize> {
+    /// The nodes of all of them.
+    pub nodes: &'a [f64; N],
+    /// The polynomial that is solved.
+    pub terms: Terms<'a, N>,
+    /// Those that are evaluated there.
+    pub others: [Terms<'a, N>; M],
+}
+
+impl<const N: usize, const M: usize> SimdRoots<'_, N, M> {
+    /// The others at the roots of the `problems`, which belong to the lanes from `first` on. What a few iterations side by side do not
+    /// find is solved alone.
+    #[must_use]
+    pub fn solve(&self, first: usize, problems: &[RootProblem], last_step: f64) -> [Numbers; M] {
+        let numbers = |number: fn(&RootProblem) -> f64| {
+            let mut numbers = [0.0; WIDTH];
+            for (slot, problem) in numbers[first..].iter_mut().zip(problems) {
+                *slot = number(problem);
+            }
+            numbers
+        };
+        let Newton {
+            place,
+            step,
+            mut others,
+            ..
+        } = Unit::detect().run(Newton {
+            roots: self,
+            targets: numbers(|problem| problem.target),
+            place: numbers(|problem| problem.near),
+            step: [0.0; WIDTH],
+            others: [[0.0; WIDTH]; M],
+        });
+        for (lane, problem) in (first..).zip(problems) {
+            if step[lane].abs() < last_step && problem.bracket.contains(place[lane]) {
+                continue;
+            }
+            for (numbers, other) in others
+                .iter_mut()
+                .zip(self.solve_alone(lane, problem, last_step))
+            {
+                numbers[lane] = other;
+            }
+        }
+        others
+    }
+
+    /// The others at the root of the polynomial of one lane.
+    #[must_use]
+    pub fn solve_alone(&self, lane: usize, problem: &RootProblem, last_step: f64) -> [f64; M] {
+        let polynomial = |terms: &Terms<N>| Polynomial {
+            nodes: *self.nodes,
+            differences: match terms {
+                Terms::Same(terms) => **terms,
+                Terms::Each(terms) => terms.map(|term| term[lane]),
+            },
+        };
+        let place = polynomial(&self.terms).solve(problem, last_step);
+        std::array::from_fn(|i| polynomial(&self.others[i]).at(place).0)
+    }
+}
+
+/// Newton's method side by side, and what it has come to.
+struct Newton<'a, const N: usize, const M: usize> {
+    roots: &'a SimdRoots<'a, N, M>,
+    targets: Numbers,
+    place: Numbers,
+    /// The last step.
+    step: Numbers,
+    others: [Numbers; M],
+}
+
+impl<const N: usize, const M: usize> SimdTask for Newton<'_, N, M> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn run<T: Lanes>(mut self) -> Self {
+        let SimdRoots {
+            nodes,
+            terms,
+            others,
+        } = self.roots;
+        for from in (0..WIDTH).step_by(T::LANES) {
+            let target: T = pack(&self.targets, from);
+            let (mut place, mut step): (T, T) = (pack(&self.place, from), T::of(0.0));
+            for _ in 0..ITERATIONS {
+                let (value, slope) = terms.at(nodes, from, place);
+                step = (target - value) / slope;
+                place = place + step;
+            }
+            keep(&mut self.place, from, place);
+            keep(&mut self.step, from, step);
+            for (numbers, other) in self.others.iter_mut().zip(others) {
+                keep(numbers, from, other.at(nodes, from, place).0);
+            }
+        }
+        self
+    }
+}
+
+/// The lanes from `from` on.
 #[inline(always)]
-pub fn part(numbers: &Numbers, from: usize) -> Numbers {
-    let mut part = [0.0; WIDTH];
-    part[..WIDTH - from].copy_from_slice(&numbers[from..]);
-    part
+pub fn pack<T: Lanes>(numbers: &Numbers, from: usize) -> T {
+    let mut lanes = [0.0; WIDTH];
+    lanes[..WIDTH - from].copy_from_slice(&numbers[from..]);
+    T::pack(lanes)
 }
 
 /// Sets the numbers from `from` on to those of `lanes`.
 #[inline(always)]
 pub fn keep<T: Lanes>(numbers: &mut Numbers, from: usize, lanes: T) {
     numbers[from..from + T::LANES].copy_from_slice(&lanes.unpack()[..T::LANES]);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::numerics::Bracket;
+
+    const N: usize = 12;
+
+    /// The polynomial through 0 at 0 to 3 at the last node, there level but for some.
+    fn rising(lane: usize) -> Polynomial<N> {
+        let power = 1.0 + (0.618 * lane as f64).fract() * 2.0;
+        let value = |node: usize| 3.0 * (1.0 - (1.0 - node as f64 / (N - 1) as f64).powf(power));
+        Polynomial::through(&std::array::from_fn::<_, N, _>(value))
+    }
+
+    /// With a polynomial for every lane and with one for all, on every unit; and from a place so far that most are solved alone.
+    #[test]
+    fn what_is_found_together_is_found_alone() {
+        let mut each = [[[0.0; WIDTH]; N]; 2];
+        for lane in 0..WIDTH {
+            for i in 0..N {
+                each[0][i][lane] = rising(lane).differences[i];
+                each[1][i][lane] = rising(lane + 1).differences[i];
+            }
+        }
+        let [same, other] = [1, WIDTH + 1].map(rising);
+        for is_same in [false, true] {
+            let terms = [Terms::Each(&each[0]), Terms::Same(&same.differences)];
+            let roots = SimdRoots {
+                nodes: &same.nodes,
+                terms: terms[usize::from(is_same)],
+                others: [Terms::Each(&each[1]), Terms::Same(&other.differences)],
+            };
+            let far: [RootProblem; WIDTH] = std::array::from_fn(|lane| RootProblem {
+                target: 0.1 + 0.15 * lane as f64,
+                near: 10.9,
+                bracket: Bracket::new([0.0, (N - 1) as f64], [0.0, 3.0]),
+            });
+            let places: Numbers = std::array::from_fn(|lane| {
+                let polynomial = if is_same { same } else { rising(lane) };
+                polynomial.solve(&far[lane], 1e-4)
+            });
+            for unit in Unit::all() {
+                let newton = unit.run(Newton {
+                    roots: &roots,
+                    targets: far.map(|problem| problem.target),
+                    place: places.map(|place| place + 0.1),
+                    step: [1.0; WIDTH],
+                    others: [[0.0; WIDTH]; 2],
+                });
+                for (lane, place) in places.into_iter().enumerate() {
+                    assert!(newton.step[lane].abs() < 1e-4, "{unit} {lane}");
+                    assert!((newton.place[lane] - place).abs() < 1e-6, "{unit} {lane}");
+                }
+                check(newton.others, &places);
+            }
+            check(roots.solve(0, &far, 1e-4), &places);
+            let [_, last] = roots.solve(WIDTH - 1, &far[WIDTH - 1..], 1e-4);
+            assert!((last[WIDTH - 1] - other.at(places[WIDTH - 1]).0).abs() < 1e-6);
+        }
+    }
+
+    /// The other polynomials at `places`.
+    fn check(others: [Numbers; 2], places: &Numbers) {
+        for (lane, place) in places.iter().enumerate() {
+            let wanted = [lane + 1, WIDTH + 1].map(|other| rising(other).at(*place).0);
+            for (numbers, wanted) in others.iter().zip(wanted) {
+                assert!((numbers[lane] - wanted).abs() < 1e-6, "{lane}");
+            }
+        }
+    }
 }

@@ -4,6 +4,7 @@
 mod parabola;
 mod spiral;
 
+use crate::numerics::Bracket;
 use crate::rod::Rod;
 use glam::DVec2;
 use parabola::Parabola;
@@ -108,18 +109,17 @@ impl Rest {
     #[must_use]
     pub fn distance_of_pole(&self, pole_distance: f64) -> f64 {
         let radius = self.pole.abs();
-        let mut low = (pole_distance - radius).max(0.0);
-        let mut high = pole_distance + radius;
+        let mut bracket = Bracket {
+            below: (pole_distance - radius).max(0.0),
+            above: pole_distance + radius,
+        };
         loop {
-            let middle = 0.5 * (low + high);
-            if middle <= low || middle >= high {
+            let middle = bracket.middle();
+            if !bracket.is_inside(middle) {
                 return middle;
             }
-            if self.pole_at_distance(middle).length() < pole_distance {
-                low = middle;
-            } else {
-                high = middle;
-            }
+            let miss = self.pole_at_distance(middle).length() - pole_distance;
+            bracket.shrink(middle, miss);
         }
     }
 }

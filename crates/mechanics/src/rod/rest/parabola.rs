@@ -1,5 +1,6 @@
 //! The parabola `y = A (x - x0)^2` (paper, Eqs 7 and 10), or a straight line.
 
+use crate::numerics::Bracket;
 use crate::rod::Rod;
 use glam::DVec2;
 
@@ -13,8 +14,8 @@ fn arc(t: f64) -> f64 {
     t * root + asinh.copysign(t)
 }
 
-/// The step, relative to the chord's abscissa, after which it is known to rounding: its cube is left.
-const LAST_STEP: f64 = 5e-6;
+/// The last Halley step, relative to the chord's abscissa: its cube is left, which is rounding.
+const LAST_HALLEY_STEP: f64 = 5e-6;
 
 /// A parabola in the frame of the base.
 #[derive(Clone, Copy, Debug)]
@@ -105,10 +106,13 @@ impl Parabola {
             let rise = 2.0 * self.bend * chord;
             return chord * (2.0 / (1.0 + (1.0 + rise * rise).sqrt())).sqrt();
         }
-        let (mut low, mut high) = (0.0, chord);
+        let bracket = Bracket {
+            below: 0.0,
+            above: chord,
+        };
         let most = self.bend * chord + self.slope;
-        let mut x = chord / (1.0 + most * most).sqrt();
-        for _ in 0..200 {
+        let start = chord / (1.0 + most * most).sqrt();
+        let halley = |x: f64| {
             let rise = self.bend * x;
             let slope = rise + self.slope;
             let square = 1.0 + slope * slope;
@@ -116,24 +120,11 @@ impl Parabola {
             let miss = x * x * square - chord * chord;
             let first = square + rise * slope;
             let second = first + rise * (3.0 * slope + rise);
-            if miss > 0.0 {
-                high = x;
-            } else {
-                low = x;
-            }
             let slowed = x * first;
             let step = -2.0 * miss * slowed / (4.0 * slowed * slowed - miss * second);
-            let next = x + step;
-            if step.abs() <= LAST_STEP * x {
-                return next;
-            }
-            x = if next > low && next < high {
-                next
-            } else {
-                0.5 * (low + high)
-            };
-        }
-        x
+            (miss, x + step)
+        };
+        bracket.newton(start, |x| LAST_HALLEY_STEP * x, halley).x
     }
 }
 

@@ -1,5 +1,6 @@
 //! The Euler spiral `kappa = k0 + k1 s`, straight on beyond the tip.
 
+use crate::numerics::Bracket;
 use glam::DVec2;
 
 /// Nodes and weights of the Gauss-Legendre rule of order 16 on `[-1, 1]`, positive half.
@@ -73,27 +74,17 @@ impl EulerSpiral {
     /// Arclength at which the chord from the base is `chord`, which grows along the spiral (the scene made sure).
     pub fn arclength_of_chord(&self, chord: f64) -> f64 {
         let reach = self.at_arclength(1.0).0.length();
-        let (mut low, mut high) = (chord, if chord < reach { 1.0 } else { chord + 1.0 });
-        let mut s = chord;
-        for _ in 0..200 {
+        let bracket = Bracket {
+            below: chord,
+            above: if chord < reach { 1.0 } else { chord + 1.0 },
+        };
+        let newton = |s: f64| {
             let (point, tangent) = self.at_arclength(s);
             let length = point.length();
-            if length > chord {
-                high = s;
-            } else {
-                low = s;
-            }
-            let newton = s - (length - chord) * length / point.dot(tangent);
-            let next = if newton > low && newton < high {
-                newton
-            } else {
-                0.5 * (low + high)
-            };
-            if (next - s).abs() <= 2.0 * f64::EPSILON * s {
-                return next;
-            }
-            s = next;
-        }
-        s
+            let miss = length - chord;
+            (miss, s - miss * length / point.dot(tangent))
+        };
+        let rounding = |s: f64| 2.0 * f64::EPSILON * s;
+        bracket.newton(chord, rounding, newton).x
     }
 }
