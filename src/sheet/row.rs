@@ -3,8 +3,8 @@
 use crate::rod::{Rest, Rod};
 use glam::DVec2;
 
-/// Relative slack with which a distance counts as reached, so that a whisker whose resting tip just touches
-/// the pole does touch it, whatever the rounding.
+/// Relative slack with which a distance counts as reached: a whisker whose resting tip just touches the pole does touch it,
+/// whatever the rounding.
 pub const REACH_SLACK: f64 = 1e-12;
 
 /// One distance of a map for one whisker and side; lengths in whisker lengths.
