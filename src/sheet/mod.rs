@@ -2,12 +2,12 @@
 //!
 //! The stable states form a rectangle in (contact, load) with the edges touch (no load), tip, fold (first
 //! singular Jacobian) and base; its image in (distance, direction of the pole) is simple. So the edges alone
-//! give the exact boundary of a regime map ([`Sheet::crossings`]), and a lattice of trajectories over the
-//! rectangle gives every cell of the map a guess, or the certainty that it has no solution
-//! ([`Sheet::guesses`]). The two are computed independently of each other.
+//! give the exact boundary of a regime map ([`Sheet::crossings`]). A lattice of trajectories over the rectangle
+//! gives every cell of the map a guess, or the certainty that it has no solution ([`Sheet::guesses`]). The two
+//! are computed independently of each other.
 //!
-//! `fold/` finds the first folds of sampled contacts, `lattice/` makes guesses, `edges/` decides where a row leaves the sheet, and
-//! `continuation/` follows a row where these do not suffice.
+//! In the order of work: `fold/` finds the first folds of sampled contacts, `lattice/` makes guesses, `edges/`
+//! decides where a row leaves the sheet. `continuation/` follows a row from state to state where these do not suffice.
 
 mod continuation;
 mod edges;

@@ -77,7 +77,7 @@ pub fn edge_newton_predicted(method: Method, problems: &[EdgeProblem]) -> Vec<Ed
         .padded()
         .shoot::<ShootingMap>(&conditions);
     let mut iterates = Vec::with_capacity(problems.len());
-    let (mut left, mut again) = (Vec::new(), Vec::new());
+    let (mut open, mut again) = (Vec::new(), Vec::new());
     for (i, (problem, map)) in problems.iter().zip(maps).enumerate() {
         let [by_tau_tau, by_tau_load, by_load_load] = problem.second.unwrap_or_default();
         let here = SecondVariation {
@@ -92,17 +92,14 @@ pub fn edge_newton_predicted(method: Method, problems: &[EdgeProblem]) -> Vec<Ed
             iterate.left += SECOND_OFF * iterate.left.sqrt();
         } else {
             // A long step, or one of unknown second derivatives, can lead astray.
-            let start = if problem.second.is_some() && iterate.left < SECOND_OFF {
-                next
-            } else {
-                problem.start
-            };
-            left.push(i);
+            let is_good = problem.second.is_some() && iterate.left < SECOND_OFF;
+            let start = if is_good { next } else { problem.start };
+            open.push(i);
             again.push(EdgeProblem { start, ..*problem });
         }
         iterates.push(iterate);
     }
-    for (i, iterate) in left.into_iter().zip(edge_newton_fine(method, &again)) {
+    for (i, iterate) in open.into_iter().zip(edge_newton_fine(method, &again)) {
         iterates[i] = iterate;
     }
     iterates
@@ -125,11 +122,11 @@ fn iterate(
     let mut points: Vec<DVec2> = problems.iter().map(|problem| problem.start).collect();
     let mut iterates: Vec<Option<EdgeIterate>> = vec![None; problems.len()];
     let mut open: Vec<usize> = (0..problems.len()).collect();
-    for i in 0..coarse_iterations + FINE_ITERATIONS {
+    for iteration in 0..coarse_iterations + FINE_ITERATIONS {
         if open.is_empty() {
             break;
         }
-        let is_coarse = i < coarse_iterations;
+        let is_coarse = iteration < coarse_iterations;
         let method = if is_coarse { method.coarsely() } else { method };
         let last_step = (!is_coarse).then_some(LAST_EDGE_STEP);
         let conditions: Vec<InitialCondition> = open
@@ -185,9 +182,9 @@ fn newton_step(
 /// The step in load toward the point at the same contact whose `ln D` is larger by `miss`, to second order: where the distance is
 /// largest, as that of a straight whisker is at first touch, a step of first order would go half the way.
 fn load_step(here: &SecondVariation, miss: f64) -> f64 {
-    let (slope, bend) = (here.map.by_load.x, here.by_load_load.x);
-    let at_goal = (slope * slope + 2.0 * bend * miss).max(0.0).sqrt();
-    2.0 * miss / (slope + at_goal.copysign(slope))
+    let (slope, second) = (here.map.by_load.x, here.by_load_load.x);
+    let slope_there = (slope * slope + 2.0 * second * miss).max(0.0).sqrt();
+    2.0 * miss / (slope + slope_there.copysign(slope))
 }
 
 /// The step toward the point of the fold whose `ln D` is larger by `miss`.
@@ -205,7 +202,7 @@ fn fold_step(here: &SecondVariation, miss: f64) -> DVec2 {
 mod tests {
     use super::*;
 
-    /// Folds and points at the tip, from starts off by 1e-8 and 1e-5, with known second derivatives, with wrong ones and with none.
+    /// From starts off by 1e-8 and 1e-5, with known second derivatives, with wrong ones and with none.
     #[test]
     fn predictions_lead_to_the_same_point() {
         let rod = Rod {
@@ -215,12 +212,9 @@ mod tests {
             ..Rod::default()
         };
         let method = Method::fine();
-        let points = [
-            (Edge::Fold, rod.tau(0.8), 12.0),
-            (Edge::Tip, rod.tau_tip(), 3.0),
-        ];
-        for (edge, tau, load) in points {
-            let start = DVec2::new(tau, load);
+        let fold = DVec2::new(rod.tau(0.8), 12.0);
+        let tip = DVec2::new(rod.tau_tip(), 3.0);
+        for (edge, start) in [(Edge::Fold, fold), (Edge::Tip, tip)] {
             let mut problem = EdgeProblem {
                 rod: &rod,
                 edge,

@@ -85,35 +85,3 @@ impl<const N: usize> SimdTask for Differences<N> {
         differences
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn polynomials_go_through_their_values() {
-        let f = |x: f64| (2.0 * x).sin();
-        for first in [0, 3, LOBATTO_COUNT - 2] {
-            let count = LOBATTO_COUNT - first;
-            let mut values = [0.0; LOBATTO_COUNT];
-            for (value, node) in values.iter_mut().zip(&LOBATTO_NODES[first..]) {
-                *value = f(*node);
-            }
-            let [polynomial] = through_lobatto(first, count, [values]);
-            for (node, value) in LOBATTO_NODES[first..].iter().zip(&values) {
-                assert!(
-                    (polynomial.at(*node).0 - value).abs() < 1e-13,
-                    "{first} {node}"
-                );
-            }
-            if count == LOBATTO_COUNT {
-                for i in 0..=100 {
-                    let x = 0.01 * f64::from(i);
-                    let (value, slope) = polynomial.at(x);
-                    assert!((value - f(x)).abs() < 1e-12, "{x}");
-                    assert!((slope - 2.0 * (2.0 * x).cos()).abs() < 1e-10, "{x}");
-                }
-            }
-        }
-    }
-}

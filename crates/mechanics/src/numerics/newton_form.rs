@@ -1,5 +1,5 @@
-//! Interpolating polynomials in Newton's form. A node may count twice, with a value and a slope (Hermite interpolation), so that
-//! what a trajectory tells about its neighbours is not computed again.
+//! Interpolating polynomials in Newton's form. A node may count twice, with a value and a slope (Hermite interpolation): what a
+//! trajectory tells about its neighbours is not computed again.
 
 use crate::numerics::Bracket;
 
@@ -132,67 +132,4 @@ fn divided_differences<const F: usize, const N: usize>(
 pub fn stencil(at: usize, around: usize, count: usize) -> usize {
     at.saturating_sub(around / 2 - 1)
         .min(count.saturating_sub(around))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Through their values, and where they are known through their slopes.
-    #[test]
-    fn runs_go_through_their_samples() {
-        let f = |t: usize| (0.3 * t as f64).sin();
-        let slope = |t: usize| 0.3 * (0.3 * t as f64).cos();
-        for count in [1, 3, 4, 5, 6, 9, 15] {
-            let values: Vec<[f64; 1]> = (0..count).map(|t| [f(t)]).collect();
-            let slopes: Vec<[f64; 1]> = (0..count).map(|t| [slope(t)]).collect();
-            let plain = through_values::<1, 6>(&values);
-            let slanted = through_slopes::<1, 12>(&values, &slopes);
-            assert_eq!(plain.len(), count.saturating_sub(6) + 1);
-            assert_eq!(slanted.len(), plain.len());
-            for start in 0..plain.len() {
-                let plain = Polynomial {
-                    nodes: even_nodes(1),
-                    differences: plain[start].map(|[difference]| difference),
-                };
-                let slanted = Polynomial {
-                    nodes: even_nodes(2),
-                    differences: slanted[start].map(|[difference]| difference),
-                };
-                for t in 0..count.min(6) {
-                    let there = start + t;
-                    assert!((plain.at(t as f64).0 - f(there)).abs() < 1e-14, "{there}");
-                    let (value, by_t) = slanted.at(t as f64);
-                    assert!((value - f(there)).abs() < 1e-14, "{there}");
-                    assert!((by_t - slope(there)).abs() < 1e-13, "{there}");
-                }
-            }
-        }
-    }
-
-    /// A target at a sample, as exactly as that is known: a row whose end is the resting tip has one.
-    #[test]
-    fn a_sample_is_found_where_it_is() {
-        const COUNT: usize = 10;
-        for sign in [1.0, -1.0] {
-            let samples: Vec<f64> = (0..COUNT)
-                .map(|i| sign * (0.1 * i as f64 - 0.2).exp())
-                .collect();
-            let polynomial = Polynomial::<COUNT>::through(&samples);
-            for (k, sample) in samples.iter().enumerate() {
-                for target in [sample.next_down(), *sample, sample.next_up()] {
-                    for low in [k.saturating_sub(1), k.min(COUNT - 2)] {
-                        let ends = [low as f64, (low + 1) as f64];
-                        let problem = RootProblem {
-                            target,
-                            near: low as f64 + 0.3,
-                            bracket: Bracket::new(ends, [samples[low], samples[low + 1]]),
-                        };
-                        let t = polynomial.solve(&problem, 1e-4);
-                        assert!((t - k as f64).abs() < 1e-6, "{t} instead of {k}");
-                    }
-                }
-            }
-        }
-    }
 }

@@ -23,8 +23,8 @@ impl<const N: usize> Terms<'_, N> {
     #[inline(always)]
     fn at<T: Lanes>(&self, nodes: &[f64; N], from: usize, t: T) -> (T, T) {
         match self {
-            Self::Same(terms) => horner(nodes, *terms, from, t),
-            Self::Each(terms) => horner(nodes, *terms, from, t),
+            Self::Same(terms) => horner(nodes, terms, from, t),
+            Self::Each(terms) => horner(nodes, terms, from, t),
         }
     }
 }
@@ -197,13 +197,10 @@ mod tests {
     /// With a polynomial for every lane and with one for all, on every unit; and from a place so far that most are solved alone.
     #[test]
     fn what_is_found_together_is_found_alone() {
-        let mut each = [[[0.0; WIDTH]; N]; 2];
-        for lane in 0..WIDTH {
-            for i in 0..N {
-                each[0][i][lane] = rising(lane).differences[i];
-                each[1][i][lane] = rising(lane + 1).differences[i];
-            }
-        }
+        let each = [0, 1].map(|shift| {
+            let lanes: [_; WIDTH] = std::array::from_fn(|lane| rising(lane + shift).differences);
+            std::array::from_fn(|i| lanes.map(|terms| terms[i]))
+        });
         let [same, other] = [1, WIDTH + 1].map(rising);
         for is_same in [false, true] {
             let terms = [Terms::Each(&each[0]), Terms::Same(&same.differences)];
