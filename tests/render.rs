@@ -478,7 +478,7 @@ fn the_width_is_what_was_asked_for() {
 fn regimes_differ_in_print_and_for_every_colour_vision() {
     // The colours are those of a picture.
     let scene = scene(5, 1, None, None);
-    let picture = draw(&scene, &[flat(&scene, &[0, 1, 2, 3, 5], f32::NAN)], None);
+    let picture = draw(&scene, &[flat(&scene, &[0, 1, 2, 3, 255], f32::NAN)], None);
     let regimes = [OUT_OF_REACH, CONTACT, SLIP_OFF, PULL_OFF, UNRESOLVED];
     for (place, colour) in regimes.iter().enumerate() {
         assert_eq!(body(&picture, 0.2 * place as f64 + 0.1, 0.3), *colour);
