@@ -142,7 +142,8 @@ pub fn create(option: &str, path: &Path) -> Result<Output, Failure> {
 
 /// Makes the folder that `option` names, and finds out whether files can be made in it.
 pub fn folder(option: &str, path: &Path) -> Result<(), Failure> {
-    let made = std::fs::create_dir_all(path).and_then(|()| tempfile::tempfile_in(path));
+    let any = path.join(".whiskmap");
+    let made = std::fs::create_dir_all(path).and_then(|()| Output::create(&any));
     made.map(drop).map_err(|error| {
         let path = path.display();
         Failure::Input(format!(

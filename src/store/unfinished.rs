@@ -46,14 +46,14 @@ impl Unfinished {
     pub(super) fn create(folder: &Path) -> io::Result<Self> {
         let prefix = prefix();
         sweep(folder, &prefix);
-        let mut builder = tempfile::Builder::new();
-        builder.prefix(&prefix);
-        // Temporary files are private by default; the result has the permissions that the umask gives any new file.
-        #[cfg(unix)]
-        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+        let mut options = File::options();
+        options.read(true).write(true).create_new(true);
         loop {
             let mut list = list();
-            let file = builder.tempfile_in(folder)?;
+            // `tempfile` itself makes private files, and its errors name them.
+            let file = tempfile::Builder::new()
+                .prefix(&prefix)
+                .make_in(folder, |path| options.open(path))?;
             list.push(file.path().to_owned());
             drop(list);
             let listed = Listed(file.path().to_owned());
