@@ -84,7 +84,7 @@ fn engines(criterion: &mut Criterion) {
 
 fn scene() -> Scene {
     let text = include_str!("../scenes/cone.toml");
-    Scene::parse(text, "cone.toml", "cone").expect("the scene is good")
+    Scene::parse(text, "cone.toml").expect("the scene is good")
 }
 
 /// Folds, lattice and crossings of a sheet; and its cells, refined from the lattice's guesses.

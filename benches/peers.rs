@@ -197,7 +197,7 @@ fn trajectories(
 
 fn scene() -> Scene {
     let text = include_str!("../scenes/cone.toml");
-    Scene::parse(text, "cone.toml", "cone").unwrap()
+    Scene::parse(text, "cone.toml").unwrap()
 }
 
 /// Detachment points of the cone, both sides, 1024 distances each, by number of steps.

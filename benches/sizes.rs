@@ -62,9 +62,10 @@ impl Map {
         let mut name = format!("{side}^2");
         if whiskers > 1 {
             text = text.replace("[output]", &taper);
+            text = text.replace("tip_radius_um", "# tip_radius_um");
             name = format!("{whiskers} x {name}");
         }
-        let scene = Scene::parse(&text, "cone.toml", "cone").expect("the scene is good");
+        let scene = Scene::parse(&text, "cone.toml").expect("the scene is good");
         let plan = Plan::new(&scene).expect("it has room");
         assert_eq!(
             plan.cells,

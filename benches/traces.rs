@@ -10,7 +10,7 @@ use whiskmap::trace::{Branch, Shape, corner, curve};
 
 fn traces(criterion: &mut Criterion) {
     let text = include_str!("../scenes/cone.toml");
-    let scene = Scene::parse(text, "cone.toml", "cone").expect("the scene is good");
+    let scene = Scene::parse(text, "cone.toml").expect("the scene is good");
     let (whisker, pole) = (&scene.whisker, &scene.pole);
     let distances: Vec<f64> = (0..256)
         .map(|i| 2.0 + 18.0 * f64::from(i) / 255.0)

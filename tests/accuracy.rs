@@ -29,23 +29,6 @@ fn scenes() -> Vec<PathBuf> {
     scenes
 }
 
-/// Every `n`th value, so that at most `most` are left.
-fn thin(values: &mut Vec<f64>, most: usize) {
-    let step = values.len().div_ceil(most);
-    *values = values.iter().copied().step_by(step).collect();
-}
-
-fn thinned(scene: &Scene) -> Scene {
-    let mut scene = scene.clone();
-    thin(&mut scene.grid.push_angle_deg, 24);
-    thin(&mut scene.grid.distance_mm, 48);
-    let axes = [&mut scene.grid.taper, &mut scene.grid.curvature_per_mm];
-    for axis in axes.into_iter().flatten() {
-        thin(axis, 4);
-    }
-    scene
-}
-
 /// The largest error of detachment angles, in degrees.
 fn ends(scene: &Scene, whisker: &Whisker, side: Side, resolution: Resolution) -> f64 {
     let curve = |resolution| {
@@ -95,7 +78,7 @@ fn the_estimate_bounds_the_error_of_every_scene() {
     let mut closest = f64::INFINITY;
     for path in scenes() {
         let whole = Scene::read(&path).unwrap();
-        let scene = thinned(&whole);
+        let scene = whole.thinned(36, 4);
         let mut last = 0;
         for tolerance_deg in [1e-2, 1e-4, 1e-6, 1e-8] {
             let found = cheapest(&whole, &Side::BOTH, tolerance_deg).unwrap();
@@ -133,7 +116,7 @@ fn whiskers_that_coil_up_have_an_estimate() {
                 tip_to_base = 10\n[contact]\nfriction = 1\n[pole]\nradius_mm = 1\n[grid]\n\
                 push_angle_deg = { from = -90, to = 90, count = 12 }\n\
                 distance_mm = { from = 1.5, to = 19.9, count = 24 }\n";
-    let scene = Scene::parse(text, "coiled", "coiled").unwrap();
+    let scene = Scene::parse(text, "coiled").unwrap();
     for tolerance_deg in [1e-1, 1e-4] {
         let found = cheapest(&scene, &Side::BOTH, tolerance_deg).unwrap();
         let whisker = scene.whisker_at(None, None);
@@ -147,7 +130,7 @@ fn whiskers_that_coil_up_have_an_estimate() {
 
 #[test]
 fn what_no_steps_reach_is_said() {
-    let scene = Scene::read("scenes/cone.toml".as_ref()).unwrap();
+    let scene = Scene::read("scenes/cone.toml").unwrap();
     let finest = cheapest(&scene, &Side::BOTH, 1e-15).unwrap_err();
     assert!(finest.error_deg < 1e-9 && finest.error_deg > 1e-15);
     assert_eq!(finest.resolution, Resolution::LADDER[7]);

@@ -8,7 +8,7 @@
 
 mod compute;
 
-use compute::{compute, difference, thin};
+use compute::{compute, difference};
 use std::path::Path;
 use whiskmap::integrate::gpu::{Gpu, Precision};
 use whiskmap::integrate::{Cpu, Engine, EngineError, Outcome, Shot};
@@ -79,15 +79,8 @@ fn shipped_scenes_have_no_doubtful_cell() {
 
 #[test]
 fn engines_agree_on_every_cell() {
-    for mut scene in shipped() {
-        if scene.grid.taper.is_some() {
-            for axis in [&mut scene.grid.taper, &mut scene.grid.curvature_per_mm] {
-                thin(axis.as_mut().unwrap(), 4);
-            }
-        } else {
-            thin(&mut scene.grid.push_angle_deg, 128);
-            thin(&mut scene.grid.distance_mm, 128);
-        }
+    for scene in shipped() {
+        let scene = scene.thinned(128, 4);
         let (_, cpu) = compute(&scene, &mut Cpu);
         for mut gpu in gpus() {
             let name = gpu.describe().engine;
@@ -117,9 +110,7 @@ fn engines_agree_on_every_cell() {
 /// Next to the fold the state is the square root of a residual, so `1e-9 + residual/det` is what can be asked.
 #[test]
 fn engines_agree_on_every_field() {
-    let mut scene = Scene::read(Path::new("scenes/cone.toml")).unwrap();
-    thin(&mut scene.grid.push_angle_deg, 128);
-    thin(&mut scene.grid.distance_mm, 128);
+    let scene = Scene::read("scenes/cone.toml").unwrap().thinned(128, 1);
     for side in Side::BOTH {
         let rod = scene.whisker.rod(&scene.pole, side);
         let effects = Effects::of([&rod]);
@@ -169,12 +160,17 @@ fn engines_agree_on_every_field() {
     }
 }
 
+/// One row of `scene`.
+fn row(scene: &Scene, push_angle_deg: &[f64], distance_mm: f64) -> Panel {
+    let scene = scene.with("grid.push_angle_deg", push_angle_deg).unwrap();
+    let scene = scene.with("grid.distance_mm", [distance_mm]).unwrap();
+    compute(&scene, &mut Cpu).1.remove(0)
+}
+
 /// One row of the paper's cone at touch 15.66 mm, with these push angles.
 fn fig2_row(push_angle_deg: &[f64]) -> Panel {
-    let mut scene = Scene::read(Path::new("scenes/cone.toml")).unwrap();
-    scene.grid.push_angle_deg = push_angle_deg.to_vec();
-    scene.grid.distance_mm = vec![15.660_459_763_365_8];
-    compute(&scene, &mut Cpu).1.remove(0)
+    let cone = Scene::read("scenes/cone.toml").unwrap();
+    row(&cone, push_angle_deg, 15.660_459_763_365_8)
 }
 
 fn channel<'a>(panel: &'a Panel, name: &str) -> &'a [f32] {
@@ -221,17 +217,13 @@ fn the_base_moment_is_the_slope_of_the_energy() {
 /// whose very tip touches: the contact is past the tip by a few roundings only.
 #[test]
 fn first_touch_and_the_tip_are_decided() {
-    let mut scene = Scene::read(Path::new("scenes/cone.toml")).unwrap();
-    let grid = |scene: &mut Scene, push: &[f64], distance: f64| {
-        scene.grid.push_angle_deg = push.to_vec();
-        scene.grid.distance_mm = vec![distance];
-    };
-    scene.whisker = scene.whisker_at(None, Some(0.075));
-    grid(&mut scene, &[0.0], 18.5);
-    assert_eq!(compute(&scene, &mut Cpu).1[0].regime, [1]);
+    let cone = Scene::read("scenes/cone.toml").unwrap();
+    let bend = "whisker.curvature.parabola_per_mm";
+    let bent = cone.with(bend, 0.075).unwrap();
+    assert_eq!(row(&bent, &[0.0], 18.5).regime, [1]);
 
-    scene.whisker = scene.whisker_at(None, Some(0.0));
-    scene.pole.radius_mm = 0.0;
-    grid(&mut scene, &[-1e-3, -1e-5, 0.0, 1e-5, 1e-3], 20.0);
-    assert_eq!(compute(&scene, &mut Cpu).1[0].regime, [3, 3, 1, 3, 3]);
+    let straight = cone.with(bend, 0.0).unwrap();
+    let pointed = straight.with("pole.radius_mm", 0.0).unwrap();
+    let pushes = [-1e-3, -1e-5, 0.0, 1e-5, 1e-3];
+    assert_eq!(row(&pointed, &pushes, 20.0).regime, [3, 3, 1, 3, 3]);
 }

@@ -138,8 +138,7 @@ fn residuals_are_bounds() {
         "fig4_whisker",
     ];
     for name in scenes {
-        let text = std::fs::read_to_string(format!("scenes/{name}.toml")).unwrap();
-        let scene = Scene::parse(&text, &format!("scenes/{name}.toml"), name).unwrap();
+        let scene = Scene::read(format!("scenes/{name}.toml")).unwrap();
         let whisker = scene.whiskers().next().unwrap().1;
         for side in Side::BOTH {
             let rod = whisker.rod(&scene.pole, side);

@@ -43,7 +43,7 @@ fn kept(push_angles: &str, distances: &str, more: &str) -> (usize, usize) {
         "title = \"t\"\n[whisker]\nlength_mm = 20\nbase_radius_um = 30\ntip_radius_um = 3\nyoungs_modulus_gpa = 3\n\
          [grid]\npush_angle_deg = {push_angles}\ndistance_mm = {distances}\n{more}"
     );
-    let scene = Scene::parse(&text, "scene", "scene").unwrap();
+    let scene = Scene::parse(&text, "scene").unwrap();
     let plan = Plan::new(&scene).unwrap();
     let mut engine = Counting(0);
     let summary = map::run(&scene, &plan, &mut engine, &mut Nothing).unwrap();

@@ -11,7 +11,7 @@ use map::{panel, scene, spread, write};
 use std::collections::BTreeMap;
 use std::fs::{self, File};
 use std::path::Path;
-use whiskmap::scene::Scene;
+use whiskmap::scene::Setup;
 use whiskmap::store::{MapWriter, Panel, Shots, StoredMap};
 use whiskmap::{render, store};
 
@@ -60,7 +60,7 @@ impl Picture {
 }
 
 /// Writes the panels of a map and draws one channel of it, or the regimes.
-fn draw(scene: &Scene, panels: &[Panel], channel: Option<&str>) -> Picture {
+fn draw(scene: &Setup, panels: &[Panel], channel: Option<&str>) -> Picture {
     let folder = tempfile::tempdir().unwrap();
     let [file, out] = ["map.exr", "map.png"].map(|name| folder.path().join(name));
     let tolerances = serde_json::json!(null);
@@ -77,7 +77,7 @@ fn draw(scene: &Scene, panels: &[Panel], channel: Option<&str>) -> Picture {
 }
 
 /// A panel all of whose regimes are `regime` and whose quantities are all `value`.
-fn flat(scene: &Scene, regime: &[u32], value: f32) -> Panel {
+fn flat(scene: &Setup, regime: &[u32], value: f32) -> Panel {
     let mut flat = panel(scene, 0);
     let cells = flat.regime.len();
     flat.regime = regime.to_vec();

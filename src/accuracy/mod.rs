@@ -16,11 +16,15 @@ use sample::Sample;
 pub struct Accuracy {
     /// The steps.
     pub resolution: Resolution,
-    /// Estimated error of angles over the whole scene, in degrees: how far from the wanted push angle a state really
-    /// stands (a distance that is off by a part of itself counts as that many radians), and how far detachment angles
-    /// are off.
+    /// Estimated error, in degrees, of what [`BOUNDED`] names, over the whole scene.
     pub error_deg: f64,
 }
+
+/// What a tolerance bounds, and what it does not. A state's place is that of its pole, seen from the base: a direction and
+/// a distance, of which an error of a part of itself counts as that many radians. At a fold everything else changes with
+/// the square root of the push angle.
+pub const BOUNDED: &str = "push angles: where states stand and where they detach; not contact angles, arclengths, \
+                           forces and moments, which next to a fold change faster";
 
 /// By how much the worst of the sample may be exceeded elsewhere. The largest factor met in all shipped scenes, over
 /// tolerances from 1e-2 to 1e-8 degrees, is 1.5 (`tests/accuracy.rs`).

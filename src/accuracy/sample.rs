@@ -1,11 +1,17 @@
 //! States and detachments from all over a scene, its corners among them.
 
 use crate::refine::states;
-use crate::rod::{Effects, Side};
-use crate::scene::{Scene, Whisker};
-use crate::sheet::{Crossing, Edge, Sheet};
-use crate::shooting::batch::{InitialCondition, Method, shoot};
-use crate::shooting::{First, Nystrom8, Resolution, ShootingMap};
+use crate::rod::Effects;
+use crate::rod::Side;
+use crate::scene::{Grid, Scene, Setup, Whisker};
+use crate::sheet::{Edge, Sheet};
+use crate::shooting::First;
+use crate::shooting::Nystrom8;
+use crate::shooting::Resolution;
+use crate::shooting::ShootingMap;
+use crate::shooting::batch::InitialCondition;
+use crate::shooting::batch::Method;
+use crate::shooting::batch::shoot;
 use rayon::prelude::*;
 
 /// Values of an axis that take part: its ends, and some between. The ends of pushes get better with more distances, near
@@ -46,8 +52,10 @@ impl Sample {
                     .or_else(|| Sheet::new(Method::fine(effects), &rod, side, &distances))?;
                 let condition = |tau, load| InitialCondition { rod, tau, load };
                 let solved = states(method, &sheet, &pushes).into_iter();
+                // What ends at first touch does so at every resolution.
                 let crossings = sheet.crossings.iter().flatten();
-                let ends = crossings.map(|end: &Crossing| (condition(end.tau, end.load), end.edge));
+                let crossings = crossings.filter(|end| !end.is_at_touch());
+                let ends = crossings.map(|end| (condition(end.tau, end.load), end.edge));
                 let states = solved.map(|(_, state)| condition(state.tau, state.load));
                 Some((states.collect::<Vec<_>>(), ends.collect::<Vec<_>>()))
             })
@@ -104,11 +112,15 @@ fn worse(a: f64, b: f64) -> f64 {
 
 /// The whiskers at some values of the sweep's axes.
 fn whiskers(scene: &Scene) -> Vec<Whisker> {
-    let mut few = scene.clone();
-    let axes = [&mut few.grid.taper, &mut few.grid.curvature_per_mm];
-    for values in axes.into_iter().flatten() {
-        *values = spread(values, WHISKERS);
-    }
+    let few = |axis: &Option<Vec<f64>>| axis.as_ref().map(|values| spread(values, WHISKERS));
+    let few = Setup {
+        grid: Grid {
+            taper: few(&scene.grid.taper),
+            curvature_per_mm: few(&scene.grid.curvature_per_mm),
+            ..scene.grid.clone()
+        },
+        ..Setup::clone(scene)
+    };
     few.whiskers().map(|(_, whisker)| whisker).collect()
 }
 

@@ -15,7 +15,7 @@ pub use task::{Errors, Spread};
 pub use watch::Timing;
 
 use crate::integrate::EngineError;
-use crate::plan::sample;
+use crate::plan::SAMPLE_VALUES;
 use crate::scene::Scene;
 use serde::Serialize;
 use std::fmt;
@@ -161,7 +161,7 @@ pub fn run(
     effort: Effort,
     said: &mut dyn FnMut(&str),
 ) -> Result<Option<Report>, EngineError> {
-    let scene = sample(scene, effort.lines);
+    let scene = scene.thinned(effort.lines, SAMPLE_VALUES);
     said("the exact answers");
     let task = Task::new(&scene);
     if task.shots.is_empty() {

@@ -1,23 +1,29 @@
 //! `whiskmap branch`.
 
+use super::columns;
 use super::failure::Failure;
 use super::outputs::Outputs;
 use super::pole::Pole;
 use crate::render::{BranchAxis, Chart, branches};
 use crate::rod::Side;
-use crate::trace::Branch;
+use crate::trace::{Branch, BranchPoint};
 use clap::{Args, ValueEnum};
 
-/// Options of `branch`.
-#[derive(Debug, Args)]
-#[command(after_help = "\
+const EXAMPLES: &str = "\
 Examples:
   whiskmap branch scenes/cone.toml --distance 15.66 | less
   whiskmap branch scenes/cone.toml --distance 15.66 --side cb --csv branch.csv --plot branch.png
 
 Points are evenly spaced in push angle, contact angle and arclength together, from first touch (mark: touch) \
 through the fold (fold), where stable and unstable states meet, to the tip (tip) or the end of the unstable states \
-(second-fold). The column det is det d(D, phi)/d(s_obj, f) with lengths in whisker lengths.")]
+(second-fold). Lengths in det are whisker lengths.";
+
+/// Options of `branch`.
+#[derive(Debug, Args)]
+#[command(
+    after_help = EXAMPLES,
+    after_long_help = columns::help(EXAMPLES, &[("Columns", BranchPoint::COLUMNS)])
+)]
 pub struct Options {
     #[command(flatten)]
     pole: Pole,
@@ -53,14 +59,9 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     };
     let mut points = Vec::new();
     for side in sides {
-        let branch = Branch::new(&whisker, &scene.pole, *side, options.pole.distance)
-            .map_err(|why| options.pole.refuse(why))?;
-        let count = options.points as usize;
-        points.extend(
-            branch
-                .points(count)
-                .map_err(|why| options.pole.refuse(why))?,
-        );
+        let branch = Branch::new(&whisker, &scene.pole, *side, options.pole.distance);
+        let followed = branch.and_then(|branch| branch.points(options.points as usize));
+        points.extend(followed.map_err(|why| options.pole.refuse(why))?);
     }
     outputs.rows(&points)?;
     outputs.finish(|| Chart {

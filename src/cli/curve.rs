@@ -1,5 +1,6 @@
 //! `whiskmap curve`.
 
+use super::columns;
 use super::failure::{Failure, say};
 use super::outputs::{Opened, Outputs};
 use super::tolerance::Tolerance;
@@ -7,29 +8,39 @@ use crate::render::{Chart, CurveAxis, curves};
 use crate::rod::Side;
 use crate::scene::{Morphology, Scene, Whisker};
 use crate::shooting::Resolution;
-use crate::trace::{self, Corner, Detachment, Kind};
+use crate::trace::{self, Corner, Detachment, DetachmentKind};
 use clap::Args;
 use rayon::prelude::*;
 use serde::Serialize;
 use std::path::PathBuf;
 
-/// Options of `curve`.
-#[derive(Debug, Args)]
-#[command(after_help = "\
+const EXAMPLES: &str = "\
 Examples:
   whiskmap curve scenes/cone.toml | head
   whiskmap curve scenes/cone.toml --csv curve.csv --plot curve.svg
   whiskmap curve scenes/cone.toml --tolerance 1e-4deg
   whiskmap curve scenes/cone.toml --corner
 
-One line per side and distance of the scene, CF before CB; angles are positive for CB and negative for CF. The kind \
-is slip-off, pull-off or out-of-reach, the last one without values; unresolved, which is said on standard error, \
-marks an end that was not found. A scene with taper or curvature axes gives the curve of every whisker, with the \
-leading columns taper and curvature_per_mm; a plot shows one whisker.")]
+One line per side and distance of the scene, CF before CB; angles are positive for CB and negative for CF. Ends \
+without values are out of reach, or unresolved, which is said on standard error. A scene with taper or curvature axes \
+gives the curve of every whisker, with the leading columns taper (1 - tip/base radius) and curvature_per_mm; a plot \
+shows one whisker.";
+
+fn help() -> String {
+    let tables: [(&str, &[(&str, &str)]); 2] = [
+        ("Columns", Detachment::COLUMNS),
+        ("Columns with --corner", Corner::COLUMNS),
+    ];
+    columns::help(EXAMPLES, &tables)
+}
+
+/// Options of `curve`.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES, after_long_help = help())]
 pub struct Options {
     /// Scene file; - reads it from standard input
     scene: PathBuf,
-    /// Tell only where slip-off turns into pull-off
+    /// Tell only where slip-off turns into pull-off, or why it does not
     #[arg(long, conflicts_with_all = ["plot", "tolerance"])]
     corner: bool,
     #[command(flatten)]
@@ -79,7 +90,9 @@ pub fn run(options: &Options) -> Result<(), Failure> {
                 })
                 .collect();
             write(&scene, &mut outputs, &rows)?;
-            let lost = rows.iter().filter(|(_, row)| row.kind == Kind::Unresolved);
+            let lost = rows
+                .iter()
+                .filter(|(_, row)| row.kind == DetachmentKind::Unresolved);
             unresolved += lost.count();
             if options.outputs.has_plot() {
                 drawn.extend(rows.into_iter().map(|(_, row)| row));

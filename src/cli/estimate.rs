@@ -3,7 +3,7 @@
 use super::failure::Failure;
 use crate::integrate::Cpu;
 use crate::map::{self, Observer};
-use crate::plan::{Plan, SAMPLE_LINES, sample};
+use crate::plan::{Plan, SAMPLE_LINES, SAMPLE_VALUES};
 use crate::scene::Scene;
 use crate::store::{Error, Panel};
 
@@ -19,7 +19,7 @@ pub struct Estimate {
 
 /// Measures a sample of `scene` and scales it to `plan`: sheets by whiskers, sides and distances, the rest by cells.
 pub fn estimate(scene: &Scene, plan: &Plan) -> Result<Estimate, Failure> {
-    let small = sample(scene, SAMPLE_LINES);
+    let small = scene.thinned(SAMPLE_LINES, SAMPLE_VALUES);
     let small_plan = Plan {
         method: plan.method,
         ..Plan::new(&small)?

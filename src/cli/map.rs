@@ -4,7 +4,7 @@ use super::engine::{self, Choice, Shaders};
 use super::failure::{Failure, say};
 use super::progress;
 use super::tolerance::Tolerance;
-use crate::accuracy::Accuracy;
+use crate::accuracy::{Accuracy, BOUNDED};
 use crate::classify::{Regime, Status};
 use crate::map::{self, Observer, Summary};
 use crate::plan::Plan;
@@ -105,7 +105,8 @@ fn tolerances(accuracy: Option<Accuracy>) -> serde_json::Value {
         "residual_accepted_whisker_lengths": TOLERANCE,
     });
     if let Some(accuracy) = accuracy {
-        tolerances["angle_error_estimated_deg"] = accuracy.error_deg.into();
+        tolerances["push_angle_error_estimated_deg"] = accuracy.error_deg.into();
+        tolerances["bounded"] = BOUNDED.into();
     }
     tolerances
 }

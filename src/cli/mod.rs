@@ -5,6 +5,7 @@
 
 mod bench;
 mod branch;
+mod columns;
 mod curve;
 mod devices;
 mod engine;

@@ -12,8 +12,14 @@ pub struct Pole {
     /// Scene file; - reads it from standard input
     scene: PathBuf,
     /// Distance from the base to the contact at first touch
-    #[arg(long, value_name = "MM", allow_hyphen_values = true)]
+    #[arg(long, value_name = "MM", allow_hyphen_values = true, value_parser = number)]
     pub distance: f64,
+}
+
+/// An option's number.
+pub fn number(text: &str) -> Result<f64, String> {
+    text.parse()
+        .map_err(|_| "must be a number, such as 15.66".to_owned())
 }
 
 impl Pole {

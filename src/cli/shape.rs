@@ -1,29 +1,34 @@
 //! `whiskmap shape`.
 
+use super::columns;
 use super::failure::Failure;
 use super::outputs::Outputs;
-use super::pole::Pole;
+use super::pole::{Pole, number};
 use crate::render::{Chart, Drawn, Ink, Stroke, shapes};
 use crate::rod::Side;
-use crate::trace::{Branch, NoState, Shape};
+use crate::trace::{Branch, NoState, Shape, ShapePoint};
 use clap::{Args, ValueEnum};
 
-/// Options of `shape`.
-#[derive(Debug, Args)]
-#[command(after_help = "\
+const EXAMPLES: &str = "\
 Examples:
   whiskmap shape scenes/cone.toml --distance 15.66 --push-angle 10 --plot shape.svg
   whiskmap shape scenes/cone.toml --distance 15.66 --push-angle 10 --branch unstable --csv shape.csv
   whiskmap shape scenes/cone.toml --distance 15.66 --push-angle -20
 
 The origin is at the base and the first axis along the base's tangent at first touch. Since then the base has \
-turned by the push angle, and the pole has stayed where it is. The column part says which places are loaded, \
-which one is the contact, and which are free.")]
+turned by the push angle, and the pole has stayed where it is.";
+
+/// Options of `shape`.
+#[derive(Debug, Args)]
+#[command(
+    after_help = EXAMPLES,
+    after_long_help = columns::help(EXAMPLES, &[("Columns", ShapePoint::COLUMNS)])
+)]
 pub struct Options {
     #[command(flatten)]
     pole: Pole,
     /// Rotation of the base since first touch: positive CB, negative CF
-    #[arg(long, value_name = "DEG", allow_hyphen_values = true)]
+    #[arg(long, value_name = "DEG", allow_hyphen_values = true, value_parser = number)]
     push_angle: f64,
     /// Side of the whisker that the pole is on [default: that of the push angle's sign]
     #[arg(long, value_enum)]

@@ -1,7 +1,7 @@
 //! `--tolerance`: how exact is exact enough.
 
 use super::failure::{Failure, say};
-use crate::accuracy::{Accuracy, cheapest};
+use crate::accuracy::{Accuracy, BOUNDED, cheapest};
 use crate::rod::Side;
 use crate::scene::Scene;
 use clap::Args;
@@ -9,8 +9,12 @@ use clap::Args;
 /// The option.
 #[derive(Debug, Args)]
 pub struct Tolerance {
-    /// Error of angles that is small enough, in degrees, such as 1e-6deg; the program takes the cheapest steps that its
-    /// own estimate allows [default: the finest steps, without an estimate]
+    /// Largest error of push angles, such as 1e-6deg; takes the cheapest steps that the program's own estimate allows
+    /// [default: the finest steps, without an estimate]
+    ///
+    /// It bounds where states stand in front of their pole (the push angle, and the distance, of which a part counts as
+    /// that many radians) and where they detach. It does not bound contact angles, arclengths, forces and moments: next
+    /// to a fold they change with the square root of the push angle that is left.
     #[arg(long, value_name = "ANGLE", value_parser = degrees)]
     tolerance: Option<f64>,
 }
@@ -23,11 +27,11 @@ const ROUNDED_UP: f64 = 1.06;
 
 fn degrees(text: &str) -> Result<f64, String> {
     let number = text.strip_suffix("deg").unwrap_or(text).trim_end();
-    number
-        .parse()
-        .ok()
-        .filter(|degrees| RANGE.contains(degrees))
-        .ok_or_else(|| "must be between 1e-10deg and 1deg".to_owned())
+    match number.parse() {
+        Ok(degrees) if RANGE.contains(&degrees) => Ok(degrees),
+        Ok(_) => Err("must be between 1e-10deg and 1deg".to_owned()),
+        Err(_) => Err("must be an angle in degrees, such as 1e-6deg".to_owned()),
+    }
 }
 
 impl Tolerance {
@@ -44,7 +48,8 @@ impl Tolerance {
             ))
         })?;
         say(&format!(
-            "accuracy: {} steps of order 8 at the fold, fewer below; estimated error {:.1e} deg of {tolerance_deg:.1e} allowed",
+            "accuracy: {} steps of order 8 at the fold, fewer below; estimated error {:.1e} deg of {tolerance_deg:.1e} allowed \
+             in {BOUNDED}",
             found.resolution.least, found.error_deg
         ));
         Ok(Some(found))

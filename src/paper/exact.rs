@@ -5,7 +5,7 @@ use super::elastica::{elastica, fold};
 use super::whiskers::{CONE, CYLINDER, POLE, whisker};
 use crate::rod::Side;
 use crate::scene::{Pole, Whisker};
-use crate::trace::{Branch, Kind, corner, curve};
+use crate::trace::{Branch, DetachmentKind, corner, curve};
 
 /// The checks.
 pub fn checks() -> Vec<Check> {
@@ -138,7 +138,7 @@ fn symmetries() -> Vec<Check> {
                 &distances,
             )
         })
-        .filter(|end| end.kind == Kind::PullOff)
+        .filter(|end| end.kind == DetachmentKind::PullOff)
         .count();
     let cone = push(&CONE, &POLE, Side::Cb, 14.0);
     let mirror = |side| push(&STRAIGHT_WHISKER, &POLE, side, 14.0);

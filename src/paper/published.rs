@@ -4,7 +4,7 @@ use super::check::{AUTO, Check, Expected, FORWARD, PAPER, end, near};
 use super::whiskers::{CONE, CYLINDER, POLE, fig2_distance_mm};
 use crate::rod::Side;
 use crate::scene::Pole;
-use crate::trace::{Detachment, Kind, corner};
+use crate::trace::{Detachment, DetachmentKind, corner};
 
 /// Where the pole of Fig. 2 touches the cone, nearly.
 const TOUCH_MM: f64 = 15.660_459_763_365_8;
@@ -16,7 +16,7 @@ pub fn checks() -> Vec<Check> {
         (
             "Fig. 2B, cone CB",
             CONE,
-            Kind::SlipOff,
+            DetachmentKind::SlipOff,
             "slip-off (deg)",
             (15.6, 0.05),
             (15.59975, 5e-6),
@@ -24,7 +24,7 @@ pub fn checks() -> Vec<Check> {
         (
             "Fig. 2D, cylinder CB",
             CYLINDER,
-            Kind::PullOff,
+            DetachmentKind::PullOff,
             "pull-off (deg)",
             // Cut, not rounded: it is 62.75.
             (62.7, 0.1),
@@ -60,7 +60,7 @@ pub fn checks() -> Vec<Check> {
     ] {
         let end = end(&CONE, &POLE, side, TOUCH_MM);
         let quantities = [
-            ("slip-off (deg)", push_if(Kind::SlipOff, &end)),
+            ("slip-off (deg)", push_if(DetachmentKind::SlipOff, &end)),
             ("contact s_obj (mm)", end.arc_length_mm),
             ("force (uN)", end.force_un),
             ("base moment (nN m)", end.base_moment_nnm),
@@ -95,7 +95,7 @@ pub fn checks() -> Vec<Check> {
     checks
 }
 
-fn push_if(kind: Kind, end: &Detachment) -> Option<f64> {
+fn push_if(kind: DetachmentKind, end: &Detachment) -> Option<f64> {
     end.push_angle_deg.filter(|_| end.kind == kind)
 }
 
@@ -119,7 +119,7 @@ fn friction() -> impl Iterator<Item = Check> {
                 quantity,
                 FORWARD,
                 (expected, 5e-5),
-                push_if(Kind::SlipOff, &end),
+                push_if(DetachmentKind::SlipOff, &end),
             )
         })
     })

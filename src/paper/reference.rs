@@ -4,7 +4,7 @@ use super::check::{AUTO, Check, Expected};
 use super::whiskers::whisker;
 use crate::rod::Side;
 use crate::scene::Pole;
-use crate::trace::{Kind, curve};
+use crate::trace::{DetachmentKind, curve};
 use serde::Deserialize;
 
 const POINTS: &str = include_str!("../../tests/data/detachment.csv");
@@ -44,9 +44,9 @@ impl Point {
         let pole = Pole::smooth(self.pole_radius_mm);
         let end = curve(&whisker, &pole, side, &[self.distance_mm])[0];
         let expected = match self.kind.as_str() {
-            "slip-off" => Kind::SlipOff,
-            "pull-off" => Kind::PullOff,
-            _ => Kind::Unresolved,
+            "slip-off" => DetachmentKind::SlipOff,
+            "pull-off" => DetachmentKind::PullOff,
+            _ => DetachmentKind::Unresolved,
         };
         let miss = |computed: Option<f64>, known: f64| {
             let miss = computed.map(|computed| (computed - known).abs());

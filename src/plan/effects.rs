@@ -1,7 +1,7 @@
 //! The effects by name: which are on, and which line of the scene decides it. The only list of them.
 
 use crate::rod::Effects;
-use crate::scene::{Scene, Whisker};
+use crate::scene::{Scene, Setup, Whisker};
 
 /// An effect of the scene.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -30,7 +30,7 @@ pub enum Cost {
 /// Every effect; `kernels` are those that the kernels of the run have.
 #[must_use]
 pub fn effects(scene: &Scene, kernels: Effects) -> Vec<Effect> {
-    let Scene { whisker, pole, .. } = scene;
+    let Setup { whisker, pole, .. } = &**scene;
     let stretch = given("arc_stretch", whisker.arc_stretch, 1.0);
     let stretched = whisker.arc_stretch != 1.0;
     let tapers = kernels.taper || kernels.profile;
@@ -148,7 +148,7 @@ mod tests {
              whisker.length_mm = 20\nwhisker.base_radius_um = 30\nwhisker.tip_radius_um = {tip_radius_um}\n\
              whisker.youngs_modulus_gpa = 3\n{more}"
         );
-        let scene = Scene::parse(&text, "scene", "scene").unwrap();
+        let scene = Scene::parse(&text, "scene").unwrap();
         let plan = Plan::new(&scene).unwrap();
         let sign = |on| if on { '+' } else { '-' };
         effects(&scene, plan.method.effects)

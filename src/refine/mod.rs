@@ -72,11 +72,11 @@ pub struct State {
 }
 
 impl State {
-    /// Whether the contact is at the tip of the rod of `sheet`, as far as the residual tells.
+    /// Whether the contact is at the tip of the rod of `sheet`, as far as residual and resolution tell.
     #[must_use]
     pub fn is_at_tip(&self, sheet: &Sheet) -> bool {
         let [tau, radius] = sheet.tip;
-        (self.tau - tau).abs() <= TIP_TIE * tau + self.residual / radius
+        (self.tau - tau).abs() <= TIP_TIE * tau + self.residual / radius + sheet.tip_blur()
     }
 }
 

@@ -2,7 +2,7 @@
 //! whisker slips off and blue where it is pulled off, as in the paper.
 
 use super::chart::{Disc, Dot, Ink, Line, Plot, Stroke};
-use crate::trace::{BranchPoint, Detachment, Kind, Mark, Shape};
+use crate::trace::{BranchPoint, Detachment, DetachmentKind, Mark, Shape};
 
 /// An axis of a detachment curve.
 #[derive(Clone, Copy, Debug)]
@@ -22,9 +22,9 @@ pub fn curves(title: &str, rows: &[Detachment], [x, y]: [CurveAxis; 2]) -> Plot 
         let mut before = None;
         for part in side.chunk_by(|a, b| a.kind == b.kind) {
             let (ink, name) = match part[0].kind {
-                Kind::SlipOff => (Ink::Black, "slip-off"),
-                Kind::PullOff => (Ink::Blue, "pull-off"),
-                Kind::OutOfReach | Kind::Unresolved => continue,
+                DetachmentKind::SlipOff => (Ink::Black, "slip-off"),
+                DetachmentKind::PullOff => (Ink::Blue, "pull-off"),
+                DetachmentKind::OutOfReach | DetachmentKind::Unresolved => continue,
             };
             // A line begins where the one of the other kind has ended.
             let points: Vec<[f64; 2]> = before

@@ -8,8 +8,7 @@ use serde::de::{Deserializer, MapAccess, SeqAccess, Visitor};
 use toml::Spanned;
 
 use super::error::Fault;
-use super::file::Number;
-use super::limits::Limits;
+use super::limits::{Limits, Number};
 
 /// More values than this on one axis are a slip of the pen, and would be refused before they are made.
 const MOST_VALUES: usize = 65_536;
@@ -17,13 +16,13 @@ const MOST_VALUES: usize = 65_536;
 /// An axis as the file has it.
 pub(super) enum Axis {
     List(Vec<Number>),
-    Even(Even),
+    Uniform(Uniform),
 }
 
 /// `count` values from `from` to `to` at equal distances; one value needs no `to`.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Even {
+pub(super) struct Uniform {
     from: Number,
     to: Option<Number>,
     count: Spanned<i64>,
@@ -40,7 +39,7 @@ pub(super) fn values(axis: &Spanned<Axis>, key: &str, limits: &Limits) -> Result
             );
             Err(Fault::new(key, axis.span(), must))
         }
-        Axis::Even(even) => evenly(even, key, limits),
+        Axis::Uniform(axis) => uniform(axis, key, limits),
     }
 }
 
@@ -58,17 +57,17 @@ fn listed(list: &[Number], key: &str, limits: &Limits) -> Result<Vec<f64>, Fault
     Ok(values)
 }
 
-fn evenly(even: &Even, key: &str, limits: &Limits) -> Result<Vec<f64>, Fault> {
+fn uniform(axis: &Uniform, key: &str, limits: &Limits) -> Result<Vec<f64>, Fault> {
     let count_key = format!("{key}.count");
     let to_key = format!("{key}.to");
-    let refuse_count = |must: String| Fault::new(&*count_key, even.count.span(), must);
+    let refuse_count = |must: String| Fault::new(&*count_key, axis.count.span(), must);
 
-    let count = usize::try_from(*even.count.get_ref())
+    let count = usize::try_from(*axis.count.get_ref())
         .ok()
         .filter(|count| (1..=MOST_VALUES).contains(count))
         .ok_or_else(|| refuse_count(format!("must be between 1 and {MOST_VALUES}")))?;
-    let from = limits.check(&format!("{key}.from"), &even.from)?;
-    let Some(end) = &even.to else {
+    let from = limits.check(&format!("{key}.from"), &axis.from)?;
+    let Some(end) = &axis.to else {
         return match count {
             1 => Ok(vec![from]),
             _ => Err(refuse_count("must be 1 where `to` is left out".into())),
@@ -126,6 +125,6 @@ impl<'de> Visitor<'de> for AxisVisitor {
     }
 
     fn visit_map<A: MapAccess<'de>>(self, table: A) -> Result<Axis, A::Error> {
-        Deserialize::deserialize(MapAccessDeserializer::new(table)).map(Axis::Even)
+        Deserialize::deserialize(MapAccessDeserializer::new(table)).map(Axis::Uniform)
     }
 }

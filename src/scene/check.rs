@@ -5,13 +5,15 @@
 
 use toml::Spanned;
 
-use super::axis;
+use super::axis::{self, Axis};
 use super::error::Fault;
-use super::file::{GridTable, Number, OutputTable, SceneTable, WhiskerTable};
+use super::file::{GridTable, OutputTable, SceneTable, WhiskerTable};
+use super::grid::{FARTHEST, Grid, NEAREST};
 use super::limits::Limits;
 use super::profile::{self, Radii};
+use super::setup::Setup;
 use super::shape::{self, Shape, refuse_faint};
-use super::{FARTHEST, Grid, NEAREST, Pole, Scene, Whisker};
+use super::whisker::{Pole, Whisker};
 
 /// As many as 16,384 x 16,384; a stored cell takes about 60 bytes.
 const MOST_CELLS: u128 = 1 << 28;
@@ -26,46 +28,32 @@ const STIFFEST_TIP: f64 = 20.0;
 const MOST_STRETCH: f64 = 2.0;
 
 /// File systems allow 255 bytes; the output adds its own endings.
-const LONGEST_NAME: usize = 100;
+const LONGEST_NAME: usize = 200;
 
-/// The scene that the tables describe.
-pub(super) fn scene(table: &SceneTable, text: &str, default_name: &str) -> Result<Scene, Fault> {
+/// The scene that the tables describe; `stem` names its output where it does not itself.
+pub(super) fn setup(table: &SceneTable, text: &str, stem: &str) -> Result<Setup, Fault> {
     let title = title(&table.title)?;
     let length_mm =
         Limits::between(1e-3, 1e5).check("whisker.length_mm", &table.whisker.length_mm)?;
     let grid = grid(&table.grid, length_mm)?;
-    let sharpest = grid.taper.as_ref().and_then(|axis| axis.last());
-    let steepest = grid.curvature_per_mm.as_ref().and_then(|axis| axis.last());
     refuse_two_of_a_kind(&table.whisker, &table.grid)?;
-    let whisker = whisker(
-        &table.whisker,
-        length_mm,
-        steepest.copied(),
-        sharpest.copied(),
-    )?;
-    let radius_mm = match &table.pole {
-        Some(pole) => {
-            let own = whisker.sharpest_bend_per_mm();
-            let sharpest_per_mm = steepest.map_or(own, |a| 2.0 * a);
-            pole_radius(&pole.radius_mm, sharpest_per_mm, &grid.distance_mm)?
-        }
-        None => 0.0,
+    let whisker = whisker(&table.whisker, length_mm, &grid)?;
+    let radius = table.pole.as_ref().map(|pole| &pole.radius_mm);
+    let friction = table.contact.as_ref().map(|contact| &contact.friction);
+    let pole = Pole {
+        radius_mm: pole_limits(&whisker, &grid).check_or(0.0, "pole.radius_mm", radius)?,
+        friction: Limits::between(0.0, MOST_FRICTION).check_or(
+            0.0,
+            "contact.friction",
+            friction,
+        )?,
     };
-    let friction = match &table.contact {
-        Some(contact) => {
-            Limits::between(0.0, MOST_FRICTION).check("contact.friction", &contact.friction)?
-        }
-        None => 0.0,
-    };
-    Ok(Scene {
+    Ok(Setup {
         title,
         whisker,
-        pole: Pole {
-            radius_mm,
-            friction,
-        },
+        pole,
         grid,
-        name: name(table.output.as_ref(), default_name)?,
+        name: name(table.output.as_ref(), stem)?,
         text: text.to_owned(),
     })
 }
@@ -100,45 +88,34 @@ fn title(title: &Spanned<String>) -> Result<String, Fault> {
     Ok(text.clone())
 }
 
-/// The whisker of the file; `steepest` is the largest `A` of a curvature axis, `sharpest` the largest taper of one.
-fn whisker(
-    table: &WhiskerTable,
-    length_mm: f64,
-    steepest: Option<f64>,
-    sharpest: Option<f64>,
-) -> Result<Whisker, Fault> {
+/// The whisker of the file; the largest taper and curvature of the `grid` count where there are such axes.
+fn whisker(table: &WhiskerTable, length_mm: f64, grid: &Grid) -> Result<Whisker, Fault> {
     let Radii {
         base_radius_um,
         tip_radius_um,
         profile,
-    } = profile::radii(table, length_mm)?;
+    } = profile::radii(table, length_mm, grid.taper.as_deref())?;
     let youngs_modulus_gpa = Limits::between(1e-6, 1e4)
         .check("whisker.youngs_modulus_gpa", &table.youngs_modulus_gpa)?;
     let shape = match &table.curvature {
-        Some(table) => shape::shape(table, length_mm, steepest)?,
+        Some(table) => shape::shape(table, length_mm, largest(&grid.curvature_per_mm))?,
         None => Shape::default(),
     };
-    let modulus_tip_to_base = match &table.modulus_gradient {
-        Some(gradient) => Limits::between(1.0 / STIFFEST_TIP, STIFFEST_TIP).check(
-            "whisker.modulus_gradient.tip_to_base",
-            &gradient.tip_to_base,
-        )?,
-        None => 1.0,
+    let ratio = table.modulus_gradient.as_ref().map(|own| &own.tip_to_base);
+    let modulus_tip_to_base = Limits::between(1.0 / STIFFEST_TIP, STIFFEST_TIP).check_or(
+        1.0,
+        "whisker.modulus_gradient.tip_to_base",
+        ratio,
+    )?;
+    let pointed = 1.0 / largest(&grid.taper).unwrap_or(1.0 - tip_radius_um / base_radius_um);
+    let end = if pointed < MOST_STRETCH {
+        ("1 / taper, where the radius at the tip is 0", pointed)
+    } else {
+        ("twice as long", MOST_STRETCH)
     };
-    let arc_stretch = match &table.projection {
-        Some(projection) => {
-            let taper = sharpest.unwrap_or(1.0 - tip_radius_um / base_radius_um);
-            let pointed = 1.0 / taper;
-            let end = if pointed < MOST_STRETCH {
-                ("1 / taper, where the radius at the tip is 0", pointed)
-            } else {
-                ("twice as long", MOST_STRETCH)
-            };
-            Limits::between(1.0, end)
-                .check("whisker.projection.arc_stretch", &projection.arc_stretch)?
-        }
-        None => 1.0,
-    };
+    let stretch = table.projection.as_ref().map(|own| &own.arc_stretch);
+    let arc_stretch =
+        Limits::between(1.0, end).check_or(1.0, "whisker.projection.arc_stretch", stretch)?;
     Ok(Whisker {
         length_mm,
         base_radius_um,
@@ -150,6 +127,10 @@ fn whisker(
         modulus_tip_to_base,
         arc_stretch,
     })
+}
+
+fn largest(axis: &Option<Vec<f64>>) -> Option<f64> {
+    axis.as_ref()?.last().copied()
 }
 
 fn grid(table: &Spanned<GridTable>, length_mm: f64) -> Result<Grid, Fault> {
@@ -166,23 +147,17 @@ fn grid(table: &Spanned<GridTable>, length_mm: f64) -> Result<Grid, Fault> {
         "grid.distance_mm",
         &Limits::between(near, far),
     )?;
-    let taper = match &axes.taper {
-        Some(axis) => Some(axis::values(
-            axis,
-            "grid.taper",
-            &Limits::between(0.0, 1.0),
-        )?),
-        None => None,
+    let optional = |axis: &Option<Spanned<Axis>>, key, limits| {
+        let values = |axis| axis::values(axis, key, &limits);
+        axis.as_ref().map(values).transpose()
     };
-    let curvature_per_mm = match &axes.curvature_per_mm {
-        Some(axis) => {
-            let key = "grid.curvature_per_mm";
-            let values = axis::values(axis, key, &shape::parabola_limits(length_mm))?;
-            refuse_faint(&values, length_mm, key, axis.span())?;
-            Some(values)
-        }
-        None => None,
-    };
+    let taper = optional(&axes.taper, "grid.taper", Limits::between(0.0, 1.0))?;
+    let key = "grid.curvature_per_mm";
+    let limits = shape::parabola_limits(length_mm);
+    let curvature_per_mm = optional(&axes.curvature_per_mm, key, limits)?;
+    if let (Some(values), Some(axis)) = (&curvature_per_mm, &axes.curvature_per_mm) {
+        refuse_faint(values, length_mm, key, axis.span())?;
+    }
 
     let counts = [
         push_angle_deg.len(),
@@ -206,33 +181,30 @@ fn grid(table: &Spanned<GridTable>, length_mm: f64) -> Result<Grid, Fault> {
 /// Where the pole's rim touches the whisker at rest, the centre is `D` away from the base, and `D^2` grows along the
 /// whisker `1 -+ r kappa` times as fast as the chord's square (the sign is the side). So with `r` below the
 /// whisker's smallest radius of curvature, first touch is one-to-one and the base stays outside the pole.
-fn pole_radius(number: &Number, sharpest_per_mm: f64, distance_mm: &[f64]) -> Result<f64, Fault> {
-    let sharpest = 1.0 / sharpest_per_mm;
-    let nearest = distance_mm.first().copied().unwrap_or(f64::INFINITY);
+fn pole_limits(whisker: &Whisker, grid: &Grid) -> Limits {
+    let steepest = largest(&grid.curvature_per_mm).map(|a| 2.0 * a);
+    let sharpest = 1.0 / steepest.unwrap_or(whisker.sharpest_bend_per_mm());
+    let nearest = grid.distance_mm[0];
     let end = if sharpest < nearest {
         ("the whisker's smallest radius of curvature", sharpest)
     } else {
         ("the smallest distance", nearest)
     };
-    Limits::below(0.0, end).check("pole.radius_mm", number)
+    Limits::below(0.0, end)
 }
 
-fn name(output: Option<&OutputTable>, default_name: &str) -> Result<String, Fault> {
-    let given = output.and_then(|output| output.name.as_ref());
-    let name = given.map_or(default_name, |name| name.get_ref());
-    let plain = |c: char| c.is_ascii_alphanumeric() || "-_.".contains(c);
-    let fits = (1..=LONGEST_NAME).contains(&name.len());
-    if fits && name.chars().all(plain) && !name.starts_with('.') {
-        return Ok(name.to_owned());
+/// The name that the scene gives its output, or else the `stem` of its own file, which is a file's name already.
+fn name(output: Option<&OutputTable>, stem: &str) -> Result<String, Fault> {
+    let Some(name) = output.and_then(|output| output.name.as_ref()) else {
+        return Ok(stem.to_owned());
+    };
+    let text = name.get_ref();
+    let fits = (1..=LONGEST_NAME).contains(&text.len()) && !text.starts_with('.');
+    if fits && !text.contains(|c: char| c.is_control() || "/\\".contains(c)) {
+        return Ok(text.clone());
     }
     let must = format!(
-        "must be 1 to {LONGEST_NAME} ASCII letters, digits, - _ . and not begin with a dot"
+        "must be the name of a file without its ending: 1 to {LONGEST_NAME} bytes, no slash, no dot first"
     );
-    Err(match given {
-        Some(name) => Fault::new("output.name", name.span(), must),
-        None => Fault::absent(
-            "output.name",
-            format!("is left out and the file's own name, {name:?}, does not do: {must}"),
-        ),
-    })
+    Err(Fault::new("output.name", name.span(), must))
 }

@@ -31,6 +31,19 @@ impl SceneError {
         }
     }
 
+    /// What the reader of TOML found, in the words of TOML rather than of Rust.
+    pub(super) fn of_toml(origin: &str, text: &str, why: &toml::de::Error) -> Self {
+        let message = match why.message().rsplit_once(", expected ") {
+            Some((found, "f64")) => format!("{found}, expected a number"),
+            Some((found, "i64")) => format!("{found}, expected a whole number"),
+            Some((found, kind)) if kind.starts_with("struct ") => {
+                format!("{found}, expected a table")
+            }
+            _ => why.message().to_owned(),
+        };
+        Self::at(origin, text, why.span(), message)
+    }
+
     /// An error about the file as a whole.
     pub(super) fn whole(origin: &str, message: impl Into<String>) -> Self {
         Self::at(origin, "", None, message)

@@ -4,10 +4,8 @@ use serde::Deserialize;
 use toml::Spanned;
 
 use super::axis::Axis;
+use super::limits::Number;
 use super::rows::Rows;
-
-/// A number and where the file has it. Integers are numbers too.
-pub(super) type Number = Spanned<f64>;
 
 /// The whole file.
 #[derive(Deserialize)]

@@ -3,8 +3,12 @@
 use std::fmt;
 use std::ops::{Bound, RangeBounds};
 
+use toml::Spanned;
+
 use super::error::Fault;
-use super::file::Number;
+
+/// A number and where the file has it. Integers are numbers too.
+pub(super) type Number = Spanned<f64>;
 
 /// A range of numbers. NaN is in none, and no range here reaches infinity.
 pub(super) struct Limits {
@@ -44,6 +48,11 @@ impl Limits {
         } else {
             Err(Fault::new(key, number.span(), &*self.must))
         }
+    }
+
+    /// The number if there is one, and it lies within; `absent` otherwise.
+    pub fn check_or(&self, absent: f64, key: &str, number: Option<&Number>) -> Result<f64, Fault> {
+        number.map_or(Ok(absent), |number| self.check(key, number))
     }
 }
 

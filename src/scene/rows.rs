@@ -11,8 +11,7 @@ use serde::de::{Deserializer, SeqAccess, Visitor};
 use toml::Spanned;
 
 use super::error::Fault;
-use super::file::SceneTable;
-use super::read::bounded;
+use super::source::bounded;
 
 /// How messages call the rows.
 pub(super) const KEY: &str = "whisker.profile.rows";
@@ -69,28 +68,25 @@ impl Rows {
     }
 }
 
-/// Reads the CSV file that the scene names, if it names one, from `folder` into its table. Returns the scene's text with
-/// the rows in place of the name, so that it stands for itself.
+/// Reads the CSV file that `rows` may name from `folder` into them. Returns the scene's text with the rows in place of
+/// the name, so that it stands for itself.
 pub(super) fn read(
-    table: &mut SceneTable,
+    rows: &mut Spanned<Rows>,
     text: &str,
     folder: &Path,
 ) -> Result<Option<String>, Fault> {
-    let Some(profile) = &mut table.whisker.profile else {
+    let span = rows.span();
+    let Rows::Named(name) = rows.get_ref() else {
         return Ok(None);
     };
-    let span = profile.rows.span();
-    let Rows::Named(name) = profile.rows.get_ref() else {
-        return Ok(None);
-    };
-    let rows = from_csv(&folder.join(name)).map_err(|why| Fault::new(KEY, span.clone(), why))?;
+    let read = from_csv(&folder.join(name)).map_err(|why| Fault::new(KEY, span.clone(), why))?;
     let mut list = String::from("[\n");
-    for [arc_length_mm, radius_um] in rows.iter().map(|row| row.values) {
+    for [arc_length_mm, radius_um] in read.iter().map(|row| row.values) {
         // Writing to a String cannot fail.
         let _ = writeln!(list, "    [{arc_length_mm:?}, {radius_um:?}],");
     }
     list.push(']');
-    *profile.rows.get_mut() = Rows::Read(rows);
+    *rows.get_mut() = Rows::Read(read);
     let mut inlined = text.to_owned();
     inlined.replace_range(span, &list);
     Ok(Some(inlined))

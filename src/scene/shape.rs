@@ -7,9 +7,9 @@ use glam::DVec2;
 use toml::Spanned;
 
 use super::error::Fault;
-use super::file::{CurvatureTable, Number, SpiralTable};
-use super::limits::Limits;
-use super::{Curvature, EulerSpiral};
+use super::file::{CurvatureTable, SpiralTable};
+use super::limits::{Limits, Number};
+use super::whisker::{Curvature, EulerSpiral};
 
 /// The largest curvature, in radians per length of the whisker: that of the largest parabola.
 const SHARPEST: f64 = 20.0;
@@ -127,11 +127,8 @@ fn euler_spiral(table: &SpiralTable, length_mm: f64) -> Result<Option<EulerSpira
     }
     if !chord_grows(per_mm * length_mm, per_mm2 * length_mm * length_mm) {
         let must = "must bend the whisker less: the distance from its base must grow all along it";
-        return Err(Fault::new(
-            format!("{key}.per_mm2"),
-            table.per_mm2.span(),
-            must,
-        ));
+        let key = format!("{key}.per_mm2");
+        return Err(Fault::new(key, table.per_mm2.span(), must));
     }
     Ok(Some(EulerSpiral { per_mm, per_mm2 }))
 }

@@ -64,11 +64,11 @@ impl Sheet {
             .min_by(|a, b| a.pole_distance.total_cmp(&b.pole_distance))?;
         let columns = Columns::new(method, rod, side, nearest)?;
         let lattice = Lattice::new(method.coarsely(), rod, side, &columns);
-        let edges = Edges::new(method, rod, &columns, &lattice);
+        let edges = Edges::new(method, rod, &rest, &columns, &lattice);
         let mut crossings = crossings::crossings(method, rod, side, &edges, &rows);
         let fold_grows = edges.fold_grows;
         for (row, crossings) in rows.iter().zip(&mut crossings) {
-            let touches = edges.touches(row);
+            let touches = row.is_reached();
             let pair = fold_grows && usize::from(touches) + crossings.len() == 2;
             if !(crossings.is_empty() || pair && crossings.iter().all(Crossing::is_sound)) {
                 let level = LevelCurve {
@@ -116,7 +116,13 @@ impl Sheet {
     /// Whether the whisker at rest reaches the pole of `row`.
     #[must_use]
     pub fn touches(&self, row: usize) -> bool {
-        self.edges.touches(&self.rows[row])
+        self.rows[row].is_reached()
+    }
+
+    /// How far from the tip, in `tau`, the integration cannot tell a contact from one at the tip.
+    #[must_use]
+    pub fn tip_blur(&self) -> f64 {
+        2.0 * self.edges.tip_error
     }
 
     /// Guesses for the cells of `row` at growing `pushes` (magnitudes, in radians); `None` outside the sheet.

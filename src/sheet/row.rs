@@ -1,8 +1,11 @@
 //! The rows of a map: distances at first touch, and where the pole stands for each.
 
-use crate::rod::{Rest, Rod};
-use crate::sheet::edges::REACH_SLACK;
+use crate::rod::Rest;
 use glam::DVec2;
+
+/// First touch this far beyond the tip, in whisker lengths, still counts as at it: the rounding of a distance in
+/// millimetres, of its division by the length and of the rest shape stay a hundred times below.
+pub const REACH_SLACK: f64 = 1e-12;
 
 /// One distance of a map for one whisker and side; lengths in whisker lengths.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,10 +30,17 @@ impl Row {
         }
     }
 
-    /// Whether the resting `rod` is long enough to touch the pole.
+    /// Whether the resting whisker is long enough to touch the pole: a question of its shape at rest, the same at every
+    /// resolution.
     #[must_use]
-    pub fn is_reached(&self, rod: &Rod) -> bool {
-        rod.tau(self.contact) <= rod.tau_tip() * (1.0 + REACH_SLACK)
+    pub fn is_reached(&self) -> bool {
+        self.contact <= 1.0 + REACH_SLACK
+    }
+
+    /// Whether the very tip of the resting whisker touches the pole.
+    #[must_use]
+    pub fn is_at_reach(&self) -> bool {
+        (self.contact - 1.0).abs() <= REACH_SLACK
     }
 
     /// Centre of the pole in the frame of the base after a rotation of the base by `push` since first touch.

@@ -2,7 +2,7 @@
 
 use super::layout::Layout;
 use super::tally::{Counts, Shots, Tally};
-use crate::scene::{Grid, Scene};
+use crate::scene::{Grid, Setup};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
@@ -12,7 +12,7 @@ use std::fmt::Write;
 #[derive(Clone, Copy, Debug)]
 pub struct Description<'a> {
     /// What is simulated.
-    pub scene: &'a Scene,
+    pub scene: &'a Setup,
     /// What integrates, such as `cpu f64`.
     pub engine: &'a str,
     /// The device it runs on.

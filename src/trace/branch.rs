@@ -1,6 +1,7 @@
 //! The solution branch at one pole: the stable states from first touch to the fold, and on along the unstable ones.
 
-use super::even::{interpolate, targets};
+use super::columns::row;
+use super::resample::{interpolate, targets};
 use super::{FINER, Found, Mark, NoState};
 use crate::rod::{Effects, Rest, Rod, Side, Units};
 use crate::scene::{Pole, Whisker};
@@ -19,29 +20,31 @@ pub struct Branch {
     pub(super) walk: Walk,
 }
 
-/// A state on a branch, in the units of people.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct BranchPoint {
-    /// The side.
-    pub side: Side,
-    /// Whether the state is stable; at the fold, the last one that is.
-    pub stable: bool,
-    /// Rotation of the base since first touch.
-    pub push_angle_deg: f64,
-    /// The push angle of the paper's Fig. 1D.
-    pub push_chord_deg: f64,
-    /// Of the contact, from the base.
-    pub arc_length_mm: f64,
-    /// Of the tangent at the contact, from the base's tangent.
-    pub contact_angle_deg: f64,
-    /// Between pole and whisker.
-    pub force_un: f64,
-    /// That the pole puts on the base.
-    pub base_moment_nnm: f64,
-    /// `det d(D, phi)/d(s_obj, f)`, lengths in whisker lengths and `f = F L^2/(E I_base)`: 0 at a fold.
-    pub det: f64,
-    /// What is special about the point.
-    pub mark: Option<Mark>,
+row! {
+    /// A state on a branch, in the units of people.
+    #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+    pub struct BranchPoint {
+        /// Side of the whisker that the pole is on: cb (convex) or cf (concave).
+        pub side: Side,
+        /// Whether the state is stable; at the fold, the last one that is.
+        pub stable: bool,
+        /// Rotation of the base since first touch: positive CB, negative CF.
+        pub push_angle_deg: f64,
+        /// Angle at the base between the contact and the resting whisker as far away.
+        pub push_chord_deg: f64,
+        /// Arclength from the base to the contact.
+        pub arc_length_mm: f64,
+        /// Angle of the tangent at the contact, from the base's tangent.
+        pub contact_angle_deg: f64,
+        /// Size of the force between pole and whisker.
+        pub force_un: f64,
+        /// Moment that the pole puts on the base.
+        pub base_moment_nnm: f64,
+        /// det d(D, phi)/d(s_obj, f) with f = F L^2/(E I_base): 0 at a fold.
+        pub det: f64,
+        /// What is special: touch, fold, tip, second-fold (the unstable states' end).
+        pub mark: Option<Mark>,
+    }
 }
 
 impl Branch {
@@ -58,7 +61,7 @@ impl Branch {
         let rod = whisker.rod(pole, side);
         let rest = Rest::new(&rod);
         let row = Row::new(&rest, distance_mm / whisker.length_mm);
-        if !row.is_reached(&rod) {
+        if !row.is_reached() {
             let (tip, _) = rest.at_arclength(1.0);
             return Err(NoState::OutOfReach {
                 reach_mm: tip.length() * whisker.length_mm,

@@ -1,5 +1,6 @@
 //! Detachment curves: where pushes from first touch end, distance by distance.
 
+use super::columns::row;
 use crate::classify::RowBoundary;
 use crate::rod::{Effects, Rest, Side};
 use crate::scene::{Pole, Whisker};
@@ -12,7 +13,7 @@ use serde::Serialize;
 /// How a push from first touch ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Kind {
+pub enum DetachmentKind {
     /// At the fold.
     SlipOff,
     /// With the tip at the pole.
@@ -23,48 +24,66 @@ pub enum Kind {
     Unresolved,
 }
 
-/// The end of a push at one distance; without values where there is none.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Detachment {
-    /// The side.
-    pub side: Side,
-    /// From the base to the contact at first touch.
-    pub distance_mm: f64,
-    /// From the base to the pole's centre.
-    pub pole_distance_mm: f64,
-    /// How the push ends.
-    pub kind: Kind,
-    /// Rotation of the base since first touch.
-    pub push_angle_deg: Option<f64>,
-    /// The push angle of the paper's Fig. 1D.
-    pub push_chord_deg: Option<f64>,
-    /// From the base to the contact.
-    pub contact_distance_mm: Option<f64>,
-    /// The same along the whisker.
-    pub arc_length_mm: Option<f64>,
-    /// Between pole and whisker.
-    pub force_un: Option<f64>,
-    /// That the pole puts on the base, along its tangent.
-    pub base_force_x_un: Option<f64>,
-    /// The same across its tangent.
-    pub base_force_y_un: Option<f64>,
-    /// The same as a moment.
-    pub base_moment_nnm: Option<f64>,
-    /// Of the tangent at the contact, from the base's tangent.
-    pub contact_angle_deg: Option<f64>,
-    /// Remaining error relative to the distance of the pole.
-    pub residual: Option<f64>,
+row! {
+    /// The end of a push at one distance; without values where there is none.
+    #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+    pub struct Detachment {
+        /// Side of the whisker that the pole is on: cb (convex) or cf (concave).
+        pub side: Side,
+        /// Distance from the base to the contact at first touch.
+        pub distance_mm: f64,
+        /// Distance from the base to the pole's centre; the push leaves it as it is.
+        pub pole_distance_mm: f64,
+        /// How the push ends: slip-off, pull-off, out-of-reach or unresolved.
+        pub kind: DetachmentKind,
+        /// Rotation of the base since first touch: positive CB, negative CF.
+        pub push_angle_deg: Option<f64>,
+        /// Angle at the base between the contact and the resting whisker as far away.
+        pub push_chord_deg: Option<f64>,
+        /// Straight distance from the base to the contact.
+        pub contact_distance_mm: Option<f64>,
+        /// Arclength from the base to the contact.
+        pub arc_length_mm: Option<f64>,
+        /// Size of the force between pole and whisker.
+        pub force_un: Option<f64>,
+        /// Force that the pole puts on the base, along the base's tangent.
+        pub base_force_x_un: Option<f64>,
+        /// The same across the base's tangent, to the left.
+        pub base_force_y_un: Option<f64>,
+        /// Moment that the pole puts on the base.
+        pub base_moment_nnm: Option<f64>,
+        /// Angle of the tangent at the contact, from the base's tangent.
+        pub contact_angle_deg: Option<f64>,
+        /// Remaining error relative to the distance of the pole.
+        pub residual: Option<f64>,
+    }
 }
 
-/// Where slip-off turns into pull-off, if it does: the fold with the contact at the tip.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Corner {
-    /// The side.
-    pub side: Side,
-    /// From the base to the contact at first touch.
-    pub distance_mm: Option<f64>,
-    /// Rotation of the base since first touch.
-    pub push_angle_deg: Option<f64>,
+row! {
+    /// Where slip-off turns into pull-off, if it does: the fold with the contact at the tip.
+    #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+    pub struct Corner {
+        /// Side of the whisker that the pole is on: cb (convex) or cf (concave).
+        pub side: Side,
+        /// Distance from the base to the contact at first touch.
+        pub distance_mm: Option<f64>,
+        /// Rotation of the base since first touch: positive CB, negative CF.
+        pub push_angle_deg: Option<f64>,
+        /// Why there is none: always-slips-off, always-pulls-off or not-found.
+        pub reason: Option<NoCorner>,
+    }
+}
+
+/// Why slip-off does not turn into pull-off anywhere.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum NoCorner {
+    /// Every push that begins ends at the fold: a perfect cone's, and those of whiskers that bend out of the way.
+    AlwaysSlipsOff,
+    /// Every push that begins ends at the tip.
+    AlwaysPullsOff,
+    /// The fold with the contact at the tip was not found, or the ends around it were not.
+    NotFound,
 }
 
 /// The detachment curve of `whisker` on one side of `pole`, at growing `distances_mm`.
@@ -106,7 +125,7 @@ pub fn curve_at(
     for (i, row) in rows.iter_mut().enumerate() {
         let boundary = RowBoundary::new(sheet.touches(i), &sheet.crossings[i]);
         if !sheet.touches(i) {
-            row.kind = Kind::OutOfReach;
+            row.kind = DetachmentKind::OutOfReach;
         } else if let (Some(_), Some(end)) = (boundary.detachment(), sheet.crossings[i].first()) {
             ends.push((i, end));
         }
@@ -128,8 +147,8 @@ pub fn curve_at(
         let reading = reader.read(end.tau, full, sheet.rows[i].touch, push);
         rows[i] = Detachment {
             kind: match end.edge {
-                Edge::Fold => Kind::SlipOff,
-                Edge::Tip => Kind::PullOff,
+                Edge::Fold => DetachmentKind::SlipOff,
+                Edge::Tip => DetachmentKind::PullOff,
             },
             push_angle_deg: Some(push.to_degrees()),
             push_chord_deg: Some(reading.push_chord_deg),
@@ -152,7 +171,7 @@ fn blank(side: Side, distance_mm: f64, pole_distance_mm: f64) -> Detachment {
         side,
         distance_mm,
         pole_distance_mm,
-        kind: Kind::Unresolved,
+        kind: DetachmentKind::Unresolved,
         push_angle_deg: None,
         push_chord_deg: None,
         contact_distance_mm: None,
@@ -166,32 +185,41 @@ fn blank(side: Side, distance_mm: f64, pole_distance_mm: f64) -> Detachment {
     }
 }
 
-/// The corner of `whisker` on one side of `pole`; without values where there is none: a perfect cone always slips off,
-/// and other whiskers may be too short to be pulled off.
+/// The corner of `whisker` on one side of `pole`.
 #[must_use]
 pub fn corner(whisker: &Whisker, pole: &Pole, side: Side) -> Corner {
-    let rod = whisker.rod(pole, side);
-    let length = whisker.length_mm;
     let end = |distance: f64| curve(whisker, pole, side, &[distance])[0];
-    let switches = |distance: &f64| {
-        let kinds = [-1.0, 1.0].map(|sign| end(distance + sign * CORNER_TOLERANCE * length).kind);
-        kinds == [Kind::SlipOff, Kind::PullOff]
-    };
-    let tip = (rod.taper < 1.0)
-        .then(|| Sheet::fold_at_tip(Method::fine(Effects::of([&rod])), &rod, side));
-    let distance = tip.flatten().and_then(|fold| {
-        let pole = fold.variation.map.pole.length();
-        let at_tip = Rest::new(&rod).distance_of_pole(pole) * length;
-        Some(at_tip)
-            .filter(switches)
-            .or_else(|| switch(&end, length, rod.pole.abs()))
+    let found = corner_distance(whisker, pole, side, &end).and_then(|distance| {
+        let push = end(distance).push_angle_deg.ok_or(NoCorner::NotFound)?;
+        Ok((distance, push))
     });
-    let push = distance.and_then(|distance| end(distance).push_angle_deg);
     Corner {
         side,
-        distance_mm: distance.filter(|_| push.is_some()),
-        push_angle_deg: push,
+        distance_mm: found.ok().map(|(distance, _)| distance),
+        push_angle_deg: found.ok().map(|(_, push)| push),
+        reason: found.err(),
     }
+}
+
+fn corner_distance(
+    whisker: &Whisker,
+    pole: &Pole,
+    side: Side,
+    end: &impl Fn(f64) -> Detachment,
+) -> Result<f64, NoCorner> {
+    let rod = whisker.rod(pole, side);
+    if rod.taper >= 1.0 {
+        return Err(NoCorner::AlwaysSlipsOff);
+    }
+    let length = whisker.length_mm;
+    let fold = Sheet::fold_at_tip(Method::fine(Effects::of([&rod])), &rod, side);
+    let pole = fold.ok_or(NoCorner::NotFound)?.variation.map.pole.length();
+    let at_tip = Rest::new(&rod).distance_of_pole(pole) * length;
+    let kinds = [-1.0, 1.0].map(|sign| end(at_tip + sign * CORNER_TOLERANCE * length).kind);
+    if kinds == [DetachmentKind::SlipOff, DetachmentKind::PullOff] {
+        return Ok(at_tip);
+    }
+    switch(end, length, rod.pole.abs())
 }
 
 /// Half the width, in whisker lengths, of the gap in which slip-off must turn into pull-off.
@@ -202,20 +230,26 @@ const CORNER_SAMPLES: u32 = 128;
 
 /// The distance at which slip-off turns into pull-off, by bisection: with friction it can lie where the branches of two
 /// poles swap their ends. No pole is nearer than `nearest`, in whisker lengths.
-fn switch(end: &impl Fn(f64) -> Detachment, length: f64, nearest: f64) -> Option<f64> {
+fn switch(end: &impl Fn(f64) -> Detachment, length: f64, nearest: f64) -> Result<f64, NoCorner> {
     let samples: Vec<f64> = (1..=CORNER_SAMPLES)
         .map(|i| nearest + (1.0 - nearest) * f64::from(i) / f64::from(CORNER_SAMPLES))
         .map(|distance| distance * length)
         .collect();
-    let pulled = samples.iter().position(|d| end(*d).kind == Kind::PullOff)?;
-    let (mut low, mut high) = (samples[pulled.checked_sub(1)?], samples[pulled]);
+    let pulled = samples
+        .iter()
+        .position(|d| end(*d).kind == DetachmentKind::PullOff);
+    let pulled = pulled.ok_or(NoCorner::AlwaysSlipsOff)?;
+    let before = pulled.checked_sub(1).ok_or(NoCorner::AlwaysPullsOff)?;
+    let (mut low, mut high) = (samples[before], samples[pulled]);
     while high - low > CORNER_TOLERANCE * length {
         let middle = 0.5 * (low + high);
         match end(middle).kind {
-            Kind::SlipOff => low = middle,
-            Kind::PullOff => high = middle,
-            Kind::OutOfReach | Kind::Unresolved => return None,
+            DetachmentKind::SlipOff => low = middle,
+            DetachmentKind::PullOff => high = middle,
+            DetachmentKind::OutOfReach | DetachmentKind::Unresolved => {
+                return Err(NoCorner::NotFound);
+            }
         }
     }
-    Some(low)
+    Ok(low)
 }

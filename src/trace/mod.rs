@@ -4,13 +4,14 @@
 //! on where the sheet ends, past the fold and along the unstable states, and is followed by continuation.
 
 mod branch;
+mod columns;
 mod curve;
-mod even;
+mod resample;
 mod shape;
 mod state;
 
 pub use branch::{Branch, BranchPoint};
-pub use curve::{Corner, Detachment, Kind, corner, curve, curve_at};
+pub use curve::{Corner, Detachment, DetachmentKind, NoCorner, corner, curve, curve_at};
 pub use shape::{Part, Shape, ShapePoint};
 pub use state::Found;
 
@@ -42,6 +43,14 @@ pub enum NoState {
     OutOfReach {
         /// The farthest first touch of a point contact.
         reach_mm: f64,
+    },
+    /// The base has turned away from the pole.
+    #[error(
+        "lost touch: the whisker has moved away from the pole; must be between {:.9} and {:.9} deg", .stays_deg[0], .stays_deg[1]
+    )]
+    LostTouch {
+        /// The push angles that keep it on the pole, from the smaller to the larger.
+        stays_deg: [f64; 2],
     },
     /// The push goes beyond the fold.
     #[error("slipped off at {at_deg:.9} deg")]

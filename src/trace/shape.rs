@@ -1,5 +1,6 @@
 //! The whisker in one state, from base to tip.
 
+use super::columns::row;
 use super::{Branch, FINER, Found};
 use crate::rod::{Rest, arclength};
 use crate::shooting::shape::{Place, profile};
@@ -20,23 +21,25 @@ pub struct Shape {
     pub residual: f64,
 }
 
-/// One place of a whisker.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct ShapePoint {
-    /// From the base.
-    pub arc_length_mm: f64,
-    /// Position.
-    pub x_mm: f64,
-    /// Position.
-    pub y_mm: f64,
-    /// Of the tangent, from the first axis.
-    pub angle_deg: f64,
-    /// Of the bent whisker.
-    pub curvature_per_mm: f64,
-    /// Bending moment.
-    pub moment_nnm: f64,
-    /// Which part of the whisker.
-    pub part: Part,
+row! {
+    /// One place of a whisker.
+    #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+    pub struct ShapePoint {
+        /// Arclength from the base.
+        pub arc_length_mm: f64,
+        /// Position along the base's tangent at first touch; the base is at 0.
+        pub x_mm: f64,
+        /// Position across it, to the left: the CF side of a curved whisker.
+        pub y_mm: f64,
+        /// Angle of the tangent, from the base's tangent at first touch.
+        pub angle_deg: f64,
+        /// Curvature of the bent whisker.
+        pub curvature_per_mm: f64,
+        /// Bending moment in the whisker.
+        pub moment_nnm: f64,
+        /// loaded (before the contact), contact or free (beyond it).
+        pub part: Part,
+    }
 }
 
 /// The parts of a whisker in contact.
@@ -57,9 +60,7 @@ impl Shape {
     pub fn new(branch: &Branch, found: &Found, count: usize) -> Self {
         let (rod, row, units) = (branch.rod(), branch.row(), branch.units());
         let contact = arclength(rod, found.tau).min(1.0);
-        let last = count.max(2) - 1;
-        let even = (0..=last).map(|i| i as f64 / last as f64);
-        let mut at: Vec<f64> = even.filter(|s| *s != contact).collect();
+        let mut at: Vec<f64> = uniform(count).filter(|s| *s != contact).collect();
         let index = at.partition_point(|s| *s < contact);
         at.insert(index, contact);
         let places = profile(rod, found.tau, found.load, FINER, &at);
@@ -102,9 +103,14 @@ impl Shape {
     #[must_use]
     pub fn at_rest(branch: &Branch, count: usize) -> Vec<[f64; 2]> {
         let rest = Rest::new(branch.rod());
-        let last = count.max(2) - 1;
-        let even = (0..=last).map(|i| i as f64 / last as f64);
-        even.map(|s| (rest.at_arclength(s).0 * branch.units().length_mm).to_array())
+        uniform(count)
+            .map(|s| (rest.at_arclength(s).0 * branch.units().length_mm).to_array())
             .collect()
     }
+}
+
+/// `count` numbers, at least 2, from 0 to 1.
+fn uniform(count: usize) -> impl Iterator<Item = f64> {
+    let last = count.max(2) - 1;
+    (0..=last).map(move |i| i as f64 / last as f64)
 }

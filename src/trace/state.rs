@@ -46,8 +46,12 @@ impl Branch {
         let Some(node) = self.level.find(part, push) else {
             let at_deg = last.push.to_degrees();
             let within = (first.push - push) * (last.push - push) <= 0.0;
+            let sign = self.level.side.sign();
             return Err(match (stable, fold, end) {
                 _ if within => self.lost(),
+                (true, ..) if sign * push < 0.0 => NoState::LostTouch {
+                    stays_deg: ends.map(f64::to_degrees),
+                },
                 (false, ..) => NoState::NotUnstable {
                     ends_deg: [first.push.to_degrees(), at_deg],
                 },

@@ -12,7 +12,7 @@ fn a_curve_is_a_table_of_exact_numbers() {
     let place = Place::with(SCENE);
     let run = good(&place, &["curve", "scene.toml"]);
     let rows = cells(&run.out, CURVE);
-    let scene = Scene::parse(SCENE, "scene", "scene").unwrap();
+    let scene = Scene::parse(SCENE, "scene").unwrap();
     let whisker = scene.whisker_at(None, None);
     let expected: Vec<_> = Side::BOTH
         .into_iter()
@@ -39,7 +39,8 @@ fn a_curve_is_a_table_of_exact_numbers() {
 
 #[test]
 fn a_sweep_leads_with_the_whisker() {
-    let sweep = format!("{SCENE}taper = [0, 0.3, 1]\ncurvature_per_mm = [0.0, 0.03]\n");
+    let whiskers = SCENE.replace("tip_radius_um = 1.5\n", "");
+    let sweep = format!("{whiskers}taper = [0, 0.3, 1]\ncurvature_per_mm = [0.0, 0.03]\n");
     let place = Place::with(&sweep);
     let run = good(&place, &["curve", "scene.toml"]);
     let rows = cells(&run.out, &format!("taper,curvature_per_mm,{CURVE}"));
@@ -58,12 +59,12 @@ fn a_sweep_leads_with_the_whisker() {
     let run = good(&place, &["curve", "scene.toml", "--corner"]);
     let rows = cells(
         &run.out,
-        "taper,curvature_per_mm,side,distance_mm,push_angle_deg",
+        "taper,curvature_per_mm,side,distance_mm,push_angle_deg,reason",
     );
     assert_eq!(rows.len(), 12);
     // A perfect cone is never pulled off.
     for row in rows.iter().filter(|row| row[0] == "1.0") {
-        assert_eq!(row[3..], ["", ""]);
+        assert_eq!(row[3..], ["", "", "always-slips-off"]);
     }
 
     place
@@ -83,8 +84,9 @@ fn a_sweep_leads_with_the_whisker() {
 fn the_corner_of_the_cone() {
     let place = Place::with(SCENE);
     let run = good(&place, &["curve", "scene.toml", "--corner"]);
-    let rows = cells(&run.out, "side,distance_mm,push_angle_deg");
-    assert_eq!(rows[0], ["cf", "", ""]);
+    let rows = cells(&run.out, "side,distance_mm,push_angle_deg,reason");
+    assert_eq!(rows[0], ["cf", "", "", "always-slips-off"]);
+    assert_eq!(rows[1][3], "");
     let distance: f64 = rows[1][1].parse().unwrap();
     assert_eq!(rows[1][0], "cb");
     assert!((distance - 19.09).abs() < 5e-3, "{distance}");

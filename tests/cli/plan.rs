@@ -117,8 +117,9 @@ fn everything_on() {
 
 #[test]
 fn a_sweep_names_its_axes() {
+    let whisker = STRAIGHT.replace("tip_radius_um = 30\n", "");
     let axes = "taper = { from = 0, to = 1, count = 4 }\ncurvature_per_mm = [0, 0.02, 0.04]\n";
-    let run = plan(&Place::with(&format!("{STRAIGHT}{axes}")), "scene.toml");
+    let run = plan(&Place::with(&format!("{whisker}{axes}")), "scene.toml");
     let listed = effects(&run);
     assert_eq!(listed[0], "taper | on | own kernel | grid.taper 0 to 1");
     let curvature = "curvature | on | own kernel | grid.curvature_per_mm 0 to 0.04";

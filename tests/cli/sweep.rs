@@ -8,7 +8,7 @@ const SWEEP: &str = r#"title = "A small sweep"
 [whisker]
 length_mm = 20
 base_radius_um = 30.0
-tip_radius_um = 1.5
+# tip_radius_um
 youngs_modulus_gpa = 3.0
 [pole]
 radius_mm = 0.25
@@ -23,7 +23,7 @@ curvature_per_mm = [0, 0.02, 0.04]
 fn single(taper: f64, curvature_per_mm: f64) -> String {
     let tip = format!("tip_radius_um = {:?}", 30.0 * (1.0 - taper));
     let lines = SWEEP.lines().filter_map(|line| match line {
-        "tip_radius_um = 1.5" => Some(tip.as_str()),
+        "# tip_radius_um" => Some(tip.as_str()),
         _ if line.starts_with("taper") || line.starts_with("curvature") => None,
         _ => Some(line),
     });

@@ -1,16 +1,21 @@
 //! `--tolerance` of `map` and `curve`.
 
 use crate::{Place, SCENE};
+use whiskmap::accuracy::BOUNDED;
 
 #[test]
 fn it_says_what_it_picked_and_keeps_it_with_the_map() {
     let place = Place::with(SCENE);
     let run = place.map(&["scene.toml", "--tolerance", "1e-6deg", "--no-png"]);
     assert!(run.err.contains("steps of order 8"), "{}", run.err);
+    assert!(run.err.contains(BOUNDED), "{}", run.err);
     let map = whiskmap::store::StoredMap::open(&place.path("outputs/scene.exr")).unwrap();
     let tolerances = map.attribute("tolerances").unwrap();
-    let estimate = tolerances["angle_error_estimated_deg"].as_f64().unwrap();
+    let estimate = tolerances["push_angle_error_estimated_deg"]
+        .as_f64()
+        .unwrap();
     assert!(estimate > 1e-12 && estimate <= 1e-6, "{tolerances}");
+    assert_eq!(tolerances["bounded"], BOUNDED);
 }
 
 /// Coarser steps, other numbers; not by more than was allowed.
@@ -41,7 +46,8 @@ fn what_is_no_tolerance_is_refused() {
         ("0", "between 1e-10deg and 1deg"),
         ("1e-11deg", "between 1e-10deg and 1deg"),
         ("nan", "between 1e-10deg and 1deg"),
-        ("1e-6rad", "between 1e-10deg and 1deg"),
+        ("1e-6rad", "must be an angle in degrees, such as 1e-6deg"),
+        ("abc", "must be an angle in degrees, such as 1e-6deg"),
         ("-1", "between 1e-10deg and 1deg"),
     ] {
         let run = place.run(&["curve", "scene.toml", &format!("--tolerance={text}")]);

@@ -66,6 +66,39 @@ fn tables_and_plots_go_where_they_are_told() {
     assert_eq!(names(&place.path("")), left);
 }
 
+/// `--help` defines every column of every table, in its order, and nothing else.
+#[test]
+fn help_defines_the_columns() {
+    let place = Place::with(SCENE);
+    let corner = "side,distance_mm,push_angle_deg,reason";
+    for (command, tables) in [
+        ("curve", &[CURVE, corner][..]),
+        ("branch", &[BRANCH]),
+        ("shape", &[SHAPE]),
+    ] {
+        let help = good(&place, &[command, "--help"]).out;
+        let defined: Vec<String> = help
+            .split("\nColumns")
+            .skip(1)
+            .map(|table| {
+                let lines = table
+                    .lines()
+                    .skip(1)
+                    .take_while(|line| line.starts_with("  "));
+                let names = lines.map(|line| {
+                    let (name, meaning) = line.trim().split_once(' ').unwrap();
+                    assert!(meaning.trim().len() > 10 && line.len() <= 100, "{line}");
+                    name
+                });
+                names.collect::<Vec<_>>().join(",")
+            })
+            .collect();
+        assert_eq!(defined, tables, "{help}");
+    }
+    let short = good(&place, &["curve", "-h"]).out;
+    assert!(!short.contains("Columns"), "{short}");
+}
+
 /// What is not a plain file is written to, not replaced.
 #[cfg(unix)]
 #[test]
@@ -130,6 +163,9 @@ fn wrong_arguments_are_refused_before_any_work() {
         "--push-angle",
         "1e9",
     ];
+    let no_number = place.run(&["branch", "scene.toml", "--distance", "far"]);
+    assert_eq!(no_number.code, Some(2), "{no_number:?}");
+    assert!(no_number.err.contains("must be a number"), "{no_number:?}");
     place
         .run(&push)
         .assert_refused(&["--push-angle 1000000000: must be between -360 and 360"]);

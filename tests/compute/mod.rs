@@ -29,12 +29,6 @@ pub fn compute_as(scene: &Scene, plan: &Plan, engine: &mut dyn Engine) -> (Summa
     (summary, panels.0)
 }
 
-/// `count` values of an axis, both ends among them.
-pub fn thin(axis: &mut Vec<f64>, count: usize) {
-    let last = axis.len() - 1;
-    *axis = (0..count).map(|i| axis[i * last / (count - 1)]).collect();
-}
-
 /// Largest difference of two stored channels, relative to the largest value; infinite where only one is NaN.
 /// Two roundings to f32 are 1.2e-7.
 pub fn difference(a: &[f32], b: &[f32]) -> f32 {

@@ -15,8 +15,7 @@ mod driver;
 mod kernel;
 mod lost;
 
-use compute::{difference, thin};
-use std::path::Path;
+use compute::difference;
 use whiskmap::integrate::EngineError;
 use whiskmap::integrate::gpu::{Gpu, Precision, shaders};
 use whiskmap::rod::Effects;
@@ -46,10 +45,7 @@ fn sound() -> Option<Gpu> {
 
 /// The paper's cone on a grid of `count` x `count`.
 fn cone(count: usize) -> Scene {
-    let mut scene = Scene::read(Path::new("scenes/cone.toml")).unwrap();
-    thin(&mut scene.grid.push_angle_deg, count);
-    thin(&mut scene.grid.distance_mm, count);
-    scene
+    Scene::read("scenes/cone.toml").unwrap().thinned(count, 1)
 }
 
 /// Asserts that regimes, statuses and margins are equal, and states as far as their last digit in the file goes: where

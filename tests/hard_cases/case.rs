@@ -77,7 +77,7 @@ impl Case {
 
     pub fn scene(&self) -> Scene {
         let text = self.text();
-        Scene::parse(&text, "hard", "hard").unwrap_or_else(|error| panic!("{text}\n{error}"))
+        Scene::parse(&text, "hard").unwrap_or_else(|error| panic!("{text}\n{error}"))
     }
 }
 

@@ -9,7 +9,7 @@ use whiskmap::refine::TOLERANCE;
 use whiskmap::rod::Side;
 use whiskmap::scene::Scene;
 use whiskmap::store::Panel;
-use whiskmap::trace::{Kind, corner, curve};
+use whiskmap::trace::{DetachmentKind, corner, curve};
 
 /// Every cell has all its numbers or none.
 pub fn is_complete(panel: &Panel) -> bool {
@@ -48,8 +48,8 @@ const BESIDE: [f64; 2] = [1e-5, 1e-7];
 
 /// The map of one row next to `end_deg`: contact before it, detached by `kind` beyond it, and certain exactly there. With
 /// friction two branches can swap their ends, and what is beyond the one end is a state of the other branch.
-fn ends_at(name: &str, case: &Case, distance: f64, end_deg: f64, kind: Kind) {
-    let detached = if kind == Kind::SlipOff {
+fn ends_at(name: &str, case: &Case, distance: f64, end_deg: f64, kind: DetachmentKind) {
+    let detached = if kind == DetachmentKind::SlipOff {
         Regime::SlipOff
     } else {
         Regime::PullOff
@@ -81,7 +81,7 @@ fn pushes_up_to_the_edge_and_past_it() {
         let scene = case.scene();
         for side in Side::BOTH {
             for end in curve(&scene.whisker, &scene.pole, side, &scene.grid.distance_mm) {
-                assert_ne!(end.kind, Kind::Unresolved, "{name}");
+                assert_ne!(end.kind, DetachmentKind::Unresolved, "{name}");
                 let Some(push) = end
                     .push_angle_deg
                     .filter(|push| (0.1..359.0).contains(&push.abs()))
@@ -115,10 +115,10 @@ fn both_sides_of_the_corner() {
             };
             corners += 1;
             for (by, kind) in [
-                (-1e-6, Kind::SlipOff),
-                (-1e-8, Kind::SlipOff),
-                (1e-8, Kind::PullOff),
-                (1e-6, Kind::PullOff),
+                (-1e-6, DetachmentKind::SlipOff),
+                (-1e-8, DetachmentKind::SlipOff),
+                (1e-8, DetachmentKind::PullOff),
+                (1e-6, DetachmentKind::PullOff),
             ] {
                 let distance = distance + by * case.length_mm;
                 let end = curve(&scene.whisker, &scene.pole, side, &[distance])[0];
@@ -148,6 +148,6 @@ fn fainter_bends_are_refused() {
             ..case.clone()
         }
         .text();
-        assert_eq!(Scene::parse(&text, "hard", "hard").is_ok(), fits, "{bend}");
+        assert_eq!(Scene::parse(&text, "hard").is_ok(), fits, "{bend}");
     }
 }

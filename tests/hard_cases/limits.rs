@@ -2,7 +2,7 @@
 
 use whiskmap::rod::Side;
 use whiskmap::scene::{Curvature, Pole, Whisker};
-use whiskmap::trace::{Detachment, Kind, corner, curve};
+use whiskmap::trace::{Detachment, DetachmentKind, corner, curve};
 
 /// Distance of first touch in whisker lengths: every whisker here slips off there, on both sides.
 const DISTANCE: f64 = 0.4;
@@ -40,7 +40,7 @@ impl Away {
     /// Push angle of slip-off, as a magnitude, in degrees.
     fn slip(self, side: Side) -> f64 {
         let end = self.end(side, DISTANCE);
-        assert_eq!(end.kind, Kind::SlipOff);
+        assert_eq!(end.kind, DetachmentKind::SlipOff);
         end.push_angle_deg.unwrap() * side.sign()
     }
 }
@@ -128,7 +128,7 @@ fn blunt_cones_are_perfect_ones_that_are_never_pulled_off() {
         assert!(is(1.0, &orders("tip", miss)));
         let tip = cone(0.0);
         for distance in [0.5, 0.9, 0.93] {
-            assert_eq!(tip.end(side, distance).kind, Kind::SlipOff);
+            assert_eq!(tip.end(side, distance).kind, DetachmentKind::SlipOff);
         }
         assert!(
             corner(&tip.whisker(), &Pole::smooth(0.01), side)

@@ -38,7 +38,7 @@ fn difference(a: &[f32], b: &[f32], factor: f64) -> f64 {
 
 fn map(case: &Case, gpa: &str) -> Panel {
     let text = case.text().replace("youngs_modulus_gpa = 3", gpa);
-    compute(&Scene::parse(&text, "hard", "hard").unwrap(), &mut Cpu).1
+    compute(&Scene::parse(&text, "hard").unwrap(), &mut Cpu).1
 }
 
 /// Measured 8.5e-8; two roundings to f32 are 1.2e-7.

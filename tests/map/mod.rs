@@ -4,7 +4,7 @@
 use serde_json::{Value, json};
 use std::path::Path;
 use whiskmap::classify::Regime;
-use whiskmap::scene::{Grid, Pole, Scene, Whisker};
+use whiskmap::scene::{Grid, Pole, Setup, Whisker};
 use whiskmap::store::{Counts, Description, MapWriter, Panel, STATE_CHANNELS, Shots};
 
 pub const STATUS_NAMES: [(u32, &str); 3] =
@@ -24,8 +24,8 @@ pub fn scene(
     distances: usize,
     taper: Option<Vec<f64>>,
     curvature_per_mm: Option<Vec<f64>>,
-) -> Scene {
-    Scene {
+) -> Setup {
+    Setup {
         title: "A made-up whisker in front of a pole".to_owned(),
         whisker: Whisker {
             length_mm: 20.0,
@@ -62,7 +62,7 @@ fn edge(distance: f64, side: f64, index: usize) -> Option<(f64, bool)> {
 }
 
 /// Panel `index` of a map.
-pub fn panel(scene: &Scene, index: usize) -> Panel {
+pub fn panel(scene: &Setup, index: usize) -> Panel {
     let grid = &scene.grid;
     let cells = grid.push_angle_deg.len() * grid.distance_mm.len();
     let mut panel = Panel {
@@ -102,7 +102,7 @@ pub fn panel(scene: &Scene, index: usize) -> Panel {
     panel
 }
 
-pub fn describe<'a>(scene: &'a Scene, tolerances: &'a Value) -> Description<'a> {
+pub fn describe<'a>(scene: &'a Setup, tolerances: &'a Value) -> Description<'a> {
     Description {
         scene,
         engine: "cpu f64",
@@ -113,7 +113,7 @@ pub fn describe<'a>(scene: &'a Scene, tolerances: &'a Value) -> Description<'a> 
 }
 
 /// Writes the whole map.
-pub fn write(path: &Path, scene: &Scene) -> Counts {
+pub fn write(path: &Path, scene: &Setup) -> Counts {
     let tolerances = json!({"rtol": 0.1 + 0.2});
     let mut writer = MapWriter::create(path, &describe(scene, &tolerances)).unwrap();
     let grid = &scene.grid;

@@ -13,7 +13,7 @@ proptest! {
         let to = f64::min(from + width, 360.0);
         prop_assume!(to - from > 1e-7);
         let axis = format!("push_angle_deg = {{ from = {from:?}, to = {to:?}, count = {count} }}");
-        let values = parse(&with_line(13, &axis)).unwrap().grid.push_angle_deg;
+        let values = parse(&with_line(13, &axis)).unwrap().grid.push_angle_deg.clone();
         prop_assert_eq!(values.len(), count);
         prop_assert_eq!(values[0], from);
         prop_assert_eq!(values[count - 1], to);
@@ -77,7 +77,7 @@ proptest! {
             chars.splice(start..end, shard.chars());
         }
         let text: String = chars.into_iter().collect();
-        match Scene::parse(&text, "test.toml", "fallback") {
+        match Scene::parse(&text, "test.toml") {
             Ok(scene) => {
                 let axes = [Some(&scene.grid.push_angle_deg), Some(&scene.grid.distance_mm), scene.grid.taper.as_ref()];
                 for axis in axes.into_iter().flatten() {

@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 
 use whiskmap::scene::{Curvature, Morphology, Scene};
 
-/// A valid scene with every table and axis, to be spoilt line by line. Lines are counted from 1.
+/// A valid scene with every table and all axes but one, to be spoilt line by line. Lines are counted from 1.
 const BASE: &str = r#"title = "base"
 [whisker]
 length_mm = 20
@@ -29,14 +29,20 @@ radius_mm = 0.25
 [grid]
 push_angle_deg = { from = -70, to = 70, count = 5 }
 distance_mm = [2.0, 7.5, 20.0]
-taper = { from = 0, to = 1, count = 3 }
+# taper = { from = 0, to = 1, count = 3 }
 curvature_per_mm = [0, 0.04]
 [output]
 name = "base"
 "#;
 
 fn parse(text: &str) -> Result<Scene, String> {
-    Scene::parse(text, "test.toml", "fallback").map_err(|why| why.to_string())
+    Scene::parse(text, "test.toml").map_err(|why| why.to_string())
+}
+
+/// The base scene with an axis of tapers, which give the tip its radius.
+fn sweep() -> String {
+    BASE.replace("tip_radius_um", "# tip_radius_um")
+        .replace("# taper", "taper")
 }
 
 /// The base scene with one line replaced by others.
@@ -69,7 +75,7 @@ fn every_shipped_scene_is_accepted() {
         let side = if scene.name == "morphology" { 96 } else { 512 };
         assert_eq!(scene.grid.push_angle_deg.len(), side, "{}", scene.name);
         assert_eq!(scene.grid.distance_mm.len(), side, "{}", scene.name);
-        names.push(scene.name);
+        names.push(scene.name.clone());
     }
     let expected = [
         "cone",
@@ -98,8 +104,12 @@ fn every_value_arrives_where_it_belongs() {
     assert_eq!(scene.pole.radius_mm, 0.25);
     assert_eq!(scene.grid.push_angle_deg, [-70.0, -35.0, 0.0, 35.0, 70.0]);
     assert_eq!(scene.grid.distance_mm, [2.0, 7.5, 20.0]);
-    assert_eq!(scene.grid.taper.unwrap(), [0.0, 0.5, 1.0]);
-    assert_eq!(scene.grid.curvature_per_mm.unwrap(), [0.0, 0.04]);
+    assert_eq!(scene.grid.taper, None);
+    assert_eq!(scene.grid.curvature_per_mm, Some(vec![0.0, 0.04]));
+    let swept = parse(&sweep()).unwrap();
+    assert_eq!(swept.grid.taper, Some(vec![0.0, 0.5, 1.0]));
+    // The first of the axis.
+    assert_eq!(swept.whisker.tip_radius_um, 30.0);
 }
 
 fn curvature(parabola_per_mm: f64, vertex_mm: f64) -> Option<Curvature> {
@@ -121,7 +131,7 @@ fn what_may_be_left_out_may_be_left_out() {
     assert_eq!(scene.pole.radius_mm, 0.0);
     assert_eq!(scene.grid.push_angle_deg, [5.0]);
     assert_eq!(scene.grid.distance_mm, [2.0]);
-    assert_eq!(scene.name, "fallback");
+    assert_eq!(scene.name, "test");
     let whiskers: Vec<_> = scene.whiskers().collect();
     let straight_cone = Morphology {
         taper: 1.0,
@@ -146,8 +156,45 @@ fn a_parabola_of_zero_is_straight_but_lends_its_vertex_to_an_axis() {
 }
 
 #[test]
+fn a_changed_scene_is_checked_like_its_file() {
+    let base = parse(BASE).unwrap();
+    let rough = base.with("contact.friction", 0.4).unwrap();
+    assert_eq!(rough.pole.friction, 0.4);
+    assert_eq!(
+        (&rough.whisker, &rough.grid, &rough.name),
+        (&base.whisker, &base.grid, &base.name)
+    );
+    assert_eq!(parse(&rough.text).unwrap(), rough);
+    let exact = [0.1 + 0.2, 1e-7_f64.mul_add(1.0, 17.0)];
+    assert_eq!(
+        base.with("grid.distance_mm", exact)
+            .unwrap()
+            .grid
+            .distance_mm,
+        exact
+    );
+    for (key, value, said) in [
+        (
+            "grid.distance_mm",
+            vec![5.0, 2.0],
+            "grid.distance_mm[1] = 2.0: must be greater",
+        ),
+        ("pole.radius_mm", vec![1.0], "expected a number"),
+        (
+            "pole.radius_mm.more",
+            vec![1.0],
+            "radius_mm is a value, not a table",
+        ),
+        ("pole.colour", vec![1.0], "unknown field `colour`"),
+    ] {
+        let why = base.with(key, value).unwrap_err().to_string();
+        assert!(why.contains(said), "{why}");
+    }
+}
+
+#[test]
 fn whiskers_come_in_atlas_order_taper_first() {
-    let scene = parse(BASE).unwrap();
+    let scene = parse(&sweep()).unwrap();
     let seen: Vec<_> = scene
         .whiskers()
         .map(|(place, whisker)| (place.taper, whisker.tip_radius_um, whisker.curvature))

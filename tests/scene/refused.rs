@@ -5,7 +5,7 @@ use std::path::Path;
 
 use whiskmap::scene::Scene;
 
-use crate::{BASE, parse, with_line};
+use crate::{BASE, parse, sweep, with_line};
 
 #[test]
 fn a_bad_value_is_named_with_its_place_and_what_is_allowed() {
@@ -29,7 +29,7 @@ fn a_bad_value_is_named_with_its_place_and_what_is_allowed() {
 
 #[test]
 fn the_whole_message_reads_like_this() {
-    let why = Scene::parse(&with_line(5, "tip_radius_um = 40"), "test.toml", "x").unwrap_err();
+    let why = Scene::parse(&with_line(5, "tip_radius_um = 40"), "test.toml").unwrap_err();
     let expected = "\
 error: whisker.tip_radius_um = 40: must be between 0 and base_radius_um (30)
  --> test.toml:5:17
@@ -49,6 +49,22 @@ error: title: must be one line of text
   |         ^^^^^^^";
     let why = parse(&with_line(1, "title = \"\"\"over\ntwo lines\"\"\"")).unwrap_err();
     assert_eq!(why, expected);
+}
+
+/// The tip's radius is said once.
+#[test]
+fn a_taper_axis_gives_the_tip_its_radius() {
+    let both = BASE.replace("# taper", "taper");
+    let why = parse(&both).unwrap_err();
+    let said = "whisker.tip_radius_um = 1.5: must be left out: grid.taper gives every whisker of the sweep its tip";
+    assert!(
+        why.contains(said) && why.contains("test.toml:5:17"),
+        "{why}"
+    );
+    assert!(parse(&sweep()).is_ok());
+    let neither = sweep().replace("taper =", "# taper =");
+    let why = parse(&neither).unwrap_err();
+    assert!(why.contains("whisker.tip_radius_um: is left out"), "{why}");
 }
 
 /// Checks that need more than one line of the base scene to be reached.
@@ -80,7 +96,7 @@ fn values_at_odds_with_each_other_are_refused() {
 
     let many = BASE
         .replace("count = 5", "count = 65536")
-        .replace("count = 3", "count = 2048");
+        .replace("[0, 0.04]", "{ from = 0, to = 0.04, count = 4096 }");
     let why = parse(&many).unwrap_err();
     let cells = "grid: must have at most 268435456 cells over all axes, has 805306368";
     assert!(why.contains(cells) && why.contains(":12:1"), "{why}");
@@ -107,13 +123,10 @@ fn unreadable_files_are_told_apart() {
     assert!(latin.contains("latin.toml:2:5"), "{latin}");
 
     let unnamed = BASE.replace("name = \"base\"", "");
-    let spaced = message(&file("my scene.toml", unnamed.as_bytes()));
-    assert!(
-        spaced.contains("output.name: is left out and the file's own name, \"my scene\""),
-        "{spaced}"
-    );
-    let plain = file("plain.toml", unnamed.as_bytes());
-    assert_eq!(Scene::read(&plain).unwrap().name, "plain");
+    for name in ["plain", "my scene", "\u{30d2}\u{30b2} \u{b5}"] {
+        let path = file(&format!("{name}.toml"), unnamed.as_bytes());
+        assert_eq!(Scene::read(&path).unwrap().name, name);
+    }
     let full = [
         unnamed.as_bytes(),
         b"#",
@@ -175,9 +188,10 @@ fn effects_have_their_ranges() {
         let unknown = parse(&text.replace(key, "more")).unwrap_err();
         assert!(unknown.contains("unknown field `more`"), "{unknown}");
     }
-    // Its base scene sweeps to a perfect cone, whose radius is 0 at the tip already.
+    // The sweep goes to a perfect cone, whose radius is 0 at the tip already.
     let pointed = parse(&format!(
-        "{BASE}\n[whisker.projection]\narc_stretch = 1.03\n"
+        "{}\n[whisker.projection]\narc_stretch = 1.03\n",
+        sweep()
     ))
     .unwrap_err();
     assert!(

@@ -31,7 +31,7 @@ fn a_spiral_bends_both_ways() {
         "",
         "[whisker.curvature]\neuler_spiral = { per_mm = -0.05, per_mm2 = 0.004 }",
     );
-    let whisker = parse(&text).unwrap().whisker;
+    let whisker = &parse(&text).unwrap().whisker;
     let spiral = EulerSpiral {
         per_mm: -0.05,
         per_mm2: 0.004,

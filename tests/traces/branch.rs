@@ -3,7 +3,7 @@
 use crate::{POLE, everything, whisker};
 use whiskmap::rod::Side;
 use whiskmap::scene::Pole;
-use whiskmap::trace::{Branch, BranchPoint, Kind, Mark, NoState, curve};
+use whiskmap::trace::{Branch, BranchPoint, DetachmentKind, Mark, NoState, curve};
 
 const DISTANCES: [f64; 4] = [0.5, 9.0, 17.5, 19.0];
 
@@ -26,15 +26,15 @@ fn every_branch(count: usize, check: impl Fn(&str, &Branch, &[BranchPoint], f64)
                         );
                         let kind = match points.iter().find(|point| point.mark == Some(Mark::Fold))
                         {
-                            Some(_) => Kind::SlipOff,
-                            None => Kind::PullOff,
+                            Some(_) => DetachmentKind::SlipOff,
+                            None => DetachmentKind::PullOff,
                         };
                         assert_eq!(kind, end.kind, "{case}");
                         followed += 1;
                     }
                     Err(NoState::OutOfReach { .. }) => {
                         let end = curve(&whisker, &pole, side, &[distance])[0];
-                        assert_eq!(end.kind, Kind::OutOfReach, "{case}");
+                        assert_eq!(end.kind, DetachmentKind::OutOfReach, "{case}");
                     }
                     Err(why) => panic!("{case}: {why}"),
                 }
@@ -154,6 +154,11 @@ fn missing_states_have_a_reason() {
     let branch = Branch::new(&whisker(1.5, 0.02), &POLE, Side::Cb, 15.660_459_763_365_8).unwrap();
     let slipped = branch.state(0.3, true).unwrap_err().to_string();
     assert_eq!(slipped, "slipped off at 15.607930004 deg");
+    let lost = branch.state(-0.3, true).unwrap_err().to_string();
+    assert_eq!(
+        lost,
+        "lost touch: the whisker has moved away from the pole; must be between 0.000000000 and 15.607930004 deg"
+    );
     let unstable = branch.state(0.3, false).unwrap_err().to_string();
     assert!(
         unstable.starts_with("the unstable states lie between 15.607930004 and -22.11"),

@@ -1,10 +1,10 @@
 //! Where the answer is known exactly.
 
+use whiskmap::rod::Side;
 use crate::{POINT, whisker};
 use whiskmap::paper::checks;
 use whiskmap::paper::elastica::{elastica, fold};
-use whiskmap::rod::Side;
-use whiskmap::trace::{Branch, Kind, curve};
+use whiskmap::trace::{Branch, DetachmentKind, curve};
 
 /// Ten turning angles of the straight cylinder at a point contact, up to the fold at 119 degrees.
 #[test]
@@ -35,7 +35,7 @@ fn the_straight_cylinder_is_the_elastica() {
 fn the_straight_cylinder_slips_at_its_closed_form() {
     for (side, distance) in [(Side::Cb, 2.0), (Side::Cf, 8.0), (Side::Cb, 11.0)] {
         let end = curve(&whisker(30.0, 0.0), &POINT, side, &[distance])[0];
-        assert_eq!(end.kind, Kind::SlipOff);
+        assert_eq!(end.kind, DetachmentKind::SlipOff);
         let push = end.push_angle_deg.unwrap() * side.sign();
         assert!((push - 99.568_498_75).abs() < 1e-8, "{push}");
         assert!((push - fold().push.to_degrees()).abs() < 1e-10, "{push}");

@@ -1,11 +1,11 @@
 //! Detachment curves and their corners.
 
+use whiskmap::shooting::batch::Method;
 use crate::{POLE, everything, whisker};
 use whiskmap::rod::{Effects, Side};
 use whiskmap::scene::Curvature;
 use whiskmap::sheet::Sheet;
-use whiskmap::shooting::batch::Method;
-use whiskmap::trace::{Branch, Kind, corner, curve};
+use whiskmap::trace::{Branch, DetachmentKind, NoCorner, corner, curve};
 
 /// 1e-8 mm before the corner a push ends at the fold, 1e-8 mm behind it at the tip.
 #[test]
@@ -14,14 +14,16 @@ fn at_the_corner_slip_off_turns_into_pull_off() {
     for (whisker, pole) in everything() {
         for side in Side::BOTH {
             let corner = corner(&whisker, &pole, side);
+            assert_eq!(corner.reason.is_none(), corner.distance_mm.is_some());
             let Some(distance) = corner.distance_mm else {
+                assert_eq!(corner.reason, Some(NoCorner::AlwaysSlipsOff));
                 // Then no push ends at the tip.
                 let distances: Vec<f64> = (1..40)
                     .map(|i| pole.radius_mm + 0.5 * f64::from(i))
                     .collect();
                 let ends = curve(&whisker, &pole, side, &distances);
                 assert!(
-                    ends.iter().all(|end| end.kind != Kind::PullOff),
+                    ends.iter().all(|end| end.kind != DetachmentKind::PullOff),
                     "{whisker:?} {pole:?} {side:?}"
                 );
                 continue;
@@ -30,7 +32,7 @@ fn at_the_corner_slip_off_turns_into_pull_off() {
             let kinds = [ends[0].kind, ends[1].kind];
             assert_eq!(
                 kinds,
-                [Kind::SlipOff, Kind::PullOff],
+                [DetachmentKind::SlipOff, DetachmentKind::PullOff],
                 "{whisker:?} {pole:?} {side:?}"
             );
             let push = corner.push_angle_deg.unwrap();
@@ -79,7 +81,7 @@ fn rows_out_of_reach_have_no_values() {
     let ends = curve(&whisker(1.5, 0.0), &POLE, Side::Cb, &[19.99, 20.01]);
     assert_eq!(
         [ends[0].kind, ends[1].kind],
-        [Kind::PullOff, Kind::OutOfReach]
+        [DetachmentKind::PullOff, DetachmentKind::OutOfReach]
     );
     assert!(ends[0].residual.unwrap() < 1e-12);
     assert_eq!(

@@ -15,7 +15,8 @@ const SAME: f64 = 1e-5;
 pub fn connect(level: &LevelCurve, touches: bool, crossings: &[Crossing]) -> Vec<Crossing> {
     let mut connected = Vec::new();
     if touches {
-        let end = level.touch().and_then(|touch| follow(level, touch));
+        let at_touch = crossings.iter().copied().find(Crossing::is_at_touch);
+        let end = at_touch.or_else(|| follow(level, level.touch()?));
         let Some(end) = end else {
             return Vec::new();
         };

@@ -5,11 +5,12 @@
 //! the number of crossings has the right parity whatever the rounding.
 
 use crate::numerics::nearest_turn;
-use crate::rod::{Rod, Side};
+use crate::rod::{PERFECT_CONE_CUT, Rod, Side};
 use crate::sheet::edges::bracket::bisect;
 use crate::sheet::edges::edge_newton::{Bends, Edge, Wanted, seek_nearby};
-use crate::sheet::edges::{Edges, REACH_SLACK, Sample};
+use crate::sheet::edges::{Edges, Sample};
 use crate::sheet::fold::predictor::Near;
+use crate::sheet::row::REACH_SLACK;
 use crate::sheet::row::Row;
 use crate::shooting::ShootingMap;
 use crate::shooting::batch::Method;
@@ -39,6 +40,25 @@ impl Crossing {
     #[must_use]
     pub fn is_sound(&self) -> bool {
         self.residual <= SOUND
+    }
+
+    /// Of a row that meets the tip edge at first touch: without a load, whatever the resolution. The point of a perfect
+    /// cone yields to any force, so it slips off.
+    fn at_touch(rod: &Rod) -> Self {
+        let pointed = rod.taper > 1.0 - PERFECT_CONE_CUT;
+        Self {
+            edge: if pointed { Edge::Fold } else { Edge::Tip },
+            tau: rod.tau_tip(),
+            load: 0.0,
+            push: 0.0,
+            residual: 0.0,
+        }
+    }
+
+    /// Whether it is one of those.
+    #[must_use]
+    pub fn is_at_touch(&self) -> bool {
+        self.load == 0.0
     }
 }
 
@@ -99,23 +119,30 @@ pub fn crossings(
         .map(|row| row.pole_distance.ln() - REACH_SLACK)
         .collect();
     let mut candidates = Vec::new();
+    let mut found = vec![Vec::new(); rows.len()];
     for (edge, samples) in [(Edge::Fold, &edges.fold), (Edge::Tip, &edges.tip)] {
-        for pair in samples.windows(2) {
+        for (after, pair) in samples.windows(2).enumerate() {
             let (a, b) = (pair[0], pair[1]);
-            let crossed = |target: &f64| (a.ln_distance <= *target) != (b.ln_distance <= *target);
-            let between = targets
-                .iter()
-                .enumerate()
-                .filter(|(_, target)| crossed(target));
-            candidates.extend(between.map(|(row, target)| Candidate {
-                row,
-                edge,
-                near: near(edges, edge, [&a, &b], *target),
-                between: [a, b],
-            }));
+            for (index, (row, target)) in rows.iter().zip(&targets).enumerate() {
+                let reached = [a, b].map(|sample| sample.ln_distance > *target);
+                // At first touch the shape at rest decides. Where the integration puts the tip on the other side of the
+                // pole, the two cross there as nearly as it can tell.
+                let at_touch = edge == Edge::Tip
+                    && after == 0
+                    && (row.is_at_reach() || row.is_reached() != reached[0]);
+                if at_touch && row.is_reached() != reached[1] {
+                    found[index].push(Crossing::at_touch(rod));
+                } else if !at_touch && reached[0] != reached[1] {
+                    candidates.push(Candidate {
+                        row: index,
+                        edge,
+                        near: near(edges, edge, [&a, &b], *target),
+                        between: [a, b],
+                    });
+                }
+            }
         }
     }
-    let mut found = vec![Vec::new(); rows.len()];
     for (candidate, crossing) in candidates
         .iter()
         .zip(polish(method, rod, side, rows, &candidates))

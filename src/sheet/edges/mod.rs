@@ -7,21 +7,16 @@ pub mod tip_edge;
 
 use crate::numerics::lobatto::{LOADS, PARTS};
 use crate::numerics::nearest_turn;
-use crate::rod::Rod;
+use crate::rod::{Rest, Rod, arclength};
 use crate::sheet::edges::tip_edge::{TipLine, Turn};
 use crate::sheet::fold::FoldPoint;
 use crate::sheet::fold::contact_nodes::Columns;
 use crate::sheet::fold::predictor::FoldLine;
 use crate::sheet::lattice::Lattice;
 use crate::sheet::lattice::directions;
-use crate::sheet::row::Row;
 use crate::shooting::batch::{InitialCondition, Method, shoot, shoot_padded};
 use crate::shooting::{First, Nystrom8, Second, SecondVariation, ShootingMap};
 use glam::DVec2;
-
-/// Relative slack with which a distance counts as reached, so that a whisker whose resting tip just touches
-/// the pole does touch it, whatever the rounding.
-pub const REACH_SLACK: f64 = 1e-12;
 
 /// The Newton step, relative to the distance of the samples, after which an extremum is known: its square is left.
 const LAST_STEP: f64 = 1e-7;
@@ -67,11 +62,19 @@ pub struct Edges {
     pub tip: Vec<Sample>,
     /// The same between the samples.
     pub tip_line: TipLine,
+    /// How far, in `tau`, the integration puts the tip of the resting whisker from where its shape at rest has it.
+    pub tip_error: f64,
 }
 
 impl Edges {
-    /// Samples both edges; `lattice` knows the whole turns of the pole's direction.
-    pub fn new(method: Method, rod: &Rod, columns: &Columns, lattice: &Lattice) -> Self {
+    /// Samples both edges of a whisker that is at `rest` without load; `lattice` knows the whole turns of the pole's direction.
+    pub fn new(
+        method: Method,
+        rod: &Rod,
+        rest: &Rest,
+        columns: &Columns,
+        lattice: &Lattice,
+    ) -> Self {
         let fold: Vec<Sample> = columns.folds[..=columns.tip]
             .iter()
             .zip(lattice.phi_at_fold())
@@ -80,7 +83,9 @@ impl Edges {
                 Sample::new(i as f64, fold.tau, fold.load, &fold.variation.map, phi)
             })
             .collect();
-        let (mut tip, tip_line) = tip_samples(method, rod, &columns.folds[columns.tip]);
+        let (mut tip, tip_line, at_touch) = tip_samples(method, rod, &columns.folds[columns.tip]);
+        let (tip_at_rest, _) = rest.at_arclength(arclength(rod, rod.tau_tip()));
+        let pole = rest.pole_at_distance(tip_at_rest.length()).length();
         tip.extend(fold.last().map(|corner| Sample {
             place: 1.0,
             ..*corner
@@ -89,21 +94,20 @@ impl Edges {
             fold,
             fold_line: FoldLine::new(columns, lattice.phi_at_fold()),
             fold_grows: (0..columns.tip).all(|column| columns.grow_after(column)),
+            tip_error: ((at_touch.pole.length() / pole).ln() / at_touch.by_tau.x).abs(),
             tip,
             tip_line,
         }
     }
-
-    /// Whether a whisker at rest reaches the pole of this row.
-    #[must_use]
-    pub fn touches(&self, row: &Row) -> bool {
-        self.tip[0].ln_distance > row.pole_distance.ln() - REACH_SLACK
-    }
 }
 
 /// The tip edge from first touch to before the `corner`, with its extrema of distance among the samples, and the line through the
-/// others and the corner.
-fn tip_samples(method: Method, rod: &Rod, corner: &FoldPoint) -> (Vec<Sample>, TipLine) {
+/// others and the corner, and first touch.
+fn tip_samples(
+    method: Method,
+    rod: &Rod,
+    corner: &FoldPoint,
+) -> (Vec<Sample>, TipLine, ShootingMap) {
     let condition = |load| InitialCondition {
         rod: *rod,
         tau: corner.tau,
@@ -130,7 +134,7 @@ fn tip_samples(method: Method, rod: &Rod, corner: &FoldPoint) -> (Vec<Sample>, T
             samples.push(sample(load, &map));
         }
     }
-    (samples, line)
+    (samples, line, maps[0])
 }
 
 /// The load at which the distance turns with the contact at the tip, and the map there: mostly the line along the tip knows the

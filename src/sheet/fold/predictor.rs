@@ -186,7 +186,7 @@ mod tests {
             let row = Row::new(&Rest::new(&rod), 0.1);
             let columns = Columns::new(method, &rod, side, &row).unwrap();
             let lattice = Lattice::new(method.coarsely(), &rod, side, &columns);
-            let edges = Edges::new(method, &rod, &columns, &lattice);
+            let edges = Edges::new(method, &rod, &Rest::new(&rod), &columns, &lattice);
             let mut checked = 0;
             for (edge, samples) in [(Edge::Fold, &edges.fold), (Edge::Tip, &edges.tip)] {
                 for pair in samples.windows(2) {

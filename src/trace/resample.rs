@@ -1,4 +1,4 @@
-//! Even spacing along a walk.
+//! A branch resampled: points at uniform distances along it.
 
 use crate::sheet::Node;
 use glam::DVec2;
@@ -7,11 +7,11 @@ use glam::DVec2;
 pub fn targets(lengths: &[f64], fold: Option<usize>, count: usize) -> (Vec<f64>, Option<usize>) {
     let intervals = count - 1;
     let total = lengths[lengths.len() - 1];
-    let even = |from: f64, to: f64, n: usize| {
+    let uniform = |from: f64, to: f64, n: usize| {
         (0..n).map(move |i| (to - from).mul_add(i as f64 / n as f64, from))
     };
     let Some(fold) = fold.map(|fold| lengths[fold]) else {
-        let targets = even(0.0, total, intervals).chain([total]);
+        let targets = uniform(0.0, total, intervals).chain([total]);
         return (targets.collect(), None);
     };
     #[allow(
@@ -21,8 +21,8 @@ pub fn targets(lengths: &[f64], fold: Option<usize>, count: usize) -> (Vec<f64>,
     )]
     let before = (fold / total * intervals as f64).round() as usize;
     let before = before.clamp(1, intervals - 1);
-    let targets = even(0.0, fold, before)
-        .chain(even(fold, total, intervals - before))
+    let targets = uniform(0.0, fold, before)
+        .chain(uniform(fold, total, intervals - before))
         .chain([total]);
     (targets.collect(), Some(before))
 }

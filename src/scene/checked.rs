@@ -1,0 +1,168 @@
+//! From a file, or text, to a checked scene.
+
+use std::fs::File;
+use std::io::{self, Read};
+use std::ops::Deref;
+use std::path::Path;
+
+use serde::Serialize;
+
+use super::check;
+use super::error::SceneError;
+use super::file::SceneTable;
+use super::rows;
+use super::setup::Setup;
+use super::source::bounded;
+
+/// A scene that has passed every check. It reads like its [`Setup`], and only [`Scene::with`] changes it.
+///
+/// ```
+/// use whiskmap::scene::Scene;
+///
+/// let cone = Scene::parse(include_str!("../../scenes/cone.toml"), "cone.toml")?;
+/// let thick = cone.with("pole.radius_mm", 0.5)?;
+/// assert_eq!((cone.pole.radius_mm, thick.pole.radius_mm), (0.25, 0.5));
+/// assert!(cone.with("pole.radius_mm", -1).is_err());
+/// # Ok::<(), whiskmap::scene::SceneError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scene(Setup);
+
+impl Deref for Scene {
+    type Target = Setup;
+
+    fn deref(&self) -> &Setup {
+        &self.0
+    }
+}
+
+impl Scene {
+    /// Reads and checks a scene file; `-` is standard input. Where the file does not name its output, the
+    /// file's own stem does, or `scene` for standard input.
+    ///
+    /// # Errors
+    ///
+    /// If the file cannot be read, is longer than 1 MiB, is not UTF-8, or for the reasons of [`Scene::parse`].
+    pub fn read(path: impl AsRef<Path>) -> Result<Self, SceneError> {
+        let path = path.as_ref();
+        if path == Path::new("-") {
+            return Self::from_source(io::stdin().lock(), "<stdin>", Path::new("scene"));
+        }
+        let origin = path.to_string_lossy();
+        let file = File::open(path).map_err(|why| unreadable(&origin, &why))?;
+        Self::from_source(file, &origin, path)
+    }
+
+    /// Checks the text of a scene. Messages call it by its file's name, `origin`, whose stem is the name of the output
+    /// where the scene gives none. A CSV file that the scene names is looked for beside `origin`, and its rows take the
+    /// place of its name in [`Setup::text`].
+    ///
+    /// # Errors
+    ///
+    /// If the text is not TOML, has a key too many or too few, or a value that is out of its range or at odds
+    /// with another one.
+    pub fn parse(text: &str, origin: &str) -> Result<Self, SceneError> {
+        Self::checked(text, origin, Path::new(origin))
+    }
+
+    /// The same scene with `value` at `key`, such as `"grid.distance_mm"`, as if its file had said so.
+    ///
+    /// # Errors
+    ///
+    /// If the scene would be refused with it.
+    pub fn with(&self, key: &str, value: impl Serialize) -> Result<Self, SceneError> {
+        let refuse = |why: String| SceneError::whole(key, why);
+        let value = toml::Value::try_from(value).map_err(|why| refuse(why.to_string()))?;
+        let mut root: toml::Table =
+            toml::from_str(&self.text).map_err(|why| refuse(why.to_string()))?;
+        let (tables, last) = key.rsplit_once('.').unwrap_or(("", key));
+        let mut table = &mut root;
+        for name in tables.split('.').filter(|name| !name.is_empty()) {
+            let entry = table
+                .entry(name)
+                .or_insert_with(|| toml::Table::new().into());
+            let inner = entry.as_table_mut();
+            table = inner.ok_or_else(|| refuse(format!("{name} is a value, not a table")))?;
+        }
+        table.insert(last.to_owned(), value);
+        let text = toml::to_string(&root).map_err(|why| refuse(why.to_string()))?;
+        Self::checked(&text, key, Path::new(&format!("{}.toml", self.name)))
+    }
+
+    /// The same scene with at most `lines` push angles and distances, and at most `values` tapers and curvatures, from all
+    /// over each axis. Its text stays that of the whole.
+    #[must_use]
+    pub fn thinned(&self, lines: usize, values: usize) -> Self {
+        let mut thinned = self.clone();
+        let grid = &mut thinned.0.grid;
+        let lines = [&mut grid.push_angle_deg, &mut grid.distance_mm].map(|axis| (axis, lines));
+        let sweep = [&mut grid.taper, &mut grid.curvature_per_mm]
+            .into_iter()
+            .flatten();
+        for (axis, most) in lines.into_iter().chain(sweep.map(|axis| (axis, values))) {
+            thin(axis, most);
+        }
+        thinned
+    }
+
+    fn checked(text: &str, origin: &str, path: &Path) -> Result<Self, SceneError> {
+        let mut table: SceneTable =
+            toml::from_str(text).map_err(|why| SceneError::of_toml(origin, text, &why))?;
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+        let profile = table
+            .whisker
+            .profile
+            .as_mut()
+            .map(|profile| &mut profile.rows);
+        let inlined = profile.map_or(Ok(None), |rows| rows::read(rows, text, folder));
+        let setup = inlined
+            .and_then(|inlined| check::setup(&table, inlined.as_deref().unwrap_or(text), &stem));
+        setup
+            .map(Self)
+            .map_err(|fault| fault.in_scene(origin, text))
+    }
+
+    fn from_source(source: impl Read, origin: &str, path: &Path) -> Result<Self, SceneError> {
+        let bytes = bounded(source).map_err(|why| unreadable(origin, &why))?;
+        let text = String::from_utf8(bytes).map_err(|why| {
+            let start = why.utf8_error().valid_up_to();
+            let byte = why.as_bytes()[start];
+            // The first bad byte and its stand-in begin at the same place.
+            let shown = String::from_utf8_lossy(why.as_bytes());
+            let span = start..start + char::REPLACEMENT_CHARACTER.len_utf8();
+            let message = format!("not UTF-8 text: byte 0x{byte:02X}");
+            SceneError::at(origin, &shown, Some(span), message)
+        })?;
+        Self::checked(&text, origin, path)
+    }
+}
+
+fn unreadable(origin: &str, why: &io::Error) -> SceneError {
+    SceneError::whole(origin, format!("cannot be read: {why}"))
+}
+
+/// Keeps the middles of at most `most` equal parts.
+fn thin(values: &mut Vec<f64>, most: usize) {
+    let (all, kept) = (values.len(), values.len().min(most));
+    *values = (0..kept)
+        .map(|i| values[(2 * i + 1) * all / (2 * kept)])
+        .collect();
+}
+
+#[cfg(test)]
+mod tests {
+    use super::thin;
+
+    #[test]
+    fn few_values_stay_and_many_are_represented() {
+        let thinned = |count: u32, most| {
+            let mut values: Vec<f64> = (0..count).map(f64::from).collect();
+            thin(&mut values, most);
+            values
+        };
+        assert_eq!(thinned(3, 4), [0.0, 1.0, 2.0]);
+        assert_eq!(thinned(16, 2), [4.0, 12.0]);
+        assert_eq!(thinned(7, 2), [1.0, 5.0]);
+    }
+}

@@ -1,0 +1,84 @@
+//! What a scene holds, as plain data.
+
+use super::grid::{FARTHEST, Grid, Morphology, NEAREST};
+use super::whisker::{Curvature, Pole, Whisker};
+
+/// What a [`Scene`](super::Scene) holds. It says nothing of whether the values are right; only a scene does.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Setup {
+    /// One line for people.
+    pub title: String,
+    /// The whisker as the file describes it, and the first one of a taper axis; [`Setup::whiskers`] yields those to
+    /// simulate.
+    pub whisker: Whisker,
+    /// The pole.
+    pub pole: Pole,
+    /// The sweep.
+    pub grid: Grid,
+    /// Stem of the output files.
+    pub name: String,
+    /// The file as it was read.
+    pub text: String,
+}
+
+impl Setup {
+    /// The scene's whisker with a taper (`1 - tip/base radius`) and a parabola coefficient in place of its
+    /// own. The vertex stays: the whisker's own, or 0 where its file gives no curvature.
+    #[must_use]
+    pub fn whisker_at(&self, taper: Option<f64>, curvature_per_mm: Option<f64>) -> Whisker {
+        let mut whisker = self.whisker.clone();
+        if let Some(taper) = taper {
+            whisker.tip_radius_um = whisker.base_radius_um * (1.0 - taper);
+        }
+        if let Some(parabola_per_mm) = curvature_per_mm {
+            let vertex_mm = whisker.curvature.map_or(0.0, |own| own.vertex_mm);
+            whisker.curvature = Some(Curvature {
+                parabola_per_mm,
+                vertex_mm,
+            });
+        }
+        whisker.curvature = whisker.curvature.filter(|c| c.parabola_per_mm != 0.0);
+        whisker
+    }
+
+    /// Every whisker of the sweep, in the order of the atlas: taper varies fastest (its columns), curvature
+    /// slowest (its rows). Without such axes, the one whisker of the file.
+    pub fn whiskers(&self) -> impl Iterator<Item = (Morphology, Whisker)> {
+        let tapers = choices(self.grid.taper.as_deref());
+        let curvatures = choices(self.grid.curvature_per_mm.as_deref()).into_iter();
+        let pairs = curvatures.flat_map(move |curvature| {
+            let tapers = tapers.clone().into_iter();
+            tapers.map(move |taper| (taper, curvature))
+        });
+        pairs.map(|(taper, curvature)| {
+            let whisker = self.whisker_at(taper, curvature);
+            let own = whisker.curvature.map_or(0.0, |own| own.parabola_per_mm);
+            let morphology = Morphology {
+                taper: taper.unwrap_or(whisker.taper()),
+                curvature_per_mm: curvature.unwrap_or(own),
+            };
+            (morphology, whisker)
+        })
+    }
+
+    /// Whether whiskers are swept: whether there is an axis of taper or curvature.
+    #[must_use]
+    pub fn is_sweep(&self) -> bool {
+        self.grid.taper.is_some() || self.grid.curvature_per_mm.is_some()
+    }
+
+    /// The smallest and the largest distance of first touch; it must be more than the pole's radius, too.
+    #[must_use]
+    pub fn distances_mm(&self) -> (f64, f64) {
+        let length = self.whisker.length_mm;
+        (length / NEAREST, FARTHEST * length)
+    }
+}
+
+/// What an axis puts in place of the whisker's own value: its values one by one, or nothing, once.
+fn choices(axis: Option<&[f64]>) -> Vec<Option<f64>> {
+    axis.map_or_else(
+        || vec![None],
+        |values| values.iter().copied().map(Some).collect(),
+    )
+}

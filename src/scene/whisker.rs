@@ -1,0 +1,86 @@
+//! What is pushed and what it is pushed against: a whisker at rest and a pole.
+
+/// A whisker at rest.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Whisker {
+    /// Arclength from base to tip.
+    pub length_mm: f64,
+    /// Radius at the base.
+    pub base_radius_um: f64,
+    /// Radius at the tip; 0 is a perfect cone.
+    pub tip_radius_um: f64,
+    /// Young's modulus at the base; it scales forces, moments and energies, never an angle.
+    pub youngs_modulus_gpa: f64,
+    /// Intrinsic curvature as a parabola, `None` for a straight whisker.
+    pub curvature: Option<Curvature>,
+    /// Intrinsic curvature as an Euler spiral, in place of the parabola.
+    pub euler_spiral: Option<EulerSpiral>,
+    /// Measured radii in place of those that fall linearly: rows of arclength and radius over the whisker's length and
+    /// base radius, from (0, 1) to (1, tip radius).
+    pub profile: Option<Vec<[f64; 2]>>,
+    /// Young's modulus at the tip over that at the base; linear in between.
+    pub modulus_tip_to_base: f64,
+    /// Real arclength over the arclength in the plane of contact: more than 1 where the whisker droops out of the
+    /// plane. The radius is read at the real arclength.
+    pub arc_stretch: f64,
+}
+
+impl Whisker {
+    /// `1 - tip/base radius`: 0 is a cylinder, 1 a perfect cone.
+    #[must_use]
+    pub fn taper(&self) -> f64 {
+        1.0 - self.tip_radius_um / self.base_radius_um
+    }
+
+    /// The largest curvature at rest, in radians per millimetre.
+    #[must_use]
+    pub fn sharpest_bend_per_mm(&self) -> f64 {
+        let parabola = self.curvature.map_or(0.0, |own| 2.0 * own.parabola_per_mm);
+        let spiral = self.euler_spiral.map_or(0.0, |own| {
+            let at_tip = own.per_mm + own.per_mm2 * self.length_mm;
+            own.per_mm.abs().max(at_tip.abs())
+        });
+        parabola.max(spiral)
+    }
+}
+
+/// The undeflected shape `y = A (x - vertex)^2` with the base at `x = 0` (paper, Eq. 7).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Curvature {
+    /// `A`.
+    pub parabola_per_mm: f64,
+    /// Where the vertex lies.
+    pub vertex_mm: f64,
+}
+
+/// The undeflected shape whose curvature is linear in the arclength (Starostin et al. 2020).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EulerSpiral {
+    /// Curvature at the base; positive bends toward the CF side, as a parabola does.
+    pub per_mm: f64,
+    /// Its growth along the whisker.
+    pub per_mm2: f64,
+}
+
+/// What the whisker is pushed against.
+///
+/// The pole touches the whisker's centre line: the whisker's own thickness does not add to the pole's radius. Where it
+/// matters, give the sum of both radii at the contact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pole {
+    /// Radius; 0 is a point contact.
+    pub radius_mm: f64,
+    /// Coulomb's coefficient; the whisker slides toward its tip at this limit.
+    pub friction: f64,
+}
+
+impl Pole {
+    /// A pole without friction.
+    #[must_use]
+    pub const fn smooth(radius_mm: f64) -> Self {
+        Self {
+            radius_mm,
+            friction: 0.0,
+        }
+    }
+}
