@@ -1,0 +1,16 @@
+//! Where a conical whisker detaches, and how: prints one line per distance.
+//!
+//! `cargo run --release --example detachment_curve`
+
+use whiskmap::scene::Scene;
+use whiskmap::{Options, curve};
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let scene = Scene::read("scenes/cone.toml")?.with("grid.distance_mm", [5, 10, 15, 19])?;
+    println!("side  distance  how         push angle");
+    for (_, end) in curve(&scene, Options::default())? {
+        let push = end.push_angle_deg.unwrap_or(f64::NAN);
+        println!("{:?}    {:5.1} mm  {:10?}  {push:9.4} deg", end.side, end.distance_mm, end.kind);
+    }
+    Ok(())
+}

@@ -1,0 +1,23 @@
+//! How the share of pushes that end in slip-off depends on the taper: one regime map per whisker, in memory.
+//!
+//! `cargo run --release --example taper_sweep`
+
+use whiskmap::classify::Regime;
+use whiskmap::scene::Scene;
+use whiskmap::{Options, map};
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let scene = Scene::read("scenes/morphology.toml")?.thinned(64, 8);
+    let map = map(&scene, Options::default())?;
+    for ((morphology, _), panel) in scene.whiskers().zip(&map.panels) {
+        let slipped = panel.regime.iter().filter(|code| **code == Regime::SlipOff.code());
+        let share = slipped.count() as f64 / panel.regime.len() as f64;
+        println!(
+            "taper {:.2}, curvature {:.3}/mm: {:4.1} % slip off",
+            morphology.taper,
+            morphology.curvature_per_mm,
+            100.0 * share
+        );
+    }
+    Ok(())
+}

@@ -1,0 +1,202 @@
+//! The front of the library: a scene in, answers in memory out.
+
+use crate::accuracy::cheapest;
+use crate::classify::Regime;
+use crate::integrate::EngineError;
+use crate::map::{self as stages, Panel, STATE_CHANNELS, Summary};
+use crate::plan::{Plan, PlanError};
+use crate::rod::Side;
+use crate::scene::{Grid, Morphology, Scene};
+use crate::shooting::Resolution;
+use crate::trace::{Branch, Detachment, NoState, Shape, curve_at};
+use rayon::prelude::*;
+
+/// How exact an answer is to be, and what shoots before the refinement.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Options {
+    /// Error of push angles that is small enough, in degrees; without it, the finest steps are taken.
+    pub tolerance_deg: Option<f64>,
+    /// Shoots cells on the preferred GPU before they are refined, in this precision.
+    #[cfg(feature = "gpu")]
+    pub gpu: Option<crate::integrate::gpu::Precision>,
+}
+
+/// Why there is no answer at all; a cell without one is no error.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    /// A map that takes too much memory.
+    #[error(transparent)]
+    Plan(#[from] PlanError),
+    /// A GPU that cannot be had.
+    #[error(transparent)]
+    Engine(#[from] EngineError),
+    /// A tolerance below what rounding leaves.
+    #[error("tolerance_deg {asked:e}: must be at least {least:e} for this scene")]
+    Tolerance {
+        /// The tolerance.
+        asked: f64,
+        /// What the finest steps leave, by the program's own estimate.
+        least: f64,
+    },
+}
+
+/// A regime map in memory: one [`Panel`] for each whisker of the scene.
+#[derive(Clone, Debug)]
+pub struct Map {
+    /// The axes.
+    pub grid: Grid,
+    /// The whiskers' cells, in the order of [`Setup::whiskers`](crate::scene::Setup::whiskers).
+    pub panels: Vec<Panel>,
+    /// Counts and times of the run.
+    pub summary: Summary,
+}
+
+impl Map {
+    /// How many cells have this regime.
+    #[must_use]
+    pub fn count(&self, regime: Regime) -> u64 {
+        let of_regime = Regime::ALL.into_iter().zip(self.summary.regimes);
+        of_regime
+            .filter(|(other, _)| *other == regime)
+            .map(|(_, cells)| cells)
+            .sum()
+    }
+
+    /// The regime of a whisker at the index of a distance and of a push angle; `None` beyond the axes.
+    #[must_use]
+    pub fn regime(&self, whisker: usize, distance: usize, push_angle: usize) -> Option<Regime> {
+        let code = self.panels.get(whisker)?.regime[self.cell(distance, push_angle)?];
+        Regime::ALL.into_iter().find(|regime| regime.code() == code)
+    }
+
+    /// The value of one of [`STATE_CHANNELS`] there; `None` beyond the axes, without such a channel, and without contact.
+    #[must_use]
+    pub fn value(
+        &self,
+        channel: &str,
+        whisker: usize,
+        distance: usize,
+        push_angle: usize,
+    ) -> Option<f32> {
+        let channel = STATE_CHANNELS.iter().position(|name| *name == channel)?;
+        let cell = self.cell(distance, push_angle)?;
+        Some(self.panels.get(whisker)?.state[channel][cell]).filter(|value| value.is_finite())
+    }
+
+    fn cell(&self, distance: usize, push_angle: usize) -> Option<usize> {
+        let width = self.grid.push_angle_deg.len();
+        let is_inside = distance < self.grid.distance_mm.len() && push_angle < width;
+        is_inside.then_some(distance * width + push_angle)
+    }
+}
+
+/// Computes the regime map of `scene`, every cell with its state, on all cores.
+///
+/// ```
+/// use whiskmap::classify::Regime;
+/// use whiskmap::{Options, scene::Scene};
+///
+/// let scene = Scene::parse(include_str!("../scenes/cone.toml"), "cone.toml")?.thinned(32, 1);
+/// let map = whiskmap::map(&scene, Options::default())?;
+/// assert_eq!(map.count(Regime::Unresolved), 0);
+/// assert_eq!(map.regime(0, 16, 16), Some(Regime::Contact));
+/// assert!(map.value("force_un", 0, 16, 16).is_some_and(|force| force > 0.0));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// When the map takes too much memory, the tolerance cannot be kept, or there is no GPU where one was asked for.
+pub fn map(scene: &Scene, options: Options) -> Result<Map, Error> {
+    let mut plan = Plan::new(scene)?;
+    plan.method = plan.method.at(resolution(scene, options, &plan.sides)?);
+    let mut panels = Vec::with_capacity(plan.whiskers.len());
+    let summary = stages::collect(scene, &plan, engine(options)?, &mut panels);
+    Ok(Map {
+        grid: scene.grid.clone(),
+        panels,
+        summary,
+    })
+}
+
+/// Computes where every whisker of `scene` detaches: at each distance, CF before CB.
+///
+/// ```
+/// use whiskmap::trace::DetachmentKind;
+/// use whiskmap::{Options, scene::Scene};
+///
+/// let cone = Scene::parse(include_str!("../scenes/cone.toml"), "cone.toml")?;
+/// let curve = whiskmap::curve(&cone.with("grid.distance_mm", [15.6604597633658])?, Options::default())?;
+/// let (_, cb) = &curve[1];
+/// assert_eq!(cb.kind, DetachmentKind::SlipOff);
+/// assert!(cb.push_angle_deg.is_some_and(|push| (push - 15.60793).abs() < 1e-5));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// When the tolerance cannot be kept.
+pub fn curve(scene: &Scene, options: Options) -> Result<Vec<(Morphology, Detachment)>, Error> {
+    let resolution = resolution(scene, options, &Side::BOTH)?;
+    let whiskers: Vec<_> = scene.whiskers().collect();
+    Ok(whiskers
+        .par_iter()
+        .flat_map_iter(|(morphology, whisker)| {
+            let curve = |side| {
+                let distances = &scene.grid.distance_mm;
+                curve_at(resolution, whisker, &scene.pole, side, distances)
+            };
+            let both = Side::BOTH.into_iter().flat_map(curve);
+            both.map(|row| (*morphology, row)).collect::<Vec<_>>()
+        })
+        .collect())
+}
+
+/// Follows the states of the scene's first whisker in front of one pole, from first touch at `distance_mm` through the fold.
+///
+/// ```
+/// use whiskmap::{rod::Side, scene::Scene};
+///
+/// let cone = Scene::parse(include_str!("../scenes/cone.toml"), "cone.toml")?;
+/// let points = whiskmap::branch(&cone, 15.66, Side::Cb)?.points(50)?;
+/// assert!(points[0].stable && !points[49].stable);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// When the whisker at rest does not reach the pole, or the continuation gets lost.
+pub fn branch(scene: &Scene, distance_mm: f64, side: Side) -> Result<Branch, NoState> {
+    Branch::new(&scene.first_whisker(), &scene.pole, side, distance_mm)
+}
+
+/// The stable shape of the scene's first whisker, in 200 places, after a push from first touch at `distance_mm`.
+///
+/// ```
+/// use whiskmap::scene::Scene;
+///
+/// let cone = Scene::parse(include_str!("../scenes/cone.toml"), "cone.toml")?;
+/// assert!(whiskmap::shape(&cone, 15.66, 10.0).is_ok());
+/// let slipped = whiskmap::shape(&cone, 15.66, 20.0).err();
+/// assert!(slipped.is_some_and(|why| why.to_string().starts_with("slipped off at 15.6")));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// When there is no such state: the message tells how the whisker has left the pole, and at which push angle.
+pub fn shape(scene: &Scene, distance_mm: f64, push_angle_deg: f64) -> Result<Shape, NoState> {
+    let branch = branch(scene, distance_mm, Side::of_push(push_angle_deg))?;
+    let state = branch.state(push_angle_deg.to_radians(), true)?;
+    Ok(Shape::new(&branch, &state, 200))
+}
+
+/// The steps that keep the tolerance, if there is one.
+fn resolution(scene: &Scene, options: Options, sides: &[Side]) -> Result<Resolution, Error> {
+    let Some(asked) = options.tolerance_deg else {
+        return Ok(Resolution::FINE);
+    };
+    match cheapest(scene, sides, asked) {
+        Ok(accuracy) => Ok(accuracy.resolution),
+        Err(finest) => Err(Error::Tolerance {
+            asked,
+            least: finest.error_deg,
+        }),
+    }
+}
