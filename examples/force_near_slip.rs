@@ -11,7 +11,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     for side in Side::BOTH {
         for point in branch(&scene, 15.66, side)?.points(21)? {
             let kind = if point.stable { "stable" } else { "unstable" };
-            println!("{side:?}  {:8.3} deg  {:7.4} uN  {kind}", point.push_angle_deg, point.force_un);
+            println!(
+                "{side:?}  {:8.3} deg  {:7.4} uN  {kind}",
+                point.push_angle_deg, point.force_un
+            );
         }
     }
     Ok(())

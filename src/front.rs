@@ -2,14 +2,15 @@
 
 use crate::accuracy::cheapest;
 use crate::classify::Regime;
-use crate::integrate::EngineError;
-use crate::map::{self as stages, Panel, STATE_CHANNELS, Summary};
+use crate::integrate::{Engine, EngineError};
+use crate::map::{self as stages, Panel, Progress, STATE_CHANNELS, Summary};
 use crate::plan::{Plan, PlanError};
 use crate::rod::Side;
 use crate::scene::{Grid, Morphology, Scene};
 use crate::shooting::Resolution;
 use crate::trace::{Branch, Detachment, NoState, Shape, curve_at};
 use rayon::prelude::*;
+use std::convert::Infallible;
 
 /// How exact an answer is to be, and what shoots before the refinement.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -108,14 +109,38 @@ impl Map {
 /// When the map takes too much memory, the tolerance cannot be kept, or there is no GPU where one was asked for.
 pub fn map(scene: &Scene, options: Options) -> Result<Map, Error> {
     let mut plan = Plan::new(scene)?;
-    plan.method = plan.method.at(resolution(scene, options, &plan.sides)?);
+    plan.method = plan
+        .method
+        .with_resolution(resolution(scene, options, &plan.sides)?);
+    let mut engine = engine(options)?;
+    let engine = engine.as_mut().map(|engine| &mut **engine as _);
     let mut panels = Vec::with_capacity(plan.whiskers.len());
-    let summary = stages::collect(scene, &plan, engine(options)?, &mut panels);
+    let mut keep = |progress: Progress<'_>| {
+        if let Progress::Panels(finished) = progress {
+            panels.extend_from_slice(finished);
+        }
+        Ok::<(), Infallible>(())
+    };
+    let Ok(summary) = stages::run(scene, &plan, engine, &mut keep);
     Ok(Map {
         grid: scene.grid.clone(),
         panels,
         summary,
     })
+}
+
+/// What shoots before the refinement, if anything does.
+#[cfg(feature = "gpu")]
+fn engine(options: Options) -> Result<Option<Box<dyn Engine>>, Error> {
+    let Some(precision) = options.gpu else {
+        return Ok(None);
+    };
+    Ok(Some(Box::new(crate::integrate::gpu::Gpu::new(precision)?)))
+}
+
+#[cfg(not(feature = "gpu"))]
+fn engine(_: Options) -> Result<Option<Box<dyn Engine>>, Error> {
+    Ok(None)
 }
 
 /// Computes where every whisker of `scene` detaches: at each distance, CF before CB.

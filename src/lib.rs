@@ -4,20 +4,42 @@
 //! The mechanics are those of Hires, Pammer, Svoboda and Golomb (2013), "Tapered whiskers are required for
 //! active tactile sensation", eLife 2:e01350. `ARCHITECTURE.md` names the rooms and the way data takes
 //! through them.
+//!
+//! ```
+//! use whiskmap::scene::Scene;
+//! use whiskmap::{Options, trace::DetachmentKind};
+//!
+//! let scene = Scene::parse(include_str!("../scenes/cone.toml"), "cone.toml")?;
+//! let ends = whiskmap::curve(&scene.with("grid.distance_mm", [10, 19.5])?, Options::default())?;
+//! let kinds: Vec<DetachmentKind> = ends.iter().map(|(_, end)| end.kind).collect();
+//! assert_eq!(kinds[2..], [DetachmentKind::SlipOff, DetachmentKind::PullOff]); // CB, near and far
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! [`map`](fn@map), [`curve`], [`branch`] and [`shape`] answer in memory; the modules are what they are made of. Features, all on by
+//! default: `cli` is the command `whiskmap`, `gpu` the compute shaders, `render` the pictures.
 
 pub mod accuracy;
+#[cfg(feature = "gpu")]
 pub mod bench;
 pub mod classify;
-pub mod cli;
+mod front;
 pub mod integrate;
 pub mod map;
 pub mod paper;
 pub mod plan;
 pub mod refine;
+#[cfg(feature = "render")]
 pub mod render;
 pub mod scene;
 pub mod sheet;
 pub mod store;
 pub mod trace;
 
+pub use front::{Error, Map, Options, branch, curve, map, shape};
 pub use whiskmap_mechanics::{numerics, rod, shooting};
+
+/// README's code compiles.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -1,11 +1,13 @@
 //! The command `whiskmap`: see `whiskmap --help`.
 
+mod cli;
+
 use std::path::Path;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
     quiet_wayland();
-    whiskmap::cli::main()
+    cli::main()
 }
 
 /// Vulkan drivers ask for a Wayland display, and its library complains on standard error where this variable is not an

@@ -55,7 +55,11 @@ fn links_of_the_pages_lead_somewhere() {
     let pages = docs.map(|page| page.expect("a page").path());
     for page in pages.chain(["README.md", "ARCHITECTURE.md"].map(|name| root.join(name))) {
         let text = fs::read_to_string(&page).expect("text");
-        for link in text.split("](").skip(1).filter_map(|rest| rest.split(')').next()) {
+        for link in text
+            .split("](")
+            .skip(1)
+            .filter_map(|rest| rest.split(')').next())
+        {
             let file = page.with_file_name(link.split('#').next().unwrap_or_default());
             let is_known = link.starts_with("http") || file.exists();
             assert!(is_known, "{}: {link}", page.display());

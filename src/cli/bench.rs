@@ -2,12 +2,12 @@
 
 use super::failure::{Failure, say};
 use super::outputs::{STDOUT, open, unwritten};
-use crate::bench::{self, Detachments, Effort, Report, Row};
-use crate::render::{Chart, Dot, Ink, Line, Plot, Stroke};
-use crate::scene::Scene;
 use clap::Args;
 use std::io::{self, IsTerminal, Write};
 use std::path::{Path, PathBuf};
+use whiskmap::bench::{self, Detachments, Effort, Report, Row};
+use whiskmap::render::{Chart, Dot, Ink, Line, Plot, Stroke};
+use whiskmap::scene::Scene;
 
 /// Options of `bench`.
 #[derive(Debug, Args)]

@@ -5,10 +5,10 @@ use super::failure::Failure;
 use super::numbers::whole;
 use super::outputs::Outputs;
 use super::pole::Pole;
-use crate::render::{BranchAxis, Chart, branches};
-use crate::rod::Side;
-use crate::trace::{Branch, BranchPoint};
 use clap::{Args, ValueEnum};
+use whiskmap::render::{BranchAxis, Chart, branches};
+use whiskmap::rod::Side;
+use whiskmap::trace::{Branch, BranchPoint};
 
 const EXAMPLES: &str = "\
 Examples:

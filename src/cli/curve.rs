@@ -4,15 +4,15 @@ use super::columns;
 use super::failure::{Failure, say};
 use super::outputs::{Opened, Outputs};
 use super::tolerance::Tolerance;
-use crate::render::{Chart, CurveAxis, curves};
-use crate::rod::Side;
-use crate::scene::{Morphology, Scene, Whisker};
-use crate::shooting::Resolution;
-use crate::trace::{self, Corner, Detachment, DetachmentKind};
 use clap::Args;
 use rayon::prelude::*;
 use serde::Serialize;
 use std::path::PathBuf;
+use whiskmap::render::{Chart, CurveAxis, curves};
+use whiskmap::rod::Side;
+use whiskmap::scene::{Morphology, Scene, Whisker};
+use whiskmap::shooting::Resolution;
+use whiskmap::trace::{self, Corner, Detachment, DetachmentKind};
 
 const EXAMPLES: &str = "\
 Examples:

@@ -2,9 +2,9 @@
 
 use super::engine::{self, Choice};
 use super::failure::Failure;
-use crate::integrate::Description;
-use crate::integrate::gpu::{Precision, adapters, preferred};
 use std::io::Write;
+use whiskmap::integrate::Description;
+use whiskmap::integrate::gpu::{Precision, adapters, preferred};
 
 /// Runs `devices`.
 pub fn run() -> Result<(), Failure> {

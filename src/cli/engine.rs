@@ -1,9 +1,9 @@
 //! Which engine a command takes.
 
 use super::failure::Failure;
-use crate::integrate::gpu::{AdapterKind, Gpu, Precision, adapters, preferred};
-use crate::integrate::{Engine, EngineError};
 use clap::ValueEnum;
+use whiskmap::integrate::gpu::{AdapterKind, Gpu, Precision, adapters, preferred};
+use whiskmap::integrate::{Engine, EngineError};
 
 /// Engines by name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

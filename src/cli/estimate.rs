@@ -1,10 +1,10 @@
 //! What a map would take, measured: a sample of it is computed on the CPU engine and thrown away.
 
 use super::failure::Failure;
-use crate::map::{self, Stage};
-use crate::plan::{Plan, SAMPLE_LINES, SAMPLE_VALUES};
-use crate::scene::Scene;
 use std::convert::Infallible;
+use whiskmap::map::{self, Stage};
+use whiskmap::plan::{Plan, SAMPLE_LINES, SAMPLE_VALUES};
+use whiskmap::scene::Scene;
 
 /// What a map would take.
 pub struct Estimate {

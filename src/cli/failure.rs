@@ -1,14 +1,14 @@
 //! What ends a command early, and the exit code for it.
 
-use crate::integrate::EngineError;
-use crate::plan::PlanError;
-use crate::render;
-use crate::scene::SceneError;
-use crate::store;
-use crate::trace::NoState;
 use std::io::{IsTerminal, Write};
 use std::path::PathBuf;
 use std::process::ExitCode;
+use whiskmap::integrate::EngineError;
+use whiskmap::plan::PlanError;
+use whiskmap::render;
+use whiskmap::scene::SceneError;
+use whiskmap::store;
+use whiskmap::trace::NoState;
 
 /// An error of a command.
 #[derive(Debug, thiserror::Error)]
@@ -89,11 +89,11 @@ pub fn say(line: &str) {
     let _ = writeln!(std::io::stderr(), "{line}");
 }
 
-/// Keeps panics silent that [`integrate::gpu`](crate::integrate::gpu) expects of a driver and reports as errors.
+/// Keeps panics silent that [`integrate::gpu`](whiskmap::integrate::gpu) expects of a driver and reports as errors.
 pub fn keep_expected_panics_silent() {
     let before = std::panic::take_hook();
     std::panic::set_hook(Box::new(move |info| {
-        if !crate::integrate::gpu::is_guarded() {
+        if !whiskmap::integrate::gpu::is_guarded() {
             before(info);
         }
     }));

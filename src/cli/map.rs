@@ -7,20 +7,20 @@ use super::outputs;
 use super::progress;
 use super::render::save;
 use super::tolerance::Tolerance;
-use crate::accuracy::{Accuracy, BOUNDED};
-use crate::classify::{Regime, Status};
-use crate::map::Stage;
-use crate::map::{self, Progress, Summary};
-use crate::plan::Plan;
-use crate::refine::{GOAL, TOLERANCE};
-use crate::render;
-use crate::render::{Format, MapOptions};
-use crate::scene::Scene;
-use crate::store::{Description, MapWriter, StoredMap};
 use clap::Args;
 use std::io::Write;
 use std::path::PathBuf;
 use std::time::Instant;
+use whiskmap::accuracy::{Accuracy, BOUNDED};
+use whiskmap::classify::{Regime, Status};
+use whiskmap::map::Stage;
+use whiskmap::map::{self, Progress, Summary};
+use whiskmap::plan::Plan;
+use whiskmap::refine::{GOAL, TOLERANCE};
+use whiskmap::render;
+use whiskmap::render::{Format, MapOptions};
+use whiskmap::scene::Scene;
+use whiskmap::store::{Description, MapWriter, StoredMap};
 
 /// Options of `map`.
 #[derive(Debug, Args)]
@@ -61,7 +61,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         plan.method = plan.method.with_resolution(accuracy.resolution);
     }
     let (mut engine, why) = engine::open(options.engine, options.precision)?;
-    let about = crate::integrate::Description::of(engine.as_deref());
+    let about = whiskmap::integrate::Description::of(engine.as_deref());
     let file = options.output.join(format!("{}.exr", scene.name));
     let picture = (!options.no_png).then(|| file.with_extension("png"));
     outputs::folder("--output", &options.output)?;

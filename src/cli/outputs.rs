@@ -2,12 +2,12 @@
 
 use super::failure::Failure;
 use super::render::save;
-use crate::render::{Chart, Format};
-use crate::store::{Output, Table};
 use clap::Args;
 use serde::Serialize;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
+use whiskmap::render::{Chart, Format};
+use whiskmap::store::{Output, Table};
 
 /// `--csv` and `--plot`.
 #[derive(Debug, Args)]

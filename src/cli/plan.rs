@@ -2,11 +2,11 @@
 
 use super::estimate::{Estimate, estimate};
 use super::failure::Failure;
-use crate::plan::{Cost, Plan, ROD_STATES, effects};
-use crate::scene::Scene;
 use clap::Args;
 use std::io::Write;
 use std::path::PathBuf;
+use whiskmap::plan::{Cost, Plan, ROD_STATES, effects};
+use whiskmap::scene::Scene;
 
 /// Options of `plan`.
 #[derive(Debug, Args)]

@@ -2,10 +2,10 @@
 
 use super::failure::Failure;
 use super::numbers::number;
-use crate::scene::{Scene, Whisker};
-use crate::trace::NoState;
 use clap::Args;
 use std::path::PathBuf;
+use whiskmap::scene::{Scene, Whisker};
+use whiskmap::trace::NoState;
 
 /// The scene, and where the pole stands.
 #[derive(Debug, Args)]

@@ -1,11 +1,11 @@
 //! `whiskmap render`.
 
 use super::failure::{Failure, say};
-use crate::render::{self, Format, MapOptions, Picture};
-use crate::store::StoredMap;
 use clap::Args;
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
+use whiskmap::render::{self, Format, MapOptions, Picture};
+use whiskmap::store::StoredMap;
 
 /// Options of `render`.
 #[derive(Debug, Args)]

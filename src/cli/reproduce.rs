@@ -2,12 +2,12 @@
 
 use super::failure::Failure;
 use super::outputs::{self, unwritten};
-use crate::paper;
-use crate::render::Format;
-use crate::store::{Output, Table};
 use clap::Args;
 use std::io::Write;
 use std::path::PathBuf;
+use whiskmap::paper;
+use whiskmap::render::Format;
+use whiskmap::store::{Output, Table};
 
 /// Options of `reproduce`.
 #[derive(Debug, Args)]

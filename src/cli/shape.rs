@@ -5,10 +5,10 @@ use super::failure::Failure;
 use super::numbers::{number, whole};
 use super::outputs::Outputs;
 use super::pole::Pole;
-use crate::render::{Chart, Drawn, Ink, Stroke, shapes};
-use crate::rod::Side;
-use crate::trace::{Branch, NoState, Shape, ShapePoint};
 use clap::{Args, ValueEnum};
+use whiskmap::render::{Chart, Drawn, Ink, Stroke, shapes};
+use whiskmap::rod::Side;
+use whiskmap::trace::{Branch, NoState, Shape, ShapePoint};
 
 const EXAMPLES: &str = "\
 Examples:

@@ -19,7 +19,7 @@ pub fn handle() {
         let Some(signal) = signals.forever().next() else {
             return;
         };
-        crate::store::abandon();
+        whiskmap::store::abandon();
         // A terminal's line may hold a progress bar.
         let is_watched = std::io::stderr().is_terminal();
         let start = if is_watched { "\n" } else { "" };

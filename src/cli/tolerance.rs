@@ -1,10 +1,10 @@
 //! `--tolerance`: how exact is exact enough.
 
 use super::failure::{Failure, say};
-use crate::accuracy::{Accuracy, BOUNDED, cheapest};
-use crate::rod::Side;
-use crate::scene::Scene;
 use clap::Args;
+use whiskmap::accuracy::{Accuracy, BOUNDED, cheapest};
+use whiskmap::rod::Side;
+use whiskmap::scene::Scene;
 
 /// The option.
 #[derive(Debug, Args)]

@@ -1,8 +1,8 @@
 //! `whiskmap verify`.
 
 use super::failure::Failure;
-use crate::paper::{Expected, checks};
 use std::io::Write;
+use whiskmap::paper::{Expected, checks};
 
 /// Runs `verify`.
 pub fn run() -> Result<(), Failure> {

@@ -6,6 +6,7 @@
 //! On the CPU nothing would be spared: the refinement takes the same steps, from the guesses.
 
 mod fallback;
+#[cfg(feature = "gpu")]
 pub mod gpu;
 
 pub use fallback::Fallback;

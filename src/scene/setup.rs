@@ -61,6 +61,13 @@ impl Setup {
         })
     }
 
+    /// The first whisker of the sweep, or the only one.
+    #[must_use]
+    pub fn first_whisker(&self) -> Whisker {
+        let first = |axis: &Option<Vec<f64>>| axis.as_ref().and_then(|axis| axis.first().copied());
+        self.whisker_at(first(&self.grid.taper), first(&self.grid.curvature_per_mm))
+    }
+
     /// Whether whiskers are swept: whether there is an axis of taper or curvature.
     #[must_use]
     pub fn is_sweep(&self) -> bool {
