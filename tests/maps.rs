@@ -33,6 +33,10 @@ fn shipped() -> Vec<Scene> {
         .collect()
 }
 
+/// The part of the shots that a GPU finishes at least. On the shipped scenes, thinned out, at most 9 of 9,051 were
+/// restarted, those of measured radii, and 3 of 7,873 elsewhere, in `f32` and in `f64`.
+const FINISHED: f64 = 0.998;
+
 /// GPU engines of this machine.
 fn gpus() -> Vec<Gpu> {
     let precisions = [Precision::F32, Precision::F64].into_iter();
@@ -79,7 +83,7 @@ fn engines_agree_on_every_cell() {
             let failure = &summary.engine_failure;
             assert!(failure.is_none(), "{what}: {failure:?}");
             assert_close(&cpu, &panels, &what);
-            gpu.works(summary.shots.restarted)
+            gpu.works(summary.shots.restarted, FINISHED)
                 .unwrap_or_else(|why| panic!("{what}: {why}"));
         }
     }
@@ -110,12 +114,12 @@ fn engines_agree_on_every_field() {
         let mut worst: f64 = 0.0;
         for mut gpu in gpus() {
             let hits = gpu
-                .shoot(effects, &std::slice::from_ref(&rod), &shots)
+                .shoot(effects, std::slice::from_ref(&rod), &shots)
                 .unwrap();
             let converged = hits.iter().filter(|hit| hit.outcome == Outcome::Converged);
             let converged = converged.count();
             eprintln!("{converged} of {} converged", hits.len());
-            assert!(converged * 50 >= hits.len() * 49);
+            assert!(converged as f64 >= FINISHED * hits.len() as f64);
             let starts = hits.iter().map(|hit| (hit.tau, hit.load)).collect();
             for (a, b) in cpu.iter().zip(states(starts)) {
                 assert_eq!(a.end, b.end);

@@ -58,11 +58,12 @@ fn opened(precision: Precision, gpu: Result<Gpu, EngineError>) -> Option<Gpu> {
     }
 }
 
-/// An engine whose hits are kept, and looked at in `f64`.
+/// An engine whose hits are kept. The lattice's guesses are so good that hits do not show who found them, so each call is
+/// made once more from guesses that are off, and the hits of that one are looked at in `f64`.
 pub struct Watched<E> {
     pub engine: E,
     pub hits: Vec<Hit>,
-    /// How far from the wanted place, in whisker lengths, the poles of the guesses and of the hits really are, shot by shot.
+    /// How far from the wanted place, in whisker lengths, the poles of those guesses and hits really are, shot by shot.
     misses: [Vec<f64>; 2],
 }
 
@@ -75,9 +76,9 @@ impl<E: Engine> Watched<E> {
         }
     }
 
-    /// Whether the engine did its work in runs that counted so many shots as restarted, or what is wrong: maps are right
-    /// without an engine too.
-    pub fn works(&self, restarted: u64) -> Result<(), String> {
+    /// Whether the engine did its work in runs that counted so many shots as `restarted`: it must finish `least` of its shots,
+    /// and come a hundred times closer than guesses that are off. Maps are right without an engine too.
+    pub fn works(&self, restarted: u64, least: f64) -> Result<(), String> {
         let unfinished = self.hits.iter().filter(|h| h.outcome != Outcome::Converged);
         let (all, unfinished) = (self.hits.len(), unfinished.count());
         let [guesses, hits] = self.misses.each_ref().map(|misses| {
@@ -89,7 +90,8 @@ impl<E: Engine> Watched<E> {
             "{unfinished} of {all} shots unfinished, {restarted} restarted; in the median off by {hits:.1e}, from {guesses:.1e}"
         );
         eprintln!("{found}");
-        let good = unfinished * 50 <= all && hits * 10.0 <= guesses;
+        let finished = (all - unfinished) as f64 >= least * all as f64;
+        let good = finished && hits * 100.0 <= guesses;
         if good && restarted == unfinished as u64 {
             Ok(())
         } else {
@@ -110,8 +112,15 @@ impl<E: Engine> Engine for Watched<E> {
         shots: &[Shot],
     ) -> Result<Vec<Hit>, EngineError> {
         let hits = self.engine.shoot(effects, rods, shots)?;
-        let guesses: Vec<Hit> = shots.iter().map(Hit::untouched).collect();
-        for (misses, found) in self.misses.iter_mut().zip([&guesses, &hits]) {
+        let off = |shot: &Shot| Shot {
+            tau: 0.99 * shot.tau,
+            load: 0.99 * shot.load,
+            ..*shot
+        };
+        let off: Vec<Shot> = shots.iter().map(off).collect();
+        let guesses = off.iter().map(Hit::untouched).collect();
+        let found = self.engine.shoot(effects, rods, &off)?;
+        for (misses, found) in self.misses.iter_mut().zip([guesses, found]) {
             let conditions = found.iter().zip(shots).map(|(hit, shot)| InitialCondition {
                 rod: &rods[shot.rod as usize],
                 tau: hit.tau,

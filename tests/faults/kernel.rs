@@ -29,6 +29,9 @@ const SPOILT: [&str; 2] = [
      hits[id.x] = solve(rods[shot.rod], start);",
 ];
 
+/// The part of the shots that a sound kernel finishes at least: of 128 x 128 cells at most 2 of 9,151 shots were restarted.
+const FINISHED: f64 = 0.998;
+
 /// 64 x 64 cells go out in a single dispatch, so that the shader's index is the index of the shot. Next to the tip and
 /// the fold a few shots stall without any fault.
 #[test]
@@ -41,7 +44,7 @@ fn numbers_that_are_none_are_restarted_in_f64_and_counted() {
         };
         let mut gpu = Watched::new(gpu);
         let (summary, _) = compute(&scene, Some(&mut gpu));
-        gpu.works(summary.shots.restarted).unwrap();
+        gpu.works(summary.shots.restarted, FINISHED).unwrap();
         assert!((1000..=4096).contains(&gpu.hits.len()));
         let spoilt_or_stalled = |(i, outcome): (usize, Outcome)| {
             i % 7 == 0 || i % 11 == 0 || outcome != Outcome::Converged
@@ -102,7 +105,7 @@ fn a_kernel_that_does_nothing_is_noticed() {
         assert_same(&cpu, &panels);
         let shots = summary.shots;
         assert_eq!(shots.restarted, if restarted { shots.all } else { 0 });
-        assert!(gpu.works(summary.shots.restarted).is_err());
+        assert!(gpu.works(shots.restarted, FINISHED).is_err());
     }
 }
 

@@ -50,7 +50,8 @@ fn engines_agree_on_every_named_case() {
         }
     }
     for (gpu, restarted) in gpus {
-        gpu.works(restarted).unwrap();
+        // In `f32` 62 of 3,985 were restarted (`outputs/f32_stability.txt`).
+        gpu.works(restarted, 0.975).unwrap();
     }
 }
 

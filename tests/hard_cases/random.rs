@@ -217,6 +217,6 @@ fn holds(seen: &Seen) {
 }
 
 fn is_coiled(state: &InitialCondition) -> bool {
-    let s = arclength(&state.rod, state.tau);
+    let s = arclength(state.rod, state.tau);
     state.load.abs() * s * s * state.rod.softness(state.tau) > MODERATE
 }
