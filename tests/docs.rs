@@ -3,6 +3,7 @@
 use assert_cmd::Command;
 use std::fs;
 use std::path::Path;
+use whiskmap::trace::{BranchPoint, Corner, Detachment, ShapePoint};
 
 /// The calls of `whiskmap` in the shell blocks of a page, without their remarks.
 fn calls(page: &str) -> Vec<Vec<String>> {
@@ -46,6 +47,22 @@ fn every_command_of_the_pages_runs() {
         }
     }
     assert!(ran > 20, "only {ran} commands found");
+}
+
+#[test]
+fn every_column_is_on_the_page_of_the_commands() {
+    let page = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/commands.md"));
+    let page = page.expect("docs/commands.md");
+    let tables = [
+        Detachment::COLUMNS,
+        Corner::COLUMNS,
+        BranchPoint::COLUMNS,
+        ShapePoint::COLUMNS,
+    ];
+    for (name, meaning) in tables.into_iter().flatten() {
+        let line = format!("| `{name}` | {} |", meaning.trim());
+        assert!(page.contains(&line), "{line}");
+    }
 }
 
 #[test]
