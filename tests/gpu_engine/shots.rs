@@ -79,7 +79,7 @@ pub fn condition<'a>(rod: &'a Rod, most_q: f64, random: &mut Random) -> InitialC
     InitialCondition { rod, tau, load }
 }
 
-/// The truth: the default steps are off by less than 1e-11 (`tests/model.rs`).
+/// The truth: the default steps are off by less than 1e-11 (`crates/mechanics/tests/mechanics/integrators.rs`).
 pub fn maps(effects: Effects, conditions: &[InitialCondition]) -> Vec<ShootingMap> {
     let method = Method::new(whiskmap::shooting::Resolution::FINE).with_effects(effects);
     Batch::new(method).shoot::<ShootingMap>(conditions)

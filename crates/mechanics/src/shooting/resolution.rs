@@ -15,7 +15,7 @@ pub struct Resolution {
 
 impl Resolution {
     /// What maps and lines take unless told otherwise: states are off by less than 1e-11 of the length for taper up to 0.99
-    /// (`tests/model.rs`).
+    /// (`tests/mechanics/integrators.rs`).
     pub const FINE: Self = Self::of(20);
 
     /// What signs and guesses need. Over the stable sheet states are off by less than 1e-6.
@@ -146,29 +146,3 @@ const FEWEST: f64 = 0.15;
 
 /// Bounds the work on a trajectory that a lost Newton step has sent far away.
 const MOST: f64 = 8192.0;
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Against whole numbers: the smallest one of three significant bits that is as large.
-    #[test]
-    fn steps_are_rounded_up_to_three_bits() {
-        let resolution = Resolution {
-            least: 1,
-            longest: 1.0,
-        };
-        for quarters in 0..4 * 9000 {
-            let wanted = 0.25 * f64::from(quarters);
-            let fits = |steps: &u32| {
-                let unit = (steps.next_power_of_two() / 8).max(1);
-                f64::from(*steps) >= wanted && steps.is_multiple_of(unit)
-            };
-            let expected = (1..=8192).find(fits).unwrap_or(8192);
-            assert_eq!(resolution.rounded(wanted, 0.0), expected, "{wanted}");
-            assert_eq!(resolution.rounded(0.0, wanted), expected, "{wanted}");
-        }
-        assert_eq!(resolution.rounded(f64::NAN, 0.0), 1);
-        assert_eq!(resolution.rounded(f64::INFINITY, 0.0), 8192);
-    }
-}

@@ -22,6 +22,21 @@ pub trait Lanes: Real {
     fn pack(lanes: [f64; WIDTH]) -> Self;
     /// To the first numbers of an array.
     fn unpack(self) -> [f64; WIDTH];
+
+    /// Does `task` in a function of its own: a compiler takes longer for one large function than for many small ones.
+    #[inline(never)]
+    fn outlined<K: LanesTask<Self>>(task: K) -> K::Output {
+        task.run()
+    }
+}
+
+/// Arithmetic in the lanes `T`.
+pub trait LanesTask<T: Lanes> {
+    /// What comes of it.
+    type Output;
+
+    /// Does it; to be inlined into a function that is compiled for the unit of these lanes.
+    fn run(self) -> Self::Output;
 }
 
 impl Lanes for f64 {

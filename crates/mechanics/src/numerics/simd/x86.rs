@@ -9,7 +9,7 @@
     reason = "vector instructions may run only where the unit exists, which a token proves"
 )]
 
-use super::{Lanes, SimdTask, WIDTH};
+use super::{Lanes, LanesTask, SimdTask, WIDTH};
 use crate::numerics::Real;
 use std::arch::x86_64::*;
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -66,7 +66,7 @@ macro_rules! operator {
 /// Two registers of `$each` numbers as lanes.
 macro_rules! vectors {
     (
-        $vectors:ident, $register:ty, $each:literal, $add:ident, $sub:ident, $mul:ident, $div:ident,
+        $vectors:ident, $enabled:literal, $register:ty, $each:literal, $add:ident, $sub:ident, $mul:ident, $div:ident,
         $fma:ident, $splat:ident, $sqrt:ident, $load:ident, $store:ident
     ) => {
         #[derive(Clone, Copy)]
@@ -129,12 +129,24 @@ macro_rules! vectors {
                 }
                 lanes
             }
+
+            #[inline(always)]
+            fn outlined<K: LanesTask<Self>>(task: K) -> K::Output {
+                #[target_feature(enable = $enabled)]
+                #[inline(never)]
+                fn run<K: LanesTask<$vectors>>(task: K) -> K::Output {
+                    task.run()
+                }
+                // SAFETY: this is called only where the unit exists; see the module.
+                unsafe { run(task) }
+            }
         }
     };
 }
 
 vectors!(
     Vectors512,
+    "avx512f,avx512dq,avx512vl,fma",
     __m512d,
     8,
     _mm512_add_pd,
@@ -149,6 +161,7 @@ vectors!(
 );
 vectors!(
     Vectors256,
+    "avx2,fma",
     __m256d,
     4,
     _mm256_add_pd,

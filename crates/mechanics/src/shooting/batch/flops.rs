@@ -1,10 +1,8 @@
 //! How many floating-point operations a trajectory takes: the kernels themselves, run with numbers that count.
 
-use crate::numerics::Real;
-use crate::numerics::{Lanes, WIDTH};
+use crate::numerics::{Lanes, Real, WIDTH};
 use crate::rod::Effects;
-use crate::shooting::batch::InitialCondition;
-use crate::shooting::batch::kernel::by_effects;
+use crate::shooting::batch::{InitialCondition, kernel::by_effects};
 use crate::shooting::{Integrator, Nystrom8, Rk4, ShootingMap};
 use std::cell::Cell;
 use std::ops::{Add, Div, Mul, Neg, Sub};

@@ -3,7 +3,7 @@
 use super::block_key::BlockKey;
 use super::gather::{ArcPosition, Gather, GatherMaterial, lanes, numbers};
 use super::{InitialCondition, Method, OutputSet};
-use crate::numerics::{Lanes, SimdTask, WIDTH};
+use crate::numerics::{Lanes, LanesTask, SimdTask, WIDTH};
 use crate::rod::Effects;
 use crate::shooting::contact::{Contact, radius_and_arclength};
 use crate::shooting::sensitivity::{Arrival, SensitivitySet};
@@ -130,46 +130,53 @@ fn steps<T: Lanes>(method: Method, conditions: &Conditions) -> [(f64, u32); WIDT
     pairs
 }
 
-/// Integrates with the kernel for `effects`.
+/// Integrates with the kernel for `effects`. A profile has one kernel with a gradient or without: it costs one multiplication.
 #[inline(always)]
 pub fn by_effects<M: Integrator, O: OutputSet, T: Lanes>(
     effects: Effects,
     steps: u32,
     conditions: &Conditions,
 ) -> [O; WIDTH] {
-    match (effects.curvature, effects.spiral) {
-        (_, true) => by_stiffness::<M, O, O::General<T>, T, Spiral<_>>(effects, steps, conditions),
-        (true, false) => {
-            by_stiffness::<M, O, O::General<T>, T, Bent<_>>(effects, steps, conditions)
-        }
-        (false, false) => {
-            by_stiffness::<M, O, O::Similar<T>, T, Straight>(effects, steps, conditions)
-        }
+    /// The kernel for a rest shape and a material, with these sensitivities, on a rod that changes along its length or not.
+    macro_rules! kernel {
+        ($rest:ty, $material:ty, $set:ident, $advances:literal) => {
+            T::outlined(Kernel::<M, O, O::$set<T>, $rest, $material, $advances> {
+                steps,
+                conditions,
+                of: PhantomData,
+            })
+        };
     }
-}
-
-/// The same for a rest shape; `E` is what a uniform cone of that shape has to carry. A profile has one kernel with a gradient
-/// or without: it costs one multiplication.
-#[inline(always)]
-fn by_stiffness<M: Integrator, O: OutputSet, E, T: Lanes, I: Gather<T>>(
-    effects: Effects,
-    steps: u32,
-    conditions: &Conditions,
-) -> [O; WIDTH]
-where
-    E: SensitivitySet<T, AtBase = <O::General<T> as SensitivitySet<T>>::AtBase>,
-{
-    match (effects.profile, effects.gradient, effects.advances()) {
-        (true, _, _) => block::<M, O, O::General<T>, T, I, Measured<_>, true>(steps, conditions),
-        (false, true, _) => block::<M, O, O::General<T>, T, I, Graded<_>, true>(steps, conditions),
-        (false, false, true) => block::<M, O, E, T, I, Uniform, true>(steps, conditions),
-        (false, false, false) => block::<M, O, E, T, I, Uniform, false>(steps, conditions),
+    let Effects {
+        curvature,
+        spiral,
+        gradient,
+        profile,
+        ..
+    } = effects;
+    match (spiral, curvature, profile, gradient) {
+        (true, _, true, _) => kernel!(Spiral<T>, Measured<T>, General, true),
+        (true, _, false, true) => kernel!(Spiral<T>, Graded<T>, General, true),
+        (true, _, false, false) => kernel!(Spiral<T>, Uniform, General, true),
+        (false, true, true, _) => kernel!(Bent<T>, Measured<T>, General, true),
+        (false, true, false, true) => kernel!(Bent<T>, Graded<T>, General, true),
+        (false, true, false, false) if effects.taper => kernel!(Bent<T>, Uniform, General, true),
+        (false, true, false, false) => kernel!(Bent<T>, Uniform, General, false),
+        (false, false, true, _) => kernel!(Straight, Measured<T>, General, true),
+        (false, false, false, true) => kernel!(Straight, Graded<T>, General, true),
+        (false, false, false, false) if effects.taper => kernel!(Straight, Uniform, Similar, true),
+        (false, false, false, false) => kernel!(Straight, Uniform, Similar, false),
     }
 }
 
 /// Integrates as many trajectories in step as there are lanes.
-#[inline(always)]
-fn block<M, O, S, T, I, C, const TAPER: bool>(steps: u32, conditions: &Conditions) -> [O; WIDTH]
+struct Kernel<'a, M, O, S, I, C, const ADVANCES: bool> {
+    steps: u32,
+    conditions: &'a Conditions<'a>,
+    of: PhantomData<(M, O, S, I, C)>,
+}
+
+impl<M, O, S, T, I, C, const ADVANCES: bool> LanesTask<T> for Kernel<'_, M, O, S, I, C, ADVANCES>
 where
     M: Integrator,
     O: OutputSet,
@@ -178,56 +185,64 @@ where
     I: Gather<T>,
     C: GatherMaterial<T>,
 {
-    let tau: T = lanes(conditions, |condition| condition.tau);
-    let load: T = lanes(conditions, |condition| condition.load);
-    let taper: T = lanes(conditions, |condition| condition.rod.taper);
-    let [radius, s] = radius_and_arclength(taper, tau);
-    let (intrinsic, at_rest) = I::gather(conditions, s);
-    let (zero, one) = (T::of(0.0), T::of(1.0));
-    // The contact's tangent is that of the angle of friction.
-    let friction: T = lanes(conditions, |condition| condition.rod.friction);
-    let cos = one / friction.mul_add(friction, one).sqrt();
-    let contact = Contact {
-        radius,
-        force: load * radius * radius,
-        tangent: [cos, friction * cos],
-        stiffness: C::stiffness(conditions, radius, s),
-        curvature: at_rest.curvature,
-        curvature_slope: at_rest.slope,
-    };
-    let [c, sin] = contact.tangent;
-    let rod = [c, sin, zero, zero, zero];
-    let mut state = (at_rest.state, (rod, S::start(&contact)));
-    let mut here = ArcPosition { tau, radius, s };
-    for piece in (0..C::pieces(conditions, s)).rev() {
-        let there = C::begin(conditions, piece);
-        let h = (here.tau - there.tau) / T::of(f64::from(steps));
-        let system = RodSystem {
-            force: contact.force,
-            intrinsic,
-            material: C::gather(conditions, piece),
+    type Output = [O; WIDTH];
+
+    #[inline(always)]
+    fn run(self) -> [O; WIDTH] {
+        let Self {
+            steps, conditions, ..
+        } = self;
+        let tau: T = lanes(conditions, |condition| condition.tau);
+        let load: T = lanes(conditions, |condition| condition.load);
+        let taper: T = lanes(conditions, |condition| condition.rod.taper);
+        let [radius, s] = radius_and_arclength(taper, tau);
+        let (intrinsic, at_rest) = I::gather(conditions, s);
+        let (zero, one) = (T::of(0.0), T::of(1.0));
+        // The contact's tangent is that of the angle of friction.
+        let friction: T = lanes(conditions, |condition| condition.rod.friction);
+        let cos = one / friction.mul_add(friction, one).sqrt();
+        let contact = Contact {
+            radius,
+            force: load * radius * radius,
+            tangent: [cos, friction * cos],
+            stiffness: C::stiffness(conditions, radius, s),
+            curvature: at_rest.curvature,
+            curvature_slope: at_rest.slope,
         };
-        let (scales, rho) = if TAPER {
-            (Scales::tapered::<M>(taper, h), here.radius)
-        } else {
-            (Scales::cylinder::<M>(h), one)
+        let [c, sin] = contact.tangent;
+        let rod = [c, sin, zero, zero, zero];
+        let mut state = (at_rest.state, (rod, S::start(&contact)));
+        let mut here = ArcPosition { tau, radius, s };
+        for piece in (0..C::pieces(conditions, s)).rev() {
+            let there = C::begin(conditions, piece);
+            let h = (here.tau - there.tau) / T::of(f64::from(steps));
+            let system = RodSystem {
+                force: contact.force,
+                intrinsic,
+                material: C::gather(conditions, piece),
+            };
+            let (scales, rho) = if ADVANCES {
+                (Scales::tapered::<M>(taper, h), here.radius)
+            } else {
+                (Scales::cylinder::<M>(h), one)
+            };
+            let section = Section {
+                rho,
+                inverse_cube: one / (rho * rho * rho),
+                arclength: here.s,
+            };
+            state = integrate::<M, _, I, C, S>(&system, &scales, section, steps, state);
+            here = there;
+        }
+        let (_, (rod, carried)) = state;
+        let arrival = Arrival {
+            contact,
+            taper,
+            rod,
         };
-        let section = Section {
-            rho,
-            inverse_cube: one / (rho * rho * rho),
-            arclength: here.s,
-        };
-        state = integrate::<M, _, I, C, S>(&system, &scales, section, steps, state);
-        here = there;
+        let pole: T = lanes(conditions, |condition| condition.rod.pole);
+        // See `Rod::to_pole`.
+        let to_pole = [pole * contact.tangent[1], -pole * contact.tangent[0]];
+        O::answers(&arrival, to_pole, S::at_base(&arrival, carried))
     }
-    let (_, (rod, carried)) = state;
-    let arrival = Arrival {
-        contact,
-        taper,
-        rod,
-    };
-    let pole: T = lanes(conditions, |condition| condition.rod.pole);
-    // See `Rod::to_pole`.
-    let to_pole = [pole * contact.tangent[1], -pole * contact.tangent[0]];
-    O::answers(&arrival, to_pole, S::at_base(&arrival, carried))
 }

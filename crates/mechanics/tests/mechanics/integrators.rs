@@ -1,13 +1,12 @@
 //! The integrators and the derivatives that they carry.
-#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use glam::DVec2;
 use num_dual::{DualNum, HyperDual64, second_partial_derivative};
 use std::ops::{Add, Div, Mul, Neg, Sub};
-use whiskmap::numerics::Real;
-use whiskmap::rod::{Effects, Rod};
-use whiskmap::shooting::batch::{Batch, InitialCondition, Method};
-use whiskmap::shooting::{
+use whiskmap_mechanics::numerics::Real;
+use whiskmap_mechanics::rod::{Effects, Rod};
+use whiskmap_mechanics::shooting::batch::{Batch, InitialCondition, Method};
+use whiskmap_mechanics::shooting::{
     Graded, Integrator, Nystrom8, Planar, Resolution, Rk4, RodSystem, Scales, SecondVariation,
     Section, Shape, ShootingMap, Straight, Uniform, integrate,
 };

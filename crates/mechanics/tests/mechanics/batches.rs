@@ -1,10 +1,9 @@
 //! Batches of trajectories that want different numbers of steps: alone, or padded.
-#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use std::sync::Arc;
-use whiskmap::rod::{RadiusProfile, Rod};
-use whiskmap::shooting::batch::{Batch, InitialCondition, Method};
-use whiskmap::shooting::{Resolution, SecondVariation, ShootingMap};
+use whiskmap_mechanics::rod::{RadiusProfile, Rod};
+use whiskmap_mechanics::shooting::batch::{Batch, InitialCondition, Method};
+use whiskmap_mechanics::shooting::{Resolution, SecondVariation, ShootingMap};
 
 /// A test ends soon: its rods may stay until then.
 fn kept(rod: Rod) -> &'static Rod {
