@@ -18,9 +18,6 @@ const CORRECTOR_ITERATIONS: usize = 12;
 /// `ln D` at which a point lies on the curve, to rounding.
 pub const ON_CURVE: f64 = 1e-14;
 
-/// What rounding may leave of a push angle, relative to it or in radians.
-const PUSH_ROUNDING: f64 = 4.0 * f64::EPSILON;
-
 /// A state on the level curve.
 #[derive(Clone, Copy, Debug)]
 pub struct Node {
@@ -107,8 +104,9 @@ impl LevelCurve {
         let is_from_closer = miss(from).abs() < miss(to).abs();
         let mut best = if is_from_closer { *from } else { *to };
         let ends = [[0.0, miss(from)], [1.0, miss(to)]];
-        let rounding = PUSH_ROUNDING * push.abs().max(1.0);
-        let root = illinois(ends, rounding, |part| {
+        // The corrector leaves as much.
+        let tolerance = ON_CURVE * push.abs().max(1.0);
+        let root = illinois(ends, tolerance, |part| {
             let start = from.point.lerp(to.point, part);
             let (point, full) = self.correct(&[start], ON_CURVE).pop()??;
             let node = self.node(point, &full, from.push, from.angle);

@@ -253,17 +253,12 @@ mod tests {
             let fold = branch.fold.unwrap();
             for part in [&branch.nodes[..=fold], &branch.nodes[fold..]] {
                 let [from, to] = [part[0].push, part[part.len() - 1].push];
-                let mut counts = Vec::new();
                 for i in 0..=200 {
                     let push = from + (to - from) * f64::from(i) / 200.0;
                     let (node, root) = level.bracketed_push(part, push).unwrap();
-                    println!("{i} {root:?} {:e}", node.push - push);
-                    assert!((node.push - push).abs() < 1e-15, "{push} {root:?}");
-                    counts.push(root.iterations);
+                    assert!((node.push - push).abs() <= ON_CURVE, "{push} {root:?}");
+                    assert!(root.iterations <= 10, "{push} {root:?}");
                 }
-                counts.sort_unstable();
-                println!("{counts:?}");
-                assert!(counts[100] <= 8 && counts[200] <= 12, "{counts:?}");
             }
         }
     }

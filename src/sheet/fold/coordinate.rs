@@ -26,7 +26,7 @@ pub fn slope_of_u(rod: &Rod, tau: f64) -> f64 {
     slope
 }
 
-/// The last Newton step toward a `tau`, relatively: its square is left.
+/// The last step toward a `tau`, relatively: the square of a Newton step is left, and of a bisection that is harmless.
 const LAST_TAU_STEP: f64 = 1e-9;
 
 /// Inverse of [`u_of`] by Newton's method for `ln tau` from `near`.
@@ -38,20 +38,26 @@ pub fn tau_of(rod: &Rod, u: f64, near: f64) -> f64 {
         f64::INFINITY
     };
     let most = if u < 1.0 { u.exp() } else { u };
-    let bracket = Bracket {
-        below: 0.0,
-        above: most.min(end),
+    // Of `u` less that of a place, which falls.
+    let mut bracket = Bracket {
+        below: most.min(end),
+        above: 0.0,
     };
-    let start = if near < bracket.above {
+    let mut tau = if near < bracket.below {
         near
     } else {
         bracket.middle()
     };
-    let newton = |tau: f64| {
-        let miss = u_of(rod, tau) - u;
-        (miss, tau * (-miss / slope_of_u(rod, tau)).exp())
-    };
-    bracket.newton(start, |tau| LAST_TAU_STEP * tau, newton).x
+    for _ in 0..100 {
+        let miss = u - u_of(rod, tau);
+        let newton = tau * (miss / slope_of_u(rod, tau)).exp();
+        let next = bracket.next(tau, miss, newton);
+        if (next - tau).abs() <= LAST_TAU_STEP * tau {
+            return next;
+        }
+        tau = next;
+    }
+    tau
 }
 
 /// Nodes that a [`Hermite`] polynomial goes through.

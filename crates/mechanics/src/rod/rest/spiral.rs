@@ -74,16 +74,17 @@ impl EulerSpiral {
     /// Arclength at which the chord from the base is `chord`, which grows along the spiral (the scene made sure).
     pub fn arclength_of_chord(&self, chord: f64) -> f64 {
         let reach = self.at_arclength(1.0).0.length();
+        // Of the chord less the length, which falls: a length that is exact counts as low.
         let mut bracket = Bracket {
-            below: chord,
-            above: if chord < reach { 1.0 } else { chord + 1.0 },
+            below: if chord < reach { 1.0 } else { chord + 1.0 },
+            above: chord,
         };
         let mut s = chord;
         for _ in 0..200 {
             let (point, tangent) = self.at_arclength(s);
             let length = point.length();
             let newton = s - (length - chord) * length / point.dot(tangent);
-            let next = bracket.next(s, length - chord, newton);
+            let next = bracket.next(s, chord - length, newton);
             // A step from rounding to rounding, also one to the middle of what is left.
             if (next - s).abs() <= 2.0 * f64::EPSILON * s {
                 return next;
