@@ -1,6 +1,7 @@
 //! Where a conical whisker detaches, and how: prints one line per distance.
 //!
 //! `cargo run --release --example detachment_curve`
+#![allow(clippy::print_stdout, reason = "an example shows what it finds")]
 
 use whiskmap::scene::Scene;
 use whiskmap::{Options, curve};

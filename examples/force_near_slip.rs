@@ -1,6 +1,7 @@
 //! The force on a whisker that is pushed against a pole, from first touch to the fold and back along the unstable states.
 //!
 //! `cargo run --release --example force_near_slip`
+#![allow(clippy::print_stdout, reason = "an example shows what it finds")]
 
 use whiskmap::branch;
 use whiskmap::rod::Side;

@@ -1,6 +1,7 @@
 //! How the share of pushes that end in slip-off depends on the taper: one regime map per whisker, in memory.
 //!
 //! `cargo run --release --example taper_sweep`
+#![allow(clippy::print_stdout, reason = "an example shows what it finds")]
 
 use whiskmap::classify::Regime;
 use whiskmap::scene::Scene;

@@ -1,4 +1,5 @@
 //! The pages of `docs/` and README, command by command: every line of a shell block that calls `whiskmap` runs.
+#![allow(clippy::expect_used, reason = "a test fails by panicking")]
 
 use assert_cmd::Command;
 use std::fs;
