@@ -3,7 +3,7 @@
 use super::solver::Solver;
 use super::task::Task;
 use super::watch::watch;
-use super::{Engine, Report, Row, Rung, Stages};
+use super::{Engine, Measurement, Report, Rung, Stages};
 use crate::integrate::{EngineError, Hit};
 use crate::numerics::MultiplyAndAdd;
 use crate::numerics::Unit;
@@ -69,7 +69,7 @@ pub fn measure(
 }
 
 /// The row of `engine`, on the threads of the current pool.
-fn row(task: &Task, runs: usize, engine: &Engine, solver: Solver) -> Row {
+fn row(task: &Task, runs: usize, engine: &Engine, solver: Solver) -> Measurement {
     let Ok((seconds, hits)) = watch(runs, || {
         let hits = solver.solve(task.effects, &task.rods, &task.shots);
         Ok::<Vec<Hit>, Infallible>(hits)
@@ -80,7 +80,7 @@ fn row(task: &Task, runs: usize, engine: &Engine, solver: Solver) -> Row {
         flops_of_nystrom8(task.effects, steps, condition)
     });
     let points: Vec<(f64, f64)> = hits.iter().map(|hit| (hit.tau, hit.load)).collect();
-    Row::new(
+    Measurement::new(
         &engine.name,
         engine.threads,
         Rung {

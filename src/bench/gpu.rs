@@ -3,7 +3,7 @@
 use super::cpu::{Work, operations, trajectories};
 use super::task::Task;
 use super::watch::watch;
-use super::{Engine, Report, Row, Rung, Stages};
+use super::{Engine, Measurement, Report, Rung, Stages};
 use crate::integrate::gpu::{Gpu, Precision, adapters};
 use crate::integrate::{Engine as _, EngineError};
 use crate::rod::arclength;
@@ -104,7 +104,7 @@ fn engine(
         } else {
             seconds.median - 1e-3 * stages.refine
         };
-        let mut row = Row::new(
+        let mut row = Measurement::new(
             name,
             None,
             rung,

@@ -25,7 +25,7 @@ use task::Task;
 
 /// One engine at one accuracy.
 #[derive(Clone, Debug, Serialize)]
-pub struct Row {
+pub struct Measurement {
     /// Which engine.
     pub engine: String,
     /// Threads of the CPU engine.
@@ -127,7 +127,7 @@ pub struct Report {
     /// The engines.
     pub engines: Vec<Engine>,
     /// The rows, engine by engine.
-    pub rows: Vec<Row>,
+    pub rows: Vec<Measurement>,
     /// The curve of detachment, from coarse to exact.
     pub detachments: Vec<Detachments>,
     /// Engines that could not be measured, and why.

@@ -2,9 +2,9 @@
 
 use super::cpu::Work;
 use super::task::Errors;
-use super::{Row, Rung, Stages, Timing};
+use super::{Measurement, Rung, Stages, Timing};
 
-impl Row {
+impl Measurement {
     pub(super) fn new(
         engine: &str,
         threads: Option<usize>,
@@ -34,7 +34,7 @@ impl Row {
 }
 
 /// Marks the rows that no other row beats in both time and worst error of the angle.
-pub fn mark(rows: &mut [Row]) {
+pub fn mark(rows: &mut [Measurement]) {
     let places: Vec<[f64; 2]> = rows
         .iter()
         .map(|row| [row.us_per_state, row.errors.angle_deg.worst])

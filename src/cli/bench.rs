@@ -5,7 +5,7 @@ use super::outputs::{STDOUT, open, unwritten};
 use clap::Args;
 use std::io::{self, IsTerminal, Write};
 use std::path::{Path, PathBuf};
-use whiskmap::bench::{self, Detachments, Effort, Report, Row};
+use whiskmap::bench::{self, Detachments, Effort, Measurement, Report};
 use whiskmap::render::{Chart, Dot, Ink, Line, Plot, Stroke};
 use whiskmap::scene::Scene;
 
@@ -168,7 +168,7 @@ fn named(engine: &str, threads: Option<usize>) -> String {
 
 /// Error against time, a line per engine and integrator.
 fn chart(report: &Report) -> Chart {
-    let place = |row: &Row| {
+    let place = |row: &Measurement| {
         let error = row.errors.angle_deg.worst;
         [row.us_per_state.log10(), error.log10()]
     };
@@ -180,7 +180,7 @@ fn chart(report: &Report) -> Chart {
         (Ink::Blue, Stroke::Solid),
         (Ink::Blue, Stroke::Dashed),
     ];
-    let kind = |row: &Row| (row.engine.clone(), row.threads, row.rung.integrator);
+    let kind = |row: &Measurement| (row.engine.clone(), row.threads, row.rung.integrator);
     let engines = report.rows.chunk_by(|a, b| kind(a) == kind(b));
     let lines = engines.zip(looks.iter().cycle());
     let lines = lines.map(|(rows, &(ink, stroke))| Line {

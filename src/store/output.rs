@@ -10,10 +10,10 @@ use std::path::{Path, PathBuf};
 /// A regular file is replaced as a whole by [`Output::finish`]; dropped before that, it stays as it was. Whatever else has
 /// the name, such as a device or a pipe, is opened by `finish` and written to. Symbolic links are followed, and stay.
 #[derive(Debug)]
-pub struct Output(Kind);
+pub struct Output(Destination);
 
 #[derive(Debug)]
-enum Kind {
+enum Destination {
     Stdout(io::Stdout),
     Named {
         unfinished: Unfinished,
@@ -29,7 +29,7 @@ impl Output {
     /// Standard output, written as it comes.
     #[must_use]
     pub fn stdout() -> Self {
-        Self(Kind::Stdout(io::stdout()))
+        Self(Destination::Stdout(io::stdout()))
     }
 
     /// What will be at `path` once it is finished; until then it is in a temporary file.
@@ -44,7 +44,7 @@ impl Output {
         } else {
             std::env::temp_dir()
         };
-        Ok(Self(Kind::Named {
+        Ok(Self(Destination::Named {
             unfinished: Unfinished::create(&folder)?,
             target,
             is_regular,
@@ -56,7 +56,7 @@ impl Output {
     pub fn is_regular(&self) -> bool {
         matches!(
             self.0,
-            Kind::Named {
+            Destination::Named {
                 is_regular: true,
                 ..
             }
@@ -70,13 +70,13 @@ impl Output {
     /// The file cannot be renamed, or the device takes no more.
     pub fn finish(self) -> io::Result<()> {
         match self.0 {
-            Kind::Stdout(mut stdout) => stdout.flush(),
-            Kind::Named {
+            Destination::Stdout(mut stdout) => stdout.flush(),
+            Destination::Named {
                 unfinished,
                 target,
                 is_regular: true,
             } => unfinished.persist(&target),
-            Kind::Named {
+            Destination::Named {
                 mut unfinished,
                 target,
                 ..
@@ -95,8 +95,8 @@ impl Output {
 impl PartialEq for Output {
     fn eq(&self, other: &Self) -> bool {
         let place = |output: &Self| match &output.0 {
-            Kind::Stdout(_) => None,
-            Kind::Named { target, .. } => Some((
+            Destination::Stdout(_) => None,
+            Destination::Named { target, .. } => Some((
                 folder_of(target).canonicalize().ok(),
                 target.file_name().map(ToOwned::to_owned),
             )),
@@ -108,15 +108,15 @@ impl PartialEq for Output {
 impl Write for Output {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         match &mut self.0 {
-            Kind::Stdout(stdout) => stdout.write(bytes),
-            Kind::Named { unfinished, .. } => unfinished.file().write(bytes),
+            Destination::Stdout(stdout) => stdout.write(bytes),
+            Destination::Named { unfinished, .. } => unfinished.file().write(bytes),
         }
     }
 
     fn flush(&mut self) -> io::Result<()> {
         match &mut self.0 {
-            Kind::Stdout(stdout) => stdout.flush(),
-            Kind::Named { unfinished, .. } => unfinished.file().flush(),
+            Destination::Stdout(stdout) => stdout.flush(),
+            Destination::Named { unfinished, .. } => unfinished.file().flush(),
         }
     }
 }
@@ -124,8 +124,8 @@ impl Write for Output {
 impl Seek for Output {
     fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
         match &mut self.0 {
-            Kind::Stdout(_) => Err(io::ErrorKind::NotSeekable.into()),
-            Kind::Named { unfinished, .. } => unfinished.file().seek(to),
+            Destination::Stdout(_) => Err(io::ErrorKind::NotSeekable.into()),
+            Destination::Named { unfinished, .. } => unfinished.file().seek(to),
         }
     }
 }

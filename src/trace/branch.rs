@@ -19,7 +19,7 @@ use serde::Serialize;
 pub struct Branch {
     pub(super) level: LevelCurve,
     pub(super) units: Units,
-    pub(super) walk: Continuation,
+    pub(super) continuation: Continuation,
 }
 
 row! {
@@ -78,7 +78,7 @@ impl Branch {
             false => NoState::Lost { push_deg: 0.0 },
         };
         Ok(Self {
-            walk: followed.ok_or(none)?,
+            continuation: followed.ok_or(none)?,
             units: whisker.units(),
             level,
         })
@@ -108,7 +108,7 @@ impl Branch {
     /// # Errors
     /// When a point between two nodes of the continuation cannot be brought onto the curve.
     pub fn points(&self, count: usize) -> Result<Vec<BranchPoint>, NoState> {
-        let Continuation { nodes, fold, end } = &self.walk;
+        let Continuation { nodes, fold, end } = &self.continuation;
         let lengths = self.lengths();
         let (targets, fold_at) = targets(&lengths, *fold, count.max(3));
         let guesses: Vec<(usize, DVec2)> = targets
@@ -143,14 +143,16 @@ impl Branch {
 
     pub(super) fn lost(&self) -> NoState {
         NoState::Lost {
-            push_deg: self.walk.nodes[self.walk.nodes.len() - 1].push.to_degrees(),
+            push_deg: self.continuation.nodes[self.continuation.nodes.len() - 1]
+                .push
+                .to_degrees(),
         }
     }
 
     /// Length of the curve from first touch to each node.
     fn lengths(&self) -> Vec<f64> {
         let mut length = 0.0;
-        let steps = self.walk.nodes.windows(2);
+        let steps = self.continuation.nodes.windows(2);
         let rest = steps.map(|pair| {
             length += self.level.length(&pair[0], &pair[1]);
             length

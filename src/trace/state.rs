@@ -30,7 +30,7 @@ impl Branch {
     /// # Errors
     /// When there is no such state: the message tells how the whisker has left the pole, and at which push angle.
     pub fn state(&self, push: f64, stable: bool) -> Result<Found, NoState> {
-        let Continuation { nodes, fold, end } = &self.walk;
+        let Continuation { nodes, fold, end } = &self.continuation;
         let part = match (fold, stable) {
             (Some(fold), true) => &nodes[..=*fold],
             (Some(fold), false) => &nodes[*fold..],

@@ -1,6 +1,9 @@
 //! Whole maps in memory, how far two of them are apart, and engines that are looked after.
 #![allow(dead_code, reason = "each test program uses its own share")]
-#![allow(clippy::print_stderr, reason = "what is skipped or measured is said aloud")]
+#![allow(
+    clippy::print_stderr,
+    reason = "what is skipped or measured is said aloud"
+)]
 
 use std::convert::Infallible;
 use whiskmap::integrate::gpu::{Gpu, Precision};
