@@ -26,6 +26,7 @@ pub mod classify;
 mod front;
 pub mod integrate;
 pub mod map;
+#[cfg(feature = "render")]
 pub mod paper;
 pub mod plan;
 pub mod refine;

@@ -22,11 +22,20 @@ impl Engine for Counting {
     }
 }
 
+/// What gives the whisker its tip; a taper axis does that by itself.
+fn tip(radius_um: f64, more: &str) -> String {
+    match more.contains("taper = ") {
+        true => String::new(),
+        false => format!("whisker.tip_radius_um = {radius_um}\n"),
+    }
+}
+
 /// `(groups, calls)` of a plan whose calls and cells are those of its run.
 fn kept(push_angles: &str, distances: &str, more: &str) -> (usize, usize) {
     let text = format!(
-        "title = \"t\"\n[whisker]\nlength_mm = 20\nbase_radius_um = 30\ntip_radius_um = 3\nyoungs_modulus_gpa = 3\n\
-         [grid]\npush_angle_deg = {push_angles}\ndistance_mm = {distances}\n{more}"
+        "title = \"t\"\n{}whisker.length_mm = 20\nwhisker.base_radius_um = 30\nwhisker.youngs_modulus_gpa = 3\n\
+         [grid]\npush_angle_deg = {push_angles}\ndistance_mm = {distances}\n{more}",
+        tip(3.0, more)
     );
     let scene = Scene::parse(&text, "scene").unwrap();
     let plan = Plan::new(&scene).unwrap();
@@ -73,8 +82,8 @@ fn engine_calls_and_cells_are_counted_before_they_are_made() {
 fn listed(tip_radius_um: f64, more: &str) -> Vec<String> {
     let text = format!(
         "title = \"t\"\ngrid.push_angle_deg = [1, 2]\ngrid.distance_mm = [5]\n\
-         whisker.length_mm = 20\nwhisker.base_radius_um = 30\nwhisker.tip_radius_um = {tip_radius_um}\n\
-         whisker.youngs_modulus_gpa = 3\n{more}"
+         whisker.length_mm = 20\nwhisker.base_radius_um = 30\n{}whisker.youngs_modulus_gpa = 3\n{more}",
+        tip(tip_radius_um, more)
     );
     let scene = Scene::parse(&text, "scene").unwrap();
     let plan = Plan::new(&scene).unwrap();

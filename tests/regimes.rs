@@ -30,8 +30,9 @@ const DISTANCES: [f64; 7] = [
     1.01,
 ];
 
-/// How many of them are reached.
+/// How many of them are reached: a perfect cone ends a billionth of its length before its point.
 const REACHED: usize = 5;
+const REACHED_BY_A_POINT: usize = 2;
 
 /// Straight whiskers from cylinder to perfect cone.
 fn straight(pole: f64, friction: f64) -> Scene {
@@ -118,13 +119,15 @@ fn agrees_with_its_curve(
         }
     }
     let reached = |end: &Detachment| end.kind != DetachmentKind::OutOfReach;
-    assert!(ends[..REACHED].iter().all(reached), "{case}");
-    assert!(!ends[REACHED..].iter().any(reached), "{case}");
-    let kind = ends[REACHED - 1].kind;
-    assert!(
-        ends[1..REACHED].iter().all(|end| end.kind == kind),
-        "{case}"
-    );
+    let count = if whisker.taper() == 1.0 {
+        REACHED_BY_A_POINT
+    } else {
+        REACHED
+    };
+    assert!(ends[..count].iter().all(reached), "{case}");
+    assert!(!ends[count..].iter().any(reached), "{case}");
+    let kind = ends[count - 1].kind;
+    assert!(ends[1..count].iter().all(|end| end.kind == kind), "{case}");
 }
 
 fn crossing(edge: Edge, push: f64) -> Crossing {

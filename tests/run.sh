@@ -21,6 +21,7 @@ export XDG_RUNTIME_DIR="${XDG_RUNTIME_DIR:-/tmp}"
 
 cargo fmt --check
 cargo clippy --all-targets --profile checked --locked -- -D warnings
+cargo clippy --lib --no-default-features --profile checked --locked -- -D warnings
 RUSTDOCFLAGS="-D warnings" cargo doc --no-deps --locked --profile checked
 WHISKMAP_REQUIRE_GPU=1 cargo test --profile checked --locked --no-fail-fast
 

@@ -17,8 +17,8 @@ Examples:
   whiskmap bench scenes/cone.toml --quick --json bench.json --plot bench.svg
 
 A sample of the scene's states, at most 128 x 128 cells and two values per sweep axis, is solved by every engine: the CPU \
-with one number at a time, with vectors on one thread and on all, from 3 to 30 steps of order 8 at the fold, fewer below, \
-and on all in 16 to 128 of order 4; each GPU adapter in f32 and, where it can, in f64, alone and with one and two Newton steps in f64 after it. All start from the same guesses. \
+with one number at a time, with vectors on one thread and on all, from 3 to 30 steps of order 8 at the fold, fewer below; \
+each GPU adapter in f32 and, where it can, in f64, alone and with one and two Newton steps in f64 after it. All start from the same guesses. \
 Errors are judged with four times the default steps: the push angle that a state really belongs to, the arc length \
 of its contact in whisker lengths, and its force. * marks the rows that no other beats in time and in the worst error of \
 the angle. Times, also of the stages, are medians of at least 5 runs after one that does not count; +- is the slowest less \

@@ -111,6 +111,7 @@ pub fn open(
     let place = plot.map(|path| create("--plot", path)).transpose()?;
     if let (Some(data), Some(plot)) = (data, plot)
         && output == place
+        && output.as_ref().is_some_and(Output::is_regular)
     {
         return Err(Failure::Input(format!(
             "{option} {} and --plot {}: must be two files",

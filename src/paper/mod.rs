@@ -6,14 +6,12 @@
 mod check;
 pub mod elastica;
 mod exact;
-#[cfg(feature = "render")]
 mod figures;
 mod published;
 mod reference;
 mod whiskers;
 
 pub use check::{Check, Expected};
-#[cfg(feature = "render")]
 pub use figures::{Figure, Rows, figures};
 
 /// Every number that is known otherwise: published, in closed form, or from an independent solver.

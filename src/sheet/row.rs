@@ -1,6 +1,6 @@
 //! A row of a map: a distance at first touch, where the pole stands for it, and where the row leaves the stable sheet.
 
-use crate::rod::{PERFECT_CONE_CUT, Rest, Rod};
+use crate::rod::{Rest, Rod};
 use glam::DVec2;
 
 /// First touch this far beyond the tip, in whisker lengths, still counts as at it: the rounding of a distance in
@@ -16,6 +16,8 @@ pub struct Row {
     pub contact: f64,
     /// Direction of the pole at first touch, an angle from the base's tangent.
     pub touch: f64,
+    /// Arclength at the tip: 1, but for a perfect cone.
+    pub end: f64,
 }
 
 impl Row {
@@ -27,6 +29,7 @@ impl Row {
             pole_distance: pole.length(),
             contact,
             touch: pole.to_angle(),
+            end: rest.end(),
         }
     }
 
@@ -34,13 +37,13 @@ impl Row {
     /// resolution.
     #[must_use]
     pub fn is_reached(&self) -> bool {
-        self.contact <= 1.0 + REACH_SLACK
+        self.contact <= self.end + REACH_SLACK
     }
 
     /// Whether the very tip of the resting whisker touches the pole.
     #[must_use]
     pub fn is_at_reach(&self) -> bool {
-        (self.contact - 1.0).abs() <= REACH_SLACK
+        (self.contact - self.end).abs() <= REACH_SLACK
     }
 
     /// Centre of the pole in the frame of the base after a rotation of the base by `push` since first touch.
@@ -85,13 +88,11 @@ impl Crossing {
         self.residual <= SOUND
     }
 
-    /// Of a row that meets the tip edge at first touch: without a load, whatever the resolution. The point of a perfect
-    /// cone yields to any force, so it slips off.
+    /// Of a row that meets the tip edge at first touch: without a load, whatever the resolution.
     #[must_use]
     pub fn at_touch(rod: &Rod) -> Self {
-        let pointed = rod.taper > 1.0 - PERFECT_CONE_CUT;
         Self {
-            edge: if pointed { Edge::Fold } else { Edge::Tip },
+            edge: Edge::Tip,
             tau: rod.tau_tip(),
             load: 0.0,
             push: 0.0,

@@ -27,17 +27,14 @@ fn errors_fall_from_rung_to_rung() {
             .collect();
         let is_cpu = engine["threads"].is_u64();
         let errors = numbers(&own, "/errors/angle_deg/worst");
-        // The last two rungs of order 8 are at the rounding; order 4 follows on the widest of the CPU's engines.
-        let (ladder, by_rk4) = errors.split_at(if is_cpu { 8 } else { 3 });
-        let falling = if is_cpu { &ladder[..6] } else { &ladder[..2] };
-        assert!(falling.is_sorted_by(|a, b| a > b), "{engine}: {errors:?}");
-        assert!(ladder[ladder.len() - 1] < 1e-9, "{engine}: {errors:?}");
-        let is_widest = engines.iter().rfind(|engine| engine["threads"].is_u64()) == Some(engine);
-        assert_eq!(by_rk4.len(), if is_widest { 4 } else { 0 });
+        // The last two rungs of the CPU's ladder are at the rounding.
+        let (rungs, falling) = if is_cpu { (8, 6) } else { (3, 2) };
+        assert_eq!(errors.len(), rungs, "{engine}: {errors:?}");
         assert!(
-            by_rk4.is_sorted_by(|a, b| *a > 10.0 * b),
+            errors[..falling].is_sorted_by(|a, b| a > b),
             "{engine}: {errors:?}"
         );
+        assert!(errors[rungs - 1] < 1e-9, "{engine}: {errors:?}");
         for key in [
             "/us_per_state",
             "/trajectories_per_s",

@@ -6,6 +6,7 @@ mod spiral;
 
 use crate::numerics::Bracket;
 use crate::rod::Rod;
+use crate::rod::rod::pointed;
 use glam::DVec2;
 use parabola::Parabola;
 use spiral::EulerSpiral;
@@ -15,6 +16,7 @@ use spiral::EulerSpiral;
 pub struct Rest {
     form: Form,
     pole: f64,
+    end: f64,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -33,7 +35,14 @@ impl Rest {
                 None => Form::Parabola(Parabola::new(rod)),
             },
             pole: rod.pole,
+            end: pointed(rod.taper),
         }
+    }
+
+    /// Arclength at the tip, in whisker lengths: 1, but for a perfect cone, which is cut.
+    #[must_use]
+    pub const fn end(&self) -> f64 {
+        self.end
     }
 
     /// cos and sin of the tangent of the parabola of `rod` at arclength `s`, in the frame of the parabola.
