@@ -1,6 +1,8 @@
 //! `whiskmap render`.
 
 use super::failure::{Failure, say};
+use super::numbers::whole;
+use super::outputs::create;
 use clap::Args;
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
@@ -32,7 +34,7 @@ pub struct Options {
     #[arg(long, value_name = "A,B", requires = "channel", value_parser = range, allow_hyphen_values = true)]
     range: Option<[f64; 2]>,
     /// Width of the picture in pixels, from 300 to 8000 [default: by the map, about 1500]
-    #[arg(long, value_name = "PX", value_parser = clap::value_parser!(u32).range(300..=8000))]
+    #[arg(long, value_name = "PX", value_parser = whole(300..=8000))]
     width: Option<u32>,
     /// Picture to write, PNG or SVG by its ending; - is PNG on standard output [default: FILE.png or FILE.NAME.png
     /// beside the map]
@@ -121,6 +123,7 @@ fn target(options: &Options) -> Result<Option<(PathBuf, Format)>, Failure> {
     } else if path.is_dir() || folder.is_some_and(|folder| !folder.is_dir()) {
         refuse("is not a file in an existing folder; name a picture to write")
     } else if let Some(format) = Format::of(&path) {
+        create("--output", &path)?;
         Ok(Some((path, format)))
     } else {
         refuse("must end in .png or .svg, or be - for PNG on standard output")

@@ -58,13 +58,16 @@ fn answers<C: Iterator<Item = Cell>>(
     let boundary = RowBoundary::new(sheet.touches(row), &sheet.crossings[row]);
     let answer = |cell: &Cell| answer(cell, sheet, row, &boundary, &reader);
     let answers: Vec<Answer> = cells().map(|cell| answer(&cell)).collect();
-    let in_doubt = |answer: &Answer| answer.regime == Regime::Unresolved;
-    if !answers.iter().any(in_doubt) {
+    let in_doubt = |(cell, answer): (Cell, &Answer)| {
+        let is_touch = cell.is_first_touch(&boundary);
+        answer.regime == Regime::Unresolved || is_touch && answer.regime != Regime::Contact
+    };
+    if !cells().zip(&answers).any(in_doubt) {
         return answers;
     }
     let mut again: Vec<Cell> = cells().collect();
     let doubtful = again.iter_mut().zip(&answers);
-    let doubtful = doubtful.filter(|(_, answer)| in_doubt(answer));
+    let doubtful = doubtful.filter(|(cell, answer)| in_doubt((**cell, answer)));
     doubt::settle(sheet, row, &boundary, doubtful.map(|(cell, _)| cell));
     again.iter().map(answer).collect()
 }

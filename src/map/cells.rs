@@ -1,7 +1,7 @@
 //! The cells of a few rows, stage by stage: guesses from the sheet, shots by an engine if there is one, refinement.
 
 use super::{Face, Stage, Summary, pushes::Push};
-use crate::classify::Status;
+use crate::classify::{RowBoundary, Status, TIE};
 use crate::integrate::{Fallback, Hit, Outcome, Shot};
 use crate::refine::{self, ContactState, End, Refined};
 use crate::rod::Rod;
@@ -42,6 +42,13 @@ pub struct Cell {
     pub state: Option<ContactState>,
     /// Newton steps, engine and refinement together.
     pub steps: u32,
+}
+
+impl Cell {
+    /// Whether its push is none, on a row that ends one from first touch.
+    pub fn is_first_touch(&self, boundary: &RowBoundary) -> bool {
+        self.push.angle.abs() <= TIE && boundary.detachment().is_some()
+    }
 }
 
 impl Settled {

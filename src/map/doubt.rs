@@ -40,6 +40,15 @@ pub fn settle<'a>(
         .collect();
     for cell in cells {
         let push = cell.push.angle;
+        // First touch is a state by itself, though at the very tip no integration may reach the pole.
+        if cell.is_first_touch(boundary)
+            && let Some(touch) = level.touch().map(|touch| state(&level, &touch, push))
+            && (touch.residual <= TOLERANCE || touch.is_at_tip(sheet))
+        {
+            cell.status = Status::Solved;
+            cell.state = Some(touch);
+            continue;
+        }
         let within = boundary.spans().iter().position(|span| {
             let magnitude = sign * push;
             span.from - TIE <= magnitude && magnitude <= span.to + TIE

@@ -19,7 +19,7 @@ const LEFT_BY_STEP: f64 = 20.0;
 /// The largest `|load| s^2` of that measurement; beyond, a whisker coils up.
 const LARGEST_Q: f64 = 12.0;
 
-/// What rounding may add; on the shipped scenes at most 3.1e-14 (`tests/moving.rs`).
+/// What rounding may add; on the shipped scenes at most 3.1e-14 (`tests/variations.rs`).
 const ROUNDING: f64 = 6e-14;
 
 /// Where the Jacobian's determinant, over the lengths of its columns, is larger than this, such a step cannot cross the fold.
@@ -49,10 +49,10 @@ pub fn newton(
         };
         let conditions = open.iter().copied().map(condition);
         let mut left = Vec::new();
-        Batch::new(method).for_each::<FirstVariation>(conditions, |place, moving| {
+        Batch::new(method).for_each::<FirstVariation>(conditions, |place, variation| {
             let i = open[place].0;
             let condition = condition(open[place]);
-            let full = moving.full;
+            let full = variation.full;
             let residual = full.map.pole.distance(shots[i].pole);
             let state = ContactState {
                 tau: condition.tau,
@@ -73,7 +73,7 @@ pub fn newton(
                 let state = ContactState {
                     tau: condition.tau + step.x,
                     load: condition.load + step.y,
-                    full: moving.extrapolated(step),
+                    full: variation.extrapolated(step),
                     residual: LEFT_BY_STEP * length * length * (s + full.map.pole.length())
                         + ROUNDING,
                 };

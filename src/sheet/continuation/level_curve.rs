@@ -187,7 +187,7 @@ impl LevelCurve {
             })
             .collect();
         let shot = Batch::new(self.method).shoot::<FirstVariation>(&conditions);
-        shot.iter().map(|moving| moving.full).collect()
+        shot.iter().map(|variation| variation.full).collect()
     }
 
     /// How much `tau` and load can change before the state changes by about as much as it is.

@@ -1,4 +1,4 @@
-//! What a trajectory says when it lands on the base: the pole as the base sees it, in distance `D` and direction `phi`.
+//! What a trajectory tells at the base: the pole as the base sees it, in distance `D` and direction `phi`.
 //!
 //! The coordinates of the sheet are `tau` of the contact and `load = f/rho^2` there.
 

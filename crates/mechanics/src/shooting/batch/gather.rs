@@ -4,10 +4,12 @@ use crate::numerics::{Lanes, WIDTH};
 use crate::rod::Piece;
 use crate::rod::Rod;
 use crate::shooting::batch::InitialCondition;
-use crate::shooting::batch::kernel::Conditions;
 use crate::shooting::contact::{arc, parabola_tangent};
 use crate::shooting::{Bent, Intrinsic, Spiral, Straight};
 use crate::shooting::{Graded, Material, Measured, Uniform};
+
+/// One condition for every lane.
+pub type Conditions<'a> = [&'a InitialCondition<'a>; WIDTH];
 
 /// What `number` tells of each condition. (`map` of an array is not inlined into functions for a SIMD unit.)
 #[inline(always)]

@@ -1,7 +1,7 @@
 //! One specialised kernel per set of effects: no branch on an effect is left inside.
 
 use super::block_key::BlockKey;
-use super::gather::{ArcPosition, Gather, GatherMaterial, lanes, numbers};
+use super::gather::{ArcPosition, Conditions, Gather, GatherMaterial, lanes, numbers};
 use super::{InitialCondition, Method, OutputSet};
 use crate::numerics::{Lanes, LanesTask, SimdTask, WIDTH};
 use crate::rod::Effects;
@@ -12,9 +12,6 @@ use crate::shooting::{Graded, Measured, Uniform};
 use crate::shooting::{Integrator, Nystrom8, Scales, integrate};
 use crate::shooting::{RodSystem, Section};
 use std::marker::PhantomData;
-
-/// One condition for every lane.
-pub type Conditions<'a> = [&'a InitialCondition<'a>; WIDTH];
 
 /// Up to as many conditions as there are lanes.
 pub struct Block<'a> {

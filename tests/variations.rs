@@ -70,7 +70,7 @@ fn a_state_changes_as_it_says() {
             let [before, after] = [-1.0, 1.0].map(|sign| {
                 let there: Vec<InitialCondition> = conditions
                     .iter()
-                    .map(|l| moved(l, sign * step(l)))
+                    .map(|condition| moved(condition, sign * step(condition)))
                     .collect();
                 Batch::new(method).shoot::<FirstVariation>(&there)
             });
@@ -109,7 +109,10 @@ fn taylor_extrapolation_is_of_second_order() {
         let conditions = conditions(effects);
         let here = Batch::new(method).shoot::<SecondVariation>(&conditions);
         let step = |condition: &InitialCondition| 1e-4 * DVec2::new(0.6, -0.8) * scale(condition);
-        let there: Vec<InitialCondition> = conditions.iter().map(|l| moved(l, step(l))).collect();
+        let there: Vec<InitialCondition> = conditions
+            .iter()
+            .map(|condition| moved(condition, step(condition)))
+            .collect();
         let there = Batch::new(method).shoot::<ShootingMap>(&there);
         for ((condition, here), there) in conditions.iter().zip(&here).zip(&there) {
             let found = here.extrapolated(step(condition)).map;
