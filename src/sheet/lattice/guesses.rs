@@ -50,56 +50,23 @@ impl RowCurve {
         }
         let intervals = self.intervals();
         let mut guesses = Vec::with_capacity(pushes.size_hint().0);
-        let (mut cells, mut after, mut problems) = (Vec::new(), Vec::new(), Vec::new());
+        let mut block = Block::of(self);
         let mut i = 0;
         for push in pushes {
             while i + 2 < self.count && push > intervals.push[i + 1] {
                 i += 1;
             }
             if let Some(problem) = intervals.problem(i, push) {
-                cells.push(guesses.len());
-                after.push(i);
-                problems.push(problem);
+                block.cells.push((guesses.len(), i));
+                block.problems.push(problem);
             }
             guesses.push(None);
+            if block.cells.len() == WIDTH {
+                block.solve(self, &mut guesses);
+            }
         }
-        let known = if self.count == LOBATTO_COUNT {
-            self.whole(&problems)
-        } else {
-            self.cut(&after, &problems)
-        };
-        for (cell, guess) in cells.into_iter().zip(known) {
-            guesses[cell] = Some(guess);
-        }
+        block.solve(self, &mut guesses);
         guesses
-    }
-
-    /// The guesses of a row from first touch to the fold: one polynomial is as good at its ends as in its middle.
-    fn whole(&self, problems: &[RootProblem]) -> Vec<Guess> {
-        let polynomials = self.polynomials(0, LOBATTO_COUNT);
-        let roots = roots(&polynomials);
-        let blocks = problems.chunks(WIDTH).flat_map(|block| {
-            let [tau, load] = roots.solve(0, block, LAST_PART_STEP);
-            let pairs = tau.into_iter().zip(load).take(block.len());
-            pairs.map(|(tau, load)| Guess { tau, load })
-        });
-        blocks.collect()
-    }
-
-    /// Those of a row that leaves the lattice, from the points around the one `after` which each lies.
-    fn cut(&self, after: &[usize], problems: &[RootProblem]) -> Vec<Guess> {
-        let count = self.count.min(NEAR_CUT);
-        let mut known: Option<(usize, [LobattoPolynomial; 3])> = None;
-        let guess = |(i, problem): (&usize, &RootProblem)| {
-            let from = stencil(*i, NEAR_CUT, self.count);
-            let (_, polynomials) = match &known {
-                Some(there) if there.0 == from => there,
-                _ => known.insert((from, self.polynomials(from, count))),
-            };
-            let [tau, load] = roots(polynomials).solve_alone(0, problem, LAST_PART_STEP);
-            Guess { tau, load }
-        };
-        after.iter().zip(problems).map(guess).collect()
     }
 
     /// Push angle, contact and load by the part of the fold's load, through `count` points from the point `from` on.
@@ -143,6 +110,52 @@ impl RowCurve {
             summit,
             below: push.map(|push| (summit - push).max(0.0).sqrt()),
         }
+    }
+}
+
+/// Push angles of a row that are looked for side by side.
+struct Block {
+    /// Indices of their guesses, and of the points before them.
+    cells: Vec<(usize, usize)>,
+    problems: Vec<RootProblem>,
+    /// Of a row from first touch to the fold: one polynomial is as good at its ends as in its middle.
+    whole: Option<[LobattoPolynomial; 3]>,
+    /// Of a row that leaves the lattice, the ones used last, and from which point on they are.
+    around: Option<(usize, [LobattoPolynomial; 3])>,
+}
+
+impl Block {
+    fn of(curve: &RowCurve) -> Self {
+        let is_whole = curve.count == LOBATTO_COUNT;
+        Self {
+            cells: Vec::with_capacity(WIDTH),
+            problems: Vec::with_capacity(WIDTH),
+            whole: is_whole.then(|| curve.polynomials(0, LOBATTO_COUNT)),
+            around: None,
+        }
+    }
+
+    /// Finds what is looked for on `curve`.
+    fn solve(&mut self, curve: &RowCurve, guesses: &mut [Option<Guess>]) {
+        if let Some(whole) = &self.whole {
+            let [tau, load] = roots(whole).solve(0, &self.problems, LAST_PART_STEP);
+            for ((cell, _), (tau, load)) in self.cells.iter().zip(tau.into_iter().zip(load)) {
+                guesses[*cell] = Some(Guess { tau, load });
+            }
+        } else {
+            let count = curve.count.min(NEAR_CUT);
+            for ((cell, i), problem) in self.cells.iter().zip(&self.problems) {
+                let from = stencil(*i, NEAR_CUT, curve.count);
+                let (_, polynomials) = match &self.around {
+                    Some(around) if around.0 == from => around,
+                    _ => self.around.insert((from, curve.polynomials(from, count))),
+                };
+                let [tau, load] = roots(polynomials).solve_alone(0, problem, LAST_PART_STEP);
+                guesses[*cell] = Some(Guess { tau, load });
+            }
+        }
+        self.cells.clear();
+        self.problems.clear();
     }
 }
 
