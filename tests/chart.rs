@@ -265,6 +265,11 @@ fn degenerate_data_give_pictures_without_nan() {
         f64::MIN_POSITIVE,
         f64::NAN,
         f64::NEG_INFINITY,
+        1.0,
+        1.0 + 1e-15,
+        1e-295,
+        1e300,
+        -1e300,
     ];
     let mut plots = vec![Plot::default()];
     for equal_axes in [false, true] {

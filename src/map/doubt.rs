@@ -40,10 +40,11 @@ pub fn settle<'a>(
         .collect();
     for cell in cells {
         let push = cell.push.angle;
-        // First touch is a state by itself, though at the very tip no integration may reach the pole.
+        // First touch is known from the shape at rest; its residual is the error of the integration, largest at the tip of a cone.
         if cell.is_first_touch(boundary)
-            && let Some(touch) = level.touch().map(|touch| state(&level, &touch, push))
-            && (touch.residual <= TOLERANCE || touch.is_at_tip(sheet))
+            && let Some(touch) = level.touch()
+            && let touch = state(&level, &touch, push)
+            && touch.residual.is_finite()
         {
             cell.status = Status::Solved;
             cell.state = Some(touch);
@@ -68,6 +69,8 @@ pub fn settle<'a>(
                     if state.residual <= TOLERANCE {
                         cell.status = Status::Solved;
                         cell.state = Some(state);
+                    } else if sign * push < sign * first {
+                        cell.status = Status::Outside;
                     }
                 }
             }

@@ -113,3 +113,15 @@ fn base64(bytes: &[u8]) -> String {
     }
     text
 }
+
+#[cfg(test)]
+mod tests {
+    use super::number;
+
+    #[test]
+    fn numbers_are_short() {
+        let values = [1.0, -0.001, 100.0, -2.346, 0.5, 0.0];
+        let texts = ["1", "0", "100", "-2.35", "0.5", "0"];
+        assert_eq!(values.map(number), texts.map(str::to_owned));
+    }
+}

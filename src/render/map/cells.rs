@@ -59,3 +59,21 @@ impl Cells {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::Cells;
+
+    #[test]
+    fn a_value_owns_the_stretch_between_the_midpoints() {
+        let cells = Cells::new(&[1.0, 2.0, 4.0]);
+        assert_eq!(cells.range(), [0.5, 5.0]);
+        let fractions = [1.49, 1.51, 2.99, 3.01].map(|value| cells.fraction(value));
+        assert_eq!(fractions.map(|fraction| cells.cell(fraction)), [0, 1, 1, 2]);
+    }
+
+    #[test]
+    fn a_single_value_owns_one_unit() {
+        assert_eq!(Cells::new(&[7.0]).range(), [6.5, 7.5]);
+    }
+}
