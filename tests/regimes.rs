@@ -34,16 +34,14 @@ const DISTANCES: [f64; 7] = [
 const REACHED: usize = 5;
 const REACHED_BY_A_POINT: usize = 2;
 
-/// Straight whiskers from cylinder to perfect cone. Under the thickest pole the perfect cone is left out: at its very point one cell
-/// without a push is not resolved, and says so.
+/// Straight whiskers from cylinder to perfect cone.
 fn straight(pole: f64, friction: f64) -> Scene {
     let distances = DISTANCES.map(|d| d * LENGTH_MM);
-    let point = if pole < 1.0 { ", 1" } else { "" };
     let text = format!(
         "title = \"straight\"\n[whisker]\nlength_mm = {LENGTH_MM:?}\nbase_radius_um = 30\nyoungs_modulus_gpa = 3\n\
          [pole]\nradius_mm = {pole:?}\n[contact]\nfriction = {friction:?}\n[grid]\n\
          push_angle_deg = [-120, -70, -10, -1, 0, 1, 10, 70, 120]\ndistance_mm = {distances:?}\n\
-         taper = [0, 1e-9, 0.3, 0.7, 0.9, 0.95, 0.98, 0.999, 0.999999{point}]"
+         taper = [0, 1e-9, 0.3, 0.7, 0.9, 0.95, 0.98, 0.999, 0.999999, 1]"
     );
     Scene::parse(&text, "straight").unwrap()
 }

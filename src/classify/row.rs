@@ -83,6 +83,12 @@ impl RowBoundary {
             return (Regime::Unresolved, Status::NoBoundary);
         };
         match (status, self.span(push)) {
+            // Without a push the shape at rest decides: a pole that it does not reach is out of reach.
+            (Status::Solved | Status::NotConverged, Some(span))
+                if !self.touches && push <= TIE && self.is_on_edge(span, push) =>
+            {
+                (Regime::OutOfReach, Status::Outside)
+            }
             (Status::Solved, Some(span)) => {
                 let connected = self.touches && spans.first() == Some(span);
                 let regime = if connected {

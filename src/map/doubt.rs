@@ -69,8 +69,6 @@ pub fn settle<'a>(
                     if state.residual <= TOLERANCE {
                         cell.status = Status::Solved;
                         cell.state = Some(state);
-                    } else if sign * push < sign * first {
-                        cell.status = Status::Outside;
                     }
                 }
             }
