@@ -8,7 +8,7 @@ use crate::numerics::newton_form::{RootProblem, stencil};
 use crate::numerics::newton_form_simd::{Numbers, SimdRoots, Terms};
 use crate::numerics::{Bracket, WIDTH};
 
-/// A guess for one cell.
+/// Where Newton's method starts for one cell: contact and load, interpolated on the lattice.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Guess {
     /// `tau` of the contact.
