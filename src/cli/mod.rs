@@ -14,6 +14,7 @@ mod failure;
 mod map;
 mod numbers;
 mod outputs;
+mod picture;
 mod plan;
 mod pole;
 mod progress;

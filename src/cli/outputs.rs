@@ -1,7 +1,7 @@
 //! Where the tables and plots of a command go.
 
 use super::failure::Failure;
-use super::render::save;
+use super::picture::save;
 use clap::Args;
 use serde::Serialize;
 use std::io::{self, Write};

@@ -3,10 +3,11 @@
 use super::failure::{Failure, say};
 use super::numbers::whole;
 use super::outputs::create;
+use super::picture::{save, warn_of_boxes};
 use clap::Args;
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
-use whiskmap::render::{self, Format, MapOptions, Picture};
+use whiskmap::render::{self, Format, MapOptions};
 use whiskmap::store::StoredMap;
 
 /// Options of `render`.
@@ -127,23 +128,5 @@ fn target(options: &Options) -> Result<Option<(PathBuf, Format)>, Failure> {
         Ok(Some((path, format)))
     } else {
         refuse("must end in .png or .svg, or be - for PNG on standard output")
-    }
-}
-
-/// Saves a picture, and says so where its pixels lack characters.
-pub fn save(picture: &Picture, path: &Path, format: Format) -> Result<(), Failure> {
-    if format == Format::Png {
-        warn_of_boxes(picture);
-    }
-    Ok(picture.save(path, format)?)
-}
-
-/// Names the characters of a picture that its pixels show as boxes.
-fn warn_of_boxes(picture: &Picture) {
-    let missing: String = picture.missing_glyphs().into_iter().collect();
-    if !missing.is_empty() {
-        say(&format!(
-            "warning: the built-in font lacks \u{201c}{missing}\u{201d}: the PNG shows boxes; an SVG has the text itself"
-        ));
     }
 }
