@@ -1,0 +1,95 @@
+//! Pictures as files.
+
+use crate::drawn::{Pixels, rasters, svg, well_formed};
+use crate::map::{panel, scene, write};
+use crate::{SLIP_OFF, colours, flat, picture};
+use std::fs;
+use whiskmap::render::{self, Format, MapOptions};
+use whiskmap::store::{self, Panel, StoredMap};
+
+#[test]
+fn an_svg_document_has_the_cells_as_pixels_and_the_rest_as_such() {
+    for (tapers, panels) in [(None, 1), (Some(vec![0.2, 0.5]), 2)] {
+        let scene = scene(40, 50, tapers, None);
+        let panels: Vec<Panel> = (0..panels).map(|index| panel(&scene, index)).collect();
+        for channel in [None, Some("force_un")] {
+            let options = MapOptions {
+                channel,
+                ..MapOptions::default()
+            };
+            let picture = picture(&scene, &panels, &options).unwrap();
+            let (document, pixels) = (svg(&picture), Pixels::of(&picture));
+            assert!(well_formed(&document));
+            let texts = ["A made-up whisker in front of a pole<", "push angle (deg)"];
+            assert!(texts.iter().all(|text| document.contains(text)));
+            let rasters = rasters(&document);
+            // Inside of the frames, away from lines.
+            let (mut same, mut all) = (0, 0);
+            for ([left, top, width, height], raster) in &rasters {
+                assert_eq!(
+                    [raster.width as f64, raster.height as f64],
+                    [*width, *height]
+                );
+                for (place, pixel) in raster.pixels.iter().enumerate() {
+                    let (x, y) = (place % raster.width, place / raster.width);
+                    same += usize::from(*pixel == pixels.at([left + x as f64, top + y as f64]));
+                }
+                all += raster.pixels.len();
+            }
+            assert!(
+                rasters.len() > panels.len() && same * 100 > all * 97,
+                "{same} of {all}"
+            );
+            let boundary = document.matches("stroke-width=\"3\"").count();
+            assert_eq!(boundary > 1, channel.is_none() && panels.len() == 1);
+        }
+    }
+}
+
+#[test]
+fn the_width_is_what_was_asked_for() {
+    let scene = scene(6, 5, None, None);
+    let panels = [flat(&scene, &[2; 30], 3.0)];
+    for width in [300, 1001, 3000] {
+        let options = MapOptions {
+            width: Some(width),
+            ..MapOptions::default()
+        };
+        let picture = picture(&scene, &panels, &options).unwrap();
+        let pixels = Pixels::of(&picture);
+        assert_eq!(pixels.width, width as usize);
+        let ratio = pixels.height as f64 / pixels.width as f64;
+        assert!((0.7..0.8).contains(&ratio), "{ratio}");
+        let part = colours(&pixels)[&SLIP_OFF] as f64 / pixels.pixels.len() as f64;
+        assert!((0.6..0.75).contains(&part), "{part} of the picture");
+        let document = svg(&picture);
+        assert!(document.contains(&format!(" width=\"{width}\" height=\"{}\"", pixels.height)));
+        assert!(document.contains(" viewBox=\"0 0 14"), "the natural size");
+        assert!(rasters(&document)[1].1.width > width as usize * 8 / 10);
+    }
+}
+
+#[test]
+fn errors_leave_no_picture() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("map.exr");
+    write(&file, &scene(2, 2, None, None));
+    let map = StoredMap::open(&file).unwrap();
+    let options = MapOptions {
+        channel: Some("weight"),
+        ..MapOptions::default()
+    };
+    let error = render::map(&map, &options).unwrap_err();
+    assert!(
+        matches!(
+            error,
+            render::Error::Map(store::Error::UnknownChannel { .. })
+        ),
+        "{error}"
+    );
+    let nowhere = folder.path().join("no such folder/map.png");
+    let picture = render::map(&map, &MapOptions::default()).unwrap();
+    let error = picture.save(&nowhere, Format::Png).unwrap_err();
+    assert!(matches!(error, render::Error::Write { .. }), "{error}");
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+}
