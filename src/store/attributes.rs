@@ -4,10 +4,10 @@ use super::layout::Layout;
 use super::tally::{Counts, Tally};
 use crate::map::Shots;
 use crate::scene::{Grid, Setup};
+use exr::meta::attribute::{AttributeValue, Text};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
-use std::collections::BTreeMap;
-use std::fmt::Write;
+use std::collections::HashMap;
 
 /// What is known before the run, and written first.
 #[derive(Clone, Copy, Debug)]
@@ -26,7 +26,7 @@ pub struct Description<'a> {
 
 /// An axis of the map.
 #[derive(Debug, PartialEq, Serialize, Deserialize)]
-struct Axis {
+pub(super) struct Axis {
     name: String,
     unit: String,
     /// `x` and `y` inside a panel, `panel x` and `panel y` from one panel to the next.
@@ -49,28 +49,31 @@ const AXES: [[&str; 4]; 4] = [
     ],
 ];
 
+/// Texts by name, as the EXR library has them.
+pub(super) type Attributes = HashMap<Text, AttributeValue>;
+
+/// An attribute with this text.
+pub(super) fn attribute(name: &str, text: &str) -> (Text, AttributeValue) {
+    (Text::from(name), AttributeValue::Text(Text::from(text)))
+}
+
 /// The attributes of a map. `counts` is left out; [`encode_counts`] makes it.
-pub(super) fn encode(
-    about: &Description<'_>,
-    regimes: &Tally,
-    statuses: &Tally,
-) -> BTreeMap<&'static str, String> {
+pub(super) fn encode(about: &Description<'_>, regimes: &Tally, statuses: &Tally) -> Attributes {
     let layout = Layout::of(&about.scene.grid);
-    BTreeMap::from([
-        ("axes", ascii_json(&json!(axes(&about.scene.grid)))),
-        ("scene", ascii_json(&json!(about.scene.text))),
-        ("title", ascii_json(&json!(about.scene.title))),
-        (
-            "whiskmap_version",
-            ascii_json(&json!(env!("CARGO_PKG_VERSION"))),
-        ),
-        ("engine", ascii_json(&json!(about.engine))),
-        ("adapter", ascii_json(&json!(about.adapter))),
-        ("tolerances", ascii_json(&json!(about.tolerances))),
-        ("regime_names", ascii_json(&json!(regimes.names()))),
-        ("status_names", ascii_json(&json!(statuses.names()))),
-        ("panels", ascii_json(&json!([layout.columns, layout.rows]))),
-    ])
+    let attributes = [
+        ("axes", json!(axes(&about.scene.grid))),
+        ("scene", json!(about.scene.text)),
+        ("title", json!(about.scene.title)),
+        ("whiskmap_version", json!(env!("CARGO_PKG_VERSION"))),
+        ("engine", json!(about.engine)),
+        ("adapter", json!(about.adapter)),
+        ("tolerances", json!(about.tolerances)),
+        ("regime_names", json!(regimes.names())),
+        ("status_names", json!(statuses.names())),
+        ("panels", json!([layout.columns, layout.rows])),
+    ];
+    let encoded = attributes.map(|(name, value)| attribute(name, &ascii_json(&value)));
+    encoded.into()
 }
 
 /// `counts`, padded with spaces to `width`.
@@ -116,13 +119,12 @@ fn axes(grid: &Grid) -> Vec<Axis> {
     described.collect()
 }
 
-/// The sweep that an attribute `axes` describes.
+/// The sweep that the attribute `axes` describes.
 ///
 /// # Errors
 ///
-/// The text is not JSON, an axis is unknown or missing, or its values are not increasing.
-pub(super) fn decode_axes(text: &str) -> Result<Grid, String> {
-    let mut found: Vec<Axis> = serde_json::from_str(text).map_err(|error| error.to_string())?;
+/// An axis is unknown or missing, or its values are not increasing.
+pub(super) fn decode_axes(mut found: Vec<Axis>) -> Result<Grid, String> {
     let mut take = |name: &str| {
         let place = found.iter().position(|axis| axis.name == name)?;
         Some(found.swap_remove(place).values)
@@ -153,15 +155,10 @@ pub(super) fn decode_axes(text: &str) -> Result<Grid, String> {
 fn ascii_json(value: &Value) -> String {
     let json = value.to_string();
     let mut ascii = String::with_capacity(json.len());
-    let mut units = [0; 2];
-    for character in json.chars() {
-        if character.is_ascii() {
-            ascii.push(character);
-        } else {
-            for unit in character.encode_utf16(&mut units) {
-                // Writing into a `String` cannot fail.
-                let _ = write!(ascii, "\\u{unit:04x}");
-            }
+    for unit in json.encode_utf16() {
+        match u8::try_from(unit) {
+            Ok(byte) if byte.is_ascii() => ascii.push(char::from(byte)),
+            _ => ascii.push_str(&format!("\\u{unit:04x}")),
         }
     }
     ascii

@@ -6,46 +6,24 @@ use std::path::{Path, PathBuf};
 /// A map that cannot be written or read. Every message is complete; there is no chain of sources to print.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
-    /// The file system refused.
-    #[error("cannot {action} {}: {cause}", path.display())]
-    Io {
-        /// "read" or "write".
-        action: &'static str,
-        /// The map.
-        path: PathBuf,
-        /// What the system said.
-        cause: io::Error,
-    },
+    /// The file system refused to read.
+    #[error("cannot read {file}: {1}", file = .0.display())]
+    Read(PathBuf, io::Error),
+    /// The file system refused to write.
+    #[error("cannot write {file}: {1}", file = .0.display())]
+    Write(PathBuf, io::Error),
     /// The map cannot be expressed as EXR, such as an atlas wider than 2^30 pixels.
-    #[error("cannot write {} as EXR: {cause}", path.display())]
-    Encode {
-        /// The map.
-        path: PathBuf,
-        /// What the EXR library said.
-        cause: exr::error::Error,
-    },
+    #[error("cannot write {file} as EXR: {1}", file = .0.display())]
+    Encode(PathBuf, exr::error::Error),
     /// The file does not start like an EXR file.
-    #[error("{} is not an EXR file", path.display())]
-    NotExr {
-        /// The file.
-        path: PathBuf,
-    },
-    /// An EXR file that this program did not write.
-    #[error("{} is an EXR file, but not a map of whiskmap: {reason}", path.display())]
-    NotAMap {
-        /// The file.
-        path: PathBuf,
-        /// What is missing or different.
-        reason: String,
-    },
-    /// A map whose bytes end too early or contradict each other.
-    #[error("{} is damaged: {reason}", path.display())]
-    Damaged {
-        /// The file.
-        path: PathBuf,
-        /// Where, and how.
-        reason: String,
-    },
+    #[error("{file} is not an EXR file", file = .0.display())]
+    NotExr(PathBuf),
+    /// An EXR file that this program did not write, and what is missing or different.
+    #[error("{file} is an EXR file, but not a map of whiskmap: {1}", file = .0.display())]
+    NotAMap(PathBuf, String),
+    /// A map whose bytes end too early or contradict each other: where, and how.
+    #[error("{file} is damaged: {1}", file = .0.display())]
+    Damaged(PathBuf, String),
     /// No part has a channel of this name.
     #[error("{} has no channel `{name}`; it has {known}", path.display())]
     UnknownChannel {
@@ -97,13 +75,9 @@ pub enum Error {
 }
 
 impl Error {
-    /// That the file system refused to `action` the map at `path`.
-    pub(super) fn io(action: &'static str, path: &Path) -> impl Fn(io::Error) -> Self {
-        move |cause| Self::Io {
-            action,
-            path: path.to_owned(),
-            cause,
-        }
+    /// Makes the error `kind` for the map at `path` of its cause.
+    pub(super) fn at<C>(path: &Path, kind: fn(PathBuf, C) -> Self) -> impl Fn(C) -> Self {
+        move |cause| kind(path.to_owned(), cause)
     }
 
     /// Whether a file is no map that can be read, however that came to light.
@@ -111,10 +85,7 @@ impl Error {
     pub fn is_unreadable(&self) -> bool {
         matches!(
             self,
-            Self::Io { action: "read", .. }
-                | Self::NotExr { .. }
-                | Self::NotAMap { .. }
-                | Self::Damaged { .. }
+            Self::Read(..) | Self::NotExr(_) | Self::NotAMap(..) | Self::Damaged(..)
         )
     }
 }

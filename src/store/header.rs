@@ -1,12 +1,13 @@
 //! The header: what precedes the blocks, written and read.
 
 use super::Error;
+use super::attributes::Attributes;
 use super::layout::Layout;
+use exr::io::PeekRead;
 use exr::meta::attribute;
 use exr::meta::header::Header;
-use exr::meta::{MetaData, magic_number, sequence_end};
+use exr::meta::{MetaData, OffsetTables, magic_number, sequence_end};
 use serde::de::DeserializeOwned;
-use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{self, BufReader, Read, Seek};
 use std::path::Path;
@@ -36,24 +37,17 @@ pub(super) fn encode(headers: &[Header], offsets: &[Vec<u64>; 3]) -> exr::error:
 
 /// The headers, not yet checked against the layout.
 pub(super) fn read(path: &Path, file: &mut BufReader<File>) -> Result<MetaData, Error> {
-    let unreadable = Error::io("read", path);
     let mut magic = [0; 4];
     match file.read_exact(&mut magic) {
         Ok(()) if magic == magic_number::BYTES => {}
         Err(cause) if cause.kind() != io::ErrorKind::UnexpectedEof => {
-            return Err(unreadable(cause));
+            return Err(Error::Read(path.to_owned(), cause));
         }
-        _ => {
-            return Err(Error::NotExr {
-                path: path.to_owned(),
-            });
-        }
+        _ => return Err(Error::NotExr(path.to_owned())),
     }
-    file.rewind().map_err(&unreadable)?;
-    MetaData::read_from_buffered(file, true).map_err(|cause| Error::Damaged {
-        path: path.to_owned(),
-        reason: format!("header: {cause}"),
-    })
+    file.rewind().map_err(Error::at(path, Error::Read))?;
+    MetaData::read_from_buffered(file, true)
+        .map_err(|cause| Error::Damaged(path.to_owned(), format!("header: {cause}")))
 }
 
 /// The table between the headers and the blocks.
@@ -61,20 +55,9 @@ pub(super) fn read_offsets(
     path: &Path,
     file: &mut BufReader<File>,
     meta: &MetaData,
-) -> Result<[Vec<u64>; 3], Error> {
-    let mut offsets: [Vec<u64>; 3] = Default::default();
-    for (table, header) in offsets.iter_mut().zip(&meta.headers) {
-        for _ in 0..header.chunk_count {
-            let mut offset = [0; 8];
-            file.read_exact(&mut offset)
-                .map_err(|cause| Error::Damaged {
-                    path: path.to_owned(),
-                    reason: format!("offset table: {cause}"),
-                })?;
-            table.push(u64::from_le_bytes(offset));
-        }
-    }
-    Ok(offsets)
+) -> Result<OffsetTables, Error> {
+    MetaData::read_offset_tables(&mut PeekRead::new(file), &meta.headers)
+        .map_err(|cause| Error::Damaged(path.to_owned(), format!("offset table: {cause}")))
 }
 
 /// Compares parts, channels, size, tiles and compression with what `layout` is written as.
@@ -86,23 +69,19 @@ pub(super) fn check_layout(meta: &MetaData, layout: Layout) -> Result<(), String
     for header in &mut found {
         header.own_attributes.other.clear();
     }
-    if found != layout.headers(&BTreeMap::new()) {
+    if found != layout.headers(&Attributes::new()) {
         return Err("the parts and channels are not those that the axes demand".to_owned());
     }
     Ok(())
 }
 
-/// An attribute of the first part.
-pub(super) fn text<'a>(meta: &'a MetaData, name: &str) -> Result<&'a str, String> {
-    let attributes = meta.headers.first().map(|header| &header.own_attributes);
-    let mut attributes = attributes.into_iter().flat_map(|own| &own.other);
-    attributes
-        .find(|(found, _)| found.bytes() == name.as_bytes())
-        .and_then(|(_, value)| str::from_utf8(value.to_text().ok()?.bytes()).ok())
-        .ok_or_else(|| format!("there is no text attribute `{name}`"))
-}
-
 /// An attribute of the first part, decoded.
 pub(super) fn parse<T: DeserializeOwned>(meta: &MetaData, name: &str) -> Result<T, String> {
-    serde_json::from_str(text(meta, name)?).map_err(|error| format!("attribute `{name}`: {error}"))
+    let attributes = meta.headers.first().map(|header| &header.own_attributes);
+    let mut attributes = attributes.into_iter().flat_map(|own| &own.other);
+    let text = attributes
+        .find(|(found, _)| found.bytes() == name.as_bytes())
+        .and_then(|(_, value)| str::from_utf8(value.to_text().ok()?.bytes()).ok())
+        .ok_or_else(|| format!("there is no text attribute `{name}`"))?;
+    serde_json::from_str(text).map_err(|error| format!("attribute `{name}`: {error}"))
 }

@@ -1,16 +1,16 @@
 //! Where each value lies in the file: parts, channels, tiles and blocks.
 
+use super::attributes::Attributes;
 use super::{Panel, STATE_CHANNELS};
 use crate::scene::Grid;
 use exr::block::BlockIndex;
 use exr::math::{RoundingMode, Vec2};
 use exr::meta::attribute::{
-    AttributeValue, ChannelDescription, LevelMode, LineOrder, SampleType, Text, TileDescription,
+    ChannelDescription, LevelMode, LineOrder, SampleType, Text, TileDescription,
 };
 use exr::meta::header::Header;
 use exr::meta::{BlockDescription, Headers};
 use exr::prelude::Compression;
-use std::collections::BTreeMap;
 
 /// How many panels, and how many cells in each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -92,87 +92,65 @@ impl Layout {
     }
 
     /// One header per part, all with the same attributes, so that each part stands alone.
-    pub(super) fn headers(&self, attributes: &BTreeMap<&'static str, String>) -> Headers {
+    pub(super) fn headers(&self, attributes: &Attributes) -> Headers {
         let size = Vec2(self.columns * self.push_angles, self.rows * self.distances);
-        let described = parts().into_iter().map(|part| {
-            let channels = part
-                .channels
-                .into_iter()
-                .map(|(name, kind)| ChannelDescription::named(name, kind))
-                .collect();
-            let mut header = Header::new(Text::from(part.name), size, channels).with_encoding(
-                COMPRESSION,
-                self.blocks(),
-                LineOrder::Increasing,
-            );
-            header.own_attributes.other = attributes
-                .iter()
-                .map(|(&name, text)| {
-                    (
-                        Text::from(name),
-                        AttributeValue::Text(Text::from(text.as_str())),
-                    )
-                })
-                .collect();
+        let described = parts(&Panel::unresolved(0)).map(|part| {
+            let channels = part.channels.into_iter();
+            let channels = channels.map(|own| ChannelDescription::named(own.name, own.kind));
+            let mut header = Header::new(Text::from(part.name), size, channels.collect())
+                .with_encoding(COMPRESSION, self.blocks(), LineOrder::Increasing);
+            header.own_attributes.other = attributes.clone();
             header
         });
-        described.collect()
+        described.into_iter().collect()
     }
 }
 
 /// Lossless.
 const COMPRESSION: Compression = Compression::ZIP16;
 
-/// A part of the file: its name, and its channels in the order of their names, as EXR wants them.
-pub(super) struct Part {
+/// A part of the file, with its channels in the order of their names, as EXR wants them.
+pub(super) struct Part<'a> {
     pub(super) name: &'static str,
-    pub(super) channels: Vec<(&'static str, SampleType)>,
+    pub(super) channels: Vec<Channel<'a>>,
 }
 
-/// The parts, in the order of the file.
-pub(super) fn parts() -> [Part; 3] {
-    let mut state = STATE_CHANNELS.map(|name| (name, SampleType::F32)).to_vec();
-    state.sort_unstable_by_key(|(name, _)| *name);
-    [
-        Part {
-            name: "regime",
-            channels: vec![("regime", SampleType::U32), ("status", SampleType::U32)],
-        },
-        Part {
-            name: "state",
-            channels: state,
-        },
-        Part {
-            name: "numerics",
-            channels: vec![
-                ("margin_deg", SampleType::F32),
-                ("newton_steps", SampleType::U32),
-                ("residual", SampleType::F32),
-            ],
-        },
-    ]
+/// A channel, with its samples in a panel as bytes.
+pub(super) struct Channel<'a> {
+    pub(super) name: &'static str,
+    pub(super) kind: SampleType,
+    pub(super) bytes: &'a [u8],
 }
 
-/// The bytes of every channel of a panel, in the order of [`parts`].
-pub(super) fn channel_bytes(panel: &Panel) -> [Vec<(&'static str, &[u8])>; 3] {
-    let mut state: Vec<(&str, &[u8])> = STATE_CHANNELS
+/// The parts of a panel, in the order of the file.
+pub(super) fn parts(panel: &Panel) -> [Part<'_>; 3] {
+    let mut state: Vec<_> = STATE_CHANNELS
         .into_iter()
         .zip(&panel.state)
-        .map(|(name, values)| (name, bytemuck::cast_slice(values)))
+        .map(|(name, values)| quantity(name, values))
         .collect();
-    state.sort_unstable_by_key(|(name, _)| *name);
-    [
-        vec![
-            ("regime", bytemuck::cast_slice(&panel.regime)),
-            ("status", bytemuck::cast_slice(&panel.status)),
-        ],
-        state,
-        vec![
-            ("margin_deg", bytemuck::cast_slice(&panel.margin_deg)),
-            ("newton_steps", bytemuck::cast_slice(&panel.newton_steps)),
-            ("residual", bytemuck::cast_slice(&panel.residual)),
-        ],
-    ]
+    state.sort_unstable_by_key(|channel| channel.name);
+    let regime = vec![
+        number("regime", &panel.regime),
+        number("status", &panel.status),
+    ];
+    let numerics = vec![
+        quantity("margin_deg", &panel.margin_deg),
+        number("newton_steps", &panel.newton_steps),
+        quantity("residual", &panel.residual),
+    ];
+    [("regime", regime), ("state", state), ("numerics", numerics)]
+        .map(|(name, channels)| Part { name, channels })
+}
+
+fn quantity<'a>(name: &'static str, values: &'a [f32]) -> Channel<'a> {
+    let (kind, bytes) = (SampleType::F32, bytemuck::cast_slice(values));
+    Channel { name, kind, bytes }
+}
+
+fn number<'a>(name: &'static str, values: &'a [u32]) -> Channel<'a> {
+    let (kind, bytes) = (SampleType::U32, bytemuck::cast_slice(values));
+    Channel { name, kind, bytes }
 }
 
 /// Bytes of one sample; every channel is 32 bits wide.

@@ -2,12 +2,12 @@
 
 use super::attributes;
 use super::layout::{self, Layout, SAMPLE_BYTES};
-use super::{Counts, Error, header};
+use super::{Counts, Error, Panel, header};
 use crate::scene::Grid;
 use exr::block::UncompressedBlock;
 use exr::block::chunk::Chunk;
-use exr::meta::MetaData;
 use exr::meta::attribute::SampleType;
+use exr::meta::{MetaData, OffsetTables};
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{self, BufReader, Seek, SeekFrom};
@@ -52,7 +52,7 @@ pub struct StoredMap {
     path: PathBuf,
     meta: MetaData,
     /// Where the blocks of each part begin.
-    offsets: [Vec<u64>; 3],
+    offsets: OffsetTables,
     layout: Layout,
     grid: Grid,
     title: String,
@@ -69,23 +69,21 @@ impl StoredMap {
     ///
     /// The file cannot be read, is not EXR, is not a map of this program, or is damaged.
     pub fn open(path: &Path) -> Result<Self, Error> {
-        let mut file = BufReader::new(File::open(path).map_err(Error::io("read", path))?);
+        let mut file = open(path)?;
         let meta = header::read(path, &mut file)?;
-        let foreign = |reason| Error::NotAMap {
-            path: path.to_owned(),
-            reason,
-        };
-        let grid = attributes::decode_axes(header::text(&meta, "axes").map_err(foreign)?)
+        let foreign = Error::at(path, Error::NotAMap);
+        let axes = header::parse(&meta, "axes").map_err(&foreign)?;
+        let grid = attributes::decode_axes(axes)
             .map_err(|reason| foreign(format!("attribute `axes`: {reason}")))?;
         let layout = Layout::of(&grid);
-        header::check_layout(&meta, layout).map_err(foreign)?;
+        header::check_layout(&meta, layout).map_err(&foreign)?;
         Ok(Self {
             offsets: header::read_offsets(path, &mut file, &meta)?,
-            title: header::parse(&meta, "title").map_err(foreign)?,
-            version: header::parse(&meta, "whiskmap_version").map_err(foreign)?,
-            regime_names: header::parse(&meta, "regime_names").map_err(foreign)?,
-            status_names: header::parse(&meta, "status_names").map_err(foreign)?,
-            counts: header::parse(&meta, "counts").map_err(foreign)?,
+            title: header::parse(&meta, "title").map_err(&foreign)?,
+            version: header::parse(&meta, "whiskmap_version").map_err(&foreign)?,
+            regime_names: header::parse(&meta, "regime_names").map_err(&foreign)?,
+            status_names: header::parse(&meta, "status_names").map_err(&foreign)?,
+            counts: header::parse(&meta, "counts").map_err(&foreign)?,
             path: path.to_owned(),
             meta,
             layout,
@@ -142,20 +140,15 @@ impl StoredMap {
     ///
     /// There is no such attribute, or it is not JSON.
     pub fn attribute(&self, name: &str) -> Result<serde_json::Value, Error> {
-        header::parse(&self.meta, name).map_err(|reason| Error::NotAMap {
-            path: self.path.clone(),
-            reason,
-        })
+        header::parse(&self.meta, name).map_err(Error::at(&self.path, Error::NotAMap))
     }
 
     /// The names of all channels, part by part.
     #[must_use]
     pub fn channels(&self) -> Vec<&'static str> {
-        let parts = layout::parts().into_iter();
-        parts
-            .flat_map(|part| part.channels)
-            .map(|(name, _)| name)
-            .collect()
+        let nothing = Panel::unresolved(0);
+        let channels = layout::parts(&nothing).map(|part| part.channels);
+        channels.iter().flatten().map(|own| own.name).collect()
     }
 
     /// A whole channel, panel after panel: `[curvature][taper][distance][push angle]`, the last one fastest.
@@ -182,15 +175,14 @@ impl StoredMap {
 
     fn read(&self, name: &str, panels: std::ops::Range<usize>) -> Result<Samples, Error> {
         let (part, channel, kind) = self.find(name)?;
-        let mut file =
-            BufReader::new(File::open(&self.path).map_err(Error::io("read", &self.path))?);
+        let mut file = open(&self.path)?;
         let mut bytes = Vec::new();
         for panel in panels {
             for block in 0..self.layout.blocks_per_panel() {
                 self.read_block(&mut file, [part, panel, block], channel, &mut bytes)
-                    .map_err(|cause| Error::Damaged {
-                        path: self.path.clone(),
-                        reason: format!("channel `{name}`, panel {panel}, block {block}: {cause}"),
+                    .map_err(|cause| {
+                        let place = format!("channel `{name}`, panel {panel}, block {block}");
+                        Error::Damaged(self.path.clone(), format!("{place}: {cause}"))
                     })?;
             }
         }
@@ -202,11 +194,9 @@ impl StoredMap {
 
     /// Part, place in that part, and type of a channel.
     fn find(&self, name: &str) -> Result<(usize, usize, SampleType), Error> {
-        for (part, about) in layout::parts().iter().enumerate() {
-            for (place, (channel, kind)) in about.channels.iter().enumerate() {
-                if *channel == name {
-                    return Ok((part, place, *kind));
-                }
+        for (part, about) in layout::parts(&Panel::unresolved(0)).iter().enumerate() {
+            if let Some(place) = about.channels.iter().position(|own| own.name == name) {
+                return Ok((part, place, about.channels[place].kind));
             }
         }
         Err(Error::UnknownChannel {
@@ -238,6 +228,11 @@ impl StoredMap {
         }
         Ok(())
     }
+}
+
+fn open(path: &Path) -> Result<BufReader<File>, Error> {
+    let file = File::open(path).map_err(Error::at(path, Error::Read))?;
+    Ok(BufReader::new(file))
 }
 
 /// What compatible versions have in common: the numbers up to the first that is not 0.

@@ -17,47 +17,33 @@ pub struct Counts {
     pub shots: Shots,
 }
 
-/// Counts the codes of one channel.
+/// Counts the codes of one channel: the name and the cells of each.
 #[derive(Clone, Debug)]
-pub(super) struct Tally {
-    codes: Vec<u32>,
-    names: Vec<String>,
-    cells: Vec<u64>,
-}
+pub(super) struct Tally(BTreeMap<u32, (String, u64)>);
 
 impl Tally {
     /// A tally in which every count is `cells`.
     pub(super) fn new<'a>(names: impl IntoIterator<Item = (u32, &'a str)>, cells: u64) -> Self {
-        let (codes, names): (Vec<_>, Vec<_>) = names
-            .into_iter()
-            .map(|(code, name)| (code, name.to_owned()))
-            .unzip();
-        let cells = vec![cells; codes.len()];
-        Self {
-            codes,
-            names,
-            cells,
-        }
+        let named = |(code, name): (u32, &str)| (code, (name.to_owned(), cells));
+        Self(names.into_iter().map(named).collect())
     }
 
     /// Counts `codes`; returns the first one that has no name.
     pub(super) fn add(&mut self, codes: &[u32]) -> Result<(), u32> {
         for code in codes {
-            let place = self.codes.iter().position(|known| known == code);
-            self.cells[place.ok_or(*code)?] += 1;
+            self.0.get_mut(code).ok_or(*code)?.1 += 1;
         }
         Ok(())
     }
 
     /// Cells by name.
     pub(super) fn by_name(&self) -> BTreeMap<String, u64> {
-        let cells = self.cells.iter().copied();
-        self.names.iter().cloned().zip(cells).collect()
+        self.0.values().cloned().collect()
     }
 
     /// Names by code.
     pub(super) fn names(&self) -> BTreeMap<u32, &str> {
-        let names = self.names.iter().map(String::as_str);
-        self.codes.iter().copied().zip(names).collect()
+        let named = self.0.iter();
+        named.map(|(code, (name, _))| (*code, &**name)).collect()
     }
 }

@@ -1,16 +1,15 @@
 //! Writes a map, some panels at a time.
 
-use super::attributes::{self, Description};
-use super::layout::{self, Layout, SAMPLE_BYTES};
+use super::attributes::{self, Description, attribute};
+use super::layout::{self, Channel, Layout, Part, SAMPLE_BYTES};
 use super::tally::{Counts, Tally};
 use super::{Error, Output, Panel, header};
 use crate::classify::Regime;
 use crate::map::Shots;
 use exr::block::UncompressedBlock;
 use exr::meta::Headers;
-use exr::meta::attribute::{AttributeValue, Text};
 use rayon::prelude::*;
-use std::io::{self, BufWriter, Seek, SeekFrom, Write};
+use std::io::{BufWriter, IntoInnerError, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 /// A map on its way to disk, by an [`Output`]: there is none until [`MapWriter::finish`].
@@ -45,11 +44,12 @@ impl MapWriter {
         let statuses = Tally::new(about.status_names.iter().copied(), 0);
         let layout = Layout::of(&about.scene.grid);
         let mut attributes = attributes::encode(about, &regimes, &statuses);
-        attributes.insert("counts", " ".repeat(counts_width));
+        attributes.extend([attribute("counts", &" ".repeat(counts_width))]);
         let headers = layout.headers(&attributes);
 
-        let preamble = header::encode(&headers, &Default::default()).map_err(refused(path))?;
-        let file = Output::create(path).map_err(unwritable(path))?;
+        let preamble = header::encode(&headers, &Default::default())
+            .map_err(Error::at(path, Error::Encode))?;
+        let file = Output::create(path).map_err(Error::at(path, Error::Write))?;
         let mut writer = Self {
             path: path.to_owned(),
             file: BufWriter::new(file),
@@ -80,24 +80,24 @@ impl MapWriter {
                 panels: all,
             });
         }
-        let channels: Vec<_> = panels.iter().map(layout::channel_bytes).collect();
-        for (i, channels) in channels.iter().enumerate() {
-            self.check_sizes(first + i, channels)?;
+        let parts: Vec<_> = panels.iter().map(layout::parts).collect();
+        for (index, parts) in (first..).zip(&parts) {
+            self.check_sizes(index, parts)?;
         }
         self.count(first, panels)?;
 
         let blocks = self.layout.blocks_per_panel();
-        let parts = self.offsets.len();
-        let part = |task: usize| task / blocks % parts;
-        let chunks: Vec<Vec<u8>> = (0..panels.len() * parts * blocks)
+        let of_panel = self.offsets.len() * blocks;
+        let part = |task: usize| task % of_panel / blocks;
+        let chunks: Vec<Vec<u8>> = (0..panels.len() * of_panel)
             .into_par_iter()
             .map(|task| {
-                let panel = task / (parts * blocks);
-                let channels = &channels[panel][part(task)];
-                self.chunk(first + panel, part(task), task % blocks, channels)
+                let (panel, part) = (task / of_panel, part(task));
+                let channels = &parts[panel][part].channels;
+                self.chunk(first + panel, part, task % blocks, channels)
             })
             .collect::<exr::error::Result<_>>()
-            .map_err(refused(&self.path))?;
+            .map_err(Error::at(&self.path, Error::Encode))?;
         for (task, chunk) in chunks.iter().enumerate() {
             self.offsets[part(task)].push(self.position);
             self.append(chunk)?;
@@ -126,40 +126,33 @@ impl MapWriter {
         };
         let text = attributes::encode_counts(&counts, self.counts_width);
         for header in &mut self.headers {
-            let value = AttributeValue::Text(Text::from(text.as_str()));
-            header
-                .own_attributes
-                .other
-                .insert(Text::from("counts"), value);
+            let attributes = &mut header.own_attributes.other;
+            attributes.extend([attribute("counts", &text)]);
         }
         // The counts were given their room at the start, so this has the length of what it replaces.
-        let preamble = header::encode(&self.headers, &self.offsets).map_err(refused(&self.path))?;
-        self.file
-            .seek(SeekFrom::Start(0))
-            .and_then(|_| self.file.write_all(&preamble))
-            .map_err(unwritable(&self.path))?;
-        let file = self
-            .file
-            .into_inner()
-            .map_err(|error| unwritable(&self.path)(error.into_error()))?;
-        file.finish().map_err(unwritable(&self.path))?;
+        let preamble = header::encode(&self.headers, &self.offsets)
+            .map_err(Error::at(&self.path, Error::Encode))?;
+        let Self { path, mut file, .. } = self;
+        file.seek(SeekFrom::Start(0))
+            .and_then(|_| file.write_all(&preamble))
+            .and_then(|()| file.into_inner().map_err(IntoInnerError::into_error))
+            .and_then(Output::finish)
+            .map_err(Error::at(&path, Error::Write))?;
         Ok(counts)
     }
 
     fn append(&mut self, bytes: &[u8]) -> Result<(), Error> {
-        self.file.write_all(bytes).map_err(unwritable(&self.path))?;
+        self.file
+            .write_all(bytes)
+            .map_err(Error::at(&self.path, Error::Write))?;
         self.position += bytes.len() as u64;
         Ok(())
     }
 
-    fn check_sizes(
-        &self,
-        index: usize,
-        channels: &[Vec<(&'static str, &[u8])>; 3],
-    ) -> Result<(), Error> {
+    fn check_sizes(&self, index: usize, parts: &[Part<'_>]) -> Result<(), Error> {
         let expected = self.layout.cells();
-        for &(channel, bytes) in channels.iter().flatten() {
-            let cells = bytes.len() / SAMPLE_BYTES;
+        for own in parts.iter().flat_map(|part| &part.channels) {
+            let (channel, cells) = (own.name, own.bytes.len() / SAMPLE_BYTES);
             if cells != expected {
                 return Err(Error::PanelSize {
                     index,
@@ -207,15 +200,15 @@ impl MapWriter {
         panel: usize,
         part: usize,
         block: usize,
-        channels: &[(&str, &[u8])],
+        channels: &[Channel<'_>],
     ) -> exr::error::Result<Vec<u8>> {
         let (index, first_row) = self.layout.block(part, panel, block);
         let line = self.layout.push_angles * SAMPLE_BYTES;
         let rows = first_row..first_row + index.pixel_size.height();
         let mut data = Vec::with_capacity(rows.len() * line * channels.len());
         for row in rows {
-            for (_, bytes) in channels {
-                data.extend_from_slice(&bytes[row * line..][..line]);
+            for channel in channels {
+                data.extend_from_slice(&channel.bytes[row * line..][..line]);
             }
         }
         let block = UncompressedBlock { index, data };
@@ -224,16 +217,5 @@ impl MapWriter {
             .compress_to_chunk(&self.headers)?
             .write(&mut bytes, self.headers.len())?;
         Ok(bytes)
-    }
-}
-
-fn unwritable(path: &Path) -> impl Fn(io::Error) -> Error {
-    Error::io("write", path)
-}
-
-fn refused(path: &Path) -> impl Fn(exr::error::Error) -> Error {
-    move |cause| Error::Encode {
-        path: path.to_owned(),
-        cause,
     }
 }
