@@ -2,7 +2,9 @@
 
 use crate::accuracy::cheapest;
 use crate::classify::Regime;
-use crate::integrate::{Engine, EngineError};
+use crate::integrate::EngineError;
+#[cfg(feature = "gpu")]
+use crate::integrate::gpu::{Gpu, Precision};
 use crate::map::{self as stages, Panel, Progress, STATE_CHANNELS, Summary};
 use crate::plan::{Plan, PlanError};
 use crate::rod::Side;
@@ -19,7 +21,7 @@ pub struct Options {
     pub tolerance_deg: Option<f64>,
     /// Shoots cells on the preferred GPU before they are refined, in this precision.
     #[cfg(feature = "gpu")]
-    pub gpu: Option<crate::integrate::gpu::Precision>,
+    pub gpu: Option<Precision>,
 }
 
 /// Why there is no answer at all; a cell without one is no error.
@@ -56,11 +58,8 @@ impl Map {
     /// How many cells have this regime.
     #[must_use]
     pub fn count(&self, regime: Regime) -> u64 {
-        let of_regime = Regime::ALL.into_iter().zip(self.summary.regimes);
-        of_regime
-            .filter(|(other, _)| *other == regime)
-            .map(|(_, cells)| cells)
-            .sum()
+        let place = Regime::ALL.iter().position(|other| *other == regime);
+        place.map_or(0, |place| self.summary.regimes[place])
     }
 
     /// The regime of a whisker at the index of a distance and of a push angle; `None` beyond the axes.
@@ -112,8 +111,12 @@ pub fn map(scene: &Scene, options: Options) -> Result<Map, Error> {
     plan.method = plan
         .method
         .with_resolution(resolution(scene, options, &plan.sides)?);
-    let mut engine = engine(options)?;
-    let engine = engine.as_mut().map(|engine| &mut **engine as _);
+    #[cfg(feature = "gpu")]
+    let mut gpu = options.gpu.map(Gpu::new).transpose()?;
+    #[cfg(feature = "gpu")]
+    let engine = gpu.as_mut().map(|gpu| gpu as _);
+    #[cfg(not(feature = "gpu"))]
+    let engine = None;
     let mut panels = Vec::with_capacity(plan.whiskers.len());
     let mut keep = |progress: Progress<'_>| {
         if let Progress::Panels(finished) = progress {
@@ -127,20 +130,6 @@ pub fn map(scene: &Scene, options: Options) -> Result<Map, Error> {
         panels,
         summary,
     })
-}
-
-/// What shoots before the refinement, if anything does.
-#[cfg(feature = "gpu")]
-fn engine(options: Options) -> Result<Option<Box<dyn Engine>>, Error> {
-    let Some(precision) = options.gpu else {
-        return Ok(None);
-    };
-    Ok(Some(Box::new(crate::integrate::gpu::Gpu::new(precision)?)))
-}
-
-#[cfg(not(feature = "gpu"))]
-fn engine(_: Options) -> Result<Option<Box<dyn Engine>>, Error> {
-    Ok(None)
 }
 
 /// Computes where every whisker of `scene` detaches: at each distance, CF before CB.

@@ -8,10 +8,8 @@ use whiskmap::scene::Scene;
 
 /// What a map would take.
 pub struct Estimate {
-    /// Seconds on the CPU engine, without the files.
+    /// Seconds on the threads of the CPU engine, without the files.
     pub seconds: f64,
-    /// Threads that this holds for.
-    pub threads: usize,
     /// Newton steps per cell, each one trajectory.
     pub steps_per_cell: f64,
 }
@@ -35,7 +33,6 @@ pub fn estimate(scene: &Scene, plan: &Plan) -> Result<Estimate, Failure> {
     });
     Ok(Estimate {
         seconds: seconds.iter().sum(),
-        threads: rayon::current_num_threads(),
         steps_per_cell: summary.steps as f64 / summary.cells() as f64,
     })
 }

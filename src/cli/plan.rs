@@ -49,73 +49,50 @@ fn print(scene: &Scene, plan: &Plan, estimate: &Estimate) -> std::io::Result<()>
         let name = effect.name;
         writeln!(out, "{name:16}  {on:3}  {cost:12}  {}", effect.why)?;
     }
-    writeln!(out)?;
-    for (name, text) in facts(scene, plan, estimate) {
-        writeln!(out, "{name:12}  {text}")?;
-    }
-    Ok(())
-}
-
-/// The lines below the effects, by name.
-fn facts(scene: &Scene, plan: &Plan, estimate: &Estimate) -> [(&'static str, String); 6] {
     let rest = plan.rest_states();
     let derivatives = plan.derivative_states();
     let states = rest + ROD_STATES + derivatives;
+    writeln!(
+        out,
+        "\nstates        {states}: {rest} rest shape, {ROD_STATES} rod, {derivatives} derivatives; \
+         at last {} with energy",
+        states + 2
+    )?;
     let distances = scene.grid.distance_mm.len();
-    let most = (estimate.steps_per_cell + 1.0) * plan.cells as f64;
-    [
-        (
-            "states",
-            format!(
-                "{states}: {rest} rest shape, {ROD_STATES} rod, {derivatives} derivatives; \
-                 at last {} with energy",
-                states + 2
-            ),
-        ),
-        (
-            "cells",
-            format!(
-                "{}: {} x {} x {}",
-                plan.cells,
-                counted(scene.grid.push_angle_deg.len(), "push angle"),
-                counted(distances, "distance"),
-                counted(plan.whiskers.len(), "whisker")
-            ),
-        ),
-        (
-            "trajectories",
-            format!(
-                "about {most:.0} at most: {:.2} Newton steps a cell and 1 to confirm",
-                estimate.steps_per_cell
-            ),
-        ),
-        (
-            "GPU calls",
-            format!(
-                "{}: groups of {}, {} of {}, {} a call",
-                plan.engine_calls,
-                counted(plan.panels_at_once, "whisker"),
-                counted(plan.sides.len(), "side"),
-                counted(distances, "row"),
-                counted(plan.rows_at_once, "row")
-            ),
-        ),
-        (
-            "memory",
-            format!(
-                "at most {} MiB for panels and cells in flight",
-                plan.bytes.div_ceil(1 << 20)
-            ),
-        ),
-        (
-            "time",
-            format!(
-                "about {} s on {} of the CPU engine, without the files",
-                two_digits(estimate.seconds),
-                counted(estimate.threads, "thread")
-            ),
-        ),
-    ]
+    writeln!(
+        out,
+        "cells         {}: {} x {} x {}",
+        plan.cells,
+        counted(scene.grid.push_angle_deg.len(), "push angle"),
+        counted(distances, "distance"),
+        counted(plan.whiskers.len(), "whisker")
+    )?;
+    let steps = estimate.steps_per_cell;
+    writeln!(
+        out,
+        "trajectories  about {:.0} at most: {steps:.2} Newton steps a cell and 1 to confirm",
+        (steps + 1.0) * plan.cells as f64
+    )?;
+    writeln!(
+        out,
+        "GPU calls     {}: groups of {}, {} of {}, {} a call",
+        plan.engine_calls,
+        counted(plan.panels_at_once, "whisker"),
+        counted(plan.sides.len(), "side"),
+        counted(distances, "row"),
+        counted(plan.rows_at_once, "row")
+    )?;
+    writeln!(
+        out,
+        "memory        at most {} MiB for panels and cells in flight",
+        plan.bytes.div_ceil(1 << 20)
+    )?;
+    writeln!(
+        out,
+        "time          about {} s on {} of the CPU engine, without the files",
+        two_digits(estimate.seconds),
+        counted(rayon::current_num_threads(), "thread")
+    )
 }
 
 fn counted(count: usize, what: &str) -> String {
