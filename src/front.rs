@@ -10,8 +10,7 @@ use crate::plan::{Plan, PlanError};
 use crate::rod::Side;
 use crate::scene::{Grid, Morphology, Scene};
 use crate::shooting::Resolution;
-use crate::trace::{Branch, Detachment, NoState, Shape, curve_at};
-use rayon::prelude::*;
+use crate::trace::{Branch, Detachment, NoState, Shape, curve_at, sides};
 use std::convert::Infallible;
 
 /// How exact an answer is to be, and what shoots before the refinement.
@@ -151,17 +150,10 @@ pub fn map(scene: &Scene, options: Options) -> Result<Map, Error> {
 pub fn curve(scene: &Scene, options: Options) -> Result<Vec<(Morphology, Detachment)>, Error> {
     let resolution = resolution(scene, options, &Side::BOTH)?;
     let whiskers: Vec<_> = scene.whiskers().collect();
-    Ok(whiskers
-        .par_iter()
-        .flat_map_iter(|(morphology, whisker)| {
-            let curve = |side| {
-                let distances = &scene.grid.distance_mm;
-                curve_at(resolution, whisker, &scene.pole, side, distances)
-            };
-            let both = Side::BOTH.into_iter().flat_map(curve);
-            both.map(|row| (*morphology, row)).collect::<Vec<_>>()
-        })
-        .collect())
+    let distances = &scene.grid.distance_mm;
+    Ok(sides(&whiskers, |whisker, side| {
+        curve_at(resolution, whisker, &scene.pole, side, distances)
+    }))
 }
 
 /// Follows the states of the scene's first whisker in front of one pole, from first touch at `distance_mm` through the fold.

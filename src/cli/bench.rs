@@ -5,7 +5,7 @@ use super::outputs::{STDOUT, open, unwritten};
 use clap::Args;
 use std::io::{self, IsTerminal, Write};
 use std::path::{Path, PathBuf};
-use whiskmap::bench::{self, Detachments, Effort, Measurement, Report};
+use whiskmap::bench::{self, Effort, Measurement, Report};
 use whiskmap::render::{Chart, Dot, Ink, Line, Plot, Stroke};
 use whiskmap::scene::Scene;
 
@@ -139,20 +139,15 @@ fn tables(report: &Report) -> io::Result<()> {
         out,
         "\ndetachments, all threads    us a point  +-%   angle, deg: worst    99 %"
     )?;
-    for Detachments {
-        steps,
-        seconds,
-        us_per_point,
-        angle_deg,
-        ..
-    } in &report.detachments
-    {
+    for row in &report.detachments {
         writeln!(
             out,
-            "nystrom8 x{steps:<3} {us_per_point:23.1} {:5.0} {:19.0e} {:7.0e}",
-            100.0 * seconds.spread,
-            angle_deg.worst,
-            angle_deg.p99
+            "nystrom8 x{:<3} {:23.1} {:5.0} {:19.0e} {:7.0e}",
+            row.steps,
+            row.us_per_point,
+            100.0 * row.seconds.spread,
+            row.angle_deg.worst,
+            row.angle_deg.p99
         )?;
     }
     Ok(())

@@ -5,7 +5,6 @@ use super::failure::{Failure, say};
 use super::outputs::{Opened, Outputs};
 use super::tolerance::Tolerance;
 use clap::Args;
-use rayon::prelude::*;
 use serde::Serialize;
 use std::path::PathBuf;
 use whiskmap::render::{Chart, CurveAxis, curves};
@@ -68,35 +67,23 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     let mut drawn = Vec::new();
     let mut unresolved = 0;
     for group in whiskers.chunks(AT_ONCE) {
-        let sides = || {
-            group
-                .par_iter()
-                .flat_map_iter(|one| Side::BOTH.map(|side| (one, side)))
-        };
         if options.corner {
-            let rows: Vec<(Morphology, Corner)> = sides()
-                .map(|((morphology, whisker), side)| {
-                    let corner = trace::corner(whisker, &scene.pole, side);
-                    (*morphology, corner)
-                })
-                .collect();
-            write(&scene, &mut outputs, &rows)?;
-        } else {
-            let rows: Vec<(Morphology, Detachment)> = sides()
-                .flat_map_iter(|((morphology, whisker), side)| {
-                    let distances = &scene.grid.distance_mm;
-                    let curve = trace::curve_at(resolution, whisker, &scene.pole, side, distances);
-                    curve.into_iter().map(|row| (*morphology, row))
-                })
-                .collect();
-            write(&scene, &mut outputs, &rows)?;
-            let lost = rows
-                .iter()
-                .filter(|(_, row)| row.kind == DetachmentKind::Unresolved);
-            unresolved += lost.count();
-            if options.outputs.has_plot() {
-                drawn.extend(rows.into_iter().map(|(_, row)| row));
-            }
+            let corner = |whisker: &Whisker, side| vec![trace::corner(whisker, &scene.pole, side)];
+            write(&scene, &mut outputs, &trace::sides(group, corner))?;
+            continue;
+        }
+        let curve = |whisker: &Whisker, side| {
+            let distances = &scene.grid.distance_mm;
+            trace::curve_at(resolution, whisker, &scene.pole, side, distances)
+        };
+        let rows = trace::sides(group, curve);
+        write(&scene, &mut outputs, &rows)?;
+        let kinds = rows.iter().map(|(_, row)| row.kind);
+        unresolved += kinds
+            .filter(|kind| *kind == DetachmentKind::Unresolved)
+            .count();
+        if options.outputs.has_plot() {
+            drawn.extend(rows.into_iter().map(|(_, row)| row));
         }
     }
     if unresolved > 0 {

@@ -16,17 +16,14 @@ pub fn run() -> Result<(), Failure> {
     let taken = preferred(&reports, Precision::F32);
     for (i, report) in reports.iter().enumerate() {
         let mark = if taken == Some(i) { "*" } else { " " };
+        let has_f64 = if report.shader_f64 { "yes" } else { "no" };
         writeln!(
             out,
             "{mark} {} ({}, {})",
             report.name, report.kind, report.backend
         )?;
         writeln!(out, "    driver   {} {}", report.driver, report.driver_info)?;
-        writeln!(
-            out,
-            "    f64      {}",
-            if report.shader_f64 { "yes" } else { "no" }
-        )?;
+        writeln!(out, "    f64      {has_f64}")?;
         writeln!(
             out,
             "    limits   {} MiB per storage buffer, {} workgroups per dispatch",

@@ -1,6 +1,6 @@
 //! What ends a command early, and the exit code for it.
 
-use std::io::{IsTerminal, Write};
+use std::io::{self, IsTerminal, Write};
 use std::path::PathBuf;
 use std::process::ExitCode;
 use whiskmap::integrate::EngineError;
@@ -36,36 +36,24 @@ pub enum Failure {
     State(NoState),
     /// Numbers are not what they should be.
     #[error("{failed} of {all} checks fail")]
-    Checks {
-        /// How many.
-        failed: usize,
-        /// Of how many.
-        all: usize,
-    },
+    Checks { failed: usize, all: usize },
     /// A file could not be written.
     #[error("cannot write {}: {cause}", path.display())]
-    Write {
-        /// The file.
-        path: PathBuf,
-        /// What the system said.
-        cause: std::io::Error,
-    },
+    Write { path: PathBuf, cause: io::Error },
     /// Standard output is gone or full.
     #[error("standard output: {0}")]
-    Output(#[from] std::io::Error),
+    Output(#[from] io::Error),
 }
 
 impl Failure {
     fn code(&self) -> u8 {
-        match self {
-            Self::Scene(_) | Self::Plan(_) | Self::Input(_) => 2,
-            Self::Store(error) | Self::Render(render::Error::Map(error))
-                if error.is_unreadable() =>
-            {
-                2
-            }
-            _ => 1,
-        }
+        let is_input = match self {
+            Self::Scene(_) | Self::Plan(_) | Self::Input(_) => true,
+            Self::Store(store::Error::Encode(..)) | Self::Render(render::Error::Scale(_)) => true,
+            Self::Store(error) | Self::Render(render::Error::Map(error)) => error.is_unreadable(),
+            _ => false,
+        };
+        if is_input { 2 } else { 1 }
     }
 
     /// Prints the message and gives the exit code.
@@ -73,7 +61,7 @@ impl Failure {
         match self {
             // A reader that has seen enough, like `head`, is no failure of ours.
             Self::Output(error) | Self::Write { cause: error, .. }
-                if error.kind() == std::io::ErrorKind::BrokenPipe =>
+                if error.kind() == io::ErrorKind::BrokenPipe =>
             {
                 return ExitCode::SUCCESS;
             }
@@ -86,7 +74,7 @@ impl Failure {
 
 /// A line on standard error, if anybody listens.
 pub fn say(line: &str) {
-    let _ = writeln!(std::io::stderr(), "{line}");
+    let _ = writeln!(io::stderr(), "{line}");
 }
 
 /// Keeps panics silent that [`integrate::gpu`](whiskmap::integrate::gpu) expects of a driver and reports as errors.
@@ -101,5 +89,5 @@ pub fn keep_expected_panics_silent() {
 
 /// Whether messages may be coloured: on a terminal, unless `NO_COLOR` is set.
 fn color() -> bool {
-    std::io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none_or(|v| v.is_empty())
+    io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none_or(|v| v.is_empty())
 }

@@ -90,11 +90,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
             tolerances: &tolerances(accuracy),
             status_names: &Status::ALL.map(|status| (status.code(), status.name())),
         },
-    )
-    .map_err(|error| match error {
-        whiskmap::store::Error::Encode { .. } => Failure::Input(error.to_string()),
-        error => error.into(),
-    })?;
+    )?;
     let bar = progress::bar(plan.cells as u64);
     let engine = engine.as_mut().map(|engine| &mut **engine as _);
     let result = map::run(&scene, &plan, engine, &mut |progress| match progress {

@@ -133,24 +133,20 @@ pub fn create(option: &str, path: &Path) -> Result<Output, Failure> {
     if path == Path::new(STDOUT) {
         return Ok(Output::stdout());
     }
-    Output::create(path).map_err(|error| {
-        let path = path.display();
-        Failure::Input(format!(
-            "{option} {path}: {error}; name a file in a folder that can be written"
-        ))
-    })
+    let advice = "name a file in a folder that can be written";
+    Output::create(path).map_err(impossible(option, path, advice))
 }
 
 /// Makes the folder that `option` names, and finds out whether files can be made in it.
 pub fn folder(option: &str, path: &Path) -> Result<(), Failure> {
     let any = path.join(".whiskmap");
     let made = std::fs::create_dir_all(path).and_then(|()| Output::create(&any));
-    made.map(drop).map_err(|error| {
-        let path = path.display();
-        Failure::Input(format!(
-            "{option} {path}: {error}; give a folder that can be written"
-        ))
-    })
+    let advice = "give a folder that can be written";
+    made.map(drop).map_err(impossible(option, path, advice))
+}
+
+fn impossible(option: &str, path: &Path, advice: &str) -> impl FnOnce(io::Error) -> Failure {
+    move |error| Failure::Input(format!("{option} {}: {error}; {advice}", path.display()))
 }
 
 /// Why the file at `path` is not written.

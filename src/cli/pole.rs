@@ -21,27 +21,19 @@ impl Pole {
     /// Reads the scene and its only whisker for `command`.
     pub fn read(&self, command: &str) -> Result<(Scene, Whisker), Failure> {
         let scene = Scene::read(&self.scene)?;
-        let mut whiskers = scene.whiskers();
-        let first = whiskers.next();
-        let more = whiskers.count();
-        let whisker = match first {
-            Some((_, whisker)) if more == 0 => whisker,
-            _ => {
-                let axes = [
-                    ("grid.taper", &scene.grid.taper),
-                    ("grid.curvature_per_mm", &scene.grid.curvature_per_mm),
-                ];
-                let key = axes
-                    .iter()
-                    .find(|(_, axis)| axis.as_ref().is_some_and(|axis| axis.len() > 1))
-                    .map_or("grid", |(key, _)| key);
-                return Err(Failure::Input(format!(
-                    "{key}: the scene sweeps {} whiskers; {command} looks at one, so give the axis one value or leave \
-                     it out",
-                    more + 1
-                )));
-            }
-        };
+        let whiskers = scene.whiskers().count();
+        if whiskers > 1 {
+            let tapers = scene.grid.taper.as_ref();
+            let key = if tapers.is_some_and(|tapers| tapers.len() > 1) {
+                "grid.taper"
+            } else {
+                "grid.curvature_per_mm"
+            };
+            return Err(Failure::Input(format!(
+                "{key}: the scene sweeps {whiskers} whiskers; {command} looks at one, so give the axis one value or leave \
+                 it out"
+            )));
+        }
         let (nearest, farthest) = scene.distances_mm();
         let (distance, radius) = (self.distance, scene.pole.radius_mm);
         if !(nearest <= distance && distance <= farthest && distance > radius) {
@@ -50,6 +42,7 @@ impl Pole {
                  and more than {radius} (pole.radius_mm)"
             )));
         }
+        let whisker = scene.first_whisker();
         Ok((scene, whisker))
     }
 

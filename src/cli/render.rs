@@ -72,7 +72,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         )));
     }
     let target = target(options)?;
-    let drawn = render::map(
+    let picture = render::map(
         &map,
         &MapOptions {
             channel: options.channel.as_deref(),
@@ -80,11 +80,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
             range: options.range,
             width: options.width,
         },
-    );
-    let picture = drawn.map_err(|error| match error {
-        render::Error::Scale(why) => Failure::Input(why),
-        error => Failure::Render(error),
-    })?;
+    )?;
     let mut out = std::io::stdout().lock();
     if let Some((path, format)) = target {
         save(&picture, &path, format)?;

@@ -12,7 +12,7 @@ use super::grid::{FARTHEST, Grid, NEAREST};
 use super::limits::Limits;
 use super::profile::{self, Radii};
 use super::setup::Setup;
-use super::shape::{self, Shape, refuse_faint};
+use super::shape::{self, refuse_faint};
 use super::whisker::{Pole, Whisker};
 
 /// As many as 16,384 x 16,384; a stored cell takes about 60 bytes.
@@ -65,10 +65,8 @@ fn refuse_two_of_a_kind(whisker: &WhiskerTable, grid: &Spanned<GridTable>) -> Re
         let must = "must be left out: the radii are those of whisker.profile";
         return Err(Fault::new("grid.taper", axis.span(), must));
     }
-    let spiral = whisker
-        .curvature
-        .as_ref()
-        .and_then(|curvature| curvature.get_ref().euler_spiral.as_ref());
+    let curvature = whisker.curvature.as_ref().map(Spanned::get_ref);
+    let spiral = curvature.and_then(|own| own.euler_spiral.as_ref());
     if let (Some(axis), Some(_)) = (&axes.curvature_per_mm, spiral) {
         let must = "must be left out: the whisker is an Euler spiral";
         return Err(Fault::new("grid.curvature_per_mm", axis.span(), must));
@@ -97,9 +95,9 @@ fn whisker(table: &WhiskerTable, length_mm: f64, grid: &Grid) -> Result<Whisker,
     } = profile::radii(table, length_mm, grid.taper.as_deref())?;
     let youngs_modulus_gpa = Limits::between(1e-6, 1e4)
         .check("whisker.youngs_modulus_gpa", &table.youngs_modulus_gpa)?;
-    let shape = match &table.curvature {
+    let (curvature, euler_spiral) = match &table.curvature {
         Some(table) => shape::shape(table, length_mm, largest(&grid.curvature_per_mm))?,
-        None => Shape::default(),
+        None => (None, None),
     };
     let ratio = table.modulus_gradient.as_ref().map(|own| &own.tip_to_base);
     let modulus_tip_to_base = Limits::between(1.0 / STIFFEST_TIP, STIFFEST_TIP).check_or(
@@ -121,8 +119,8 @@ fn whisker(table: &WhiskerTable, length_mm: f64, grid: &Grid) -> Result<Whisker,
         base_radius_um,
         tip_radius_um,
         youngs_modulus_gpa,
-        curvature: shape.parabola,
-        euler_spiral: shape.euler_spiral,
+        curvature,
+        euler_spiral,
         profile,
         modulus_tip_to_base,
         arc_stretch,

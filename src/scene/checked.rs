@@ -95,12 +95,11 @@ impl Scene {
     pub fn thinned(&self, lines: usize, values: usize) -> Self {
         let mut thinned = self.clone();
         let grid = &mut thinned.0.grid;
-        let lines = [&mut grid.push_angle_deg, &mut grid.distance_mm].map(|axis| (axis, lines));
-        let sweep = [&mut grid.taper, &mut grid.curvature_per_mm]
-            .into_iter()
-            .flatten();
-        for (axis, most) in lines.into_iter().chain(sweep.map(|axis| (axis, values))) {
-            thin(axis, most);
+        thin(&mut grid.push_angle_deg, lines);
+        thin(&mut grid.distance_mm, lines);
+        let sweep = [&mut grid.taper, &mut grid.curvature_per_mm];
+        for axis in sweep.into_iter().flatten() {
+            thin(axis, values);
         }
         thinned
     }
@@ -110,15 +109,10 @@ impl Scene {
             toml::from_str(text).map_err(|why| SceneError::of_toml(origin, text, &why))?;
         let folder = path.parent().unwrap_or(Path::new(""));
         let stem = path.file_stem().unwrap_or_default().to_string_lossy();
-        let profile = table
-            .whisker
-            .profile
-            .as_mut()
-            .map(|profile| &mut profile.rows);
-        let inlined = profile.map_or(Ok(None), |rows| rows::read(rows, text, folder));
-        let setup = inlined
-            .and_then(|inlined| check::setup(&table, inlined.as_deref().unwrap_or(text), &stem));
-        setup
+        let profile = table.whisker.profile.as_mut();
+        let inlined = profile.map_or(Ok(None), |own| rows::read(&mut own.rows, text, folder));
+        inlined
+            .and_then(|inlined| check::setup(&table, inlined.as_deref().unwrap_or(text), &stem))
             .map(Self)
             .map_err(|fault| fault.in_scene(origin, text))
     }

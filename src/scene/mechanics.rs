@@ -12,7 +12,7 @@ impl Whisker {
             .curvature
             .map_or((0.0, 0.0), |c| (c.parabola_per_mm, c.vertex_mm));
         Rod {
-            taper: (1.0 - self.tip_radius_um / self.base_radius_um) * self.arc_stretch,
+            taper: self.taper() * self.arc_stretch,
             bend: a * self.length_mm,
             slope: -2.0 * a * x0,
             pole: side.sign() * pole.radius_mm / self.length_mm,

@@ -84,8 +84,5 @@ impl Setup {
 
 /// What an axis puts in place of the whisker's own value: its values one by one, or nothing, once.
 fn choices(axis: Option<&[f64]>) -> Vec<Option<f64>> {
-    axis.map_or_else(
-        || vec![None],
-        |values| values.iter().copied().map(Some).collect(),
-    )
+    axis.map_or(vec![None], |axis| axis.iter().copied().map(Some).collect())
 }

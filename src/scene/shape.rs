@@ -21,29 +21,21 @@ const LOOKS: u32 = 8192;
 /// The least cosine of that angle: the distance from the base grows everywhere.
 const LEAST_COS: f64 = 0.05;
 
-/// At most one of both.
-#[derive(Default)]
-pub(super) struct Shape {
-    pub parabola: Option<Curvature>,
-    pub euler_spiral: Option<EulerSpiral>,
-}
-
-/// The shape of the table; `steepest` is the largest `A` of a curvature axis.
+/// The parabola or the Euler spiral of the table; `steepest` is the largest `A` of a curvature axis.
 pub(super) fn shape(
     table: &Spanned<CurvatureTable>,
     length_mm: f64,
     steepest: Option<f64>,
-) -> Result<Shape, Fault> {
+) -> Result<(Option<Curvature>, Option<EulerSpiral>), Fault> {
     let fields = table.get_ref();
     match (&fields.parabola_per_mm, &fields.euler_spiral) {
-        (Some(number), None) => Ok(Shape {
-            parabola: parabola(number, fields.vertex_mm.as_ref(), length_mm, steepest)?,
-            euler_spiral: None,
-        }),
-        (None, Some(spiral)) if fields.vertex_mm.is_none() => Ok(Shape {
-            parabola: None,
-            euler_spiral: euler_spiral(spiral, length_mm)?,
-        }),
+        (Some(number), None) => {
+            let parabola = parabola(number, fields.vertex_mm.as_ref(), length_mm, steepest)?;
+            Ok((parabola, None))
+        }
+        (None, Some(spiral)) if fields.vertex_mm.is_none() => {
+            Ok((None, euler_spiral(spiral, length_mm)?))
+        }
         _ => Err(Fault::new(
             "whisker.curvature",
             table.span(),
@@ -101,13 +93,11 @@ pub(super) fn refuse_faint(
     span: Range<usize>,
 ) -> Result<(), Fault> {
     let least = 1e-9 / length_mm;
-    match parabolas_per_mm.iter().find(|a| **a > 0.0 && **a < least) {
-        Some(_) => {
-            let must = format!("must be 0 (straight) or at least 1e-9 / length_mm ({least:e})");
-            Err(Fault::new(key, span, must))
-        }
-        None => Ok(()),
+    if parabolas_per_mm.iter().any(|a| *a > 0.0 && *a < least) {
+        let must = format!("must be 0 (straight) or at least 1e-9 / length_mm ({least:e})");
+        return Err(Fault::new(key, span, must));
     }
+    Ok(())
 }
 
 /// Curvatures of both signs; a spiral without any is straight.

@@ -15,7 +15,10 @@ pub use curve::{Corner, Detachment, DetachmentKind, NoCorner, corner, curve, cur
 pub use shape::{Part, Shape, ShapePoint};
 pub use state::Found;
 
+use crate::rod::Side;
+use crate::scene::{Morphology, Whisker};
 use crate::shooting::Resolution;
+use rayon::prelude::*;
 use serde::Serialize;
 
 /// Twice as fine as [`Resolution::FINE`]: unstable states carry larger loads.
@@ -33,6 +36,19 @@ pub enum Mark {
     Tip,
     /// Where the unstable states end.
     SecondFold,
+}
+
+/// What `of_side` makes of each side of each whisker, in their order, CF before CB.
+pub fn sides<R: Send>(
+    whiskers: &[(Morphology, Whisker)],
+    of_side: impl Fn(&Whisker, Side) -> Vec<R> + Sync,
+) -> Vec<(Morphology, R)> {
+    let of_whisker = |(morphology, whisker): &(Morphology, Whisker)| {
+        let morphology = *morphology;
+        let rows = Side::BOTH.map(|side| of_side(whisker, side));
+        rows.into_iter().flatten().map(move |row| (morphology, row))
+    };
+    whiskers.par_iter().flat_map_iter(of_whisker).collect()
 }
 
 /// Why there is no state.
