@@ -6,7 +6,7 @@ use clap::Args;
 use std::io::{self, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use whiskmap::bench::{self, Effort, Measurement, Report};
-use whiskmap::render::{Chart, Dot, Ink, Line, Plot, Stroke};
+use whiskmap::render::{Dot, Ink, Line, Plot, Stroke};
 use whiskmap::scene::Scene;
 
 /// Options of `bench`.
@@ -66,7 +66,8 @@ pub fn run(options: &Options) -> Result<(), Failure> {
             .map_err(|cause| unwritten(path, cause))?;
     }
     if let Some(picture) = picture {
-        picture.save(&chart(&report))?;
+        let title = format!("What accuracy costs: {}", report.scene);
+        picture.save(title, plot(&report))?;
     }
     if json != Some(Path::new(STDOUT)) {
         tables(&report)?;
@@ -162,7 +163,7 @@ fn named(engine: &str, threads: Option<usize>) -> String {
 }
 
 /// Error against time, a line per engine and integrator.
-fn chart(report: &Report) -> Chart {
+fn plot(report: &Report) -> Plot {
     let place = |row: &Measurement| {
         let error = row.errors.angle_deg.worst;
         [row.us_per_state.log10(), error.log10()]
@@ -194,15 +195,11 @@ fn chart(report: &Report) -> Chart {
         ink: Ink::Black,
         name: Some("no other is faster and closer".to_owned()),
     });
-    Chart {
-        title: format!("What accuracy costs: {}", report.scene),
-        plots: vec![Plot {
-            x_label: "log10 of microseconds per state".to_owned(),
-            y_label: "log10 of the worst error of the push angle (deg)".to_owned(),
-            lines: lines.collect(),
-            dots: front.collect(),
-            ..Plot::default()
-        }],
-        columns: 1,
+    Plot {
+        x_label: "log10 of microseconds per state".to_owned(),
+        y_label: "log10 of the worst error of the push angle (deg)".to_owned(),
+        lines: lines.collect(),
+        dots: front.collect(),
+        ..Plot::default()
     }
 }

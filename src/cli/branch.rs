@@ -6,7 +6,7 @@ use super::numbers::whole;
 use super::outputs::Outputs;
 use super::pole::Pole;
 use clap::{Args, ValueEnum};
-use whiskmap::render::{BranchAxis, Chart, branches};
+use whiskmap::render::{BranchAxis, branches};
 use whiskmap::rod::Side;
 use whiskmap::trace::{Branch, BranchPoint};
 
@@ -65,11 +65,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         points.extend(followed.map_err(|why| options.pole.refuse(why))?);
     }
     outputs.rows(&points)?;
-    outputs.finish(|| Chart {
-        title: format!("{}, touched at {} mm", scene.title, options.pole.distance),
-        plots: vec![branches("", &points, AXES)],
-        columns: 1,
-    })
+    outputs.finish(options.pole.title(&scene), || branches("", &points, AXES))
 }
 
 const AXES: [BranchAxis; 2] = [

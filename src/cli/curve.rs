@@ -7,7 +7,7 @@ use super::tolerance::Tolerance;
 use clap::Args;
 use serde::Serialize;
 use std::path::PathBuf;
-use whiskmap::render::{Chart, CurveAxis, curves};
+use whiskmap::render::{CurveAxis, curves};
 use whiskmap::rod::Side;
 use whiskmap::scene::{Morphology, Scene, Whisker};
 use whiskmap::shooting::Resolution;
@@ -25,17 +25,14 @@ without values are out of reach, or unresolved, which is said on standard error.
 gives the curve of every whisker, with the leading columns taper (1 - tip/base radius) and curvature_per_mm; a plot \
 shows one whisker.";
 
-fn help() -> String {
-    let tables: [(&str, &[(&str, &str)]); 2] = [
-        ("Columns", Detachment::COLUMNS),
-        ("Columns with --corner", Corner::COLUMNS),
-    ];
-    columns::help(EXAMPLES, &tables)
-}
+const TABLES: &[(&str, &[(&str, &str)])] = &[
+    ("Columns", Detachment::COLUMNS),
+    ("Columns with --corner", Corner::COLUMNS),
+];
 
 /// Options of `curve`.
 #[derive(Debug, Args)]
-#[command(after_help = EXAMPLES, after_long_help = help())]
+#[command(after_help = EXAMPLES, after_long_help = columns::help(EXAMPLES, TABLES))]
 pub struct Options {
     /// Scene file; - reads it from standard input
     scene: PathBuf,
@@ -91,11 +88,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
             "{unresolved} ends were not found: their kind is unresolved"
         ));
     }
-    outputs.finish(|| Chart {
-        title: scene.title.clone(),
-        plots: vec![curves("", &drawn, AXES)],
-        columns: 1,
-    })
+    outputs.finish(scene.title.clone(), || curves("", &drawn, AXES))
 }
 
 /// Writes the rows of some whiskers, with the leading columns only where the scene has an axis for them.

@@ -6,7 +6,7 @@ use clap::Args;
 use serde::Serialize;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
-use whiskmap::render::{Chart, Format};
+use whiskmap::render::{Chart, Format, Plot};
 use whiskmap::store::{Output, Table};
 
 /// `--csv` and `--plot`.
@@ -63,13 +63,13 @@ impl Opened {
         })
     }
 
-    /// Finishes the table, draws the picture, and names the files.
-    pub fn finish(self, chart: impl FnOnce() -> Chart) -> Result<(), Failure> {
+    /// Finishes the table, draws the plot below its title, and names the files.
+    pub fn finish(self, title: String, plot: impl FnOnce() -> Plot) -> Result<(), Failure> {
         if let Some((table, path)) = self.table {
             table.finish().map_err(|cause| unwritten(&path, cause))?;
         }
         if let Some(picture) = self.picture {
-            picture.save(&chart())?;
+            picture.save(title, plot())?;
         }
         let mut out = io::stdout().lock();
         for file in self.files {
@@ -90,8 +90,13 @@ pub struct PlotFile {
 }
 
 impl PlotFile {
-    /// Draws and writes it.
-    pub fn save(&self, chart: &Chart) -> Result<(), Failure> {
+    /// Draws and writes it: one plot below its title.
+    pub fn save(&self, title: String, plot: Plot) -> Result<(), Failure> {
+        let chart = Chart {
+            title,
+            plots: vec![plot],
+            columns: 1,
+        };
         save(&chart.picture(), &self.path, self.format)
     }
 }

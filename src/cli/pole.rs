@@ -46,6 +46,11 @@ impl Pole {
         Ok((scene, whisker))
     }
 
+    /// The title of a chart.
+    pub fn title(&self, scene: &Scene) -> String {
+        format!("{}, touched at {} mm", scene.title, self.distance)
+    }
+
     /// A state that does not exist was asked for; a continuation that got lost is no fault of the input.
     pub fn refuse(&self, why: NoState) -> Failure {
         match why {

@@ -111,18 +111,13 @@ fn target(options: &Options) -> Result<Option<(PathBuf, Format)>, Failure> {
             Ok(None)
         };
     }
-    let folder = path
-        .parent()
-        .filter(|folder| !folder.as_os_str().is_empty());
     let real = |path: &Path| path.canonicalize().ok();
     if real(&path).is_some_and(|path| Some(path) == real(&options.file)) {
-        refuse("is the map itself; name a picture to write")
-    } else if path.is_dir() || folder.is_some_and(|folder| !folder.is_dir()) {
-        refuse("is not a file in an existing folder; name a picture to write")
-    } else if let Some(format) = Format::of(&path) {
-        create("--output", &path)?;
-        Ok(Some((path, format)))
-    } else {
-        refuse("must end in .png or .svg, or be - for PNG on standard output")
+        return refuse("is the map itself; name a picture to write");
+    }
+    create("--output", &path)?;
+    match Format::of(&path) {
+        Some(format) => Ok(Some((path, format))),
+        None => refuse("must end in .png or .svg, or be - for PNG on standard output"),
     }
 }

@@ -6,7 +6,7 @@ use super::numbers::{number, whole};
 use super::outputs::Outputs;
 use super::pole::Pole;
 use clap::{Args, ValueEnum};
-use whiskmap::render::{Chart, Drawn, Ink, Stroke, shapes};
+use whiskmap::render::{Drawn, Ink, Stroke, shapes};
 use whiskmap::rod::Side;
 use whiskmap::trace::{Branch, NoState, Shape, ShapePoint};
 
@@ -100,9 +100,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         stroke,
         name: format!("{name}, {push_deg} deg"),
     };
-    outputs.finish(|| Chart {
-        title: format!("{}, touched at {} mm", scene.title, options.pole.distance),
-        plots: vec![shapes("", Shape::at_rest(&branch, count), &[drawn])],
-        columns: 1,
+    outputs.finish(options.pole.title(&scene), || {
+        shapes("", Shape::at_rest(&branch, count), &[drawn])
     })
 }

@@ -40,13 +40,10 @@ pub fn effects(scene: &Scene, kernels: Effects) -> Vec<Effect> {
         || "no whisker.profile".to_owned(),
         |rows| format!("{} rows of whisker.profile", rows.len()),
     );
-    let parabola = match (&scene.grid.curvature_per_mm, whisker.curvature) {
-        (Some(axis), _) => swept("grid.curvature_per_mm", axis),
-        (None, own) => given(
-            "parabola_per_mm",
-            own.map_or(0.0, |own| own.parabola_per_mm),
-            0.0,
-        ),
+    let own = whisker.curvature.map_or(0.0, |own| own.parabola_per_mm);
+    let parabola = match &scene.grid.curvature_per_mm {
+        Some(axis) => swept("grid.curvature_per_mm", axis),
+        None => given("parabola_per_mm", own, 0.0),
     };
     let spiral = whisker.euler_spiral.map_or_else(
         || "euler_spiral is 0 or left out".to_owned(),
@@ -94,18 +91,12 @@ fn given(key: &str, value: f64, neutral: f64) -> String {
 fn swept(key: &str, axis: &[f64]) -> String {
     match axis {
         [first, .., last] => format!("{key} {first} to {last}"),
-        _ => axis
-            .iter()
-            .fold(key.to_owned(), |key, x| format!("{key} {x}")),
+        only => format!("{key} {}", only[0]),
     }
 }
 
 fn radii(whisker: &Whisker) -> String {
-    let Whisker {
-        base_radius_um: base,
-        tip_radius_um: tip,
-        ..
-    } = whisker;
+    let (tip, base) = (whisker.tip_radius_um, whisker.base_radius_um);
     let relation = if tip < base { "<" } else { "=" };
     format!("tip_radius_um {tip} {relation} base_radius_um {base}")
 }

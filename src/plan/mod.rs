@@ -62,14 +62,14 @@ pub struct Plan {
 #[derive(Debug, thiserror::Error, PartialEq, Eq)]
 #[error(
     "grid: {push_angles} push angles x {distances} distances make a panel of {cells} cells that takes \
-     {needed} MiB: must be at most {limit} MiB; lower grid.push_angle_deg.count or grid.distance_mm.count"
+     {needed} MiB: must be at most {limit} MiB; lower grid.push_angle_deg.count or grid.distance_mm.count",
+    cells = push_angles * distances,
+    limit = MEMORY_LIMIT >> 20
 )]
 pub struct PlanError {
     push_angles: usize,
     distances: usize,
-    cells: u64,
     needed: u64,
-    limit: u64,
 }
 
 impl Plan {
@@ -91,9 +91,7 @@ impl Plan {
             return Err(PlanError {
                 push_angles,
                 distances,
-                cells: cells as u64,
                 needed: bytes >> 20,
-                limit: MEMORY_LIMIT >> 20,
             });
         }
         let rods: Vec<Rod> = whiskers

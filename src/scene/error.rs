@@ -58,21 +58,16 @@ impl SceneError {
         } else {
             Renderer::plain()
         };
-        match &self.span {
-            Some(span) => {
-                let mark = AnnotationKind::Primary.span(span.clone());
-                let snippet = Snippet::source(&self.text)
-                    .path(&self.origin)
-                    .annotation(mark);
-                let title = Level::ERROR.primary_title(&self.message);
-                renderer.render(&[title.element(snippet)])
-            }
-            None => {
-                let message = format!("{}: {}", self.origin, self.message);
-                let title = Level::ERROR.primary_title(message);
-                renderer.render(&[Group::with_title(title)])
-            }
-        }
+        let Some(span) = &self.span else {
+            let message = format!("{}: {}", self.origin, self.message);
+            let title = Level::ERROR.primary_title(message);
+            return renderer.render(&[Group::with_title(title)]);
+        };
+        let snippet = Snippet::source(&self.text)
+            .path(&self.origin)
+            .annotation(AnnotationKind::Primary.span(span.clone()));
+        let title = Level::ERROR.primary_title(&self.message);
+        renderer.render(&[title.element(snippet)])
     }
 }
 

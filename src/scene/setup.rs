@@ -46,18 +46,16 @@ impl Setup {
     pub fn whiskers(&self) -> impl Iterator<Item = (Morphology, Whisker)> {
         let tapers = choices(self.grid.taper.as_deref());
         let curvatures = choices(self.grid.curvature_per_mm.as_deref()).into_iter();
-        let pairs = curvatures.flat_map(move |curvature| {
-            let tapers = tapers.clone().into_iter();
-            tapers.map(move |taper| (taper, curvature))
-        });
-        pairs.map(|(taper, curvature)| {
-            let whisker = self.whisker_at(taper, curvature);
-            let own = whisker.curvature.map_or(0.0, |own| own.parabola_per_mm);
-            let morphology = Morphology {
-                taper: taper.unwrap_or(whisker.taper()),
-                curvature_per_mm: curvature.unwrap_or(own),
-            };
-            (morphology, whisker)
+        curvatures.flat_map(move |curvature| {
+            tapers.clone().into_iter().map(move |taper| {
+                let whisker = self.whisker_at(taper, curvature);
+                let own = whisker.curvature.map_or(0.0, |own| own.parabola_per_mm);
+                let morphology = Morphology {
+                    taper: taper.unwrap_or(whisker.taper()),
+                    curvature_per_mm: curvature.unwrap_or(own),
+                };
+                (morphology, whisker)
+            })
         })
     }
 

@@ -63,9 +63,9 @@ impl Layout {
 
     /// Rows of cells in each block but the last one of a panel.
     fn block_height(&self) -> usize {
-        match self.blocks() {
-            BlockDescription::ScanLines => COMPRESSION.scan_lines_per_block(),
-            BlockDescription::Tiles(tiles) => tiles.tile_size.height(),
+        match self.panels() {
+            1 => COMPRESSION.scan_lines_per_block(),
+            _ => self.distances,
         }
     }
 
