@@ -13,7 +13,6 @@ use std::convert::Infallible;
 use std::hint::black_box;
 use std::path::Path;
 use whiskmap::bench::Solver;
-use whiskmap::classify::Status;
 use whiskmap::integrate::Engine;
 use whiskmap::integrate::gpu::{Gpu, Precision};
 use whiskmap::map::{self, Progress};
@@ -155,7 +154,6 @@ fn files(criterion: &mut Criterion) {
         engine: "cpu f64",
         adapter: "a bench",
         tolerances: &serde_json::json!({}),
-        status_names: &Status::ALL.map(|status| (status.code(), status.name())),
     };
     let write = |path: &Path| -> Result<(), Error> {
         let mut writer = MapWriter::create(path, &about)?;

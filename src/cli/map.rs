@@ -12,7 +12,7 @@ use std::io::Write;
 use std::path::PathBuf;
 use std::time::Instant;
 use whiskmap::accuracy::{Accuracy, BOUNDED};
-use whiskmap::classify::{Regime, Status};
+use whiskmap::classify::Regime;
 use whiskmap::map::Stage;
 use whiskmap::map::{self, Progress, Summary};
 use whiskmap::plan::Plan;
@@ -88,7 +88,6 @@ pub fn run(options: &Options) -> Result<(), Failure> {
             engine: &about.engine,
             adapter: &about.adapter,
             tolerances: &tolerances(accuracy),
-            status_names: &Status::ALL.map(|status| (status.code(), status.name())),
         },
     )?;
     let bar = progress::bar(plan.cells as u64);

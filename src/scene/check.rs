@@ -10,7 +10,7 @@ use super::error::Fault;
 use super::file::{GridTable, OutputTable, SceneTable, WhiskerTable};
 use super::grid::{FARTHEST, Grid, NEAREST};
 use super::limits::Limits;
-use super::profile::{self, Radii};
+use super::profile;
 use super::setup::Setup;
 use super::shape::{self, refuse_faint};
 use super::whisker::{Pole, Whisker};
@@ -40,13 +40,10 @@ pub(super) fn setup(table: &SceneTable, text: &str, stem: &str) -> Result<Setup,
     let whisker = whisker(&table.whisker, length_mm, &grid)?;
     let radius = table.pole.as_ref().map(|pole| &pole.radius_mm);
     let friction = table.contact.as_ref().map(|contact| &contact.friction);
+    let rough = Limits::between(0.0, MOST_FRICTION);
     let pole = Pole {
         radius_mm: pole_limits(&whisker, &grid).check_or(0.0, "pole.radius_mm", radius)?,
-        friction: Limits::between(0.0, MOST_FRICTION).check_or(
-            0.0,
-            "contact.friction",
-            friction,
-        )?,
+        friction: rough.check_or(0.0, "contact.friction", friction)?,
     };
     Ok(Setup {
         title,
@@ -77,22 +74,15 @@ fn refuse_two_of_a_kind(whisker: &WhiskerTable, grid: &Spanned<GridTable>) -> Re
 fn title(title: &Spanned<String>) -> Result<String, Fault> {
     let text = title.get_ref();
     if text.trim().is_empty() || text.contains(char::is_control) {
-        return Err(Fault::new(
-            "title",
-            title.span(),
-            "must be one line of text",
-        ));
+        let must = "must be one line of text";
+        return Err(Fault::new("title", title.span(), must));
     }
     Ok(text.clone())
 }
 
 /// The whisker of the file; the largest taper and curvature of the `grid` count where there are such axes.
 fn whisker(table: &WhiskerTable, length_mm: f64, grid: &Grid) -> Result<Whisker, Fault> {
-    let Radii {
-        base_radius_um,
-        tip_radius_um,
-        profile,
-    } = profile::radii(table, length_mm, grid.taper.as_deref())?;
+    let radii = profile::radii(table, length_mm, grid.taper.as_deref())?;
     let youngs_modulus_gpa = Limits::between(1e-6, 1e4)
         .check("whisker.youngs_modulus_gpa", &table.youngs_modulus_gpa)?;
     let (curvature, euler_spiral) = match &table.curvature {
@@ -100,12 +90,11 @@ fn whisker(table: &WhiskerTable, length_mm: f64, grid: &Grid) -> Result<Whisker,
         None => (None, None),
     };
     let ratio = table.modulus_gradient.as_ref().map(|own| &own.tip_to_base);
-    let modulus_tip_to_base = Limits::between(1.0 / STIFFEST_TIP, STIFFEST_TIP).check_or(
-        1.0,
-        "whisker.modulus_gradient.tip_to_base",
-        ratio,
-    )?;
-    let pointed = 1.0 / largest(&grid.taper).unwrap_or(1.0 - tip_radius_um / base_radius_um);
+    let key = "whisker.modulus_gradient.tip_to_base";
+    let modulus_tip_to_base =
+        Limits::between(1.0 / STIFFEST_TIP, STIFFEST_TIP).check_or(1.0, key, ratio)?;
+    let own_taper = 1.0 - radii.tip_radius_um / radii.base_radius_um;
+    let pointed = 1.0 / largest(&grid.taper).unwrap_or(own_taper);
     let end = if pointed < MOST_STRETCH {
         ("1 / taper, where the radius at the tip is 0", pointed)
     } else {
@@ -116,12 +105,12 @@ fn whisker(table: &WhiskerTable, length_mm: f64, grid: &Grid) -> Result<Whisker,
         Limits::between(1.0, end).check_or(1.0, "whisker.projection.arc_stretch", stretch)?;
     Ok(Whisker {
         length_mm,
-        base_radius_um,
-        tip_radius_um,
+        base_radius_um: radii.base_radius_um,
+        tip_radius_um: radii.tip_radius_um,
         youngs_modulus_gpa,
         curvature,
         euler_spiral,
-        profile,
+        profile: radii.profile,
         modulus_tip_to_base,
         arc_stretch,
     })
@@ -133,18 +122,12 @@ fn largest(axis: &Option<Vec<f64>>) -> Option<f64> {
 
 fn grid(table: &Spanned<GridTable>, length_mm: f64) -> Result<Grid, Fault> {
     let axes = table.get_ref();
-    let push_angle_deg = axis::values(
-        &axes.push_angle_deg,
-        "grid.push_angle_deg",
-        &Limits::between(-360.0, 360.0),
-    )?;
+    let turn = Limits::between(-360.0, 360.0);
+    let push_angle_deg = axis::values(&axes.push_angle_deg, "grid.push_angle_deg", &turn)?;
     let near = ("length_mm / 1000", length_mm / NEAREST);
     let far = ("10 * length_mm", FARTHEST * length_mm);
-    let distance_mm = axis::values(
-        &axes.distance_mm,
-        "grid.distance_mm",
-        &Limits::between(near, far),
-    )?;
+    let reach = Limits::between(near, far);
+    let distance_mm = axis::values(&axes.distance_mm, "grid.distance_mm", &reach)?;
     let optional = |axis: &Option<Spanned<Axis>>, key, limits| {
         let values = |axis| axis::values(axis, key, &limits);
         axis.as_ref().map(values).transpose()

@@ -53,18 +53,13 @@ impl Rows {
 
     /// Refuses too few rows and too many.
     pub fn check_count(&self, whole: Range<usize>) -> Result<(), Fault> {
-        match self.values().len() {
-            2..=MOST => Ok(()),
-            count => {
-                let more = if count > MOST {
-                    "more"
-                } else {
-                    &count.to_string()
-                };
-                let must = format!("must be 2 to {MOST} rows, are {more}");
-                Err(Fault::new(KEY, whole, must))
-            }
-        }
+        let count = match self.values().len() {
+            2..=MOST => return Ok(()),
+            few @ ..2 => few.to_string(),
+            _ => "more".to_owned(),
+        };
+        let must = format!("must be 2 to {MOST} rows, are {count}");
+        Err(Fault::new(KEY, whole, must))
     }
 }
 

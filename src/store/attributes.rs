@@ -1,7 +1,7 @@
 //! The attributes: ASCII JSON, every one of them.
 
 use super::layout::Layout;
-use super::tally::{Counts, Tally};
+use super::tally::{Counts, Tally, regimes, statuses};
 use crate::map::Shots;
 use crate::scene::{Grid, Setup};
 use exr::meta::attribute::{AttributeValue, Text};
@@ -20,8 +20,6 @@ pub struct Description<'a> {
     pub adapter: &'a str,
     /// Tolerances and step limits.
     pub tolerances: &'a Value,
-    /// Code and name of every status.
-    pub status_names: &'a [(u32, &'a str)],
 }
 
 /// An axis of the map.
@@ -58,7 +56,7 @@ pub(super) fn attribute(name: &str, text: &str) -> (Text, AttributeValue) {
 }
 
 /// The attributes of a map. `counts` is left out; [`encode_counts`] makes it.
-pub(super) fn encode(about: &Description<'_>, regimes: &Tally, statuses: &Tally) -> Attributes {
+pub(super) fn encode(about: &Description<'_>) -> Attributes {
     let layout = Layout::of(&about.scene.grid);
     let attributes = [
         ("axes", json!(axes(&about.scene.grid))),
@@ -68,8 +66,8 @@ pub(super) fn encode(about: &Description<'_>, regimes: &Tally, statuses: &Tally)
         ("engine", json!(about.engine)),
         ("adapter", json!(about.adapter)),
         ("tolerances", json!(about.tolerances)),
-        ("regime_names", json!(regimes.names())),
-        ("status_names", json!(statuses.names())),
+        ("regime_names", json!(regimes())),
+        ("status_names", json!(statuses())),
         ("panels", json!([layout.columns, layout.rows])),
     ];
     let encoded = attributes.map(|(name, value)| attribute(name, &ascii_json(&value)));
@@ -83,11 +81,10 @@ pub(super) fn encode_counts(counts: &Counts, width: usize) -> String {
 }
 
 /// The longest text that any run's counts can have.
-pub(super) fn counts_width(about: &Description<'_>, regimes: &[(u32, &str)]) -> usize {
-    let longest = |names: &[(u32, &str)]| Tally::new(names.iter().copied(), u64::MAX).by_name();
+pub(super) fn counts_width() -> usize {
     let counts = Counts {
-        regimes: longest(regimes),
-        statuses: longest(about.status_names),
+        regimes: Tally::new(regimes(), u64::MAX).by_name(),
+        statuses: Tally::new(statuses(), u64::MAX).by_name(),
         worst_residual: Some(-f64::MIN_POSITIVE),
         shots: Shots {
             all: u64::MAX,

@@ -1,5 +1,6 @@
 //! How many cells there are of each regime and status.
 
+use crate::classify::{Regime, Status};
 use crate::map::Shots;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -17,15 +18,25 @@ pub struct Counts {
     pub shots: Shots,
 }
 
+/// Names of the regimes by code.
+pub(super) fn regimes() -> BTreeMap<u32, &'static str> {
+    Regime::ALL.map(|own| (own.code(), own.name())).into()
+}
+
+/// Names of the statuses by code.
+pub(super) fn statuses() -> BTreeMap<u32, &'static str> {
+    Status::ALL.map(|own| (own.code(), own.name())).into()
+}
+
 /// Counts the codes of one channel: the name and the cells of each.
 #[derive(Clone, Debug)]
-pub(super) struct Tally(BTreeMap<u32, (String, u64)>);
+pub(super) struct Tally(BTreeMap<u32, (&'static str, u64)>);
 
 impl Tally {
     /// A tally in which every count is `cells`.
-    pub(super) fn new<'a>(names: impl IntoIterator<Item = (u32, &'a str)>, cells: u64) -> Self {
-        let named = |(code, name): (u32, &str)| (code, (name.to_owned(), cells));
-        Self(names.into_iter().map(named).collect())
+    pub(super) fn new(names: BTreeMap<u32, &'static str>, cells: u64) -> Self {
+        let named = names.into_iter();
+        Self(named.map(|(code, name)| (code, (name, cells))).collect())
     }
 
     /// Counts `codes`; returns the first one that has no name.
@@ -38,12 +49,9 @@ impl Tally {
 
     /// Cells by name.
     pub(super) fn by_name(&self) -> BTreeMap<String, u64> {
-        self.0.values().cloned().collect()
-    }
-
-    /// Names by code.
-    pub(super) fn names(&self) -> BTreeMap<u32, &str> {
-        let named = self.0.iter();
-        named.map(|(code, (name, _))| (*code, &**name)).collect()
+        let named = self.0.values();
+        named
+            .map(|&(name, cells)| (name.to_owned(), cells))
+            .collect()
     }
 }

@@ -2,7 +2,7 @@
 
 use super::attributes::{self, Description, attribute};
 use super::layout::{self, Channel, Layout, Part, SAMPLE_BYTES};
-use super::tally::{Counts, Tally};
+use super::tally::{self, Counts, Tally};
 use super::{Error, Output, Panel, header};
 use crate::classify::Regime;
 use crate::map::Shots;
@@ -38,12 +38,9 @@ impl MapWriter {
     ///
     /// The folder is not writable, or the map is too large for EXR.
     pub fn create(path: &Path, about: &Description<'_>) -> Result<Self, Error> {
-        let regimes = Regime::ALL.map(|regime| (regime.code(), regime.name()));
-        let counts_width = attributes::counts_width(about, &regimes);
-        let regimes = Tally::new(regimes, 0);
-        let statuses = Tally::new(about.status_names.iter().copied(), 0);
+        let counts_width = attributes::counts_width();
         let layout = Layout::of(&about.scene.grid);
-        let mut attributes = attributes::encode(about, &regimes, &statuses);
+        let mut attributes = attributes::encode(about);
         attributes.extend([attribute("counts", &" ".repeat(counts_width))]);
         let headers = layout.headers(&attributes);
 
@@ -58,8 +55,8 @@ impl MapWriter {
             headers,
             offsets: Default::default(),
             written: 0,
-            regimes,
-            statuses,
+            regimes: Tally::new(tally::regimes(), 0),
+            statuses: Tally::new(tally::statuses(), 0),
             worst_residual: None,
             counts_width,
         };

@@ -8,9 +8,6 @@ use whiskmap::map::{Panel, STATE_CHANNELS, Shots};
 use whiskmap::scene::{Grid, Pole, Setup, Whisker};
 use whiskmap::store::{Counts, Description, MapWriter};
 
-pub const STATUS_NAMES: [(u32, &str); 3] =
-    [(0, "solved"), (1, "beyond an edge"), (7, "refined twice")];
-
 /// `count` values from `first` to `last`.
 pub fn spread(first: f64, last: f64, count: usize) -> Vec<f64> {
     if count == 1 {
@@ -109,7 +106,6 @@ pub fn describe<'a>(scene: &'a Setup, tolerances: &'a Value) -> Description<'a> 
         engine: "cpu f64",
         adapter: "a \u{201c}card\u{201d}",
         tolerances,
-        status_names: &STATUS_NAMES,
     }
 }
 

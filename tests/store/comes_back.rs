@@ -1,9 +1,10 @@
 //! What is written comes back.
 
-use super::map::{self, STATUS_NAMES, panel, scene, write};
+use super::map::{self, panel, scene, write};
 use super::sweeps;
 use serde_json::json;
 use std::fs;
+use whiskmap::classify::Status;
 use whiskmap::store::{Layout, Panel, STATE_CHANNELS, Samples, StoredMap};
 
 fn bits(samples: &Samples) -> Vec<u32> {
@@ -87,8 +88,9 @@ fn every_attribute_comes_back() {
         assert_eq!(attribute("axes")[1]["unit"], "mm");
         assert_eq!(attribute("axes")[1]["direction"], "y");
         assert_eq!(map.regime_names()[&255], "unresolved");
-        assert_eq!(map.status_names()[&7], STATUS_NAMES[2].1);
-        assert_eq!(map.status_names().len(), STATUS_NAMES.len());
+        let not_converged = Status::NotConverged;
+        assert_eq!(map.status_names()[&101], not_converged.name());
+        assert_eq!(map.status_names().len(), Status::ALL.len());
         let error = map.attribute("weather").unwrap_err().to_string();
         assert!(error.contains("`weather`"), "{error}");
     }
