@@ -99,12 +99,6 @@ impl Device {
         }
     }
 
-    /// Whether the device can tell how long a dispatch took.
-    pub fn has_clock(&self) -> bool {
-        let features = self.handle.features();
-        features.contains(wgpu::Features::TIMESTAMP_QUERY)
-    }
-
     /// Largest storage buffer of this device, in bytes.
     pub fn most_bytes(&self) -> u64 {
         self.handle.limits().max_storage_buffer_binding_size
@@ -124,6 +118,21 @@ impl Device {
             mapped_at_creation: false,
         });
         self.check().map(|()| buffer)
+    }
+
+    /// What `read` makes of the first `size` bytes of `buffer`, which were asked for before the device was waited for.
+    pub fn read<R>(
+        buffer: &wgpu::Buffer,
+        size: u64,
+        read: impl FnOnce(&[u8]) -> R,
+    ) -> Result<R, EngineError> {
+        let bytes = buffer
+            .get_mapped_range(..size)
+            .map_err(|error| EngineError::Device(error.to_string()))?;
+        let result = read(&bytes);
+        drop(bytes);
+        buffer.unmap();
+        Ok(result)
     }
 
     /// Uploads `bytes`, `what` they are, to `kept`, a buffer that grows when it must.

@@ -50,11 +50,11 @@ impl Buffers {
         let bytes = |each: usize| (capacity * each) as u64;
         let (shots, hits) = (bytes(call.layout.shot), bytes(call.layout.hit));
         Ok(Self {
-            stamps: call
-                .timed
-                .then(|| Stamps::new(device))
-                .transpose()?
-                .flatten(),
+            stamps: if call.timed {
+                Stamps::new(device)?
+            } else {
+                None
+            },
             capacity,
             shots: device.buffer("shots", shots, Usage::STORAGE | Usage::COPY_DST)?,
             hits: device.buffer("hits", hits, Usage::STORAGE | Usage::COPY_SRC)?,
@@ -156,13 +156,9 @@ impl Flight {
         call.device.wait(self.index)?;
         let arrived = Instant::now();
         let size = (self.shots * call.layout.hit) as u64;
-        let readback = &self.buffers.readback;
-        let bytes = readback
-            .get_mapped_range(..size)
-            .map_err(|error| EngineError::Device(error.to_string()))?;
-        (call.layout.hits)(&bytes, hits);
-        drop(bytes);
-        readback.unmap();
+        Device::read(&self.buffers.readback, size, |bytes| {
+            (call.layout.hits)(bytes, hits)
+        })?;
         times.readback += arrived.elapsed();
         if let Some(stamps) = &self.buffers.stamps {
             times.dispatch += stamps.read(call.device)?;

@@ -19,7 +19,8 @@ pub struct Stamps {
 impl Stamps {
     /// `None` where the device has no such clock.
     pub fn new(device: &Device) -> Result<Option<Self>, EngineError> {
-        if !device.has_clock() {
+        let features = device.handle.features();
+        if !features.contains(wgpu::Features::TIMESTAMP_QUERY) {
             return Ok(None);
         }
         let set = device.handle.create_query_set(&wgpu::QuerySetDescriptor {
@@ -57,14 +58,8 @@ impl Stamps {
 
     /// How long the dispatch took, once it is done.
     pub fn read(&self, device: &Device) -> Result<Duration, EngineError> {
-        let mapped = self
-            .readback
-            .get_mapped_range(..)
-            .map_err(|error| EngineError::Device(error.to_string()))?;
-        let [start, end] =
-            [0, 8].map(|at| bytemuck::pod_read_unaligned::<u64>(&mapped[at..at + 8]));
-        drop(mapped);
-        self.readback.unmap();
+        let [start, end]: [u64; 2] =
+            Device::read(&self.readback, BYTES, bytemuck::pod_read_unaligned)?;
         let nanoseconds =
             end.saturating_sub(start) as f64 * f64::from(device.queue.get_timestamp_period());
         Ok(Duration::from_secs_f64(1e-9 * nanoseconds))
