@@ -96,32 +96,3 @@ fn duplication(x: f64, y: f64, z: f64) -> f64 {
     let (x, y, z) = (x.sqrt(), y.sqrt(), z.sqrt());
     x * y + y * z + z * x
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Known from an evaluation by other means, to 9 digits.
-    #[test]
-    fn a_turn_of_60_degrees() {
-        let state = elastica(60_f64.to_radians());
-        assert!(
-            (state.push.to_degrees() - 39.751_229_68).abs() < 5e-9,
-            "{state:?}"
-        );
-        assert!(
-            (state.arc_over_distance - 1.051_451_76).abs() < 5e-9,
-            "{state:?}"
-        );
-        assert!((state.load - 1.967_754_50).abs() < 5e-9, "{state:?}");
-    }
-
-    /// The lemniscate constant: `int_0^1 du/sqrt(1 - u^4)`.
-    #[test]
-    fn the_lemniscate_constant() {
-        let (arc, across) = integrals(FRAC_PI_2);
-        assert!((0.5 * arc - 1.311_028_777_146_06).abs() < 1e-14, "{arc}");
-        // Legendre's relation: the product of both lemniscatic integrals is pi/4.
-        assert!((0.25 * arc * across - PI / 4.0).abs() < 1e-14, "{across}");
-    }
-}

@@ -22,7 +22,7 @@ struct Point {
     projection: f64,
     side: String,
     distance_mm: f64,
-    kind: String,
+    kind: DetachmentKind,
     push_angle_deg: f64,
     arc_length_mm: f64,
 }
@@ -43,18 +43,13 @@ impl Point {
         };
         let pole = Pole::smooth(self.pole_radius_mm);
         let end = curve(&whisker, &pole, side, &[self.distance_mm])[0];
-        let expected = match self.kind.as_str() {
-            "slip-off" => DetachmentKind::SlipOff,
-            "pull-off" => DetachmentKind::PullOff,
-            _ => DetachmentKind::Unresolved,
-        };
         let miss = |computed: Option<f64>, known: f64| {
             let miss = computed.map(|computed| (computed - known).abs());
             miss.filter(|miss| miss.is_finite())
                 .unwrap_or(f64::INFINITY)
         };
         [
-            f64::from(u8::from(end.kind != expected)),
+            f64::from(u8::from(end.kind != self.kind)),
             miss(end.push_angle_deg, self.push_angle_deg),
             miss(end.arc_length_mm, self.arc_length_mm) / self.length_mm,
         ]

@@ -76,9 +76,9 @@ pub fn branches(title: &str, points: &[BranchPoint], [x, y]: [BranchAxis; 2]) ->
 
 /// A shape to draw, and how.
 #[derive(Clone, Debug)]
-pub struct Drawn<'a> {
+pub struct Drawn {
     /// The whisker.
-    pub shape: &'a Shape,
+    pub shape: Shape,
     /// Its colour.
     pub ink: Ink,
     /// Solid or dashed.
