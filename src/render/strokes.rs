@@ -1,5 +1,6 @@
 //! Lines as pixels: how much of each is covered, and where dashes begin and end.
 
+use super::picture::DASHES;
 use std::collections::HashMap;
 use std::ops::Range;
 
@@ -49,8 +50,9 @@ fn distance(point: [f64; 2], [from, to]: [[f64; 2]; 2]) -> f64 {
     (away[0] - nearest * along[0]).hypot(away[1] - nearest * along[1])
 }
 
-/// The dashes of a polyline: `on` drawn, `off` left out, along the whole of it and around its corners.
-pub(super) fn dashes(points: &[[f64; 2]], [on, off]: [f64; 2]) -> Vec<Vec<[f64; 2]>> {
+/// The dashes of a polyline, along the whole of it and around its corners.
+pub(super) fn dashes(points: &[[f64; 2]]) -> Vec<Vec<[f64; 2]>> {
+    let [on, off] = DASHES;
     let mut dashes = Vec::new();
     let mut dash: Vec<_> = points.first().copied().into_iter().collect();
     let (mut drawn, mut left) = (true, on);
