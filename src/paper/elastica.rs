@@ -5,6 +5,7 @@
 //! `s = int 1/sqrt(sin)`. With `u = sqrt(sin psi)` both are lemniscatic integrals, here in Carlson's symmetric forms
 //! (B. C. Carlson, "Numerical computation of real or complex elliptic integrals", Numer. Algorithms 10, 1995).
 
+use crate::numerics::Bracket;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// A state of the straight cylinder.
@@ -43,19 +44,12 @@ pub fn elastica(beta: f64) -> Elastica {
 /// The state of largest push: the saddle-node.
 #[must_use]
 pub fn fold() -> Elastica {
-    let (mut low, mut high) = (FRAC_PI_2, 0.99 * PI);
-    loop {
-        let middle = 0.5 * (low + high);
-        let here = elastica(middle);
-        if middle <= low || middle >= high {
-            return here;
-        }
-        if here.slope > 0.0 {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
+    let turns = Bracket {
+        below: 0.99 * PI,
+        above: FRAC_PI_2,
+    };
+    let bisect = |beta| (elastica(beta).slope, f64::NAN);
+    elastica(turns.newton(turns.middle(), |_| 0.0, bisect).x)
 }
 
 /// `int_0^beta 1/sqrt(sin)` and `int_0^beta sqrt(sin)` for `beta` up to a right angle.

@@ -83,18 +83,14 @@ pub fn newton(
             }
             let before = cells[i].state.residual;
             let stuck = residual <= TOLERANCE && residual > 0.5 * before;
-            if residual <= GOAL || stuck {
-                let end = verdict(sheet, &state);
-                cells[i] = Refined { state, steps, end };
-                return;
-            }
-            cells[i] = Refined {
-                state,
-                steps,
-                end: End::NotConverged,
+            let has_converged = residual <= GOAL || stuck;
+            let end = match has_converged {
+                true => verdict(sheet, &state),
+                false => End::NotConverged,
             };
+            cells[i] = Refined { state, steps, end };
             let next = (condition.tau + step.x, condition.load + step.y);
-            if step.is_finite() && next.0 > 0.0 {
+            if !has_converged && step.is_finite() && next.0 > 0.0 {
                 left.push((i, next));
             }
         });
