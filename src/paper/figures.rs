@@ -108,15 +108,8 @@ fn fig2() -> Result<Figure, NoState> {
         tables.push((names[0], rows(places.collect())));
         tables.push((names[1], rows(points)));
     }
-    Ok(Figure {
-        name: "fig2",
-        chart: Chart {
-            title: "Fig. 2: shapes and solution branches in front of one pole".to_owned(),
-            plots,
-            columns: 2,
-        },
-        tables,
-    })
+    let title = "Fig. 2: shapes and solution branches in front of one pole";
+    Ok(figure("fig2", title.to_owned(), plots, tables))
 }
 
 const PUSH: BranchAxis = BranchAxis {
@@ -166,15 +159,9 @@ fn fig3() -> Figure {
         })
         .collect();
     let [(_, _, cone), (_, _, cylinder)] = columns;
-    Figure {
-        name: "fig3",
-        chart: Chart {
-            title: "Fig. 3: detachment of a truncated cone and a cylinder (CF < 0 < CB)".to_owned(),
-            plots,
-            columns: 2,
-        },
-        tables: vec![("fig3_cone", rows(cone)), ("fig3_cylinder", rows(cylinder))],
-    }
+    let title = "Fig. 3: detachment of a truncated cone and a cylinder (CF < 0 < CB)";
+    let tables = vec![("fig3_cone", rows(cone)), ("fig3_cylinder", rows(cylinder))];
+    figure("fig3", title.to_owned(), plots, tables)
 }
 
 fn detachments(
@@ -189,13 +176,24 @@ fn detachments(
         plots.push(curves(title, &ends, [DISTANCE, CHORD]));
         tables.push((table, rows(ends)));
     }
+    figure(name, format!("{title} (CF < 0 < CB)"), plots, tables)
+}
+
+/// The plots in two columns.
+fn figure(
+    name: &'static str,
+    title: String,
+    plots: Vec<Plot>,
+    tables: Vec<(&'static str, Rows)>,
+) -> Figure {
+    let chart = Chart {
+        title,
+        plots,
+        columns: 2,
+    };
     Figure {
         name,
-        chart: Chart {
-            title: format!("{title} (CF < 0 < CB)"),
-            plots,
-            columns: 2,
-        },
+        chart,
         tables,
     }
 }

@@ -1,6 +1,6 @@
 //! Detachment points of AUTO-07p on the paper's boundary-value problem, solved forward from the base.
 
-use super::check::{AUTO, Check, Expected};
+use super::check::{AUTO, Check, near};
 use super::whiskers::whisker;
 use crate::rod::Side;
 use crate::scene::Pole;
@@ -71,25 +71,13 @@ pub fn checks() -> Vec<Check> {
         });
     #[allow(clippy::cast_precision_loss, reason = "a few dozen")]
     let count = points.len() as f64;
-    let check = |quantity, expected, computed| Check {
-        case: "reference file".to_owned(),
-        quantity,
-        source: AUTO,
-        expected,
-        computed,
+    let check = |quantity, expected, computed| {
+        near("reference file", quantity, AUTO, expected, Some(computed))
     };
     vec![
-        check("points compared", Expected::Near(40.0, 0.0), count),
-        check("kinds that differ", Expected::Near(0.0, 0.0), worst[0]),
-        check(
-            "worst push angle (deg)",
-            Expected::Near(0.0, 1e-8),
-            worst[1],
-        ),
-        check(
-            "worst arc length (L_w)",
-            Expected::Near(0.0, 1e-8),
-            worst[2],
-        ),
+        check("points compared", (40.0, 0.0), count),
+        check("kinds that differ", (0.0, 0.0), worst[0]),
+        check("worst push angle (deg)", (0.0, 1e-8), worst[1]),
+        check("worst arc length (L_w)", (0.0, 1e-8), worst[2]),
     ]
 }

@@ -161,3 +161,15 @@ impl Device {
         Ok(kept.insert(buffer))
     }
 }
+
+/// Has the first `size` bytes of `from` copied to `readback`, for [`Device::read`].
+pub fn answer(
+    commands: &mut wgpu::CommandEncoder,
+    from: &wgpu::Buffer,
+    readback: &wgpu::Buffer,
+    size: u64,
+) {
+    commands.copy_buffer_to_buffer(from, 0, readback, 0, size);
+    // Whether it worked is told by `get_mapped_range`.
+    commands.map_buffer_on_submit(readback, wgpu::MapMode::Read, ..size, |_| ());
+}

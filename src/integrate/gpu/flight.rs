@@ -1,7 +1,7 @@
 //! A dispatch under way, in buffers that are used again and again.
 
 use super::EngineError;
-use super::device::Device;
+use super::device::{Device, answer};
 use super::layout::{BufferLayout, Steps};
 use super::shaders::WORKGROUP;
 use super::stamps::Stamps;
@@ -124,19 +124,12 @@ impl Flight {
             // The pace keeps the shots below what `u32` can count.
             pass.dispatch_workgroups((count as u32).div_ceil(WORKGROUP), 1, 1);
         }
-        commands.copy_buffer_to_buffer(&buffers.hits, 0, &buffers.readback, 0, hits_size);
+        answer(&mut commands, &buffers.hits, &buffers.readback, hits_size);
         if let Some(stamps) = &buffers.stamps {
             stamps.resolve(&mut commands);
         }
         let submitted = Instant::now();
         let index = device.queue.submit([commands.finish()]);
-        // Whether it worked is told by `get_mapped_range`.
-        buffers
-            .readback
-            .map_async(wgpu::MapMode::Read, ..hits_size, |_| ());
-        if let Some(stamps) = &buffers.stamps {
-            stamps.request();
-        }
         device.check()?;
         Ok(Self {
             shots: count,

@@ -1,7 +1,7 @@
 //! The device's own clock around a dispatch.
 
 use super::EngineError;
-use super::device::Device;
+use super::device::{Device, answer};
 use std::time::Duration;
 use wgpu::BufferUsages as Usage;
 
@@ -48,12 +48,7 @@ impl Stamps {
     /// Sends the times after the pass on their way.
     pub fn resolve(&self, commands: &mut wgpu::CommandEncoder) {
         commands.resolve_query_set(&self.set, 0..2, &self.resolved, 0);
-        commands.copy_buffer_to_buffer(&self.resolved, 0, &self.readback, 0, BYTES);
-    }
-
-    /// Asks for the times of what was submitted.
-    pub fn request(&self) {
-        self.readback.map_async(wgpu::MapMode::Read, .., |_| ());
+        answer(commands, &self.resolved, &self.readback, BYTES);
     }
 
     /// How long the dispatch took, once it is done.
