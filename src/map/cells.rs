@@ -141,7 +141,7 @@ pub fn settle(
 
     let count = shots.len() as u64;
     summary.shots.all += count;
-    summary.shots.on_cpu_instead += engine.failure().map_or(0, |_| count);
+    summary.shots.on_cpu_instead += engine.failure.as_ref().map_or(0, |_| count);
     let unfinished = |hit: &&Hit| hit.outcome != Outcome::Converged;
     summary.shots.restarted += hits.iter().flatten().filter(unfinished).count() as u64;
     Settled {
@@ -161,7 +161,7 @@ fn guess_row(face: &Face, row: usize, rod: usize) -> Vec<Option<Shot>> {
     let guesses = sheet.guesses(row, columns.iter().map(|push| push.angle.abs()));
     let shot = |(guess, push): (Option<Guess>, &Push)| {
         guess.map(|Guess { tau, load }| Shot {
-            #[allow(clippy::cast_possible_truncation, reason = "panels at once are few")]
+            // Panels at once are few.
             rod: rod as u32,
             tau,
             load,

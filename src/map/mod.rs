@@ -84,7 +84,7 @@ pub fn run<E>(
         }
         summary.time(Stage::Files, || observe(Progress::Panels(&panels)))?;
     }
-    summary.engine_failure = engine.failure().cloned();
+    summary.engine_failure = engine.failure;
     Ok(summary)
 }
 

@@ -69,7 +69,6 @@ pub fn checks() -> Vec<Check> {
         .fold([0.0_f64; 3], |worst, differences| {
             std::array::from_fn(|i| worst[i].max(differences[i]))
         });
-    #[allow(clippy::cast_precision_loss, reason = "a few dozen")]
     let count = points.len() as f64;
     let check = |quantity, expected, computed| {
         near("reference file", quantity, AUTO, expected, Some(computed))

@@ -50,11 +50,7 @@ impl Buffers {
         let bytes = |each: usize| (capacity * each) as u64;
         let (shots, hits) = (bytes(call.layout.shot), bytes(call.layout.hit));
         Ok(Self {
-            stamps: if call.timed {
-                Stamps::new(device)?
-            } else {
-                None
-            },
+            stamps: Stamps::new(device, call.timed)?,
             capacity,
             shots: device.buffer("shots", shots, Usage::STORAGE | Usage::COPY_DST)?,
             hits: device.buffer("hits", hits, Usage::STORAGE | Usage::COPY_SRC)?,

@@ -25,7 +25,6 @@ const DISTANCE: &str = "distance at first touch (mm)";
 
 /// The panels of a map laid out.
 pub(super) struct Sheet {
-    layout: Layout,
     /// Width and height of all panels together.
     size: [f64; 2],
     /// From one panel to the next, and the part of it that is left free.
@@ -52,7 +51,6 @@ impl Sheet {
         let across = Cells::new(&map.grid().push_angle_deg).ticks(1.0);
         let upwards = Cells::new(&map.grid().distance_mm).ticks(unit);
         Self {
-            layout: map.layout(),
             size: ALONE,
             pitch: ALONE,
             gap: 0.0,
@@ -89,7 +87,6 @@ impl Sheet {
         let angles = ends(&grid.push_angle_deg, 1.0);
         let distances = ends(&grid.distance_mm, unit);
         Self {
-            layout,
             size,
             pitch: [pitch; 2],
             gap,
@@ -127,8 +124,8 @@ impl Sheet {
         let title = fitted(map.title(), TITLE, room);
         picture.fitted(&title, [left, TITLE_LINE], Anchor::Left);
         heading.draw(&mut picture, [left, HEAD_ROOM], left);
-        for index in 0..self.layout.panels() {
-            let area = self.panel(body, index);
+        for index in 0..map.layout().panels() {
+            let area = self.panel(body, map.layout(), index);
             let cells = (map, channel, index);
             panel::draw(&mut picture, area, cells, shading, self.line)?;
         }
@@ -144,10 +141,10 @@ impl Sheet {
     }
 
     /// Where a panel stands.
-    fn panel(&self, body: Area, index: usize) -> Area {
-        let (column, row) = (index % self.layout.columns, index / self.layout.columns);
+    fn panel(&self, body: Area, layout: Layout, index: usize) -> Area {
+        let (column, row) = (index % layout.columns, index / layout.columns);
         let left = body.left + self.pitch[0] * column as f64;
-        let top = body.top + self.pitch[1] * (self.layout.rows - 1 - row) as f64;
+        let top = body.top + self.pitch[1] * (layout.rows - 1 - row) as f64;
         Area::new([left, top], self.pitch.map(|pitch| pitch - self.gap))
     }
 }
