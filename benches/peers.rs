@@ -247,6 +247,6 @@ fn cell(pool: &ThreadPool) -> Value {
         "steps": steps.resolution.least,
         "cells": summary.cells(),
         "states": summary.refined,
-        "seconds": Stage::ALL.map(|stage| json!({stage.to_string(): summary.seconds(stage)})),
+        "seconds": Stage::ALL.map(|(stage, name)| json!({name: summary.seconds(stage)})),
     })
 }

@@ -81,7 +81,7 @@ impl Map {
         for _ in 0..repeats {
             let discard = &mut |_: map::Progress| Ok::<(), Infallible>(());
             let Ok(summary) = map::run(&self.scene, &self.plan, None, discard);
-            for (sum, stage) in seconds.iter_mut().zip(Stage::ALL) {
+            for (sum, (stage, _)) in seconds.iter_mut().zip(Stage::ALL) {
                 *sum += summary.seconds(stage);
             }
         }

@@ -22,16 +22,16 @@ pub fn measure(task: &Task, runs: usize, report: &mut Report, said: &mut dyn FnM
             if precision == Precision::F64 && !adapter.shader_f64 {
                 report
                     .failures
-                    .push(format!("{}: no f64 in shaders", adapter.name));
+                    .push(format!("{}: no f64 in shaders", adapter.info.name));
                 continue;
             }
-            said(&format!("gpu {precision}, {}", adapter.name));
+            said(&format!("gpu {precision}, {}", adapter.info.name));
             let name = match all.len() {
                 1 => format!("gpu {precision}"),
                 _ => format!("gpu {index} {precision}"),
             };
             if let Err(error) = engine(task, runs, report, &name, index, precision) {
-                let name = &adapter.name;
+                let name = &adapter.info.name;
                 report
                     .failures
                     .push(format!("{name}, {precision}: {error}"));

@@ -17,6 +17,14 @@ pub struct Span {
     pub edge: Edge,
 }
 
+impl Span {
+    /// Whether the push angle is on it, or on one of its ends.
+    #[must_use]
+    pub fn contains(&self, push: f64) -> bool {
+        self.from - TIE <= push && push <= self.to + TIE
+    }
+}
+
 /// Which push angles of a row are on the stable sheet.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RowBoundary {
@@ -52,9 +60,7 @@ impl RowBoundary {
     /// The span that the push angle is on, if any.
     #[must_use]
     pub fn span(&self, push: f64) -> Option<&Span> {
-        self.spans()
-            .iter()
-            .find(|span| span.from - TIE <= push && push <= span.to + TIE)
+        self.spans().iter().find(|span| span.contains(push))
     }
 
     /// The spans: the one from first touch, if there is one, before the others; none where the boundary is not known.
@@ -79,9 +85,9 @@ impl RowBoundary {
     /// the unresolved kinds where cell and boundary contradict each other.
     #[must_use]
     pub fn judge(&self, push: f64, status: Status) -> (Regime, Status) {
-        let Some(spans) = &self.spans else {
+        if self.spans.is_none() {
             return (Regime::Unresolved, Status::NoBoundary);
-        };
+        }
         match (status, self.span(push)) {
             // Without a push the shape at rest decides: a pole that it does not reach is out of reach.
             (Status::Solved | Status::NotConverged, Some(span))
@@ -90,8 +96,7 @@ impl RowBoundary {
                 (Regime::OutOfReach, Status::Outside)
             }
             (Status::Solved, Some(span)) => {
-                let connected = self.touches && spans.first() == Some(span);
-                let regime = if connected {
+                let regime = if self.detachment() == Some(span) {
                     Regime::Contact
                 } else {
                     Regime::Unreachable

@@ -15,14 +15,17 @@ pub fn run() -> Result<(), Failure> {
     }
     let taken = preferred(&reports, Precision::F32);
     for (i, report) in reports.iter().enumerate() {
+        let info = &report.info;
         let mark = if taken == Some(i) { "*" } else { " " };
         let has_f64 = if report.shader_f64 { "yes" } else { "no" };
         writeln!(
             out,
             "{mark} {} ({}, {})",
-            report.name, report.kind, report.backend
+            info.name,
+            report.kind(),
+            info.backend
         )?;
-        writeln!(out, "    driver   {} {}", report.driver, report.driver_info)?;
+        writeln!(out, "    driver   {} {}", info.driver, info.driver_info)?;
         writeln!(out, "    f64      {has_f64}")?;
         writeln!(
             out,

@@ -2,7 +2,7 @@
 
 use super::failure::Failure;
 use clap::ValueEnum;
-use whiskmap::integrate::gpu::{AdapterKind, Gpu, Precision, adapters, preferred};
+use whiskmap::integrate::gpu::{Gpu, Precision, adapters, preferred};
 use whiskmap::integrate::{Engine, EngineError};
 
 /// Engines by name.
@@ -60,13 +60,13 @@ pub fn open(
 fn automatic(precision: Precision) -> (Option<Box<dyn Engine>>, String) {
     let reports = adapters();
     let why = match preferred(&reports, precision).map(|i| &reports[i]) {
-        Some(report) if report.kind != AdapterKind::Software => match Gpu::new(precision) {
+        Some(report) if !report.is_software() => match Gpu::new(precision) {
             Ok(gpu) => return (Some(Box::new(gpu)), "auto: a hardware adapter".to_owned()),
             Err(error) => format!("auto: {error}"),
         },
         Some(report) => format!(
             "auto: {} is software, slower than the CPU engine",
-            report.name
+            report.info.name
         ),
         None => format!("auto: no GPU adapter with {precision}"),
     };

@@ -27,7 +27,7 @@ pub fn estimate(scene: &Scene, plan: &Plan) -> Result<Estimate, Failure> {
     };
     let by_rows = rows(scene, plan) / rows(&small, &small_plan);
     let by_cells = plan.cells as f64 / small_plan.cells as f64;
-    let seconds = Stage::ALL.map(|stage| match stage {
+    let seconds = Stage::ALL.map(|(stage, _)| match stage {
         Stage::Sheets => summary.seconds(stage) * by_rows,
         _ => summary.seconds(stage) * by_cells,
     });

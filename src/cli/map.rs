@@ -163,8 +163,8 @@ fn print(scene: &Scene, summary: &Summary, seconds: f64, files: &[PathBuf]) -> s
     )?;
     let rate = summary.cells() as f64 / seconds;
     write!(out, "{rate:>12.0}  cells/s; {seconds:.2} s:")?;
-    for stage in Stage::ALL {
-        write!(out, " {stage} {:.2}", summary.seconds(stage))?;
+    for (stage, name) in Stage::ALL {
+        write!(out, " {name} {:.2}", summary.seconds(stage))?;
     }
     writeln!(out)?;
     for file in files {

@@ -34,10 +34,10 @@ pub fn run(options: &Options) -> Result<(), Failure> {
             figure.chart.picture().save(&path, format)?;
             writeln!(out, "{}", path.display())?;
         }
-        for (name, rows) in &figure.tables {
+        for (name, write) in &figure.tables {
             let path = folder.join(name).with_extension("csv");
             let written = Output::create(&path).map(Table::new).and_then(|mut table| {
-                rows.write(&mut table)?;
+                write(&mut table)?;
                 table.finish()
             });
             written.map_err(|cause| unwritten(&path, cause))?;

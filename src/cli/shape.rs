@@ -95,7 +95,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         (Stroke::Dashed, "unstable")
     };
     let drawn = Drawn {
-        shape: &shape,
+        shape,
         ink: Ink::Black,
         stroke,
         name: format!("{name}, {push_deg} deg"),

@@ -8,7 +8,8 @@ use crate::rod::{Effects, Rod};
 /// An engine for as long as it works.
 pub struct Fallback<'a> {
     engine: Option<&'a mut dyn Engine>,
-    failure: Option<EngineError>,
+    /// Why the CPU goes on alone, if an engine failed.
+    pub failure: Option<EngineError>,
 }
 
 impl<'a> Fallback<'a> {
@@ -18,12 +19,6 @@ impl<'a> Fallback<'a> {
             engine,
             failure: None,
         }
-    }
-
-    /// Why the CPU goes on alone, if an engine failed.
-    #[must_use]
-    pub const fn failure(&self) -> Option<&EngineError> {
-        self.failure.as_ref()
     }
 
     /// [`Engine::shoot`]; `None` without an engine.

@@ -119,20 +119,16 @@ fn answer(
     };
     if matches!(regime, Regime::Contact | Regime::Unreachable) {
         let touch = sheet.rows[row].touch;
-        answer.state = channels(&reader.read(state.tau, &state.full, touch, push)).map(narrow);
-        answer.residual = narrow(state.residual);
+        answer.state =
+            channels(&reader.read(state.tau, &state.full, touch, push)).map(|value| value as f32);
+        answer.residual = state.residual as f32;
         answer.margin_deg = span.map_or(f32::NAN, |span| {
-            narrow((span.to - push.abs()).max(0.0).to_degrees())
+            (span.to - push.abs()).max(0.0).to_degrees() as f32
         });
     } else if regime == Regime::Unresolved {
-        answer.residual = narrow(state.residual);
+        answer.residual = state.residual as f32;
     }
     answer
-}
-
-#[allow(clippy::cast_possible_truncation, reason = "maps are stored in f32")]
-fn narrow(x: f64) -> f32 {
-    x as f32
 }
 
 /// The channels of [`STATE_CHANNELS`].

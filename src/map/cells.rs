@@ -110,17 +110,21 @@ pub fn settle(
     let (rows, shots) = summary.time(Stage::Guesses, || {
         let guess = |&(face, row): &(usize, usize)| {
             let rod = used.binary_search(&face).unwrap_or_default();
-            guess_row(&faces[face], face, row, rod)
+            guess_row(&faces[face], row, rod)
         };
-        let guessed: Vec<_> = rows.par_iter().map(guess).collect();
+        let guessed: Vec<Vec<Option<Shot>>> = rows.par_iter().map(guess).collect();
         let mut shots: Vec<Shot> = Vec::new();
-        let mut rows = Vec::with_capacity(guessed.len());
-        for (mut row, of_row) in guessed {
-            row.shots_before = shots.len();
-            rows.push(row);
-            shots.extend_from_slice(&of_row);
-        }
-        (rows, shots)
+        let settled = rows.iter().zip(guessed).map(|(&(face, row), guesses)| {
+            let shots_before = shots.len();
+            shots.extend(guesses.iter().flatten());
+            SettledRow {
+                face,
+                row,
+                has_shot: guesses.iter().map(Option::is_some).collect(),
+                shots_before,
+            }
+        });
+        (settled.collect(), shots)
     });
     let hits = summary.time(Stage::Shooting, || {
         engine.shoot(method.effects(), &rods, &shots)
@@ -137,7 +141,7 @@ pub fn settle(
 
     let count = shots.len() as u64;
     summary.shots.all += count;
-    summary.shots.on_cpu_instead += engine.failure().map_or(0, |_| count);
+    summary.shots.on_cpu_instead += engine.failure.as_ref().map_or(0, |_| count);
     let unfinished = |hit: &&Hit| hit.outcome != Outcome::Converged;
     summary.shots.restarted += hits.iter().flatten().filter(unfinished).count() as u64;
     Settled {
@@ -147,33 +151,22 @@ pub fn settle(
     }
 }
 
-/// The shots of one row of a face.
-fn guess_row(face: &Face, index: usize, row: usize, rod: usize) -> (SettledRow, Vec<Shot>) {
+/// The shots of the cells of one row of a face.
+fn guess_row(face: &Face, row: usize, rod: usize) -> Vec<Option<Shot>> {
     let columns = &face.pushes.columns;
-    let mut has_shot = vec![false; columns.len()];
-    let mut shots = Vec::with_capacity(columns.len());
-    if let Some(sheet) = &face.sheet {
-        let at_touch = sheet.rows[row].pole(0.0);
-        let guesses = sheet.guesses(row, columns.iter().map(|push| push.angle.abs()));
-        for ((has_shot, push), guess) in has_shot.iter_mut().zip(columns).zip(guesses) {
-            let Some(Guess { tau, load }) = guess else {
-                continue;
-            };
-            *has_shot = true;
-            shots.push(Shot {
-                #[allow(clippy::cast_possible_truncation, reason = "panels at once are few")]
-                rod: rod as u32,
-                tau,
-                load,
-                pole: push.turn.rotate(at_touch),
-            });
-        }
-    }
-    let row = SettledRow {
-        face: index,
-        row,
-        has_shot,
-        shots_before: 0,
+    let Some(sheet) = &face.sheet else {
+        return vec![None; columns.len()];
     };
-    (row, shots)
+    let at_touch = sheet.rows[row].pole(0.0);
+    let guesses = sheet.guesses(row, columns.iter().map(|push| push.angle.abs()));
+    let shot = |(guess, push): (Option<Guess>, &Push)| {
+        guess.map(|Guess { tau, load }| Shot {
+            // Panels at once are few.
+            rod: rod as u32,
+            tau,
+            load,
+            pole: push.turn.rotate(at_touch),
+        })
+    };
+    guesses.into_iter().zip(columns).map(shot).collect()
 }

@@ -5,7 +5,7 @@
 //! Continuation needs no guesses. It costs some hundred trajectories a row, so only rows with a cell in doubt are followed.
 
 use super::cells::Cell;
-use crate::classify::{RowBoundary, Status, TIE};
+use crate::classify::{RowBoundary, Status};
 use crate::refine::{ContactState, TOLERANCE};
 use crate::sheet::{Edge, LevelCurve, Node, Sheet};
 
@@ -50,21 +50,14 @@ pub fn settle<'a>(
             cell.state = Some(touch);
             continue;
         }
-        let within = boundary.spans().iter().position(|span| {
-            let magnitude = sign * push;
-            span.from - TIE <= magnitude && magnitude <= span.to + TIE
-        });
-        match within {
-            Some(index) => {
-                let Some(nodes) = &parts[index] else {
-                    continue;
-                };
-                let (first, last) = (nodes[0].push, nodes[nodes.len() - 1].push);
-                if sign * push > sign * last {
-                    cell.status = beyond(boundary.spans()[index].edge);
-                } else if let Some(node) =
-                    level.state_at_push(nodes, sign * (sign * push).max(sign * first))
-                {
+        let magnitude = sign * push;
+        let mut spans = boundary.spans().iter().zip(&parts);
+        match spans.find(|(span, _)| span.contains(magnitude)) {
+            Some((span, Some(nodes))) => {
+                let [first, last] = [0, nodes.len() - 1].map(|i| sign * nodes[i].push);
+                if magnitude > last {
+                    cell.status = beyond(span.edge);
+                } else if let Some(node) = level.state_at_push(nodes, sign * magnitude.max(first)) {
                     let state = state(&level, &node, push);
                     if state.residual <= TOLERANCE {
                         cell.status = Status::Solved;
@@ -77,7 +70,7 @@ pub fn settle<'a>(
                 let end = boundary.detachment();
                 cell.status = end.map_or(Status::Outside, |span| beyond(span.edge));
             }
-            None => {}
+            _ => {}
         }
     }
 }

@@ -38,21 +38,6 @@ struct Face<'a> {
     sheet: Option<Sheet>,
 }
 
-impl<'a> Face<'a> {
-    fn new(scene: &Scene, method: Method, whisker: &Whisker, pushes: &'a Pushes) -> Self {
-        let side = pushes.side;
-        let rod = whisker.rod(&scene.pole, side);
-        let distances: Vec<f64> = scene
-            .grid
-            .distance_mm
-            .iter()
-            .map(|d| d / whisker.length_mm)
-            .collect();
-        let sheet = Sheet::new(method, &rod, side, &distances);
-        Self { pushes, sheet }
-    }
-}
-
 /// Computes every panel of `scene` as `plan` says, on the threads of the current pool, best from within it
 /// (`rayon::ThreadPool::install`): from outside, every stage of every strip of rows wakes it up. `engine` shoots before the
 /// refinement; without one, or where it fails, the CPU does it all.
@@ -99,7 +84,7 @@ pub fn run<E>(
         }
         summary.time(Stage::Files, || observe(Progress::Panels(&panels)))?;
     }
-    summary.engine_failure = engine.failure().cloned();
+    summary.engine_failure = engine.failure;
     Ok(summary)
 }
 
@@ -111,9 +96,13 @@ fn faces<'a>(
     sides: &'a [Pushes],
 ) -> Vec<Face<'a>> {
     let of_whisker = |whisker| sides.iter().map(move |side| (whisker, side));
-    let pairs: Vec<(&Whisker, &Pushes)> = whiskers.iter().flat_map(of_whisker).collect();
-    pairs
-        .par_iter()
-        .map(|(whisker, side)| Face::new(scene, method, whisker, side))
-        .collect()
+    let pairs: Vec<(&Whisker, &'a Pushes)> = whiskers.iter().flat_map(of_whisker).collect();
+    let face = |&(whisker, pushes): &(&Whisker, &'a Pushes)| {
+        let rod = whisker.rod(&scene.pole, pushes.side);
+        let distances = scene.grid.distance_mm.iter();
+        let distances: Vec<f64> = distances.map(|d| d / whisker.length_mm).collect();
+        let sheet = Sheet::new(method, &rod, pushes.side, &distances);
+        Face { pushes, sheet }
+    };
+    pairs.par_iter().map(face).collect()
 }

@@ -4,7 +4,6 @@ use super::Panel;
 use crate::classify::{Regime, Status};
 use crate::integrate::EngineError;
 use serde::{Deserialize, Serialize};
-use std::fmt;
 use std::time::{Duration, Instant};
 
 /// The stages of a run.
@@ -25,28 +24,15 @@ pub enum Stage {
 }
 
 impl Stage {
-    /// Every stage, in order.
-    pub const ALL: [Self; 6] = [
-        Self::Sheets,
-        Self::Guesses,
-        Self::Shooting,
-        Self::Refinement,
-        Self::Regimes,
-        Self::Files,
+    /// Every stage, in order, and its name.
+    pub const ALL: [(Self, &str); 6] = [
+        (Self::Sheets, "sheets"),
+        (Self::Guesses, "guesses"),
+        (Self::Shooting, "shooting"),
+        (Self::Refinement, "refinement"),
+        (Self::Regimes, "regimes"),
+        (Self::Files, "files"),
     ];
-}
-
-impl fmt::Display for Stage {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Sheets => "sheets",
-            Self::Guesses => "guesses",
-            Self::Shooting => "shooting",
-            Self::Refinement => "refinement",
-            Self::Regimes => "regimes",
-            Self::Files => "files",
-        })
-    }
 }
 
 /// What became of the shots of a run, one for each cell with a guess.
@@ -104,12 +90,8 @@ impl Summary {
             }
             self.disagreements += u64::from(*status == Status::Disagreement.code());
         }
-        self.steps += panel
-            .newton_steps
-            .iter()
-            .copied()
-            .map(u64::from)
-            .sum::<u64>();
+        let steps = panel.newton_steps.iter().copied();
+        self.steps += steps.map(u64::from).sum::<u64>();
     }
 
     /// Cells of the map.

@@ -9,12 +9,11 @@ use crate::render::{
 use crate::rod::Side;
 use crate::scene::Whisker;
 use crate::store::Table;
-use crate::trace::{Branch, BranchPoint, Detachment, NoState, Shape, ShapePoint, curve};
+use crate::trace::{Branch, Detachment, NoState, Shape, curve};
 use serde::Serialize;
 use std::io;
 
 /// A figure: a chart, and the tables behind its panels.
-#[derive(Clone, Debug)]
 pub struct Figure {
     /// Stem of the chart's file.
     pub name: &'static str,
@@ -24,36 +23,18 @@ pub struct Figure {
     pub tables: Vec<(&'static str, Rows)>,
 }
 
-/// The rows of a table.
-#[derive(Clone, Debug)]
-pub enum Rows {
-    /// A detachment curve.
-    Curve(Vec<Detachment>),
-    /// A solution branch.
-    Branch(Vec<BranchPoint>),
-    /// Shapes by name.
-    Shapes(Vec<(Solution, ShapePoint)>),
+/// Writes rows of any kind into a table.
+pub type Rows = Box<dyn Fn(&mut Table) -> io::Result<()>>;
+
+fn rows<R: Serialize + 'static>(rows: Vec<R>) -> Rows {
+    Box::new(move |table| table.rows(&rows))
 }
 
 /// Which state a shape belongs to.
-#[derive(Clone, Debug, Serialize)]
-pub struct Solution {
+#[derive(Clone, Serialize)]
+struct Solution {
     /// The name of the state in the figure's legend.
-    pub solution: String,
-}
-
-impl Rows {
-    /// Writes the rows into `table`.
-    ///
-    /// # Errors
-    /// When the table takes no more.
-    pub fn write(&self, table: &mut Table) -> io::Result<()> {
-        match self {
-            Self::Curve(rows) => table.rows(rows),
-            Self::Branch(rows) => table.rows(rows),
-            Self::Shapes(rows) => table.rows(rows),
-        }
-    }
+    solution: String,
 }
 
 /// Every figure of the paper that has theory lines.
@@ -97,58 +78,38 @@ fn fig2() -> Result<Figure, NoState> {
     ] {
         let branch = Branch::new(&whisker, &POLE, Side::Cb, fig2_distance_mm(&whisker))?;
         let points = branch.points(BODY_POINTS)?;
-        let mut states = vec![(FIG2_PUSH_DEG, true, Ink::Black, Stroke::Solid)];
-        match points.iter().find(|point| !point.stable) {
-            Some(_) => states.push((FIG2_PUSH_DEG, false, Ink::Black, Stroke::Dashed)),
-            None => {
-                let end = points.last().map_or(0.0, |point| point.push_angle_deg);
-                states.push((end, true, Ink::Blue, Stroke::Solid));
-            }
+        let other = match points.last() {
+            Some(end) if end.stable => (end.push_angle_deg, "pull-off", Ink::Blue, Stroke::Solid),
+            _ => (FIG2_PUSH_DEG, "unstable", Ink::Black, Stroke::Dashed),
+        };
+        let mut drawn = Vec::new();
+        for (push_deg, kind, ink, stroke) in
+            [(FIG2_PUSH_DEG, "stable", Ink::Black, Stroke::Solid), other]
+        {
+            let state = branch.state(push_deg.to_radians(), stroke == Stroke::Solid)?;
+            drawn.push(Drawn {
+                shape: Shape::new(&branch, &state, BODY_POINTS),
+                ink,
+                stroke,
+                name: format!("{kind}, {push_deg:.2} deg"),
+            });
         }
-        let mut found = Vec::new();
-        for (push_deg, stable, ink, stroke) in states {
-            let state = branch.state(push_deg.to_radians(), stable)?;
-            let kind = match (stable, ink) {
-                (true, Ink::Blue) => "pull-off",
-                (true, _) => "stable",
-                (false, _) => "unstable",
-            };
-            let name = format!("{kind}, {push_deg:.2} deg");
-            found.push((Shape::new(&branch, &state, BODY_POINTS), ink, stroke, name));
-        }
-        let drawn: Vec<Drawn> = found
-            .iter()
-            .map(|(shape, ink, stroke, name)| Drawn {
-                shape,
-                ink: *ink,
-                stroke: *stroke,
-                name: name.clone(),
-            })
-            .collect();
         let at_rest = Shape::at_rest(&branch, BODY_POINTS);
         plots.push(lettered(letters[0], shapes(title, at_rest, &drawn)));
         plots.push(lettered(
             letters[1],
             branches(title, &points, [PUSH, CONTACT]),
         ));
-        let rows = found.iter().flat_map(|(shape, .., name)| {
-            let solution = Solution {
-                solution: name.clone(),
-            };
-            shape.points.iter().map(move |p| (solution.clone(), *p))
+        let places = drawn.into_iter().flat_map(|Drawn { shape, name, .. }| {
+            let solution = Solution { solution: name };
+            let points = shape.points.into_iter();
+            points.map(move |point| (solution.clone(), point))
         });
-        tables.push((names[0], Rows::Shapes(rows.collect())));
-        tables.push((names[1], Rows::Branch(points)));
+        tables.push((names[0], rows(places.collect())));
+        tables.push((names[1], rows(points)));
     }
-    Ok(Figure {
-        name: "fig2",
-        chart: Chart {
-            title: "Fig. 2: shapes and solution branches in front of one pole".to_owned(),
-            plots,
-            columns: 2,
-        },
-        tables,
-    })
+    let title = "Fig. 2: shapes and solution branches in front of one pole";
+    Ok(figure("fig2", title.to_owned(), plots, tables))
 }
 
 const PUSH: BranchAxis = BranchAxis {
@@ -193,23 +154,14 @@ fn fig3() -> Figure {
     ];
     let plots = (0..FIG3.len())
         .flat_map(|i| columns.iter().map(move |column| (i, column)))
-        .map(|(i, (letters, title, rows))| {
-            lettered(letters[i], curves(title, rows, [DISTANCE, FIG3[i]]))
+        .map(|(i, (letters, title, ends))| {
+            lettered(letters[i], curves(title, ends, [DISTANCE, FIG3[i]]))
         })
         .collect();
     let [(_, _, cone), (_, _, cylinder)] = columns;
-    Figure {
-        name: "fig3",
-        chart: Chart {
-            title: "Fig. 3: detachment of a truncated cone and a cylinder (CF < 0 < CB)".to_owned(),
-            plots,
-            columns: 2,
-        },
-        tables: vec![
-            ("fig3_cone", Rows::Curve(cone)),
-            ("fig3_cylinder", Rows::Curve(cylinder)),
-        ],
-    }
+    let title = "Fig. 3: detachment of a truncated cone and a cylinder (CF < 0 < CB)";
+    let tables = vec![("fig3_cone", rows(cone)), ("fig3_cylinder", rows(cylinder))];
+    figure("fig3", title.to_owned(), plots, tables)
 }
 
 fn detachments(
@@ -220,17 +172,28 @@ fn detachments(
     let mut plots = Vec::new();
     let mut tables = Vec::new();
     for (table, title, whisker) in whiskers {
-        let rows = both_sides(&whisker);
-        plots.push(curves(title, &rows, [DISTANCE, CHORD]));
-        tables.push((table, Rows::Curve(rows)));
+        let ends = both_sides(&whisker);
+        plots.push(curves(title, &ends, [DISTANCE, CHORD]));
+        tables.push((table, rows(ends)));
     }
+    figure(name, format!("{title} (CF < 0 < CB)"), plots, tables)
+}
+
+/// The plots in two columns.
+fn figure(
+    name: &'static str,
+    title: String,
+    plots: Vec<Plot>,
+    tables: Vec<(&'static str, Rows)>,
+) -> Figure {
+    let chart = Chart {
+        title,
+        plots,
+        columns: 2,
+    };
     Figure {
         name,
-        chart: Chart {
-            title: format!("{title} (CF < 0 < CB)"),
-            plots,
-            columns: 2,
-        },
+        chart,
         tables,
     }
 }

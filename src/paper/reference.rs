@@ -1,6 +1,6 @@
 //! Detachment points of AUTO-07p on the paper's boundary-value problem, solved forward from the base.
 
-use super::check::{AUTO, Check, Expected};
+use super::check::{AUTO, Check, near};
 use super::whiskers::whisker;
 use crate::rod::Side;
 use crate::scene::Pole;
@@ -22,7 +22,7 @@ struct Point {
     projection: f64,
     side: String,
     distance_mm: f64,
-    kind: String,
+    kind: DetachmentKind,
     push_angle_deg: f64,
     arc_length_mm: f64,
 }
@@ -43,18 +43,13 @@ impl Point {
         };
         let pole = Pole::smooth(self.pole_radius_mm);
         let end = curve(&whisker, &pole, side, &[self.distance_mm])[0];
-        let expected = match self.kind.as_str() {
-            "slip-off" => DetachmentKind::SlipOff,
-            "pull-off" => DetachmentKind::PullOff,
-            _ => DetachmentKind::Unresolved,
-        };
         let miss = |computed: Option<f64>, known: f64| {
             let miss = computed.map(|computed| (computed - known).abs());
             miss.filter(|miss| miss.is_finite())
                 .unwrap_or(f64::INFINITY)
         };
         [
-            f64::from(u8::from(end.kind != expected)),
+            f64::from(u8::from(end.kind != self.kind)),
             miss(end.push_angle_deg, self.push_angle_deg),
             miss(end.arc_length_mm, self.arc_length_mm) / self.length_mm,
         ]
@@ -74,27 +69,14 @@ pub fn checks() -> Vec<Check> {
         .fold([0.0_f64; 3], |worst, differences| {
             std::array::from_fn(|i| worst[i].max(differences[i]))
         });
-    #[allow(clippy::cast_precision_loss, reason = "a few dozen")]
     let count = points.len() as f64;
-    let check = |quantity, expected, computed| Check {
-        case: "reference file".to_owned(),
-        quantity,
-        source: AUTO,
-        expected,
-        computed,
+    let check = |quantity, expected, computed| {
+        near("reference file", quantity, AUTO, expected, Some(computed))
     };
     vec![
-        check("points compared", Expected::Near(40.0, 0.0), count),
-        check("kinds that differ", Expected::Near(0.0, 0.0), worst[0]),
-        check(
-            "worst push angle (deg)",
-            Expected::Near(0.0, 1e-8),
-            worst[1],
-        ),
-        check(
-            "worst arc length (L_w)",
-            Expected::Near(0.0, 1e-8),
-            worst[2],
-        ),
+        check("points compared", (40.0, 0.0), count),
+        check("kinds that differ", (0.0, 0.0), worst[0]),
+        check("worst push angle (deg)", (0.0, 1e-8), worst[1]),
+        check("worst arc length (L_w)", (0.0, 1e-8), worst[2]),
     ]
 }

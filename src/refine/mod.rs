@@ -117,35 +117,27 @@ fn refine_chunk(
     starts: &[(f64, f64)],
     cells: &mut [Refined],
 ) {
-    newton(method, sheets, shots, starts, STEPS, cells);
+    let all = starts.iter().copied().enumerate().collect();
+    newton(method, sheets, shots, all, STEPS, cells);
     let failed = (0..cells.len()).filter(|&i| cells[i].end == End::NotConverged);
     let failed: Vec<usize> = failed.collect();
     let failed_shots: Vec<Shot> = failed.iter().map(|&i| shots[i]).collect();
     let verdicts = near_fold::decide(method, sheets, &failed_shots);
-    let (mut again, mut again_shots, mut again_starts) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut again, mut steps_before) = (Vec::new(), Vec::new());
     for (i, verdict) in failed.into_iter().zip(verdicts) {
         match verdict {
             Verdict::Beyond => cells[i].end = End::BeyondFold,
             Verdict::Start(start) => {
-                again.push(i);
-                again_shots.push(shots[i]);
-                again_starts.push(start);
+                steps_before.push((i, cells[i].steps));
+                cells[i] = Refined::default();
+                again.push((i, start));
             }
             Verdict::Unknown => {}
         }
     }
-    let mut second = vec![Refined::default(); again.len()];
-    newton(
-        method,
-        sheets,
-        &again_shots,
-        &again_starts,
-        STEPS_NEAR_FOLD,
-        &mut second,
-    );
-    for (i, cell) in again.into_iter().zip(second) {
-        let steps = cells[i].steps + cell.steps;
-        cells[i] = Refined { steps, ..cell };
+    newton(method, sheets, shots, again, STEPS_NEAR_FOLD, cells);
+    for (i, steps) in steps_before {
+        cells[i].steps += steps;
     }
 }
 

@@ -28,16 +28,15 @@ const CLEAR_OF_FOLD: f64 = 1e-5;
 /// Derivatives are good enough to extrapolate from this [`Resolution::least`](crate::shooting::Resolution::least) on.
 const LEAST_STEPS: u32 = 5;
 
-/// Newton's method with at most `most` steps per cell.
+/// Newton's method with at most `most` steps for each of the `open` cells: its index, and where it starts.
 pub fn newton(
     method: Method,
     sheets: &[&Sheet],
     shots: &[Shot],
-    starts: &[(f64, f64)],
+    mut open: Vec<(usize, (f64, f64))>,
     most: u32,
     cells: &mut [Refined],
 ) {
-    let mut open: Vec<(usize, (f64, f64))> = starts.iter().copied().enumerate().collect();
     for steps in 0..=most {
         if open.is_empty() {
             break;
@@ -83,18 +82,14 @@ pub fn newton(
             }
             let before = cells[i].state.residual;
             let stuck = residual <= TOLERANCE && residual > 0.5 * before;
-            if residual <= GOAL || stuck {
-                let end = verdict(sheet, &state);
-                cells[i] = Refined { state, steps, end };
-                return;
-            }
-            cells[i] = Refined {
-                state,
-                steps,
-                end: End::NotConverged,
+            let has_converged = residual <= GOAL || stuck;
+            let end = match has_converged {
+                true => verdict(sheet, &state),
+                false => End::NotConverged,
             };
+            cells[i] = Refined { state, steps, end };
             let next = (condition.tau + step.x, condition.load + step.y);
-            if step.is_finite() && next.0 > 0.0 {
+            if !has_converged && step.is_finite() && next.0 > 0.0 {
                 left.push((i, next));
             }
         });

@@ -2,7 +2,7 @@
 
 use super::font::{self, CAPITALS};
 use super::palette::{INK, Rgb, WHITE};
-use super::picture::{Anchor, DASHES, Mark, Pen, Picture};
+use super::picture::{Anchor, Mark, Pen, Picture};
 use super::strokes::{cover, dashes};
 
 /// The pixels of a picture, row by row.
@@ -44,7 +44,7 @@ impl Bitmap {
     fn mark(&mut self, mark: &Mark) {
         match mark {
             Mark::Polyline(points, pen) if pen.dashed => {
-                for dash in dashes(points, DASHES) {
+                for dash in dashes(points) {
                     self.stroke(&dash, pen.width, pen.colour);
                 }
             }

@@ -11,6 +11,9 @@ static FONT: LazyLock<FontRef<'static>> = LazyLock::new(|| {
     FontRef::try_from_slice(include_bytes!("font/DejaVuSans.ttf")).expect("DejaVu Sans")
 });
 
+/// A text that fits where it goes, and its size.
+pub(super) type Fitted = (String, f64);
+
 /// The font with an em of this many pixels.
 fn sized(size: f64) -> PxScaleFont<&'static FontRef<'static>> {
     // A scale is the height from descent to ascent.
@@ -39,8 +42,8 @@ pub(super) fn outlines(text: &str, size: f64) -> Vec<OutlinedGlyph> {
     outlines.collect()
 }
 
-/// A text in the largest size that fits, at most `largest`, cut if even the smallest one does not.
-pub(super) fn fitted(text: &str, largest: f64, room: f64) -> (String, f64) {
+/// A text and its size, the largest in which it fits, at most `largest`; cut if even the smallest one does not.
+pub(super) fn fitted(text: &str, largest: f64, room: f64) -> Fitted {
     let size = largest * (room / width(text, largest).max(1.0)).clamp(0.6, 1.0);
     let mut shown = text.to_owned();
     while width(&shown, size) > room + 1.0 && shown != "\u{2026}" {

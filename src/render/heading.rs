@@ -1,6 +1,6 @@
 //! What stands above a plot or a map: letter, title and legend.
 
-use super::font::{self, fitted};
+use super::font::{self, Fitted, fitted};
 use super::palette::{Fill, Rgb};
 use super::picture::{Anchor, Area, DASHES, Pen, Picture};
 
@@ -9,6 +9,13 @@ pub(super) const TITLE: f64 = 31.0;
 pub(super) const LABEL: f64 = 23.0;
 pub(super) const TICK: f64 = 20.0;
 pub(super) const NAME: f64 = 18.0;
+
+/// Size of the body of a plot or a map that stands alone, and the least room to the left and to the right of it.
+pub(super) const ALONE: [f64; 2] = [1280.0, 880.0];
+pub(super) const SIDES: [f64; 2] = [136.0, 48.0];
+/// Height of a picture's title, and the middle of its line.
+pub(super) const HEAD_ROOM: f64 = 74.0;
+pub(super) const TITLE_LINE: f64 = 46.0;
 
 /// Radius of a dot.
 pub(super) const DOT: f64 = 8.0;
@@ -56,10 +63,10 @@ impl Sample {
     }
 }
 
-/// Letter, title and legend, laid out for a width. Letter and title come with their sizes.
+/// Letter, title and legend, laid out for a width.
 pub(super) struct Heading {
-    letter: (String, f64),
-    title: (String, f64),
+    letter: Fitted,
+    title: Fitted,
     /// Sample and name, with their line and the offset along it.
     entries: Vec<(Sample, String, usize, f64)>,
     /// Of the line of letter and title.
@@ -102,11 +109,9 @@ impl Heading {
     /// Draws it from `top` downwards, above a body that begins at `body_left`, with `left` pixels of room beside it.
     pub(super) fn draw(&self, picture: &mut Picture, [body_left, top]: [f64; 2], left: f64) {
         let middle = top + 0.5 * HEAD;
-        let (letter, size) = &self.letter;
         let beside = body_left - left + LETTER;
-        picture.text(letter, [beside, middle], *size, Anchor::Left);
-        let (title, size) = &self.title;
-        picture.text(title, [body_left, middle], *size, Anchor::Left);
+        picture.fitted(&self.letter, [beside, middle], Anchor::Left);
+        picture.fitted(&self.title, [body_left, middle], Anchor::Left);
         for (sample, name, line, offset) in &self.entries {
             let x = body_left + offset;
             let y = middle + self.head + LINE * *line as f64;

@@ -5,23 +5,29 @@ use crate::classify::Regime;
 /// Red, green, blue.
 pub(super) type Rgb = [u8; 3];
 
-pub(super) const WHITE: Rgb = [255, 255, 255];
+/// The colour that a number of six hexadecimal digits stands for.
+const fn rgb(number: u32) -> Rgb {
+    let [_, red, green, blue] = number.to_be_bytes();
+    [red, green, blue]
+}
+
+pub(super) const WHITE: Rgb = rgb(0xffffff);
 /// Text and lines.
-pub(super) const INK: Rgb = [0x22, 0x2b, 0x33];
+pub(super) const INK: Rgb = rgb(0x222b33);
 /// Lines of charts beside [`INK`].
-pub(super) const BLUE: Rgb = [0x1c, 0x6c, 0xc4];
-pub(super) const GREY: Rgb = [0x9a, 0xa1, 0xa8];
+pub(super) const BLUE: Rgb = rgb(0x1c6cc4);
+pub(super) const GREY: Rgb = rgb(0x9aa1a8);
 /// Cells without a value, and bodies in charts.
-pub(super) const BLANK: Rgb = [0xdc, 0xdd, 0xde];
+pub(super) const BLANK: Rgb = rgb(0xdcddde);
 
 // Regimes that are found side by side differ by 20 in lightness (CIE L*): 96, 74, 53 and 31. Any two of these, and
 // unresolved, stay apart for people who lack one of the three cones; a test of the pictures tells by how much.
-const OUT_OF_REACH: Rgb = [0xf2, 0xf3, 0xf4];
-const CONTACT: Rgb = [0x83, 0xc4, 0xa4];
-const CONTACT_PALE: Rgb = [0xd3, 0xec, 0xdf];
-const SLIP_OFF: Rgb = [0xc8, 0x60, 0x2a];
-const PULL_OFF: Rgb = [0x22, 0x47, 0x8a];
-const UNRESOLVED: Rgb = [0xf0, 0xe4, 0x42];
+const OUT_OF_REACH: Rgb = rgb(0xf2f3f4);
+const CONTACT: Rgb = rgb(0x83c4a4);
+const CONTACT_PALE: Rgb = rgb(0xd3ecdf);
+const SLIP_OFF: Rgb = rgb(0xc8602a);
+const PULL_OFF: Rgb = rgb(0x22478a);
+const UNRESOLVED: Rgb = rgb(0xf0e442);
 
 /// A colour, or stripes of two.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -68,17 +74,10 @@ pub(super) fn regime(code: u32) -> Fill {
 
 /// The fill of the `place`-th of some names without an order (Okabe and Ito 2008, Color Universal Design).
 pub(super) fn qualitative(place: usize) -> Fill {
-    const COLOURS: [Rgb; 8] = [
-        [0x56, 0xb4, 0xe9],
-        [0xe6, 0x9f, 0x00],
-        [0x00, 0x9e, 0x73],
-        [0xcc, 0x79, 0xa7],
-        [0x00, 0x72, 0xb2],
-        [0xd5, 0x5e, 0x00],
-        [0xf0, 0xe4, 0x42],
-        [0x99, 0x99, 0x99],
+    const COLOURS: [u32; 8] = [
+        0x56b4e9, 0xe69f00, 0x009e73, 0xcc79a7, 0x0072b2, 0xd55e00, 0xf0e442, 0x999999,
     ];
-    Fill::plain(COLOURS[place % COLOURS.len()])
+    Fill::plain(rgb(COLOURS[place % COLOURS.len()]))
 }
 
 /// From dark blue at 0 through green to yellow at 1 (viridis by S. van der Walt and N. Smith, every ninth of the way).
@@ -106,8 +105,6 @@ pub(super) fn diverging(at: f64) -> Rgb {
 fn between(stops: &[u32], at: f64) -> Rgb {
     let place = at.clamp(0.0, 1.0) * (stops.len() - 1) as f64;
     let stop = (place as usize).min(stops.len() - 2);
-    [16, 8, 0].map(|shift| {
-        let [from, to] = [stop, stop + 1].map(|stop| f64::from(stops[stop] >> shift & 0xff));
-        (from + (place - stop as f64) * (to - from)).round() as u8
-    })
+    let [from, to] = [stop, stop + 1].map(|stop| rgb(stops[stop]).map(f64::from));
+    std::array::from_fn(|i| (from[i] + (place - stop as f64) * (to[i] - from[i])).round() as u8)
 }

@@ -1,6 +1,6 @@
 //! A picture as plain data: marks in the order in which they are drawn.
 
-use super::font;
+use super::font::{self, Fitted};
 use super::palette::{Fill, INK, Rgb};
 
 /// Lengths of a dash and of a gap, in pixels along the middle of the line. Round ends take a line's width from the gap
@@ -142,6 +142,11 @@ impl Picture {
             let text = text.replace(char::is_control, " ");
             self.marks.push(Mark::Text(text, at, size, anchor));
         }
+    }
+
+    /// A text in the size in which it fits.
+    pub(super) fn fitted(&mut self, (text, size): &Fitted, at: [f64; 2], anchor: Anchor) {
+        self.text(text, at, *size, anchor);
     }
 
     /// Fills an area; `fill` is asked for each pixel, by its fractions from the left and the bottom.

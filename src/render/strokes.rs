@@ -1,5 +1,7 @@
 //! Lines as pixels: how much of each is covered, and where dashes begin and end.
 
+use super::picture::DASHES;
+use glam::DVec2;
 use std::collections::HashMap;
 use std::ops::Range;
 
@@ -16,7 +18,7 @@ pub(super) fn cover(
     for ends in segments.chain(disc) {
         let [across, down] = [0, 1].map(|axis| reach(ends, axis, radius, limit[axis]));
         for (x, y) in down.flat_map(|y| across.clone().map(move |x| (x, y))) {
-            let away = distance([x as f64 + 0.5, y as f64 + 0.5], ends);
+            let away = distance(DVec2::new(x as f64 + 0.5, y as f64 + 0.5), ends);
             let part = (radius + 0.5 - away).clamp(0.0, 1.0);
             if part > 0.0 {
                 let most = parts.entry([x, y]).or_insert(part);
@@ -36,32 +38,29 @@ fn reach([from, to]: [[f64; 2]; 2], axis: usize, radius: f64, limit: usize) -> R
 }
 
 /// From a point to a segment.
-fn distance(point: [f64; 2], [from, to]: [[f64; 2]; 2]) -> f64 {
-    let along = [to[0] - from[0], to[1] - from[1]];
-    let away = [point[0] - from[0], point[1] - from[1]];
-    let length = along[0] * along[0] + along[1] * along[1];
-    let dot = along[0] * away[0] + along[1] * away[1];
-    let nearest = if length > 0.0 {
-        (dot / length).clamp(0.0, 1.0)
-    } else {
-        0.0
+fn distance(point: DVec2, ends: [[f64; 2]; 2]) -> f64 {
+    let [from, to] = ends.map(DVec2::from);
+    let (along, away) = (to - from, point - from);
+    let nearest = match along.length_squared() {
+        0.0 => 0.0,
+        length => (along.dot(away) / length).clamp(0.0, 1.0),
     };
-    (away[0] - nearest * along[0]).hypot(away[1] - nearest * along[1])
+    (away - nearest * along).length()
 }
 
-/// The dashes of a polyline: `on` drawn, `off` left out, along the whole of it and around its corners.
-pub(super) fn dashes(points: &[[f64; 2]], [on, off]: [f64; 2]) -> Vec<Vec<[f64; 2]>> {
+/// The dashes of a polyline, along the whole of it and around its corners.
+pub(super) fn dashes(points: &[[f64; 2]]) -> Vec<Vec<[f64; 2]>> {
+    let [on, off] = DASHES;
     let mut dashes = Vec::new();
     let mut dash: Vec<_> = points.first().copied().into_iter().collect();
     let (mut drawn, mut left) = (true, on);
     for pair in points.windows(2) {
-        let [mut from, to] = [pair[0], pair[1]];
-        let mut length = (to[0] - from[0]).hypot(to[1] - from[1]);
+        let [mut from, to] = [pair[0], pair[1]].map(DVec2::from);
+        let mut length = from.distance(to);
         while length > left {
-            let part = left / length;
-            from = [0, 1].map(|axis| from[axis] + part * (to[axis] - from[axis]));
+            from += left / length * (to - from);
             length -= left;
-            dash.push(from);
+            dash.push(from.to_array());
             if drawn {
                 dashes.push(std::mem::take(&mut dash));
             }
@@ -70,7 +69,7 @@ pub(super) fn dashes(points: &[[f64; 2]], [on, off]: [f64; 2]) -> Vec<Vec<[f64; 
         }
         left -= length;
         if drawn {
-            dash.push(to);
+            dash.push(pair[1]);
         }
     }
     if drawn {

@@ -4,14 +4,20 @@
 use super::chart::{Disc, Dot, Ink, Line, Plot, Stroke};
 use crate::trace::{BranchPoint, Detachment, DetachmentKind, Mark, Shape};
 
-/// An axis of a detachment curve.
+/// An axis of a plot of rows.
 #[derive(Clone, Copy, Debug)]
-pub struct CurveAxis {
+pub struct Axis<Row, Value> {
     /// What it is called, with its unit.
     pub label: &'static str,
     /// Its values.
-    pub value: fn(&Detachment) -> Option<f64>,
+    pub value: fn(&Row) -> Value,
 }
+
+/// An axis of a detachment curve.
+pub type CurveAxis = Axis<Detachment, Option<f64>>;
+
+/// An axis of a branch.
+pub type BranchAxis = Axis<BranchPoint, f64>;
 
 /// A plot of detachment curves; `rows` of one side and whisker after the other, each at growing distances.
 #[must_use]
@@ -32,15 +38,6 @@ pub fn curves(title: &str, rows: &[Detachment], [x, y]: [CurveAxis; 2]) -> Plot 
         plot.lines.extend(joined(parts));
     }
     plot
-}
-
-/// An axis of a branch.
-#[derive(Clone, Copy, Debug)]
-pub struct BranchAxis {
-    /// What it is called, with its unit.
-    pub label: &'static str,
-    /// Its values.
-    pub value: fn(&BranchPoint) -> f64,
 }
 
 /// A bifurcation diagram; `points` of one side after the other, each from first touch on.
@@ -76,9 +73,9 @@ pub fn branches(title: &str, points: &[BranchPoint], [x, y]: [BranchAxis; 2]) ->
 
 /// A shape to draw, and how.
 #[derive(Clone, Debug)]
-pub struct Drawn<'a> {
+pub struct Drawn {
     /// The whisker.
-    pub shape: &'a Shape,
+    pub shape: Shape,
     /// Its colour.
     pub ink: Ink,
     /// Solid or dashed.
@@ -115,12 +112,11 @@ fn empty(title: &str, x_label: &str, y_label: &str) -> Plot {
 }
 
 fn line(points: Vec<[f64; 2]>, ink: Ink, stroke: Stroke, name: &str) -> Line {
-    let name = Some(name.to_owned());
     Line {
         points,
         ink,
         stroke,
-        name,
+        name: Some(name.to_owned()),
     }
 }
 

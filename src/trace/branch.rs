@@ -3,14 +3,11 @@
 use super::columns::row;
 use super::resample::{interpolate, targets};
 use super::{FINER, Mark, NoState};
-use crate::rod::Rest;
-use crate::rod::Rod;
-use crate::rod::Side;
-use crate::rod::Units;
+use crate::rod::{Rest, Side, Units};
 use crate::scene::{Pole, Whisker};
 use crate::sheet::{Continuation, Edge, LevelCurve, Node, ON_CURVE, Row};
-use crate::shooting::Reader;
 use crate::shooting::batch::Method;
+use crate::shooting::{FullState, Reader, Reading};
 use glam::DVec2;
 use serde::Serialize;
 
@@ -84,22 +81,10 @@ impl Branch {
         })
     }
 
-    /// The whisker and its pole.
-    #[must_use]
-    pub fn rod(&self) -> &Rod {
-        &self.level.rod
-    }
-
     /// Where the pole stands.
     #[must_use]
     pub fn row(&self) -> &Row {
         &self.level.row
-    }
-
-    /// The units of the whisker.
-    #[must_use]
-    pub fn units(&self) -> &Units {
-        &self.units
     }
 
     /// `count` points, at least 3, as evenly spaced as the fold allows, which is one of them: in push angle, contact
@@ -117,14 +102,18 @@ impl Branch {
             .collect();
         let starts: Vec<DVec2> = guesses.iter().map(|(_, start)| *start).collect();
         let corrected = self.level.correct(&starts, ON_CURVE);
-        let last = targets.len() - 1;
+        let (last, last_node) = (targets.len() - 1, nodes.len() - 1);
+        let end_mark = match (fold, end) {
+            (Some(_), Edge::Fold) => Mark::SecondFold,
+            _ => Mark::Tip,
+        };
         let on_curve = guesses.iter().zip(corrected).enumerate();
         on_curve
             .map(|(i, ((near, _), corrected))| {
                 // The ends and the fold are known better than any corrector knows them.
                 let exact = match i {
                     0 => Some((nodes[0], Mark::Touch)),
-                    _ if i == last => Some((nodes[nodes.len() - 1], end_mark(*fold, *end))),
+                    _ if i == last => Some((nodes[last_node], end_mark)),
                     _ if Some(i) == fold_at => fold.map(|fold| (nodes[fold], Mark::Fold)),
                     _ => None,
                 };
@@ -139,6 +128,12 @@ impl Branch {
                 Ok(self.point(&node, fold_at.is_none_or(|fold| i <= fold), mark))
             })
             .collect()
+    }
+
+    /// The state with its contact at `tau`, in the units of people.
+    pub(super) fn reading(&self, tau: f64, full: &FullState, push: f64) -> Reading {
+        let LevelCurve { rod, row, .. } = &self.level;
+        Reader::new(self.units, rod).read(tau, full, row.touch, push)
     }
 
     pub(super) fn lost(&self) -> NoState {
@@ -162,8 +157,7 @@ impl Branch {
 
     fn point(&self, node: &Node, stable: bool, mark: Option<Mark>) -> BranchPoint {
         let LevelCurve { rod, side, row, .. } = &self.level;
-        let reading =
-            Reader::new(self.units, rod).read(node.point.x, &node.full, row.touch, node.push);
+        let reading = self.reading(node.point.x, &node.full, node.push);
         BranchPoint {
             side: *side,
             stable,
@@ -179,12 +173,5 @@ impl Branch {
                 / (rod.radius(node.point.x).powi(3) * rod.contact_tangent().x),
             mark,
         }
-    }
-}
-
-fn end_mark(fold: Option<usize>, end: Edge) -> Mark {
-    match (fold, end) {
-        (Some(_), Edge::Fold) => Mark::SecondFold,
-        _ => Mark::Tip,
     }
 }

@@ -7,10 +7,10 @@ use crate::scene::{Pole, Whisker};
 use crate::sheet::{Crossing, Edge, Row, Sheet};
 use crate::shooting::batch::{Batch, InitialCondition, Method};
 use crate::shooting::{FirstVariation, Reader, Reading, Resolution};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// How a push from first touch ends.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum DetachmentKind {
     /// At the fold.
@@ -172,10 +172,11 @@ pub fn corner(whisker: &Whisker, pole: &Pole, side: Side) -> Corner {
         let push = end(distance).push_angle_deg.ok_or(NoCorner::NotFound)?;
         Ok((distance, push))
     });
+    let (distance_mm, push_angle_deg) = found.ok().unzip();
     Corner {
         side,
-        distance_mm: found.ok().map(|(distance, _)| distance),
-        push_angle_deg: found.ok().map(|(_, push)| push),
+        distance_mm,
+        push_angle_deg,
         reason: found.err(),
     }
 }

@@ -14,11 +14,6 @@ pub fn targets(lengths: &[f64], fold: Option<usize>, count: usize) -> (Vec<f64>,
         let targets = uniform(0.0, total, intervals).chain([total]);
         return (targets.collect(), None);
     };
-    #[allow(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "a share of `intervals`"
-    )]
     let before = (fold / total * intervals as f64).round() as usize;
     let before = before.clamp(1, intervals - 1);
     let targets = uniform(0.0, fold, before)

@@ -58,7 +58,7 @@ impl Shape {
     /// The shape in the state `found` on `branch`: `count` places spread evenly along the whisker, and the contact.
     #[must_use]
     pub fn new(branch: &Branch, found: &Found, count: usize) -> Self {
-        let (rod, row, units) = (branch.rod(), branch.row(), branch.units());
+        let (rod, row, units) = (&branch.level.rod, branch.row(), &branch.units);
         let contact = arclength(rod, found.tau).min(1.0);
         let mut at: Vec<f64> = uniform(count).filter(|s| *s != contact).collect();
         let index = at.partition_point(|s| *s < contact);
@@ -102,9 +102,9 @@ impl Shape {
     /// The resting whisker at first touch, `count` points in the same axes.
     #[must_use]
     pub fn at_rest(branch: &Branch, count: usize) -> Vec<[f64; 2]> {
-        let rest = Rest::new(branch.rod());
+        let rest = Rest::new(&branch.level.rod);
         uniform(count)
-            .map(|s| (rest.at_arclength(s).0 * branch.units().length_mm).to_array())
+            .map(|s| (rest.at_arclength(s).0 * branch.units.length_mm).to_array())
             .collect()
     }
 }

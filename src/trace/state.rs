@@ -1,8 +1,8 @@
 //! The state of a branch at a push angle.
 
 use super::{Branch, NoState};
-use crate::sheet::{Continuation, LevelCurve};
-use crate::shooting::{FullState, Reader, Reading};
+use crate::sheet::Continuation;
+use crate::shooting::{FullState, Reading};
 
 /// A state found on a branch.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,8 +21,7 @@ impl Branch {
     /// A state of the branch in the units of people.
     #[must_use]
     pub fn read(&self, state: &Found) -> Reading {
-        let LevelCurve { rod, row, .. } = &self.level;
-        Reader::new(self.units, rod).read(state.tau, &state.full, row.touch, state.push)
+        self.reading(state.tau, &state.full, state.push)
     }
 
     /// The state after the signed push angle `push`, in radians, on the stable or the unstable part.

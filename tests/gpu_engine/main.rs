@@ -8,6 +8,7 @@
     reason = "a test fails by panicking, and says aloud what it measured and skipped"
 )]
 
+mod adapters;
 mod bench;
 #[path = "../compute/mod.rs"]
 mod compute;
@@ -182,6 +183,6 @@ fn the_engine_runs_on_the_preferred_adapter() {
     };
     let reports = adapters();
     let chosen = &reports[preferred(&reports, Precision::F32).unwrap()];
-    assert!(gpu.describe().adapter.starts_with(&chosen.name));
+    assert!(gpu.describe().adapter.starts_with(&chosen.info.name));
     assert_eq!(gpu.describe().engine, "gpu f32");
 }

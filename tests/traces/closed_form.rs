@@ -31,6 +31,38 @@ fn the_straight_cylinder_is_the_elastica() {
     }
 }
 
+/// Known from an evaluation by other means, to 9 digits.
+#[test]
+fn an_elastica_that_turns_by_60_degrees() {
+    let state = elastica(60_f64.to_radians());
+    for (value, known) in [
+        (state.push.to_degrees(), 39.751_229_68),
+        (state.arc_over_distance, 1.051_451_76),
+        (state.load, 1.967_754_50),
+    ] {
+        assert!((value - known).abs() < 5e-9, "{state:?}");
+    }
+}
+
+/// The lemniscate constant: `int_0^1 du/sqrt(1 - u^4)`. At a right angle the contact is 2 along and `across` away from the
+/// base, in lengths `1/sqrt(2f)`.
+#[test]
+fn the_lemniscate_constant() {
+    let state = elastica(std::f64::consts::FRAC_PI_2);
+    let distance = (2.0 * state.load).sqrt();
+    let (arc, across) = (
+        state.arc_over_distance * distance,
+        (2.0 * state.load - 4.0).sqrt(),
+    );
+    assert!((0.5 * arc - 1.311_028_777_146_06).abs() < 1e-14, "{arc}");
+    // Legendre's relation: the product of both lemniscatic integrals is pi/4.
+    let product = 0.25 * arc * across;
+    assert!(
+        (product - std::f64::consts::FRAC_PI_4).abs() < 1e-14,
+        "{across}"
+    );
+}
+
 #[test]
 fn the_straight_cylinder_slips_at_its_closed_form() {
     for (side, distance) in [(Side::Cb, 2.0), (Side::Cf, 8.0), (Side::Cb, 11.0)] {

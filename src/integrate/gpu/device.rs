@@ -3,34 +3,17 @@
 use super::adapters::{AdapterReport, enumerate, preferred};
 use super::guard::guarded;
 use super::{EngineError, Precision};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, mpsc};
 
-/// A device, its queue, and the first error that nobody has seen yet.
+/// A device, its queue, and the errors that nobody has seen yet.
 ///
-/// wgpu reports errors when it likes; one handler writes them down, and [`Device::check`] hands them out.
+/// wgpu reports errors when it likes; they wait until [`Device::check`] hands the first one out.
 #[derive(Debug)]
 pub struct Device {
-    pub report: AdapterReport,
+    pub info: wgpu::AdapterInfo,
     pub queue: wgpu::Queue,
     pub handle: wgpu::Device,
-    fault: Fault,
-}
-
-#[derive(Clone, Debug, Default)]
-struct Fault(Arc<Mutex<Option<String>>>);
-
-impl Fault {
-    /// In one line, whatever the device says.
-    fn note(&self, what: &str) {
-        let line = what.split_whitespace().collect::<Vec<_>>().join(" ");
-        let mut slot = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        slot.get_or_insert(line);
-    }
-
-    fn take(&self) -> Option<String> {
-        let mut slot = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        slot.take()
-    }
+    errors: mpsc::Receiver<String>,
 }
 
 impl Device {
@@ -44,7 +27,7 @@ impl Device {
         };
         let Some(chosen) = preferred(&reports, precision) else {
             return Err(EngineError::Unsupported {
-                adapter: reports[best].name.clone(),
+                adapter: reports[best].info.name.clone(),
                 what: "compute in f64 (no SHADER_F64)".to_owned(),
             });
         };
@@ -61,7 +44,6 @@ impl Device {
     }
 
     fn on(adapter: &wgpu::Adapter, precision: Precision) -> Result<Self, EngineError> {
-        let report = AdapterReport::new(adapter);
         let clock = adapter.features() & wgpu::Features::TIMESTAMP_QUERY;
         let required_features = match precision {
             Precision::F32 => clock,
@@ -75,28 +57,31 @@ impl Device {
         let (handle, queue) = guarded(|| pollster::block_on(adapter.request_device(&wanted)))
             .map_err(EngineError::Device)?
             .map_err(|error| EngineError::Device(error.to_string()))?;
-        let fault = Fault::default();
-        let noted = fault.clone();
-        handle.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
-            noted.note(&error.to_string());
-        }));
-        let noted = fault.clone();
+        let (sender, errors) = mpsc::channel();
+        let note = move |what: String| {
+            // In one line, whatever the device says; without a receiver there is nobody to tell.
+            let line = what.split_whitespace().collect::<Vec<_>>().join(" ");
+            let _ = sender.send(line);
+        };
+        let noted = note.clone();
+        handle.on_uncaptured_error(Arc::new(move |error: wgpu::Error| noted(error.to_string())));
         handle.set_device_lost_callback(move |reason, message| {
-            noted.note(&format!("device lost ({reason:?}) {message}"));
+            note(format!("device lost ({reason:?}) {message}"));
         });
         Ok(Self {
-            report,
+            info: adapter.get_info(),
             queue,
             handle,
-            fault,
+            errors,
         })
     }
 
-    /// The error that has come in since the last call, if any.
+    /// The first error that has come in since the last call, if any.
     pub fn check(&self) -> Result<(), EngineError> {
-        self.fault
-            .take()
-            .map_or(Ok(()), |what| Err(EngineError::Device(what)))
+        let mut unseen = self.errors.try_iter();
+        let first = unseen.next();
+        unseen.for_each(drop);
+        first.map_or(Ok(()), |what| Err(EngineError::Device(what)))
     }
 
     /// Waits until everything up to `submission` is done.
@@ -112,12 +97,6 @@ impl Device {
             Ok(Err(error)) => Err(EngineError::Device(error.to_string())),
             Err(panic) => Err(EngineError::Device(panic)),
         }
-    }
-
-    /// Whether the device can tell how long a dispatch took.
-    pub fn has_clock(&self) -> bool {
-        let features = self.handle.features();
-        features.contains(wgpu::Features::TIMESTAMP_QUERY)
     }
 
     /// Largest storage buffer of this device, in bytes.
@@ -141,6 +120,21 @@ impl Device {
         self.check().map(|()| buffer)
     }
 
+    /// What `read` makes of the first `size` bytes of `buffer`, which were asked for before the device was waited for.
+    pub fn read<R>(
+        buffer: &wgpu::Buffer,
+        size: u64,
+        read: impl FnOnce(&[u8]) -> R,
+    ) -> Result<R, EngineError> {
+        let bytes = buffer
+            .get_mapped_range(..size)
+            .map_err(|error| EngineError::Device(error.to_string()))?;
+        let result = read(&bytes);
+        drop(bytes);
+        buffer.unmap();
+        Ok(result)
+    }
+
     /// Uploads `bytes`, `what` they are, to `kept`, a buffer that grows when it must.
     pub fn upload<'a>(
         &self,
@@ -152,7 +146,7 @@ impl Device {
         let most = self.most_bytes();
         if size > most {
             return Err(EngineError::Unsupported {
-                adapter: self.report.name.clone(),
+                adapter: self.info.name.clone(),
                 what: format!("hold {size} bytes of {what}, at most {most}"),
             });
         }
@@ -166,4 +160,16 @@ impl Device {
         self.queue.write_buffer(&buffer, 0, bytes);
         Ok(kept.insert(buffer))
     }
+}
+
+/// Has the first `size` bytes of `from` copied to `readback`, for [`Device::read`].
+pub fn answer(
+    commands: &mut wgpu::CommandEncoder,
+    from: &wgpu::Buffer,
+    readback: &wgpu::Buffer,
+    size: u64,
+) {
+    commands.copy_buffer_to_buffer(from, 0, readback, 0, size);
+    // Whether it worked is told by `get_mapped_range`.
+    commands.map_buffer_on_submit(readback, wgpu::MapMode::Read, ..size, |_| ());
 }

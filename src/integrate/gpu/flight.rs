@@ -1,7 +1,7 @@
 //! A dispatch under way, in buffers that are used again and again.
 
 use super::EngineError;
-use super::device::Device;
+use super::device::{Device, answer};
 use super::layout::{BufferLayout, Steps};
 use super::shaders::WORKGROUP;
 use super::stamps::Stamps;
@@ -50,11 +50,7 @@ impl Buffers {
         let bytes = |each: usize| (capacity * each) as u64;
         let (shots, hits) = (bytes(call.layout.shot), bytes(call.layout.hit));
         Ok(Self {
-            stamps: call
-                .timed
-                .then(|| Stamps::new(device))
-                .transpose()?
-                .flatten(),
+            stamps: Stamps::new(device, call.timed)?,
             capacity,
             shots: device.buffer("shots", shots, Usage::STORAGE | Usage::COPY_DST)?,
             hits: device.buffer("hits", hits, Usage::STORAGE | Usage::COPY_SRC)?,
@@ -124,19 +120,12 @@ impl Flight {
             // The pace keeps the shots below what `u32` can count.
             pass.dispatch_workgroups((count as u32).div_ceil(WORKGROUP), 1, 1);
         }
-        commands.copy_buffer_to_buffer(&buffers.hits, 0, &buffers.readback, 0, hits_size);
+        answer(&mut commands, &buffers.hits, &buffers.readback, hits_size);
         if let Some(stamps) = &buffers.stamps {
             stamps.resolve(&mut commands);
         }
         let submitted = Instant::now();
         let index = device.queue.submit([commands.finish()]);
-        // Whether it worked is told by `get_mapped_range`.
-        buffers
-            .readback
-            .map_async(wgpu::MapMode::Read, ..hits_size, |_| ());
-        if let Some(stamps) = &buffers.stamps {
-            stamps.request();
-        }
         device.check()?;
         Ok(Self {
             shots: count,
@@ -156,13 +145,9 @@ impl Flight {
         call.device.wait(self.index)?;
         let arrived = Instant::now();
         let size = (self.shots * call.layout.hit) as u64;
-        let readback = &self.buffers.readback;
-        let bytes = readback
-            .get_mapped_range(..size)
-            .map_err(|error| EngineError::Device(error.to_string()))?;
-        (call.layout.hits)(&bytes, hits);
-        drop(bytes);
-        readback.unmap();
+        Device::read(&self.buffers.readback, size, |bytes| {
+            (call.layout.hits)(bytes, hits)
+        })?;
         times.readback += arrived.elapsed();
         if let Some(stamps) = &self.buffers.stamps {
             times.dispatch += stamps.read(call.device)?;

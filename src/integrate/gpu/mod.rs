@@ -18,7 +18,7 @@ mod precision;
 pub mod shaders;
 mod stamps;
 
-pub use adapters::{AdapterKind, AdapterReport, adapters, preferred};
+pub use adapters::{AdapterReport, adapters, preferred};
 pub use flight::Times;
 pub use guard::is_guarded;
 pub use precision::Precision;
@@ -188,12 +188,12 @@ fn coils_up(rod: &Rod, hit: &Hit) -> bool {
 
 impl Engine for Gpu {
     fn describe(&self) -> Description {
-        let report = &self.device.report;
+        let info = &self.device.info;
         Description {
             engine: format!("gpu {}", self.precision),
             adapter: format!(
                 "{}, {}, {} {}",
-                report.name, report.backend, report.driver, report.driver_info
+                info.name, info.backend, info.driver, info.driver_info
             ),
         }
     }

@@ -36,22 +36,16 @@ impl Precision {
         }
     }
 
-    /// Steps of a trajectory from `tau`; on a rod `measured`, steps for every piece of its profile.
+    /// Steps of a trajectory from `tau`; on a rod `measured`, steps for every piece of its profile: no coarser than those of
+    /// a cone of taper 0.99 without one.
     #[must_use]
     pub fn steps(self, measured: Option<&Rod>, tau: f64, load: f64) -> u32 {
-        measured.map_or(self.least_steps(), |rod| {
-            self.resolution().steps(rod, tau, load)
-        })
-    }
-
-    /// The resolution of whiskers with a profile, which take steps piece by piece: no coarser than that of a cone of
-    /// taper 0.99 in as many steps as the others.
-    #[must_use]
-    fn resolution(self) -> Resolution {
-        Resolution {
-            least: self.least_steps() / 2,
-            longest: LARGEST_TAPER_TAU / f64::from(self.least_steps()),
-        }
+        let least = self.least_steps();
+        let pieces = Resolution {
+            least: least / 2,
+            longest: LARGEST_TAPER_TAU / f64::from(least),
+        };
+        measured.map_or(least, |rod| pieces.steps(rod, tau, load))
     }
 
     /// Residual, in whisker lengths, at which a shot has converged.

@@ -5,7 +5,6 @@ use super::layout::OUTCOMES;
 use crate::integrate::MOST_STEPS;
 use crate::rod::Effects;
 use crate::shooting::LONGEST_STEP;
-use std::fmt::Write;
 
 /// Invocations per workgroup; every device allows this many.
 pub const WORKGROUP: u32 = 64;
@@ -31,16 +30,13 @@ fn constants(precision: Precision) -> String {
          const WORKGROUP = {WORKGROUP}u;\n\
          const MOST_STEPS = {MOST_STEPS}u;\n\
          const LONGEST_STEP = real({LONGEST_STEP:e});\n\
-         const TOLERANCE = real({tolerance:e});\n\
-         override TAPER: bool;\n\
-         override CURVATURE: bool;\n\
-         override SPIRAL: bool;\n\
-         override GRADIENT: bool;\n\
-         override SIMILAR: bool;\n"
+         const TOLERANCE = real({tolerance:e});\n"
     );
+    for (name, _) in overrides(Effects::default()) {
+        text += &format!("override {name}: bool;\n");
+    }
     for (code, (name, _)) in OUTCOMES.iter().enumerate() {
-        // Writing to a String cannot fail.
-        let _ = writeln!(text, "const {name} = {code}u;");
+        text += &format!("const {name} = {code}u;\n");
     }
     text
 }

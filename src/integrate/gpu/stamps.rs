@@ -1,7 +1,7 @@
 //! The device's own clock around a dispatch.
 
 use super::EngineError;
-use super::device::Device;
+use super::device::{Device, answer};
 use std::time::Duration;
 use wgpu::BufferUsages as Usage;
 
@@ -17,9 +17,10 @@ pub struct Stamps {
 }
 
 impl Stamps {
-    /// `None` where the device has no such clock.
-    pub fn new(device: &Device) -> Result<Option<Self>, EngineError> {
-        if !device.has_clock() {
+    /// `None` where they are not `wanted`, or the device has no such clock.
+    pub fn new(device: &Device, wanted: bool) -> Result<Option<Self>, EngineError> {
+        let features = device.handle.features();
+        if !wanted || !features.contains(wgpu::Features::TIMESTAMP_QUERY) {
             return Ok(None);
         }
         let set = device.handle.create_query_set(&wgpu::QuerySetDescriptor {
@@ -47,24 +48,13 @@ impl Stamps {
     /// Sends the times after the pass on their way.
     pub fn resolve(&self, commands: &mut wgpu::CommandEncoder) {
         commands.resolve_query_set(&self.set, 0..2, &self.resolved, 0);
-        commands.copy_buffer_to_buffer(&self.resolved, 0, &self.readback, 0, BYTES);
-    }
-
-    /// Asks for the times of what was submitted.
-    pub fn request(&self) {
-        self.readback.map_async(wgpu::MapMode::Read, .., |_| ());
+        answer(commands, &self.resolved, &self.readback, BYTES);
     }
 
     /// How long the dispatch took, once it is done.
     pub fn read(&self, device: &Device) -> Result<Duration, EngineError> {
-        let mapped = self
-            .readback
-            .get_mapped_range(..)
-            .map_err(|error| EngineError::Device(error.to_string()))?;
-        let [start, end] =
-            [0, 8].map(|at| bytemuck::pod_read_unaligned::<u64>(&mapped[at..at + 8]));
-        drop(mapped);
-        self.readback.unmap();
+        let [start, end]: [u64; 2] =
+            Device::read(&self.readback, BYTES, bytemuck::pod_read_unaligned)?;
         let nanoseconds =
             end.saturating_sub(start) as f64 * f64::from(device.queue.get_timestamp_period());
         Ok(Duration::from_secs_f64(1e-9 * nanoseconds))

@@ -7,22 +7,17 @@ use super::shading::Shading;
 use crate::render::axes::{Axes, BELOW};
 use crate::render::error::Error;
 use crate::render::font::{self, fitted};
-use crate::render::heading::{Heading, TICK, TITLE};
+use crate::render::heading::{ALONE, HEAD_ROOM, Heading, SIDES, TICK, TITLE, TITLE_LINE};
 use crate::render::picture::{Anchor, Area, Picture};
 use crate::render::ticks::{self, Tick};
 use crate::render::units;
 use crate::store::{Layout, StoredMap};
 
-/// Size of the panel of one whisker.
-const ALONE: [f64; 2] = [1280.0, 880.0];
 /// All panels of a contact sheet together are at most this wide and high, whatever their number.
 const SHEET: [f64; 2] = [1720.0, 1500.0];
 /// A panel of a contact sheet is at most this wide and high.
 const PANEL: f64 = 560.0;
-/// Least room to the left and to the right.
-const SIDES: [f64; 2] = [136.0, 48.0];
-/// Height of the title's line, and from one note to the next.
-const HEAD: f64 = 74.0;
+/// From one note to the next.
 const NOTE: f64 = 34.0;
 
 const PUSH_ANGLE: &str = "push angle (deg)   CF < 0 < CB";
@@ -30,7 +25,6 @@ const DISTANCE: &str = "distance at first touch (mm)";
 
 /// The panels of a map laid out.
 pub(super) struct Sheet {
-    layout: Layout,
     /// Width and height of all panels together.
     size: [f64; 2],
     /// From one panel to the next, and the part of it that is left free.
@@ -57,7 +51,6 @@ impl Sheet {
         let across = Cells::new(&map.grid().push_angle_deg).ticks(1.0);
         let upwards = Cells::new(&map.grid().distance_mm).ticks(unit);
         Self {
-            layout: map.layout(),
             size: ALONE,
             pitch: ALONE,
             gap: 0.0,
@@ -73,20 +66,19 @@ impl Sheet {
         let pitch = PANEL.min(SHEET[0] / panels[0]).min(SHEET[1] / panels[1]);
         let gap = (0.06 * pitch).min(10.0);
         let size = panels.map(|panels| pitch * panels - gap);
-        let middles = |values: Option<&Vec<f64>>, size: f64| -> Vec<Tick> {
-            let labels = values.map_or_else(Vec::new, |values| ticks::labels(values));
+        let axis = |values: &Option<Vec<f64>>, label: &'static str, size: f64| {
+            let Some(values) = values else {
+                return (Vec::new(), "");
+            };
             let middle = |place: usize| (pitch * place as f64 + 0.5 * (pitch - gap)) / size;
-            let labels = labels.into_iter().enumerate();
-            labels
-                .map(|(place, label)| Tick::new(middle(place), label))
-                .collect()
+            let labels = ticks::labels(values).into_iter().enumerate();
+            let ticks = labels.map(|(place, label)| Tick::new(middle(place), label));
+            (ticks.collect(), label)
         };
-        let label = |there: bool, label: &'static str| if there { label } else { "" };
-        let taper = label(grid.taper.is_some(), "taper (1 \u{2212} tip/base radius)");
-        let curvature = label(grid.curvature_per_mm.is_some(), "curvature (1/mm)");
+        let taper = "taper (1 \u{2212} tip/base radius)";
         let axes = [
-            (middles(grid.taper.as_ref(), size[0]), taper),
-            (middles(grid.curvature_per_mm.as_ref(), size[1]), curvature),
+            axis(&grid.taper, taper, size[0]),
+            axis(&grid.curvature_per_mm, "curvature (1/mm)", size[1]),
         ];
         let ends = |values: &[f64], unit: f64| {
             ticks::labels(&[values[0] / unit, values[values.len() - 1] / unit]).join(" to ")
@@ -95,7 +87,6 @@ impl Sheet {
         let angles = ends(&grid.push_angle_deg, 1.0);
         let distances = ends(&grid.distance_mm, unit);
         Self {
-            layout,
             size,
             pitch: [pitch; 2],
             gap,
@@ -127,14 +118,14 @@ impl Sheet {
         let width = left + (self.size[0] + right).max(noted);
         let room = width - left - SIDES[1];
         let heading = Heading::plan([""; 2], shading.samples(), [left, room]);
-        let body = Area::new([left, HEAD + heading.height], self.size);
+        let body = Area::new([left, HEAD_ROOM + heading.height], self.size);
         let below = BELOW + NOTE * self.notes.len() as f64;
         let mut picture = Picture::new([width, body.bottom() + below], wanted);
-        let (title, size) = fitted(map.title(), TITLE, room);
-        picture.text(&title, [left, 46.0], size, Anchor::Left);
-        heading.draw(&mut picture, [left, HEAD], left);
-        for index in 0..self.layout.panels() {
-            let area = self.panel(body, index);
+        let title = fitted(map.title(), TITLE, room);
+        picture.fitted(&title, [left, TITLE_LINE], Anchor::Left);
+        heading.draw(&mut picture, [left, HEAD_ROOM], left);
+        for index in 0..map.layout().panels() {
+            let area = self.panel(body, map.layout(), index);
             let cells = (map, channel, index);
             panel::draw(&mut picture, area, cells, shading, self.line)?;
         }
@@ -150,10 +141,10 @@ impl Sheet {
     }
 
     /// Where a panel stands.
-    fn panel(&self, body: Area, index: usize) -> Area {
-        let (column, row) = (index % self.layout.columns, index / self.layout.columns);
+    fn panel(&self, body: Area, layout: Layout, index: usize) -> Area {
+        let (column, row) = (index % layout.columns, index / layout.columns);
         let left = body.left + self.pitch[0] * column as f64;
-        let top = body.top + self.pitch[1] * (self.layout.rows - 1 - row) as f64;
+        let top = body.top + self.pitch[1] * (layout.rows - 1 - row) as f64;
         Area::new([left, top], self.pitch.map(|pitch| pitch - self.gap))
     }
 }
