@@ -101,7 +101,7 @@ impl SimdTask for Steps<'_> {
 
 #[inline(always)]
 fn steps<T: Lanes>(method: Method, conditions: &Conditions) -> [(f64, u32); WIDTH] {
-    let resolution = method.resolution();
+    let resolution = method.resolution;
     let taper = numbers(conditions, |condition| condition.rod.taper);
     let tau = numbers(conditions, |condition| condition.tau);
     let [_, s] = radius_and_arclength(T::pack(taper), T::pack(tau));

@@ -35,29 +35,26 @@ pub struct InitialCondition<'a> {
 /// How trajectories are integrated: how finely, and with which effects beside each rod's own.
 #[derive(Clone, Copy, Debug)]
 pub struct Method {
-    resolution: Resolution,
-    effects: Effects,
+    /// How finely.
+    pub resolution: Resolution,
+    /// The effects that every kernel has.
+    pub effects: Effects,
 }
 
 impl Method {
     /// Every rod with the kernel for its own effects.
     #[must_use]
-    pub const fn new(resolution: Resolution) -> Self {
+    pub fn new(resolution: Resolution) -> Self {
+        let effects = Effects::default();
         Self {
             resolution,
-            effects: Effects {
-                taper: false,
-                curvature: false,
-                spiral: false,
-                gradient: false,
-                profile: false,
-            },
+            effects,
         }
     }
 
     /// At [`Resolution::FINE`].
     #[must_use]
-    pub const fn fine() -> Self {
+    pub fn fine() -> Self {
         Self::new(Resolution::FINE)
     }
 
@@ -77,18 +74,6 @@ impl Method {
     #[must_use]
     pub const fn coarsely(self) -> Self {
         self.with_resolution(Resolution::COARSE)
-    }
-
-    /// How finely.
-    #[must_use]
-    pub const fn resolution(&self) -> Resolution {
-        self.resolution
-    }
-
-    /// The effects that every kernel has.
-    #[must_use]
-    pub const fn effects(&self) -> Effects {
-        self.effects
     }
 }
 
