@@ -37,18 +37,6 @@ pub struct ArcPosition<T> {
     pub s: T,
 }
 
-impl<T: Lanes> ArcPosition<T> {
-    #[inline(always)]
-    fn base() -> Self {
-        let zero = T::of(0.0);
-        Self {
-            tau: zero,
-            radius: T::of(1.0),
-            s: zero,
-        }
-    }
-}
-
 /// A material that can be gathered from the rods of a block, and the way along it.
 pub trait GatherMaterial<T: Lanes>: Material<T> {
     /// The material on piece `piece` of a profile.
@@ -58,10 +46,20 @@ pub trait GatherMaterial<T: Lanes>: Material<T> {
     fn stiffness(conditions: &Conditions, radius: T, s: T) -> T;
 
     /// Where piece `piece` begins; the base for the first one.
-    fn begin(conditions: &Conditions, piece: usize) -> ArcPosition<T>;
+    #[inline(always)]
+    fn begin(_conditions: &Conditions, _piece: usize) -> ArcPosition<T> {
+        ArcPosition {
+            tau: T::of(0.0),
+            radius: T::of(1.0),
+            s: T::of(0.0),
+        }
+    }
 
     /// How many pieces the way from the contacts at the arclengths `s` to the base has.
-    fn pieces(conditions: &Conditions, s: T) -> usize;
+    #[inline(always)]
+    fn pieces(_conditions: &Conditions, _s: T) -> usize {
+        1
+    }
 }
 
 impl<T: Lanes> GatherMaterial<T> for Uniform {
@@ -73,16 +71,6 @@ impl<T: Lanes> GatherMaterial<T> for Uniform {
     #[inline(always)]
     fn stiffness(_: &Conditions, radius: T, _: T) -> T {
         radius * radius * (radius * radius)
-    }
-
-    #[inline(always)]
-    fn begin(_: &Conditions, _: usize) -> ArcPosition<T> {
-        ArcPosition::base()
-    }
-
-    #[inline(always)]
-    fn pieces(_: &Conditions, _: T) -> usize {
-        1
     }
 }
 
@@ -97,16 +85,6 @@ impl<T: Lanes> GatherMaterial<T> for Graded<T> {
     fn stiffness(conditions: &Conditions, radius: T, s: T) -> T {
         let gradient: T = lanes(conditions, |condition| condition.rod.gradient);
         radius * radius * (radius * radius) * gradient.mul_add(s, T::of(1.0))
-    }
-
-    #[inline(always)]
-    fn begin(_: &Conditions, _: usize) -> ArcPosition<T> {
-        ArcPosition::base()
-    }
-
-    #[inline(always)]
-    fn pieces(_: &Conditions, _: T) -> usize {
-        1
     }
 }
 
