@@ -109,9 +109,7 @@ impl Map {
 /// When the map takes too much memory, the tolerance cannot be kept, or there is no GPU where one was asked for.
 pub fn map(scene: &Scene, options: Options) -> Result<Map, Error> {
     let mut plan = Plan::new(scene)?;
-    plan.method = plan
-        .method
-        .with_resolution(resolution(scene, options, &plan.sides)?);
+    plan.method.resolution = resolution(scene, options, &plan.sides)?;
     let mut engine = engine(options)?;
     let engine = engine.as_mut().map(|engine| &mut **engine as _);
     let mut panels = Vec::with_capacity(plan.whiskers.len());

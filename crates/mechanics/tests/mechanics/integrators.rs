@@ -112,7 +112,7 @@ fn batches_have_the_order() {
 /// The finest resolution in use is exact to 1e-11 up to taper 0.99.
 #[test]
 fn the_fine_resolution_is_exact() {
-    let fine = steps(1).with_resolution(Resolution::FINE);
+    let fine = Method::fine().with_effects(EFFECTS);
     let exact = Batch::new(steps(512)).shoot::<ShootingMap>(&rods());
     for (a, b) in exact
         .iter()

@@ -64,16 +64,11 @@ impl Method {
         Self { effects, ..self }
     }
 
-    /// The same at another resolution.
-    #[must_use]
-    pub const fn with_resolution(self, resolution: Resolution) -> Self {
-        Self { resolution, ..self }
-    }
-
     /// The same at [`Resolution::COARSE`].
     #[must_use]
     pub const fn coarsely(self) -> Self {
-        self.with_resolution(Resolution::COARSE)
+        let resolution = Resolution::COARSE;
+        Self { resolution, ..self }
     }
 }
 
