@@ -1,10 +1,10 @@
 //! A trajectory seen at points along the whisker.
 
 use crate::rod::{Rest, Rod, arclength};
-use crate::shooting::{Bent, Intrinsic, Spiral};
-use crate::shooting::{Graded, Material, Measured};
-use crate::shooting::{Nystrom8, Resolution, Scales, integrate};
-use crate::shooting::{RodSystem, Section, Shape, State};
+use crate::shooting::{
+    Bent, Graded, Intrinsic, Material, Measured, Nystrom8, Resolution, RodSystem, Scales, Section,
+    Shape, Spiral, State, integrate,
+};
 use glam::DVec2;
 
 /// The whisker at one of its points, as seen from the contact, in axes whose second one is along the force; lengths in whisker

@@ -5,8 +5,7 @@
 //! coordinates of a whisker in front of a pole. Its derivatives need no trigonometry:
 //! `G_i = w_i/w - i theta_i`, `G_ij = w_ij/w - w_i w_j/w^2 - i theta_ij`.
 
-use crate::numerics::Complex;
-use crate::numerics::{Lanes, WIDTH};
+use crate::numerics::{Complex, Lanes, WIDTH};
 use crate::shooting::ShootingMap;
 use crate::shooting::sensitivity::{Arrival, BaseDerivatives, Triple};
 use glam::DVec2;

@@ -6,12 +6,8 @@ mod rk4;
 pub use nystrom8::Nystrom8;
 pub use rk4::Rk4;
 
-use crate::numerics::Real;
-use crate::numerics::hyperbolic_small;
-use crate::shooting::Intrinsic;
-use crate::shooting::Material;
-use crate::shooting::Section;
-use crate::shooting::{Planar, RodSystem, Sensitivity, State};
+use crate::numerics::{Real, hyperbolic_small};
+use crate::shooting::{Intrinsic, Material, Planar, RodSystem, Section, Sensitivity, State};
 
 /// An explicit one-step method with fixed steps.
 pub trait Integrator: Copy + Send + Sync + 'static {
