@@ -115,13 +115,9 @@ impl<T: Lanes> GatherMaterial<T> for Measured<T> {
                 .map_or(0.0, |profile| profile.pieces[piece].from)
         };
         ArcPosition {
-            tau: lanes(conditions, |InitialCondition { rod, .. }| {
-                rod.tau(begin(rod))
-            }),
-            radius: lanes(conditions, |InitialCondition { rod, .. }| {
-                1.0 - rod.taper * begin(rod)
-            }),
-            s: lanes(conditions, |InitialCondition { rod, .. }| begin(rod)),
+            tau: lanes(conditions, |at| at.rod.tau(begin(at.rod))),
+            radius: lanes(conditions, |at| 1.0 - at.rod.taper * begin(at.rod)),
+            s: lanes(conditions, |at| begin(at.rod)),
         }
     }
 

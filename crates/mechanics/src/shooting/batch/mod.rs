@@ -156,27 +156,16 @@ impl Batch {
 
     /// The same on this thread.
     fn chunk<O: OutputSet>(&self, conditions: &[InitialCondition], outputs: &mut [O]) {
-        stream::shoot(
-            self.unit,
-            self.method,
-            conditions.iter().copied(),
-            |i, output| outputs[i] = *output,
-        );
+        self.for_each(conditions.iter().copied(), |i, output| outputs[i] = *output);
     }
 
-    /// Shoots conditions as they come, on this thread, and hands the outputs of each on with its index, in no order. A padded
-    /// batch waits for all of them first.
+    /// Shoots conditions as they come, on this thread, and hands the outputs of each on with its index, in no order. They are
+    /// never padded, for which all of them would have to be known first.
     pub fn for_each<'a, O: OutputSet>(
         &self,
         conditions: impl Iterator<Item = InitialCondition<'a>>,
-        mut take: impl FnMut(usize, &O),
+        take: impl FnMut(usize, &O),
     ) {
-        if self.is_padded {
-            let conditions: Vec<InitialCondition> = conditions.collect();
-            let outputs = self.shoot(&conditions);
-            outputs.iter().enumerate().for_each(|(i, o)| take(i, o));
-        } else {
-            stream::shoot(self.unit, self.method, conditions, take);
-        }
+        stream::shoot(self.unit, self.method, conditions, take);
     }
 }

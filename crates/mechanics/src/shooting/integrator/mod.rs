@@ -125,17 +125,13 @@ impl<T: Real> Section<T> {
 
 /// Integrates `system` in `steps` steps from the section `from`.
 #[inline(always)]
-pub fn integrate<M: Integrator, T: Real, I, C, S: Sensitivity<T>>(
+pub fn integrate<M: Integrator, T: Real, I: Intrinsic<T>, C: Material<T>, S: Sensitivity<T>>(
     system: &RodSystem<T, I, C>,
     scales: &Scales<T>,
     from: Section<T>,
     steps: u32,
     mut state: State<T, I, S>,
-) -> State<T, I, S>
-where
-    I: Intrinsic<T>,
-    C: Material<T>,
-{
+) -> State<T, I, S> {
     let mut section = from;
     for _ in 0..steps {
         let (rest, (rod, carried)) = M::step::<T, I, C, S>(system, scales, section, state);
