@@ -232,7 +232,7 @@ fn cell(pool: &ThreadPool) -> Value {
     let scene = scene();
     let steps = accuracy::cheapest(&scene, &Side::BOTH, TOLERANCE.to_degrees()).unwrap();
     let mut plan = Plan::new(&scene).unwrap();
-    plan.method = plan.method.with_resolution(steps.resolution);
+    plan.method.resolution = steps.resolution;
     let mut summary = None;
     let seconds = seconds(pool, || {
         let Ok(done) = map::run(&scene, &plan, None, &mut |_| Ok::<(), Infallible>(()));

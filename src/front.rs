@@ -107,9 +107,7 @@ impl Map {
 /// When the map takes too much memory, the tolerance cannot be kept, or there is no GPU where one was asked for.
 pub fn map(scene: &Scene, options: Options) -> Result<Map, Error> {
     let mut plan = Plan::new(scene)?;
-    plan.method = plan
-        .method
-        .with_resolution(resolution(scene, options, &plan.sides)?);
+    plan.method.resolution = resolution(scene, options, &plan.sides)?;
     #[cfg(feature = "gpu")]
     let mut gpu = options.gpu.map(Gpu::new).transpose()?;
     #[cfg(feature = "gpu")]

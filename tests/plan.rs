@@ -88,7 +88,7 @@ fn listed(tip_radius_um: f64, more: &str) -> Vec<String> {
     let scene = Scene::parse(&text, "scene").unwrap();
     let plan = Plan::new(&scene).unwrap();
     let sign = |on| if on { '+' } else { '-' };
-    effects(&scene, plan.method.effects())
+    effects(&scene, plan.method.effects)
         .iter()
         .map(|e| format!("{}{}: {}", sign(e.on), e.name, e.why))
         .collect()

@@ -55,7 +55,7 @@ fn the_shape_at_rest_decides_at_the_straight_length() {
         let mut first: Option<Vec<Vec<u32>>> = None;
         for resolution in Resolution::LADDER.into_iter().rev().chain([told]) {
             let mut plan = Plan::new(&scene).unwrap();
-            plan.method = plan.method.with_resolution(resolution);
+            plan.method.resolution = resolution;
             let (summary, panels) = compute_as(&scene, &plan, None);
             let case = format!("pole {pole}, friction {friction}, {resolution:?}");
             assert_eq!(

@@ -41,9 +41,9 @@ fn moved<'a>(condition: &InitialCondition<'a>, step: DVec2) -> InitialCondition<
 
 /// Angle of the tangent (from that of `near`), place, force and energy.
 fn numbers(full: &FullState, near: &FullState) -> [f64; 5] {
-    let angle = near.base.tangent.perp_dot(full.base.tangent);
-    let place = full.base.position;
-    [angle, place.x, place.y, full.base.force, full.energy]
+    let angle = near.tangent.perp_dot(full.tangent);
+    let place = full.position;
+    [angle, place.x, place.y, full.force, full.energy]
 }
 
 fn listed(change: &StateDerivative) -> [f64; 5] {

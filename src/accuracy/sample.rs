@@ -3,9 +3,10 @@
 use crate::refine::states;
 use crate::rod::{Effects, Rod, Side};
 use crate::scene::{Grid, Scene, Setup, Whisker};
-use crate::sheet::{Crossing, Edge, Sheet};
+use crate::sheet::{Edge, Sheet};
 use crate::shooting::batch::{Batch, InitialCondition, Method};
 use crate::shooting::{Resolution, ShootingMap};
+use glam::DVec2;
 use rayon::prelude::*;
 
 /// Values of an axis that take part: its ends, and some between. The ends of pushes get better with more distances, near
@@ -20,19 +21,17 @@ pub struct Sample {
     rods: Vec<Sampled>,
 }
 
-/// States of one rod, `(tau, load)`.
+/// Points of the sheet of one rod.
 struct Sampled {
     rod: Rod,
-    states: Vec<(f64, f64)>,
-    /// Where pushes end.
-    ends: Vec<((f64, f64), Edge)>,
+    points: Vec<Point>,
 }
 
-impl Sampled {
-    fn condition(&self, (tau, load): (f64, f64)) -> InitialCondition<'_> {
-        let rod = &self.rod;
-        InitialCondition { rod, tau, load }
-    }
+/// A state, or with an edge, where a push ends.
+struct Point {
+    tau: f64,
+    load: f64,
+    edge: Option<Edge>,
 }
 
 impl Sample {
@@ -58,15 +57,21 @@ impl Sample {
                 let sheet = Sheet::new(method.coarsely(), &rod, side, &distances)
                     .or_else(|| Sheet::new(method, &rod, side, &distances))?;
                 let solved = states(method.coarsely(), &sheet, &pushes).into_iter();
+                let solved = solved.map(|(_, state)| Point {
+                    tau: state.tau,
+                    load: state.load,
+                    edge: None,
+                });
                 // What ends at first touch does so at every resolution.
                 let crossings = sheet.crossings.iter().flatten();
-                let crossings = crossings.filter(|end| !end.is_at_touch());
-                let end = |end: &Crossing| ((end.tau, end.load), end.edge);
-                Some(Sampled {
-                    states: solved.map(|(_, state)| (state.tau, state.load)).collect(),
-                    ends: crossings.map(end).collect(),
-                    rod,
-                })
+                let ends = crossings.filter(|end| !end.is_at_touch());
+                let ends = ends.map(|end| Point {
+                    tau: end.tau,
+                    load: end.load,
+                    edge: Some(end.edge),
+                });
+                let points = solved.chain(ends).collect();
+                Some(Sampled { rod, points })
             })
             .collect();
         Self { effects, rods }
@@ -74,38 +79,35 @@ impl Sample {
 
     /// The largest error at `resolution`, in radians, as twice as many steps see it.
     pub fn error(&self, resolution: Resolution) -> f64 {
-        let method = Method::new(resolution).with_effects(self.effects);
-        let finer = method.with_resolution(resolution.doubled());
-        let pairs = |conditions: &[InitialCondition]| {
-            let [rough, finer] =
-                [method, finer].map(|m| Batch::new(m).shoot::<ShootingMap>(conditions));
-            rough.into_iter().zip(finer)
-        };
-        let rods = || self.rods.iter();
-        let states: Vec<InitialCondition> = rods()
-            .flat_map(|sampled| sampled.states.iter().map(|state| sampled.condition(*state)))
+        let points: Vec<(&Rod, &Point)> = self
+            .rods
+            .iter()
+            .flat_map(|Sampled { rod, points }| points.iter().map(move |point| (rod, point)))
             .collect();
-        let ends: Vec<(InitialCondition, Edge)> = rods()
-            .flat_map(|sampled| {
-                let ends = sampled.ends.iter();
-                ends.map(|(end, edge)| (sampled.condition(*end), *edge))
-            })
-            .collect();
-        let states = pairs(&states).map(|(rough, fine)| rough.residual(fine.pole).length());
-        let conditions: Vec<InitialCondition> = ends.iter().map(|(end, _)| *end).collect();
-        let ends = pairs(&conditions)
-            .zip(&ends)
-            .map(|((rough, fine), (condition, edge))| shift(&rough, &fine, condition, *edge));
-        states.chain(ends).fold(0.0, worse)
+        let condition =
+            |&(rod, &Point { tau, load, .. }): &(_, &Point)| InitialCondition { rod, tau, load };
+        let conditions: Vec<InitialCondition> = points.iter().map(condition).collect();
+        let [rough, fine] = [resolution, resolution.doubled()].map(|resolution| {
+            let method = Method::new(resolution).with_effects(self.effects);
+            Batch::new(method).shoot::<ShootingMap>(&conditions)
+        });
+        let pairs = rough.iter().zip(&fine);
+        let errors = pairs.zip(&points).map(|((rough, fine), (_, point))| {
+            let moved = rough.residual(fine.pole);
+            match point.edge {
+                Some(edge) => shift(rough, moved, point, edge),
+                None => moved.length(),
+            }
+        });
+        errors.fold(0.0, worse)
     }
 }
 
-/// How far the end of a push moves along its edge, where the distance is held: the direction of the pole, less what it
-/// changes with the distance. On a fold contact and load change both in the same proportion.
-fn shift(rough: &ShootingMap, fine: &ShootingMap, condition: &InitialCondition, edge: Edge) -> f64 {
-    let moved = rough.residual(fine.pole);
-    let by_contact = rough.by_tau * condition.tau;
-    let by_load = rough.by_load * condition.load;
+/// How far the `end` of a push whose pole has `moved` moves along its edge, where the distance is held: the direction of the
+/// pole, less what it changes with the distance. On a fold contact and load change both in the same proportion.
+fn shift(rough: &ShootingMap, moved: DVec2, end: &Point, edge: Edge) -> f64 {
+    let by_contact = rough.by_tau * end.tau;
+    let by_load = rough.by_load * end.load;
     let along = if edge == Edge::Tip || by_load.x.abs() > by_contact.x.abs() {
         by_load
     } else {

@@ -1,14 +1,13 @@
 //! The CPU: scalar, vectors on one thread, vectors on all.
 
 use super::solver::Solver;
-use super::task::Task;
+use super::task::{Task, places};
 use super::watch::watch;
 use super::{Engine, Measurement, Report, Rung, Stages};
 use crate::integrate::{EngineError, Hit};
-use crate::numerics::MultiplyAndAdd;
-use crate::numerics::Unit;
+use crate::numerics::{MultiplyAndAdd, Unit};
 use crate::shooting::Resolution;
-use crate::shooting::batch::{InitialCondition, flops_of_nystrom8};
+use crate::shooting::batch::flops_of_nystrom8;
 use std::convert::Infallible;
 use std::time::Instant;
 
@@ -44,10 +43,7 @@ pub fn measure(
             tolerance: TOLERANCE,
         };
         let start = Instant::now();
-        pool.install(|| {
-            let shots = task.shots.get(..1).unwrap_or_default();
-            solver(Resolution::FINE).solve(task.effects, &task.rods, shots)
-        });
+        pool.install(|| solver(Resolution::FINE).solve(task.effects, &task.rods, &task.shots[..1]));
         let first_result_s = start.elapsed().as_secs_f64();
         let peak_gflops = pool.install(|| peak(unit, runs));
         let engine = Engine {
@@ -57,12 +53,10 @@ pub fn measure(
             peak_gflops,
             first_result_s,
         };
-        let rows = &mut report.rows;
-        pool.install(|| {
-            for resolution in Resolution::LADDER {
-                rows.push(row(task, runs, &engine, solver(resolution)));
-            }
-        });
+        let row = |resolution| row(task, runs, &engine, solver(resolution));
+        report
+            .rows
+            .extend(pool.install(|| Resolution::LADDER.map(row)));
         report.engines.push(engine);
     }
     Ok(())
@@ -75,61 +69,21 @@ fn row(task: &Task, runs: usize, engine: &Engine, solver: Solver) -> Measurement
         Ok::<Vec<Hit>, Infallible>(hits)
     });
     let resolution = solver.resolution;
-    let work = operations(task, &hits, |condition| {
+    let work = task.work(&hits, |condition| {
         let steps = resolution.steps(condition.rod, condition.tau, condition.load);
         flops_of_nystrom8(task.effects, steps, condition)
     });
-    let points: Vec<(f64, f64)> = hits.iter().map(|hit| (hit.tau, hit.load)).collect();
-    Measurement::new(
-        &engine.name,
-        engine.threads,
-        Rung {
-            integrator: "nystrom8",
-            steps: resolution.least,
-            newton_f64: 0,
-        },
-        seconds,
-        Stages {
-            dispatch: 1e3 * seconds.median,
-            ..Stages::default()
-        },
-        Work {
-            trajectories: trajectories(&hits),
-            operations: work,
-            peak_gflops: engine.peak_gflops,
-        },
-        task.errors(&points),
-    )
-}
-
-/// What a row's seconds were spent on.
-pub struct Work {
-    pub trajectories: f64,
-    pub operations: f64,
-    pub peak_gflops: f64,
-}
-
-/// Trajectories that the engine integrated.
-pub fn trajectories(hits: &[Hit]) -> f64 {
-    hits.iter().map(|hit| f64::from(hit.steps)).sum()
-}
-
-/// Operations of these trajectories, counted on every 64th shot.
-pub fn operations(task: &Task, hits: &[Hit], count: impl Fn(&InitialCondition) -> u64) -> f64 {
-    const EVERY: usize = 64;
-    let pairs = || hits.iter().zip(&task.shots).step_by(EVERY);
-    let counted: f64 = pairs()
-        .map(|(hit, shot)| {
-            let condition = InitialCondition {
-                rod: &task.rods[shot.rod as usize],
-                tau: shot.tau,
-                load: shot.load,
-            };
-            count(&condition) as f64 * f64::from(hit.steps)
-        })
-        .sum();
-    let sampled: f64 = pairs().map(|(hit, _)| f64::from(hit.steps)).sum();
-    counted / sampled.max(1.0) * trajectories(hits)
+    let rung = Rung {
+        integrator: "nystrom8",
+        steps: resolution.least,
+        newton_f64: 0,
+    };
+    let stages = Stages {
+        dispatch: 1e3 * seconds.median,
+        ..Stages::default()
+    };
+    let errors = task.errors(&places(&hits));
+    Measurement::new(engine, rung, seconds, stages, work, errors)
 }
 
 /// Billions of operations per second of all threads of the pool at once.

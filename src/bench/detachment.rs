@@ -1,8 +1,7 @@
 //! The curve of detachment, from coarse to exact.
 
-use super::task::{EXACT, Spread};
+use super::task::{EXACT, Spread, faces};
 use super::watch::{Timing, watch};
-use crate::plan::Plan;
 use crate::scene::Scene;
 use crate::shooting::Resolution;
 use crate::trace::{Detachment, curve_at};
@@ -27,17 +26,9 @@ pub struct Detachments {
 
 /// Every rung of the ladder.
 pub fn measure(scene: &Scene, runs: usize) -> Vec<Detachments> {
-    let whiskers: Vec<_> = scene.whiskers().map(|(_, whisker)| whisker).collect();
-    let pairs: Vec<_> = whiskers
-        .iter()
-        .flat_map(|whisker| {
-            Plan::sides(scene)
-                .into_iter()
-                .map(move |side| (whisker, side))
-        })
-        .collect();
+    let faces = faces(scene);
     let curves = |resolution: Resolution| -> Vec<Detachment> {
-        pairs
+        faces
             .par_iter()
             .flat_map_iter(|(whisker, side)| {
                 let distances = &scene.grid.distance_mm;

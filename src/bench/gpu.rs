@@ -1,7 +1,6 @@
 //! Every GPU adapter, in `f32` and, where it can, in `f64`, alone and with Newton steps in `f64` after it.
 
-use super::cpu::{Work, operations, trajectories};
-use super::task::Task;
+use super::task::{Task, places};
 use super::watch::watch;
 use super::{Engine, Measurement, Report, Rung, Stages};
 use crate::integrate::gpu::{Gpu, Precision, adapters};
@@ -20,9 +19,8 @@ pub fn measure(task: &Task, runs: usize, report: &mut Report, said: &mut dyn FnM
     for (index, adapter) in all.iter().enumerate() {
         for precision in [Precision::F32, Precision::F64] {
             if precision == Precision::F64 && !adapter.shader_f64 {
-                report
-                    .failures
-                    .push(format!("{}: no f64 in shaders", adapter.info.name));
+                let failure = format!("{}: no f64 in shaders", adapter.info.name);
+                report.failures.push(failure);
                 continue;
             }
             said(&format!("gpu {precision}, {}", adapter.info.name));
@@ -30,11 +28,9 @@ pub fn measure(task: &Task, runs: usize, report: &mut Report, said: &mut dyn FnM
                 1 => format!("gpu {precision}"),
                 _ => format!("gpu {index} {precision}"),
             };
-            if let Err(error) = engine(task, runs, report, &name, index, precision) {
-                let name = &adapter.info.name;
-                report
-                    .failures
-                    .push(format!("{name}, {precision}: {error}"));
+            if let Err(error) = engine(task, runs, report, name, (index, precision)) {
+                let failure = format!("{}, {precision}: {error}", adapter.info.name);
+                report.failures.push(failure);
             }
         }
     }
@@ -44,34 +40,28 @@ fn engine(
     task: &Task,
     runs: usize,
     report: &mut Report,
-    name: &str,
-    index: usize,
-    precision: Precision,
+    name: String,
+    (index, precision): (usize, Precision),
 ) -> Result<(), EngineError> {
     let start = Instant::now();
     let mut gpu = Gpu::timed(index, precision)?;
-    gpu.shoot(
-        task.effects,
-        &task.rods,
-        task.shots.get(..1).unwrap_or_default(),
-    )?;
+    gpu.shoot(task.effects, &task.rods, &task.shots[..1])?;
     let first_result_s = start.elapsed().as_secs_f64();
-    let about = gpu.describe();
-    let peak_gflops = 1e-9 * gpu.peak(runs)?;
-    report.engines.push(Engine {
-        name: name.to_owned(),
+    let engine = Engine {
+        name,
         threads: None,
-        adapter: about.adapter,
-        peak_gflops,
+        adapter: gpu.describe().adapter,
+        peak_gflops: 1e-9 * gpu.peak(runs)?,
         first_result_s,
-    });
+    };
+    report.engines.push(engine.clone());
     for newton_f64 in 0..=NEWTON {
         let mut stages = Vec::new();
         let (seconds, (hits, points)) = watch(runs, || {
             let hits = gpu.shoot(task.effects, &task.rods, &task.shots)?;
             let times = gpu.times().unwrap_or_default();
             let start = Instant::now();
-            let mut points: Vec<(f64, f64)> = hits.iter().map(|hit| (hit.tau, hit.load)).collect();
+            let mut points = places(&hits);
             for _ in 0..newton_f64 {
                 newton(task, &mut points);
             }
@@ -95,7 +85,7 @@ fn engine(
             steps: precision.least_steps(),
             newton_f64,
         };
-        let work = operations(task, &hits, |condition| {
+        let mut work = task.work(&hits, |condition| {
             flops_of_rk4(task.effects, steps(condition), condition)
         });
         // Only the shader's work counts against the shader's peak.
@@ -104,20 +94,10 @@ fn engine(
         } else {
             seconds.median - 1e-3 * stages.refine
         };
-        let mut row = Measurement::new(
-            name,
-            None,
-            rung,
-            seconds,
-            stages,
-            Work {
-                trajectories: trajectories(&hits),
-                operations: work * seconds.median / on_device,
-                peak_gflops,
-            },
-            task.errors(&points),
-        );
-        row.trajectories_per_s += (newton_f64 * points.len()) as f64 / seconds.median;
+        work.operations *= seconds.median / on_device;
+        work.trajectories += (newton_f64 * points.len()) as f64;
+        let errors = task.errors(&points);
+        let row = Measurement::new(&engine, rung, seconds, stages, work, errors);
         report.rows.push(row);
     }
     Ok(())

@@ -21,7 +21,7 @@ use crate::plan::SAMPLE_VALUES;
 use crate::scene::Scene;
 use serde::Serialize;
 use std::fmt;
-use task::Task;
+use task::{Task, Work};
 
 /// One engine at one accuracy.
 #[derive(Clone, Debug, Serialize)]
@@ -50,6 +50,34 @@ pub struct Measurement {
     pub errors: Errors,
     /// Whether no other row is both faster and closer.
     pub pareto: bool,
+}
+
+impl Measurement {
+    fn new(
+        engine: &Engine,
+        rung: Rung,
+        seconds: Timing,
+        stages_ms: Stages,
+        work: Work,
+        errors: Errors,
+    ) -> Self {
+        let states = errors.states as f64;
+        let gflops = 1e-9 * work.operations / seconds.median;
+        Self {
+            engine: engine.name.clone(),
+            threads: engine.threads,
+            rung,
+            seconds,
+            stages_ms,
+            us_per_state: 1e6 * seconds.median / states,
+            states_per_s: states / seconds.median,
+            trajectories_per_s: work.trajectories / seconds.median,
+            gflops,
+            of_peak: gflops / engine.peak_gflops,
+            errors,
+            pareto: false,
+        }
+    }
 }
 
 /// How accurate a row was asked to be.
@@ -116,7 +144,7 @@ pub struct Engine {
 }
 
 /// Everything that was measured.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Default, Serialize)]
 pub struct Report {
     /// Title of the scene.
     pub scene: String,
@@ -173,10 +201,7 @@ pub fn run(
         scene: scene.title.clone(),
         states: task.shots.len(),
         runs: effort.runs,
-        engines: Vec::new(),
-        rows: Vec::new(),
-        detachments: Vec::new(),
-        failures: Vec::new(),
+        ..Report::default()
     };
     cpu::measure(&task, effort.runs, &mut report, said)?;
     gpu::measure(&task, effort.runs, &mut report, said);

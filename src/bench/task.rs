@@ -1,11 +1,11 @@
 //! The states of a scene, with exact answers.
 
 use super::solver::Solver;
-use crate::integrate::Shot;
+use crate::integrate::{Hit, Shot};
 use crate::numerics::Unit;
 use crate::plan::Plan;
 use crate::refine::states;
-use crate::rod::{Effects, Rod, arclength};
+use crate::rod::{Effects, Rod, Side, arclength};
 use crate::scene::{Scene, Whisker};
 use crate::sheet::Sheet;
 use crate::shooting::batch::{Batch, InitialCondition, Method};
@@ -23,6 +23,26 @@ pub struct Task {
     pub shots: Vec<Shot>,
     /// The answers, `(tau, load)`.
     exact: Vec<(f64, f64)>,
+}
+
+/// What a row's seconds were spent on.
+pub struct Work {
+    /// Trajectories that the engine integrated.
+    pub trajectories: f64,
+    /// Their floating-point operations.
+    pub operations: f64,
+}
+
+/// `(tau, load)` of every hit.
+pub fn places(hits: &[Hit]) -> Vec<(f64, f64)> {
+    hits.iter().map(|hit| (hit.tau, hit.load)).collect()
+}
+
+/// The whiskers of a scene, each on the sides that its push angles ask for.
+pub fn faces(scene: &Scene) -> Vec<(Whisker, Side)> {
+    let sides = Plan::sides(scene);
+    let both = |(_, whisker): (_, Whisker)| sides.iter().map(move |side| (whisker.clone(), *side));
+    scene.whiskers().flat_map(both).collect()
 }
 
 /// A number over all states.
@@ -75,41 +95,26 @@ pub struct Errors {
 impl Task {
     /// The states of every cell of `scene` that has one.
     pub fn new(scene: &Scene) -> Self {
-        let whiskers: Vec<Whisker> = scene.whiskers().map(|(_, whisker)| whisker).collect();
-        let sides = Plan::sides(scene);
-        let pairs: Vec<_> = whiskers
-            .iter()
-            .flat_map(|whisker| sides.iter().map(move |side| (whisker, *side)))
-            .map(|(whisker, side)| (whisker.rod(&scene.pole, side), side))
-            .collect();
-        let rods: Vec<Rod> = pairs.iter().map(|(rod, _)| rod.clone()).collect();
+        let faces = faces(scene);
+        let rod = |(whisker, side): &(Whisker, Side)| whisker.rod(&scene.pole, *side);
+        let rods: Vec<Rod> = faces.iter().map(rod).collect();
         let effects = Effects::of(&rods);
+        let method = Method::fine().with_effects(effects);
         let length = scene.whisker.length_mm;
         let distances: Vec<f64> = scene.grid.distance_mm.iter().map(|d| d / length).collect();
-        let solved: Vec<Vec<(Shot, (f64, f64))>> = pairs
-            .par_iter()
-            .enumerate()
-            .map(|(index, (rod, side))| {
-                let method = Method::fine().with_effects(effects);
-                let Some(sheet) = Sheet::new(method, rod, *side, &distances) else {
-                    return Vec::new();
-                };
-                let solved = states(method, &sheet, &scene.grid.push_angle_deg).into_iter();
-                solved
-                    .map(|(shot, state)| {
-                        #[allow(clippy::cast_possible_truncation, reason = "a sample has few rods")]
-                        let rod = index as u32;
-                        (Shot { rod, ..shot }, (state.tau, state.load))
-                    })
-                    .collect()
+        let (shots, starts): (Vec<Shot>, Vec<Shot>) = (rods.par_iter().zip(&faces).enumerate())
+            .flat_map_iter(|(index, (rod, (_, side)))| {
+                let sheet = Sheet::new(method, rod, *side, &distances);
+                let solved = sheet.map(|sheet| states(method, &sheet, &scene.grid.push_angle_deg));
+                solved.into_iter().flatten().map(move |(shot, state)| {
+                    #[allow(clippy::cast_possible_truncation, reason = "a sample has few rods")]
+                    let rod = index as u32;
+                    let shot = Shot { rod, ..shot };
+                    let (tau, load) = (state.tau, state.load);
+                    (shot, Shot { tau, load, ..shot })
+                })
             })
-            .collect();
-        let (shots, fine): (Vec<Shot>, Vec<(f64, f64)>) = solved.into_iter().flatten().unzip();
-        let starts: Vec<Shot> = shots
-            .iter()
-            .zip(&fine)
-            .map(|(shot, &(tau, load))| Shot { tau, load, ..*shot })
-            .collect();
+            .unzip();
         let solver = Solver {
             unit: Unit::detect(),
             resolution: EXACT,
@@ -118,7 +123,7 @@ impl Task {
         let exact = solver.solve(effects, &rods, &starts);
         Self {
             effects,
-            exact: exact.iter().map(|hit| (hit.tau, hit.load)).collect(),
+            exact: places(&exact),
             rods,
             shots,
         }
@@ -126,13 +131,33 @@ impl Task {
 
     /// The states `points`, `(tau, load)` of every shot, as conditions.
     pub fn conditions(&self, points: &[(f64, f64)]) -> Vec<InitialCondition<'_>> {
-        let pairs = points.iter().zip(&self.shots);
-        let condition = |(&(tau, load), shot): (&(f64, f64), &Shot)| InitialCondition {
-            rod: &self.rods[shot.rod as usize],
-            tau,
-            load,
-        };
-        pairs.map(condition).collect()
+        let pairs = self.shots.iter().zip(points);
+        pairs
+            .map(|(shot, point)| self.condition(shot, *point))
+            .collect()
+    }
+
+    fn condition(&self, shot: &Shot, (tau, load): (f64, f64)) -> InitialCondition<'_> {
+        let rod = &self.rods[shot.rod as usize];
+        InitialCondition { rod, tau, load }
+    }
+
+    /// The work on these hits; `count` tells the operations of a trajectory, and is asked for every 64th shot.
+    pub fn work(&self, hits: &[Hit], count: impl Fn(&InitialCondition) -> u64) -> Work {
+        const EVERY: usize = 64;
+        let steps = |hit: &Hit| f64::from(hit.steps);
+        let pairs = || hits.iter().zip(&self.shots).step_by(EVERY);
+        let counted: f64 = pairs()
+            .map(|(hit, shot)| {
+                count(&self.condition(shot, (shot.tau, shot.load))) as f64 * steps(hit)
+            })
+            .sum();
+        let sampled: f64 = pairs().map(|(hit, _)| steps(hit)).sum();
+        let trajectories = hits.iter().map(steps).sum();
+        Work {
+            trajectories,
+            operations: counted / sampled.max(1.0) * trajectories,
+        }
     }
 
     /// How far off the answers `points`, `(tau, load)` of every shot, are.

@@ -21,12 +21,10 @@ pub fn watch<T, E>(runs: usize, mut work: impl FnMut() -> Result<T, E>) -> Resul
         found = work()?;
         seconds.push(start.elapsed().as_secs_f64());
     }
-    let [fastest, slowest] = [f64::min, f64::max].map(|f| seconds.iter().copied().reduce(f));
+    let [fastest, slowest] =
+        [f64::min, f64::max].map(|f| seconds.iter().copied().fold(f64::NAN, f));
     let median = median(seconds);
-    let spread = slowest
-        .zip(fastest)
-        .map_or(0.0, |(slowest, fastest)| slowest - fastest)
-        / median;
+    let spread = (slowest - fastest) / median;
     Ok((Timing { median, spread }, found))
 }
 

@@ -58,7 +58,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     let mut plan = Plan::new(&scene)?;
     let accuracy = options.tolerance.choose(&scene, &plan.sides)?;
     if let Some(accuracy) = &accuracy {
-        plan.method = plan.method.with_resolution(accuracy.resolution);
+        plan.method.resolution = accuracy.resolution;
     }
     let (mut engine, why) = engine::open(options.engine, options.precision)?;
     let about = whiskmap::integrate::Description::of(engine.as_deref());

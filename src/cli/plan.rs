@@ -39,7 +39,7 @@ fn print(scene: &Scene, plan: &Plan, estimate: &Estimate) -> std::io::Result<()>
     let mut out = std::io::stdout().lock();
     writeln!(out, "{}\n", scene.title)?;
     writeln!(out, "{:16}  {:3}  {:12}  why", "effect", "", "cost when on")?;
-    for effect in effects(scene, plan.method.effects()) {
+    for effect in effects(scene, plan.method.effects) {
         let on = if effect.on { "on" } else { "off" };
         let cost = match effect.cost {
             Cost::Kernel => "own kernel",

@@ -127,7 +127,7 @@ pub fn settle(
         (settled.collect(), shots)
     });
     let hits = summary.time(Stage::Shooting, || {
-        engine.shoot(method.effects(), &rods, &shots)
+        engine.shoot(method.effects, &rods, &shots)
     });
     let refined = summary.time(Stage::Refinement, || {
         // What an engine could not finish starts again from the lattice's guess.

@@ -125,20 +125,12 @@ impl Plan {
     /// States of a trajectory for the derivatives of the rod: those by the force, and where they do not follow, two by the contact.
     #[must_use]
     pub const fn derivative_states(&self) -> usize {
-        if self.method.effects().similar() {
-            3
-        } else {
-            5
-        }
+        if self.method.effects.similar() { 3 } else { 5 }
     }
 
     /// States of a trajectory for the rest shape: cos and sin of its tangent, if it is curved.
     #[must_use]
     pub const fn rest_states(&self) -> usize {
-        if self.method.effects().curvature {
-            2
-        } else {
-            0
-        }
+        if self.method.effects.curvature { 2 } else { 0 }
     }
 }

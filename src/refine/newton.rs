@@ -64,7 +64,7 @@ pub fn newton(
             let (step, length) = limited(step, s, condition.load);
             let sheet = sheets[shots[i].rod as usize];
             let columns = full.map.by_tau.length() * full.map.by_load.length();
-            let may_be_last = method.resolution().least >= LEAST_STEPS
+            let may_be_last = method.resolution.least >= LEAST_STEPS
                 && condition.rod.profile.is_none()
                 && condition.load.abs() * s * s <= LARGEST_Q
                 && full.map.det() > CLEAR_OF_FOLD * columns;

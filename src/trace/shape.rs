@@ -65,7 +65,7 @@ impl Shape {
         at.insert(index, contact);
         let places = profile(rod, found.tau, found.load, FINER, &at);
         // From the axes of the contact to those of first touch: the base's tangent is at `-push` there.
-        let base = &found.full.base;
+        let base = &found.full;
         let to_base = DVec2::new(base.tangent.x, -base.tangent.y);
         let turn = DVec2::from_angle(-found.push).rotate(to_base);
         let pole = turn.rotate(rod.to_pole() - base.position);

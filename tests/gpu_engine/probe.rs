@@ -5,7 +5,7 @@ use crate::shots::{Random, USUAL};
 use bytemuck::Pod;
 use whiskmap::integrate::gpu::{Precision, shaders};
 use whiskmap::numerics::Real;
-use whiskmap::rod::{Effects, Rod, Start, arclength};
+use whiskmap::rod::{Effects, Rest, Rod, arclength};
 use whiskmap::shooting::sensitivity::{GeneralFirst, SimilarFirst};
 use whiskmap::shooting::{
     Bent, Graded, Intrinsic, Material, Rk4, RodSystem, Scales, Section, Sensitivity, State,
@@ -234,7 +234,7 @@ fn a_step_is_the_twins_in_f64() {
     a_step_is_the_twins::<f64>(4e-15, 5e-12);
 }
 
-/// The contact against `Start` in `f64`: exp, expm1, asinh and the inversion of the arclength.
+/// The contact against that of the rod in `f64`: exp, expm1, asinh and the inversion of the arclength.
 fn contacts_are_right<T: Number>(tolerance: f64) {
     let Some(bench) = Bench::open(T::PRECISION) else {
         return;
@@ -269,14 +269,9 @@ fn contacts_are_right<T: Number>(tolerance: f64) {
             slope: case[2],
             ..Rod::default()
         };
-        let start = Start::new(&rod, case[3], case[4]);
-        let right = [
-            start.radius,
-            arclength(&rod, case[3]),
-            start.force,
-            start.rest.x,
-            start.rest.y,
-        ];
+        let (radius, s) = (rod.radius(case[3]), arclength(&rod, case[3]));
+        let rest = Rest::parabola_tangent(&rod, s);
+        let right = [radius, s, case[4] * radius * radius, rest.x, rest.y];
         // Radius, arclength and force by their own sizes, and by that of the exponent beta tau (21 at most),
         // whose rounding they magnify; cos and sin by 1.
         let magnified = 1.0 + rod.taper * case[3];

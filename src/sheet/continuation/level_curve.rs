@@ -122,7 +122,7 @@ impl LevelCurve {
     #[must_use]
     pub fn node(&self, point: DVec2, full: &FullState, push: f64, angle: f64) -> Node {
         let phi = full.map.pole.to_angle();
-        let to_pole = self.rod.to_pole() - full.base.position;
+        let to_pole = self.rod.to_pole() - full.position;
         let tilt = self.rod.contact_tangent().to_angle();
         Node {
             point,

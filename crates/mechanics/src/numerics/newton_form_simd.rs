@@ -19,49 +19,26 @@ pub enum Terms<'a, const N: usize> {
 }
 
 impl<const N: usize> Terms<'_, N> {
+    /// The term `i` in the lanes from `from` on.
+    #[inline(always)]
+    fn term<T: Lanes>(&self, i: usize, from: usize) -> T {
+        match self {
+            Self::Same(terms) => T::of(terms[i]),
+            Self::Each(terms) => pack(&terms[i], from),
+        }
+    }
+
     /// Value and slope at `t`, in the lanes from `from` on.
     #[inline(always)]
     fn at<T: Lanes>(&self, nodes: &[f64; N], from: usize, t: T) -> (T, T) {
-        match self {
-            Self::Same(terms) => horner(nodes, terms, from, t),
-            Self::Each(terms) => horner(nodes, terms, from, t),
+        let (mut value, mut slope): (T, T) = (self.term(N - 1, from), T::of(0.0));
+        for i in (0..N - 1).rev() {
+            let x = t - T::of(nodes[i]);
+            slope = slope.mul_add(x, value);
+            value = value.mul_add(x, self.term(i, from));
         }
+        (value, slope)
     }
-}
-
-/// A term in the lanes from `from` on.
-trait Term {
-    fn pack<T: Lanes>(&self, from: usize) -> T;
-}
-
-impl Term for f64 {
-    #[inline(always)]
-    fn pack<T: Lanes>(&self, _: usize) -> T {
-        T::of(*self)
-    }
-}
-
-impl Term for Numbers {
-    #[inline(always)]
-    fn pack<T: Lanes>(&self, from: usize) -> T {
-        pack(self, from)
-    }
-}
-
-#[inline(always)]
-fn horner<T: Lanes, C: Term, const N: usize>(
-    nodes: &[f64; N],
-    terms: &[C; N],
-    from: usize,
-    t: T,
-) -> (T, T) {
-    let (mut value, mut slope): (T, T) = (terms[N - 1].pack(from), T::of(0.0));
-    for i in (0..N - 1).rev() {
-        let x = t - T::of(nodes[i]);
-        slope = slope.mul_add(x, value);
-        value = value.mul_add(x, terms[i].pack(from));
-    }
-    (value, slope)
 }
 
 /// Polynomials on the same nodes: one that is solved, and others that are wanted at its root.

@@ -1,6 +1,5 @@
 //! What a whisker is: radius, shape at rest, stiffness, contact, effects, units. Plain `f64`, lengths in whisker lengths.
 
-mod contact;
 mod effects;
 mod radius;
 mod rest;
@@ -11,10 +10,9 @@ mod rest;
 mod rod;
 mod units;
 
-pub use contact::{Start, arclength};
 pub use effects::Effects;
 pub use radius::{Piece, RadiusProfile};
 pub use rest::Rest;
 pub(crate) use rod::arclength_at;
-pub use rod::{PERFECT_CONE_CUT, Rod, Side};
+pub use rod::{PERFECT_CONE_CUT, Rod, Side, arclength};
 pub use units::Units;

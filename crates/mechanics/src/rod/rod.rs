@@ -1,6 +1,6 @@
 //! A whisker and its pole without dimensions.
 
-use crate::rod::{RadiusProfile, arclength};
+use crate::rod::RadiusProfile;
 use glam::DVec2;
 use serde::Serialize;
 use std::sync::Arc;
@@ -74,7 +74,13 @@ pub(crate) fn tau_at(taper: f64, s: f64) -> f64 {
     }
 }
 
-/// The inverse, without cancellation.
+/// Arclength at `tau`: `(1 - exp(-beta tau))/beta`, without cancellation.
+#[must_use]
+pub fn arclength(rod: &Rod, tau: f64) -> f64 {
+    arclength_at(rod.taper, tau)
+}
+
+/// The same on any rod of this taper.
 pub(crate) fn arclength_at(taper: f64, tau: f64) -> f64 {
     if taper == 0.0 {
         tau

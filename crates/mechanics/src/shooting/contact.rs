@@ -1,8 +1,7 @@
 //! The contact, where every trajectory starts, for lanes side by side: exponential and inverse functions by algebra alone,
 //! so that a block of contacts costs about what one costs with the standard library.
 
-use crate::numerics::Real;
-use crate::numerics::expm1_over_small;
+use crate::numerics::{Real, expm1_over_small};
 
 /// What the integration needs to know of the contact.
 #[derive(Clone, Copy, Debug)]

@@ -1,7 +1,6 @@
 //! Rest shapes.
 
-use crate::numerics::rotated_by_small;
-use crate::numerics::{Real, Vector};
+use crate::numerics::{Real, Vector, rotated_by_small};
 use crate::shooting::Section;
 
 /// Curvature at rest.

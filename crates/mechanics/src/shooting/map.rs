@@ -21,17 +21,6 @@ fn over(a: DVec2, b: DVec2) -> DVec2 {
     DVec2::new(b.x, -b.y).rotate(a) / b.length_squared()
 }
 
-/// The base as seen from the contact, in axes whose second one is along the force.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Base {
-    /// Unit tangent.
-    pub tangent: DVec2,
-    /// Position.
-    pub position: DVec2,
-    /// Force at the contact.
-    pub force: f64,
-}
-
 /// Where the pole is, and how that changes with the contact and the load.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ShootingMap {
@@ -72,13 +61,18 @@ impl ShootingMap {
     }
 }
 
-/// A state with everything that a map tells about it.
+/// A state with everything that a map tells about it. The base is seen from the contact, in axes whose second one is along the
+/// force.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FullState {
     /// Pole and derivatives.
     pub map: ShootingMap,
-    /// The base as seen from the contact, in axes whose second one is along the force.
-    pub base: Base,
+    /// Unit tangent of the base.
+    pub tangent: DVec2,
+    /// Position of the base.
+    pub position: DVec2,
+    /// Force at the contact.
+    pub force: f64,
     /// Bending energy in `E I_base/L_w`.
     pub energy: f64,
 }
@@ -111,8 +105,8 @@ impl FirstVariation {
     /// The state `step` further on in `(tau, load)`, to first order.
     #[must_use]
     pub fn extrapolated(&self, step: DVec2) -> FullState {
-        let FullState { map, base, energy } = self.full;
-        let (tau, load) = (self.by_tau, self.by_load);
+        let (full, tau, load) = (self.full, self.by_tau, self.by_load);
+        let map = full.map;
         let ln_pole = map.by_tau * step.x + map.by_load * step.y;
         let angle = tau.angle * step.x + load.angle * step.y;
         FullState {
@@ -120,12 +114,10 @@ impl FirstVariation {
                 pole: map.pole + ln_pole.rotate(map.pole),
                 ..map
             },
-            base: Base {
-                tangent: base.tangent + angle * base.tangent.perp(),
-                position: base.position + tau.position * step.x + load.position * step.y,
-                force: base.force + tau.force * step.x + load.force * step.y,
-            },
-            energy: energy + tau.energy * step.x + load.energy * step.y,
+            tangent: full.tangent + angle * full.tangent.perp(),
+            position: full.position + tau.position * step.x + load.position * step.y,
+            force: full.force + tau.force * step.x + load.force * step.y,
+            energy: full.energy + tau.energy * step.x + load.energy * step.y,
         }
     }
 }

@@ -1,8 +1,7 @@
 //! Stiffness along the rod.
 
 use crate::numerics::Real;
-use crate::shooting::Section;
-use crate::shooting::Stage;
+use crate::shooting::{Section, Stage};
 
 /// Coefficients of the equation that Liouville's transformation leaves, at a stage of a step. With `m^2` the inverse
 /// compliance and `chi = m (theta - theta_0)/f` it is `chi'' = (m''/m) chi - (rho/m) cos(theta)`, see [`Nystrom8`].

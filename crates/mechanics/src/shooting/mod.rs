@@ -23,8 +23,7 @@ pub mod shape;
 pub use integrator::{Integrator, Nystrom8, Rk4, STAGES, Scales, Stage, integrate};
 pub use intrinsic::{Bent, Intrinsic, Spiral, Straight};
 pub use map::{
-    Base, FirstVariation, FullState, LONGEST_STEP, SecondVariation, ShootingMap, StateDerivative,
-    limited,
+    FirstVariation, FullState, LONGEST_STEP, SecondVariation, ShootingMap, StateDerivative, limited,
 };
 pub use material::{Graded, Liouville, Material, Measured, Uniform};
 pub use reading::{Reader, Reading};

@@ -60,19 +60,19 @@ impl Reader {
     /// direction `touch`.
     #[must_use]
     pub fn read(&self, tau: f64, full: &FullState, touch: f64, push: f64) -> Reading {
-        let (base, units) = (&full.base, &self.units);
-        let to_base = DVec2::new(base.tangent.x, -base.tangent.y);
-        let contact = to_base.rotate(-base.position);
-        let to_pole = self.to_pole - base.position;
+        let units = &self.units;
+        let to_base = DVec2::new(full.tangent.x, -full.tangent.y);
+        let contact = to_base.rotate(-full.position);
+        let to_pole = self.to_pole - full.position;
         let distance = contact.length();
         let resting = self.rest.point_at_distance(distance);
         let chord = DVec2::new(resting.x, -resting.y).rotate(contact).to_angle();
         Reading {
             arc_length_mm: arclength_at(self.taper, tau) * units.length_mm,
             contact_angle_deg: (touch + push - to_pole.to_angle() + self.tilt).to_degrees(),
-            force_un: base.force.abs() * self.normal * units.force_un,
-            base_force_un: base.force * DVec2::new(base.tangent.y, base.tangent.x) * units.force_un,
-            base_moment_nnm: -base.force * base.position.x * units.moment_nnm,
+            force_un: full.force.abs() * self.normal * units.force_un,
+            base_force_un: full.force * DVec2::new(full.tangent.y, full.tangent.x) * units.force_un,
+            base_moment_nnm: -full.force * full.position.x * units.moment_nnm,
             push_chord_deg: nearest_turn(chord, push).to_degrees(),
             contact_distance_mm: distance * units.length_mm,
             energy_nj: full.energy * units.moment_nnm,

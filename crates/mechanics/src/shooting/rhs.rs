@@ -5,8 +5,7 @@
 //! trigonometry in the loop.
 
 use crate::numerics::{Real, Vector};
-use crate::shooting::Intrinsic;
-use crate::shooting::Material;
+use crate::shooting::{Intrinsic, Material};
 
 /// The rod at a place.
 #[derive(Clone, Copy, Debug)]

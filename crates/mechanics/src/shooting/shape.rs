@@ -1,10 +1,10 @@
 //! A trajectory seen at points along the whisker.
 
-use crate::rod::{Rest, Rod, Start, arclength};
-use crate::shooting::{Bent, Intrinsic, Spiral};
-use crate::shooting::{Graded, Material, Measured};
-use crate::shooting::{Nystrom8, Resolution, Scales, integrate};
-use crate::shooting::{RodSystem, Section, Shape, State};
+use crate::rod::{Rest, Rod, arclength};
+use crate::shooting::{
+    Bent, Graded, Intrinsic, Material, Measured, Nystrom8, Resolution, RodSystem, Scales, Section,
+    Shape, Spiral, State, integrate,
+};
 use glam::DVec2;
 
 /// The whisker at one of its points, as seen from the contact, in axes whose second one is along the force; lengths in whisker
@@ -33,17 +33,21 @@ pub fn profile(
     resolution: Resolution,
     at: &[f64],
 ) -> Vec<RodPoint> {
-    let start = Start::new(rod, tau, load);
+    let (radius, contact) = (rod.radius(tau), arclength(rod, tau));
     let way = Way {
         rod,
-        start: &start,
+        tau,
+        contact,
+        force: load * radius * radius,
+        tangent: rod.contact_tangent(),
         steps: resolution.steps(rod, tau, load),
     };
     match rod.spiral {
         Some([at_base, slope]) => way.points(Spiral { at_base, slope }, (), at),
         None => {
             let twice_bend = 2.0 * rod.bend;
-            way.points(Bent { twice_bend }, start.rest.to_array(), at)
+            let rest = Rest::parabola_tangent(rod, contact).to_array();
+            way.points(Bent { twice_bend }, rest, at)
         }
     }
 }
@@ -51,21 +55,27 @@ pub fn profile(
 /// The way from a contact to the base.
 struct Way<'a> {
     rod: &'a Rod,
-    start: &'a Start,
+    /// `tau` of the contact.
+    tau: f64,
+    /// Arclength of the contact.
+    contact: f64,
+    /// The whole force, signed.
+    force: f64,
+    /// The whisker's tangent at the contact.
+    tangent: DVec2,
     /// Steps that the whole way would take, or a piece of a profile.
     steps: u32,
 }
 
 impl Way<'_> {
     fn points<I: Intrinsic<f64>>(&self, intrinsic: I, rest: I::State, at: &[f64]) -> Vec<RodPoint> {
-        let contact = self.start.arclength;
-        let deflected = at.partition_point(|s| *s < contact);
-        let tangent = self.start.tangent;
+        let deflected = at.partition_point(|s| *s < self.contact);
+        let tangent = self.tangent;
         let mut state: State<f64, I, Shape> = (
             rest,
             ([tangent.x, tangent.y, 0.0, 0.0, 0.0], ((), ((), ()))),
         );
-        let mut from = self.start.tau;
+        let mut from = self.tau;
         let mut points: Vec<RodPoint> = at[..deflected]
             .iter()
             .rev()
@@ -91,14 +101,11 @@ impl Way<'_> {
     ) -> State<f64, I, Shape> {
         let gradient = self.rod.gradient;
         let Some(profile) = &self.rod.profile else {
-            let whole = self.start.tau;
-            return self.integrate(intrinsic, Graded { gradient }, whole, (from, to), state);
+            return self.integrate(intrinsic, Graded { gradient }, self.tau, (from, to), state);
         };
-        let mut ahead = self.start.tau;
-        for piece in profile.pieces[..=self.rod.piece(self.start.arclength)]
-            .iter()
-            .rev()
-        {
+        let mut ahead = self.tau;
+        let pieces = &profile.pieces[..=self.rod.piece(self.contact)];
+        for piece in pieces.iter().rev() {
             let begin = self.rod.tau(piece.from);
             let (whole, end) = (ahead - begin, begin.max(to));
             ahead = begin;
@@ -139,7 +146,7 @@ impl Way<'_> {
             arclength: arclength(self.rod, from),
         };
         let system = RodSystem {
-            force: self.start.force,
+            force: self.force,
             intrinsic,
             material,
         };
@@ -148,7 +155,7 @@ impl Way<'_> {
     }
 
     fn loaded(&self, s: f64, [c, sin, x, y, _]: [f64; 5]) -> RodPoint {
-        let moment = -self.start.force * x;
+        let moment = -self.force * x;
         RodPoint {
             arclength: s,
             position: DVec2::new(x, y),
@@ -160,9 +167,9 @@ impl Way<'_> {
 
     fn free(&self, s: f64) -> RodPoint {
         let rest = Rest::new(self.rod);
-        let (from, axis) = rest.at_arclength(self.start.arclength);
+        let (from, axis) = rest.at_arclength(self.contact);
         let (to, tangent) = rest.at_arclength(s);
-        let turn = self.start.tangent.rotate(DVec2::new(axis.x, -axis.y));
+        let turn = self.tangent.rotate(DVec2::new(axis.x, -axis.y));
         RodPoint {
             arclength: s,
             position: turn.rotate(to - from),

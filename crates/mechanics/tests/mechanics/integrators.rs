@@ -104,7 +104,7 @@ fn batches_have_the_order() {
         .max_by(|&i, &j| error(&rough, i).total_cmp(&error(&rough, j)))
         .unwrap();
     let InitialCondition { rod, tau, load } = &conditions[worst];
-    let taken = |least| f64::from(steps(least).resolution().steps(rod, *tau, *load));
+    let taken = |least| f64::from(steps(least).resolution.steps(rod, *tau, *load));
     let order = (error(&rough, worst) / error(&half, worst)).ln() / (taken(20) / taken(10)).ln();
     assert!((7.3..9.0).contains(&order), "{order}");
 }
@@ -112,7 +112,7 @@ fn batches_have_the_order() {
 /// The finest resolution in use is exact to 1e-11 up to taper 0.99.
 #[test]
 fn the_fine_resolution_is_exact() {
-    let fine = steps(1).with_resolution(Resolution::FINE);
+    let fine = Method::fine().with_effects(EFFECTS);
     let exact = Batch::new(steps(512)).shoot::<ShootingMap>(&rods());
     for (a, b) in exact
         .iter()
@@ -208,7 +208,7 @@ fn sensitivities_agree_with_num_dual() {
                 ..Rod::default()
             };
             let tau = rod.tau(s);
-            let method = Method::new(steps(128).resolution());
+            let method = Method::new(steps(128).resolution);
             let hand = Batch::new(method).shoot::<SecondVariation>(&[InitialCondition {
                 rod: &rod,
                 tau,

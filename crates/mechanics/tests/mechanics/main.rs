@@ -7,3 +7,4 @@ mod effects;
 mod integrators;
 mod radius;
 mod resolution;
+mod rest;

@@ -14,9 +14,26 @@ use crate::numerics::Real;
 use std::arch::x86_64::*;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// A token that only `detect` makes, and what it can do.
-macro_rules! token {
-    ($(#[$doc:meta])* $token:ident, $vectors:ident, $enabled:literal, [$($feature:tt)+]) => {
+/// Implements `$trait` for two registers, one after the other.
+macro_rules! operator {
+    ($vectors:ident, $trait:ident, $method:ident, $f:ident) => {
+        impl $trait for $vectors {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                // SAFETY: such values exist only where the unit does; see the module.
+                unsafe { Self($f(self.0, other.0), $f(self.1, other.1)) }
+            }
+        }
+    };
+}
+
+/// A token that only `detect` makes, and two registers of `$each` numbers as lanes.
+macro_rules! unit {
+    (
+        $(#[$doc:meta])* $token:ident, $enabled:literal, [$($feature:tt)+], $vectors:ident, $register:ty, $each:literal,
+        $add:ident, $sub:ident, $mul:ident, $div:ident, $fma:ident, $splat:ident, $sqrt:ident, $load:ident, $store:ident
+    ) => {
         $(#[$doc])*
         #[derive(Clone, Copy, Debug)]
         pub struct $token(());
@@ -37,38 +54,7 @@ macro_rules! token {
                 unsafe { run(task) }
             }
         }
-    };
-}
 
-token!(
-    /// The processor has AVX-512.
-    Avx512, Vectors512, "avx512f,avx512dq,avx512vl,fma", ["avx512f" "avx512dq" "avx512vl" "fma"]
-);
-token!(
-    /// The processor has AVX2 with FMA.
-    Avx2, Vectors256, "avx2,fma", ["avx2" "fma"]
-);
-
-/// Implements `$trait` for two registers, one after the other.
-macro_rules! operator {
-    ($vectors:ident, $trait:ident, $method:ident, $f:ident) => {
-        impl $trait for $vectors {
-            type Output = Self;
-            #[inline(always)]
-            fn $method(self, other: Self) -> Self {
-                // SAFETY: such values exist only where the unit does; see the module.
-                unsafe { Self($f(self.0, other.0), $f(self.1, other.1)) }
-            }
-        }
-    };
-}
-
-/// Two registers of `$each` numbers as lanes.
-macro_rules! vectors {
-    (
-        $vectors:ident, $enabled:literal, $register:ty, $each:literal, $add:ident, $sub:ident, $mul:ident, $div:ident,
-        $fma:ident, $splat:ident, $sqrt:ident, $load:ident, $store:ident
-    ) => {
         #[derive(Clone, Copy)]
         struct $vectors($register, $register);
 
@@ -144,33 +130,15 @@ macro_rules! vectors {
     };
 }
 
-vectors!(
-    Vectors512,
-    "avx512f,avx512dq,avx512vl,fma",
-    __m512d,
-    8,
-    _mm512_add_pd,
-    _mm512_sub_pd,
-    _mm512_mul_pd,
-    _mm512_div_pd,
-    _mm512_fmadd_pd,
-    _mm512_set1_pd,
-    _mm512_sqrt_pd,
-    _mm512_loadu_pd,
-    _mm512_storeu_pd
+unit!(
+    /// The processor has AVX-512.
+    Avx512, "avx512f,avx512dq,avx512vl,fma", ["avx512f" "avx512dq" "avx512vl" "fma"], Vectors512, __m512d, 8,
+    _mm512_add_pd, _mm512_sub_pd, _mm512_mul_pd, _mm512_div_pd, _mm512_fmadd_pd, _mm512_set1_pd, _mm512_sqrt_pd,
+    _mm512_loadu_pd, _mm512_storeu_pd
 );
-vectors!(
-    Vectors256,
-    "avx2,fma",
-    __m256d,
-    4,
-    _mm256_add_pd,
-    _mm256_sub_pd,
-    _mm256_mul_pd,
-    _mm256_div_pd,
-    _mm256_fmadd_pd,
-    _mm256_set1_pd,
-    _mm256_sqrt_pd,
-    _mm256_loadu_pd,
-    _mm256_storeu_pd
+unit!(
+    /// The processor has AVX2 with FMA.
+    Avx2, "avx2,fma", ["avx2" "fma"], Vectors256, __m256d, 4,
+    _mm256_add_pd, _mm256_sub_pd, _mm256_mul_pd, _mm256_div_pd, _mm256_fmadd_pd, _mm256_set1_pd, _mm256_sqrt_pd,
+    _mm256_loadu_pd, _mm256_storeu_pd
 );

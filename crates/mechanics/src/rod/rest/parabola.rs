@@ -127,30 +127,3 @@ impl Parabola {
         bracket.newton(start, |x| LAST_HALLEY_STEP * x, halley).x
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// With the vertex at the base, and a hair away from it, where Halley's method takes over.
-    #[test]
-    fn a_chord_ends_on_the_parabola() {
-        for bend in [0.0, 0.02, -0.4, 5.0] {
-            for slope in [0.0, 1e-12, 0.3] {
-                let parabola = Parabola::new(&Rod {
-                    bend,
-                    slope,
-                    ..Rod::default()
-                });
-                for chord in [1e-6, 0.3, 1.0] {
-                    let x = parabola.x_of_chord(chord);
-                    let length = DVec2::new(x, x * (bend * x + slope)).length();
-                    assert!(
-                        (length / chord - 1.0).abs() < 4.0 * f64::EPSILON,
-                        "{bend} {slope}: {length} for {chord}"
-                    );
-                }
-            }
-        }
-    }
-}

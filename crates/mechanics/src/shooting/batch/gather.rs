@@ -1,12 +1,10 @@
 //! Rest shapes and materials of the rods of a block, side by side in lanes.
 
 use crate::numerics::{Lanes, WIDTH};
-use crate::rod::Piece;
-use crate::rod::Rod;
+use crate::rod::{Piece, Rod};
 use crate::shooting::batch::InitialCondition;
 use crate::shooting::contact::{arc, parabola_tangent};
-use crate::shooting::{Bent, Intrinsic, Spiral, Straight};
-use crate::shooting::{Graded, Material, Measured, Uniform};
+use crate::shooting::{Bent, Graded, Intrinsic, Material, Measured, Spiral, Straight, Uniform};
 
 /// One condition for every lane.
 pub type Conditions<'a> = [&'a InitialCondition<'a>; WIDTH];
@@ -37,18 +35,6 @@ pub struct ArcPosition<T> {
     pub s: T,
 }
 
-impl<T: Lanes> ArcPosition<T> {
-    #[inline(always)]
-    fn base() -> Self {
-        let zero = T::of(0.0);
-        Self {
-            tau: zero,
-            radius: T::of(1.0),
-            s: zero,
-        }
-    }
-}
-
 /// A material that can be gathered from the rods of a block, and the way along it.
 pub trait GatherMaterial<T: Lanes>: Material<T> {
     /// The material on piece `piece` of a profile.
@@ -58,10 +44,20 @@ pub trait GatherMaterial<T: Lanes>: Material<T> {
     fn stiffness(conditions: &Conditions, radius: T, s: T) -> T;
 
     /// Where piece `piece` begins; the base for the first one.
-    fn begin(conditions: &Conditions, piece: usize) -> ArcPosition<T>;
+    #[inline(always)]
+    fn begin(_conditions: &Conditions, _piece: usize) -> ArcPosition<T> {
+        ArcPosition {
+            tau: T::of(0.0),
+            radius: T::of(1.0),
+            s: T::of(0.0),
+        }
+    }
 
     /// How many pieces the way from the contacts at the arclengths `s` to the base has.
-    fn pieces(conditions: &Conditions, s: T) -> usize;
+    #[inline(always)]
+    fn pieces(_conditions: &Conditions, _s: T) -> usize {
+        1
+    }
 }
 
 impl<T: Lanes> GatherMaterial<T> for Uniform {
@@ -73,16 +69,6 @@ impl<T: Lanes> GatherMaterial<T> for Uniform {
     #[inline(always)]
     fn stiffness(_: &Conditions, radius: T, _: T) -> T {
         radius * radius * (radius * radius)
-    }
-
-    #[inline(always)]
-    fn begin(_: &Conditions, _: usize) -> ArcPosition<T> {
-        ArcPosition::base()
-    }
-
-    #[inline(always)]
-    fn pieces(_: &Conditions, _: T) -> usize {
-        1
     }
 }
 
@@ -97,16 +83,6 @@ impl<T: Lanes> GatherMaterial<T> for Graded<T> {
     fn stiffness(conditions: &Conditions, radius: T, s: T) -> T {
         let gradient: T = lanes(conditions, |condition| condition.rod.gradient);
         radius * radius * (radius * radius) * gradient.mul_add(s, T::of(1.0))
-    }
-
-    #[inline(always)]
-    fn begin(_: &Conditions, _: usize) -> ArcPosition<T> {
-        ArcPosition::base()
-    }
-
-    #[inline(always)]
-    fn pieces(_: &Conditions, _: T) -> usize {
-        1
     }
 }
 
@@ -139,13 +115,9 @@ impl<T: Lanes> GatherMaterial<T> for Measured<T> {
                 .map_or(0.0, |profile| profile.pieces[piece].from)
         };
         ArcPosition {
-            tau: lanes(conditions, |InitialCondition { rod, .. }| {
-                rod.tau(begin(rod))
-            }),
-            radius: lanes(conditions, |InitialCondition { rod, .. }| {
-                1.0 - rod.taper * begin(rod)
-            }),
-            s: lanes(conditions, |InitialCondition { rod, .. }| begin(rod)),
+            tau: lanes(conditions, |at| at.rod.tau(begin(at.rod))),
+            radius: lanes(conditions, |at| 1.0 - at.rod.taper * begin(at.rod)),
+            s: lanes(conditions, |at| begin(at.rod)),
         }
     }
 
@@ -157,36 +129,21 @@ impl<T: Lanes> GatherMaterial<T> for Measured<T> {
 
 /// A rest shape that can be gathered from the rods of a block.
 pub trait Gather<T: Lanes>: Intrinsic<T> {
-    /// The rest shape, and what is known of it at the arclengths `s`.
-    fn gather(conditions: &Conditions, s: T) -> (Self, AtRest<T, Self::State>);
-}
-
-/// The whisker at rest where the contact is.
-pub struct AtRest<T, S> {
-    /// What the integration carries along.
-    pub state: S,
-    /// Curvature.
-    pub curvature: T,
-    /// Its derivative by the arclength.
-    pub slope: T,
+    /// The rest shape; and at the arclengths `s` the state that is carried along, and the curvature with its derivative by the
+    /// arclength.
+    fn gather(conditions: &Conditions, s: T) -> (Self, Self::State, [T; 2]);
 }
 
 impl<T: Lanes> Gather<T> for Straight {
     #[inline(always)]
-    fn gather(_: &Conditions, _: T) -> (Self, AtRest<T, ()>) {
-        let zero = T::of(0.0);
-        let at_rest = AtRest {
-            state: (),
-            curvature: zero,
-            slope: zero,
-        };
-        (Self, at_rest)
+    fn gather(_: &Conditions, _: T) -> (Self, (), [T; 2]) {
+        (Self, (), [T::of(0.0); 2])
     }
 }
 
 impl<T: Lanes> Gather<T> for Bent<T> {
     #[inline(always)]
-    fn gather(conditions: &Conditions, s: T) -> (Self, AtRest<T, [T; 2]>) {
+    fn gather(conditions: &Conditions, s: T) -> (Self, [T; 2], [T; 2]) {
         let bend = lanes(conditions, |condition| condition.rod.bend);
         let twice_bend = bend + bend;
         let is_level = conditions
@@ -199,18 +156,14 @@ impl<T: Lanes> Gather<T> for Bent<T> {
         };
         let [cos, sin] = parabola_tangent(bend, at_base, s);
         let curvature = twice_bend * cos * cos * cos;
-        let at_rest = AtRest {
-            state: [cos, sin],
-            curvature,
-            slope: T::of(-3.0) * twice_bend * curvature * sin * cos * cos,
-        };
-        (Self { twice_bend }, at_rest)
+        let slope = T::of(-3.0) * twice_bend * curvature * sin * cos * cos;
+        (Self { twice_bend }, [cos, sin], [curvature, slope])
     }
 }
 
 impl<T: Lanes> Gather<T> for Spiral<T> {
     #[inline(always)]
-    fn gather(conditions: &Conditions, s: T) -> (Self, AtRest<T, ()>) {
+    fn gather(conditions: &Conditions, s: T) -> (Self, (), [T; 2]) {
         let coefficient = |i: usize| {
             move |condition: &InitialCondition| condition.rod.spiral.unwrap_or_default()[i]
         };
@@ -218,11 +171,7 @@ impl<T: Lanes> Gather<T> for Spiral<T> {
             at_base: lanes(conditions, coefficient(0)),
             slope: lanes(conditions, coefficient(1)),
         };
-        let at_rest = AtRest {
-            state: (),
-            curvature: spiral.slope.mul_add(s, spiral.at_base),
-            slope: spiral.slope,
-        };
-        (spiral, at_rest)
+        let curvature = spiral.slope.mul_add(s, spiral.at_base);
+        (spiral, (), [curvature, spiral.slope])
     }
 }

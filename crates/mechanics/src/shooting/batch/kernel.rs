@@ -7,10 +7,10 @@ use crate::numerics::{Lanes, LanesTask, SimdTask, WIDTH};
 use crate::rod::Effects;
 use crate::shooting::contact::{Contact, radius_and_arclength};
 use crate::shooting::sensitivity::{Arrival, SensitivitySet};
-use crate::shooting::{Bent, Spiral, Straight};
-use crate::shooting::{Graded, Measured, Uniform};
-use crate::shooting::{Integrator, Nystrom8, Scales, integrate};
-use crate::shooting::{RodSystem, Section};
+use crate::shooting::{
+    Bent, Graded, Integrator, Measured, Nystrom8, RodSystem, Scales, Section, Spiral, Straight,
+    Uniform, integrate,
+};
 use std::marker::PhantomData;
 
 /// Up to as many conditions as there are lanes.
@@ -101,7 +101,7 @@ impl SimdTask for Steps<'_> {
 
 #[inline(always)]
 fn steps<T: Lanes>(method: Method, conditions: &Conditions) -> [(f64, u32); WIDTH] {
-    let resolution = method.resolution();
+    let resolution = method.resolution;
     let taper = numbers(conditions, |condition| condition.rod.taper);
     let tau = numbers(conditions, |condition| condition.tau);
     let [_, s] = radius_and_arclength(T::pack(taper), T::pack(tau));
@@ -193,7 +193,7 @@ where
         let load: T = lanes(conditions, |condition| condition.load);
         let taper: T = lanes(conditions, |condition| condition.rod.taper);
         let [radius, s] = radius_and_arclength(taper, tau);
-        let (intrinsic, at_rest) = I::gather(conditions, s);
+        let (intrinsic, at_rest, [curvature, curvature_slope]) = I::gather(conditions, s);
         let (zero, one) = (T::of(0.0), T::of(1.0));
         // The contact's tangent is that of the angle of friction.
         let friction: T = lanes(conditions, |condition| condition.rod.friction);
@@ -203,12 +203,12 @@ where
             force: load * radius * radius,
             tangent: [cos, friction * cos],
             stiffness: C::stiffness(conditions, radius, s),
-            curvature: at_rest.curvature,
-            curvature_slope: at_rest.slope,
+            curvature,
+            curvature_slope,
         };
         let [c, sin] = contact.tangent;
         let rod = [c, sin, zero, zero, zero];
-        let mut state = (at_rest.state, (rod, S::start(&contact)));
+        let mut state = (at_rest, (rod, S::start(&contact)));
         let mut here = ArcPosition { tau, radius, s };
         for piece in (0..C::pieces(conditions, s)).rev() {
             let there = C::begin(conditions, piece);

@@ -35,29 +35,26 @@ pub struct InitialCondition<'a> {
 /// How trajectories are integrated: how finely, and with which effects beside each rod's own.
 #[derive(Clone, Copy, Debug)]
 pub struct Method {
-    resolution: Resolution,
-    effects: Effects,
+    /// How finely.
+    pub resolution: Resolution,
+    /// The effects that every kernel has.
+    pub effects: Effects,
 }
 
 impl Method {
     /// Every rod with the kernel for its own effects.
     #[must_use]
-    pub const fn new(resolution: Resolution) -> Self {
+    pub fn new(resolution: Resolution) -> Self {
+        let effects = Effects::default();
         Self {
             resolution,
-            effects: Effects {
-                taper: false,
-                curvature: false,
-                spiral: false,
-                gradient: false,
-                profile: false,
-            },
+            effects,
         }
     }
 
     /// At [`Resolution::FINE`].
     #[must_use]
-    pub const fn fine() -> Self {
+    pub fn fine() -> Self {
         Self::new(Resolution::FINE)
     }
 
@@ -67,28 +64,11 @@ impl Method {
         Self { effects, ..self }
     }
 
-    /// The same at another resolution.
-    #[must_use]
-    pub const fn with_resolution(self, resolution: Resolution) -> Self {
-        Self { resolution, ..self }
-    }
-
     /// The same at [`Resolution::COARSE`].
     #[must_use]
     pub const fn coarsely(self) -> Self {
-        self.with_resolution(Resolution::COARSE)
-    }
-
-    /// How finely.
-    #[must_use]
-    pub const fn resolution(&self) -> Resolution {
-        self.resolution
-    }
-
-    /// The effects that every kernel has.
-    #[must_use]
-    pub const fn effects(&self) -> Effects {
-        self.effects
+        let resolution = Resolution::COARSE;
+        Self { resolution, ..self }
     }
 }
 
@@ -176,27 +156,16 @@ impl Batch {
 
     /// The same on this thread.
     fn chunk<O: OutputSet>(&self, conditions: &[InitialCondition], outputs: &mut [O]) {
-        stream::shoot(
-            self.unit,
-            self.method,
-            conditions.iter().copied(),
-            |i, output| outputs[i] = *output,
-        );
+        self.for_each(conditions.iter().copied(), |i, output| outputs[i] = *output);
     }
 
-    /// Shoots conditions as they come, on this thread, and hands the outputs of each on with its index, in no order. A padded
-    /// batch waits for all of them first.
+    /// Shoots conditions as they come, on this thread, and hands the outputs of each on with its index, in no order. They are
+    /// never padded, for which all of them would have to be known first.
     pub fn for_each<'a, O: OutputSet>(
         &self,
         conditions: impl Iterator<Item = InitialCondition<'a>>,
-        mut take: impl FnMut(usize, &O),
+        take: impl FnMut(usize, &O),
     ) {
-        if self.is_padded {
-            let conditions: Vec<InitialCondition> = conditions.collect();
-            let outputs = self.shoot(&conditions);
-            outputs.iter().enumerate().for_each(|(i, o)| take(i, o));
-        } else {
-            stream::shoot(self.unit, self.method, conditions, take);
-        }
+        stream::shoot(self.unit, self.method, conditions, take);
     }
 }

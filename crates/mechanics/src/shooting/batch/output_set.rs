@@ -9,9 +9,7 @@ use crate::shooting::sensitivity::{
     Arrival, BaseDerivatives, Energetic, GeneralFirst, GeneralSecond, SecondBaseDerivatives,
     SensitivitySet, SimilarFirst, SimilarSecond, Triple,
 };
-use crate::shooting::{
-    Base, FirstVariation, FullState, SecondVariation, ShootingMap, StateDerivative,
-};
+use crate::shooting::{FirstVariation, FullState, SecondVariation, ShootingMap, StateDerivative};
 use glam::DVec2;
 
 /// What a batch computes for each trajectory: the derivatives carried for it, and the outputs from their values at the base.
@@ -44,8 +42,7 @@ impl OutputSet for ShootingMap {
         pole: [T; 2],
         first: BaseDerivatives<T>,
     ) -> [Self; WIDTH] {
-        let numbers = Centre::new(arrival, pole).map(&first);
-        spread(numbers, map)
+        Centre::new(arrival, pole).maps(&first)
     }
 
     #[inline(never)]
@@ -64,7 +61,7 @@ impl OutputSet for FirstVariation {
         pole: [T; 2],
         (first, energy): (BaseDerivatives<T>, T),
     ) -> [FirstVariation; WIDTH] {
-        let [a, b, c, d, e, g] = Centre::new(arrival, pole).map(&first);
+        let maps = Centre::new(arrival, pole).maps(&first);
         let [cos, sin, x, y, _] = arrival.rod;
         let Contact {
             radius,
@@ -77,67 +74,35 @@ impl OutputSet for FirstVariation {
         let [theta_tau, x_tau, y_tau] = first.by_tau;
         let [theta_load, x_load, y_load] = first.by_load;
         let force_tau = T::of(-2.0) * arrival.taper * force;
-        let energy_tau = work(first.by_tau) - force * radius * slant;
+        let force_load = radius * radius;
+        let work_tau = work(first.by_tau) - force * radius * slant;
+        let work_load = work(first.by_load);
         let numbers = [
-            a,
-            b,
-            c,
-            d,
-            e,
-            g,
-            cos,
-            sin,
-            x,
-            y,
-            force,
-            energy,
-            theta_tau,
-            x_tau,
-            y_tau,
-            force_tau,
-            energy_tau,
-            theta_load,
-            x_load,
-            y_load,
-            radius * radius,
-            work(first.by_load),
+            cos, sin, x, y, force, energy, theta_tau, x_tau, y_tau, force_tau, work_tau,
+            theta_load, x_load, y_load, force_load, work_load,
         ];
-        spread(numbers, |numbers| {
-            let [
-                a,
-                b,
-                c,
-                d,
-                e,
-                g,
-                cos,
-                sin,
-                x,
-                y,
-                force,
-                energy,
-                changes @ ..,
-            ] = numbers;
-            let change = |i: usize| StateDerivative {
-                angle: changes[i],
-                position: DVec2::new(changes[i + 1], changes[i + 2]),
-                force: changes[i + 3],
-                energy: changes[i + 4],
-            };
-            FirstVariation {
-                full: FullState {
-                    map: map([a, b, c, d, e, g]),
-                    base: Base {
+        spread(
+            numbers,
+            |lane, [cos, sin, x, y, force, energy, changes @ ..]| {
+                let change = |i: usize| StateDerivative {
+                    angle: changes[i],
+                    position: DVec2::new(changes[i + 1], changes[i + 2]),
+                    force: changes[i + 3],
+                    energy: changes[i + 4],
+                };
+                FirstVariation {
+                    full: FullState {
+                        map: maps[lane],
                         tangent: DVec2::new(cos, sin),
                         position: DVec2::new(x, y),
                         force,
+                        energy,
                     },
-                    energy,
-                },
-                by_tau: change(0),
-                by_load: change(5),
-            }
-        })
+                    by_tau: change(0),
+                    by_load: change(5),
+                }
+            },
+        )
     }
 
     #[inline(never)]
@@ -157,50 +122,25 @@ impl OutputSet for SecondVariation {
         second: SecondBaseDerivatives<T>,
     ) -> [SecondVariation; WIDTH] {
         let centre = Centre::new(arrival, pole);
-        let [a, b, c, d, e, g] = centre.map(&second.first);
+        let maps = centre.maps(&second.first);
         let (by_tau, by_load) = (
             centre.moved(second.first.by_tau),
             centre.moved(second.first.by_load),
         );
-        let tau_tau = centre.ln_pole_by_twice(second.by_tau_tau, by_tau, by_tau);
-        let tau_load = centre.ln_pole_by_twice(second.by_tau_load, by_tau, by_load);
-        let load_load = centre.ln_pole_by_twice(second.by_load_load, by_load, by_load);
-        let numbers = [
-            a,
-            b,
-            c,
-            d,
-            e,
-            g,
-            tau_tau.re,
-            tau_tau.im,
-            tau_load.re,
-            tau_load.im,
-            load_load.re,
-            load_load.im,
-        ];
-        spread(numbers, |numbers| {
-            let [a, b, c, d, e, g, second @ ..] = numbers;
-            let pair = |i: usize| DVec2::new(second[i], second[i + 1]);
-            SecondVariation {
-                map: map([a, b, c, d, e, g]),
-                by_tau_tau: pair(0),
-                by_tau_load: pair(2),
-                by_load_load: pair(4),
-            }
+        let tau2 = centre.ln_pole_by_twice(second.by_tau_tau, by_tau, by_tau);
+        let mixed = centre.ln_pole_by_twice(second.by_tau_load, by_tau, by_load);
+        let load2 = centre.ln_pole_by_twice(second.by_load_load, by_load, by_load);
+        let numbers = [tau2.re, tau2.im, mixed.re, mixed.im, load2.re, load2.im];
+        spread(numbers, |lane, [a, b, c, d, e, g]| SecondVariation {
+            map: maps[lane],
+            by_tau_tau: DVec2::new(a, b),
+            by_tau_load: DVec2::new(c, d),
+            by_load_load: DVec2::new(e, g),
         })
     }
 
     #[inline(never)]
     fn shoot(unit: Unit, key: BlockKey, block: &Block) -> [Self; WIDTH] {
         unit.run(Trajectories::new(key, block))
-    }
-}
-
-fn map([x, y, ln_d_tau, phi_tau, ln_d_load, phi_load]: [f64; 6]) -> ShootingMap {
-    ShootingMap {
-        pole: DVec2::new(x, y),
-        by_tau: DVec2::new(ln_d_tau, phi_tau),
-        by_load: DVec2::new(ln_d_load, phi_load),
     }
 }

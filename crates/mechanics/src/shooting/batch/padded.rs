@@ -3,7 +3,7 @@
 //! A block takes the steps of its most demanding member, so that outputs depend on the whole batch; not on the number of
 //! threads.
 
-use super::block_key::{BlockKey, BlockKeys};
+use super::block_key::BlockKey;
 use super::kernel::{Block, Steps};
 use super::{InitialCondition, Method, OutputSet, SMALLEST_CHUNK};
 use crate::numerics::{Unit, WIDTH};
@@ -16,25 +16,15 @@ pub fn shoot<O: OutputSet>(
     conditions: &[InitialCondition],
     outputs: &mut [O],
 ) {
-    let mut keys = BlockKeys::default();
-    let mut indices = Vec::with_capacity(conditions.len());
+    let mut members: Vec<(BlockKey, usize)> = Vec::with_capacity(conditions.len());
     for conditions in conditions.chunks(WIDTH) {
         let block = &Block::new(conditions.len(), |i| &conditions[i]);
         let steps = unit.run(Steps { method, block });
         for (condition, steps) in conditions.iter().zip(steps) {
-            indices.push(keys.index(BlockKey::new(method, condition, steps)));
+            members.push((BlockKey::new(method, condition, steps), members.len()));
         }
     }
-    let mut keys: Vec<(BlockKey, usize)> = keys.all.into_iter().zip(0..).collect();
-    keys.sort_unstable();
-    let mut members = Vec::with_capacity(conditions.len());
-    for (key, index) in keys {
-        let of_key = indices
-            .iter()
-            .zip(0..)
-            .filter(|(other, _)| **other == index);
-        members.extend(of_key.map(|(_, i)| (key, i)));
-    }
+    members.sort_unstable();
     let blocks: Vec<&[(BlockKey, usize)]> = members
         .chunk_by(|(a, _), (b, _)| a.may_pad(b))
         .flat_map(|group| group.chunks(WIDTH))

@@ -5,9 +5,10 @@
 //! coordinates of a whisker in front of a pole. Its derivatives need no trigonometry:
 //! `G_i = w_i/w - i theta_i`, `G_ij = w_ij/w - w_i w_j/w^2 - i theta_ij`.
 
-use crate::numerics::Complex;
-use crate::numerics::{Lanes, WIDTH};
+use crate::numerics::{Complex, Lanes, WIDTH};
+use crate::shooting::ShootingMap;
 use crate::shooting::sensitivity::{Arrival, BaseDerivatives, Triple};
+use glam::DVec2;
 
 /// The pole's centre `w` seen from the base, in the axes of the contact.
 pub struct Centre<T> {
@@ -45,22 +46,31 @@ impl<T: Lanes> Centre<T> {
         self.ln_pole_by(of).minus(by.times(and))
     }
 
-    /// The numbers of a [`ShootingMap`].
+    /// The shooting map of each lane.
     #[inline(always)]
-    pub fn map(&self, first: &BaseDerivatives<T>) -> [T; 6] {
+    pub fn maps(&self, first: &BaseDerivatives<T>) -> [ShootingMap; WIDTH] {
         let (tau, load) = (
             self.ln_pole_by(first.by_tau),
             self.ln_pole_by(first.by_load),
         );
-        [self.pole.re, self.pole.im, tau.re, tau.im, load.re, load.im]
+        let pole = self.pole;
+        let numbers = [pole.re, pole.im, tau.re, tau.im, load.re, load.im];
+        spread(
+            numbers,
+            |_, [x, y, ln_d_tau, phi_tau, ln_d_load, phi_load]| ShootingMap {
+                pole: DVec2::new(x, y),
+                by_tau: DVec2::new(ln_d_tau, phi_tau),
+                by_load: DVec2::new(ln_d_load, phi_load),
+            },
+        )
     }
 }
 
-/// The numbers of each lane.
+/// What `answer` makes of the numbers of each lane.
 #[inline(always)]
 pub fn spread<T: Lanes, A: Copy + Default, const N: usize>(
     numbers: [T; N],
-    answer: impl Fn([f64; N]) -> A,
+    answer: impl Fn(usize, [f64; N]) -> A,
 ) -> [A; WIDTH] {
     let mut columns = [[0.0; WIDTH]; N];
     for (column, number) in columns.iter_mut().zip(numbers) {
@@ -72,7 +82,7 @@ pub fn spread<T: Lanes, A: Copy + Default, const N: usize>(
         for (number, column) in row.iter_mut().zip(&columns) {
             *number = column[lane];
         }
-        *slot = answer(row);
+        *slot = answer(lane, row);
     }
     answers
 }

@@ -6,12 +6,8 @@ mod rk4;
 pub use nystrom8::Nystrom8;
 pub use rk4::Rk4;
 
-use crate::numerics::Real;
-use crate::numerics::hyperbolic_small;
-use crate::shooting::Intrinsic;
-use crate::shooting::Material;
-use crate::shooting::Section;
-use crate::shooting::{Planar, RodSystem, Sensitivity, State};
+use crate::numerics::{Real, hyperbolic_small};
+use crate::shooting::{Intrinsic, Material, Planar, RodSystem, Section, Sensitivity, State};
 
 /// An explicit one-step method with fixed steps.
 pub trait Integrator: Copy + Send + Sync + 'static {
@@ -129,17 +125,13 @@ impl<T: Real> Section<T> {
 
 /// Integrates `system` in `steps` steps from the section `from`.
 #[inline(always)]
-pub fn integrate<M: Integrator, T: Real, I, C, S: Sensitivity<T>>(
+pub fn integrate<M: Integrator, T: Real, I: Intrinsic<T>, C: Material<T>, S: Sensitivity<T>>(
     system: &RodSystem<T, I, C>,
     scales: &Scales<T>,
     from: Section<T>,
     steps: u32,
     mut state: State<T, I, S>,
-) -> State<T, I, S>
-where
-    I: Intrinsic<T>,
-    C: Material<T>,
-{
+) -> State<T, I, S> {
     let mut section = from;
     for _ in 0..steps {
         let (rest, (rod, carried)) = M::step::<T, I, C, S>(system, scales, section, state);

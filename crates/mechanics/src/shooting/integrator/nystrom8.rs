@@ -10,14 +10,9 @@
 //! IMA Journal of Numerical Analysis 7 (1987) 423-430, with the corrigendum in 11 (1991) 297. The error weights are not
 //! needed: every map carries its residual, and accuracy is measured against finer runs.
 
-use crate::numerics::rotated_by_small;
-use crate::numerics::{Real, Vector};
-use crate::shooting::Intrinsic;
-use crate::shooting::Material;
-use crate::shooting::Section;
-use crate::shooting::integrator::STAGES;
-use crate::shooting::{Integrator, Scales};
-use crate::shooting::{RodSystem, Sensitivity, State};
+use crate::numerics::{Real, Vector, rotated_by_small};
+use crate::shooting::integrator::{Integrator, STAGES, Scales};
+use crate::shooting::{Intrinsic, Material, RodSystem, Section, Sensitivity, State};
 
 /// Order 8, 8 stages.
 #[derive(Clone, Copy, Debug)]

@@ -1,12 +1,8 @@
 //! The classical Runge-Kutta method of order 4; the twin of `shaders/rk4.wgsl`.
 
 use crate::numerics::{Real, Vector};
-use crate::shooting::Intrinsic;
-use crate::shooting::Material;
-use crate::shooting::Section;
-use crate::shooting::integrator::STAGES;
-use crate::shooting::{Integrator, Scales};
-use crate::shooting::{RodSystem, Sensitivity, State};
+use crate::shooting::integrator::{Integrator, STAGES, Scales};
+use crate::shooting::{Intrinsic, Material, RodSystem, Section, Sensitivity, State};
 
 /// Order 4, 4 stages.
 #[derive(Clone, Copy, Debug)]

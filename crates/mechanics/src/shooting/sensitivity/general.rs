@@ -4,10 +4,10 @@
 //! derivatives by force and by arclength is the same at the base as at the contact:
 //! `Y_s = theta_s (X + f X_f) - f theta_f X_s + const`. `Y_s` and its derivatives therefore need not be carried.
 
-use crate::numerics::Real;
+use crate::numerics::{Real, Vector};
 use crate::shooting::contact::Contact;
 use crate::shooting::sensitivity::{
-    Arrival, BaseDerivatives, SecondBaseDerivatives, SensitivitySet, Triple, scaled, twice,
+    Arrival, BaseDerivatives, SecondBaseDerivatives, SensitivitySet, Triple, twice,
 };
 use crate::shooting::{Carried, Sensitivity};
 
@@ -43,8 +43,8 @@ fn base_derivatives<T: Real>(
 ) -> BaseDerivatives<T> {
     let (rho, load) = (arrival.contact.radius, load(arrival));
     BaseDerivatives {
-        by_tau: sum(scaled(rho, by_arclength), scaled(load, by_force)),
-        by_load: scaled(rho * rho, by_force),
+        by_tau: sum(by_arclength.times(rho), by_force.times(load)),
+        by_load: by_force.times(rho * rho),
     }
 }
 
@@ -141,19 +141,19 @@ impl<T: Real> SensitivitySet<T> for GeneralSecond {
         let (rho, load, taper) = (arrival.contact.radius, load(arrival), arrival.taper);
         let two = T::of(2.0);
         let by_tau_tau = sum(
-            sum(scaled(load * load, ff), scaled(two * load * rho, fs)),
-            scaled(rho * rho, ss),
+            sum(ff.times(load * load), fs.times(two * load * rho)),
+            ss.times(rho * rho),
         );
-        let slanted = sum(scaled(two * load, by_force), scaled(rho, by_arclength));
+        let slanted = sum(by_force.times(two * load), by_arclength.times(rho));
         let by_tau_load = sum(
-            sum(scaled(load, ff), scaled(rho, fs)),
-            scaled(-two * taper, by_force),
+            sum(ff.times(load), fs.times(rho)),
+            by_force.times(-two * taper),
         );
         SecondBaseDerivatives {
             first: base_derivatives(arrival, by_force, by_arclength),
-            by_tau_tau: sum(by_tau_tau, scaled(-taper, slanted)),
-            by_tau_load: scaled(rho * rho, by_tau_load),
-            by_load_load: scaled(rho * rho * (rho * rho), ff),
+            by_tau_tau: sum(by_tau_tau, slanted.times(-taper)),
+            by_tau_load: by_tau_load.times(rho * rho),
+            by_load_load: ff.times(rho * rho * (rho * rho)),
         }
     }
 }

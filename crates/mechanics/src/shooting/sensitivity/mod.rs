@@ -63,11 +63,6 @@ pub struct SecondBaseDerivatives<T> {
     pub by_load_load: Triple<T>,
 }
 
-#[inline(always)]
-fn scaled<T: Real>(by: T, [theta, x, y]: Triple<T>) -> Triple<T> {
-    [by * theta, by * x, by * y]
-}
-
 /// Second derivatives of `-cos theta` and `-sin theta`, where those of `theta` are `angle`; `turns` is the product of the first
 /// ones.
 #[inline(always)]

@@ -5,10 +5,10 @@
 //! contact is; only its end does. So derivatives by `tau` are right-hand sides at the base:
 //! `theta_tau = f X`, `X_tau = -beta X - c`, `Y_tau = -beta Y - s`, and only those by the load have to be integrated.
 
-use crate::numerics::Real;
+use crate::numerics::{Real, Vector};
 use crate::shooting::contact::Contact;
 use crate::shooting::sensitivity::{
-    Arrival, BaseDerivatives, SecondBaseDerivatives, SensitivitySet, Triple, scaled, twice,
+    Arrival, BaseDerivatives, SecondBaseDerivatives, SensitivitySet, Triple, twice,
 };
 use crate::shooting::{Carried, Sensitivity};
 
@@ -59,7 +59,7 @@ impl<T: Real> SensitivitySet<T> for SimilarFirst {
                 -taper.mul_add(x, c),
                 -taper.mul_add(y, s),
             ],
-            by_load: scaled(by_load, [theta, x_f, y_f]),
+            by_load: [theta, x_f, y_f].times(by_load),
         }
     }
 }
@@ -117,7 +117,7 @@ impl<T: Real> SensitivitySet<T> for SimilarSecond {
             // The force is the load times the square of the radius at the contact.
             by_tau_tau: [theta_tau_tau - two * taper * f * x, x_tau_tau, y_tau_tau],
             by_tau_load: [by_load.mul_add(x, theta_tau_load), x_tau_load, y_tau_load],
-            by_load_load: scaled(by_load * by_load, [theta_ff, x_ff, y_ff]),
+            by_load_load: [theta_ff, x_ff, y_ff].times(by_load * by_load),
         }
     }
 }
