@@ -64,11 +64,6 @@ impl Spread {
         }
         values.sort_by(f64::total_cmp);
         let at = |part: f64| {
-            #[allow(
-                clippy::cast_possible_truncation,
-                clippy::cast_sign_loss,
-                reason = "a place in the list"
-            )]
             let place = (part * values.len().saturating_sub(1) as f64) as usize;
             values.get(place).copied().unwrap_or(0.0)
         };
@@ -107,7 +102,6 @@ impl Task {
                 let sheet = Sheet::new(method, rod, *side, &distances);
                 let solved = sheet.map(|sheet| states(method, &sheet, &scene.grid.push_angle_deg));
                 solved.into_iter().flatten().map(move |(shot, state)| {
-                    #[allow(clippy::cast_possible_truncation, reason = "a sample has few rods")]
                     let rod = index as u32;
                     let shot = Shot { rod, ..shot };
                     let (tau, load) = (state.tau, state.load);

@@ -144,11 +144,6 @@ impl FoldEdge {
     /// Where `ln D` is `target` between the samples of two neighbouring contact nodes.
     pub fn predict(&self, pair: [&Sample; 2], target: f64) -> Prediction {
         let ends = pair.map(|sample| sample.place);
-        #[allow(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "places are not negative, and few"
-        )]
         let start = stencil(ends[0] as usize, STENCIL, self.count);
         let piece = &self.pieces[start];
         let ends = ends.map(|end| end - start as f64);

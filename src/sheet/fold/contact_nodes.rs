@@ -109,11 +109,6 @@ fn folds_down_to(method: Method, rod: &Rod, side: Side, nearest: &Row) -> Option
     };
     let touch = rod.tau(nearest.contact.min(1.0));
     // The least that are needed, the one at the tip among them.
-    #[allow(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "the cast saturates, and a batch is bounded"
-    )]
     let mut batch = ((u_tip - u_of(rod, touch)) / SPACING) as usize;
     batch = batch.min(MOST) + BEYOND_TIP + BEYOND_NEAREST + 2;
     let mut folds: Vec<FoldPoint> = Vec::new();
@@ -193,11 +188,6 @@ impl ContactNodes {
     pub fn fold_load(&self, tau: f64) -> f64 {
         let place = (u_of(&self.rod, tau) - self.first_u) / SPACING;
         let last = self.folds.len() - 2;
-        #[allow(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "the cast saturates, and the result is clamped to the nodes"
-        )]
         let before = (place as usize).min(last);
         let start = stencil(before, STENCIL, self.folds.len());
         self.ln_q[start].at(place - start as f64).0.exp() / (tau * tau)

@@ -25,12 +25,6 @@ macro_rules! scalar {
     ($t:ty) => {
         impl Real for $t {
             #[inline(always)]
-            #[allow(
-                clippy::cast_possible_truncation,
-                clippy::cast_lossless,
-                trivial_numeric_casts,
-                reason = "rounding to the scalar's own precision is what this function is for"
-            )]
             fn of(x: f64) -> Self {
                 x as $t
             }

@@ -112,11 +112,6 @@ impl RadiusProfile {
                 .fold(0.0, f64::max);
             largest = [largest[0].max(length * steepest), largest[1].max(length)];
             changes.push(largest);
-            #[allow(
-                clippy::cast_possible_truncation,
-                clippy::cast_sign_loss,
-                reason = "a positive number that the rows keep below a few hundred"
-            )]
             parts.push((length * steepest).ceil().max(1.0) as u32);
         }
         let mut profile = Self {

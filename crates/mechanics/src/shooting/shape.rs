@@ -132,11 +132,6 @@ impl Way<'_> {
         state: State<f64, I, Shape>,
     ) -> State<f64, I, Shape> {
         let share = f64::from(self.steps) * (from - to) / whole;
-        #[allow(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "a share of a small number"
-        )]
         let steps = (share.ceil() as u32).max(1);
         let h = (from - to) / f64::from(steps);
         let rho = self.rod.radius(from);

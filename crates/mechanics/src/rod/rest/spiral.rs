@@ -49,11 +49,6 @@ impl EulerSpiral {
     pub fn at_arclength(&self, s: f64) -> (DVec2, DVec2) {
         let bent = s.min(1.0);
         let most = self.k0.abs().max((self.k0 + self.k1).abs());
-        #[allow(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "a small positive number"
-        )]
         let panels = (most * bent / TURN_PER_PANEL).ceil().max(1.0) as u32;
         let half = 0.5 * bent / f64::from(panels);
         let point: DVec2 = (0..panels)
