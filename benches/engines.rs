@@ -151,8 +151,7 @@ fn files(criterion: &mut Criterion) {
     let folder = tempfile::tempdir().expect("there is a folder for temporary files");
     let about = Description {
         scene: &scene,
-        engine: "cpu f64",
-        adapter: "a bench",
+        engine: &whiskmap::integrate::Description::of(None),
         tolerances: &serde_json::json!({}),
     };
     let write = |path: &Path| -> Result<(), Error> {

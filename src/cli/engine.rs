@@ -16,32 +16,14 @@ pub enum Choice {
     Gpu,
 }
 
-/// Precisions of the shaders by name.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Shaders {
-    /// Every adapter
-    F32,
-    /// Vulkan adapters with shaderFloat64
-    F64,
-}
-
-impl From<Shaders> for Precision {
-    fn from(shaders: Shaders) -> Self {
-        match shaders {
-            Shaders::F32 => Self::F32,
-            Shaders::F64 => Self::F64,
-        }
-    }
-}
-
 /// Opens what shoots before the refinement, nothing for the CPU alone, and says in one line why.
 pub fn open(
     choice: Choice,
-    shaders: Option<Shaders>,
+    asked: Option<Precision>,
 ) -> Result<(Option<Box<dyn Engine>>, String), Failure> {
-    let precision = Precision::from(shaders.unwrap_or(Shaders::F32));
+    let precision = asked.unwrap_or(Precision::F32);
     match choice {
-        Choice::Cpu if shaders == Some(Shaders::F32) => Err(Failure::Input(
+        Choice::Cpu if asked == Some(Precision::F32) => Err(Failure::Input(
             "--precision f32: the CPU engine computes in f64; allowed with --engine gpu".to_owned(),
         )),
         Choice::Cpu => Ok((None, "asked for".to_owned())),

@@ -50,7 +50,7 @@ impl Failure {
         let is_input = match self {
             Self::Scene(_) | Self::Plan(_) | Self::Input(_) => true,
             Self::Store(store::Error::Encode(..)) | Self::Render(render::Error::Scale(_)) => true,
-            Self::Store(error) | Self::Render(render::Error::Map(error)) => error.is_unreadable(),
+            Self::Store(error) | Self::Render(render::Error::Store(error)) => error.is_unreadable(),
             _ => false,
         };
         if is_input { 2 } else { 1 }

@@ -1,6 +1,6 @@
 //! `whiskmap map`.
 
-use super::engine::{self, Choice, Shaders};
+use super::engine::{self, Choice};
 use super::failure::{Failure, say};
 use super::numbers::whole;
 use super::outputs;
@@ -13,6 +13,7 @@ use std::path::PathBuf;
 use std::time::Instant;
 use whiskmap::accuracy::{Accuracy, BOUNDED};
 use whiskmap::classify::Regime;
+use whiskmap::integrate::gpu::Precision;
 use whiskmap::map::Stage;
 use whiskmap::map::{self, Progress, Summary};
 use whiskmap::plan::Plan;
@@ -41,7 +42,7 @@ pub struct Options {
     engine: Choice,
     /// Scalar of the shaders [default: f32]
     #[arg(long, value_enum)]
-    precision: Option<Shaders>,
+    precision: Option<Precision>,
     /// Threads of the CPU [default: all cores]
     #[arg(long, value_name = "N", value_parser = whole(1..=1024))]
     pub threads: Option<u32>,
@@ -85,8 +86,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         &file,
         &Description {
             scene: &scene,
-            engine: &about.engine,
-            adapter: &about.adapter,
+            engine: &about,
             tolerances: &tolerances(accuracy),
         },
     )?;

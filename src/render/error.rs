@@ -1,26 +1,17 @@
 //! What can go wrong with a picture.
 
 use crate::store;
-use std::path::PathBuf;
 
 /// A picture that cannot be drawn. Every message is complete; there is no chain of sources to print.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
-    /// The map does not have what is to be drawn.
+    /// The map does not have what is to be drawn, or the picture cannot be written.
     #[error(transparent)]
-    Map(#[from] store::Error),
+    Store(#[from] store::Error),
     /// The wanted colour scale cannot be had; the text says why, and what is allowed.
     #[error("{0}")]
     Scale(String),
     /// The pixels cannot be encoded.
     #[error("cannot encode the picture as PNG: {0}")]
     Encode(#[from] png::EncodingError),
-    /// The picture cannot be written.
-    #[error("cannot write {}: {cause}", path.display())]
-    Write {
-        /// The picture.
-        path: PathBuf,
-        /// What the system said.
-        cause: std::io::Error,
-    },
 }

@@ -3,7 +3,7 @@
 use super::error::Error;
 use super::picture::Picture;
 use super::{bitmap, svg};
-use crate::store::Output;
+use crate::store::{self, Output};
 use std::io::Write;
 use std::path::Path;
 
@@ -53,9 +53,6 @@ impl Picture {
             output.write_all(&bytes)?;
             output.finish()
         });
-        written.map_err(|cause| Error::Write {
-            path: out.to_owned(),
-            cause,
-        })
+        written.map_err(|cause| store::Error::Write(out.to_owned(), cause).into())
     }
 }

@@ -1,7 +1,8 @@
 //! The attributes: ASCII JSON, every one of them.
 
 use super::layout::Layout;
-use super::tally::{Counts, Tally, regimes, statuses};
+use super::tally::{Counts, regimes, statuses};
+use crate::integrate;
 use crate::map::Shots;
 use crate::scene::{Grid, Setup};
 use exr::meta::attribute::{AttributeValue, Text};
@@ -14,10 +15,8 @@ use std::collections::HashMap;
 pub struct Description<'a> {
     /// What is simulated.
     pub scene: &'a Setup,
-    /// What integrates, such as `cpu f64`.
-    pub engine: &'a str,
-    /// The device it runs on.
-    pub adapter: &'a str,
+    /// What integrates, and on which device.
+    pub engine: &'a integrate::Description,
     /// Tolerances and step limits.
     pub tolerances: &'a Value,
 }
@@ -63,8 +62,8 @@ pub(super) fn encode(about: &Description<'_>) -> Attributes {
         ("scene", json!(about.scene.text)),
         ("title", json!(about.scene.title)),
         ("whiskmap_version", json!(env!("CARGO_PKG_VERSION"))),
-        ("engine", json!(about.engine)),
-        ("adapter", json!(about.adapter)),
+        ("engine", json!(about.engine.engine)),
+        ("adapter", json!(about.engine.adapter)),
         ("tolerances", json!(about.tolerances)),
         ("regime_names", json!(regimes())),
         ("status_names", json!(statuses())),
@@ -82,9 +81,10 @@ pub(super) fn encode_counts(counts: &Counts, width: usize) -> String {
 
 /// The longest text that any run's counts can have.
 pub(super) fn counts_width() -> usize {
+    let most = |name: &'static str| (name.to_owned(), u64::MAX);
     let counts = Counts {
-        regimes: Tally::new(regimes(), u64::MAX).by_name(),
-        statuses: Tally::new(statuses(), u64::MAX).by_name(),
+        regimes: regimes().into_values().map(most).collect(),
+        statuses: statuses().into_values().map(most).collect(),
         worst_residual: Some(-f64::MIN_POSITIVE),
         shots: Shots {
             all: u64::MAX,

@@ -23,7 +23,7 @@ pub use attributes::Description;
 pub use error::Error;
 pub use layout::Layout;
 pub use output::Output;
-pub use reader::{Samples, StoredMap};
+pub use reader::{MapHeader, Samples, StoredMap};
 pub use table::Table;
 pub use tally::Counts;
 pub use unfinished::abandon;

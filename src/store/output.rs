@@ -54,13 +54,7 @@ impl Output {
     /// Whether a regular file is made, or replaced.
     #[must_use]
     pub fn is_regular(&self) -> bool {
-        matches!(
-            self.0,
-            Destination::Named {
-                is_regular: true,
-                ..
-            }
-        )
+        matches!(&self.0, Destination::Named { is_regular, .. } if *is_regular)
     }
 
     /// Writes what is left and gives the file its name.

@@ -11,6 +11,7 @@ use exr::meta::{MetaData, OffsetTables};
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{self, BufReader, Seek, SeekFrom};
+use std::ops::{Deref, Range};
 use std::path::{Path, PathBuf};
 
 /// The values of a channel.
@@ -46,20 +47,40 @@ impl Samples {
     }
 }
 
-/// A map on disk whose header has been read and checked.
+/// What the header of a map tells.
+#[derive(Debug)]
+pub struct MapHeader {
+    /// One line for people.
+    pub title: String,
+    /// The axes.
+    pub grid: Grid,
+    /// Panels and cells.
+    pub layout: Layout,
+    /// Name of every code of the channel `regime`.
+    pub regime_names: BTreeMap<u32, String>,
+    /// Name of every code of the channel `status`.
+    pub status_names: BTreeMap<u32, String>,
+    /// What the map holds.
+    pub counts: Counts,
+    version: String,
+}
+
+/// A map on disk whose header has been read and checked. It reads like its [`MapHeader`].
 #[derive(Debug)]
 pub struct StoredMap {
     path: PathBuf,
     meta: MetaData,
     /// Where the blocks of each part begin.
     offsets: OffsetTables,
-    layout: Layout,
-    grid: Grid,
-    title: String,
-    version: String,
-    regime_names: BTreeMap<u32, String>,
-    status_names: BTreeMap<u32, String>,
-    counts: Counts,
+    header: MapHeader,
+}
+
+impl Deref for StoredMap {
+    type Target = MapHeader;
+
+    fn deref(&self) -> &MapHeader {
+        &self.header
+    }
 }
 
 impl StoredMap {
@@ -79,52 +100,18 @@ impl StoredMap {
         header::check_layout(&meta, layout).map_err(&foreign)?;
         Ok(Self {
             offsets: header::read_offsets(path, &mut file, &meta)?,
-            title: header::parse(&meta, "title").map_err(&foreign)?,
-            version: header::parse(&meta, "whiskmap_version").map_err(&foreign)?,
-            regime_names: header::parse(&meta, "regime_names").map_err(&foreign)?,
-            status_names: header::parse(&meta, "status_names").map_err(&foreign)?,
-            counts: header::parse(&meta, "counts").map_err(&foreign)?,
+            header: MapHeader {
+                title: header::parse(&meta, "title").map_err(&foreign)?,
+                version: header::parse(&meta, "whiskmap_version").map_err(&foreign)?,
+                regime_names: header::parse(&meta, "regime_names").map_err(&foreign)?,
+                status_names: header::parse(&meta, "status_names").map_err(&foreign)?,
+                counts: header::parse(&meta, "counts").map_err(&foreign)?,
+                layout,
+                grid,
+            },
             path: path.to_owned(),
             meta,
-            layout,
-            grid,
         })
-    }
-
-    /// One line for people.
-    #[must_use]
-    pub fn title(&self) -> &str {
-        &self.title
-    }
-
-    /// The axes.
-    #[must_use]
-    pub const fn grid(&self) -> &Grid {
-        &self.grid
-    }
-
-    /// Panels and cells.
-    #[must_use]
-    pub const fn layout(&self) -> Layout {
-        self.layout
-    }
-
-    /// Name of every code of the channel `regime`.
-    #[must_use]
-    pub const fn regime_names(&self) -> &BTreeMap<u32, String> {
-        &self.regime_names
-    }
-
-    /// Name of every code of the channel `status`.
-    #[must_use]
-    pub const fn status_names(&self) -> &BTreeMap<u32, String> {
-        &self.status_names
-    }
-
-    /// What the map holds.
-    #[must_use]
-    pub const fn counts(&self) -> &Counts {
-        &self.counts
     }
 
     /// The version of the program that wrote the map, if it is not compatible with this one.
@@ -173,7 +160,7 @@ impl StoredMap {
         self.read(name, index..index + 1)
     }
 
-    fn read(&self, name: &str, panels: std::ops::Range<usize>) -> Result<Samples, Error> {
+    fn read(&self, name: &str, panels: Range<usize>) -> Result<Samples, Error> {
         let (part, channel, kind) = self.find(name)?;
         let mut file = open(&self.path)?;
         let mut bytes = Vec::new();

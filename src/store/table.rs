@@ -6,17 +6,13 @@ use std::io;
 
 /// A table being written.
 #[derive(Debug)]
-pub struct Table {
-    writer: csv::Writer<Output>,
-}
+pub struct Table(csv::Writer<Output>);
 
 impl Table {
     /// A table on its way to `output`.
     #[must_use]
     pub fn new(output: Output) -> Self {
-        Self {
-            writer: csv::Writer::from_writer(output),
-        }
+        Self(csv::Writer::from_writer(output))
     }
 
     /// Appends `rows`; the names of the fields of the first one are the header.
@@ -25,7 +21,7 @@ impl Table {
     /// When the output takes no more.
     pub fn rows<R: Serialize>(&mut self, rows: impl IntoIterator<Item = R>) -> io::Result<()> {
         rows.into_iter()
-            .try_for_each(|row| self.writer.serialize(row).map_err(unwrapped))
+            .try_for_each(|row| self.0.serialize(row).map_err(unwrapped))
     }
 
     /// Writes what is left and finishes the output.
@@ -33,11 +29,8 @@ impl Table {
     /// # Errors
     /// When the output takes no more.
     pub fn finish(self) -> io::Result<()> {
-        let output = self
-            .writer
-            .into_inner()
-            .map_err(csv::IntoInnerError::into_error)?;
-        output.finish()
+        let output = self.0.into_inner();
+        output.map_err(csv::IntoInnerError::into_error)?.finish()
     }
 }
 

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// The attribute `counts`: what a whole map holds.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Counts {
     /// Cells of each regime, by name.
     pub regimes: BTreeMap<String, u64>,
@@ -28,30 +28,18 @@ pub(super) fn statuses() -> BTreeMap<u32, &'static str> {
     Status::ALL.map(|own| (own.code(), own.name())).into()
 }
 
-/// Counts the codes of one channel: the name and the cells of each.
-#[derive(Clone, Debug)]
-pub(super) struct Tally(BTreeMap<u32, (&'static str, u64)>);
-
-impl Tally {
-    /// A tally in which every count is `cells`.
-    pub(super) fn new(names: BTreeMap<u32, &'static str>, cells: u64) -> Self {
-        let named = names.into_iter();
-        Self(named.map(|(code, name)| (code, (name, cells))).collect())
+/// Adds the cells of one channel by their names; returns the first code that has none.
+pub(super) fn add(
+    cells: &mut BTreeMap<String, u64>,
+    names: BTreeMap<u32, &'static str>,
+    codes: &[u32],
+) -> Result<(), u32> {
+    if let Some(unknown) = codes.iter().find(|code| !names.contains_key(code)) {
+        return Err(*unknown);
     }
-
-    /// Counts `codes`; returns the first one that has no name.
-    pub(super) fn add(&mut self, codes: &[u32]) -> Result<(), u32> {
-        for code in codes {
-            self.0.get_mut(code).ok_or(*code)?.1 += 1;
-        }
-        Ok(())
+    for (code, name) in names {
+        let own = codes.iter().filter(|other| **other == code).count();
+        *cells.entry(name.to_owned()).or_default() += own as u64;
     }
-
-    /// Cells by name.
-    pub(super) fn by_name(&self) -> BTreeMap<String, u64> {
-        let named = self.0.values();
-        named
-            .map(|&(name, cells)| (name.to_owned(), cells))
-            .collect()
-    }
+    Ok(())
 }

@@ -2,7 +2,7 @@
 
 use super::attributes::{self, Description, attribute};
 use super::layout::{self, Channel, Layout, Part, SAMPLE_BYTES};
-use super::tally::{self, Counts, Tally};
+use super::tally::{self, Counts};
 use super::{Error, Output, Panel, header};
 use crate::classify::Regime;
 use crate::map::Shots;
@@ -25,9 +25,7 @@ pub struct MapWriter {
     offsets: [Vec<u64>; 3],
     /// Panels written so far.
     written: usize,
-    regimes: Tally,
-    statuses: Tally,
-    worst_residual: Option<f64>,
+    counts: Counts,
     counts_width: usize,
 }
 
@@ -55,9 +53,7 @@ impl MapWriter {
             headers,
             offsets: Default::default(),
             written: 0,
-            regimes: Tally::new(tally::regimes(), 0),
-            statuses: Tally::new(tally::statuses(), 0),
-            worst_residual: None,
+            counts: Counts::default(),
             counts_width,
         };
         writer.append(&preamble)?;
@@ -115,13 +111,8 @@ impl MapWriter {
                 panels: self.layout.panels(),
             });
         }
-        let counts = Counts {
-            regimes: self.regimes.by_name(),
-            statuses: self.statuses.by_name(),
-            worst_residual: self.worst_residual,
-            shots,
-        };
-        let text = attributes::encode_counts(&counts, self.counts_width);
+        self.counts.shots = shots;
+        let text = attributes::encode_counts(&self.counts, self.counts_width);
         for header in &mut self.headers {
             let attributes = &mut header.own_attributes.other;
             attributes.extend([attribute("counts", &text)]);
@@ -129,7 +120,12 @@ impl MapWriter {
         // The counts were given their room at the start, so this has the length of what it replaces.
         let preamble = header::encode(&self.headers, &self.offsets)
             .map_err(Error::at(&self.path, Error::Encode))?;
-        let Self { path, mut file, .. } = self;
+        let Self {
+            path,
+            mut file,
+            counts,
+            ..
+        } = self;
         file.seek(SeekFrom::Start(0))
             .and_then(|_| file.write_all(&preamble))
             .and_then(|()| file.into_inner().map_err(IntoInnerError::into_error))
@@ -164,8 +160,7 @@ impl MapWriter {
 
     /// Counts the cells of panels, or, where a code has no name, none of them.
     fn count(&mut self, first: usize, panels: &[Panel]) -> Result<(), Error> {
-        let mut regimes = self.regimes.clone();
-        let mut statuses = self.statuses.clone();
+        let mut counts = self.counts.clone();
         for (index, panel) in (first..).zip(panels) {
             let unknown = |channel| {
                 move |code| Error::UnknownCode {
@@ -174,20 +169,22 @@ impl MapWriter {
                     code,
                 }
             };
-            regimes.add(&panel.regime).map_err(unknown("regime"))?;
-            statuses.add(&panel.status).map_err(unknown("status"))?;
+            tally::add(&mut counts.regimes, tally::regimes(), &panel.regime)
+                .map_err(unknown("regime"))?;
+            tally::add(&mut counts.statuses, tally::statuses(), &panel.status)
+                .map_err(unknown("status"))?;
         }
-        (self.regimes, self.statuses) = (regimes, statuses);
         let cells = panels
             .iter()
             .flat_map(|panel| panel.residual.iter().zip(&panel.regime));
         let solved = cells.filter(|(residual, regime)| {
             !residual.is_nan() && **regime != Regime::Unresolved.code()
         });
-        self.worst_residual = solved
+        counts.worst_residual = solved
             .map(|(residual, _)| f64::from(*residual))
-            .chain(self.worst_residual)
+            .chain(counts.worst_residual)
             .reduce(f64::max);
+        self.counts = counts;
         Ok(())
     }
 

@@ -5,6 +5,7 @@ use crate::{arc, both};
 use std::fs;
 use std::path::Path;
 use whiskmap::render::{self, Chart, Disc, Dot, Format, Ink, Line, Plot, Stroke};
+use whiskmap::store;
 
 #[test]
 fn the_legend_has_each_name_once_and_wraps() {
@@ -141,7 +142,10 @@ fn errors_leave_no_chart() {
             .picture()
             .save(&nowhere, format)
             .unwrap_err();
-        assert!(matches!(error, render::Error::Write { .. }), "{error}");
+        assert!(
+            matches!(error, render::Error::Store(store::Error::Write(..))),
+            "{error}"
+        );
         // A folder in the way: the temporary file must go.
         let taken = folder.path().join(name);
         fs::create_dir(&taken).unwrap();
@@ -149,7 +153,10 @@ fn errors_leave_no_chart() {
             .picture()
             .save(&taken, format)
             .unwrap_err();
-        assert!(matches!(error, render::Error::Write { .. }), "{error}");
+        assert!(
+            matches!(error, render::Error::Store(store::Error::Write(..))),
+            "{error}"
+        );
         fs::remove_dir(&taken).unwrap();
     }
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);

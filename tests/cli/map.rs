@@ -26,7 +26,7 @@ fn a_map_end_to_end() {
     assert!(engine.ends_with("(asked for)\n"), "{run:?}");
 
     let stored = StoredMap::open(&place.path("new/folder/scene.exr")).unwrap();
-    assert_eq!(stored.counts().regimes["slip-off"], counts[2]);
+    assert_eq!(stored.counts.regimes["slip-off"], counts[2]);
     assert_eq!(stored.attribute("scene").unwrap(), SCENE);
 }
 

@@ -58,9 +58,9 @@ fn every_panel_is_the_map_of_its_whisker() {
         push_angles: 24,
         distances: 24,
     };
-    assert_eq!(sweep.layout(), layout);
-    let tapers = sweep.grid().taper.as_ref().unwrap();
-    let curvatures = sweep.grid().curvature_per_mm.as_ref().unwrap();
+    assert_eq!(sweep.layout, layout);
+    let tapers = sweep.grid.taper.as_ref().unwrap();
+    let curvatures = sweep.grid.curvature_per_mm.as_ref().unwrap();
     assert_eq!([tapers[0], tapers[3]], [0.0, 1.0]);
     assert_eq!(*curvatures, [0.0, 0.02, 0.04]);
 

@@ -109,13 +109,13 @@ fn the_map_is_completed_whatever_fails_while_it_runs() {
     };
     assert!(place.map("cpu", "nothing 0 0").status.success());
     let cpu = place.stored();
-    let shots = cpu.counts().shots;
+    let shots = cpu.counts.shots;
     assert!(shots.all > 8192 && shots.on_cpu_instead == 0, "{shots:?}");
     let (wanted, wanted_states) = (verdicts(&cpu), states(&cpu));
 
     let sound = place.map("gpu", "nothing 0 0");
     assert!(sound.status.success(), "{sound:?}");
-    assert_eq!(place.stored().counts().shots.on_cpu_instead, 0);
+    assert_eq!(place.stored().counts.shots.on_cpu_instead, 0);
     assert!(!String::from_utf8_lossy(&sound.stderr).contains("warning"));
     assert!(verdicts(&place.stored()) == wanted);
 
@@ -146,7 +146,7 @@ fn the_map_is_completed_whatever_fails_while_it_runs() {
         assert!(out.contains(&line), "{fault}: {out}");
 
         let map = place.stored();
-        assert_eq!(map.counts().shots.on_cpu_instead, shots.all, "{fault}");
+        assert_eq!(map.counts.shots.on_cpu_instead, shots.all, "{fault}");
         assert_eq!(map.attribute("engine").unwrap(), "gpu f32");
         assert!(verdicts(&map) == wanted, "{fault}");
         assert!(states(&map) == wanted_states, "{fault}");

@@ -3,7 +3,9 @@
 
 use serde_json::{Value, json};
 use std::path::Path;
+use std::sync::LazyLock;
 use whiskmap::classify::Regime;
+use whiskmap::integrate;
 use whiskmap::map::{Panel, STATE_CHANNELS, Shots};
 use whiskmap::scene::{Grid, Pole, Setup, Whisker};
 use whiskmap::store::{Counts, Description, MapWriter};
@@ -100,11 +102,16 @@ pub fn panel(scene: &Setup, index: usize) -> Panel {
     panel
 }
 
+/// An engine whose adapter is not all ASCII.
+static ENGINE: LazyLock<integrate::Description> = LazyLock::new(|| integrate::Description {
+    engine: "cpu f64".to_owned(),
+    adapter: "a \u{201c}card\u{201d}".to_owned(),
+});
+
 pub fn describe<'a>(scene: &'a Setup, tolerances: &'a Value) -> Description<'a> {
     Description {
         scene,
-        engine: "cpu f64",
-        adapter: "a \u{201c}card\u{201d}",
+        engine: &ENGINE,
         tolerances,
     }
 }

@@ -83,13 +83,16 @@ fn errors_leave_no_picture() {
     assert!(
         matches!(
             error,
-            render::Error::Map(store::Error::UnknownChannel { .. })
+            render::Error::Store(store::Error::UnknownChannel { .. })
         ),
         "{error}"
     );
     let nowhere = folder.path().join("no such folder/map.png");
     let picture = render::map(&map, &MapOptions::default()).unwrap();
     let error = picture.save(&nowhere, Format::Png).unwrap_err();
-    assert!(matches!(error, render::Error::Write { .. }), "{error}");
+    assert!(
+        matches!(error, render::Error::Store(store::Error::Write(..))),
+        "{error}"
+    );
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
 }

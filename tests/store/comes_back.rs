@@ -39,7 +39,7 @@ fn every_channel_of_every_panel_comes_back_bit_for_bit() {
         write(&path, &scene);
         let map = StoredMap::open(&path).unwrap();
         let layout = Layout::of(&scene.grid);
-        assert_eq!(map.layout(), layout);
+        assert_eq!(map.layout, layout);
         assert_eq!(map.channels().len(), STATE_CHANNELS.len() + 5);
         for name in map.channels() {
             let mut whole = Vec::new();
@@ -71,10 +71,10 @@ fn every_attribute_comes_back() {
         scene.grid.push_angle_deg = map::spread(-60.0 / 7.0, 70.0 / 3.0, 997);
         let counts = write(&path, &scene);
         let map = StoredMap::open(&path).unwrap();
-        assert_eq!(map.title(), scene.title);
-        assert_eq!(map.grid(), &scene.grid);
-        assert_eq!(map.counts(), &counts);
-        let layout = map.layout();
+        assert_eq!(map.title, scene.title);
+        assert_eq!(map.grid, scene.grid);
+        assert_eq!(map.counts, counts);
+        let layout = map.layout;
         let attribute = |name| map.attribute(name).unwrap();
         assert_eq!(attribute("scene"), json!(scene.text));
         assert_eq!(
@@ -87,10 +87,10 @@ fn every_attribute_comes_back() {
         assert_eq!(attribute("panels"), json!([layout.columns, layout.rows]));
         assert_eq!(attribute("axes")[1]["unit"], "mm");
         assert_eq!(attribute("axes")[1]["direction"], "y");
-        assert_eq!(map.regime_names()[&255], "unresolved");
+        assert_eq!(map.regime_names[&255], "unresolved");
         let not_converged = Status::NotConverged;
-        assert_eq!(map.status_names()[&101], not_converged.name());
-        assert_eq!(map.status_names().len(), Status::ALL.len());
+        assert_eq!(map.status_names[&101], not_converged.name());
+        assert_eq!(map.status_names.len(), Status::ALL.len());
         let error = map.attribute("weather").unwrap_err().to_string();
         assert!(error.contains("`weather`"), "{error}");
     }
@@ -106,7 +106,7 @@ fn the_header_counts_the_cells() {
     let Samples::U32(regimes) = map.read_channel("regime").unwrap() else {
         panic!("regimes are u32");
     };
-    for (code, name) in map.regime_names() {
+    for (code, name) in &map.regime_names {
         let cells = regimes.iter().filter(|found| *found == code).count();
         assert_eq!(counts.regimes[name], cells as u64, "{name}");
     }

@@ -6,10 +6,11 @@ use std::fmt;
 
 /// The shaders' scalar.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 pub enum Precision {
-    /// 32 bits: every GPU.
+    /// Every adapter.
     F32,
-    /// 64 bits: Vulkan adapters with `shaderFloat64`.
+    /// Vulkan adapters with shaderFloat64.
     F64,
 }
 

@@ -16,7 +16,7 @@ pub(super) fn draw(
     shading: &Shading,
     width: f64,
 ) -> Result<(), Error> {
-    let grid = map.grid();
+    let grid = &map.grid;
     let angles = Cells::new(&grid.push_angle_deg);
     let distances = Cells::new(&grid.distance_mm);
     let samples = map.read_panel(channel, index)?;

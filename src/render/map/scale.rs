@@ -38,7 +38,7 @@ impl Scale {
         }
         let (mut none, mut below, mut whole) = (false, 0_u64, false);
         let mut extent: Option<[f64; 2]> = None;
-        for index in 0..map.layout().panels() {
+        for index in 0..map.layout.panels() {
             let samples = map.read_panel(channel, index)?;
             whole = matches!(samples, Samples::U32(_));
             for value in samples.values() {

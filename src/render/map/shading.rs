@@ -34,8 +34,8 @@ impl Shading {
         options: &MapOptions<'_>,
     ) -> Result<Self, Error> {
         let (names, cells) = match channel {
-            "regime" => (map.regime_names(), &map.counts().regimes),
-            "status" => (map.status_names(), &map.counts().statuses),
+            "regime" => (&map.regime_names, &map.counts.regimes),
+            "status" => (&map.status_names, &map.counts.statuses),
             _ => return Ok(Self::Scale(Scale::of(map, channel, options)?)),
         };
         if options.log || options.range.is_some() {
@@ -96,9 +96,9 @@ impl Shading {
 
 /// Whether any panel shows a stretch of the detachment boundary.
 fn has_boundary(map: &StoredMap) -> Result<bool, Error> {
-    for index in 0..map.layout().panels() {
+    for index in 0..map.layout.panels() {
         let margin_deg = map.read_panel("margin_deg", index)?;
-        if !boundary::stretches(map.grid(), &margin_deg).is_empty() {
+        if !boundary::stretches(&map.grid, &margin_deg).is_empty() {
             return Ok(true);
         }
     }

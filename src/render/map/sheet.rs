@@ -39,7 +39,7 @@ pub(super) struct Sheet {
 
 impl Sheet {
     pub(super) fn of(map: &StoredMap) -> Self {
-        if map.layout().panels() == 1 {
+        if map.layout.panels() == 1 {
             Self::alone(map)
         } else {
             Self::atlas(map)
@@ -48,8 +48,8 @@ impl Sheet {
 
     fn alone(map: &StoredMap) -> Self {
         let (label, unit) = distance(map);
-        let across = Cells::new(&map.grid().push_angle_deg).ticks(1.0);
-        let upwards = Cells::new(&map.grid().distance_mm).ticks(unit);
+        let across = Cells::new(&map.grid.push_angle_deg).ticks(1.0);
+        let upwards = Cells::new(&map.grid.distance_mm).ticks(unit);
         Self {
             size: ALONE,
             pitch: ALONE,
@@ -61,7 +61,7 @@ impl Sheet {
     }
 
     fn atlas(map: &StoredMap) -> Self {
-        let (layout, grid) = (map.layout(), map.grid());
+        let (layout, grid) = (map.layout, &map.grid);
         let panels = [layout.columns, layout.rows].map(|panels| panels as f64);
         let pitch = PANEL.min(SHEET[0] / panels[0]).min(SHEET[1] / panels[1]);
         let gap = (0.06 * pitch).min(10.0);
@@ -121,11 +121,11 @@ impl Sheet {
         let body = Area::new([left, HEAD_ROOM + heading.height], self.size);
         let below = BELOW + NOTE * self.notes.len() as f64;
         let mut picture = Picture::new([width, body.bottom() + below], wanted);
-        let title = fitted(map.title(), TITLE, room);
+        let title = fitted(&map.title, TITLE, room);
         picture.fitted(&title, [left, TITLE_LINE], Anchor::Left);
         heading.draw(&mut picture, [left, HEAD_ROOM], left);
-        for index in 0..map.layout().panels() {
-            let area = self.panel(body, map.layout(), index);
+        for index in 0..map.layout.panels() {
+            let area = self.panel(body, map.layout, index);
             let cells = (map, channel, index);
             panel::draw(&mut picture, area, cells, shading, self.line)?;
         }
@@ -151,6 +151,6 @@ impl Sheet {
 
 /// The label of the distances and its unit in mm.
 fn distance(map: &StoredMap) -> (String, f64) {
-    let largest = map.grid().distance_mm.last().copied().unwrap_or_default();
+    let largest = map.grid.distance_mm.last().copied().unwrap_or_default();
     units::readable(DISTANCE, largest)
 }
