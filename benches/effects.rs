@@ -18,6 +18,8 @@ use whiskmap::rod::Effects;
 use whiskmap::shooting::ShootingMap;
 use whiskmap::shooting::batch::{Batch, InitialCondition, Method};
 
+#[path = "../tests/effect_sets/mod.rs"]
+mod effect_sets;
 #[allow(dead_code, reason = "the tests use the rest")]
 #[path = "../tests/gpu_engine/shots.rs"]
 mod shots;
@@ -34,7 +36,7 @@ fn main() {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1);
     pool.build_global().expect("no pool is there yet");
 
-    let sets: Vec<(Effects, Vec<InitialCondition<'static>>)> = Effects::all()
+    let sets: Vec<(Effects, Vec<InitialCondition<'static>>)> = effect_sets::all()
         .map(|effects| {
             let mut random = Random(31);
             let conditions = (0..count).map(|_| {

@@ -7,6 +7,7 @@ use whiskmap::rod::{Effects, RadiusProfile, Rod, arclength};
 use whiskmap::shooting::batch::{Batch, InitialCondition, Method};
 use whiskmap::shooting::{FirstVariation, Resolution, SecondVariation, ShootingMap};
 
+mod effect_sets;
 #[allow(dead_code, reason = "the engines' tests use the rest")]
 #[path = "gpu_engine/shots.rs"]
 mod shots;
@@ -73,7 +74,7 @@ fn plainly(condition: &InitialCondition, steps: u32) -> DVec2 {
 /// Measured: 6e-12, the truncation of 2000 steps of order 4.
 #[test]
 fn the_pole_is_where_plain_equations_see_it() {
-    for effects in Effects::all().filter(|e| e.profile && !e.curvature) {
+    for effects in effect_sets::all().filter(|e| e.profile && !e.curvature) {
         let conditions = conditions(effects, 100);
         let maps = Batch::new(with(effects, Resolution::FINE)).shoot::<ShootingMap>(&conditions);
         for (condition, map) in conditions.iter().zip(maps) {
@@ -87,7 +88,7 @@ fn the_pole_is_where_plain_equations_see_it() {
 #[test]
 fn derivatives_agree_with_differences_in_every_set() {
     const STEP: f64 = 1e-5;
-    for effects in Effects::all() {
+    for effects in effect_sets::all() {
         let method = with(effects, Resolution::FINE);
         for condition in conditions(effects, 40) {
             let scale = [
@@ -236,7 +237,7 @@ fn a_faint_parabola_is_a_circular_arc_to_third_order() {
 /// Errors fall with the steps to the 8th power though the profile has jumps in its second derivative.
 #[test]
 fn rows_do_not_cost_the_order() {
-    for effects in Effects::all().filter(|effects| effects.profile) {
+    for effects in effect_sets::all().filter(|effects| effects.profile) {
         let mut conditions = conditions(effects, 400);
         // On the last piece, with all rows behind.
         conditions

@@ -5,6 +5,7 @@
     reason = "tests may panic, and tell what they measured"
 )]
 
+mod effect_sets;
 #[allow(dead_code, reason = "other tests use the rest")]
 #[path = "gpu_engine/shots.rs"]
 mod shots;
@@ -61,7 +62,7 @@ fn listed(change: &StateDerivative) -> [f64; 5] {
 #[test]
 fn a_state_changes_as_it_says() {
     let mut worst = 0.0_f64;
-    for effects in Effects::all() {
+    for effects in effect_sets::all() {
         let method = Method::fine().with_effects(effects);
         let conditions = conditions(effects);
         let here: Vec<FirstVariation> = Batch::new(method).shoot::<FirstVariation>(&conditions);
@@ -104,7 +105,7 @@ fn a_state_changes_as_it_says() {
 #[test]
 fn taylor_extrapolation_is_of_second_order() {
     let mut worst = [0.0_f64; 2];
-    for effects in Effects::all() {
+    for effects in effect_sets::all() {
         let method = Method::fine().with_effects(effects);
         let conditions = conditions(effects);
         let here = Batch::new(method).shoot::<SecondVariation>(&conditions);

@@ -18,13 +18,8 @@ const WHISKERS: usize = 4;
 /// States to integrate once and again.
 pub struct Sample {
     effects: Effects,
-    rods: Vec<Sampled>,
-}
-
-/// Points of the sheet of one rod.
-struct Sampled {
-    rod: Rod,
-    points: Vec<Point>,
+    /// Each with points of its sheet.
+    rods: Vec<(Rod, Vec<Point>)>,
 }
 
 /// A state, or with an edge, where a push ends.
@@ -71,7 +66,7 @@ impl Sample {
                     edge: Some(end.edge),
                 });
                 let points = solved.chain(ends).collect();
-                Some(Sampled { rod, points })
+                Some((rod, points))
             })
             .collect();
         Self { effects, rods }
@@ -82,7 +77,7 @@ impl Sample {
         let points: Vec<(&Rod, &Point)> = self
             .rods
             .iter()
-            .flat_map(|Sampled { rod, points }| points.iter().map(move |point| (rod, point)))
+            .flat_map(|(rod, points)| points.iter().map(move |point| (rod, point)))
             .collect();
         let condition =
             |&(rod, &Point { tau, load, .. }): &(_, &Point)| InitialCondition { rod, tau, load };

@@ -76,7 +76,6 @@ enum Command {
 }
 
 /// Runs the command that the process was called with.
-#[must_use]
 pub fn main() -> ExitCode {
     let arguments = Arguments::parse();
     failure::keep_expected_panics_silent();

@@ -7,20 +7,13 @@ use crate::rod::{Effects, Rod};
 
 /// An engine for as long as it works.
 pub struct Fallback<'a> {
-    engine: Option<&'a mut dyn Engine>,
+    /// What shoots, if anything does.
+    pub engine: Option<&'a mut dyn Engine>,
     /// Why the CPU goes on alone, if an engine failed.
     pub failure: Option<EngineError>,
 }
 
-impl<'a> Fallback<'a> {
-    /// Lets `engine`, if there is one, shoot for as long as it can.
-    pub fn new(engine: Option<&'a mut dyn Engine>) -> Self {
-        Self {
-            engine,
-            failure: None,
-        }
-    }
-
+impl Fallback<'_> {
     /// [`Engine::shoot`]; `None` without an engine.
     pub fn shoot(&mut self, effects: Effects, rods: &[Rod], shots: &[Shot]) -> Option<Vec<Hit>> {
         match self.engine.as_mut()?.shoot(effects, rods, shots) {

@@ -61,7 +61,8 @@ pub fn run<E>(
             rows.clamp(1, plan.rows_at_once)
         }
     };
-    let mut engine = Fallback::new(engine);
+    let failure = None;
+    let mut engine = Fallback { engine, failure };
     let mut summary = Summary::default();
     let pushes = |side: &Side| Pushes::new(&scene.grid.push_angle_deg, *side);
     let sides: Vec<Pushes> = plan.sides.iter().map(pushes).collect();

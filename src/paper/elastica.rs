@@ -48,8 +48,7 @@ pub fn fold() -> Elastica {
         below: 0.99 * PI,
         above: FRAC_PI_2,
     };
-    let bisect = |beta| (elastica(beta).slope, f64::NAN);
-    elastica(turns.newton(turns.middle(), |_| 0.0, bisect).x)
+    elastica(turns.bisect(|beta| elastica(beta).slope))
 }
 
 /// `int_0^beta 1/sqrt(sin)` and `int_0^beta sqrt(sin)` for `beta` up to a right angle.

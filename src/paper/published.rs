@@ -4,7 +4,8 @@ use super::check::{AUTO, Check, Expected, FORWARD, PAPER, end, near};
 use super::whiskers::{CONE, CYLINDER, POLE, fig2_distance_mm};
 use crate::rod::Side;
 use crate::scene::Pole;
-use crate::trace::{Detachment, DetachmentKind, corner};
+use crate::trace::DetachmentKind::{self, PullOff, SlipOff};
+use crate::trace::{Detachment, corner};
 
 /// Where the pole of Fig. 2 touches the cone, nearly.
 const TOUCH_MM: f64 = 15.660_459_763_365_8;
@@ -15,8 +16,8 @@ pub fn checks() -> Vec<Check> {
     // Published, cut rather than rounded: 62.7 for 62.75.
     #[rustfmt::skip]
     let fig2 = [
-        ("Fig. 2B, cone CB", CONE, SLIPS, "slip-off (deg)", (15.6, 0.05), (15.59975, 5e-6)),
-        ("Fig. 2D, cylinder CB", CYLINDER, PULLS, "pull-off (deg)", (62.7, 0.1), (62.7532, 5e-5)),
+        ("Fig. 2B, cone CB", CONE, SlipOff, "slip-off (deg)", (15.6, 0.05), (15.59975, 5e-6)),
+        ("Fig. 2D, cylinder CB", CYLINDER, PullOff, "pull-off (deg)", (62.7, 0.1), (62.7532, 5e-5)),
     ];
     for (case, whisker, kind, quantity, published, exact) in fig2 {
         let end = end(&whisker, &POLE, Side::Cb, fig2_distance_mm(&whisker));
@@ -34,7 +35,7 @@ pub fn checks() -> Vec<Check> {
     for (case, side, values) in states {
         let end = end(&CONE, &POLE, side, TOUCH_MM);
         let quantities = [
-            ("slip-off (deg)", push_if(SLIPS, &end)),
+            ("slip-off (deg)", push_if(SlipOff, &end)),
             ("contact s_obj (mm)", end.arc_length_mm),
             ("force (uN)", end.force_un),
             ("base moment (nN m)", end.base_moment_nnm),
@@ -62,9 +63,6 @@ pub fn checks() -> Vec<Check> {
     checks
 }
 
-const SLIPS: DetachmentKind = DetachmentKind::SlipOff;
-const PULLS: DetachmentKind = DetachmentKind::PullOff;
-
 fn push_if(kind: DetachmentKind, end: &Detachment) -> Option<f64> {
     end.push_angle_deg.filter(|_| end.kind == kind)
 }
@@ -83,7 +81,7 @@ fn friction() -> impl Iterator<Item = Check> {
             ("slip-off CF (deg)", Side::Cf, cf),
         ]
         .map(|(quantity, side, expected)| {
-            let push = push_if(SLIPS, &end(&CONE, &pole, side, TOUCH_MM));
+            let push = push_if(SlipOff, &end(&CONE, &pole, side, TOUCH_MM));
             near(case, quantity, FORWARD, (expected, 5e-5), push)
         })
     })

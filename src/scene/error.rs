@@ -85,20 +85,15 @@ pub(super) struct Fault {
 }
 
 impl Fault {
-    /// The value at `span` does not do what it must.
-    pub fn new(key: impl Into<String>, span: Range<usize>, must: impl Into<String>) -> Self {
+    /// The value at `span`, which is none where the file has no such value, does not do what it must.
+    pub fn new(
+        key: impl Into<String>,
+        span: impl Into<Option<Range<usize>>>,
+        must: impl Into<String>,
+    ) -> Self {
         Self {
             key: key.into(),
-            span: Some(span),
-            must: must.into(),
-        }
-    }
-
-    /// A value that the file does not have.
-    pub fn absent(key: impl Into<String>, must: impl Into<String>) -> Self {
-        Self {
-            key: key.into(),
-            span: None,
+            span: span.into(),
             must: must.into(),
         }
     }

@@ -42,7 +42,7 @@ pub(super) fn radii(
         return measured(&profile.rows, length_mm);
     }
     let [base, tip] = ends.map(|(key, number)| {
-        let absent = || Fault::absent(key, "is left out, and there is no whisker.profile");
+        let absent = || Fault::new(key, None, "is left out, and there is no whisker.profile");
         number.as_ref().ok_or_else(absent)
     });
     let base_radius_um = Limits::between(1e-3, 1e5).check(ends[0].0, base?)?;

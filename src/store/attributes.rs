@@ -73,10 +73,10 @@ pub(super) fn encode(about: &Description<'_>) -> Attributes {
     encoded.into()
 }
 
-/// `counts`, padded with spaces to `width`.
-pub(super) fn encode_counts(counts: &Counts, width: usize) -> String {
+/// `counts`, padded with spaces to [`counts_width`].
+pub(super) fn encode_counts(counts: &Counts) -> String {
     let text = ascii_json(&json!(counts));
-    format!("{text:width$}")
+    format!("{text:width$}", width = counts_width())
 }
 
 /// The longest text that any run's counts can have.

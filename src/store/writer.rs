@@ -26,7 +26,6 @@ pub struct MapWriter {
     /// Panels written so far.
     written: usize,
     counts: Counts,
-    counts_width: usize,
 }
 
 impl MapWriter {
@@ -36,10 +35,9 @@ impl MapWriter {
     ///
     /// The folder is not writable, or the map is too large for EXR.
     pub fn create(path: &Path, about: &Description<'_>) -> Result<Self, Error> {
-        let counts_width = attributes::counts_width();
         let layout = Layout::of(&about.scene.grid);
         let mut attributes = attributes::encode(about);
-        attributes.extend([attribute("counts", &" ".repeat(counts_width))]);
+        attributes.extend([attribute("counts", &" ".repeat(attributes::counts_width()))]);
         let headers = layout.headers(&attributes);
 
         let preamble = header::encode(&headers, &Default::default())
@@ -54,7 +52,6 @@ impl MapWriter {
             offsets: Default::default(),
             written: 0,
             counts: Counts::default(),
-            counts_width,
         };
         writer.append(&preamble)?;
         Ok(writer)
@@ -112,7 +109,7 @@ impl MapWriter {
             });
         }
         self.counts.shots = shots;
-        let text = attributes::encode_counts(&self.counts, self.counts_width);
+        let text = attributes::encode_counts(&self.counts);
         for header in &mut self.headers {
             let attributes = &mut header.own_attributes.other;
             attributes.extend([attribute("counts", &text)]);

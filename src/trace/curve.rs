@@ -100,12 +100,12 @@ pub fn curve_at(
     side: Side,
     distances_mm: &[f64],
 ) -> Vec<Detachment> {
-    let rod = whisker.rod(pole, side);
+    let rod = &whisker.rod(pole, side);
     let method = Method::new(resolution);
-    let reader = Reader::new(whisker.units(), &rod);
-    let rest = Rest::new(&rod);
+    let reader = Reader::new(whisker.units(), rod);
+    let rest = Rest::new(rod);
     let distances: Vec<f64> = distances_mm.iter().map(|d| d / whisker.length_mm).collect();
-    let sheet = Sheet::new(method, &rod, side, &distances);
+    let sheet = Sheet::new(method, rod, side, &distances);
     let ends: Vec<Result<&Crossing, DetachmentKind>> = (0..distances.len())
         .map(|row| {
             let sheet = sheet.as_ref().ok_or(DetachmentKind::Unresolved)?;
@@ -120,11 +120,7 @@ pub fn curve_at(
     let conditions: Vec<InitialCondition> = ends
         .iter()
         .flatten()
-        .map(|end| InitialCondition {
-            rod: &rod,
-            tau: end.tau,
-            load: end.load,
-        })
+        .map(|&&Crossing { tau, load, .. }| InitialCondition { rod, tau, load })
         .collect();
     let states = Batch::new(method).shoot::<FirstVariation>(&conditions);
     let mut states = states.into_iter();

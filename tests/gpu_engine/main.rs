@@ -12,6 +12,8 @@ mod adapters;
 mod bench;
 #[path = "../compute/mod.rs"]
 mod compute;
+#[path = "../effect_sets/mod.rs"]
+mod effect_sets;
 mod probe;
 mod shots;
 
@@ -84,7 +86,7 @@ fn every_engine_finds_what_was_hidden() {
         median,
     } in engines()
     {
-        for (seed, effects) in (1..).zip(Effects::all()) {
+        for (seed, effects) in (1..).zip(effect_sets::all()) {
             let range = Range::new(effects, 5000, 6.0, seed);
             let hits = engine.shoot(effects, &range.rods, &range.shots).unwrap();
             assert_eq!(hits.len(), range.shots.len());

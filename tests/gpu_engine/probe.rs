@@ -186,7 +186,7 @@ fn a_step_is_the_twins<T: Number>(one: f64, whole: f64) {
     let text = shaders::model(T::PRECISION, Effects::default()) + PROBE;
     // The others have other states.
     let carried = |effects: &Effects| !effects.profile && !effects.spiral;
-    for effects in Effects::all().filter(carried) {
+    for effects in crate::effect_sets::all().filter(carried) {
         let (found_one, found_whole) = (
             difference::<T>(&bench, &text, effects, 1),
             difference::<T>(&bench, &text, effects, 64),

@@ -73,6 +73,12 @@ impl Bracket {
         }
     }
 
+    /// Bisection, to the last digit.
+    pub fn bisect(self, mut value: impl FnMut(f64) -> f64) -> f64 {
+        let iterate = |x| (value(x), f64::NAN);
+        self.newton(self.middle(), |_| 0.0, iterate).x
+    }
+
     /// Newton's method, or one of its kind, from `start`. `iterate` tells the value at a place, and which place it proposes
     /// next. A proposed step inside the bracket, no longer than `last_step` allows where it begins, is the last one.
     pub fn newton(

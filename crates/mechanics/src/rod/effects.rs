@@ -22,30 +22,6 @@ pub struct Effects {
 }
 
 impl Effects {
-    /// Every set of effects. A profile tapers, whatever `taper` says.
-    pub fn all() -> impl Iterator<Item = Self> {
-        let rest = [(false, false), (true, false), (false, true)];
-        let stiffness = [
-            (false, false, false),
-            (true, false, false),
-            (false, true, false),
-            (true, true, false),
-            (true, false, true),
-            (true, true, true),
-        ];
-        rest.into_iter().flat_map(move |(curvature, spiral)| {
-            stiffness
-                .into_iter()
-                .map(move |(taper, gradient, profile)| Self {
-                    taper,
-                    curvature,
-                    spiral,
-                    gradient,
-                    profile,
-                })
-        })
-    }
-
     /// Whether something changes along the rod, so that a trajectory must know where it is. Without, a step does not
     /// advance the section at all.
     #[must_use]

@@ -118,17 +118,10 @@ impl Rest {
     #[must_use]
     pub fn distance_of_pole(&self, pole_distance: f64) -> f64 {
         let radius = self.pole.abs();
-        let mut bracket = Bracket {
+        let bracket = Bracket {
             below: (pole_distance - radius).max(0.0),
             above: pole_distance + radius,
         };
-        loop {
-            let middle = bracket.middle();
-            if !bracket.is_inside(middle) {
-                return middle;
-            }
-            let miss = self.pole_at_distance(middle).length() - pole_distance;
-            bracket.shrink(middle, miss);
-        }
+        bracket.bisect(|distance| self.pole_at_distance(distance).length() - pole_distance)
     }
 }

@@ -1,0 +1,27 @@
+//! The sets of effects that there are kernels for.
+
+use whiskmap::rod::Effects;
+
+/// Every set of effects. A profile tapers, whatever `taper` says.
+pub fn all() -> impl Iterator<Item = Effects> {
+    let rest = [(false, false), (true, false), (false, true)];
+    let stiffness = [
+        (false, false, false),
+        (true, false, false),
+        (false, true, false),
+        (true, true, false),
+        (true, false, true),
+        (true, true, true),
+    ];
+    rest.into_iter().flat_map(move |(curvature, spiral)| {
+        stiffness
+            .into_iter()
+            .map(move |(taper, gradient, profile)| Effects {
+                taper,
+                curvature,
+                spiral,
+                gradient,
+                profile,
+            })
+    })
+}
