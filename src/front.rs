@@ -196,11 +196,9 @@ fn resolution(scene: &Scene, options: Options, sides: &[Side]) -> Result<Resolut
     let Some(asked) = options.tolerance_deg else {
         return Ok(Resolution::FINE);
     };
-    match cheapest(scene, sides, asked) {
-        Ok(accuracy) => Ok(accuracy.resolution),
-        Err(finest) => Err(Error::Tolerance {
-            asked,
-            least: finest.error_deg,
-        }),
-    }
+    let accuracy = cheapest(scene, sides, asked).map_err(|finest| Error::Tolerance {
+        asked,
+        least: finest.error_deg,
+    })?;
+    Ok(accuracy.resolution)
 }

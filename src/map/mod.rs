@@ -50,10 +50,8 @@ pub fn run<E>(
     engine: Option<&mut dyn Engine>,
     observe: &mut dyn FnMut(Progress<'_>) -> Result<(), E>,
 ) -> Result<Summary, E> {
-    let (width, height) = (
-        scene.grid.push_angle_deg.len(),
-        scene.grid.distance_mm.len(),
-    );
+    let width = scene.grid.push_angle_deg.len();
+    let height = scene.grid.distance_mm.len();
     let rows_at_once = match engine {
         Some(_) => plan.rows_at_once,
         None => {

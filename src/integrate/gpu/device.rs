@@ -90,13 +90,9 @@ impl Device {
             submission_index: Some(submission),
             timeout: None,
         };
-        let waited = guarded(|| self.handle.poll(waiting));
+        let waited = guarded(|| self.handle.poll(waiting).map_err(|error| error.to_string()));
         self.check()?;
-        match waited {
-            Ok(Ok(_)) => Ok(()),
-            Ok(Err(error)) => Err(EngineError::Device(error.to_string())),
-            Err(panic) => Err(EngineError::Device(panic)),
-        }
+        waited.flatten().map(drop).map_err(EngineError::Device)
     }
 
     /// Largest storage buffer of this device, in bytes.

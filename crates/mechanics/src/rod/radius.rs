@@ -190,7 +190,8 @@ fn slopes(widths: &[f64], secants: &[f64]) -> Vec<f64> {
     if n == 1 {
         return vec![secants[0]; 2];
     }
-    let end = |h0: f64, h1: f64, d0: f64, d1: f64| {
+    let end = |at: usize, next: usize| {
+        let (h0, h1, d0, d1) = (widths[at], widths[next], secants[at], secants[next]);
         let slope = ((2.0 * h0 + h1) * d0 - h0 * d1) / (h0 + h1);
         if slope * d0 <= 0.0 {
             0.0
@@ -200,23 +201,16 @@ fn slopes(widths: &[f64], secants: &[f64]) -> Vec<f64> {
             slope
         }
     };
-    let mut slopes = vec![end(widths[0], widths[1], secants[0], secants[1])];
+    let mut slopes = vec![end(0, 1)];
     slopes.extend((1..n).map(|i| {
         let (before, after) = (secants[i - 1], secants[i]);
         if before * after <= 0.0 {
             return 0.0;
         }
-        let (w1, w2) = (
-            2.0 * widths[i] + widths[i - 1],
-            widths[i] + 2.0 * widths[i - 1],
-        );
+        let w1 = 2.0 * widths[i] + widths[i - 1];
+        let w2 = widths[i] + 2.0 * widths[i - 1];
         (w1 + w2) / (w1 / before + w2 / after)
     }));
-    slopes.push(end(
-        widths[n - 1],
-        widths[n - 2],
-        secants[n - 1],
-        secants[n - 2],
-    ));
+    slopes.push(end(n - 1, n - 2));
     slopes
 }

@@ -123,10 +123,8 @@ impl OutputSet for SecondVariation {
     ) -> [SecondVariation; WIDTH] {
         let centre = Centre::new(arrival, pole);
         let maps = centre.maps(&second.first);
-        let (by_tau, by_load) = (
-            centre.moved(second.first.by_tau),
-            centre.moved(second.first.by_load),
-        );
+        let by_tau = centre.moved(second.first.by_tau);
+        let by_load = centre.moved(second.first.by_load);
         let tau2 = centre.ln_pole_by_twice(second.by_tau_tau, by_tau, by_tau);
         let mixed = centre.ln_pole_by_twice(second.by_tau_load, by_tau, by_load);
         let load2 = centre.ln_pole_by_twice(second.by_load_load, by_load, by_load);

@@ -49,10 +49,8 @@ impl<T: Lanes> Centre<T> {
     /// The shooting map of each lane.
     #[inline(always)]
     pub fn maps(&self, first: &BaseDerivatives<T>) -> [ShootingMap; WIDTH] {
-        let (tau, load) = (
-            self.ln_pole_by(first.by_tau),
-            self.ln_pole_by(first.by_load),
-        );
+        let tau = self.ln_pole_by(first.by_tau);
+        let load = self.ln_pole_by(first.by_load);
         let pole = self.pole;
         let numbers = [pole.re, pole.im, tau.re, tau.im, load.re, load.im];
         spread(
