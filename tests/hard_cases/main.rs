@@ -11,6 +11,7 @@ mod case;
 mod cases;
 #[path = "../compute/mod.rs"]
 mod compute;
+mod ends;
 mod limits;
 mod named;
 mod random;

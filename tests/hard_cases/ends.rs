@@ -1,0 +1,130 @@
+//! Where a push ends, asked in every way there is: `curve` from the sheet's edges, `branch` and `shape` by walking, `map` cell by cell.
+
+use crate::case::Case;
+use proptest::prelude::*;
+use proptest::test_runner::{Config, RngSeed, TestRunner};
+use std::cell::Cell;
+use whiskmap::Options;
+use whiskmap::classify::Regime;
+use whiskmap::scene::Scene;
+use whiskmap::trace::{Detachment, DetachmentKind, NoState};
+
+/// How far before and after an end the others are asked, in degrees.
+const BESIDE: f64 = 1e-6;
+
+/// What ends may differ by, in degrees: measured 1.5e-9.
+const SAME: f64 = 1e-8;
+
+/// The largest push angle that a map takes, in degrees.
+const MOST_PUSH: f64 = 360.0;
+
+/// Whether all agree that a push at the only distance of `scene` ends like `end`.
+fn agree(scene: &Scene, end: &Detachment) -> Result<(), TestCaseError> {
+    let Some(push) = end.push_angle_deg else {
+        prop_assert_eq!(end.kind, DetachmentKind::OutOfReach);
+        let branch = whiskmap::branch(scene, end.distance_mm, end.side);
+        let is_out = matches!(branch, Err(NoState::OutOfReach { .. }));
+        prop_assert!(is_out);
+        return Ok(());
+    };
+    let beside = BESIDE * end.side.sign();
+    let pulled_at_touch = push.abs() < BESIDE;
+    if !pulled_at_touch {
+        let before = whiskmap::shape(scene, end.distance_mm, push - beside);
+        prop_assert!(before.is_ok(), "{end:?}: {:?}", before.err());
+    }
+    let after = whiskmap::shape(scene, end.distance_mm, push + beside).err();
+    let (kind, at_deg) = match after {
+        Some(NoState::SlippedOff { at_deg }) => (DetachmentKind::SlipOff, at_deg),
+        Some(NoState::PulledOff { at_deg }) => (DetachmentKind::PullOff, at_deg),
+        other => return Err(TestCaseError::fail(format!("{end:?}: {other:?}"))),
+    };
+    // Next to the corner both are right.
+    prop_assert!(kind == end.kind || (at_deg - push).abs() < SAME);
+    prop_assert!((at_deg - push).abs() < SAME, "{end:?}: {at_deg}");
+    if push.abs() + BESIDE > MOST_PUSH || pulled_at_touch {
+        return Ok(());
+    }
+    let (before, after) = (push - beside, push + beside);
+    let pushes = [before.min(after), before.max(after)];
+    let map = whiskmap::map(
+        &scene.with("grid.push_angle_deg", pushes).unwrap(),
+        Options::default(),
+    )
+    .unwrap();
+    let regime = |push: f64| map.regime(0, 0, usize::from(push == pushes[1]));
+    let gone = if kind == DetachmentKind::SlipOff {
+        Regime::SlipOff
+    } else {
+        Regime::PullOff
+    };
+    prop_assert_eq!(regime(before), Some(Regime::Contact), "{:?}", end);
+    // With friction there can be a state beyond the end that no push leads to.
+    let beyond = regime(after);
+    prop_assert!(
+        beyond == Some(gone) || beyond == Some(Regime::Unreachable),
+        "{end:?}: {beyond:?}"
+    );
+    Ok(())
+}
+
+/// Evenly in the logarithm.
+fn even_in_log(from: f64, to: f64) -> impl Strategy<Value = f64> {
+    (from.ln()..to.ln()).prop_map(f64::exp)
+}
+
+/// Any whisker with friction up to 1 and `A*` up to 10, in front of poles from a thousandth of its length.
+fn whiskers() -> impl Strategy<Value = Case> {
+    let taper = prop_oneof![2 => Just(0.0), 1 => Just(1.0), 4 => 0.0..1.0_f64, 2 => 0.9..1.0_f64];
+    let bend = prop_oneof![Just(0.0), even_in_log(1e-3, 1.0), 1.0..10.0_f64];
+    let pole = prop_oneof![Just(0.0), even_in_log(1e-4, 0.4)];
+    let friction = prop_oneof![Just(0.0), 0.3..1.0_f64, 0.8..0.95_f64];
+    let tip_to_base = prop_oneof![2 => Just(1.0), 1 => even_in_log(0.1, 10.0)];
+    let distances = [even_in_log(1e-3, 0.1), even_in_log(0.1, 1.0)];
+    let rows = prop_oneof![
+        4 => Just(Vec::new()),
+        1 => even_in_log(0.8, 1.25).prop_map(|f| vec![[0.0, 1.0], [0.4, 0.7 * f], [0.7, 0.4], [1.0, 0.1]])
+    ];
+    let whisker = (taper, bend, pole, friction, tip_to_base, rows);
+    (whisker, distances).prop_map(
+        |((taper, bend, pole, friction, tip_to_base, rows), distances)| {
+            let sharpest = 0.45 / f64::max(bend, 1e-9);
+            let distances: Vec<f64> = distances.into();
+            let pole = f64::min(pole, sharpest).min(0.9 * distances[0]);
+            Case {
+                length_mm: 20.0,
+                taper,
+                bend,
+                pole,
+                friction,
+                tip_to_base,
+                stretch: 1.0,
+                rows,
+                pushes_deg: vec![0.0],
+                distances,
+            }
+        },
+    )
+}
+
+#[test]
+fn every_way_leads_to_the_same_end() {
+    let config = Config {
+        cases: 150,
+        failure_persistence: None,
+        rng_seed: RngSeed::Fixed(11),
+        ..Config::default()
+    };
+    let ends = Cell::new(0);
+    let holds = |case: Case| {
+        let scene = case.scene();
+        for (_, end) in whiskmap::curve(&scene, Options::default()).unwrap() {
+            let alone = scene.with("grid.distance_mm", [end.distance_mm]).unwrap();
+            agree(&alone, &end)?;
+            ends.set(ends.get() + usize::from(end.push_angle_deg.is_some()));
+        }
+        Ok(())
+    };
+    TestRunner::new(config).run(&whiskers(), holds).unwrap();
+    assert!(ends.get() > 400, "{}", ends.get());
+}
