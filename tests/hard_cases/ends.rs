@@ -6,7 +6,10 @@ use proptest::test_runner::{Config, RngSeed, TestRunner};
 use std::cell::Cell;
 use whiskmap::Options;
 use whiskmap::classify::Regime;
+use whiskmap::rod::{Rod, Side};
 use whiskmap::scene::Scene;
+use whiskmap::sheet::Sheet;
+use whiskmap::shooting::batch::Method;
 use whiskmap::trace::{Detachment, DetachmentKind, NoState};
 
 /// How far before and after an end the others are asked, in degrees.
@@ -127,4 +130,90 @@ fn every_way_leads_to_the_same_end() {
     };
     TestRunner::new(config).run(&whiskers(), holds).unwrap();
     assert!(ends.get() > 400, "{}", ends.get());
+}
+
+/// Cylinders that coil up: the distance dips along the tip edge or along the fold so narrowly that samples of a sheet do not see it.
+#[test]
+fn narrow_dips_are_not_missed() {
+    use DetachmentKind::{PullOff, SlipOff};
+    let coiled = [
+        (
+            Side::Cb,
+            0.0,
+            0.8985976550518069,
+            1.0,
+            0.01197993778232795,
+            PullOff,
+        ),
+        (
+            Side::Cb,
+            0.1344136525243472,
+            0.8870166499183616,
+            1.0,
+            0.006561675176450292,
+            SlipOff,
+        ),
+        (
+            Side::Cf,
+            0.046872210686984314,
+            0.8550808096527569,
+            1.0,
+            0.004602123462169978,
+            PullOff,
+        ),
+        (
+            Side::Cb,
+            0.004535013423207362,
+            0.8712990696537211,
+            0.84679680609,
+            0.0010233092092122975,
+            SlipOff,
+        ),
+    ];
+    for (side, bend, friction, tip_to_base, distance, kind) in coiled {
+        let case = Case {
+            length_mm: 20.0,
+            taper: 0.0,
+            bend,
+            pole: 0.0,
+            friction,
+            tip_to_base,
+            stretch: 1.0,
+            rows: Vec::new(),
+            pushes_deg: vec![0.0],
+            distances: vec![distance],
+        };
+        let scene = case.scene();
+        for (_, end) in whiskmap::curve(&scene, Options::default()).unwrap() {
+            assert!(end.side != side || end.kind == kind, "{end:?}");
+            agree(&scene, &end).unwrap();
+        }
+    }
+}
+
+/// The ends of a row are its own: a nearer row brings no others to light. This whisker straightens so far that it reaches the pole
+/// of a row that it does not touch at rest.
+#[test]
+fn a_row_has_the_same_ends_beside_a_nearer_one() {
+    let rod = Rod {
+        taper: 0.7729485199727149,
+        bend: 9.935603085321917,
+        slope: -4.53937064594184,
+        gradient: -0.2426349839752333,
+        ..Rod::default()
+    };
+    let distance = 0.49135456912887043;
+    let crossings = |distances: &[f64]| {
+        let sheet = Sheet::new(Method::fine(), &rod, Side::Cb, distances).unwrap();
+        sheet.crossings[distances.len() - 1].clone()
+    };
+    let alone = crossings(&[distance]);
+    let beside = crossings(&[0.05 * distance, distance]);
+    assert_eq!((alone.len(), beside.len()), (4, 4));
+    for (a, b) in alone.iter().zip(&beside) {
+        assert!(
+            a.edge == b.edge && (a.push - b.push).abs() < 1e-10,
+            "{a:?} {b:?}"
+        );
+    }
 }
