@@ -9,6 +9,7 @@
 //! In the order of work: `fold/` finds the first folds of sampled contacts, `lattice/` makes guesses, `edges/`
 //! decides where a row leaves the sheet. `continuation/` follows a row from state to state where these do not suffice.
 
+mod certificate;
 mod continuation;
 mod edges;
 mod fold;
@@ -28,7 +29,7 @@ use crate::shooting::batch::Method;
 use continuation::pair_crossings;
 use edges::Edges;
 use edges::crossings::crossings;
-use fold::contact_nodes::ContactNodes;
+use fold::contact_nodes::{ContactNodes, NARROW_SPACING, SPACING};
 use lattice::Lattice;
 
 /// How far below zero the load of an unloaded whisker may come out, relative to the fold's: at the soft tip of a
@@ -50,14 +51,38 @@ pub struct Sheet {
     /// then the ends of each other piece of the row, in the direction of growing push angles.
     pub crossings: Vec<Vec<Crossing>>,
     method: Method,
+    /// `None` where samples do not show all of the sheet: its rows are then walked.
+    samples: Option<Samples>,
+}
+
+/// A sheet, sampled.
+#[derive(Clone, Debug)]
+struct Samples {
     contacts: ContactNodes,
     lattice: Lattice,
     edges: Edges,
 }
 
+impl Samples {
+    /// The samples down to the row `nearest` to the base; `None` if some contact has no fold, or no stable state at first touch.
+    fn new(method: Method, rod: &Rod, side: Side, nearest: &Row, spacing: f64) -> Option<Self> {
+        let contacts = ContactNodes::new(method, rod, side, nearest, spacing)?;
+        let lattice = Lattice::new(method.coarsely(), rod, side, &contacts);
+        let edges = Edges::new(method, rod, &contacts, &lattice);
+        Some(Self {
+            contacts,
+            lattice,
+            edges,
+        })
+    }
+
+    fn are_certified(&self) -> bool {
+        self.lattice.is_certified() && self.edges.are_certified()
+    }
+}
+
 impl Sheet {
-    /// The sheet of `rod`, computed by `method`, for rows at these distances (first touch, in whisker lengths); `None` if some
-    /// contact has no fold, or no stable state at first touch, which no whisker is known for.
+    /// The sheet of `rod`, computed by `method`, for rows at these distances (first touch, in whisker lengths); `None` without rows.
     #[must_use]
     pub fn new(method: Method, rod: &Rod, side: Side, distances: &[f64]) -> Option<Self> {
         let rest = Rest::new(rod);
@@ -65,17 +90,30 @@ impl Sheet {
         let nearest = rows
             .iter()
             .min_by(|a, b| a.pole_distance.total_cmp(&b.pole_distance))?;
-        let contacts = ContactNodes::new(method, rod, side, nearest)?;
-        let lattice = Lattice::new(method.coarsely(), rod, side, &contacts);
-        let edges = Edges::new(method, rod, &contacts, &lattice);
-        let mut crossings = crossings(method, rod, side, &edges, &rows);
-        let fold_grows = edges.fold_grows;
+        let sampled = |spacing| Samples::new(method, rod, side, nearest, spacing);
+        let mut samples = sampled(SPACING);
+        if !samples.as_ref().is_some_and(Samples::are_certified) {
+            samples = sampled(NARROW_SPACING);
+        }
+        let is_certified = samples.as_ref().is_some_and(Samples::are_certified);
+        let mut crossings = match &samples {
+            Some(samples) => crossings(method, rod, side, &samples.edges, &rows),
+            None => vec![Vec::new(); rows.len()],
+        };
+        let fold_grows = samples
+            .as_ref()
+            .is_some_and(|samples| samples.edges.fold_grows);
         for (row, crossings) in rows.iter().zip(&mut crossings) {
             let touches = row.is_reached();
-            let pair = fold_grows && usize::from(touches) + crossings.len() == 2;
-            if !(crossings.is_empty() || pair && crossings.iter().all(Crossing::is_sound)) {
+            let is_pair = usize::from(touches) + crossings.len() == 2;
+            let is_simple = crossings.is_empty() && !touches
+                || fold_grows && is_pair && crossings.iter().all(Crossing::is_sound);
+            if !(is_certified && is_simple) {
                 let level = LevelCurve::new(method, rod, side, row);
                 *crossings = pair_crossings(&level, touches, crossings);
+            }
+            if samples.is_none() && !touches {
+                crossings.push(Crossing::unknown());
             }
         }
         let tip = rod.tau_tip();
@@ -86,9 +124,7 @@ impl Sheet {
             rows,
             crossings,
             method,
-            contacts,
-            lattice,
-            edges,
+            samples: samples.filter(|_| is_certified),
         })
     }
 
@@ -96,6 +132,12 @@ impl Sheet {
     #[must_use]
     pub fn fold_at_tip(method: Method, rod: &Rod, side: Side) -> Option<FoldPoint> {
         fold::first_folds(method, rod, side, &[rod.tau_tip()]).pop()?
+    }
+
+    /// Whether samples do not show all of it, so that its rows are walked.
+    #[must_use]
+    pub fn is_walked(&self) -> bool {
+        self.samples.is_none()
     }
 
     /// The level curve of `row`.
@@ -113,13 +155,21 @@ impl Sheet {
     /// How far from the tip, in `tau`, the integration cannot tell a contact from one at the tip.
     #[must_use]
     pub fn tip_blur(&self) -> f64 {
-        2.0 * self.edges.tip_error
+        self.samples
+            .as_ref()
+            .map_or(0.0, |samples| 2.0 * samples.edges.tip_error)
     }
 
-    /// Guesses for the cells of `row` at growing `pushes` (magnitudes, in radians); `None` outside the sheet.
+    /// Guesses for the cells of `row` at growing `pushes` (magnitudes, in radians); `None` outside the sheet, and where its rows are
+    /// walked.
     pub fn guesses(&self, row: usize, pushes: impl Iterator<Item = f64>) -> Vec<Option<Guess>> {
         let row = &self.rows[row];
-        self.lattice.row_curve(&self.contacts, row).guesses(pushes)
+        match &self.samples {
+            Some(Samples {
+                contacts, lattice, ..
+            }) => lattice.row_curve(contacts, row).guesses(pushes),
+            None => pushes.map(|_| None).collect(),
+        }
     }
 
     /// Whether a state, as far as the fold goes, is on the sheet: loaded toward the pole, on the stable side of
@@ -127,10 +177,15 @@ impl Sheet {
     #[must_use]
     pub fn is_stable(&self, tau: f64, load: f64, map: &ShootingMap) -> bool {
         let load = self.side.sign() * load;
-        let is_loaded = load >= 0.0 && self.contacts.is_below_folds(tau, load) || {
-            let part = load / self.contacts.fold_load(tau);
-            part > -UNLOADED && part < 1.0 + 1e-4
-        };
+        let is_loaded = self
+            .samples
+            .as_ref()
+            .is_none_or(|Samples { contacts, .. }| {
+                load >= 0.0 && contacts.is_below_folds(tau, load) || {
+                    let part = load / contacts.fold_load(tau);
+                    part > -UNLOADED && part < 1.0 + 1e-4
+                }
+            });
         let scale = map.by_tau.length() * map.by_load.length();
         is_loaded && map.det() > -1e-7 * scale
     }

@@ -100,6 +100,18 @@ impl Crossing {
         }
     }
 
+    /// In place of crossings of a row that nobody can tell.
+    #[must_use]
+    pub fn unknown() -> Self {
+        Self {
+            edge: Edge::Tip,
+            tau: f64::NAN,
+            load: f64::NAN,
+            push: f64::NAN,
+            residual: f64::INFINITY,
+        }
+    }
+
     /// Whether it is one of those.
     #[must_use]
     pub fn is_at_touch(&self) -> bool {

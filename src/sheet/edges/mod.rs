@@ -9,8 +9,9 @@ use crate::numerics::nearest_turn;
 use crate::rod::Rest;
 use crate::rod::Rod;
 use crate::rod::arclength;
+use crate::sheet::certificate::is_as_steep_as;
 use crate::sheet::edges::predictor::{FoldEdge, Prediction, Sample};
-use crate::sheet::edges::tip_edge::TipEdge;
+use crate::sheet::edges::tip_edge::{SampledTipEdge, TipEdge};
 use crate::sheet::fold::contact_nodes::ContactNodes;
 use crate::sheet::lattice::Lattice;
 use crate::sheet::row::Edge;
@@ -27,7 +28,10 @@ pub struct Edges {
     pub fold_grows: bool,
     /// From first touch to the corner.
     pub tip: Vec<Sample>,
-    tip_edge: TipEdge,
+    /// `None` where it takes more samples than polynomials have nodes.
+    tip_edge: Option<TipEdge>,
+    /// Whether the fold does between its samples what these say.
+    fold_is_certified: bool,
     /// How far, in `tau`, the integration puts the tip of the resting whisker from where its shape at rest has it.
     pub tip_error: f64,
 }
@@ -51,7 +55,11 @@ impl Edges {
             })
             .collect();
         let corner = &contacts.folds[contacts.tip];
-        let (mut tip, tip_edge, at_touch) = TipEdge::sampled(method, rod, corner);
+        let SampledTipEdge {
+            samples: mut tip,
+            edge: tip_edge,
+            at_touch,
+        } = SampledTipEdge::new(method, rod, corner);
         let rest = Rest::new(rod);
         let (tip_at_rest, _) = rest.at_arclength(arclength(rod, rod.tau_tip()));
         let pole = rest.pole_at_distance(tip_at_rest.length()).length();
@@ -59,7 +67,15 @@ impl Edges {
             place: 1.0,
             ..*corner
         }));
+        let is_certified = |(i, pair): (usize, &[Sample])| {
+            let slopes =
+                [i, i + 1].map(|i| contacts.slope(i, 1.0, &contacts.folds[i].variation.map));
+            let [from, to] = [pair[0], pair[1]];
+            is_as_steep_as(to.ln_distance - from.ln_distance, slopes.map(|by| by.x))
+                && is_as_steep_as(to.phi - from.phi, slopes.map(|by| by.y))
+        };
         Self {
+            fold_is_certified: fold.windows(2).enumerate().all(is_certified),
             fold,
             fold_edge: FoldEdge::new(contacts, lattice.phi_at_fold()),
             fold_grows: (0..contacts.tip).all(|i| contacts.grow_after(i)),
@@ -73,8 +89,16 @@ impl Edges {
     pub fn predict(&self, edge: Edge, pair: [&Sample; 2], target: f64) -> Prediction {
         match edge {
             Edge::Fold => self.fold_edge.predict(pair, target),
-            Edge::Tip => self.tip_edge.predict(pair, target),
+            Edge::Tip => match &self.tip_edge {
+                Some(tip_edge) => tip_edge.predict(pair, target),
+                None => Prediction::linear(pair, target),
+            },
         }
+    }
+
+    /// Whether no crossing hides between the samples.
+    pub fn are_certified(&self) -> bool {
+        self.fold_is_certified && self.tip_edge.is_some()
     }
 }
 
@@ -88,6 +112,7 @@ mod tests {
     use crate::numerics::lobatto::LOBATTO_COUNT;
     use crate::rod::{Rest, Side};
     use crate::sheet::edges::edge_newton::{EdgeProblem, edge_newton_fine};
+    use crate::sheet::fold::contact_nodes::SPACING;
     use crate::sheet::row::Edge;
     use crate::sheet::row::Row;
     use glam::DVec2;
@@ -104,7 +129,7 @@ mod tests {
             };
             let method = Method::fine();
             let row = Row::new(&Rest::new(&rod), 0.1);
-            let contacts = ContactNodes::new(method, &rod, side, &row).unwrap();
+            let contacts = ContactNodes::new(method, &rod, side, &row, SPACING).unwrap();
             let lattice = Lattice::new(method.coarsely(), &rod, side, &contacts);
             let edges = Edges::new(method, &rod, &contacts, &lattice);
             let mut checked = 0;
@@ -143,7 +168,7 @@ mod tests {
             }
             assert!(checked > 20);
             let extrema = edges.tip.len() - LOBATTO_COUNT;
-            assert_eq!(edges.tip_edge.extrema().len(), extrema);
+            assert_eq!(edges.tip_edge.unwrap().extrema().len(), extrema);
         }
     }
 }

@@ -11,6 +11,7 @@ use crate::sheet::lattice::directions;
 use crate::shooting::batch::{Batch, InitialCondition, Method};
 use crate::shooting::{SecondVariation, ShootingMap};
 use glam::DVec2;
+use std::f64::consts::FRAC_PI_2;
 
 /// The last Newton step toward an extremum, relative to the distance of the places around it: its square is left.
 const LAST_STEP_TO_EXTREMUM: f64 = 1e-7;
@@ -38,60 +39,152 @@ pub struct TipEdge {
     by_load: [LobattoPolynomial; 2],
 }
 
-impl TipEdge {
-    /// The edge up to before the `corner`: its samples, extrema of distance among them, and the polynomials through the others and
-    /// the corner; and first touch.
-    pub fn sampled(
-        method: Method,
-        rod: &Rod,
-        corner: &FoldPoint,
-    ) -> (Vec<Sample>, Self, ShootingMap) {
-        let condition = |load| InitialCondition {
+/// How far slopes of the polynomial through the distances may be off, relative to the steepest, or to 1.
+const SLOPE_OFF: f64 = 1e-2;
+
+/// Intervals between the samples of an edge that no polynomial follows.
+const MANY: usize = 256;
+
+/// The edge up to before the corner.
+#[derive(Clone, Debug)]
+pub struct SampledTipEdge {
+    /// Samples, extrema of the distance among them.
+    pub samples: Vec<Sample>,
+    /// The polynomials through the others and the corner, if they are the edge.
+    pub edge: Option<TipEdge>,
+    /// First touch.
+    pub at_touch: ShootingMap,
+}
+
+impl SampledTipEdge {
+    /// Samples the edge up to the `corner`: at few loads, or at many where these do not show all of it.
+    pub fn new(method: Method, rod: &Rod, corner: &FoldPoint) -> Self {
+        let sampled = Loads::new(method, rod, corner, &*LOBATTO_NODES);
+        let edge = TipEdge::new(&sampled);
+        let at_touch = sampled.maps[0];
+        if edge.is_certified() {
+            return Self {
+                samples: sampled.samples(method, &edge.extrema()),
+                edge: Some(edge),
+                at_touch,
+            };
+        }
+        let part = |i| (FRAC_PI_2 * i as f64 / MANY as f64).sin().powi(2);
+        let parts: Vec<f64> = (0..=MANY).map(part).collect();
+        let sampled = Loads::new(method, rod, corner, &parts);
+        Self {
+            samples: sampled.samples(method, &sampled.extrema()),
+            edge: None,
+            at_touch,
+        }
+    }
+}
+
+/// The edge under some loads.
+struct Loads<'a> {
+    rod: &'a Rod,
+    corner: &'a FoldPoint,
+    /// In parts of the corner's; the last one is 1.
+    parts: &'a [f64],
+    maps: Vec<ShootingMap>,
+    /// Directions of the pole, continuous from first touch.
+    phis: Vec<f64>,
+}
+
+impl<'a> Loads<'a> {
+    fn new(method: Method, rod: &'a Rod, corner: &'a FoldPoint, parts: &'a [f64]) -> Self {
+        let condition = |part| InitialCondition {
             rod,
             tau: corner.tau,
-            load,
+            load: part * corner.load,
         };
-        let loads = LOBATTO_NODES[..LOBATTO_COUNT - 1]
-            .iter()
-            .map(|part| part * corner.load);
-        let conditions: Vec<InitialCondition> = loads.map(condition).collect();
+        let before_corner = &parts[..parts.len() - 1];
+        let conditions: Vec<InitialCondition> =
+            before_corner.iter().copied().map(condition).collect();
         let mut maps = Batch::new(method)
             .padded()
             .shoot::<ShootingMap>(&conditions);
         maps.push(corner.variation.map);
-        let phis = directions(corner.load, maps.iter());
-        let edge = Self::new(corner.tau, corner.load, &maps, &phis);
-        let extrema = edge.extrema();
-        let mut samples: Vec<Sample> = Vec::new();
-        for (m, at_node) in conditions.iter().enumerate() {
-            let sample = |place: f64, load: f64, map: &ShootingMap| Sample {
-                place,
-                tau: corner.tau,
-                load,
-                ln_distance: map.pole.length().ln(),
-                phi: nearest_turn(map.pole.to_angle(), phis[m]),
-            };
-            samples.push(sample(LOBATTO_NODES[m], at_node.load, &maps[m]));
-            for extremum in extrema.iter().filter(|extremum| extremum.after == m) {
-                let (load, map) = extremum.polished(method, *at_node);
-                samples.push(sample(load / corner.load, load, &map));
-            }
+        let mut phis = vec![0.0; parts.len()];
+        directions(corner.load, parts, maps.iter(), &mut phis);
+        Self {
+            rod,
+            corner,
+            parts,
+            maps,
+            phis,
         }
-        (samples, edge, maps[0])
     }
 
-    /// Through `maps` with the contact at `tau`, under all parts of the load `corner`, with the directions `phis` of the pole.
-    fn new(tau: f64, corner: f64, maps: &[ShootingMap], phis: &[f64; LOBATTO_COUNT]) -> Self {
-        let numbers = |number: fn(&ShootingMap) -> f64| {
-            let mut numbers = [0.0; LOBATTO_COUNT];
-            for (slot, map) in numbers.iter_mut().zip(maps) {
-                *slot = number(map);
+    /// The samples before the corner, with the `extrema` of the distance among them.
+    fn samples(&self, method: Method, extrema: &[Extremum]) -> Vec<Sample> {
+        let mut samples: Vec<Sample> = Vec::new();
+        for (m, part) in self.parts[..self.parts.len() - 1].iter().enumerate() {
+            let sample = |place: f64, load: f64, map: &ShootingMap| Sample {
+                place,
+                tau: self.corner.tau,
+                load,
+                ln_distance: map.pole.length().ln(),
+                phi: nearest_turn(map.pole.to_angle(), self.phis[m]),
+            };
+            samples.push(sample(*part, part * self.corner.load, &self.maps[m]));
+            for extremum in extrema.iter().filter(|extremum| extremum.after == m) {
+                let at_tip = InitialCondition {
+                    rod: self.rod,
+                    tau: self.corner.tau,
+                    load: extremum.load,
+                };
+                let (load, map) = extremum.polished(method, at_tip);
+                samples.push(sample(load / self.corner.load, load, &map));
             }
-            numbers
+        }
+        samples
+    }
+
+    /// Where `dlnD/dload` changes its sign between two loads.
+    fn extrema(&self) -> Vec<Extremum> {
+        let slope = |m: usize| self.maps[m].by_load;
+        let load = |m: usize| self.parts[m] * self.corner.load;
+        let turns = |m: &usize| slope(*m).x * slope(m + 1).x < 0.0;
+        let between = |m: usize| {
+            let [from, to] = [slope(m), slope(m + 1)];
+            let by_load_load = (to - from) / (load(m + 1) - load(m));
+            Extremum {
+                after: m,
+                load: load(m) - from.x / by_load_load.x,
+                loads: Bracket::new([load(m), load(m + 1)], [from.x, to.x]),
+                by_load_load,
+            }
         };
+        (0..self.parts.len() - 1)
+            .filter(turns)
+            .map(between)
+            .collect()
+    }
+}
+
+impl TipEdge {
+    /// Whether the polynomial through the distances is the edge: its slopes are those of the trajectories.
+    fn is_certified(&self) -> bool {
+        let known = |part: &f64| self.corner * self.by_load[0].at(*part).0;
+        let largest = |of: &dyn Fn(&f64) -> f64| {
+            LOBATTO_NODES
+                .iter()
+                .map(of)
+                .fold(0.0, |a: f64, b| a.max(b.abs()))
+        };
+        let off = largest(&|part| self.ln_distance.at(*part).1 - known(part));
+        off <= SLOPE_OFF * largest(&known).max(1.0)
+    }
+
+    /// Through what was `sampled` at the Lobatto nodes.
+    fn new(sampled: &Loads) -> Self {
+        let (tau, corner) = (sampled.corner.tau, sampled.corner.load);
+        let numbers =
+            |number: fn(&ShootingMap) -> f64| std::array::from_fn(|m| number(&sampled.maps[m]));
         let values = [
             numbers(|map| map.pole.length().ln()),
-            *phis,
+            std::array::from_fn(|m| sampled.phis[m]),
             numbers(|map| map.by_load.x),
             numbers(|map| map.by_load.y),
         ];

@@ -14,19 +14,19 @@ use crate::shooting::batch::Method;
 use glam::DVec2;
 
 /// Distance of the nodes in `u`.
-const SPACING: f64 = 0.68;
+pub const SPACING: f64 = 0.68;
+
+/// Their distance where the wider one shows too little.
+pub const NARROW_SPACING: f64 = SPACING / 4.0;
 
 /// Nodes beyond the tip.
 const BEYOND_TIP: usize = 1;
 
-/// Nodes between the row nearest to the base and the end of the lattice.
+/// Nodes between the contact nearest to the base that a row can have and the end of the lattice.
 const BEYOND_NEAREST: usize = 1;
 
-/// Nodes of a further batch.
-const FURTHER: usize = 4;
-
-/// Most nodes: the smallest `tau` is then below 1e-12 of the tip's.
-const MOST: usize = 100;
+/// The longest way in `u` from the tip to the last node: the smallest `tau` is then below 1e-12 of the tip's.
+const LONGEST_WAY: f64 = 68.0;
 
 /// The contact nodes, from the base outward.
 #[derive(Clone, Debug)]
@@ -35,6 +35,7 @@ pub struct ContactNodes {
     pub folds: Vec<FoldPoint>,
     /// Index of the node at the tip.
     pub tip: usize,
+    spacing: f64,
     first_u: f64,
     rod: Rod,
     /// See [`least_q`].
@@ -83,8 +84,8 @@ fn q(fold: &FoldPoint) -> f64 {
 }
 
 /// Slopes of `ln tau` and `ln(|load| tau^2)` of the folds at `fold`, per node.
-fn slopes_at(rod: &Rod, fold: &FoldPoint) -> [f64; 2] {
-    let ln_tau = SPACING / slope_of_u(rod, fold.tau);
+fn slopes_at(rod: &Rod, fold: &FoldPoint, spacing: f64) -> [f64; 2] {
+    let ln_tau = spacing / slope_of_u(rod, fold.tau);
     let by_det = fold.variation.det_gradient();
     let ln_load = -by_det.x / by_det.y * fold.tau / fold.load;
     // Next to a jump the fold edge may be vertical in load, and no polynomial is of any use.
@@ -92,9 +93,15 @@ fn slopes_at(rod: &Rod, fold: &FoldPoint) -> [f64; 2] {
     [ln_tau, ln_q * ln_tau]
 }
 
-/// The folds of nodes from the base outward. At the first ones the pole is nearer than that of `nearest`, at first touch and at the
-/// fold.
-fn folds_down_to(method: Method, rod: &Rod, side: Side, nearest: &Row) -> Option<Vec<FoldPoint>> {
+/// The folds of nodes from the base outward. The first ones are so close to the base that a whisker held there does not reach the pole
+/// of `nearest`, whatever its shape.
+fn folds_down_to(
+    method: Method,
+    rod: &Rod,
+    side: Side,
+    nearest: &Row,
+    spacing: f64,
+) -> Option<Vec<FoldPoint>> {
     let tau_tip = rod.tau_tip();
     let u_tip = u_of(rod, tau_tip);
     let mut near = tau_tip;
@@ -103,30 +110,16 @@ fn folds_down_to(method: Method, rod: &Rod, side: Side, nearest: &Row) -> Option
         near = if from_end == BEYOND_TIP {
             tau_tip
         } else {
-            tau_of(rod, u_tip - SPACING * inward, near)
+            tau_of(rod, u_tip - spacing * inward, near)
         };
         near
     };
-    let touch = rod.tau(nearest.contact.min(1.0));
-    // The least that are needed, the one at the tip among them.
-    let mut batch = ((u_tip - u_of(rod, touch)) / SPACING) as usize;
-    batch = batch.min(MOST) + BEYOND_TIP + BEYOND_NEAREST + 2;
-    let mut folds: Vec<FoldPoint> = Vec::new();
-    loop {
-        let from = folds.len();
-        let taus: Vec<f64> = (from..from + batch).map(&mut tau).collect();
-        for fold in first_folds(method, rod, side, &taus) {
-            folds.push(fold?);
-        }
-        let is_reached = folds.iter().rev().nth(BEYOND_NEAREST).is_some_and(|fold| {
-            let distance = fold.variation.map.pole.length();
-            distance < nearest.pole_distance && fold.tau < touch
-        });
-        if is_reached || folds.len() > MOST {
-            break;
-        }
-        batch = FURTHER;
-    }
+    let reach = nearest.pole_distance - rod.pole.abs();
+    let way = (u_tip - u_of(rod, rod.tau(reach.min(1.0)))).min(LONGEST_WAY);
+    let count = (way / spacing) as usize + BEYOND_TIP + BEYOND_NEAREST + 2;
+    let taus: Vec<f64> = (0..count).map(&mut tau).collect();
+    let folds = first_folds(method, rod, side, &taus);
+    let mut folds: Vec<FoldPoint> = folds.into_iter().collect::<Option<_>>()?;
     folds.reverse();
     Some(folds)
 }
@@ -134,10 +127,13 @@ fn folds_down_to(method: Method, rod: &Rod, side: Side, nearest: &Row) -> Option
 impl ContactNodes {
     /// The nodes of `rod` from its tip down to `nearest`, the row nearest to the base, and some beyond both. `None` where a fold is
     /// missing.
-    pub fn new(method: Method, rod: &Rod, side: Side, nearest: &Row) -> Option<Self> {
-        let folds = folds_down_to(method, rod, side, nearest)?;
+    pub fn new(method: Method, rod: &Rod, side: Side, nearest: &Row, spacing: f64) -> Option<Self> {
+        let folds = folds_down_to(method, rod, side, nearest, spacing)?;
         let values: Vec<[f64; 2]> = folds.iter().map(|f| [f.tau.ln(), q(f).ln()]).collect();
-        let slopes: Vec<[f64; 2]> = folds.iter().map(|fold| slopes_at(rod, fold)).collect();
+        let slopes: Vec<[f64; 2]> = folds
+            .iter()
+            .map(|fold| slopes_at(rod, fold, spacing))
+            .collect();
         let both = through_slopes(&values, &slopes);
         let polynomials = |which: usize| {
             both.iter()
@@ -145,7 +141,8 @@ impl ContactNodes {
         };
         let tip = folds.len() - 1 - BEYOND_TIP;
         Some(Self {
-            first_u: u_of(rod, rod.tau_tip()) - SPACING * tip as f64,
+            spacing,
+            first_u: u_of(rod, rod.tau_tip()) - spacing * tip as f64,
             tip,
             rod: rod.clone(),
             least_q: least_q(&values, &slopes),
@@ -186,7 +183,7 @@ impl ContactNodes {
     /// `|load|` at the fold for the contact at `tau`, by interpolation.
     #[must_use]
     pub fn fold_load(&self, tau: f64) -> f64 {
-        let place = (u_of(&self.rod, tau) - self.first_u) / SPACING;
+        let place = (u_of(&self.rod, tau) - self.first_u) / self.spacing;
         let last = self.folds.len() - 2;
         let before = (place as usize).min(last);
         let start = stencil(before, STENCIL, self.folds.len());
@@ -224,7 +221,7 @@ mod tests {
                 };
                 let method = Method::fine();
                 let row = Row::new(&Rest::new(&rod), 0.3);
-                let nodes = ContactNodes::new(method, &rod, side, &row).unwrap();
+                let nodes = ContactNodes::new(method, &rod, side, &row, SPACING).unwrap();
                 for i in [2, nodes.tip] {
                     check(&nodes, method, side, i);
                 }

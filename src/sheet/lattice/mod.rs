@@ -11,6 +11,7 @@ use crate::numerics::newton_form::{RootProblem, stencil, through_slopes};
 use crate::numerics::newton_form_simd::{Numbers, SimdRoots, Terms, keep, pack};
 use crate::numerics::{Bracket, Lanes, SimdTask, Unit, WIDTH, nearest_turn};
 use crate::rod::{Rod, Side};
+use crate::sheet::certificate::stays_positive;
 use crate::sheet::fold::contact_nodes::ContactNodes;
 use crate::sheet::fold::coordinate::{STENCIL, TERMS};
 use crate::sheet::lattice::guesses::RowCurve;
@@ -46,6 +47,8 @@ struct LoadLine {
     phi: Numbers,
     /// Slopes of both, per contact node.
     slopes: [Numbers; 2],
+    /// `det D^2` over that at first touch and the part of the load that is left to the fold: positive and smooth up to the fold.
+    clearance: Numbers,
 }
 
 /// Along one stencil of contact nodes: Hermite polynomials by their divided differences, one for every load.
@@ -64,11 +67,17 @@ impl LoadLine {
         maps: impl Iterator<Item = &'a ShootingMap> + Clone,
     ) -> Self {
         let mut line = Self::default();
-        let phis = directions(contacts.folds[i].load, maps.clone());
-        line.phi[..LOBATTO_COUNT].copy_from_slice(&phis);
+        let load = contacts.folds[i].load;
+        directions(load, &*LOBATTO_NODES, maps.clone(), &mut line.phi);
+        let mut at_touch = 1.0;
         for (m, (map, part)) in maps.zip(LOBATTO_NODES.iter()).enumerate() {
             line.ln_distance[m] = map.pole.length().ln();
             [line.slopes[0][m], line.slopes[1][m]] = contacts.slope(i, *part, map).to_array();
+            let det = map.det() * map.pole.length_squared();
+            if m == 0 {
+                at_touch = det.abs();
+            }
+            line.clearance[m] = det / (at_touch * (1.0 - part));
         }
         line
     }
@@ -99,6 +108,17 @@ impl Lattice {
             patches: patches(&lines),
             lines,
         }
+    }
+
+    /// Whether no fold hides below the first folds of the contact nodes, at them or between them. The loads are evenly spaced in
+    /// the angle of which they are the cosine.
+    pub fn is_certified(&self) -> bool {
+        const BELOW_FOLD: usize = LOBATTO_COUNT - 1;
+        let count = self.lines.len();
+        self.lines
+            .iter()
+            .all(|line| stays_positive(BELOW_FOLD, |m| line.clearance[m]))
+            && (0..BELOW_FOLD).all(|m| stays_positive(count, |i| self.lines[i].clearance[m]))
     }
 
     /// Direction of the pole at the fold, contact node by contact node, continuous from first touch.
@@ -233,14 +253,16 @@ fn patches(lines: &[LoadLine]) -> Vec<Patch> {
         .collect()
 }
 
-/// Directions of the pole, continuous from first touch, of `maps` of one contact under these parts of its fold's `load`.
+/// Writes into `phis` the directions of the pole, continuous from first touch, of `maps` of one contact under these `parts` of its fold's
+/// `load`.
 pub fn directions<'a>(
     load: f64,
+    parts: &[f64],
     maps: impl Iterator<Item = &'a ShootingMap>,
-) -> [f64; LOBATTO_COUNT] {
-    let mut phis = [0.0; LOBATTO_COUNT];
+    phis: &mut [f64],
+) {
     let mut before: Option<(&ShootingMap, f64, f64)> = None;
-    for (slot, (map, part)) in phis.iter_mut().zip(maps.zip(LOBATTO_NODES.iter())) {
+    for (slot, (map, part)) in phis.iter_mut().zip(maps.zip(parts)) {
         let near = before.map_or(0.0, |(there, phi, part_there)| {
             let slopes = there.by_load.y + map.by_load.y;
             0.5f64.mul_add(slopes * load * (part - part_there), phi)
@@ -249,5 +271,4 @@ pub fn directions<'a>(
         before = Some((map, phi, *part));
         *slot = phi;
     }
-    phis
 }
