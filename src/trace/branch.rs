@@ -44,7 +44,7 @@ row! {
         pub det: f64,
         /// What is special: touch, fold, tip, second-fold (the unstable states' end).
         pub mark: Option<Mark>,
-        /// Which way the contact slides as the branch goes on: tip, or base, against the friction assumed; empty without friction.
+        /// With friction, which way the contact slides: tip, as assumed, or base.
         pub sliding: Option<Sliding>,
     }
 }

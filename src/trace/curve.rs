@@ -55,7 +55,7 @@ row! {
         pub contact_angle_deg: Option<f64>,
         /// Remaining error relative to the distance of the pole.
         pub residual: Option<f64>,
-        /// Which way the contact slides at last: tip, or base, against the friction assumed; empty without friction.
+        /// With friction, which way the contact slides: tip, as assumed, or base.
         pub sliding: Option<Sliding>,
     }
 }
