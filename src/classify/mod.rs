@@ -3,8 +3,10 @@
 //! [`RowBoundary::judge`] is total: every push angle and every status has a regime, `unresolved` included.
 
 mod row;
+mod sliding;
 
 pub use row::{RowBoundary, Span, TIE};
+pub use sliding::Sliding;
 
 /// An enum whose variants each have a code, for files, and a name, for files and people.
 macro_rules! named {
@@ -64,6 +66,9 @@ named! {
         BeyondFold = 2, "beyond the fold";
         /// The state found lies beyond the tip.
         BeyondTip = 3, "beyond the tip";
+        /// A state was found, but its contact slides toward the base, and friction was computed as of one that slides
+        /// toward the tip: regime and margin hold, force and moment are off.
+        TowardBase = 4, "state found, but it slides toward the base, against the friction assumed";
         /// Newton's method failed, and the fold did not decide.
         NotConverged = 101, "unresolved: Newton's method did not converge";
         /// The cell and the boundary of its row contradict each other.

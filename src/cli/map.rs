@@ -142,7 +142,7 @@ fn print(scene: &Scene, summary: &Summary, seconds: f64, files: &[PathBuf]) -> s
         summary.steps as f64 / summary.refined.max(1) as f64,
         summary.worst_residual
     )?;
-    for (shots, what) in [
+    for (cells, what) in [
         (
             summary.shots.restarted,
             "shots without a solution from the engine, restarted in f64",
@@ -151,9 +151,13 @@ fn print(scene: &Scene, summary: &Summary, seconds: f64, files: &[PathBuf]) -> s
             summary.shots.on_cpu_instead,
             "shots left to the refinement, after the engine had failed",
         ),
+        (
+            summary.toward_base,
+            "slide toward the base, against the friction assumed: force and moment are off",
+        ),
     ] {
-        if shots > 0 {
-            writeln!(out, "{shots:>12}  {what}")?;
+        if cells > 0 {
+            writeln!(out, "{cells:>12}  {what}")?;
         }
     }
     writeln!(

@@ -1,11 +1,12 @@
 //! `whiskmap shape`.
 
 use super::columns;
-use super::failure::Failure;
+use super::failure::{Failure, say};
 use super::numbers::{number, whole};
 use super::outputs::Outputs;
 use super::pole::Pole;
 use clap::{Args, ValueEnum};
+use whiskmap::classify::Sliding;
 use whiskmap::render::{Drawn, Ink, Stroke, shapes};
 use whiskmap::rod::Side;
 use whiskmap::trace::{Branch, NoState, Shape, ShapePoint};
@@ -88,6 +89,11 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         .map_err(refuse)?;
     let count = options.points as usize;
     let shape = Shape::new(&branch, &state, count);
+    if shape.sliding == Some(Sliding::Base) {
+        say(
+            "warning: the contact slides toward the base, and friction is computed as of one that slides toward the tip",
+        );
+    }
     outputs.rows(&shape.points)?;
     let (stroke, name) = if stable {
         (Stroke::Solid, "stable")

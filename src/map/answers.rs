@@ -2,11 +2,12 @@
 
 use super::cells::{Cell, Settled};
 use super::{Face, Panel, STATE_CHANNELS, doubt};
-use crate::classify::{Regime, RowBoundary, Status};
+use crate::classify::{Regime, RowBoundary, Sliding, Status};
 use crate::rod::Units;
 use crate::scene::Whisker;
 use crate::sheet::Sheet;
 use crate::shooting::{Reader, Reading};
+use glam::DVec2;
 use rayon::prelude::*;
 
 /// Judges the cells of `settled` and writes them into `panels`; face `i` belongs to panel `i / faces_per_panel`.
@@ -24,7 +25,9 @@ pub fn fill(
         .map(|row| {
             let face = &faces[row.face];
             let units = whiskers[row.face / faces_per_panel].units();
-            answers(&units, face, row.row, || settled.cells(face, row))
+            let mut answers = answers(&units, face, row.row, || settled.cells(face, row));
+            mark_toward_base(face, row.row, &mut answers);
+            answers
         })
         .collect();
     for (row, answers) in settled.rows.iter().zip(&answers) {
@@ -72,10 +75,35 @@ fn answers<C: Iterator<Item = Cell>>(
     again.iter().map(answer).collect()
 }
 
-/// What a panel holds of one cell.
+/// Tells those of the states found for `row` whose contact slides toward the base, against the friction assumed.
+fn mark_toward_base(face: &Face, row: usize, answers: &mut [Answer]) {
+    let Some(sheet) = face
+        .sheet
+        .as_ref()
+        .filter(|sheet| sheet.rod.friction != 0.0)
+    else {
+        return;
+    };
+    let solved = answers
+        .iter_mut()
+        .filter(|answer| answer.status == Status::Solved);
+    let (mut solved, points): (Vec<_>, Vec<_>) = solved
+        .filter_map(|answer| answer.point.map(|point| (answer, point)))
+        .unzip();
+    let sliding = Sliding::at(sheet.level(row).method, &sheet.rod, &points);
+    for (answer, sliding) in solved.iter_mut().zip(sliding) {
+        if sliding == Some(Sliding::Base) {
+            answer.status = Status::TowardBase;
+        }
+    }
+}
+
+/// What a panel holds of one cell, and where on the sheet its state is.
 struct Answer {
     regime: Regime,
     status: Status,
+    /// `(tau, load)`.
+    point: Option<DVec2>,
     state: [f32; STATE_CHANNELS.len()],
     residual: f32,
     margin_deg: f32,
@@ -88,6 +116,7 @@ impl Answer {
         Self {
             regime,
             status,
+            point: None,
             state: [f32::NAN; STATE_CHANNELS.len()],
             residual: f32::NAN,
             margin_deg: f32::NAN,
@@ -118,6 +147,7 @@ fn answer(
         return answer;
     };
     if matches!(regime, Regime::Contact | Regime::Unreachable) {
+        answer.point = Some(DVec2::new(state.tau, state.load));
         let touch = sheet.rows[row].touch;
         answer.state =
             channels(&reader.read(state.tau, &state.full, touch, push)).map(|value| value as f32);

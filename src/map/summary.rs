@@ -60,6 +60,8 @@ pub struct Summary {
     pub worst_residual: f64,
     /// Cells whose own verdict contradicts the boundary of their row.
     pub disagreements: u64,
+    /// Cells with a state whose contact slides toward the base, against the friction assumed.
+    pub toward_base: u64,
     /// What became of the engine's shots.
     pub shots: Shots,
     /// Why the CPU went on in the engine's stead, if it did.
@@ -89,6 +91,7 @@ impl Summary {
                 self.worst_residual = self.worst_residual.max(f64::from(*residual));
             }
             self.disagreements += u64::from(*status == Status::Disagreement.code());
+            self.toward_base += u64::from(*status == Status::TowardBase.code());
         }
         let steps = panel.newton_steps.iter().copied();
         self.steps += steps.map(u64::from).sum::<u64>();

@@ -74,8 +74,8 @@ pub(super) fn regime(code: u32) -> Fill {
 
 /// The fill of the `place`-th of some names without an order (Okabe and Ito 2008, Color Universal Design).
 pub(super) fn qualitative(place: usize) -> Fill {
-    const COLOURS: [u32; 8] = [
-        0x56b4e9, 0xe69f00, 0x009e73, 0xcc79a7, 0x0072b2, 0xd55e00, 0xf0e442, 0x999999,
+    const COLOURS: [u32; 9] = [
+        0x56b4e9, 0xe69f00, 0x009e73, 0xcc79a7, 0x0072b2, 0xd55e00, 0xf0e442, 0x999999, 0x332288,
     ];
     Fill::plain(rgb(COLOURS[place % COLOURS.len()]))
 }

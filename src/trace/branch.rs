@@ -3,6 +3,7 @@
 use super::columns::row;
 use super::resample::{interpolate, targets};
 use super::{FINER, Mark, NoState};
+use crate::classify::Sliding;
 use crate::rod::{Rest, Side, Units};
 use crate::scene::{Pole, Whisker};
 use crate::sheet::{Continuation, Edge, LevelCurve, Node, ON_CURVE, Row};
@@ -43,6 +44,8 @@ row! {
         pub det: f64,
         /// What is special: touch, fold, tip, second-fold (the unstable states' end).
         pub mark: Option<Mark>,
+        /// With friction, which way the contact slides: tip, as assumed, or base.
+        pub sliding: Option<Sliding>,
     }
 }
 
@@ -108,7 +111,7 @@ impl Branch {
             _ => Mark::Tip,
         };
         let on_curve = guesses.iter().zip(corrected).enumerate();
-        on_curve
+        let marked: Vec<(Node, Option<Mark>)> = on_curve
             .map(|(i, ((near, _), corrected))| {
                 // The ends and the fold are known better than any corrector knows them.
                 let exact = match i {
@@ -118,16 +121,24 @@ impl Branch {
                     _ => None,
                 };
                 let near = &nodes[*near];
-                let (node, mark) = match exact {
+                Ok(match exact {
                     Some((node, mark)) => (node, Some(mark)),
                     None => {
                         let (point, full) = corrected.ok_or_else(|| self.lost())?;
                         (self.level.node(point, &full, near.push, near.angle), None)
                     }
-                };
-                Ok(self.point(&node, fold_at.is_none_or(|fold| i <= fold), mark))
+                })
             })
-            .collect()
+            .collect::<Result<_, NoState>>()?;
+        let places: Vec<DVec2> = marked.iter().map(|(node, _)| node.point).collect();
+        let sliding = Sliding::at(self.level.method, &self.level.rod, &places);
+        let points = marked.iter().zip(sliding).enumerate();
+        let points = points.map(|(i, ((node, mark), sliding))| BranchPoint {
+            mark: *mark,
+            sliding,
+            ..self.point(node, fold_at.is_none_or(|fold| i <= fold))
+        });
+        Ok(points.collect())
     }
 
     /// The state with its contact at `tau`, in the units of people.
@@ -155,7 +166,8 @@ impl Branch {
         std::iter::once(0.0).chain(rest).collect()
     }
 
-    fn point(&self, node: &Node, stable: bool, mark: Option<Mark>) -> BranchPoint {
+    /// A state, without what is special about it.
+    fn point(&self, node: &Node, stable: bool) -> BranchPoint {
         let LevelCurve { rod, side, row, .. } = &self.level;
         let reading = self.reading(node.point.x, &node.full, node.push);
         BranchPoint {
@@ -171,7 +183,8 @@ impl Branch {
             // part of the force along the normal.
             det: node.full.map.det() * row.pole_distance
                 / (rod.radius(node.point.x).powi(3) * rod.contact_tangent().x),
-            mark,
+            mark: None,
+            sliding: None,
         }
     }
 }

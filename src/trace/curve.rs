@@ -1,7 +1,7 @@
 //! Detachment curves: where pushes from first touch end, distance by distance.
 
 use super::columns::row;
-use crate::classify::RowBoundary;
+use crate::classify::{RowBoundary, Sliding};
 use crate::rod::{Rest, Side};
 use crate::scene::{Pole, Whisker};
 use crate::sheet::{Crossing, Edge, Row, Sheet};
@@ -55,6 +55,8 @@ row! {
         pub contact_angle_deg: Option<f64>,
         /// Remaining error relative to the distance of the pole.
         pub residual: Option<f64>,
+        /// With friction, which way the contact slides: tip, as assumed, or base.
+        pub sliding: Option<Sliding>,
     }
 }
 
@@ -128,6 +130,9 @@ pub fn curve_at(
     rows.map(|((distance_mm, distance), end)| {
         let row = Row::new(&rest, *distance);
         let reached = end.ok().and_then(|end| Some((end, states.next()?)));
+        let sliding = reached
+            .as_ref()
+            .and_then(|(end, variation)| Sliding::of(variation, &rod, end.tau));
         let reading = reached.as_ref().map(|(end, FirstVariation { full, .. })| {
             let push = side.sign() * end.push;
             // The crossing's own residual foretells what its last step leaves; this trajectory has gone there.
@@ -155,6 +160,7 @@ pub fn curve_at(
             base_moment_nnm: value(|reading| reading.base_moment_nnm),
             contact_angle_deg: value(|reading| reading.contact_angle_deg),
             residual: reading.as_ref().map(|(_, residual, _)| *residual),
+            sliding,
         }
     })
     .collect()

@@ -2,6 +2,7 @@
 
 use super::columns::row;
 use super::{Branch, FINER, Found};
+use crate::classify::Sliding;
 use crate::rod::{Rest, arclength};
 use crate::shooting::shape::{RodPoint, profile};
 use glam::DVec2;
@@ -19,6 +20,8 @@ pub struct Shape {
     pub pole_radius_mm: f64,
     /// Distance of the computed pole from where it stands, in whisker lengths.
     pub residual: f64,
+    /// Which way the contact slides as the branch goes on; `None` without friction.
+    pub sliding: Option<Sliding>,
 }
 
 row! {
@@ -63,6 +66,7 @@ impl Shape {
         let mut at: Vec<f64> = uniform(count).filter(|s| *s != contact).collect();
         let index = at.partition_point(|s| *s < contact);
         at.insert(index, contact);
+        let place = DVec2::new(found.tau, found.load);
         let places = profile(rod, found.tau, found.load, FINER, &at);
         // From the axes of the contact to those of first touch: the base's tangent is at `-push` there.
         let base = &found.full;
@@ -96,6 +100,9 @@ impl Shape {
             pole_mm: (pole * length).to_array(),
             pole_radius_mm: rod.pole.abs() * length,
             residual: found.full.map.pole.distance(row.pole(found.push)),
+            sliding: Sliding::at(branch.level.method, rod, &[place])
+                .pop()
+                .flatten(),
         }
     }
 

@@ -1,6 +1,6 @@
 //! `whiskmap shape`.
 
-use crate::traces::{SHAPE, cells, good};
+use crate::traces::{BRANCH, CURVE, SHAPE, cells, good};
 use crate::{Place, SCENE, names};
 use whiskmap::rod::Side;
 use whiskmap::scene::Scene;
@@ -66,4 +66,34 @@ fn states_that_do_not_exist_have_a_reason() {
         .run(&branch)
         .assert_refused(&["--distance 19.9", reach]);
     assert_eq!(names(&place.path("")), ["scene.toml"]);
+}
+
+/// Where the contact slides toward the base, friction is computed the wrong way: a warning, a column, a line.
+#[test]
+fn sliding_toward_the_base_is_told() {
+    let rough = SCENE.replace("[grid]", "[contact]\nfriction = 0.3\n[grid]");
+    let place = Place::with(&rough);
+    let shape =
+        |push: &str| place.run(&["shape", "scene.toml", "--distance=9", "--push-angle", push]);
+    let warning = "warning: the contact slides toward the base";
+    assert!(shape("-5").err.starts_with(warning));
+    assert_eq!(shape("-20").err, "");
+    assert_eq!(shape("5").err, "");
+    let branch = good(
+        &place,
+        &["branch", "scene.toml", "--distance=9", "--side=cf"],
+    );
+    let rows = cells(&branch.out, BRANCH);
+    assert_eq!([rows[1][10], rows[199][10]], ["base", "tip"]);
+    let curve = good(&place, &["curve", "scene.toml"]);
+    for row in cells(&curve.out, CURVE) {
+        let sliding = if row[3] == "out-of-reach" { "" } else { "tip" };
+        assert_eq!(row[14], sliding, "{row:?}");
+    }
+    let map = place.map(&["scene.toml", "--no-png"]);
+    map.assert_settled();
+    let told = "slide toward the base, against the friction assumed: force and moment are off";
+    assert!(map.count(told) > 10, "{map:?}");
+    place.write("scene.toml", SCENE);
+    assert!(!place.map(&["scene.toml", "--no-png"]).out.contains("slide"));
 }
