@@ -23,7 +23,7 @@ pub fn estimate(scene: &Scene, plan: &Plan) -> Result<Estimate, Failure> {
     };
     let Ok(summary) = map::run(&small, &small_plan, None, &mut |_| Ok::<(), Infallible>(()));
     let rows = |scene: &Scene, plan: &Plan| {
-        (plan.whiskers.len() * plan.sides.len() * scene.grid.distance_mm.len()) as f64
+        (plan.whiskers * plan.sides.len() * scene.grid.distance_mm.len()) as f64
     };
     let by_rows = rows(scene, plan) / rows(&small, &small_plan);
     let by_cells = plan.cells as f64 / small_plan.cells as f64;

@@ -65,7 +65,7 @@ fn print(scene: &Scene, plan: &Plan, estimate: &Estimate) -> std::io::Result<()>
         plan.cells,
         counted(scene.grid.push_angle_deg.len(), "push angle"),
         counted(distances, "distance"),
-        counted(plan.whiskers.len(), "whisker")
+        counted(plan.whiskers, "whisker")
     )?;
     let steps = estimate.steps_per_cell;
     writeln!(
