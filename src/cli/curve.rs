@@ -3,6 +3,7 @@
 use super::columns;
 use super::failure::{Failure, say};
 use super::outputs::{Opened, Outputs};
+use super::progress;
 use super::tolerance::Tolerance;
 use clap::Args;
 use serde::Serialize;
@@ -60,15 +61,24 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     let mut drawn = Vec::new();
     let mut unresolved = 0;
     let distances = &scene.grid.distance_mm;
+    let of_side = if options.corner { 1 } else { distances.len() };
+    let bar = progress::bar(whiskers * Side::BOTH.len() * of_side, "ends");
+    bar.tick();
     let at_once = trace::whiskers_at_once(distances.len());
     for group in scene.whisker_groups(at_once) {
         if options.corner {
-            let corner = |whisker: &Whisker, side| vec![trace::corner(whisker, &scene.pole, side)];
+            let corner = |whisker: &Whisker, side| {
+                let corner = trace::corner(whisker, &scene.pole, side);
+                bar.inc(1);
+                vec![corner]
+            };
             write(&scene, &mut outputs, &trace::sides(&group, corner))?;
             continue;
         }
         let curve = |whisker: &Whisker, side| {
-            trace::curve_at(resolution, whisker, &scene.pole, side, distances)
+            let ends = trace::curve_at(resolution, whisker, &scene.pole, side, distances);
+            bar.inc(ends.len() as u64);
+            ends
         };
         let rows = trace::sides(&group, curve);
         write(&scene, &mut outputs, &rows)?;
@@ -80,6 +90,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
             drawn.extend(rows.into_iter().map(|(_, row)| row));
         }
     }
+    bar.finish_and_clear();
     if unresolved > 0 {
         say(&format!(
             "{unresolved} ends were not found: their kind is unresolved"
