@@ -10,7 +10,7 @@ use crate::plan::{Plan, PlanError};
 use crate::rod::Side;
 use crate::scene::{Grid, Morphology, Scene};
 use crate::shooting::Resolution;
-use crate::trace::{Branch, Detachment, NoState, Shape, curve_at, sides};
+use crate::trace::{Branch, Detachment, NoState, Shape, curve_at, sides, whiskers_at_once};
 use std::convert::Infallible;
 
 /// How exact an answer is to be, and what shoots before the refinement.
@@ -114,7 +114,7 @@ pub fn map(scene: &Scene, options: Options) -> Result<Map, Error> {
     let engine = gpu.as_mut().map(|gpu| gpu as _);
     #[cfg(not(feature = "gpu"))]
     let engine = None;
-    let mut panels = Vec::with_capacity(plan.whiskers.len());
+    let mut panels = Vec::with_capacity(plan.whiskers);
     let mut keep = |progress: Progress<'_>| {
         if let Progress::Panels(finished) = progress {
             panels.extend_from_slice(finished);
@@ -147,11 +147,14 @@ pub fn map(scene: &Scene, options: Options) -> Result<Map, Error> {
 /// When the tolerance cannot be kept.
 pub fn curve(scene: &Scene, options: Options) -> Result<Vec<(Morphology, Detachment)>, Error> {
     let resolution = resolution(scene, options, &Side::BOTH)?;
-    let whiskers: Vec<_> = scene.whiskers().collect();
     let distances = &scene.grid.distance_mm;
-    Ok(sides(&whiskers, |whisker, side| {
-        curve_at(resolution, whisker, &scene.pole, side, distances)
-    }))
+    let curves = |group: Vec<_>| {
+        sides(&group, |whisker, side| {
+            curve_at(resolution, whisker, &scene.pole, side, distances)
+        })
+    };
+    let groups = scene.whisker_groups(whiskers_at_once(distances.len()));
+    Ok(groups.flat_map(curves).collect())
 }
 
 /// Follows the states of the scene's first whisker in front of one pole, from first touch at `distance_mm` through the fold.

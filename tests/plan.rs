@@ -44,7 +44,7 @@ fn kept(push_angles: &str, distances: &str, more: &str) -> (usize, usize) {
     let Ok(summary) = map::run(&scene, &plan, Some(&mut engine), discard);
     assert_eq!(engine.0, plan.engine_calls);
     assert_eq!(summary.cells(), plan.cells as u64);
-    let groups = plan.whiskers.len().div_ceil(plan.panels_at_once);
+    let groups = plan.whiskers.div_ceil(plan.panels_at_once);
     (groups, plan.engine_calls)
 }
 

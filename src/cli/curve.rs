@@ -3,6 +3,7 @@
 use super::columns;
 use super::failure::{Failure, say};
 use super::outputs::{Opened, Outputs};
+use super::progress;
 use super::tolerance::Tolerance;
 use clap::Args;
 use serde::Serialize;
@@ -45,17 +46,13 @@ pub struct Options {
     outputs: Outputs,
 }
 
-/// Whiskers computed together.
-const AT_ONCE: usize = 64;
-
 /// Runs `curve`.
 pub fn run(options: &Options) -> Result<(), Failure> {
     let scene = Scene::read(&options.scene)?;
-    let whiskers: Vec<(Morphology, Whisker)> = scene.whiskers().collect();
-    if options.outputs.has_plot() && whiskers.len() > 1 {
+    let whiskers = scene.whisker_count();
+    if options.outputs.has_plot() && whiskers > 1 {
         return Err(Failure::Input(format!(
-            "--plot: the scene sweeps {} whiskers over grid.taper and grid.curvature_per_mm; a plot shows one",
-            whiskers.len()
+            "--plot: the scene sweeps {whiskers} whiskers over grid.taper and grid.curvature_per_mm; a plot shows one"
         )));
     }
     let mut outputs = options.outputs.open()?;
@@ -63,17 +60,27 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     let resolution = accuracy.map_or(Resolution::FINE, |accuracy| accuracy.resolution);
     let mut drawn = Vec::new();
     let mut unresolved = 0;
-    for group in whiskers.chunks(AT_ONCE) {
+    let distances = &scene.grid.distance_mm;
+    let of_side = if options.corner { 1 } else { distances.len() };
+    let bar = progress::bar(whiskers * Side::BOTH.len() * of_side, "ends");
+    bar.tick();
+    let at_once = trace::whiskers_at_once(distances.len());
+    for group in scene.whisker_groups(at_once) {
         if options.corner {
-            let corner = |whisker: &Whisker, side| vec![trace::corner(whisker, &scene.pole, side)];
-            write(&scene, &mut outputs, &trace::sides(group, corner))?;
+            let corner = |whisker: &Whisker, side| {
+                let corner = trace::corner(whisker, &scene.pole, side);
+                bar.inc(1);
+                vec![corner]
+            };
+            write(&scene, &mut outputs, &trace::sides(&group, corner))?;
             continue;
         }
         let curve = |whisker: &Whisker, side| {
-            let distances = &scene.grid.distance_mm;
-            trace::curve_at(resolution, whisker, &scene.pole, side, distances)
+            let ends = trace::curve_at(resolution, whisker, &scene.pole, side, distances);
+            bar.inc(ends.len() as u64);
+            ends
         };
-        let rows = trace::sides(group, curve);
+        let rows = trace::sides(&group, curve);
         write(&scene, &mut outputs, &rows)?;
         let kinds = rows.iter().map(|(_, row)| row.kind);
         unresolved += kinds
@@ -83,6 +90,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
             drawn.extend(rows.into_iter().map(|(_, row)| row));
         }
     }
+    bar.finish_and_clear();
     if unresolved > 0 {
         say(&format!(
             "{unresolved} ends were not found: their kind is unresolved"

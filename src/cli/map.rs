@@ -90,7 +90,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
             tolerances: &tolerances(accuracy),
         },
     )?;
-    let bar = progress::bar(plan.cells as u64);
+    let bar = progress::bar(plan.cells, "cells");
     let engine = engine.as_mut().map(|engine| &mut **engine as _);
     let result = map::run(&scene, &plan, engine, &mut |progress| match progress {
         Progress::Settled(cells) => {

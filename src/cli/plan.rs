@@ -19,8 +19,8 @@ Sets of effects with kernels of their own cost work at every step of the integra
 radius and friction only change where a trajectory starts, and projection is a faster taper. The pole touches the \
 whisker's centre line: the whisker's own thickness does not add to the pole's radius. A GPU divides an engine \
 call into dispatches, as many as its speed asks for. Trajectories are those of the cells. They and the seconds are \
-scaled up from a sample of at most 128 x 128 cells and two values per sweep axis, computed on this machine's CPU and \
-thrown away; nothing is written and no GPU is opened.")]
+scaled up from a sample of at most 128 x 128 cells and two values per sweep axis, fewer where these would take more than \
+some seconds, computed on this machine's CPU and thrown away; nothing is written and no GPU is opened.")]
 pub struct Options {
     /// Scene file; - reads it from standard input
     scene: PathBuf,
@@ -65,7 +65,7 @@ fn print(scene: &Scene, plan: &Plan, estimate: &Estimate) -> std::io::Result<()>
         plan.cells,
         counted(scene.grid.push_angle_deg.len(), "push angle"),
         counted(distances, "distance"),
-        counted(plan.whiskers.len(), "whisker")
+        counted(plan.whiskers, "whisker")
     )?;
     let steps = estimate.steps_per_cell;
     writeln!(

@@ -21,7 +21,7 @@ impl Pole {
     /// Reads the scene and its only whisker for `command`.
     pub fn read(&self, command: &str) -> Result<(Scene, Whisker), Failure> {
         let scene = Scene::read(&self.scene)?;
-        let whiskers = scene.whiskers().count();
+        let whiskers = scene.whisker_count();
         if whiskers > 1 {
             let tapers = scene.grid.taper.as_ref();
             let key = if tapers.is_some_and(|tapers| tapers.len() > 1) {

@@ -64,16 +64,17 @@ pub fn run<E>(
     let mut summary = Summary::default();
     let pushes = |side: &Side| Pushes::new(&scene.grid.push_angle_deg, *side);
     let sides: Vec<Pushes> = plan.sides.iter().map(pushes).collect();
-    for whiskers in plan.whiskers.chunks(plan.panels_at_once) {
+    for group in scene.whisker_groups(plan.panels_at_once) {
+        let whiskers: Vec<Whisker> = group.into_iter().map(|(_, whisker)| whisker).collect();
         let faces = summary.time(Stage::Sheets, || {
-            faces(scene, plan.method, whiskers, &sides)
+            faces(scene, plan.method, &whiskers, &sides)
         });
         let mut panels = vec![Panel::unresolved(width * height); whiskers.len()];
         let rows = (0..faces.len()).flat_map(|face| (0..height).map(move |row| (face, row)));
         for strip in rows.collect::<Vec<_>>().chunks(rows_at_once) {
             let settled = cells::settle(plan.method, &faces, strip, &mut engine, &mut summary);
             summary.time(Stage::Regimes, || {
-                answers::fill(width, whiskers, &faces, sides.len(), &settled, &mut panels);
+                answers::fill(width, &whiskers, &faces, sides.len(), &settled, &mut panels);
             });
             let columns = |row: &SettledRow| faces[row.face].pushes.columns.len();
             observe(Progress::Settled(settled.rows.iter().map(columns).sum()))?;

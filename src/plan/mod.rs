@@ -4,8 +4,8 @@ mod effects;
 
 pub use effects::{Cost, Effect, effects};
 
-use crate::rod::{Effects, Rod, Side};
-use crate::scene::{Scene, Whisker};
+use crate::rod::{Effects, Side};
+use crate::scene::Scene;
 use crate::shooting::batch::Method;
 
 /// Bytes that a run may take for its panels.
@@ -26,7 +26,7 @@ const CELLS_OF_PANELS: usize = 1 << 18;
 /// Most panels computed together: each has two sheets of some 100 KiB.
 const MOST_PANELS: usize = 64;
 
-/// Push angles, and distances, of a sample that is computed to see how long a scene takes: 16384 cells per whisker. Twelve
+/// Most push angles, and distances, of a sample that is computed to see how long a scene takes: 16384 cells per whisker. Twelve
 /// estimates of shipped scenes were 0.9 to 1.9 times what their runs took right after, on two cores busy with other work.
 /// Estimates of the cone repeated in one process differed by a factor of 1.25; with 32 lines, of 2.6.
 pub const SAMPLE_LINES: usize = 128;
@@ -40,8 +40,8 @@ pub const ROD_STATES: usize = 4;
 /// A run.
 #[derive(Clone, Debug)]
 pub struct Plan {
-    /// The whiskers, in atlas order.
-    pub whiskers: Vec<Whisker>,
+    /// Whiskers of the sweep.
+    pub whiskers: usize,
     /// The effects that the scene calls for, and the resolution of the refinement.
     pub method: Method,
     /// The sides that the push angles ask for; first touch itself belongs to CB.
@@ -81,10 +81,10 @@ impl Plan {
         let push_angles = scene.grid.push_angle_deg.len();
         let distances = scene.grid.distance_mm.len();
         let cells = push_angles * distances;
-        let whiskers: Vec<Whisker> = scene.whiskers().map(|(_, whisker)| whisker).collect();
+        let whiskers = scene.whisker_count();
         let panels_at_once = (CELLS_OF_PANELS / cells)
             .clamp(1, MOST_PANELS)
-            .min(whiskers.len());
+            .min(whiskers);
         let in_flight = CELLS_IN_FLIGHT.max(push_angles) as u64;
         let bytes = (cells * panels_at_once) as u64 * BYTES_PER_CELL + in_flight * BYTES_IN_FLIGHT;
         if bytes > MEMORY_LIMIT {
@@ -94,18 +94,15 @@ impl Plan {
                 needed: bytes >> 20,
             });
         }
-        let rods: Vec<Rod> = whiskers
-            .iter()
-            .map(|whisker| whisker.rod(&scene.pole, Side::Cb))
-            .collect();
+        let last = scene.last_whisker().rod(&scene.pole, Side::Cb);
         let sides = Self::sides(scene);
         let rows_at_once = (CELLS_IN_FLIGHT / push_angles).max(1);
-        let calls =
-            |group: &[Whisker]| (group.len() * sides.len() * distances).div_ceil(rows_at_once);
+        let calls = |group: usize| (group * sides.len() * distances).div_ceil(rows_at_once);
         Ok(Self {
-            method: Method::fine().with_effects(Effects::of(&rods)),
-            engine_calls: whiskers.chunks(panels_at_once).map(calls).sum(),
-            cells: cells * whiskers.len(),
+            method: Method::fine().with_effects(Effects::of([&last])),
+            engine_calls: whiskers / panels_at_once * calls(panels_at_once)
+                + calls(whiskers % panels_at_once),
+            cells: cells * whiskers,
             sides,
             panels_at_once,
             rows_at_once,

@@ -59,11 +59,32 @@ impl Setup {
         })
     }
 
+    /// The same, `size` whiskers at a time; the last group has what is left.
+    pub fn whisker_groups(&self, size: usize) -> impl Iterator<Item = Vec<(Morphology, Whisker)>> {
+        let mut whiskers = self.whiskers();
+        let next = move || -> Vec<_> { whiskers.by_ref().take(size).collect() };
+        std::iter::repeat_with(next).take_while(|group| !group.is_empty())
+    }
+
+    /// How many whiskers the sweep has.
+    #[must_use]
+    pub fn whisker_count(&self) -> usize {
+        let values = |axis: &Option<Vec<f64>>| axis.as_ref().map_or(1, Vec::len);
+        values(&self.grid.taper) * values(&self.grid.curvature_per_mm)
+    }
+
     /// The first whisker of the sweep, or the only one.
     #[must_use]
     pub fn first_whisker(&self) -> Whisker {
         let first = |axis: &Option<Vec<f64>>| axis.as_ref().and_then(|axis| axis.first().copied());
         self.whisker_at(first(&self.grid.taper), first(&self.grid.curvature_per_mm))
+    }
+
+    /// The last one. Axes grow from 0 at least, so it tapers and is curved if any whisker is.
+    #[must_use]
+    pub fn last_whisker(&self) -> Whisker {
+        let last = |axis: &Option<Vec<f64>>| axis.as_ref().and_then(|axis| axis.last().copied());
+        self.whisker_at(last(&self.grid.taper), last(&self.grid.curvature_per_mm))
     }
 
     /// Whether whiskers are swept: whether there is an axis of taper or curvature.

@@ -12,9 +12,8 @@ use std::fs::File;
 use std::io::{self, BufReader, Read, Seek};
 use std::path::Path;
 
-/// All that precedes the blocks: headers and the table of `offsets`, zero where they are not known yet. Attributes
-/// are sorted by name, so that equal maps have equal bytes.
-pub(super) fn encode(headers: &[Header], offsets: &[Vec<u64>; 3]) -> exr::error::Result<Vec<u8>> {
+/// All that precedes the tables of offsets. Attributes are sorted by name, so that equal maps have equal bytes.
+pub(super) fn encode(headers: &[Header]) -> exr::error::Result<Vec<u8>> {
     let requirements = MetaData::validate(headers, true)?;
     let mut bytes = Vec::new();
     magic_number::write(&mut bytes)?;
@@ -28,10 +27,6 @@ pub(super) fn encode(headers: &[Header], offsets: &[Vec<u64>; 3]) -> exr::error:
         sequence_end::write(&mut bytes)?;
     }
     sequence_end::write(&mut bytes)?;
-    for (header, known) in headers.iter().zip(offsets) {
-        let table = known.iter().copied().chain(std::iter::repeat(0));
-        bytes.extend(table.take(header.chunk_count).flat_map(u64::to_le_bytes));
-    }
     Ok(bytes)
 }
 

@@ -8,21 +8,26 @@ use crate::classify::Regime;
 use crate::map::Shots;
 use exr::block::UncompressedBlock;
 use exr::meta::Headers;
+use exr::meta::header::Header;
 use rayon::prelude::*;
 use std::io::{BufWriter, IntoInnerError, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
+
+/// Bytes of a place in the file.
+const OFFSET_BYTES: u64 = 8;
 
 /// A map on its way to disk, by an [`Output`]: there is none until [`MapWriter::finish`].
 #[derive(Debug)]
 pub struct MapWriter {
     path: PathBuf,
     file: BufWriter<Output>,
-    /// Bytes written so far.
+    /// Where the next block goes.
     position: u64,
     layout: Layout,
     headers: Headers,
-    /// Where the blocks of each part begin.
-    offsets: [Vec<u64>; 3],
+    /// Where the table of each part is, which tells where its blocks begin. They are filled in as blocks come: those of a large
+    /// sweep would not fit in memory.
+    tables: Vec<u64>,
     /// Panels written so far.
     written: usize,
     counts: Counts,
@@ -40,20 +45,26 @@ impl MapWriter {
         attributes.extend([attribute("counts", &" ".repeat(attributes::counts_width()))]);
         let headers = layout.headers(&attributes);
 
-        let preamble = header::encode(&headers, &Default::default())
-            .map_err(Error::at(path, Error::Encode))?;
+        let preamble = header::encode(&headers).map_err(Error::at(path, Error::Encode))?;
+        let mut position = preamble.len() as u64;
+        let table = |header: &Header| {
+            let table = position;
+            position += OFFSET_BYTES * header.chunk_count as u64;
+            table
+        };
+        let tables = headers.iter().map(table).collect();
         let file = Output::create(path).map_err(Error::at(path, Error::Write))?;
         let mut writer = Self {
             path: path.to_owned(),
             file: BufWriter::new(file),
-            position: 0,
+            position,
             layout,
             headers,
-            offsets: Default::default(),
+            tables,
             written: 0,
             counts: Counts::default(),
         };
-        writer.append(&preamble)?;
+        writer.write_at(0, &[preamble])?;
         Ok(writer)
     }
 
@@ -77,7 +88,7 @@ impl MapWriter {
         self.count(first, panels)?;
 
         let blocks = self.layout.blocks_per_panel();
-        let of_panel = self.offsets.len() * blocks;
+        let of_panel = self.tables.len() * blocks;
         let part = |task: usize| task % of_panel / blocks;
         let chunks: Vec<Vec<u8>> = (0..panels.len() * of_panel)
             .into_par_iter()
@@ -88,9 +99,15 @@ impl MapWriter {
             })
             .collect::<exr::error::Result<_>>()
             .map_err(Error::at(&self.path, Error::Encode))?;
+        self.write_at(self.position, &chunks)?;
+        let mut offsets = vec![Vec::new(); self.tables.len()];
         for (task, chunk) in chunks.iter().enumerate() {
-            self.offsets[part(task)].push(self.position);
-            self.append(chunk)?;
+            offsets[part(task)].extend(self.position.to_le_bytes());
+            self.position += chunk.len() as u64;
+        }
+        for (part, offsets) in offsets.into_iter().enumerate() {
+            let before = OFFSET_BYTES * (first * blocks) as u64;
+            self.write_at(self.tables[part] + before, &[offsets])?;
         }
         self.written += panels.len();
         Ok(())
@@ -115,28 +132,26 @@ impl MapWriter {
             attributes.extend([attribute("counts", &text)]);
         }
         // The counts were given their room at the start, so this has the length of what it replaces.
-        let preamble = header::encode(&self.headers, &self.offsets)
-            .map_err(Error::at(&self.path, Error::Encode))?;
+        let preamble =
+            header::encode(&self.headers).map_err(Error::at(&self.path, Error::Encode))?;
+        self.write_at(0, &[preamble])?;
         let Self {
-            path,
-            mut file,
-            counts,
-            ..
+            path, file, counts, ..
         } = self;
-        file.seek(SeekFrom::Start(0))
-            .and_then(|_| file.write_all(&preamble))
-            .and_then(|()| file.into_inner().map_err(IntoInnerError::into_error))
+        file.into_inner()
+            .map_err(IntoInnerError::into_error)
             .and_then(Output::finish)
             .map_err(Error::at(&path, Error::Write))?;
         Ok(counts)
     }
 
-    fn append(&mut self, bytes: &[u8]) -> Result<(), Error> {
+    /// Writes `pieces` one after another.
+    fn write_at(&mut self, position: u64, pieces: &[Vec<u8>]) -> Result<(), Error> {
+        let mut pieces = pieces.iter();
         self.file
-            .write_all(bytes)
-            .map_err(Error::at(&self.path, Error::Write))?;
-        self.position += bytes.len() as u64;
-        Ok(())
+            .seek(SeekFrom::Start(position))
+            .and_then(|_| pieces.try_for_each(|piece| self.file.write_all(piece)))
+            .map_err(Error::at(&self.path, Error::Write))
     }
 
     fn check_sizes(&self, index: usize, parts: &[Part<'_>]) -> Result<(), Error> {

@@ -38,17 +38,36 @@ pub enum Mark {
     SecondFold,
 }
 
+/// Ends of pushes held at a time, of some 250 bytes each.
+const ENDS_AT_ONCE: usize = 1 << 19;
+
+/// Most whiskers whose curves are computed together: enough for several threads.
+const MOST_WHISKERS: usize = 64;
+
+/// Whiskers to compute together where each has ends at so many `distances` on both sides.
+#[must_use]
+pub fn whiskers_at_once(distances: usize) -> usize {
+    (ENDS_AT_ONCE / (2 * distances)).clamp(1, MOST_WHISKERS)
+}
+
 /// What `of_side` makes of each side of each whisker, in their order, CF before CB.
 pub fn sides<R: Send>(
     whiskers: &[(Morphology, Whisker)],
     of_side: impl Fn(&Whisker, Side) -> Vec<R> + Sync,
 ) -> Vec<(Morphology, R)> {
-    let of_whisker = |(morphology, whisker): &(Morphology, Whisker)| {
-        let morphology = *morphology;
-        let rows = Side::BOTH.map(|side| of_side(whisker, side));
-        rows.into_iter().flatten().map(move |row| (morphology, row))
+    let both = |(place, whisker)| Side::BOTH.map(|side| (place, whisker, side));
+    let faces: Vec<(&Morphology, &Whisker, Side)> = whiskers
+        .iter()
+        .map(|(place, whisker)| (place, whisker))
+        .flat_map(both)
+        .collect();
+    let of_face = |(place, whisker, side): (&Morphology, &Whisker, Side)| {
+        let place = *place;
+        of_side(whisker, side)
+            .into_iter()
+            .map(move |row| (place, row))
     };
-    whiskers.par_iter().flat_map_iter(of_whisker).collect()
+    faces.into_par_iter().flat_map_iter(of_face).collect()
 }
 
 /// Why there is no state.

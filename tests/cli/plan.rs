@@ -128,6 +128,34 @@ fn a_sweep_names_its_axes() {
     assert_eq!(fact(&run, "cells"), cells);
 }
 
+/// Held all at once, these whiskers took 24 GB.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_large_sweep_is_never_held() {
+    let whisker = STRAIGHT.replace("tip_radius_um = 30\n", "");
+    let whisker = whisker.replace("{ from = 5, to = 70, count = 8 }", "[5]");
+    let whisker = whisker.replace("[5.0, 10.0]", "[9]");
+    let axes = "taper = { from = 0, to = 0.95, count = 4096 }\n\
+                curvature_per_mm = { from = 0, to = 0.04, count = 65536 }\n";
+    let place = Place::with(&format!("{whisker}{axes}"));
+    let bounded = |command: &str| {
+        let limited = format!("ulimit -v {}; {command}", 8 << 20);
+        let mut shell = std::process::Command::new("sh");
+        let program = env!("CARGO_BIN_EXE_whiskmap");
+        let shell = shell
+            .args(["-c", &limited, program])
+            .current_dir(place.path(""));
+        Run::of(&shell.output().unwrap())
+    };
+    let run = bounded("\"$0\" plan scene.toml");
+    assert_eq!(run.code, Some(0), "{run:?}");
+    let cells = "268435456: 1 push angle x 1 distance x 268435456 whiskers";
+    assert_eq!(fact(&run, "cells"), cells);
+    // It ends when nobody reads on.
+    let run = bounded("\"$0\" curve scene.toml | head -n 2");
+    assert_eq!((run.out.lines().count(), &*run.err), (2, ""), "{run:?}");
+}
+
 #[test]
 fn standard_input_and_refused_scenes() {
     let place = Place::with(&STRAIGHT.replace("length_mm = 20", "length_mm = -20"));

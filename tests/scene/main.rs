@@ -210,6 +210,18 @@ fn whiskers_come_in_atlas_order_taper_first() {
         (1.0, 0.0, bent),
     ];
     assert_eq!(seen, expected);
+
+    let all: Vec<_> = scene.whiskers().collect();
+    for size in [1, 4, 6, 7] {
+        let groups: Vec<_> = scene.whisker_groups(size).collect();
+        assert!(groups.iter().rev().skip(1).all(|group| group.len() == size));
+        assert_eq!(groups.concat(), all);
+    }
+    assert_eq!(scene.whisker_count(), all.len());
+    assert_eq!(
+        (scene.first_whisker(), scene.last_whisker()),
+        (all[0].1.clone(), all[5].1.clone())
+    );
 }
 
 /// The bound on the vertex is that beyond which the chord from the base stops growing.
