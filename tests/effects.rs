@@ -3,7 +3,8 @@
 
 use glam::DVec2;
 use std::sync::Arc;
-use whiskmap::rod::{Effects, RadiusProfile, Rod, arclength};
+use whiskmap::rod::{Effects, RadiusProfile, Rod, Side, arclength};
+use whiskmap::scene::Scene;
 use whiskmap::shooting::batch::{Batch, InitialCondition, Method};
 use whiskmap::shooting::{FirstVariation, Resolution, SecondVariation, ShootingMap};
 
@@ -292,5 +293,55 @@ fn many_rows_are_fine_at_every_contact() {
                 pole(&cone, Resolution::FINE.doubled()).distance(pole(&measured, Resolution::FINE));
             assert!(apart < 1e-12 * s, "{apart:e} at {s}, q {q}");
         }
+    }
+}
+
+/// A light push on a straight whisker turns its base by the force times the integral of the lever over the stiffness, whose radius
+/// and modulus are those at the real arclength.
+#[test]
+fn radius_and_modulus_are_read_at_the_real_arclength() {
+    for (tip_um, tip_to_base, arc_stretch) in [
+        (30.0, 1.9, 1.5),
+        (30.0, 0.6, 1.3),
+        (12.0, 2.5, 1.4),
+        (12.0, 0.5, 1.0),
+    ] {
+        let scene = Scene::parse(
+            &format!(
+                "title = 'drooping'\n[whisker]\nlength_mm = 20\nbase_radius_um = 30\ntip_radius_um = {tip_um}\n\
+                 youngs_modulus_gpa = 3\nmodulus_gradient.tip_to_base = {tip_to_base}\n\
+                 projection.arc_stretch = {arc_stretch}\n[grid]\npush_angle_deg = [1]\ndistance_mm = [15]"
+            ),
+            "drooping",
+        )
+        .unwrap();
+        let rod = scene.first_whisker().rod(&scene.pole, Side::Cb);
+        let (contact, force) = (0.75, 1e-5);
+        let softness = |planar: f64| {
+            let real = arc_stretch * planar;
+            let radius = 1.0 + (tip_um / 30.0 - 1.0) * real;
+            let modulus = 1.0 + (tip_to_base - 1.0) * real;
+            (contact - planar) / (modulus * radius.powi(4))
+        };
+        // Simpson's rule.
+        let h = contact / 1000.0;
+        let parts = (0..1000).map(|i| h * f64::from(i));
+        let turn: f64 = parts
+            .map(|s| softness(s) + 4.0 * softness(s + 0.5 * h) + softness(s + h))
+            .map(|sum| force * h / 6.0 * sum)
+            .sum();
+        let tau = rod.tau(contact);
+        let condition = InitialCondition {
+            rod: &rod,
+            tau,
+            load: force / rod.radius(tau).powi(2),
+        };
+        let state = Batch::new(Method::fine()).shoot::<FirstVariation>(&[condition])[0];
+        let turned = state.full.tangent.to_angle().abs();
+        // What is left is of the third order in the force.
+        assert!(
+            (turned / turn - 1.0).abs() < 1e-9,
+            "{tip_um} um, {tip_to_base}, {arc_stretch}: {turned} instead of {turn}"
+        );
     }
 }

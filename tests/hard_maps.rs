@@ -74,3 +74,18 @@ fn bent_cylinders_whose_rows_leave_the_sheet_more_than_once() {
         &format!("{vertex}[pole]\nradius_mm = 0.25\n{grid}"),
     );
 }
+
+/// The stiffer the tip of a perfect cone is, the farther its folds are from those of other cones.
+#[test]
+fn perfect_cones_with_a_stiff_tip() {
+    for tip_to_base in [2.3, 3.3, 8.0, 20.0] {
+        certain(
+            Some(0.0),
+            &format!(
+                "[whisker.modulus_gradient]\ntip_to_base = {tip_to_base}\n[grid]\n\
+                 push_angle_deg = {{ from = -70, to = 70, count = 64 }}\n\
+                 distance_mm = {{ from = 4, to = 21, count = 64 }}"
+            ),
+        );
+    }
+}

@@ -203,3 +203,30 @@ fn both_verdicts_are_right_on_the_edge() {
     assert_eq!(row.judge(at, Status::Solved).0, Regime::Contact);
     assert_eq!(row.judge(at, Status::BeyondFold).0, Regime::SlipOff);
 }
+
+/// Rows that a thick pole enters from beyond the reach of the resting whisker, near whose first states guesses are poor: coarse
+/// steps are no reason to doubt the continuation there, whose end they see a little apart from the boundary.
+#[test]
+fn coarse_steps_leave_no_cell_in_doubt() {
+    let slender = "title = 'slender'\n[whisker]\nlength_mm = 20\nbase_radius_um = 30\ntip_radius_um = 0.0003\n\
+                   youngs_modulus_gpa = 3\n[whisker.curvature]\nparabola_per_mm = 0.05\n[pole]\nradius_mm = 1.4\n[grid]\n\
+                   push_angle_deg = [0, 1e-5, 1e-4, 1e-3, 1e-2, 0.1, 0.3, 0.5]\n\
+                   distance_mm = { from = 16, to = 19.98, count = 1000 }";
+    let cone = include_str!("../scenes/cone.toml");
+    let pointed = Scene::parse(cone, "cone.toml").unwrap();
+    let pointed = pointed.with("whisker.tip_radius_um", 0).unwrap();
+    let pushes: Vec<f64> = (-256..=256).map(|i| 70.0 * f64::from(i) / 256.0).collect();
+    let pointed = pointed.with("grid.push_angle_deg", pushes).unwrap();
+    for (scene, tolerances) in [
+        (Scene::parse(slender, "slender").unwrap(), [1e-1, 1e-4]),
+        (pointed, [1e-1, 1e-3]),
+    ] {
+        for tolerance_deg in tolerances {
+            let mut plan = Plan::new(&scene).unwrap();
+            let told = cheapest(&scene, &Side::BOTH, tolerance_deg).unwrap();
+            plan.method.resolution = told.resolution;
+            let (summary, _) = compute_as(&scene, &plan, None);
+            assert_eq!(summary.unresolved(), 0, "{}, {told:?}", scene.title);
+        }
+    }
+}

@@ -1,7 +1,7 @@
 //! `whiskmap curve`.
 
 use super::columns;
-use super::failure::{Failure, say};
+use super::failure::{Failure, check_resolved};
 use super::outputs::{Opened, Outputs};
 use super::progress;
 use super::tolerance::Tolerance;
@@ -59,7 +59,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     let accuracy = options.tolerance.choose(&scene, &Side::BOTH)?;
     let resolution = accuracy.map_or(Resolution::FINE, |accuracy| accuracy.resolution);
     let mut drawn = Vec::new();
-    let mut unresolved = 0;
+    let (mut unresolved, mut all) = (0, 0);
     let distances = &scene.grid.distance_mm;
     let of_side = if options.corner { 1 } else { distances.len() };
     let bar = progress::bar(whiskers * Side::BOTH.len() * of_side, "ends");
@@ -83,20 +83,16 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         let rows = trace::sides(&group, curve);
         write(&scene, &mut outputs, &rows)?;
         let kinds = rows.iter().map(|(_, row)| row.kind);
-        unresolved += kinds
-            .filter(|kind| *kind == DetachmentKind::Unresolved)
-            .count();
+        let kinds = kinds.filter(|kind| *kind == DetachmentKind::Unresolved);
+        unresolved += kinds.count() as u64;
+        all += rows.len() as u64;
         if options.outputs.has_plot() {
             drawn.extend(rows.into_iter().map(|(_, row)| row));
         }
     }
     bar.finish_and_clear();
-    if unresolved > 0 {
-        say(&format!(
-            "{unresolved} ends were not found: their kind is unresolved"
-        ));
-    }
-    outputs.finish(scene.title.clone(), || curves("", &drawn, AXES))
+    outputs.finish(scene.title.clone(), || curves("", &drawn, AXES))?;
+    check_resolved(unresolved, all, "ends", "the column `kind`")
 }
 
 /// Writes the rows of some whiskers, with the leading columns only where the scene has an axis for them.

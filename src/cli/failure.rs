@@ -34,6 +34,13 @@ pub enum Failure {
     /// A solution branch could not be followed.
     #[error(transparent)]
     State(NoState),
+    /// Nothing that was asked for has an answer.
+    #[error("all {all} {what} are unresolved: see {see}")]
+    Unresolved {
+        all: u64,
+        what: &'static str,
+        see: &'static str,
+    },
     /// Numbers are not what they should be.
     #[error("{failed} of {all} checks fail")]
     Checks { failed: usize, all: usize },
@@ -75,6 +82,28 @@ impl Failure {
 /// A line on standard error, if anybody listens.
 pub fn say(line: &str) {
     let _ = writeln!(io::stderr(), "{line}");
+}
+
+/// Says how many of `all` answers are unresolved, if any are, and where to `see` which.
+///
+/// # Errors
+/// Where all of them are.
+pub fn check_resolved(
+    unresolved: u64,
+    all: u64,
+    what: &'static str,
+    see: &'static str,
+) -> Result<(), Failure> {
+    if unresolved == 0 {
+        return Ok(());
+    }
+    if unresolved == all {
+        return Err(Failure::Unresolved { all, what, see });
+    }
+    say(&format!(
+        "warning: {unresolved} of {all} {what} are unresolved: see {see}"
+    ));
+    Ok(())
 }
 
 /// Keeps panics silent that [`integrate::gpu`](whiskmap::integrate::gpu) expects of a driver and reports as errors.

@@ -1,7 +1,7 @@
 //! `whiskmap map`.
 
 use super::engine::{self, Choice};
-use super::failure::{Failure, say};
+use super::failure::{Failure, check_resolved, say};
 use super::numbers::whole;
 use super::outputs;
 use super::picture::save;
@@ -111,7 +111,8 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     }
     let written: Vec<PathBuf> = [Some(file), picture].into_iter().flatten().collect();
     print(&scene, &summary, start.elapsed().as_secs_f64(), &written)?;
-    Ok(())
+    let see = "the channel `status`";
+    check_resolved(summary.unresolved(), summary.cells(), "cells", see)
 }
 
 /// What the file says of its accuracy.

@@ -16,7 +16,7 @@ Examples:
   whiskmap plan - < my_whisker.toml
 
 Sets of effects with kernels of their own cost work at every step of the integration. The others are free: pole \
-radius and friction only change where a trajectory starts, and projection is a faster taper. The pole touches the \
+radius and friction only change where a trajectory starts, and projection is a faster taper and a steeper modulus gradient. The pole touches the \
 whisker's centre line: the whisker's own thickness does not add to the pole's radius. A GPU divides an engine \
 call into dispatches, as many as its speed asks for. Trajectories are those of the cells. They and the seconds are \
 scaled up from a sample of at most 128 x 128 cells and two values per sweep axis, fewer where these would take more than \

@@ -4,7 +4,7 @@ use super::failure::Failure;
 use super::numbers::number;
 use clap::Args;
 use std::path::PathBuf;
-use whiskmap::scene::{Scene, Whisker};
+use whiskmap::scene::{Scene, Whisker, digits};
 use whiskmap::trace::NoState;
 
 /// The scene, and where the pole stands.
@@ -37,6 +37,8 @@ impl Pole {
         let (nearest, farthest) = scene.distances_mm();
         let (distance, radius) = (self.distance, scene.pole.radius_mm);
         if !(nearest <= distance && distance <= farthest && distance > radius) {
+            let [distance, nearest, farthest, radius] =
+                [distance, nearest, farthest, radius].map(digits);
             return Err(Failure::Input(format!(
                 "--distance {distance}: must be between {nearest} (length_mm / 1000) and {farthest} (10 * length_mm), \
                  and more than {radius} (pole.radius_mm)"

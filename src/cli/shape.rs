@@ -9,6 +9,7 @@ use clap::{Args, ValueEnum};
 use whiskmap::classify::Sliding;
 use whiskmap::render::{Drawn, Ink, Stroke, shapes};
 use whiskmap::rod::Side;
+use whiskmap::scene::digits;
 use whiskmap::trace::{Branch, NoState, Shape, ShapePoint};
 
 const EXAMPLES: &str = "\
@@ -69,7 +70,8 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     let push_deg = options.push_angle;
     if !(-360.0..=360.0).contains(&push_deg) {
         return Err(Failure::Input(format!(
-            "--push-angle {push_deg}: must be between -360 and 360"
+            "--push-angle {}: must be between -360 and 360",
+            digits(push_deg)
         )));
     }
     let mut outputs = options.outputs.open()?;

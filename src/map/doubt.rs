@@ -9,8 +9,9 @@ use crate::classify::{RowBoundary, Status};
 use crate::refine::{ContactState, TOLERANCE};
 use crate::sheet::{Edge, LevelCurve, Node, Sheet};
 
-/// How far, in radians, the end of a continuation may be from the boundary, which was computed apart from it.
-const SAME_END: f64 = 1e-9;
+/// How far, relative to contact and load, the end of a continuation may be from the boundary's. The two are computed apart, and
+/// the boundary in blocks that may take more steps: they differ by the error of the resolution.
+const SAME_END: f64 = 1e-5;
 
 /// Settles `cells` of `row` again. Cells that no continuation reaches keep what they have.
 pub fn settle<'a>(
@@ -33,9 +34,10 @@ pub fn settle<'a>(
                 level.at_crossing(entry)?
             };
             let piece = level.continuation(start, false)?;
-            let end = piece.nodes.last()?;
-            let agrees = (sign * end.push - span.to).abs() < SAME_END && piece.end == span.edge;
-            agrees.then_some(piece.nodes)
+            let end = piece.nodes.last()?.point;
+            let exit = sheet.crossings[row].iter().find(|c| c.push == span.to)?;
+            let apart = (end.x / exit.tau - 1.0).abs() + (end.y / exit.load - 1.0).abs();
+            (apart < SAME_END && piece.end == span.edge).then_some(piece.nodes)
         })
         .collect();
     for cell in cells {

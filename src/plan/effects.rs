@@ -23,7 +23,7 @@ pub enum Cost {
     Kernel,
     /// Nothing: it only changes where a trajectory starts.
     Start,
-    /// Nothing: it is a faster taper.
+    /// Nothing: it is a faster taper, and a steeper modulus gradient.
     Taper,
 }
 
@@ -53,10 +53,10 @@ pub fn effects(scene: &Scene, kernels: Effects) -> Vec<Effect> {
     let radius = given("radius_mm", pole.radius_mm, 0.0);
     let friction = given("friction", pole.friction, 0.0);
     let stretched = whisker.arc_stretch != 1.0;
-    let tapers = kernels.taper || kernels.profile;
+    let varies = kernels.taper || kernels.profile || kernels.gradient;
     let mut stretch = given("arc_stretch", whisker.arc_stretch, 1.0);
-    if stretched && !tapers {
-        stretch += " does nothing without taper";
+    if stretched && !varies {
+        stretch += " does nothing without taper or modulus gradient";
     }
     let effect = |name, on, cost, why| Effect {
         name,
@@ -73,7 +73,7 @@ pub fn effects(scene: &Scene, kernels: Effects) -> Vec<Effect> {
         effect("modulus gradient", kernels.gradient, Cost::Kernel, gradient),
         effect("pole radius", pole.radius_mm != 0.0, Cost::Start, radius),
         effect("friction", pole.friction != 0.0, Cost::Start, friction),
-        effect("projection", stretched && tapers, Cost::Taper, stretch),
+        effect("projection", stretched && varies, Cost::Taper, stretch),
     ];
     effects
 }

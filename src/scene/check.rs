@@ -95,11 +95,24 @@ fn whisker(table: &WhiskerTable, length_mm: f64, grid: &Grid) -> Result<Whisker,
         Limits::between(1.0 / STIFFEST_TIP, STIFFEST_TIP).check_or(1.0, key, ratio)?;
     let own_taper = 1.0 - radii.tip_radius_um / radii.base_radius_um;
     let pointed = 1.0 / largest(&grid.taper).unwrap_or(own_taper);
-    let end = if pointed < MOST_STRETCH {
-        ("1 / taper, where the radius at the tip is 0", pointed)
-    } else {
-        ("twice as long", MOST_STRETCH)
-    };
+    let gradient = modulus_tip_to_base - 1.0;
+    let [softest, stiffest] = [1.0 / STIFFEST_TIP, STIFFEST_TIP].map(|tip| (tip - 1.0) / gradient);
+    let mut end = ("twice as long", MOST_STRETCH);
+    for other in [
+        ("1 / taper, where the radius at the tip is 0", pointed),
+        (
+            "0.95 / (1 - tip_to_base), where the modulus at the tip is 0.05 of the base's",
+            softest,
+        ),
+        (
+            "19 / (tip_to_base - 1), where the modulus at the tip is 20 times the base's",
+            stiffest,
+        ),
+    ] {
+        if (1.0..end.1).contains(&other.1) {
+            end = other;
+        }
+    }
     let stretch = table.projection.as_ref().map(|own| &own.arc_stretch);
     let arc_stretch =
         Limits::between(1.0, end).check_or(1.0, "whisker.projection.arc_stretch", stretch)?;

@@ -34,12 +34,22 @@ impl SceneError {
     /// What the reader of TOML found, in the words of TOML rather than of Rust.
     pub(super) fn of_toml(origin: &str, text: &str, why: &toml::de::Error) -> Self {
         let message = match why.message().rsplit_once(", expected ") {
-            Some((found, "f64")) => format!("{found}, expected a number"),
-            Some((found, "i64")) => format!("{found}, expected a whole number"),
-            Some((found, kind)) if kind.starts_with("struct ") => {
-                format!("{found}, expected a table")
+            Some((found, expected)) => {
+                let found = match found {
+                    "invalid type: sequence" => "invalid type: a list".to_owned(),
+                    "invalid type: map" => "invalid type: a table or a date".to_owned(),
+                    _ => shortened(found),
+                };
+                let expected = match expected {
+                    "f64" => "a number",
+                    "i64" => "a whole number",
+                    "an array of length 2" => "a list of 2 numbers",
+                    kind if kind.starts_with("struct ") => "a table",
+                    _ => expected,
+                };
+                format!("{found}, expected {expected}")
             }
-            _ => why.message().to_owned(),
+            None => shortened(why.message()),
         };
         Self::at(origin, text, why.span(), message)
     }
@@ -69,6 +79,20 @@ impl SceneError {
         let title = Level::ERROR.primary_title(&self.message);
         renderer.render(&[title.element(snippet)])
     }
+}
+
+/// The characters of a text that a message quotes at most, at its beginning and at its end.
+const QUOTED: [usize; 2] = [60, 20];
+
+/// A text that may quote a value or a key of any length, without its middle where it is long.
+fn shortened(text: &str) -> String {
+    let [head, tail] = QUOTED;
+    let count = text.chars().count();
+    if count <= head + tail {
+        return text.to_owned();
+    }
+    let part = |from, length| text.chars().skip(from).take(length).collect::<String>();
+    format!("{}...{}", part(0, head), part(count - tail, tail))
 }
 
 /// The part of a span on its first line: a mark under a whole table would bury the message.

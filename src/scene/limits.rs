@@ -56,6 +56,14 @@ impl Limits {
     }
 }
 
+/// The fewest digits that tell a number from all others, with an exponent where it is very large or small.
+#[must_use]
+pub fn digits(value: f64) -> String {
+    // `Debug` writes 5e-11 where `Display` writes eleven digits, but also 30.0 for 30.
+    let digits = format!("{value:?}");
+    digits.trim_end_matches(".0").to_owned()
+}
+
 /// One end of a range: a number, and what it stands for if that is not plain.
 pub(super) struct End {
     value: f64,
@@ -82,11 +90,9 @@ impl From<(&'static str, f64)> for End {
 
 impl fmt::Display for End {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        // `Debug` writes 5e-11 where `Display` writes eleven digits, but also 30.0 for 30.
-        let digits = format!("{:?}", self.value);
-        let digits = digits.trim_end_matches(".0");
+        let digits = digits(self.value);
         match self.meaning {
-            None => f.write_str(digits),
+            None => f.write_str(&digits),
             Some(meaning) => write!(f, "{meaning} ({digits})"),
         }
     }

@@ -16,7 +16,7 @@ impl Whisker {
             bend: a * self.length_mm,
             slope: -2.0 * a * x0,
             pole: side.sign() * pole.radius_mm / self.length_mm,
-            gradient: self.modulus_tip_to_base - 1.0,
+            gradient: (self.modulus_tip_to_base - 1.0) * self.arc_stretch,
             friction: side.sign() * pole.friction,
             spiral: self.euler_spiral.map(|spiral| {
                 let length = self.length_mm;

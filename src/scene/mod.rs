@@ -21,5 +21,6 @@ mod whisker;
 pub use checked::Scene;
 pub use error::SceneError;
 pub use grid::{Grid, Morphology};
+pub use limits::digits;
 pub use setup::Setup;
 pub use whisker::{Curvature, EulerSpiral, Pole, Whisker};

@@ -4,7 +4,7 @@ use toml::Spanned;
 
 use super::error::Fault;
 use super::file::WhiskerTable;
-use super::limits::Limits;
+use super::limits::{Limits, digits};
 use super::rows::{self, Rows};
 
 /// How far, relative to the length, the last row may be from the tip: tables are rounded.
@@ -101,7 +101,8 @@ fn measured(rows: &Spanned<Rows>, length_mm: f64) -> Result<Radii, Fault> {
         let must = format!(
             "must begin at the base, at 0, and end at the tip, at length_mm ({length_mm}); \
              they go from {} to {}",
-            first[0], last[0]
+            digits(first[0]),
+            digits(last[0])
         );
         return Err(Fault::new(rows::KEY, rows.span(), must));
     }

@@ -18,10 +18,10 @@ pub struct Whisker {
     /// Measured radii in place of those that fall linearly: rows of arclength and radius over the whisker's length and
     /// base radius, from (0, 1) to (1, tip radius).
     pub profile: Option<Vec<[f64; 2]>>,
-    /// Young's modulus at the tip over that at the base; linear in between.
+    /// Young's modulus at the arclength `length_mm` over that at the base; linear in the arclength.
     pub modulus_tip_to_base: f64,
     /// Real arclength over the arclength in the plane of contact: more than 1 where the whisker droops out of the
-    /// plane. The radius is read at the real arclength.
+    /// plane. Radius and modulus are read at the real arclength.
     pub arc_stretch: f64,
 }
 

@@ -15,6 +15,9 @@ pub enum Error {
     /// The map cannot be expressed as EXR, such as an atlas wider than 2^30 pixels.
     #[error("cannot write {file} as EXR: {1}", file = .0.display())]
     Encode(PathBuf, exr::error::Error),
+    /// A folder, a pipe or a device.
+    #[error("{file} is no regular file; a map is one", file = .0.display())]
+    NotAFile(PathBuf),
     /// The file does not start like an EXR file.
     #[error("{file} is not an EXR file", file = .0.display())]
     NotExr(PathBuf),
@@ -85,7 +88,11 @@ impl Error {
     pub fn is_unreadable(&self) -> bool {
         matches!(
             self,
-            Self::Read(..) | Self::NotExr(_) | Self::NotAMap(..) | Self::Damaged(..)
+            Self::Read(..)
+                | Self::NotAFile(_)
+                | Self::NotExr(_)
+                | Self::NotAMap(..)
+                | Self::Damaged(..)
         )
     }
 }

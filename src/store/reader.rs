@@ -217,7 +217,12 @@ impl StoredMap {
     }
 }
 
+/// Opens a regular file: a map is read here and there, and a pipe without a writer would never open.
 fn open(path: &Path) -> Result<BufReader<File>, Error> {
+    let about = std::fs::metadata(path).map_err(Error::at(path, Error::Read))?;
+    if !about.is_file() {
+        return Err(Error::NotAFile(path.to_owned()));
+    }
     let file = File::open(path).map_err(Error::at(path, Error::Read))?;
     Ok(BufReader::new(file))
 }

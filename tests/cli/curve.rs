@@ -91,3 +91,24 @@ fn the_corner_of_the_cone() {
     assert_eq!(rows[1][0], "cb");
     assert!((distance - 19.09).abs() < 5e-3, "{distance}");
 }
+
+#[test]
+fn a_curve_without_any_end_is_written_and_fails() {
+    let place = Place::with(crate::map::HINGED);
+    let run = place.run(&["curve", "scene.toml", "--csv", "curve.csv"]);
+    assert_eq!(run.code, Some(1), "{run:?}");
+    assert!(
+        run.err.contains("error: all 4 ends are unresolved"),
+        "{run:?}"
+    );
+    let table = String::from_utf8(place.bytes("curve.csv")).unwrap();
+    assert_eq!(table.matches(",unresolved,").count(), 4, "{table}");
+
+    place.write(
+        "near.toml",
+        &crate::map::HINGED.replace("[14, 19]", "[7, 14]"),
+    );
+    let run = place.run(&["curve", "near.toml"]);
+    let warning = "warning: 2 of 4 ends are unresolved: see the column `kind`\n";
+    assert_eq!((run.code, &*run.err), (Some(0), warning), "{run:?}");
+}

@@ -219,3 +219,12 @@ fn scenes_have_any_name() {
         assert_eq!(names(&place.path(stem)), files);
     }
 }
+
+/// A pipe that nobody writes into would never open.
+#[test]
+fn a_pipe_is_no_map() {
+    let place = Place::with(SCENE);
+    place.pipe("map.exr");
+    let run = place.run(&["render", "map.exr"]);
+    run.assert_refused(&["map.exr is no regular file"]);
+}

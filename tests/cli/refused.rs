@@ -163,6 +163,12 @@ fn arguments_out_of_range() {
         let run = place.run(&[command, &["--points", "2.5"]].concat());
         run.assert_refused(&["'2.5'", "must be a whole number between", "and 1000000"]);
     }
+    let far = "--distance 1e99: must be between 0.02 (length_mm / 1000) and 200 (10 * length_mm)";
+    let branch = ["branch", "scene.toml", "--distance", "1e99"];
+    place.run(&branch).assert_refused(&[far]);
+    let turned = "--push-angle 1e99: must be between";
+    let shape = [&shape[..5], &["1e99"]].concat();
+    place.run(&shape).assert_refused(&[turned]);
     map(&["--engine", "abacus"]).assert_refused(&["'abacus'", "--engine", "auto, cpu, gpu"]);
     let f32 = ["--precision f32", "f64", "--engine gpu"];
     map(&["--engine", "cpu", "--precision", "f32"]).assert_refused(&f32);

@@ -199,3 +199,55 @@ fn effects_have_their_ranges() {
         "{pointed}"
     );
 }
+
+/// However long a value or a key is, the message quotes its beginning and its end.
+#[test]
+fn long_lines_are_cut_around_the_place() {
+    let long = "x".repeat(400_000);
+    for (line, said) in [
+        (
+            format!("tip_radius_um = \"{long}\""),
+            "xxx\", expected a number",
+        ),
+        (format!("{long} = 1"), "xxx`, expected one of `length_mm`"),
+        (format!("tip_radius_um = {long}"), "must be quoted"),
+        (
+            format!("tip_radius_um = 40 # {long}"),
+            "um = 40: must be between",
+        ),
+        (
+            format!("tip_radius_um = {}", "4".repeat(400_000)),
+            "overflowed",
+        ),
+    ] {
+        let why = parse(&with_line(5, &line)).unwrap_err();
+        assert!(why.contains(said) && why.contains("test.toml:5:"), "{why}");
+        assert!(why.len() < 1000, "{} bytes", why.len());
+    }
+}
+
+#[test]
+fn the_modulus_at_the_tip_of_a_drooping_whisker_has_limits() {
+    let stretched = |tip_to_base: f64, arc_stretch: f64| {
+        let effects = format!(
+            "tip_radius_um = 30\nmodulus_gradient.tip_to_base = {tip_to_base}\nprojection.arc_stretch = {arc_stretch}"
+        );
+        parse(&with_line(5, &effects))
+    };
+    assert_eq!(stretched(0.5, 1.89).map(|_| ()), Ok(()));
+    let soft = stretched(0.5, 1.91).unwrap_err();
+    assert!(
+        soft.contains("the modulus at the tip is 0.05 of the base's (1.9)"),
+        "{soft}"
+    );
+    assert!(
+        stretched(11.0, 1.89).is_ok()
+            && stretched(0.05, 1.0).is_ok()
+            && stretched(20.0, 1.0).is_ok()
+    );
+    let stiff = stretched(11.0, 1.91).unwrap_err();
+    assert!(
+        stiff.contains("the modulus at the tip is 20 times the base's (1.9)"),
+        "{stiff}"
+    );
+}
