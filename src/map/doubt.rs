@@ -7,7 +7,7 @@
 use super::cells::Cell;
 use crate::classify::{RowBoundary, Status};
 use crate::refine::{ContactState, TOLERANCE};
-use crate::sheet::{Edge, LevelCurve, Node, Sheet};
+use crate::sheet::{Edge, LevelCurve, Node, ON_CURVE, Sheet};
 
 /// How far, relative to contact and load, the end of a continuation may be from the boundary's. The two are computed apart, and
 /// the boundary in blocks that may take more steps: they differ by the error of the resolution.
@@ -42,11 +42,8 @@ pub fn settle<'a>(
         .collect();
     for cell in cells {
         let push = cell.push.angle;
-        // First touch is known from the shape at rest; its residual is the error of the integration, largest at the tip of a cone.
         if cell.is_first_touch(boundary)
-            && let Some(touch) = level.touch()
-            && let touch = state(&level, &touch, push)
-            && touch.residual.is_finite()
+            && let Some(touch) = first_touch(&level, push)
         {
             cell.status = Status::Solved;
             cell.state = Some(touch);
@@ -75,6 +72,21 @@ pub fn settle<'a>(
             _ => {}
         }
     }
+}
+
+/// First touch is known from the shape at rest; its residual is the error of the integration, largest at the tip of a cone. The state
+/// on the integrated level curve next to it is mostly better.
+fn first_touch(level: &LevelCurve, push: f64) -> Option<ContactState> {
+    let touch = level.touch()?;
+    let corrected = level.correct(&[touch.point], ON_CURVE).pop()?;
+    let corrected =
+        corrected.map(|(point, full)| level.node(point, &full, touch.push, touch.angle));
+    [Some(touch), corrected]
+        .into_iter()
+        .flatten()
+        .map(|node| state(level, &node, push))
+        .filter(|state| state.residual.is_finite())
+        .min_by(|a, b| a.residual.total_cmp(&b.residual))
 }
 
 fn beyond(edge: Edge) -> Status {
