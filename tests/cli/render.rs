@@ -136,6 +136,7 @@ fn scale_and_width_are_chosen() {
         refused(&["--range", range], &[range, "two numbers with a comma"]);
     }
     refused(&["--range", "2,1"], &["range 2,1", "smaller one first"]);
+    refused(&["--range", "1e99,1"], &["range 1e99,1:"]);
     refused(&["--range", "0,inf"], &["range 0,inf", "finite"]);
     refused(&["--log", "--range", "-1,1"], &["range -1,1", "above 0"]);
     for width in ["299", "8001", "wide"] {

@@ -7,6 +7,7 @@ use crate::render::palette::{self, Fill, INK};
 use crate::render::picture::{Anchor, Area, Pen, Picture};
 use crate::render::ticks::{self, Tick};
 use crate::render::{axes, units};
+use crate::scene::digits;
 use crate::store::{Samples, StoredMap};
 
 /// Room that the colour bar takes to the right of the picture's body.
@@ -143,7 +144,10 @@ impl Scale {
 
 /// Whether the ends of a colour bar can be what they are.
 fn check([low, high]: [f64; 2], log: bool) -> Result<(), Error> {
-    let refuse = |what: &str| Err(Error::Scale(format!("range {low},{high}: {what}")));
+    let refuse = |what: &str| {
+        let [low, high] = [low, high].map(digits);
+        Err(Error::Scale(format!("range {low},{high}: {what}")))
+    };
     // A difference that is finite and above 0 has two finite ends.
     if !(high - low).is_normal() || low > high {
         refuse("must be two finite numbers, the smaller one first")
