@@ -48,9 +48,7 @@ impl Sample {
             .into_par_iter()
             .filter_map(|(rod, side)| {
                 let method = Method::fine().with_effects(effects);
-                // Where the coarse steps find no fold, the fine ones may.
-                let sheet = Sheet::new(method.coarsely(), &rod, side, &distances)
-                    .or_else(|| Sheet::new(method, &rod, side, &distances))?;
+                let sheet = Sheet::new(method.coarsely(), &rod, side, &distances)?;
                 let solved = states(method.coarsely(), &sheet, &pushes).into_iter();
                 let solved = solved.map(|(_, state)| Point {
                     tau: state.tau,
@@ -59,7 +57,7 @@ impl Sample {
                 });
                 // What ends at first touch does so at every resolution.
                 let crossings = sheet.crossings.iter().flatten();
-                let ends = crossings.filter(|end| !end.is_at_touch());
+                let ends = crossings.filter(|end| end.is_sound() && !end.is_at_touch());
                 let ends = ends.map(|end| Point {
                     tau: end.tau,
                     load: end.load,

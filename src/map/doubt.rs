@@ -42,13 +42,6 @@ pub fn settle<'a>(
         .collect();
     for cell in cells {
         let push = cell.push.angle;
-        if cell.is_first_touch(boundary)
-            && let Some(touch) = first_touch(&level, push)
-        {
-            cell.status = Status::Solved;
-            cell.state = Some(touch);
-            continue;
-        }
         let magnitude = sign * push;
         let mut spans = boundary.spans().iter().zip(&parts);
         match spans.find(|(span, _)| span.contains(magnitude)) {
@@ -71,17 +64,25 @@ pub fn settle<'a>(
             }
             _ => {}
         }
+        if cell.status != Status::Solved
+            && cell.is_first_touch(boundary)
+            && let Some(touch) = first_touch(&level, push)
+        {
+            cell.status = Status::Solved;
+            cell.state = Some(touch);
+        }
     }
 }
 
-/// First touch is known from the shape at rest; its residual is the error of the integration, largest at the tip of a cone. The state
-/// on the integrated level curve next to it is mostly better.
+/// First touch is known from the shape at rest; its residual is the error of the integration, largest at the tip of a cone. A Newton
+/// step from there mostly leaves a smaller one.
 fn first_touch(level: &LevelCurve, push: f64) -> Option<ContactState> {
     let touch = level.touch()?;
-    let corrected = level.correct(&[touch.point], ON_CURVE).pop()?;
-    let corrected =
-        corrected.map(|(point, full)| level.node(point, &full, touch.push, touch.angle));
-    [Some(touch), corrected]
+    let map = &touch.full.map;
+    let step = map.solve(map.residual(level.row.pole(push)));
+    let stepped = level.correct(&[touch.point + step], ON_CURVE).pop()?;
+    let stepped = stepped.map(|(point, full)| level.node(point, &full, touch.push, touch.angle));
+    [Some(touch), stepped]
         .into_iter()
         .flatten()
         .map(|node| state(level, &node, push))

@@ -8,6 +8,7 @@ use whiskmap::integrate::gpu::Precision;
 use whiskmap::integrate::{Engine, Outcome};
 use whiskmap::refine::End;
 use whiskmap::rod::arclength;
+use whiskmap::sheet::Sheet;
 
 /// How far off, in whisker lengths, a pole or a contact may be, and a load in the median. Measured: 3.1e-5 for a cylinder
 /// that a stiff tip and friction let coil up, else 1.5e-5; 3.7e-6; 1.5e-5. Next to the fold, where the state goes with the
@@ -30,8 +31,13 @@ fn single_precision_is_stable_or_handed_over() {
         gpu.describe().adapter,
         "case",
     );
+    let mut walked = 0;
     for (name, case) in named() {
         let shots = Shots::new(&case.scene());
+        if shots.sheets.iter().all(Sheet::is_walked) {
+            walked += 1;
+            continue;
+        }
         let hits = shots.shoot(&mut gpu);
         let misses = shots.misses(&hits);
         let handed_over = hits.len() - misses.len();
@@ -65,7 +71,8 @@ fn single_precision_is_stable_or_handed_over() {
             load.1
         );
     }
-    eprintln!("{table}");
+    eprintln!("{table}{walked} cases are walked: nothing is shot");
+    assert!(walked < 5, "{walked}");
     if std::env::var_os("WHISKMAP_WRITE_TABLES").is_some_and(|x| x == "1") {
         std::fs::write("outputs/f32_stability.txt", &table).unwrap();
     }
