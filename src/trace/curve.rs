@@ -132,7 +132,7 @@ pub fn curve_at(
         let reached = end.ok().and_then(|end| Some((end, states.next()?)));
         let sliding = reached
             .as_ref()
-            .and_then(|(end, variation)| Sliding::of(variation, &rod, end.tau));
+            .and_then(|(end, variation)| Sliding::of(variation, rod, end.tau));
         let reading = reached.as_ref().map(|(end, FirstVariation { full, .. })| {
             let push = side.sign() * end.push;
             // The crossing's own residual foretells what its last step leaves; this trajectory has gone there.
