@@ -31,10 +31,14 @@ use edges::Edges;
 use edges::crossings::crossings;
 use fold::contact_nodes::{ContactNodes, NARROW_SPACING, SPACING};
 use lattice::Lattice;
+use rayon::prelude::*;
 
 /// How far below zero the load of an unloaded whisker may come out, relative to the fold's: at the soft tip of a
 /// strongly curved cone the rounding of first touch (1e-13 of the length) is a load of 1e-8.
 const UNLOADED: f64 = 1e-6;
+
+/// Rows that a thread looks at together: walking takes milliseconds a row, anything else much less than a microsecond.
+const TOGETHER: usize = 8;
 
 /// The sheet of one whisker on one side, with the rows of a map.
 #[derive(Clone, Debug)]
@@ -93,7 +97,7 @@ impl Sheet {
         let sampled = |spacing| Samples::new(method, rod, side, nearest, spacing);
         let mut samples = sampled(SPACING);
         if !samples.as_ref().is_some_and(Samples::are_certified) {
-            samples = sampled(NARROW_SPACING);
+            samples = sampled(NARROW_SPACING).or(samples);
         }
         let is_certified = samples.as_ref().is_some_and(Samples::are_certified);
         let mut crossings = match &samples {
@@ -103,7 +107,7 @@ impl Sheet {
         let fold_grows = samples
             .as_ref()
             .is_some_and(|samples| samples.edges.fold_grows);
-        for (row, crossings) in rows.iter().zip(&mut crossings) {
+        let walk = |(row, crossings): (&Row, &mut Vec<Crossing>)| {
             let touches = row.is_reached();
             let is_pair = usize::from(touches) + crossings.len() == 2;
             let is_simple = crossings.is_empty() && !touches
@@ -115,7 +119,9 @@ impl Sheet {
             if samples.is_none() && !touches {
                 crossings.push(Crossing::unknown());
             }
-        }
+        };
+        let rows_with_crossings = rows.par_iter().zip(&mut crossings);
+        rows_with_crossings.with_min_len(TOGETHER).for_each(walk);
         let tip = rod.tau_tip();
         Some(Self {
             rod: rod.clone(),
