@@ -1,16 +1,16 @@
 //! Where each value lies in the file: parts, channels, tiles and blocks.
 
-use super::attributes::Attributes;
 use super::{Panel, STATE_CHANNELS};
 use crate::scene::Grid;
 use exr::block::BlockIndex;
 use exr::math::{RoundingMode, Vec2};
 use exr::meta::attribute::{
-    ChannelDescription, LevelMode, LineOrder, SampleType, Text, TileDescription,
+    AttributeValue, ChannelDescription, LevelMode, LineOrder, SampleType, Text, TileDescription,
 };
 use exr::meta::header::Header;
 use exr::meta::{BlockDescription, Headers};
 use exr::prelude::Compression;
+use std::collections::HashMap;
 
 /// How many panels, and how many cells in each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -92,7 +92,7 @@ impl Layout {
     }
 
     /// One header per part, all with the same attributes, so that each part stands alone.
-    pub(super) fn headers(&self, attributes: &Attributes) -> Headers {
+    pub(super) fn headers(&self, attributes: &HashMap<Text, AttributeValue>) -> Headers {
         let size = Vec2(self.columns * self.push_angles, self.rows * self.distances);
         let described = parts(&Panel::unresolved(0)).map(|part| {
             let channels = part.channels.into_iter();

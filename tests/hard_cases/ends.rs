@@ -1,6 +1,7 @@
 //! Where a push ends, asked in every way there is: `curve` from the sheet's edges, `branch` and `shape` by walking, `map` cell by cell.
 
 use crate::case::Case;
+use crate::random::even_in_log;
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngSeed, TestRunner};
 use std::cell::Cell;
@@ -69,11 +70,6 @@ fn agree(scene: &Scene, end: &Detachment) -> Result<(), TestCaseError> {
         "{end:?}: {beyond:?}"
     );
     Ok(())
-}
-
-/// Evenly in the logarithm.
-fn even_in_log(from: f64, to: f64) -> impl Strategy<Value = f64> {
-    (from.ln()..to.ln()).prop_map(f64::exp)
 }
 
 /// Any whisker with friction up to 1 and `A*` up to 10, in front of poles from a thousandth of its length.

@@ -22,7 +22,7 @@ const HALF: Resolution = Resolution::of(10);
 const MODERATE: f64 = 40.0;
 
 /// Evenly in the logarithm.
-fn even_in_log(from: f64, to: f64) -> impl Strategy<Value = f64> {
+pub fn even_in_log(from: f64, to: f64) -> impl Strategy<Value = f64> {
     (from.ln()..to.ln()).prop_map(f64::exp)
 }
 
