@@ -6,6 +6,8 @@ use std::ops::Deref;
 use std::path::Path;
 
 use serde::Serialize;
+use toml_edit::ser::ValueSerializer;
+use toml_edit::{DocumentMut, Item, TableLike, TomlError};
 
 use super::check;
 use super::error::SceneError;
@@ -71,22 +73,51 @@ impl Scene {
     ///
     /// If the scene would be refused with it.
     pub fn with(&self, key: &str, value: impl Serialize) -> Result<Self, SceneError> {
-        let refuse = |why: String| SceneError::whole(key, why);
-        let value = toml::Value::try_from(value).map_err(|why| refuse(why.to_string()))?;
-        let mut root: toml::Table =
-            toml::from_str(&self.text).map_err(|why| refuse(why.to_string()))?;
-        let (tables, last) = key.rsplit_once('.').unwrap_or(("", key));
-        let mut table = &mut root;
-        for name in tables.split('.').filter(|name| !name.is_empty()) {
-            let entry = table
-                .entry(name)
-                .or_insert_with(|| toml::Table::new().into());
-            let inner = entry.as_table_mut();
-            table = inner.ok_or_else(|| refuse(format!("{name} is a value, not a table")))?;
+        self.with_each([(key, value)])
+    }
+
+    /// The same with several at once.
+    pub(super) fn with_each<'a>(
+        &self,
+        values: impl IntoIterator<Item = (&'a str, impl Serialize)>,
+    ) -> Result<Self, SceneError> {
+        let mut document: DocumentMut = self
+            .text
+            .parse()
+            .map_err(|why: TomlError| SceneError::whole(&self.name, why.message()))?;
+        let mut origin = "";
+        for (key, value) in values {
+            origin = key;
+            let refuse = |why: String| SceneError::whole(key, why);
+            let serializer = ValueSerializer::new();
+            let value = value.serialize(serializer);
+            let mut value = value.map_err(|why| refuse(why.to_string()))?;
+            let (tables, last) = key.rsplit_once('.').unwrap_or(("", key));
+            let mut table: &mut dyn TableLike = document.as_table_mut();
+            for name in tables.split('.').filter(|name| !name.is_empty()) {
+                let entry = table.entry(name).or_insert_with(toml_edit::table);
+                let inner = entry.as_table_like_mut();
+                table = inner.ok_or_else(|| refuse(format!("{name} is a value, not a table")))?;
+            }
+            if let Some(before) = table.get(last).and_then(Item::as_value) {
+                *value.decor_mut() = before.decor().clone();
+            }
+            table.insert(last, value.into());
         }
-        table.insert(last.to_owned(), value);
-        let text = toml::to_string(&root).map_err(|why| refuse(why.to_string()))?;
-        Self::checked(&text, key, Path::new(&format!("{}.toml", self.name)))
+        let path = format!("{}.toml", self.name);
+        Self::checked(&document.to_string(), origin, Path::new(&path))
+    }
+
+    /// The number that the text has at `key`.
+    pub(super) fn number(&self, key: &str) -> Option<f64> {
+        let root: toml::Table = toml::from_str(&self.text).ok()?;
+        let root = toml::Value::Table(root);
+        let found = key
+            .split('.')
+            .try_fold(&root, |table, name| table.get(name))?;
+        found
+            .as_float()
+            .or_else(|| Some(found.as_integer()? as f64))
     }
 
     /// The same scene with at most `lines` push angles and distances, and at most `values` tapers and curvatures, from all

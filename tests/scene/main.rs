@@ -12,7 +12,7 @@ mod shape;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use whiskmap::scene::{Curvature, Morphology, Scene};
+use whiskmap::scene::{Curvature, Morphology, Parameter, Scene};
 
 /// A valid scene with every table and all axes but one, to be spoilt line by line. Lines are counted from 1.
 const BASE: &str = r#"title = "base"
@@ -50,6 +50,10 @@ fn with_line(line: usize, replacement: &str) -> String {
     let mut lines: Vec<&str> = BASE.lines().collect();
     lines[line - 1] = replacement;
     lines.join("\n")
+}
+
+fn cone() -> Scene {
+    Scene::parse(include_str!("../../scenes/cone.toml"), "cone.toml").unwrap()
 }
 
 fn shipped() -> Vec<PathBuf> {
@@ -267,4 +271,50 @@ fn few_values_stay_and_many_are_represented() {
     assert_eq!(thinned.grid.distance_mm, [2.0, 20.0]);
     assert_eq!(thinned.grid.taper, Some(vec![0.5]));
     assert_eq!(scene.thinned(9, 9), scene);
+}
+
+#[test]
+fn parameters_are_read_and_replaced() {
+    let scene = cone();
+    for parameter in Parameter::ALL {
+        let Some(own) = parameter.value(&scene) else {
+            continue;
+        };
+        let same = scene.with_parameters(&[(parameter, own)]).unwrap();
+        assert_eq!(parameter.value(&same), Some(own), "{}", parameter.name());
+        let [least, most] = parameter.range(&scene);
+        assert!(least <= own && own <= most, "{}", parameter.name());
+        let accepts = |value| scene.with_parameters(&[(parameter, value)]).is_ok();
+        assert_eq!(
+            [least.next_down(), least, most, most.next_up()].map(accepts),
+            [false, true, true, false],
+            "{} from {least} to {most}",
+            parameter.name()
+        );
+    }
+    let given = Parameter::ALL.map(|parameter| parameter.value(&scene).is_some());
+    assert_eq!(given.iter().filter(|given| **given).count(), 8);
+}
+
+#[test]
+fn a_taper_is_that_of_the_new_base() {
+    let scene = cone();
+    let pairs = [(Parameter::Taper, 0.5), (Parameter::BaseRadiusUm, 40.0)];
+    for pairs in [pairs, [pairs[1], pairs[0]]] {
+        let other = scene.with_parameters(&pairs).unwrap();
+        assert_eq!(other.whisker.tip_radius_um, 20.0);
+    }
+}
+
+#[test]
+fn other_values_keep_the_comments() {
+    let scene = cone();
+    let other = scene
+        .with_parameters(&[(Parameter::TipRadiusUm, 4.0), (Parameter::Friction, 0.25)])
+        .unwrap();
+    assert_eq!(other.pole.friction, 0.25);
+    let expected = scene
+        .text
+        .replace("tip_radius_um = 1.5 ", "tip_radius_um = 4.0 ");
+    assert!(other.text.starts_with(&expected), "{}", other.text);
 }

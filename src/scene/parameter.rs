@@ -1,0 +1,170 @@
+//! The numbers of a scene that a fit, a design or an uncertainty varies.
+
+use super::checked::Scene;
+use super::error::SceneError;
+
+/// A number of the whisker or the pole.
+///
+/// ```
+/// use whiskmap::scene::{Parameter, Scene};
+///
+/// let cone = Scene::parse(include_str!("../../scenes/cone.toml"), "cone.toml")?;
+/// let tip = Parameter::TipRadiusUm;
+/// assert_eq!((tip.value(&cone), tip.range(&cone)), (Some(1.5), [0.0, 30.0]));
+/// assert_eq!(cone.with_parameters(&[(tip, 4.0)])?.whisker.tip_radius_um, 4.0);
+/// # Ok::<(), whiskmap::scene::SceneError>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Parameter {
+    /// Arclength from base to tip.
+    LengthMm,
+    /// Radius at the base.
+    BaseRadiusUm,
+    /// Radius at the tip.
+    TipRadiusUm,
+    /// `1 - tip/base radius`, by way of the tip's radius.
+    Taper,
+    /// Young's modulus at the base, on which no detachment depends.
+    YoungsModulusGpa,
+    /// Coefficient of the resting whisker's parabola.
+    ParabolaPerMm,
+    /// Where that parabola has its vertex.
+    VertexMm,
+    /// Curvature of an Euler spiral at the base.
+    SpiralPerMm,
+    /// Its growth along the whisker.
+    SpiralPerMm2,
+    /// Young's modulus at the tip over that at the base.
+    ModulusTipToBase,
+    /// Real arclength over that in the plane of contact.
+    ArcStretch,
+    /// Radius of the pole.
+    PoleRadiusMm,
+    /// Coulomb's coefficient.
+    Friction,
+}
+
+impl Parameter {
+    /// All of them.
+    pub const ALL: [Self; 13] = [
+        Self::LengthMm,
+        Self::BaseRadiusUm,
+        Self::TipRadiusUm,
+        Self::Taper,
+        Self::YoungsModulusGpa,
+        Self::ParabolaPerMm,
+        Self::VertexMm,
+        Self::SpiralPerMm,
+        Self::SpiralPerMm2,
+        Self::ModulusTipToBase,
+        Self::ArcStretch,
+        Self::PoleRadiusMm,
+        Self::Friction,
+    ];
+
+    /// Its name, with its unit.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::LengthMm => "length_mm",
+            Self::BaseRadiusUm => "base_radius_um",
+            Self::TipRadiusUm => "tip_radius_um",
+            Self::Taper => "taper",
+            Self::YoungsModulusGpa => "youngs_modulus_gpa",
+            Self::ParabolaPerMm => "parabola_per_mm",
+            Self::VertexMm => "vertex_mm",
+            Self::SpiralPerMm => "spiral_per_mm",
+            Self::SpiralPerMm2 => "spiral_per_mm2",
+            Self::ModulusTipToBase => "modulus_tip_to_base",
+            Self::ArcStretch => "arc_stretch",
+            Self::PoleRadiusMm => "pole_radius_mm",
+            Self::Friction => "friction",
+        }
+    }
+
+    /// Where a scene file has it.
+    #[must_use]
+    pub const fn key(self) -> &'static str {
+        match self {
+            Self::LengthMm => "whisker.length_mm",
+            Self::BaseRadiusUm => "whisker.base_radius_um",
+            Self::TipRadiusUm | Self::Taper => "whisker.tip_radius_um",
+            Self::YoungsModulusGpa => "whisker.youngs_modulus_gpa",
+            Self::ParabolaPerMm => "whisker.curvature.parabola_per_mm",
+            Self::VertexMm => "whisker.curvature.vertex_mm",
+            Self::SpiralPerMm => "whisker.curvature.euler_spiral.per_mm",
+            Self::SpiralPerMm2 => "whisker.curvature.euler_spiral.per_mm2",
+            Self::ModulusTipToBase => "whisker.modulus_gradient.tip_to_base",
+            Self::ArcStretch => "whisker.projection.arc_stretch",
+            Self::PoleRadiusMm => "pole.radius_mm",
+            Self::Friction => "contact.friction",
+        }
+    }
+
+    /// Its value, if the text of the scene gives it.
+    #[must_use]
+    pub fn value(self, scene: &Scene) -> Option<f64> {
+        let given = scene.number(self.key())?;
+        Some(match self {
+            Self::Taper => scene.whisker.taper(),
+            _ => given,
+        })
+    }
+
+    /// The least and the greatest value that the scene accepts around its own, everything else as it is.
+    ///
+    /// Without a value of its own the scene accepts none: the range is empty, of two NaN.
+    #[must_use]
+    pub fn range(self, scene: &Scene) -> [f64; 2] {
+        let Some(own) = self.value(scene) else {
+            return [f64::NAN; 2];
+        };
+        let accepts = |value: f64| scene.with_parameters(&[(self, value)]).is_ok();
+        [f64::MIN, f64::MAX].map(|beyond| {
+            let [mut inside, mut outside] = [own, beyond].map(rank);
+            while inside.abs_diff(outside) > 1 {
+                let middle = inside.midpoint(outside);
+                if accepts(of_rank(middle)) {
+                    inside = middle;
+                } else {
+                    outside = middle;
+                }
+            }
+            of_rank(inside)
+        })
+    }
+}
+
+impl Scene {
+    /// The same scene with other values of some parameters, as if its file had said so.
+    ///
+    /// # Errors
+    ///
+    /// If the scene would be refused with them.
+    pub fn with_parameters(&self, values: &[(Parameter, f64)]) -> Result<Self, SceneError> {
+        let base = values.iter().rev();
+        let base = base
+            .copied()
+            .find(|(parameter, _)| *parameter == Parameter::BaseRadiusUm);
+        let base = base.map_or(self.whisker.base_radius_um, |(_, base)| base);
+        self.with_each(values.iter().map(|(parameter, value)| {
+            let value = match parameter {
+                Parameter::Taper => base * (1.0 - value),
+                _ => *value,
+            };
+            (parameter.key(), value)
+        }))
+    }
+}
+
+/// The place of a number among all floating-point numbers, so that halves of a range are found in 64 steps.
+fn rank(value: f64) -> i64 {
+    let bits = value.to_bits().cast_signed();
+    if bits < 0 { i64::MIN - bits } else { bits }
+}
+
+/// The number of that place.
+fn of_rank(rank: i64) -> f64 {
+    let bits = if rank < 0 { i64::MIN - rank } else { rank };
+    f64::from_bits(bits.cast_unsigned())
+}
