@@ -51,7 +51,7 @@ fn cells(scene: &Scene, whisker: &Whisker, side: Side, resolution: Resolution) -
     let method = Method::new(resolution).with_effects(effects);
     let distances = &scene.grid.distance_mm;
     let distances: Vec<f64> = distances.iter().map(|d| d / whisker.length_mm).collect();
-    let sheet = Sheet::new(method, &rod, side, &distances).unwrap();
+    let sheet = Sheet::new(method, &rod, side, &distances);
     let (conditions, poles): (Vec<InitialCondition>, Vec<_>) =
         states(method, &sheet, &scene.grid.push_angle_deg)
             .into_iter()

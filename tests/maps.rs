@@ -98,8 +98,7 @@ fn engines_agree_on_every_field() {
         let rod = scene.whisker.rod(&scene.pole, side);
         let effects = Effects::of([&rod]);
         let distances: Vec<f64> = scene.grid.distance_mm.iter().map(|d| d / 20.0).collect();
-        let sheet =
-            Sheet::new(Method::fine().with_effects(effects), &rod, side, &distances).unwrap();
+        let sheet = Sheet::new(Method::fine().with_effects(effects), &rod, side, &distances);
         let shots = shots(&sheet, 0, &scene.grid.push_angle_deg);
         let states = |starts: Vec<(f64, f64)>| {
             refine(

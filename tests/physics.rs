@@ -16,8 +16,7 @@ fn detachment(whisker: &Whisker, pole: &Pole, side: Side, distance_mm: f64) -> (
         &rod,
         side,
         &[distance_mm / whisker.length_mm],
-    )
-    .unwrap();
+    );
     let crossing = sheet.crossings[0][0];
     let boundary = RowBoundary::new(sheet.touches(0), &sheet.crossings[0]);
     let span: &Span = boundary.detachment().unwrap();

@@ -151,7 +151,7 @@ fn residuals_are_bounds() {
                 let length = whisker.length_mm;
                 let distances = scene.grid.distance_mm.iter().map(|d| d / length);
                 let distances: Vec<f64> = distances.step_by(16).collect();
-                let sheet = Sheet::new(method, &rod, side, &distances).unwrap();
+                let sheet = Sheet::new(method, &rod, side, &distances);
                 let found = states(method, &sheet, &scene.grid.push_angle_deg);
                 assert!(!found.is_empty());
                 let conditions: Vec<InitialCondition> = found

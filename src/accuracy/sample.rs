@@ -46,9 +46,9 @@ impl Sample {
         let pushes = spread(&scene.grid.push_angle_deg, PUSHES);
         let rods = pairs
             .into_par_iter()
-            .filter_map(|(rod, side)| {
+            .map(|(rod, side)| {
                 let method = Method::fine().with_effects(effects);
-                let sheet = Sheet::new(method.coarsely(), &rod, side, &distances)?;
+                let sheet = Sheet::new(method.coarsely(), &rod, side, &distances);
                 let solved = states(method.coarsely(), &sheet, &pushes).into_iter();
                 let solved = solved.map(|(_, state)| Point {
                     tau: state.tau,
@@ -64,7 +64,7 @@ impl Sample {
                     edge: Some(end.edge),
                 });
                 let points = solved.chain(ends).collect();
-                Some((rod, points))
+                (rod, points)
             })
             .collect();
         Self { effects, rods }

@@ -100,8 +100,8 @@ impl Task {
         let (shots, starts): (Vec<Shot>, Vec<Shot>) = (rods.par_iter().zip(&faces).enumerate())
             .flat_map_iter(|(index, (rod, (_, side)))| {
                 let sheet = Sheet::new(method, rod, *side, &distances);
-                let solved = sheet.map(|sheet| states(method, &sheet, &scene.grid.push_angle_deg));
-                solved.into_iter().flatten().map(move |(shot, state)| {
+                let solved = states(method, &sheet, &scene.grid.push_angle_deg);
+                solved.into_iter().map(move |(shot, state)| {
                     let rod = index as u32;
                     let shot = Shot { rod, ..shot };
                     let (tau, load) = (state.tau, state.load);

@@ -75,7 +75,5 @@ named! {
         Disagreement = 102, "unresolved: cell and boundary disagree";
         /// The boundary of the row was not found.
         NoBoundary = 103, "unresolved: boundary not found";
-        /// The whisker has no fold at some contact.
-        NoFold = 104, "unresolved: no fold found";
     }
 }

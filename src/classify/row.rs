@@ -113,7 +113,7 @@ impl RowBoundary {
                 };
                 (regime, status)
             }
-            (Status::NotConverged | Status::NoFold, _) => (Regime::Unresolved, status),
+            (Status::NotConverged, _) => (Regime::Unresolved, status),
             _ => (Regime::Unresolved, Status::Disagreement),
         }
     }

@@ -53,10 +53,7 @@ fn answers<C: Iterator<Item = Cell>>(
     row: usize,
     cells: impl Fn() -> C,
 ) -> Vec<Answer> {
-    let Some(sheet) = &face.sheet else {
-        let unresolved = |cell: Cell| Answer::new(Regime::Unresolved, Status::NoFold, cell.steps);
-        return cells().map(unresolved).collect();
-    };
+    let sheet = &face.sheet;
     let reader = Reader::new(*units, &sheet.rod);
     let boundary = RowBoundary::new(sheet.touches(row), &sheet.crossings[row]);
     let answer = |cell: &Cell| answer(cell, sheet, row, &boundary, &reader);
@@ -77,13 +74,10 @@ fn answers<C: Iterator<Item = Cell>>(
 
 /// Tells those of the states found for `row` whose contact slides toward the base, against the friction assumed.
 fn mark_toward_base(face: &Face, row: usize, answers: &mut [Answer]) {
-    let Some(sheet) = face
-        .sheet
-        .as_ref()
-        .filter(|sheet| sheet.rod.friction != 0.0)
-    else {
+    let sheet = &face.sheet;
+    if sheet.rod.friction == 0.0 {
         return;
-    };
+    }
     let solved = answers
         .iter_mut()
         .filter(|answer| answer.status == Status::Solved);

@@ -59,17 +59,12 @@ impl Settled {
         row: &'a SettledRow,
     ) -> impl Iterator<Item = Cell> + 'a {
         let mut shot = row.shots_before;
-        let without_shot = if face.sheet.is_some() {
-            Status::Outside
-        } else {
-            Status::NoFold
-        };
         let cells = face.pushes.columns.iter().zip(&row.has_shot);
         cells.map(move |(push, has_shot)| {
             if !has_shot {
                 return Cell {
                     push: *push,
-                    status: without_shot,
+                    status: Status::Outside,
                     state: None,
                     steps: 0,
                 };
@@ -100,11 +95,10 @@ pub fn settle(
     engine: &mut Fallback<'_>,
     summary: &mut Summary,
 ) -> Settled {
-    // Only faces with a sheet take part; `sheets[shot.rod]` is the sheet of a shot.
-    let taking_part = |&i: &usize| faces[i].sheet.is_some() && rows.iter().any(|row| row.0 == i);
+    // `sheets[shot.rod]` is the sheet of a shot.
+    let taking_part = |&i: &usize| rows.iter().any(|row| row.0 == i);
     let used: Vec<usize> = (0..faces.len()).filter(taking_part).collect();
-    let sheets = used.iter().filter_map(|&i| faces[i].sheet.as_ref());
-    let sheets: Vec<&Sheet> = sheets.collect();
+    let sheets: Vec<&Sheet> = used.iter().map(|&i| &faces[i].sheet).collect();
     let rods: Vec<Rod> = sheets.iter().map(|sheet| sheet.rod.clone()).collect();
 
     let (rows, shots) = summary.time(Stage::Guesses, || {
@@ -154,9 +148,7 @@ pub fn settle(
 /// The shots of the cells of one row of a face.
 fn guess_row(face: &Face, row: usize, rod: usize) -> Vec<Option<Shot>> {
     let columns = &face.pushes.columns;
-    let Some(sheet) = &face.sheet else {
-        return vec![None; columns.len()];
-    };
+    let sheet = &face.sheet;
     let at_touch = sheet.rows[row].pole(0.0);
     let guesses = sheet.guesses(row, columns.iter().map(|push| push.angle.abs()));
     let shot = |(guess, push): (Option<Guess>, &Push)| {

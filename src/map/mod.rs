@@ -35,7 +35,7 @@ pub enum Progress<'a> {
 /// One side of one whisker.
 struct Face<'a> {
     pushes: &'a Pushes,
-    sheet: Option<Sheet>,
+    sheet: Sheet,
 }
 
 /// Computes every panel of `scene` as `plan` says, on the threads of the current pool, best from within it

@@ -86,15 +86,15 @@ impl Samples {
 }
 
 impl Sheet {
-    /// The sheet of `rod`, computed by `method`, for rows at these distances (first touch, in whisker lengths); `None` without rows.
+    /// The sheet of `rod`, computed by `method`, for rows at these distances (first touch, in whisker lengths).
     #[must_use]
-    pub fn new(method: Method, rod: &Rod, side: Side, distances: &[f64]) -> Option<Self> {
+    pub fn new(method: Method, rod: &Rod, side: Side, distances: &[f64]) -> Self {
         let rest = Rest::new(rod);
         let rows: Vec<Row> = distances.iter().map(|d| Row::new(&rest, *d)).collect();
         let nearest = rows
             .iter()
-            .min_by(|a, b| a.pole_distance.total_cmp(&b.pole_distance))?;
-        let sampled = |spacing| Samples::new(method, rod, side, nearest, spacing);
+            .min_by(|a, b| a.pole_distance.total_cmp(&b.pole_distance));
+        let sampled = |spacing| Samples::new(method, rod, side, nearest?, spacing);
         let mut samples = sampled(SPACING);
         if !samples.as_ref().is_some_and(Samples::are_certified) {
             samples = sampled(NARROW_SPACING).or(samples);
@@ -123,7 +123,7 @@ impl Sheet {
         let rows_with_crossings = rows.par_iter().zip(&mut crossings);
         rows_with_crossings.with_min_len(TOGETHER).for_each(walk);
         let tip = rod.tau_tip();
-        Some(Self {
+        Self {
             rod: rod.clone(),
             side,
             tip: [tip, rod.radius(tip)],
@@ -131,7 +131,7 @@ impl Sheet {
             crossings,
             method,
             samples: samples.filter(|_| is_certified),
-        })
+        }
     }
 
     /// The fold with the contact at the tip, where slip-off turns into pull-off; `None` if it is not found.

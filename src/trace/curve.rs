@@ -110,7 +110,6 @@ pub fn curve_at(
     let sheet = Sheet::new(method, rod, side, &distances);
     let ends: Vec<Result<&Crossing, DetachmentKind>> = (0..distances.len())
         .map(|row| {
-            let sheet = sheet.as_ref().ok_or(DetachmentKind::Unresolved)?;
             if !sheet.touches(row) {
                 return Err(DetachmentKind::OutOfReach);
             }

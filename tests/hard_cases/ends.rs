@@ -200,7 +200,7 @@ fn a_row_has_the_same_ends_beside_a_nearer_one() {
     };
     let distance = 0.49135456912887043;
     let crossings = |distances: &[f64]| {
-        let sheet = Sheet::new(Method::fine(), &rod, Side::Cb, distances).unwrap();
+        let sheet = Sheet::new(Method::fine(), &rod, Side::Cb, distances);
         sheet.crossings[distances.len() - 1].clone()
     };
     let alone = crossings(&[distance]);

@@ -27,7 +27,7 @@ impl Shots {
         let sheets: Vec<Sheet> = pairs
             .par_iter()
             .map(|(side, rod)| {
-                Sheet::new(Method::fine().with_effects(effects), rod, *side, &distances).unwrap()
+                Sheet::new(Method::fine().with_effects(effects), rod, *side, &distances)
             })
             .collect();
         let mut shots = Vec::new();

@@ -124,7 +124,7 @@ fn the_branch_decides_where_rows_leave_the_sheet_more_than_once() {
                     );
                     compared += 1;
                     let rod = whisker.rod(&POLE, side);
-                    let sheet = Sheet::new(Method::fine(), &rod, side, &[distance / 20.0]).unwrap();
+                    let sheet = Sheet::new(Method::fine(), &rod, side, &[distance / 20.0]);
                     several += usize::from(sheet.crossings[0].len() > 1);
                 }
             }
