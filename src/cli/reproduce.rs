@@ -28,7 +28,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     let folder = &options.folder;
     outputs::folder("DIR", folder)?;
     let mut out = std::io::stdout().lock();
-    for figure in paper::figures().map_err(Failure::State)? {
+    for figure in paper::figures(&paper::Measurements::default()).map_err(Failure::State)? {
         for (ending, format) in [("png", Format::Png), ("svg", Format::Svg)] {
             let path = folder.join(figure.name).with_extension(ending);
             figure.chart.picture().save(&path, format)?;
