@@ -46,7 +46,7 @@ pub fn run() -> Result<(), Failure> {
     };
     writeln!(
         out,
-        "{} of {} checks pass; {} differ from the source as an independent solver does",
+        "{} of {} checks pass; {} DIFFERS: an independent solver contradicts the source, too",
         count(Verdict::Pass),
         checks.len(),
         count(Verdict::Differs)

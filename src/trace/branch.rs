@@ -45,7 +45,7 @@ row! {
         pub base_moment_nnm: f64,
         /// det d(D, phi)/d(s_obj, f) with f = F L^2/(E I_base): 0 at a fold.
         pub det: f64,
-        /// What is special: first-touch; slip-off or pull-off; where unstable states end, second-fold or tip.
+        /// first-touch; slip-off, pull-off (stable end); second-fold, tip (unstable end).
         pub mark: Option<Mark>,
         /// With friction, which way the contact slides: tip, as assumed, or base.
         pub sliding: Option<Sliding>,

@@ -1,8 +1,8 @@
-//! Figs. 4D and 5C, and the detachment curves of Figs. 3E and 3J.
+//! Detachment curves in the plane of push angle and distance, with measured ends over them.
 
-use super::{Figure, PUSH, Panel};
-use crate::paper::whiskers::{FIG4_HAIR, FIG4_WHISKER, FIG5_LEFT, FIG5_RIGHT, POLE, cylinder_of};
-use crate::render::{Chart, CurveAxis, Dot, Ends, Ink, Line, Plot, Stroke, curves};
+use super::Panel;
+use crate::paper::whiskers::POLE;
+use crate::render::{CurveAxis, Dot, Ends, Ink, Line, Stroke, curves};
 use crate::rod::{Rest, Side};
 use crate::scene::Whisker;
 use crate::trace::{Detachment, DetachmentKind, curve};
@@ -119,54 +119,8 @@ fn reach(rows: &[Detachment], stroke: Stroke) -> Line {
     }
 }
 
-pub fn fig4d(measured: &[Measured]) -> Figure {
-    let mut panel = panel(
-        "D",
-        "",
-        &[
-            ("mouse whisker", &FIG4_WHISKER, Stroke::Solid),
-            ("human hair", &FIG4_HAIR, Stroke::Dashed),
-        ],
-    );
-    panel.plot.dots = dots(measured, |kind| kind == DetachmentKind::SlipOff);
-    let title = "Fig. 4D: detachment of a mouse whisker and a human hair";
-    together(
-        "fig4d",
-        title,
-        vec![PUSH.to_owned()],
-        vec![("fig4d", panel)],
-    )
-}
-
-pub fn fig5c(measured: [&[Measured]; 2]) -> Figure {
-    let [left, right] = [
-        ("fig5c_left", "truncated whisker", &FIG5_LEFT, measured[0]),
-        (
-            "fig5c_right",
-            "less truncated whisker",
-            &FIG5_RIGHT,
-            measured[1],
-        ),
-    ]
-    .map(|(name, title, whisker, measured)| {
-        let cylinder = cylinder_of(whisker);
-        let whiskers = [
-            ("whisker", whisker, Stroke::Solid),
-            ("cylinder", &cylinder, Stroke::Dashed),
-        ];
-        let mut panel = panel("C", title, &whiskers);
-        panel.plot.dots = dots(measured, |_| true);
-        (name, panel)
-    });
-    let title = "Fig. 5C: detachment of two whiskers, and of cylinders of their length and base";
-    let caption = vec![
-        PUSH.to_owned(),
-        "Lengths are the paper's effective ones, of the whisker in projection.".to_owned(),
-    ];
-    together("fig5c", title, caption, vec![left, right])
-}
-
-fn dots(measured: &[Measured], is_open: impl Fn(DetachmentKind) -> bool) -> Vec<Dot> {
+/// Measured ends as circles.
+pub fn dots(measured: &[Measured], is_open: impl Fn(DetachmentKind) -> bool) -> Vec<Dot> {
     let dot = |end: &Measured| Dot {
         at: [end.push_angle_deg, end.distance_mm],
         ink: match end.kind {
@@ -177,28 +131,4 @@ fn dots(measured: &[Measured], is_open: impl Fn(DetachmentKind) -> bool) -> Vec<
         name: Some("measured".to_owned()),
     };
     measured.iter().map(dot).collect()
-}
-
-/// Panels side by side under their own names.
-fn together(
-    name: &'static str,
-    title: &str,
-    caption: Vec<String>,
-    panels: Vec<(&'static str, Panel)>,
-) -> Figure {
-    let (plots, tables): (Vec<Plot>, Vec<_>) = panels
-        .into_iter()
-        .map(|(name, panel)| (panel.plot, (name.to_owned(), panel.rows)))
-        .unzip();
-    let chart = Chart {
-        title: title.to_owned(),
-        caption,
-        columns: plots.len(),
-        plots,
-    };
-    Figure {
-        name,
-        chart,
-        tables,
-    }
 }

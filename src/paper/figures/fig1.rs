@@ -1,7 +1,7 @@
 //! Fig. 1: what the words mean, drawn of computed states.
 
 use super::drawing::{MAGNIFIED, arc, arrow, extent, line, outline, sections, text};
-use super::{Figure, Panel, figure};
+use super::{Figure, Panel, figure, lettered};
 use crate::paper::whiskers::{CONE, FIG5_LEFT, POLE};
 use crate::render::{Disc, Dot, Ink, Inset, Line, Note, Plot, Stroke};
 use crate::rod::{Rest, Side};
@@ -45,7 +45,7 @@ pub fn fig1() -> Result<Figure, NoState> {
         "fig1",
         "Fig. 1: the whisker in two dimensions",
         caption,
-        panels,
+        lettered("fig1", panels),
     ))
 }
 

@@ -1,6 +1,6 @@
 //! Fig. 2: shapes of a cone and a cylinder in front of one pole, CB.
 
-use super::{Figure, Panel, figure};
+use super::{Figure, Panel, figure, lettered};
 use crate::paper::whiskers::{CONE, CYLINDER, POLE, pole_distance_mm};
 use crate::render::{Drawn, Ink, Inset, Plot, Stroke, shapes};
 use crate::rod::Side;
@@ -72,7 +72,7 @@ pub fn fig2() -> Result<Figure, NoState> {
         "fig2",
         "Fig. 2: a cone and a cylinder in front of one pole, CB",
         caption,
-        panels,
+        lettered("fig2", panels),
     ))
 }
 

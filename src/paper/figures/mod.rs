@@ -8,6 +8,8 @@ mod drawing;
 mod fig1;
 mod fig2;
 mod fig3;
+mod fig4d;
+mod fig5c;
 
 pub use detachment::{Measured, Measurements};
 
@@ -56,22 +58,25 @@ pub fn figures(measured: &Measurements) -> Result<Vec<Figure>, NoState> {
         fig1::fig1()?,
         fig2::fig2()?,
         fig3::fig3()?,
-        detachment::fig4d(&measured.fig4d),
-        detachment::fig5c([&measured.fig5c_left, &measured.fig5c_right]),
+        fig4d::fig4d(&measured.fig4d),
+        fig5c::fig5c([&measured.fig5c_left, &measured.fig5c_right]),
     ])
 }
 
-/// Panels in two columns, each with a table called by the figure's name and its letter.
-fn figure(name: &'static str, title: &str, caption: Vec<String>, panels: Vec<Panel>) -> Figure {
-    let mut plots = Vec::new();
-    let mut tables = Vec::new();
-    for Panel { letter, plot, rows } in panels {
-        plots.push(Plot {
-            letter: Some(letter.to_owned()),
-            ..plot
-        });
-        tables.push((format!("{name}{}", letter.to_lowercase()), rows));
-    }
+/// Panels in two columns, each with the stem of its table.
+fn figure(
+    name: &'static str,
+    title: &str,
+    caption: Vec<String>,
+    panels: Vec<(String, Panel)>,
+) -> Figure {
+    let (plots, tables) = panels
+        .into_iter()
+        .map(|(table, Panel { letter, plot, rows })| {
+            let letter = Some(letter.to_owned());
+            (Plot { letter, ..plot }, (table, rows))
+        })
+        .unzip();
     let chart = Chart {
         title: title.to_owned(),
         caption,
@@ -83,6 +88,13 @@ fn figure(name: &'static str, title: &str, caption: Vec<String>, panels: Vec<Pan
         chart,
         tables,
     }
+}
+
+/// Panels whose tables are called by the figure and the letter.
+fn lettered(figure: &str, panels: Vec<Panel>) -> Vec<(String, Panel)> {
+    let table = |panel: &Panel| format!("{figure}{}", panel.letter.to_lowercase());
+    let panels = panels.into_iter();
+    panels.map(|panel| (table(&panel), panel)).collect()
 }
 
 /// What the push angle is, for captions.

@@ -13,10 +13,10 @@ const SIDE: f64 = 0.5;
 
 /// Draws `inset` into the `body` of `plot`, which shows `window`.
 pub(super) fn draw(picture: &mut Picture, body: Area, window: &Window, plot: &Plot, inset: &Inset) {
-    if !(drawable(inset.centre) && inset.half > 0.0) {
+    let square = window.square(inset.centre, inset.half);
+    if !(inset.half > 0.0 && square.is_open()) {
         return;
     }
-    let square = window.square(inset.centre, inset.half);
     let corners = [[0, 0], [1, 0], [1, 1], [0, 1], [0, 0]];
     let outline = corners.map(|[x, y]| window.place(body, [square.x[x], square.y[y]]));
     picture.polyline(&outline, Pen::solid(FRAME, GREY));
@@ -24,7 +24,7 @@ pub(super) fn draw(picture: &mut Picture, body: Area, window: &Window, plot: &Pl
     let side = SIDE * body.height;
     let [x, y] = body.point(inset.place[0], inset.place[1]);
     let larger = Area::new([x - 0.5 * side, y - 0.5 * side], [side, side]);
-    for one in plot.discs.iter().filter(|one| square.holds(one)) {
+    for one in plot.discs.iter().filter(|one| square.holds_disc(one)) {
         disc(picture, larger, &square, one);
     }
     for line in plot.lines.iter().chain(&inset.lines) {

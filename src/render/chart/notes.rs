@@ -2,7 +2,7 @@
 
 use super::data::Note;
 use super::plot::colour;
-use super::window::{Window, drawable};
+use super::window::Window;
 use crate::render::font;
 use crate::render::heading::NAME;
 use crate::render::picture::{Anchor, Area, Pen, Picture};
@@ -16,12 +16,12 @@ const ARROW: f64 = 2.5;
 const HEAD: f64 = 13.0;
 const HALF_ANGLE: f64 = 0.45;
 
-/// Draws notes in the data units of `window`, which fills `body`.
+/// Draws the notes inside of `window`, which fills `body`.
 pub(super) fn draw(picture: &mut Picture, body: Area, window: &Window, notes: &[Note]) {
-    for note in notes.iter().filter(|note| drawable(note.at)) {
+    for note in notes.iter().filter(|note| window.holds(note.at)) {
         let at = window.place(body, note.at);
         let mut text = [at[0], at[1] - ABOVE];
-        if let Some(to) = note.to.filter(|to| drawable(*to)) {
+        if let Some(to) = note.to.filter(|to| window.holds(*to)) {
             let to = window.place(body, to);
             arrow(picture, at, to, Pen::solid(ARROW, colour(note.ink)));
             text = behind(at, to, &note.text);

@@ -58,16 +58,22 @@ impl Window {
         let upwards = body.height / (self.y[1] - self.y[0]);
         length * across.min(upwards)
     }
-}
 
-impl Window {
-    /// Whether a disc lies inside.
-    pub(super) fn holds(&self, disc: &Disc) -> bool {
+    /// Whether there is room inside.
+    pub(super) fn is_open(&self) -> bool {
+        let size = size(self.x).max(size(self.y));
+        size <= HUGE && self.x[1] - self.x[0] > EQUAL * size.max(TINY)
+    }
+
+    /// Whether a point lies inside.
+    pub(super) fn holds(&self, [x, y]: [f64; 2]) -> bool {
         let inside = |[low, high]: [f64; 2], at: f64| (low..=high).contains(&at);
-        let corners = corners(disc).into_iter();
-        corners
-            .clone()
-            .all(|[x, y]| inside(self.x, x) && inside(self.y, y))
+        inside(self.x, x) && inside(self.y, y)
+    }
+
+    /// Whether a disc lies inside.
+    pub(super) fn holds_disc(&self, disc: &Disc) -> bool {
+        corners(disc).into_iter().all(|corner| self.holds(corner))
     }
 
     /// The parts of a polyline inside.
