@@ -192,8 +192,8 @@ fn plot(report: &Report) -> Plot {
     let front = report.rows.iter().filter(|row| row.pareto);
     let front = front.map(|row| Dot {
         at: place(row),
-        ink: Ink::Black,
         name: Some("no other is faster and closer".to_owned()),
+        ..Dot::default()
     });
     Plot {
         x_label: "log10 of microseconds per state".to_owned(),

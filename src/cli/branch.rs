@@ -4,20 +4,21 @@ use super::columns;
 use super::failure::Failure;
 use super::numbers::whole;
 use super::outputs::Outputs;
-use super::pole::Pole;
+use super::pole::{Poles, refuse, title};
 use clap::{Args, ValueEnum};
-use whiskmap::render::{BranchAxis, branches};
+use whiskmap::render::{BranchAxis, Ink, Note, Plot, branches};
 use whiskmap::rod::Side;
-use whiskmap::trace::{Branch, BranchPoint};
+use whiskmap::trace::{Branch, BranchPoint, Mark};
 
 const EXAMPLES: &str = "\
 Examples:
   whiskmap branch scenes/cone.toml --distance 15.66 | less
   whiskmap branch scenes/cone.toml --distance 15.66 --side cb --csv branch.csv --plot branch.png
+  whiskmap branch scenes/cone.toml --distance 10,13,15.66 --y force_un --plot force.svg
 
-Points are evenly spaced in push angle, contact angle and arclength together, from first touch (mark: touch) \
-through the fold (fold), where stable and unstable states meet, to the tip (tip) or the end of the unstable states \
-(second-fold). Lengths in det are whisker lengths.";
+Points are evenly spaced in push angle, contact angle and arclength together, from first touch (mark: first-touch) on. \
+Stable states end where they meet the unstable ones (slip-off), or with the tip at the pole (pull-off); unstable ones \
+end at a fold of their own (second-fold) or with the tip at the pole (tip). Lengths in det are whisker lengths.";
 
 /// Options of `branch`.
 #[derive(Debug, Args)]
@@ -27,13 +28,21 @@ through the fold (fold), where stable and unstable states meet, to the tip (tip)
 )]
 pub struct Options {
     #[command(flatten)]
-    pole: Pole,
+    poles: Poles,
     /// Side of the whisker that the pole is on
     #[arg(long, value_enum, default_value = "both")]
     side: Choice,
-    /// Points per side
+    /// Points per side and distance
     #[arg(long, value_name = "N", default_value = "200", value_parser = whole(3..=1_000_000))]
     points: u32,
+    /// Column that the plot shows upwards
+    #[arg(
+        long,
+        value_name = "COLUMN",
+        value_enum,
+        default_value = "arc_length_mm"
+    )]
+    y: Column,
     #[command(flatten)]
     outputs: Outputs,
 }
@@ -49,32 +58,81 @@ enum Choice {
     Both,
 }
 
+/// Columns that a plot can show.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[value(rename_all = "snake_case")]
+enum Column {
+    /// Size of the force
+    ForceUn,
+    /// Moment at the base
+    BaseMomentNnm,
+    /// Angle of the tangent at the contact, from the base's tangent
+    ContactAngleDeg,
+    /// Arclength from the base to the contact
+    ArcLengthMm,
+}
+
+impl Column {
+    fn axis(self) -> BranchAxis {
+        match self {
+            Self::ForceUn => BranchAxis {
+                label: "force (\u{b5}N)",
+                value: |point| point.force_un,
+            },
+            Self::BaseMomentNnm => BranchAxis {
+                label: "moment at the base (nN m)",
+                value: |point| point.base_moment_nnm,
+            },
+            Self::ContactAngleDeg => BranchAxis {
+                label: "contact angle from the base's tangent (deg)",
+                value: |point| point.contact_angle_deg,
+            },
+            Self::ArcLengthMm => BranchAxis {
+                label: "arc length of contact (mm)",
+                value: |point| point.arc_length_mm,
+            },
+        }
+    }
+}
+
+const PUSH: BranchAxis = BranchAxis {
+    label: "push angle (deg)   CF < 0 < CB",
+    value: |point| point.push_angle_deg,
+};
+
 /// Runs `branch`.
 pub fn run(options: &Options) -> Result<(), Failure> {
-    let (scene, whisker) = options.pole.read("branch")?;
+    let (scene, whisker) = options.poles.read("branch")?;
     let mut outputs = options.outputs.open()?;
     let sides: &[Side] = match options.side {
         Choice::Cb => &[Side::Cb],
         Choice::Cf => &[Side::Cf],
         Choice::Both => &Side::BOTH,
     };
+    let distances = &options.poles.distance;
     let mut points = Vec::new();
-    for side in sides {
-        let branch = Branch::new(&whisker, &scene.pole, *side, options.pole.distance);
-        let followed = branch.and_then(|branch| branch.points(options.points as usize));
-        points.extend(followed.map_err(|why| options.pole.refuse(why))?);
+    for &distance in distances {
+        for side in sides {
+            let branch = Branch::new(&whisker, &scene.pole, *side, distance);
+            let followed = branch.and_then(|branch| branch.points(options.points as usize));
+            points.extend(followed.map_err(|why| refuse(distance, why))?);
+        }
     }
     outputs.rows(&points)?;
-    outputs.finish(options.pole.title(&scene), || branches("", &points, AXES))
+    outputs.finish(title(&scene, distances), || {
+        plot(&points, options.y.axis(), distances.len() > 1)
+    })
 }
 
-const AXES: [BranchAxis; 2] = [
-    BranchAxis {
-        label: "push angle (deg)   CF < 0 < CB",
-        value: |point| point.push_angle_deg,
-    },
-    BranchAxis {
-        label: "arc length of contact (mm)",
-        value: |point| point.arc_length_mm,
-    },
-];
+/// The plot; with several poles, each detachment has its distance above it.
+fn plot(points: &[BranchPoint], y: BranchAxis, has_distances: bool) -> Plot {
+    let mut plot = branches("", &[(Ink::Black, points)], [PUSH, y]);
+    let is_end = |point: &&BranchPoint| matches!(point.mark, Some(Mark::SlipOff | Mark::PullOff));
+    let ends = points.iter().filter(is_end).filter(|_| has_distances);
+    plot.notes.extend(ends.map(|end| Note {
+        at: [end.push_angle_deg, (y.value)(end)],
+        text: format!("{} mm", end.distance_mm),
+        ..Note::default()
+    }));
+    plot
+}

@@ -8,7 +8,7 @@ use super::tolerance::Tolerance;
 use clap::Args;
 use serde::Serialize;
 use std::path::PathBuf;
-use whiskmap::render::{CurveAxis, curves};
+use whiskmap::render::{CurveAxis, Ends, Stroke, curves};
 use whiskmap::rod::Side;
 use whiskmap::scene::{Morphology, Scene, Whisker};
 use whiskmap::shooting::Resolution;
@@ -91,7 +91,14 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         }
     }
     bar.finish_and_clear();
-    outputs.finish(scene.title.clone(), || curves("", &drawn, AXES))?;
+    outputs.finish(scene.title.clone(), || {
+        let drawn = Ends {
+            rows: &drawn,
+            stroke: Stroke::Solid,
+            name: "",
+        };
+        curves("", &[drawn], AXES)
+    })?;
     check_resolved(unresolved, all, "ends", "the column `kind`")
 }
 

@@ -46,7 +46,7 @@ Examples:
   whiskmap curve scenes/cone.toml --plot curve.png where the whisker detaches, distance by distance
   whiskmap branch scenes/cone.toml --distance 15.66 stable and unstable states in front of one pole
   whiskmap shape scenes/cone.toml --distance 15.66 --push-angle 10 --plot shape.svg
-  whiskmap reproduce                               the theory lines of the paper's figures
+  whiskmap reproduce                               the theory of the paper's Figs. 1 to 5
   whiskmap verify                                  every number that is known otherwise
   whiskmap bench scenes/cone.toml                  what accuracy costs in time, engine by engine
   whiskmap devices                                 adapters, and which one `auto` takes";
@@ -65,7 +65,7 @@ enum Command {
     Branch(branch::Options),
     /// Compute the shape of the whisker in one state
     Shape(shape::Options),
-    /// Draw the theory lines of the paper's figures
+    /// Draw the theory of the paper's Figs. 1 to 5, with a table for each panel
     Reproduce(reproduce::Options),
     /// Compare with every number that is published, exact, or from an independent solver
     Verify,

@@ -96,6 +96,7 @@ impl PlotFile {
             title,
             plots: vec![plot],
             columns: 1,
+            ..Chart::default()
         };
         save(&chart.picture(), &self.path, self.format)
     }

@@ -1,9 +1,9 @@
-//! One whisker in front of one pole.
+//! One whisker in front of a pole.
 
 use super::failure::Failure;
 use super::numbers::number;
 use clap::Args;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use whiskmap::scene::{Scene, Whisker, digits};
 use whiskmap::trace::NoState;
 
@@ -17,25 +17,55 @@ pub struct Pole {
     pub distance: f64,
 }
 
+/// The scene, and where poles stand, one at a time.
+#[derive(Debug, Args)]
+pub struct Poles {
+    /// Scene file; - reads it from standard input
+    scene: PathBuf,
+    /// Distance from the base to the contact at first touch; several with commas, or by several --distance
+    #[arg(
+        long,
+        value_name = "MM",
+        required = true,
+        value_delimiter = ',',
+        allow_hyphen_values = true,
+        value_parser = number
+    )]
+    pub distance: Vec<f64>,
+}
+
 impl Pole {
     /// Reads the scene and its only whisker for `command`.
     pub fn read(&self, command: &str) -> Result<(Scene, Whisker), Failure> {
-        let scene = Scene::read(&self.scene)?;
-        let whiskers = scene.whisker_count();
-        if whiskers > 1 {
-            let tapers = scene.grid.taper.as_ref();
-            let key = if tapers.is_some_and(|tapers| tapers.len() > 1) {
-                "grid.taper"
-            } else {
-                "grid.curvature_per_mm"
-            };
-            return Err(Failure::Input(format!(
-                "{key}: the scene sweeps {whiskers} whiskers; {command} looks at one, so give the axis one value or leave \
-                 it out"
-            )));
-        }
-        let (nearest, farthest) = scene.distances_mm();
-        let (distance, radius) = (self.distance, scene.pole.radius_mm);
+        read(&self.scene, command, &[self.distance])
+    }
+}
+
+impl Poles {
+    /// Reads the scene and its only whisker for `command`.
+    pub fn read(&self, command: &str) -> Result<(Scene, Whisker), Failure> {
+        read(&self.scene, command, &self.distance)
+    }
+}
+
+fn read(path: &Path, command: &str, distances: &[f64]) -> Result<(Scene, Whisker), Failure> {
+    let scene = Scene::read(path)?;
+    let whiskers = scene.whisker_count();
+    if whiskers > 1 {
+        let tapers = scene.grid.taper.as_ref();
+        let key = if tapers.is_some_and(|tapers| tapers.len() > 1) {
+            "grid.taper"
+        } else {
+            "grid.curvature_per_mm"
+        };
+        return Err(Failure::Input(format!(
+            "{key}: the scene sweeps {whiskers} whiskers; {command} looks at one, so give the axis one value or leave it \
+             out"
+        )));
+    }
+    let (nearest, farthest) = scene.distances_mm();
+    let radius = scene.pole.radius_mm;
+    for &distance in distances {
         if !(nearest <= distance && distance <= farthest && distance > radius) {
             let [distance, nearest, farthest, radius] =
                 [distance, nearest, farthest, radius].map(digits);
@@ -44,20 +74,21 @@ impl Pole {
                  and more than {radius} (pole.radius_mm)"
             )));
         }
-        let whisker = scene.first_whisker();
-        Ok((scene, whisker))
     }
+    let whisker = scene.first_whisker();
+    Ok((scene, whisker))
+}
 
-    /// The title of a chart.
-    pub fn title(&self, scene: &Scene) -> String {
-        format!("{}, touched at {} mm", scene.title, self.distance)
-    }
+/// The title of a chart of the scene, with poles at these distances.
+pub fn title(scene: &Scene, distances_mm: &[f64]) -> String {
+    let distances: Vec<String> = distances_mm.iter().map(f64::to_string).collect();
+    format!("{}, touched at {} mm", scene.title, distances.join(", "))
+}
 
-    /// A state that does not exist was asked for; a continuation that got lost is no fault of the input.
-    pub fn refuse(&self, why: NoState) -> Failure {
-        match why {
-            NoState::Lost { .. } => Failure::State(why),
-            _ => Failure::Input(format!("--distance {}: {why}", self.distance)),
-        }
+/// A state that does not exist was asked for; a continuation that got lost is no fault of the input.
+pub fn refuse(distance_mm: f64, why: NoState) -> Failure {
+    match why {
+        NoState::Lost { .. } => Failure::State(why),
+        _ => Failure::Input(format!("--distance {distance_mm}: {why}")),
     }
 }

@@ -16,7 +16,9 @@ Examples:
   whiskmap reproduce
   whiskmap reproduce /tmp/figures
 
-Solid lines are stable and dashed ones unstable states; black is slip-off and blue is pull-off, as in the paper.")]
+Writes fig1, fig2, fig3, fig4d and fig5c as SVG and PNG, and a CSV for each panel. Solid lines are stable states or \
+whiskers, dashed ones unstable states or cylinders; black is slip-off and blue is pull-off, as in the paper. The push \
+angle is the rotation of the base since first touch.")]
 pub struct Options {
     /// Folder for the files; it is made if it is missing
     #[arg(value_name = "DIR", default_value = "outputs")]
@@ -28,7 +30,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     let folder = &options.folder;
     outputs::folder("DIR", folder)?;
     let mut out = std::io::stdout().lock();
-    for figure in paper::figures().map_err(Failure::State)? {
+    for figure in paper::figures(&paper::Measurements::default()).map_err(Failure::State)? {
         for (ending, format) in [("png", Format::Png), ("svg", Format::Svg)] {
             let path = folder.join(figure.name).with_extension(ending);
             figure.chart.picture().save(&path, format)?;

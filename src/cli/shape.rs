@@ -4,10 +4,10 @@ use super::columns;
 use super::failure::{Failure, say};
 use super::numbers::{number, whole};
 use super::outputs::Outputs;
-use super::pole::Pole;
+use super::pole::{Pole, refuse, title};
 use clap::{Args, ValueEnum};
 use whiskmap::classify::Sliding;
-use whiskmap::render::{Drawn, Ink, Stroke, shapes};
+use whiskmap::render::{Drawn, Ink, Line, Stroke, shapes};
 use whiskmap::rod::Side;
 use whiskmap::scene::digits;
 use whiskmap::trace::{Branch, NoState, Shape, ShapePoint};
@@ -81,14 +81,15 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         None => Side::of_push(push_deg),
     };
     let stable = options.branch == Part::Stable;
-    let refuse = |why| match why {
-        NoState::OutOfReach { .. } | NoState::Lost { .. } => options.pole.refuse(why),
+    let refused = |why| match why {
+        NoState::OutOfReach { .. } | NoState::Lost { .. } => refuse(options.pole.distance, why),
         _ => Failure::Input(format!("--push-angle {push_deg}: {why}")),
     };
-    let branch = Branch::new(&whisker, &scene.pole, side, options.pole.distance).map_err(refuse)?;
+    let branch =
+        Branch::new(&whisker, &scene.pole, side, options.pole.distance).map_err(refused)?;
     let state = branch
         .state(push_deg.to_radians(), stable)
-        .map_err(refuse)?;
+        .map_err(refused)?;
     let count = options.points as usize;
     let shape = Shape::new(&branch, &state, count);
     if shape.sliding == Some(Sliding::Base) {
@@ -108,7 +109,15 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         stroke,
         name: format!("{name}, {push_deg} deg"),
     };
-    outputs.finish(options.pole.title(&scene), || {
-        shapes("", Shape::at_rest(&branch, count), &[drawn])
+    outputs.finish(title(&scene, &[options.pole.distance]), || {
+        let mut plot = shapes("", &[drawn]);
+        let at_rest = Line {
+            points: Shape::at_rest(&branch, count),
+            ink: Ink::Grey,
+            name: Some("first touch".to_owned()),
+            ..Line::default()
+        };
+        plot.lines.insert(0, at_rest);
+        plot
     })
 }

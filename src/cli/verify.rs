@@ -2,7 +2,7 @@
 
 use super::failure::Failure;
 use std::io::Write;
-use whiskmap::paper::{Expected, checks};
+use whiskmap::paper::{Expected, Verdict, checks};
 
 /// Runs `verify`.
 pub fn run() -> Result<(), Failure> {
@@ -31,16 +31,27 @@ pub fn run() -> Result<(), Failure> {
             format!("{:.11}", check.computed),
             format!("{:.1e}", check.difference()),
             allowed,
-            if check.passes() { "PASS" } else { "FAIL" }
+            match check.verdict() {
+                Verdict::Pass => "PASS",
+                Verdict::Differs => "DIFFERS",
+                Verdict::Fail => "FAIL",
+            }
         )?;
     }
-    let failed = checks.iter().filter(|check| !check.passes()).count();
+    let count = |verdict| {
+        checks
+            .iter()
+            .filter(|check| check.verdict() == verdict)
+            .count()
+    };
     writeln!(
         out,
-        "{} of {} checks pass",
-        checks.len() - failed,
-        checks.len()
+        "{} of {} checks pass; {} DIFFERS: an independent solver contradicts the source, too",
+        count(Verdict::Pass),
+        checks.len(),
+        count(Verdict::Differs)
     )?;
+    let failed = count(Verdict::Fail);
     if failed > 0 {
         return Err(Failure::Checks {
             failed,

@@ -17,6 +17,19 @@ pub struct Check {
     pub expected: Expected,
     /// What it is.
     pub computed: f64,
+    /// An independent solver contradicts the source, too.
+    pub is_disputed: bool,
+}
+
+/// What a comparison says.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// The number is what it should be.
+    Pass,
+    /// It is not, but neither is an independent solver's.
+    Differs,
+    /// It is not.
+    Fail,
 }
 
 /// What a number should be.
@@ -41,10 +54,15 @@ impl Check {
 
     /// Whether the number is what it should be; NaN never is.
     #[must_use]
-    pub fn passes(&self) -> bool {
-        match self.expected {
+    pub fn verdict(&self) -> Verdict {
+        let passes = match self.expected {
             Expected::Near(_, tolerance) => self.difference() <= tolerance,
             Expected::Above(bound) => self.computed > bound,
+        };
+        match passes {
+            true => Verdict::Pass,
+            false if self.is_disputed && self.computed.is_finite() => Verdict::Differs,
+            false => Verdict::Fail,
         }
     }
 }
@@ -70,6 +88,7 @@ pub(super) fn near(
         source,
         expected: Expected::Near(expected, tolerance),
         computed: computed.unwrap_or(f64::NAN),
+        is_disputed: false,
     }
 }
 

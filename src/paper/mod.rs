@@ -11,8 +11,8 @@ mod published;
 mod reference;
 mod whiskers;
 
-pub use check::{Check, Expected};
-pub use figures::{Figure, Rows, figures};
+pub use check::{Check, Expected, Verdict};
+pub use figures::{Figure, Measured, Measurements, Rows, figures};
 
 /// Every number that is known otherwise: published, in closed form, or from an independent solver.
 #[must_use]

@@ -6,8 +6,13 @@ use crate::scene::{Curvature, Pole, Whisker};
 /// The paper's pole.
 pub const POLE: Pole = Pole::smooth(0.25);
 
-/// Where the paper's Fig. 2 puts the centre of the pole, in the frame of the base at first touch.
-const FIG2_POLE_MM: [f64; 2] = [15.13, 4.29];
+/// Where Figs. 2 and 3 put the centre of the pole, in the frame of the base at first touch (CB; CF as in Fig. 3).
+const fn pole_mm(side: Side) -> [f64; 2] {
+    match side {
+        Side::Cb => [15.13, 4.29],
+        Side::Cf => [14.87, 4.71],
+    }
+}
 
 /// The truncated cone of Figs. 2A, 2B and 3A-E.
 pub const CONE: Whisker = whisker([20.0, 30.0, 1.5], 0.02, 0.0);
@@ -53,9 +58,17 @@ pub const fn whisker([length_mm, base, tip]: [f64; 3], a_per_mm: f64, vertex_mm:
     }
 }
 
-/// The distance at which the pole of Fig. 2 first touches `whisker`.
-pub fn fig2_distance_mm(whisker: &Whisker) -> f64 {
-    let rest = Rest::new(&whisker.rod(&POLE, Side::Cb));
-    let [x, y] = FIG2_POLE_MM;
+/// The distance at which the pole of Figs. 2 and 3 first touches `whisker` on one side: the paper's d = 15.7 mm.
+pub fn pole_distance_mm(whisker: &Whisker, side: Side) -> f64 {
+    let rest = Rest::new(&whisker.rod(&POLE, side));
+    let [x, y] = pole_mm(side);
     rest.distance_of_pole(x.hypot(y) / whisker.length_mm) * whisker.length_mm
+}
+
+/// A cylinder with the length, the base and the curvature of `whisker`.
+pub fn cylinder_of(whisker: &Whisker) -> Whisker {
+    Whisker {
+        tip_radius_um: whisker.base_radius_um,
+        ..whisker.clone()
+    }
 }

@@ -3,15 +3,17 @@
 use super::font::{self, CAPITALS};
 use super::palette::{INK, Rgb, WHITE};
 use super::picture::{Anchor, Mark, Pen, Picture};
-use super::strokes::{cover, dashes};
+use super::strokes::{Coverage, dashes};
+use png::Compression;
 
 /// The pixels of a picture, row by row.
-pub(super) fn draw(picture: &Picture) -> Vec<Rgb> {
+fn draw(picture: &Picture) -> Vec<Rgb> {
     let size = picture.pixels();
     let mut bitmap = Bitmap {
         size,
         scale: picture.scale,
         pixels: vec![WHITE; size[0] * size[1]],
+        coverage: Coverage::new(size),
     };
     for mark in &picture.marks {
         bitmap.mark(mark);
@@ -19,14 +21,26 @@ pub(super) fn draw(picture: &Picture) -> Vec<Rgb> {
     bitmap.pixels
 }
 
-/// A PNG file.
+/// A picture as a PNG file. Lines on white are small however they are compressed; cells of a map are not.
+pub(super) fn file(picture: &Picture) -> Result<Vec<u8>, png::EncodingError> {
+    let has_cells = |mark: &Mark| matches!(mark, Mark::Raster(..));
+    let compression = match picture.marks.iter().any(has_cells) {
+        true => Compression::Balanced,
+        false => Compression::Fastest,
+    };
+    encode(picture.pixels(), &draw(picture), compression)
+}
+
+/// Pixels as a PNG file.
 pub(super) fn encode(
     [width, height]: [usize; 2],
     pixels: &[Rgb],
+    compression: Compression,
 ) -> Result<Vec<u8>, png::EncodingError> {
     let mut file = Vec::new();
     let mut encoder = png::Encoder::new(&mut file, width as u32, height as u32);
     encoder.set_color(png::ColorType::Rgb);
+    encoder.set_compression(compression);
     let mut writer = encoder.write_header()?;
     writer.write_image_data(pixels.as_flattened())?;
     writer.finish()?;
@@ -38,6 +52,7 @@ struct Bitmap {
     /// Pixels per unit of the marks.
     scale: f64,
     pixels: Vec<Rgb>,
+    coverage: Coverage,
 }
 
 impl Bitmap {
@@ -69,8 +84,8 @@ impl Bitmap {
     fn stroke(&mut self, points: &[[f64; 2]], width: f64, ink: Rgb) {
         let scaled = |point: &[f64; 2]| point.map(|at| at * self.scale);
         let points: Vec<_> = points.iter().map(scaled).collect();
-        for ([x, y], part) in cover(&points, 0.5 * width * self.scale, self.size) {
-            self.blend([x as i64, y as i64], ink, part);
+        for ([x, y], part) in self.coverage.of(&points, 0.5 * width * self.scale) {
+            mix(&mut self.pixels[y * self.size[0] + x], ink, part);
         }
     }
 
@@ -99,15 +114,19 @@ impl Bitmap {
         }
     }
 
-    /// Mixes ink into a pixel, if it is one of the picture's.
+    /// Mixes a part of ink into a pixel, if it is one of the picture's.
     fn blend(&mut self, [x, y]: [i64; 2], ink: Rgb, part: f64) {
         let [width, height] = self.size.map(|length| length as i64);
         if (0..width).contains(&x) && (0..height).contains(&y) {
-            let pixel = &mut self.pixels[(y * width + x) as usize];
-            for (channel, ink) in pixel.iter_mut().zip(ink) {
-                let mixed = f64::from(*channel) * (1.0 - part) + f64::from(ink) * part;
-                *channel = mixed.round() as u8;
-            }
+            mix(&mut self.pixels[(y * width + x) as usize], ink, part);
         }
+    }
+}
+
+/// Mixes a part of ink into a pixel.
+fn mix(pixel: &mut Rgb, ink: Rgb, part: f64) {
+    for (channel, ink) in pixel.iter_mut().zip(ink) {
+        let mixed = f64::from(*channel) * (1.0 - part) + f64::from(ink) * part;
+        *channel = (mixed + 0.5) as u8;
     }
 }

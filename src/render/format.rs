@@ -37,7 +37,7 @@ impl Picture {
     /// The encoder refuses the pixels.
     pub fn encode(&self, format: Format) -> Result<Vec<u8>, Error> {
         Ok(match format {
-            Format::Png => bitmap::encode(self.pixels(), &bitmap::draw(self))?,
+            Format::Png => bitmap::file(self)?,
             Format::Svg => svg::document(self)?.into_bytes(),
         })
     }

@@ -21,10 +21,10 @@ mod ticks;
 mod traces;
 mod units;
 
-pub use chart::{Chart, Disc, Dot, Ink, Line, Plot, Stroke};
+pub use chart::{Chart, Disc, Dot, Ink, Inset, Line, Note, Plot, Stroke};
 pub use error::Error;
 pub use font::missing_glyphs;
 pub use format::Format;
 pub use map::{MapOptions, map};
 pub use picture::Picture;
-pub use traces::{Axis, BranchAxis, CurveAxis, Drawn, branches, curves, shapes};
+pub use traces::{Axis, BranchAxis, CurveAxis, Drawn, Ends, branches, curves, shapes};

@@ -2,31 +2,54 @@
 
 use super::picture::DASHES;
 use glam::DVec2;
-use std::collections::HashMap;
 use std::ops::Range;
 
-/// The pixels that a polyline with round ends and corners touches on a picture of size `limit`, each with the part of
-/// it that is covered. A single point is a disc; a pixel that several segments touch counts once.
-pub(super) fn cover(
-    points: &[[f64; 2]],
-    radius: f64,
-    limit: [usize; 2],
-) -> HashMap<[usize; 2], f64> {
-    let mut parts = HashMap::new();
-    let disc = (points.len() == 1).then(|| [points[0]; 2]);
-    let segments = points.windows(2).map(|pair| [pair[0], pair[1]]);
-    for ends in segments.chain(disc) {
-        let [across, down] = [0, 1].map(|axis| reach(ends, axis, radius, limit[axis]));
-        for (x, y) in down.flat_map(|y| across.clone().map(move |x| (x, y))) {
-            let away = distance(DVec2::new(x as f64 + 0.5, y as f64 + 0.5), ends);
-            let part = (radius + 0.5 - away).clamp(0.0, 1.0);
-            if part > 0.0 {
-                let most = parts.entry([x, y]).or_insert(part);
+/// How much of each pixel a stroke covers. One is enough for all strokes of a picture.
+pub(super) struct Coverage {
+    size: [usize; 2],
+    parts: Vec<f32>,
+    /// Indices of the parts that are not 0.
+    touched: Vec<usize>,
+}
+
+impl Coverage {
+    /// For a picture of this many pixels.
+    pub(super) fn new(size: [usize; 2]) -> Self {
+        Self {
+            size,
+            parts: vec![0.0; size[0] * size[1]],
+            touched: Vec::new(),
+        }
+    }
+
+    /// The pixels that a polyline with round ends and corners touches, each with the part of it that is covered. A single
+    /// point is a disc; a pixel that several segments touch comes once.
+    pub(super) fn of(
+        &mut self,
+        points: &[[f64; 2]],
+        radius: f64,
+    ) -> impl Iterator<Item = ([usize; 2], f64)> {
+        let disc = (points.len() == 1).then(|| [points[0]; 2]);
+        let segments = points.windows(2).map(|pair| [pair[0], pair[1]]);
+        for ends in segments.chain(disc) {
+            let [across, down] = [0, 1].map(|axis| reach(ends, axis, radius, self.size[axis]));
+            for (x, y) in down.flat_map(|y| across.clone().map(move |x| (x, y))) {
+                let away = distance(DVec2::new(x as f64 + 0.5, y as f64 + 0.5), ends);
+                let part = (radius + 0.5 - away).clamp(0.0, 1.0) as f32;
+                let index = y * self.size[0] + x;
+                let most = &mut self.parts[index];
+                if part > 0.0 && *most == 0.0 {
+                    self.touched.push(index);
+                }
                 *most = part.max(*most);
             }
         }
+        let (width, parts) = (self.size[0], &mut self.parts);
+        self.touched.drain(..).map(move |index| {
+            let part = std::mem::take(&mut parts[index]);
+            ([index % width, index / width], f64::from(part))
+        })
     }
-    parts
 }
 
 /// The pixels along one axis that a stroke along a segment can touch.
@@ -84,7 +107,8 @@ mod tests {
 
     #[test]
     fn what_lies_outside_of_the_picture_is_not_covered() {
-        let count = |points: &[[f64; 2]]| cover(points, 2.0, [10, 10]).len();
+        let mut coverage = Coverage::new([10, 10]);
+        let mut count = |points: &[[f64; 2]]| coverage.of(points, 2.0).count();
         assert_eq!(count(&[[-50.0, 5.0], [-40.0, 5.0]]), 0);
         assert_eq!(count(&[[50.0, 5.0]]), 0);
         assert_eq!(count(&[]), 0);

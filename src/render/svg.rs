@@ -5,6 +5,7 @@ use super::error::Error;
 use super::font::CAPITALS;
 use super::palette::{INK, Rgb, WHITE};
 use super::picture::{Anchor, DASHES, Mark, Pen, Picture};
+use png::Compression;
 
 /// The document of a picture.
 pub(super) fn document(picture: &Picture) -> Result<String, Error> {
@@ -28,7 +29,7 @@ pub(super) fn document(picture: &Picture) -> Result<String, Error> {
             Mark::Raster(corner, size, pixels) => {
                 let units = |pixels: usize| number(pixels as f64 / picture.scale);
                 let ([x, y], [width, height]) = (corner.map(units), size.map(units));
-                let png = base64(&bitmap::encode(*size, pixels)?);
+                let png = base64(&bitmap::encode(*size, pixels, Compression::Balanced)?);
                 format!(
                     "<image x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" preserveAspectRatio=\"none\" \
                      style=\"image-rendering:pixelated\" xlink:href=\"data:image/png;base64,{png}\"/>\n"

@@ -19,53 +19,74 @@ pub type CurveAxis = Axis<Detachment, Option<f64>>;
 /// An axis of a branch.
 pub type BranchAxis = Axis<BranchPoint, f64>;
 
-/// A plot of detachment curves; `rows` of one side and whisker after the other, each at growing distances.
+/// Detachment curves to draw, and how.
+#[derive(Clone, Copy, Debug)]
+pub struct Ends<'a> {
+    /// Of one side and whisker after the other, each at growing distances.
+    pub rows: &'a [Detachment],
+    /// Solid or dashed.
+    pub stroke: Stroke,
+    /// Whose they are, for the legend; may be empty.
+    pub name: &'a str,
+}
+
+/// A plot of detachment curves.
 #[must_use]
-pub fn curves(title: &str, rows: &[Detachment], [x, y]: [CurveAxis; 2]) -> Plot {
+pub fn curves(title: &str, all: &[Ends], [x, y]: [CurveAxis; 2]) -> Plot {
     let mut plot = empty(title, x.label, y.label);
     let place = |row: &Detachment| Some([(x.value)(row)?, (y.value)(row)?]);
-    for side in rows.chunk_by(|a, b| a.side == b.side && a.distance_mm < b.distance_mm) {
-        let kinds = side.chunk_by(|a, b| a.kind == b.kind);
-        let parts = kinds.filter_map(|part| {
-            let (ink, name) = match part[0].kind {
-                DetachmentKind::SlipOff => (Ink::Black, "slip-off"),
-                DetachmentKind::PullOff => (Ink::Blue, "pull-off"),
-                DetachmentKind::OutOfReach | DetachmentKind::Unresolved => return None,
-            };
-            let points = part.iter().filter_map(place).collect();
-            Some(line(points, ink, Stroke::Solid, name))
-        });
-        plot.lines.extend(joined(parts));
+    for Ends { rows, stroke, name } in all {
+        for side in rows.chunk_by(|a, b| a.side == b.side && a.distance_mm < b.distance_mm) {
+            let kinds = side.chunk_by(|a, b| a.kind == b.kind);
+            let parts = kinds.filter_map(|part| {
+                let (ink, kind) = match part[0].kind {
+                    DetachmentKind::SlipOff => (Ink::Black, "slip-off"),
+                    DetachmentKind::PullOff => (Ink::Blue, "pull-off"),
+                    DetachmentKind::OutOfReach | DetachmentKind::Unresolved => return None,
+                };
+                let name = match *name {
+                    "" => kind.to_owned(),
+                    name => format!("{name}: {kind}"),
+                };
+                let points = part.iter().filter_map(place).collect();
+                Some(line(points, ink, *stroke, &name))
+            });
+            plot.lines.extend(joined(parts));
+        }
     }
     plot
 }
 
-/// A bifurcation diagram; `points` of one side after the other, each from first touch on.
+/// A bifurcation diagram. Points have the ink beside them; each branch begins at its first touch.
 #[must_use]
-pub fn branches(title: &str, points: &[BranchPoint], [x, y]: [BranchAxis; 2]) -> Plot {
+pub fn branches(title: &str, poles: &[(Ink, &[BranchPoint])], [x, y]: [BranchAxis; 2]) -> Plot {
     let mut plot = empty(title, x.label, y.label);
     let place = |point: &BranchPoint| [(x.value)(point), (y.value)(point)];
-    for side in points.chunk_by(|a, b| a.side == b.side) {
-        let parts = side.chunk_by(|a, b| a.stable == b.stable).map(|part| {
-            let (stroke, name) = if part[0].stable {
-                (Stroke::Solid, "stable")
-            } else {
-                (Stroke::Dashed, "unstable")
-            };
-            line(part.iter().map(place).collect(), Ink::Black, stroke, name)
-        });
-        plot.lines.extend(joined(parts));
-        for point in side {
-            let (ink, name) = match point.mark {
-                Some(Mark::Fold) => (Ink::Black, "slip-off"),
-                Some(Mark::Tip) if point.stable => (Ink::Blue, "pull-off"),
-                _ => continue,
-            };
-            plot.dots.push(Dot {
-                at: place(point),
-                ink,
-                name: Some(name.to_owned()),
+    for (ink, points) in poles {
+        for branch in points.chunk_by(|_, next| next.mark != Some(Mark::FirstTouch)) {
+            let parts = branch.chunk_by(|a, b| a.stable == b.stable).map(|part| {
+                let (stroke, name) = match part[0].stable {
+                    true => (Stroke::Solid, "stable"),
+                    false => (Stroke::Dashed, "unstable"),
+                };
+                line(part.iter().map(place).collect(), *ink, stroke, name)
             });
+            plot.lines.extend(joined(parts));
+            plot.dots.extend(branch.iter().filter_map(|point| {
+                let (ink, name) = match point.mark? {
+                    Mark::FirstTouch => (*ink, "first touch"),
+                    Mark::SlipOff => (Ink::Black, "slip-off"),
+                    Mark::PullOff => (Ink::Blue, "pull-off"),
+                    Mark::SecondFold => (Ink::Grey, "second fold"),
+                    Mark::Tip => return None,
+                };
+                Some(Dot {
+                    at: place(point),
+                    ink,
+                    open: point.mark == Some(Mark::FirstTouch),
+                    name: Some(name.to_owned()),
+                })
+            }));
         }
     }
     plot
@@ -84,13 +105,11 @@ pub struct Drawn {
     pub name: String,
 }
 
-/// Whiskers in front of their pole, with the whisker at first touch in grey.
+/// Whiskers in front of their pole.
 #[must_use]
-pub fn shapes(title: &str, at_rest: Vec<[f64; 2]>, drawn: &[Drawn]) -> Plot {
+pub fn shapes(title: &str, drawn: &[Drawn]) -> Plot {
     let mut plot = empty(title, "x (mm)", "y (mm)");
     plot.equal_axes = true;
-    plot.lines
-        .push(line(at_rest, Ink::Grey, Stroke::Solid, "first touch"));
     plot.lines.extend(drawn.iter().map(|drawn| {
         let points = drawn.shape.points.iter().map(|p| [p.x_mm, p.y_mm]);
         line(points.collect(), drawn.ink, drawn.stroke, &drawn.name)
@@ -98,6 +117,7 @@ pub fn shapes(title: &str, at_rest: Vec<[f64; 2]>, drawn: &[Drawn]) -> Plot {
     plot.discs.extend(drawn.first().map(|drawn| Disc {
         centre: drawn.shape.pole_mm,
         radius: drawn.shape.pole_radius_mm,
+        dark: false,
     }));
     plot
 }

@@ -18,12 +18,15 @@ pub struct Branch {
     pub(super) level: LevelCurve,
     pub(super) units: Units,
     pub(super) continuation: Continuation,
+    distance_mm: f64,
 }
 
 row! {
     /// A state on a branch, in the units of people.
     #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
     pub struct BranchPoint {
+        /// Distance from the base to the contact at first touch.
+        pub distance_mm: f64,
         /// Side of the whisker that the pole is on: cb (convex) or cf (concave).
         pub side: Side,
         /// Whether the state is stable; at the fold, the last one that is.
@@ -42,7 +45,7 @@ row! {
         pub base_moment_nnm: f64,
         /// det d(D, phi)/d(s_obj, f) with f = F L^2/(E I_base): 0 at a fold.
         pub det: f64,
-        /// What is special: touch, fold, tip, second-fold (the unstable states' end).
+        /// first-touch; slip-off, pull-off (stable end); second-fold, tip (unstable end).
         pub mark: Option<Mark>,
         /// With friction, which way the contact slides: tip, as assumed, or base.
         pub sliding: Option<Sliding>,
@@ -81,6 +84,7 @@ impl Branch {
             continuation: followed.ok_or(none)?,
             units: whisker.units(),
             level,
+            distance_mm,
         })
     }
 
@@ -108,16 +112,17 @@ impl Branch {
         let (last, last_node) = (targets.len() - 1, nodes.len() - 1);
         let end_mark = match (fold, end) {
             (Some(_), Edge::Fold) => Mark::SecondFold,
-            _ => Mark::Tip,
+            (Some(_), Edge::Tip) => Mark::Tip,
+            (None, _) => Mark::PullOff,
         };
         let on_curve = guesses.iter().zip(corrected).enumerate();
         let marked: Vec<(Node, Option<Mark>)> = on_curve
             .map(|(i, ((near, _), corrected))| {
                 // The ends and the fold are known better than any corrector knows them.
                 let exact = match i {
-                    0 => Some((nodes[0], Mark::Touch)),
+                    0 => Some((nodes[0], Mark::FirstTouch)),
                     _ if i == last => Some((nodes[last_node], end_mark)),
-                    _ if Some(i) == fold_at => fold.map(|fold| (nodes[fold], Mark::Fold)),
+                    _ if Some(i) == fold_at => fold.map(|fold| (nodes[fold], Mark::SlipOff)),
                     _ => None,
                 };
                 let near = &nodes[*near];
@@ -171,6 +176,7 @@ impl Branch {
         let LevelCurve { rod, side, row, .. } = &self.level;
         let reading = self.reading(node.point.x, &node.full, node.push);
         BranchPoint {
+            distance_mm: self.distance_mm,
             side: *side,
             stable,
             push_angle_deg: node.push.to_degrees(),

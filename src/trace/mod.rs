@@ -28,13 +28,15 @@ const FINER: Resolution = Resolution::FINE.doubled();
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Mark {
-    /// First touch.
-    Touch,
+    /// The resting whisker touches the pole.
+    FirstTouch,
     /// The saddle-node, where the stable states end.
-    Fold,
-    /// The contact has reached the tip.
+    SlipOff,
+    /// The stable states end with the contact at the tip.
+    PullOff,
+    /// The unstable states do.
     Tip,
-    /// Where the unstable states end.
+    /// The unstable states end at a fold of their own.
     SecondFold,
 }
 

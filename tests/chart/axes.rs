@@ -1,7 +1,7 @@
 //! Axes: their units and ranges, whatever the data.
 
 use crate::drawn::{Pixels, frame, line, polylines, single, svg, well_formed};
-use whiskmap::render::{Chart, Disc, Dot, Ink, Plot, Stroke};
+use whiskmap::render::{Chart, Disc, Dot, Ink, Note, Plot, Stroke};
 
 #[test]
 fn degenerate_data_give_pictures_without_nan() {
@@ -44,6 +44,13 @@ fn degenerate_data_give_pictures_without_nan() {
                 discs: vec![Disc {
                     centre: [one, one],
                     radius: other,
+                    dark: false,
+                }],
+                notes: vec![Note {
+                    at: [one, other],
+                    to: Some([other, other]),
+                    text: "note".to_owned(),
+                    ..Note::default()
                 }],
                 equal_axes,
                 ..Plot::default()
@@ -73,7 +80,8 @@ fn degenerate_data_give_pictures_without_nan() {
                 &Chart {
                     title,
                     plots,
-                    columns
+                    columns,
+                    ..Chart::default()
                 }
                 .picture()
             )
@@ -116,6 +124,7 @@ fn a_large_disc_widens_both_axes() {
             discs: vec![Disc {
                 centre: [50.0, 30.0],
                 radius,
+                dark: false,
             }],
             equal_axes: true,
             ..Plot::default()

@@ -4,7 +4,7 @@ use crate::drawn::{frame, line, polylines, single, svg, well_formed};
 use crate::{arc, both};
 use std::fs;
 use std::path::Path;
-use whiskmap::render::{self, Chart, Disc, Dot, Format, Ink, Line, Plot, Stroke};
+use whiskmap::render::{self, Chart, Disc, Dot, Format, Ink, Line, Note, Plot, Stroke};
 use whiskmap::store;
 
 #[test]
@@ -54,14 +54,19 @@ fn a_document_is_well_formed_whatever_the_texts() {
             }],
             dots: vec![Dot::default()],
             discs: vec![Disc::default()],
-            equal_axes: false,
+            notes: vec![Note {
+                text: text.to_owned(),
+                ..Note::default()
+            }],
+            ..Plot::default()
         }],
+        caption: vec![text.to_owned()],
         columns: 3,
     };
     let svg = svg(&chart.picture());
     assert!(well_formed(&svg), "{svg}");
     let shown = "a&lt;b &amp; &quot;c&quot;&gt; \u{2212} \u{fffd}</text>";
-    assert_eq!(svg.matches(shown).count(), 5);
+    assert_eq!(svg.matches(shown).count(), 7);
     for damage in ["</text>", "</svg>", "amp;", "/>"] {
         assert!(
             !well_formed(&svg.replacen(damage, "", 1)),
@@ -90,6 +95,7 @@ fn plots_stand_in_rows() {
         title: "eight".to_owned(),
         plots: ('A'..='H').map(plot).collect(),
         columns: 2,
+        ..Chart::default()
     };
     let (svg, picture) = both(&chart);
     let size = format!("width=\"{}\" height=\"{}\"", picture.width, picture.height);

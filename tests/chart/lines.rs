@@ -116,17 +116,18 @@ fn dots_and_discs_are_drawn_and_axes_are_equal() {
         lines: vec![line(&[[0.0, 0.0], [10.0, 0.0]], Ink::Grey, Stroke::Solid)],
         dots: vec![Dot {
             at: [10.0, 0.0],
-            ink: Ink::Black,
-            name: None,
+            ..Dot::default()
         }],
         discs: vec![
             Disc {
                 centre: [4.0, 3.0],
                 radius: 1.0,
+                dark: false,
             },
             Disc {
                 centre: [8.0, 3.0],
                 radius: 1e-9,
+                dark: false,
             },
         ],
         equal_axes: true,

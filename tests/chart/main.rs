@@ -9,6 +9,7 @@ mod axes;
 mod documents;
 #[path = "../drawn/mod.rs"]
 mod drawn;
+mod insets;
 mod lines;
 
 use drawn::{Pixels, svg};

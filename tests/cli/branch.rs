@@ -11,10 +11,10 @@ fn a_branch_has_as_many_points_as_asked_for() {
     assert_eq!(rows.len(), 17);
     let marks: Vec<&str> = rows
         .iter()
-        .map(|row| row[9])
+        .map(|row| row[10])
         .filter(|mark| !mark.is_empty())
         .collect();
-    assert_eq!(marks, ["touch", "fold", "second-fold"]);
+    assert_eq!(marks, ["first-touch", "slip-off", "second-fold"]);
     let both = good(&place, &["branch", "scene.toml", "--distance", "15.66"]);
     assert_eq!(cells(&both.out, BRANCH).len(), 400);
 }
@@ -37,7 +37,7 @@ fn the_fold_can_be_asked_for() {
                 ],
             );
             let rows = cells(&run.out, BRANCH);
-            let fold = rows.iter().find(|row| row[9] == "fold").unwrap();
+            let fold = rows.iter().find(|row| row[10] == "slip-off").unwrap();
             for branch in ["stable", "unstable"] {
                 let at = [
                     "shape",
@@ -45,7 +45,7 @@ fn the_fold_can_be_asked_for() {
                     "--distance",
                     distance,
                     "--push-angle",
-                    fold[2],
+                    fold[3],
                 ];
                 good(
                     &place,
@@ -75,4 +75,61 @@ fn the_fold_can_be_asked_for() {
             "-1e-5",
         ],
     );
+}
+
+#[test]
+fn several_poles_share_a_table_and_a_plot() {
+    let place = Place::with(SCENE);
+    let several = [
+        "branch",
+        "scene.toml",
+        "--distance",
+        "10,13",
+        "--distance=15.66",
+        "--points=9",
+    ];
+    let run = good(&place, &several);
+    let rows = cells(&run.out, BRANCH);
+    let blocks: Vec<_> = rows
+        .chunk_by(|a, b| a[..2] == b[..2])
+        .map(|block| (block[0][0], block[0][1], block.len()))
+        .collect();
+    let expected =
+        ["10.0", "13.0", "15.66"].map(|distance| [(distance, "cf", 9), (distance, "cb", 9)]);
+    assert_eq!(blocks, expected.concat());
+    let alone = good(
+        &place,
+        &["branch", "scene.toml", "--distance=13", "--points=9"],
+    );
+    assert_eq!(cells(&alone.out, BRANCH), rows[18..36]);
+
+    for (column, label) in [
+        ("arc_length_mm", "arc length of contact (mm)"),
+        ("force_un", "force (\u{b5}N)"),
+        ("base_moment_nnm", "moment at the base (nN m)"),
+        (
+            "contact_angle_deg",
+            "contact angle from the base's tangent (deg)",
+        ),
+    ] {
+        good(
+            &place,
+            &[&several[..], &["--y", column, "--plot=p.svg"]].concat(),
+        );
+        let svg = String::from_utf8(place.bytes("p.svg")).unwrap();
+        for text in [
+            label,
+            "first touch",
+            "slip-off",
+            "second fold",
+            "10 mm",
+            "15.66 mm",
+        ] {
+            assert!(svg.contains(&format!(">{text}<")), "{column}: {text}");
+        }
+    }
+    let far = place.run(&["branch", "scene.toml", "--distance", "10,25"]);
+    far.assert_refused(&["--distance 25: out of reach: the tip of the resting whisker is 19.6"]);
+    let wide = place.run(&["branch", "scene.toml", "--distance", "10,1000"]);
+    wide.assert_refused(&["--distance 1000: must be between"]);
 }

@@ -84,7 +84,7 @@ fn sliding_toward_the_base_is_told() {
         &["branch", "scene.toml", "--distance=9", "--side=cf"],
     );
     let rows = cells(&branch.out, BRANCH);
-    assert_eq!([rows[1][10], rows[199][10]], ["base", "tip"]);
+    assert_eq!([rows[1][11], rows[199][11]], ["base", "tip"]);
     let curve = good(&place, &["curve", "scene.toml"]);
     for row in cells(&curve.out, CURVE) {
         let sliding = if row[3] == "out-of-reach" { "" } else { "tip" };

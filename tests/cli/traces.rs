@@ -5,7 +5,7 @@ use crate::{Place, Run, SCENE, names};
 pub const CURVE: &str = "side,distance_mm,pole_distance_mm,kind,push_angle_deg,push_chord_deg,contact_distance_mm,\
                      arc_length_mm,force_un,base_force_x_un,base_force_y_un,base_moment_nnm,contact_angle_deg,residual,\
                      sliding";
-pub const BRANCH: &str = "side,stable,push_angle_deg,push_chord_deg,arc_length_mm,contact_angle_deg,force_un,\
+pub const BRANCH: &str = "distance_mm,side,stable,push_angle_deg,push_chord_deg,arc_length_mm,contact_angle_deg,force_un,\
                       base_moment_nnm,det,mark,sliding";
 pub const SHAPE: &str = "arc_length_mm,x_mm,y_mm,angle_deg,curvature_per_mm,moment_nnm,part";
 pub const CB: [&str; 5] = ["branch", "scene.toml", "--distance", "15.66", "--side=cb"];

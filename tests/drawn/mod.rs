@@ -16,9 +16,9 @@ pub fn line(points: &[[f64; 2]], ink: Ink, stroke: Stroke) -> Line {
 /// A chart of one plot, without a title.
 pub fn single(plot: Plot) -> Chart {
     Chart {
-        title: String::new(),
         plots: vec![plot],
         columns: 1,
+        ..Chart::default()
     }
 }
 

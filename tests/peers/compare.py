@@ -24,6 +24,7 @@ from resting import Whisker
 
 SCENES = ("cone", "cylinder", "fig4_whisker", "fig4_hair", "fig5_left")
 SIDES = {"cb": 1, "cf": -1}
+FOLDS = ("slip-off", "second-fold")
 # Fractions of the length. No resting tip reaches the last distance; all reach the one before it.
 CURVE_DISTANCES = (0.2, 0.27, 0.34, 0.41, 0.48, 0.55, 0.62, 0.69, 0.76, 0.83, 0.9, 0.97, 1.0)
 BRANCH_DISTANCES = (0.3, 0.6, 0.8)
@@ -73,28 +74,28 @@ def compare_branch(report, auto, whisker, slope, rows, fold):
     """One branch from first touch to its end; `fold` is AUTO's on the fold curve, where it solves for it."""
     marks = [row["mark"] for row in rows]
     loads = [whisker.load(float(row["force_un"]), float(row["arc_length_mm"])) for row in rows]
-    wanted = [load for load, mark in zip(loads, marks) if mark in ("", "tip")]
-    expected_folds = [load for load, mark in zip(loads, marks) if "fold" in mark]
+    wanted = [load for load, mark in zip(loads, marks) if mark in ("", "tip", "pull-off")]
+    expected_folds = [load for load, mark in zip(loads, marks) if mark in FOLDS]
     points, labelled = auto.branch(whisker, slope, wanted, expected_folds)
     for row, load in zip(rows, loads):
-        known = {"touch": labelled[0], "fold": fold}
+        known = {"first-touch": labelled[0], "slip-off": fold}
         report.compare(whisker, row, BRANCH_COLUMNS, known.get(row["mark"], points.get(load)))
     report.demand(len(rows) == BRANCH_POINTS, f"{len(rows)} points of {BRANCH_POINTS}")
 
     # A fold at the very end is the second fold, which ends the branch like the tip.
     folds = [abs(solution[LOAD]) for solution in labelled if solution.is_fold()]
     inside = [load for load in folds if load < (1 - 1e-6) * abs(loads[-1])]
-    report.demand(len(inside) == marks.count("fold") <= 1, f"AUTO's folds are at the loads {folds}, marks: {marks}")
+    report.demand(len(inside) == marks.count("slip-off") <= 1, f"AUTO's folds are at the loads {folds}, marks: {marks}")
     for row, load in zip(rows, loads):
-        if row["mark"] != "fold":
+        if row["mark"] != "slip-off":
             stable = str(not inside or abs(load) < inside[0]).lower()
             report.demand(row["stable"] == stable, f"stable is {stable} for AUTO, whose folds are at {folds}: {row}")
-    signs = {(row["stable"], float(row["det"]) > 0) for row in rows if "fold" not in row["mark"]}
+    signs = {(row["stable"], float(row["det"]) > 0) for row in rows if row["mark"] not in FOLDS}
     report.demand(len(signs) == 1 + len(inside), f"det must change its sign at the fold and nowhere else: {signs}")
 
     at_tip = abs(float(rows[-1]["arc_length_mm"]) / whisker.length_mm - 1) <= TOLERANCE["mm"]
-    ends = {"tip": at_tip, "second-fold": loads[-1] in points}
-    whole = marks[0] == "touch" and ends.get(marks[-1], False)
+    ends = {"tip": at_tip, "pull-off": at_tip, "second-fold": loads[-1] in points}
+    whole = marks[0] == "first-touch" and ends.get(marks[-1], False)
     report.demand(whole, f"a branch goes from first touch to the tip or its second fold: {marks}")
 
 
@@ -123,7 +124,7 @@ def compare_scene(auto, whiskmap, text, name, folder):
             slope = whisker.slope_at_distance(fraction)
             rows = table("branch", "--distance", distance, "--side", side, "--points", BRANCH_POINTS)
             pole = whisker.parameters(slope)[POLE - 1]
-            poles_of_folds += [pole for row in rows if row["mark"] == "fold"]
+            poles_of_folds += [pole for row in rows if row["mark"] == "slip-off"]
             branches.append((f"{name} {side} branch at {distance:g} mm", slope, rows, pole))
 
         report = Report(f"{name} {side} curve")

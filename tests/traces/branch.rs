@@ -24,7 +24,9 @@ fn every_branch(count: usize, check: impl Fn(&str, &Branch, &[BranchPoint], f64)
                             &points,
                             side.sign() * end.push_angle_deg.unwrap(),
                         );
-                        let kind = match points.iter().find(|point| point.mark == Some(Mark::Fold))
+                        let kind = match points
+                            .iter()
+                            .find(|point| point.mark == Some(Mark::SlipOff))
                         {
                             Some(_) => DetachmentKind::SlipOff,
                             None => DetachmentKind::PullOff,
@@ -49,7 +51,7 @@ fn det_changes_its_sign_at_the_fold_and_only_there() {
     every_branch(100, |case, _, points, end| {
         let fold = points
             .iter()
-            .position(|point| point.mark == Some(Mark::Fold));
+            .position(|point| point.mark == Some(Mark::SlipOff));
         let stable = &points[..fold.unwrap_or(points.len())];
         assert!(stable.iter().all(|p| p.stable && p.det > 0.0), "{case}");
         if let Some(fold) = fold {
@@ -77,13 +79,13 @@ fn det_changes_its_sign_at_the_fold_and_only_there() {
 fn a_branch_begins_at_first_touch_and_says_how_it_ends() {
     every_branch(20, |case, _, points, _| {
         let (first, last) = (points[0], points[points.len() - 1]);
-        assert_eq!(first.mark, Some(Mark::Touch), "{case}");
+        assert_eq!(first.mark, Some(Mark::FirstTouch), "{case}");
         assert!(
             first.push_angle_deg == 0.0 && first.force_un == 0.0,
             "{case}: {first:?}"
         );
         match last.mark {
-            Some(Mark::Tip) => {
+            Some(Mark::Tip | Mark::PullOff) => {
                 assert!((last.arc_length_mm - 20.0).abs() < 1e-7, "{case}: {last:?}")
             }
             Some(Mark::SecondFold) => assert!(!last.stable, "{case}"),
@@ -111,7 +113,7 @@ fn points_are_evenly_spaced() {
                     .collect();
                 let fold = points
                     .iter()
-                    .position(|point| point.mark == Some(Mark::Fold));
+                    .position(|point| point.mark == Some(Mark::SlipOff));
                 let fold = fold.unwrap_or(chords.len());
                 for part in [&chords[..fold], &chords[fold..]] {
                     let shortest = part.iter().copied().fold(f64::INFINITY, f64::min);

@@ -43,6 +43,8 @@ pub struct Dot {
     pub at: [f64; 2],
     /// Its colour.
     pub ink: Ink,
+    /// Only its rim is inked.
+    pub open: bool,
     /// Its name in the legend, as that of a [`Line`].
     pub name: Option<String>,
 }
@@ -55,6 +57,36 @@ pub struct Disc {
     pub centre: [f64; 2],
     /// In data units; small ones are drawn with 3 pixels.
     pub radius: f64,
+    /// Darker than others.
+    pub dark: bool,
+}
+
+/// A text above a point, an arrow that begins there, or an arrow with a text at its beginning.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Note {
+    /// Across and up, in data units; not drawn unless finite.
+    pub at: [f64; 2],
+    /// May be empty.
+    pub text: String,
+    /// Where the arrow ends, if there is one.
+    pub to: Option<[f64; 2]>,
+    /// Colour of the arrow.
+    pub ink: Ink,
+}
+
+/// A square of a plot on equal axes, drawn once more and larger: its lines, and the discs that lie inside it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Inset {
+    /// Centre of the square, in data units.
+    pub centre: [f64; 2],
+    /// Half its side, in data units; nothing is drawn unless it is more than 0.
+    pub half: f64,
+    /// Where the centre of the larger square stands, as fractions of the body from the left and from below.
+    pub place: [f64; 2],
+    /// Lines of the inset alone.
+    pub lines: Vec<Line>,
+    /// Notes of the inset alone.
+    pub notes: Vec<Note>,
 }
 
 /// Curves over one pair of axes.
@@ -74,8 +106,14 @@ pub struct Plot {
     pub dots: Vec<Dot>,
     /// Drawn first.
     pub discs: Vec<Disc>,
+    /// Drawn last.
+    pub notes: Vec<Note>,
+    /// A part of the plot, enlarged.
+    pub inset: Option<Inset>,
     /// A unit has the same length across and upwards.
     pub equal_axes: bool,
+    /// Without frame, ticks and labels: a drawing.
+    pub bare: bool,
 }
 
 /// Plots in rows.
@@ -83,6 +121,8 @@ pub struct Plot {
 pub struct Chart {
     /// May be empty.
     pub title: String,
+    /// Lines of text below the title.
+    pub caption: Vec<String>,
     /// From left to right, then downwards.
     pub plots: Vec<Plot>,
     /// How many plots stand in a row, at least one.

@@ -1,13 +1,16 @@
 //! Charts: curves over axes that fit them, one plot or several.
 //!
-//! Invariant: every finite point of the data lies inside the frame of its plot; nothing is clipped.
+//! Invariant: every finite point of the data lies inside the frame of its plot; nothing is clipped but in insets, which show
+//! a part once more.
 
 mod data;
+mod inset;
+mod notes;
 mod plot;
 mod sheet;
 mod window;
 
-pub use data::{Chart, Disc, Dot, Ink, Line, Plot, Stroke};
+pub use data::{Chart, Disc, Dot, Ink, Inset, Line, Note, Plot, Stroke};
 
 use super::picture::Picture;
 use sheet::Sheet;

@@ -1,7 +1,8 @@
 //! One plot: frame, ticks and what is inside.
 
-use super::data::{Ink, Line, Plot, Stroke};
+use super::data::{Disc, Ink, Line, Plot, Stroke};
 use super::window::{Window, drawable, drawable_disc};
+use super::{inset, notes};
 use crate::render::axes::{Axes, FRAME};
 use crate::render::heading::{DOT, Heading, Sample};
 use crate::render::palette::{BLANK, BLUE, GREY, INK, Rgb, WHITE};
@@ -17,7 +18,7 @@ const POINT: f64 = 5.0;
 const DISC: f64 = 3.0;
 
 /// The colour that an ink stands for.
-const fn colour(ink: Ink) -> Rgb {
+pub(super) const fn colour(ink: Ink) -> Rgb {
     match ink {
         Ink::Black => INK,
         Ink::Blue => BLUE,
@@ -31,6 +32,36 @@ fn pen(line: &Line) -> Pen {
         width: LINE,
         colour: colour(line.ink),
         dashed: line.stroke == Stroke::Dashed,
+    }
+}
+
+/// What an open dot is drawn with.
+const fn rim(ink: Ink) -> Pen {
+    Pen::solid(LINE, colour(ink))
+}
+
+/// Draws a disc in the data units of `window`, which fills `body`.
+pub(super) fn disc(picture: &mut Picture, body: Area, window: &Window, disc: &Disc) {
+    let centre = window.place(body, disc.centre);
+    let radius = window.pixels(body, disc.radius).max(DISC);
+    let fill = if disc.dark { GREY } else { BLANK };
+    picture.circle(centre, radius, fill, Some(Pen::solid(FRAME, INK)));
+}
+
+/// Draws drawable points the way a line is drawn; a single one is a dot.
+pub(super) fn polyline(
+    picture: &mut Picture,
+    body: Area,
+    window: &Window,
+    points: &[[f64; 2]],
+    line: &Line,
+) {
+    let pen = pen(line);
+    let places = points.iter().map(|point| window.place(body, *point));
+    match places.collect::<Vec<_>>()[..] {
+        [] => {}
+        [only] => picture.circle(only, POINT, pen.colour, None),
+        ref places => picture.polyline(places, pen),
     }
 }
 
@@ -65,32 +96,28 @@ impl<'a> Layout<'a> {
 
     /// Draws the plot into `body`, with `left` pixels of room to the left of it.
     pub(super) fn draw(&self, picture: &mut Picture, body: Area, left: f64) {
-        for disc in self.plot.discs.iter().filter(|disc| drawable_disc(disc)) {
-            let centre = self.window.place(body, disc.centre);
-            let radius = self.window.pixels(body, disc.radius).max(DISC);
-            picture.circle(centre, radius, BLANK, Some(Pen::solid(FRAME, INK)));
+        for one in self.plot.discs.iter().filter(|one| drawable_disc(one)) {
+            disc(picture, body, &self.window, one);
         }
         for line in &self.plot.lines {
-            self.line(picture, body, line);
+            for stretch in line.points.split(|point| !drawable(*point)) {
+                polyline(picture, body, &self.window, stretch, line);
+            }
         }
         for dot in self.plot.dots.iter().filter(|dot| drawable(dot.at)) {
             let at = self.window.place(body, dot.at);
-            picture.circle(at, DOT, colour(dot.ink), Some(Pen::solid(RING, WHITE)));
-        }
-        picture.frame(body, FRAME);
-        self.axes.draw(picture, body, left);
-    }
-
-    /// The stretches of a line between points that cannot be drawn.
-    fn line(&self, picture: &mut Picture, body: Area, line: &Line) {
-        let pen = pen(line);
-        for stretch in line.points.split(|point| !drawable(*point)) {
-            let places = stretch.iter().map(|point| self.window.place(body, *point));
-            match places.collect::<Vec<_>>()[..] {
-                [] => {}
-                [only] => picture.circle(only, POINT, pen.colour, None),
-                ref places => picture.polyline(places, pen),
+            match dot.open {
+                true => picture.circle(at, DOT - 0.5 * LINE, WHITE, Some(rim(dot.ink))),
+                false => picture.circle(at, DOT, colour(dot.ink), Some(Pen::solid(RING, WHITE))),
             }
+        }
+        if let Some(inset) = &self.plot.inset {
+            inset::draw(picture, body, &self.window, self.plot, inset);
+        }
+        notes::draw(picture, body, &self.window, &self.plot.notes);
+        if !self.plot.bare {
+            picture.frame(body, FRAME);
+            self.axes.draw(picture, body, left);
         }
     }
 
@@ -104,7 +131,10 @@ impl<'a> Layout<'a> {
             (sample, &line.name)
         });
         let dots = self.plot.dots.iter();
-        let dots = dots.map(|dot| (Sample::Dot(colour(dot.ink)), &dot.name));
+        let dots = dots.map(|dot| match dot.open {
+            true => (Sample::Ring(rim(dot.ink)), &dot.name),
+            false => (Sample::Dot(colour(dot.ink)), &dot.name),
+        });
         let mut samples: Vec<(Sample, String)> = Vec::new();
         for (sample, name) in lines.chain(dots) {
             if let Some(name) = name.as_deref().filter(|name| !name.is_empty())

@@ -4,7 +4,7 @@ use super::data::Chart;
 use super::plot::Layout;
 use crate::render::axes::BELOW;
 use crate::render::font::{Fitted, fitted};
-use crate::render::heading::{ALONE, HEAD_ROOM, Heading, SIDES, TITLE, TITLE_LINE};
+use crate::render::heading::{ALONE, HEAD_ROOM, Heading, NAME, SIDES, TITLE, TITLE_LINE};
 use crate::render::picture::{Anchor, Area, Picture};
 
 /// Size of the body of a plot among several.
@@ -13,10 +13,14 @@ const AMONG: [f64; 2] = [760.0, 520.0];
 const SIDES_AMONG: [f64; 2] = [116.0, 40.0];
 /// Room above where the chart has no title.
 const ABOVE: f64 = 24.0;
+/// From one line of the caption to the next.
+const CAPTION_LINE: f64 = 28.0;
 
 /// A chart laid out.
 pub(super) struct Sheet<'a> {
     title: Fitted,
+    /// Lines of the caption, each with the middle of its line.
+    caption: Vec<(Fitted, f64)>,
     /// Room to the left of each body.
     left: f64,
     /// Each plot with its heading, the top of the heading, and the plot's body.
@@ -50,6 +54,15 @@ impl<'a> Sheet<'a> {
         } else {
             HEAD_ROOM
         };
+        let room = across - left - right;
+        let lines = chart.caption.iter().enumerate();
+        let caption = lines.map(|(i, line)| {
+            let middle = top + CAPTION_LINE * (i as f64 + 0.5);
+            (fitted(line, NAME, room), middle)
+        });
+        let caption: Vec<_> = caption.collect();
+        top += CAPTION_LINE * caption.len() as f64;
+
         let mut plots = Vec::new();
         let mut rest = layouts.into_iter().peekable();
         while rest.peek().is_some() {
@@ -66,7 +79,8 @@ impl<'a> Sheet<'a> {
             top += head + height + BELOW;
         }
         Self {
-            title: fitted(&chart.title, TITLE, across - left - right),
+            title: fitted(&chart.title, TITLE, room),
+            caption,
             left,
             plots,
             size: [across, top],
@@ -77,6 +91,9 @@ impl<'a> Sheet<'a> {
     pub(super) fn draw(&self) -> Picture {
         let mut picture = Picture::new(self.size, None);
         picture.fitted(&self.title, [self.left, TITLE_LINE], Anchor::Left);
+        for (line, middle) in &self.caption {
+            picture.fitted(line, [self.left, *middle], Anchor::Left);
+        }
         for (layout, heading, top, body) in &self.plots {
             heading.draw(&mut picture, [body.left, *top], self.left);
             layout.draw(&mut picture, *body, self.left);

@@ -38,6 +38,15 @@ impl Window {
         Self { x, y, largest }
     }
 
+    /// The square of an inset.
+    pub(super) fn square(&self, [x, y]: [f64; 2], half: f64) -> Self {
+        Self {
+            x: [x - half, x + half],
+            y: [y - half, y + half],
+            largest: self.largest,
+        }
+    }
+
     /// Where a point lies on the picture.
     pub(super) fn place(&self, body: Area, [x, y]: [f64; 2]) -> [f64; 2] {
         body.point(fraction(self.x, x), fraction(self.y, y))
@@ -48,6 +57,61 @@ impl Window {
         let across = body.width / (self.x[1] - self.x[0]);
         let upwards = body.height / (self.y[1] - self.y[0]);
         length * across.min(upwards)
+    }
+
+    /// Whether there is room inside.
+    pub(super) fn is_open(&self) -> bool {
+        let size = size(self.x).max(size(self.y));
+        size <= HUGE && self.x[1] - self.x[0] > EQUAL * size.max(TINY)
+    }
+
+    /// Whether a point lies inside.
+    pub(super) fn holds(&self, [x, y]: [f64; 2]) -> bool {
+        let inside = |[low, high]: [f64; 2], at: f64| (low..=high).contains(&at);
+        inside(self.x, x) && inside(self.y, y)
+    }
+
+    /// Whether a disc lies inside.
+    pub(super) fn holds_disc(&self, disc: &Disc) -> bool {
+        corners(disc).into_iter().all(|corner| self.holds(corner))
+    }
+
+    /// The parts of a polyline inside.
+    pub(super) fn clipped(&self, points: &[[f64; 2]]) -> Vec<Vec<[f64; 2]>> {
+        let mut parts: Vec<Vec<[f64; 2]>> = Vec::new();
+        for pair in points.windows(2) {
+            let Some([from, to]) = self.within([pair[0], pair[1]]) else {
+                continue;
+            };
+            match parts.last_mut() {
+                Some(part) if part.last() == Some(&from) => part.push(to),
+                _ => parts.push(vec![from, to]),
+            }
+        }
+        parts
+    }
+
+    /// The part of a segment inside (Liang and Barsky 1984).
+    fn within(&self, [from, to]: [[f64; 2]; 2]) -> Option<[[f64; 2]; 2]> {
+        let (mut enters, mut leaves) = (0.0_f64, 1.0_f64);
+        for (axis, [low, high]) in [self.x, self.y].into_iter().enumerate() {
+            let step = to[axis] - from[axis];
+            let ends = [low, high].map(|end| (end - from[axis]) / step);
+            if step == 0.0 {
+                if !(low..=high).contains(&from[axis]) {
+                    return None;
+                }
+            } else {
+                enters = enters.max(ends[0].min(ends[1]));
+                leaves = leaves.min(ends[0].max(ends[1]));
+            }
+        }
+        let at = |part: f64| match part {
+            0.0 => from,
+            1.0 => to,
+            _ => [0, 1].map(|axis| part.mul_add(to[axis] - from[axis], from[axis])),
+        };
+        (enters < leaves).then(|| [at(enters), at(leaves)])
     }
 }
 
@@ -74,8 +138,11 @@ fn extent(plot: &Plot, axis: usize) -> [f64; 2] {
         .flat_map(|line| line.points.iter().copied());
     let dots = plot.dots.iter().map(|dot| dot.at);
     let discs = plot.discs.iter().filter(|disc| drawable_disc(disc));
+    let notes = plot.notes.iter();
+    let notes = notes.flat_map(|note| std::iter::once(note.at).chain(note.to));
     let drawn = lines
         .chain(dots)
+        .chain(notes)
         .filter(|point| drawable(*point))
         .chain(discs.flat_map(corners));
     let extent = drawn.fold(None, |extent: Option<[f64; 2]>, point| {

@@ -1,0 +1,201 @@
+//! Fig. 3: bifurcation diagrams at one pole, and the detachment curves, of a cone and a cylinder.
+
+use super::drawing::{MAGNIFIED, arrow, line, outline, sections};
+use super::fig2::{self, PUSH_DEG};
+use super::{Figure, PUSH, Panel, detachment, figure, lettered};
+use crate::paper::whiskers::{CONE, CYLINDER, POLE, pole_distance_mm};
+use crate::render::{BranchAxis, Ink, Plot, Stroke, branches};
+use crate::rod::Side;
+use crate::scene::Whisker;
+use crate::trace::{Branch, BranchPoint, Mark, NoState};
+use serde::Serialize;
+
+/// Points per branch.
+const POINTS: usize = 160;
+/// Where the second pole of the cylinder first touches it.
+const NEAR_MM: f64 = 10.0;
+
+/// Where a state is.
+#[derive(Clone, Copy, Serialize)]
+struct State {
+    distance_mm: f64,
+    side: Side,
+    stable: bool,
+    push_angle_deg: f64,
+}
+
+#[derive(Clone, Copy, Serialize)]
+struct ContactAngle {
+    theta_obj_deg: f64,
+}
+
+#[derive(Clone, Copy, Serialize)]
+struct Force {
+    force_un: f64,
+}
+
+#[derive(Clone, Copy, Serialize)]
+struct Contact {
+    s_obj_mm: f64,
+}
+
+#[derive(Clone, Copy, Serialize)]
+struct Special {
+    mark: Option<Mark>,
+}
+
+const PUSH_ANGLE: BranchAxis = BranchAxis {
+    label: "push angle \u{3b8}_p (deg)",
+    value: |point| point.push_angle_deg,
+};
+/// In the axes of Eqs. 8-14, in which the pole stands still and the base turns against the push.
+const CONTACT_ANGLE: BranchAxis = BranchAxis {
+    label: "contact angle \u{3b8}_obj (deg)",
+    value: |point| point.contact_angle_deg - point.push_angle_deg,
+};
+const FORCE: BranchAxis = BranchAxis {
+    label: "force F (\u{b5}N)",
+    value: |point| point.force_un,
+};
+const CONTACT: BranchAxis = BranchAxis {
+    label: "contact s_obj (mm)",
+    value: |point| point.arc_length_mm,
+};
+
+pub fn fig3() -> Result<Figure, NoState> {
+    let far = |whisker: &Whisker| states(whisker, |side| pole_distance_mm(whisker, side));
+    let (cone, cylinder, near) = (
+        far(&CONE)?,
+        far(&CYLINDER)?,
+        states(&CYLINDER, |_| NEAR_MM)?,
+    );
+    let cone = column(
+        ["A", "B", "C", "D", "E"],
+        ("cone", &CONE),
+        "pole of Fig. 2",
+        &[(Ink::Black, &cone)],
+        (["a", "b"], [2.0, -0.3]),
+    )?;
+    let cylinder = column(
+        ["F", "G", "H", "I", "J"],
+        ("cylinder", &CYLINDER),
+        "d = 10 mm black, d = 15.7 mm (pole of Fig. 2) blue",
+        &[(Ink::Black, &near), (Ink::Blue, &cylinder)],
+        (["c", "d"], [8.0, -1.2]),
+    )?;
+    let panels = cone
+        .into_iter()
+        .zip(cylinder)
+        .flat_map(|(left, right)| [left, right]);
+    let caption = vec![
+        format!("{PUSH} Unstable states are drawn as far as \u{3b8}_p = 0."),
+        "\u{3b8}_obj: from the x-axis of Eqs. 8-14 to the whisker at the contact; it grows toward +y, as in dy/ds = sin \u{3b8}."
+            .to_owned(),
+        "Arrows: a, b the states of Fig. 2A (stable), 2B; c, d those of Fig. 2C, 2D. The stable states lie inside of E and J."
+            .to_owned(),
+    ];
+    let title = "Fig. 3: a cone and a cylinder pushed into a pole";
+    Ok(figure(
+        "fig3",
+        title,
+        caption,
+        lettered("fig3", panels.collect()),
+    ))
+}
+
+/// Both branches at one pole, each on its own side of first touch.
+fn states(
+    whisker: &Whisker,
+    distance_mm: impl Fn(Side) -> f64,
+) -> Result<Vec<BranchPoint>, NoState> {
+    let mut all = Vec::new();
+    for side in Side::BOTH {
+        let branch = Branch::new(whisker, &POLE, side, distance_mm(side))?;
+        let points = branch.points(POINTS)?.into_iter();
+        all.extend(points.take_while(|point| side.sign() * point.push_angle_deg >= 0.0));
+    }
+    Ok(all)
+}
+
+/// The panels of one whisker, from top to bottom.
+fn column(
+    letters: [&'static str; 5],
+    (name, whisker): (&'static str, &Whisker),
+    title: &str,
+    poles: &[(Ink, &[BranchPoint])],
+    (marked, shift): ([&str; 2], [f64; 2]),
+) -> Result<Vec<Panel>, NoState> {
+    let [schematic, angle, force, contact, ends] = letters;
+    let points: Vec<BranchPoint> = poles
+        .iter()
+        .flat_map(|(_, points)| points.iter().copied())
+        .collect();
+    let plot = |y| branches(title, poles, [PUSH_ANGLE, y]);
+    let mut contacts = plot(CONTACT);
+    let (branch, end) = fig2::branch(whisker)?;
+    let at_10 = branch
+        .read(&branch.state(PUSH_DEG.to_radians(), true)?)
+        .arc_length_mm;
+    let states = [[PUSH_DEG, at_10], [end.push_angle_deg, end.arc_length_mm]];
+    contacts
+        .notes
+        .extend(states.iter().zip(marked).map(|(at, letter)| {
+            let from = [at[0] + shift[0], at[1] + shift[1]];
+            arrow(from, *at, letter, Ink::Black)
+        }));
+    Ok(vec![
+        drawing(schematic, name, whisker),
+        Panel::new(
+            angle,
+            plot(CONTACT_ANGLE),
+            rows(&points, |point| ContactAngle {
+                theta_obj_deg: (CONTACT_ANGLE.value)(point),
+            }),
+        ),
+        Panel::new(
+            force,
+            plot(FORCE),
+            rows(&points, |point| Force {
+                force_un: point.force_un,
+            }),
+        ),
+        Panel::new(
+            contact,
+            contacts,
+            rows(&points, |point| Contact {
+                s_obj_mm: point.arc_length_mm,
+            }),
+        ),
+        detachment::panel(ends, name, &[(name, whisker, Stroke::Solid)]),
+    ])
+}
+
+/// A table of what a panel shows upwards.
+fn rows<Y: Copy>(
+    points: &[BranchPoint],
+    y: impl Fn(&BranchPoint) -> Y,
+) -> Vec<(State, Y, Special)> {
+    let row = |point: &BranchPoint| {
+        let state = State {
+            distance_mm: point.distance_mm,
+            side: point.side,
+            stable: point.stable,
+            push_angle_deg: point.push_angle_deg,
+        };
+        (state, y(point), Special { mark: point.mark })
+    };
+    points.iter().map(row).collect()
+}
+
+fn drawing(letter: &'static str, name: &str, whisker: &Whisker) -> Panel {
+    let sections = sections(whisker, 101);
+    let plot = Plot {
+        title: format!("{name}, radii drawn {MAGNIFIED} times as large as lengths"),
+        x_label: "x (mm)".to_owned(),
+        y_label: "y (mm)".to_owned(),
+        lines: vec![line(outline(&sections), Ink::Black, Stroke::Solid)],
+        equal_axes: true,
+        ..Plot::default()
+    };
+    Panel::new(letter, plot, sections)
+}
