@@ -23,9 +23,12 @@ pub mod accuracy;
 #[cfg(feature = "gpu")]
 pub mod bench;
 pub mod classify;
+#[cfg(feature = "fit")]
+pub mod fit;
 mod front;
 pub mod integrate;
 pub mod map;
+pub mod measured;
 #[cfg(feature = "render")]
 pub mod paper;
 pub mod plan;
