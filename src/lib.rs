@@ -40,6 +40,8 @@ pub mod sheet;
 pub mod store;
 pub mod trace;
 
+#[cfg(feature = "fit")]
+pub use front::fit;
 pub use front::{Error, Map, Options, branch, curve, map, shape};
 pub use whiskmap_mechanics::{numerics, rod, shooting};
 

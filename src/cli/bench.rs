@@ -193,6 +193,7 @@ fn plot(report: &Report) -> Plot {
     let front = front.map(|row| Dot {
         at: place(row),
         ink: Ink::Black,
+        open: false,
         name: Some("no other is faster and closer".to_owned()),
     });
     Plot {

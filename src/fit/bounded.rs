@@ -29,7 +29,10 @@ pub(super) fn minimise(misfit: &Misfit<'_>) -> Result<DVector<f64>, Error> {
         let method = LevenbergMarquardt::new().with_tol(TOLERANCE);
         let (end, report) = method.minimize(problem);
         let has_ended = report.termination.was_successful()
-            || matches!(report.termination, TerminationReason::NoImprovementPossible(_));
+            || matches!(
+                report.termination,
+                TerminationReason::NoImprovementPossible(_)
+            );
         if !has_ended {
             return Err(not_converged(&format!("{:?}", report.termination)));
         }
@@ -64,7 +67,10 @@ impl Problem<'_> {
 
     fn is_at_limit(&self) -> bool {
         let inside = self.inside();
-        inside.iter().zip(&self.ranges).any(|(x, range)| range.contains(x))
+        inside
+            .iter()
+            .zip(&self.ranges)
+            .any(|(x, range)| range.contains(x))
     }
 }
 
@@ -83,7 +89,11 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'_> {
 
     fn residuals(&self) -> Option<DVector<f64>> {
         let refused = || DVector::repeat(self.misfit.points.points.len(), REFUSED);
-        Some(self.misfit.residuals(&self.inside()).unwrap_or_else(refused))
+        Some(
+            self.misfit
+                .residuals(&self.inside())
+                .unwrap_or_else(refused),
+        )
     }
 
     /// Without the columns of parameters that are beyond a limit, or would go there.
@@ -94,7 +104,10 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'_> {
         for (i, [least, most]) in self.ranges.iter().enumerate() {
             let growth = jacobian.column(i).dot(&residuals);
             let x = self.at[i];
-            let stays = x < *least || x > *most || x == *least && growth > 0.0 || x == *most && growth < 0.0;
+            let stays = x < *least
+                || x > *most
+                || x == *least && growth > 0.0
+                || x == *most && growth < 0.0;
             if stays {
                 jacobian.column_mut(i).fill(0.0);
             }

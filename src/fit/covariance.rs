@@ -58,9 +58,9 @@ impl Covariance {
         self.is_determined[i].then(|| self.matrix[(i, i)].sqrt())
     }
 
-    /// Correlation of two parameters; `None` if one is not determined.
+    /// Correlation of two parameters, between -1 and 1; `None` if one is not determined.
     pub fn correlation(&self, i: usize, j: usize) -> Option<f64> {
         let deviations = self.deviation(i)? * self.deviation(j)?;
-        Some(self.matrix[(i, j)] / deviations)
+        Some((self.matrix[(i, j)] / deviations).clamp(-1.0, 1.0))
     }
 }

@@ -66,11 +66,7 @@ impl<'a> Misfit<'a> {
     }
 
     /// Their derivatives by the parameters; `None` where one cannot be had on either side. `here` are the residuals themselves.
-    pub fn jacobian(
-        &self,
-        parameters: &DVector<f64>,
-        here: &DVector<f64>,
-    ) -> Option<DMatrix<f64>> {
+    pub fn jacobian(&self, parameters: &DVector<f64>, here: &DVector<f64>) -> Option<DMatrix<f64>> {
         let columns = (0..self.free.len()).into_par_iter().map(|i| {
             let beside = |step: f64| {
                 let mut beside = parameters.clone();

@@ -50,8 +50,13 @@ pub enum Error {
     #[error("no parameter is free")]
     NothingFree,
     /// A scene without the parameter.
-    #[error("{}: the scene has no {}; give it a value to start from", .0.name(), .0.key())]
-    Lacking(Parameter),
+    #[error("{}: the scene has no {}; give it a value to start from, or free some of {has}", .parameter.name(), .parameter.key())]
+    Lacking {
+        /// Which one.
+        parameter: Parameter,
+        /// Names of those that the scene has.
+        has: String,
+    },
     /// A parameter that is free twice, maybe under two names.
     #[error("{} and {}: both are {}; one of them may be free", .0.name(), .1.name(), .0.key())]
     Twice(Parameter, Parameter),
@@ -105,7 +110,9 @@ pub fn fit(scene: &Scene, points: &Points, free: &[Parameter]) -> Result<Fit, Er
     let fitted = misfit.scene(&best).map_err(|why| not_converged(&why))?;
     let here = misfit.residuals(&best);
     let jacobian = here.as_ref().and_then(|here| misfit.jacobian(&best, here));
-    let (here, jacobian) = here.zip(jacobian).ok_or_else(|| not_converged(&"the minimum has no derivatives"))?;
+    let (here, jacobian) = here
+        .zip(jacobian)
+        .ok_or_else(|| not_converged(&"the minimum has no derivatives"))?;
     let covariance = Covariance::new(&jacobian);
     let chi_square = here.norm_squared();
     let degrees_of_freedom = used.points.len() - covariance.rank;
@@ -122,17 +129,25 @@ pub fn fit(scene: &Scene, points: &Points, free: &[Parameter]) -> Result<Fit, Er
         Estimate {
             parameter: free[i],
             value: unit * value,
-            standard_error: error.filter(|error| *error < most - least).map(|error| unit * error),
+            standard_error: error
+                .filter(|error| *error < most - least)
+                .map(|error| unit * error),
             is_at_limit: value == least || value == most,
         }
     };
     let estimates = misfit.ranges(&fitted).into_iter().enumerate().map(estimate);
     let estimates: Vec<Estimate> = estimates.collect();
     let is_known = |i: usize| estimates[i].standard_error.is_some();
-    let correlation = |i, j| covariance.correlation(i, j).filter(|_| is_known(i) && is_known(j));
+    let correlation = |i, j| {
+        covariance
+            .correlation(i, j)
+            .filter(|_| is_known(i) && is_known(j))
+    };
     let all = || 0..free.len();
     Ok(Fit {
-        correlation: all().map(|i| all().map(|j| correlation(i, j)).collect()).collect(),
+        correlation: all()
+            .map(|i| all().map(|j| correlation(i, j)).collect())
+            .collect(),
         chi_square,
         degrees_of_freedom,
         comparison: points.beside(&fitted.first_whisker(), &fitted.pole),
@@ -147,11 +162,21 @@ fn check(scene: &Scene, free: &[Parameter]) -> Result<(), Error> {
         return Err(Error::NothingFree);
     }
     for (i, &parameter) in free.iter().enumerate() {
-        let same = free[..i].iter().find(|other| other.key() == parameter.key());
+        let same = free[..i]
+            .iter()
+            .find(|other| other.key() == parameter.key());
         if let Some(same) = same {
             return Err(Error::Twice(*same, parameter));
         }
-        let value = parameter.value(scene).ok_or(Error::Lacking(parameter))?;
+        let value = parameter.value(scene).ok_or_else(|| {
+            let all = Parameter::ALL.into_iter();
+            let has = all.filter(|own| own.value(scene).is_some());
+            let has: Vec<&str> = has.map(Parameter::name).collect();
+            Error::Lacking {
+                parameter,
+                has: has.join(", "),
+            }
+        })?;
         let range @ [least, most] = parameter.range(scene);
         if most - least < NARROWEST * value.abs() {
             return Err(Error::Held { parameter, range });

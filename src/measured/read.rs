@@ -232,12 +232,7 @@ impl<'a> Cells<'a> {
         Ok(Point {
             line,
             side,
-            distance_mm: self.number(
-                "distance_mm",
-                f64::NAN,
-                "a positive number",
-                is_positive,
-            )?,
+            distance_mm: self.number("distance_mm", f64::NAN, "a positive number", is_positive)?,
             angle_deg: self.number(angle.column(), f64::NAN, turn, is_turn)?,
             kind,
             sd_deg: self.number("sd_deg", 1.0, "a positive number", is_positive)?,

@@ -1,7 +1,7 @@
 //! What stands above a plot or a map: letter, title and legend.
 
 use super::font::{self, Fitted, fitted};
-use super::palette::{Fill, Rgb};
+use super::palette::{Fill, Rgb, WHITE};
 use super::picture::{Anchor, Area, DASHES, Pen, Picture};
 
 /// Sizes of text.
@@ -37,6 +37,8 @@ pub(super) enum Sample {
     Swatch(Fill),
     Line(Pen),
     Dot(Rgb),
+    /// The rim of a dot.
+    Ring(Pen),
 }
 
 impl Sample {
@@ -45,7 +47,7 @@ impl Sample {
         match self {
             Self::Swatch(_) => 36.0,
             Self::Line(_) => 3.0 * DASHES[0] + 2.0 * DASHES[1],
-            Self::Dot(_) => 2.0 * DOT,
+            Self::Dot(_) | Self::Ring(_) => 2.0 * DOT,
         }
     }
 
@@ -59,6 +61,9 @@ impl Sample {
             }
             Self::Line(pen) => picture.polyline(&[[x, y], [x + self.width(), y]], pen),
             Self::Dot(colour) => picture.circle([x + DOT, y], DOT, colour, None),
+            Self::Ring(pen) => {
+                picture.circle([x + DOT, y], DOT - 0.5 * pen.width, WHITE, Some(pen))
+            }
         }
     }
 }

@@ -117,6 +117,7 @@ fn dots_and_discs_are_drawn_and_axes_are_equal() {
         dots: vec![Dot {
             at: [10.0, 0.0],
             ink: Ink::Black,
+            open: false,
             name: None,
         }],
         discs: vec![

@@ -43,6 +43,8 @@ pub struct Dot {
     pub at: [f64; 2],
     /// Its colour.
     pub ink: Ink,
+    /// Only its rim is inked.
+    pub open: bool,
     /// Its name in the legend, as that of a [`Line`].
     pub name: Option<String>,
 }

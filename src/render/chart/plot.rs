@@ -34,6 +34,11 @@ fn pen(line: &Line) -> Pen {
     }
 }
 
+/// What an open dot is drawn with.
+const fn rim(ink: Ink) -> Pen {
+    Pen::solid(LINE, colour(ink))
+}
+
 /// A plot laid out for a body of a size.
 pub(super) struct Layout<'a> {
     plot: &'a Plot,
@@ -75,7 +80,10 @@ impl<'a> Layout<'a> {
         }
         for dot in self.plot.dots.iter().filter(|dot| drawable(dot.at)) {
             let at = self.window.place(body, dot.at);
-            picture.circle(at, DOT, colour(dot.ink), Some(Pen::solid(RING, WHITE)));
+            match dot.open {
+                true => picture.circle(at, DOT - 0.5 * LINE, WHITE, Some(rim(dot.ink))),
+                false => picture.circle(at, DOT, colour(dot.ink), Some(Pen::solid(RING, WHITE))),
+            }
         }
         picture.frame(body, FRAME);
         self.axes.draw(picture, body, left);
@@ -104,7 +112,10 @@ impl<'a> Layout<'a> {
             (sample, &line.name)
         });
         let dots = self.plot.dots.iter();
-        let dots = dots.map(|dot| (Sample::Dot(colour(dot.ink)), &dot.name));
+        let dots = dots.map(|dot| match dot.open {
+            true => (Sample::Ring(rim(dot.ink)), &dot.name),
+            false => (Sample::Dot(colour(dot.ink)), &dot.name),
+        });
         let mut samples: Vec<(Sample, String)> = Vec::new();
         for (sample, name) in lines.chain(dots) {
             if let Some(name) = name.as_deref().filter(|name| !name.is_empty())
