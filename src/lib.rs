@@ -16,8 +16,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! [`map`](fn@map), [`curve`], [`branch`] and [`shape`] answer in memory; the modules are what they are made of. Features, all on by
-//! default: `cli` is the command `whiskmap`, `gpu` the compute shaders, `render` the pictures.
+//! [`map`](fn@map), [`curve`], [`branch`], [`shape`] and [`fit`](fn@fit) answer in memory; the modules are what they are made of. Features, all on by
+//! default: `cli` is the command `whiskmap`, `fit` least squares, `gpu` the compute shaders, `render` the pictures.
 
 pub mod accuracy;
 #[cfg(feature = "gpu")]
