@@ -37,7 +37,7 @@ pub fn name_left_out(points: &Points, comparison: &Comparison) {
 /// How well points and theory agree, line by line.
 pub fn summary(comparison: &Comparison) -> Vec<(&'static str, String)> {
     let count = format!(
-        "{}, and {} left out; {} of another kind than predicted",
+        "{}, {} left out, {} of another kind than predicted",
         comparison.count(),
         comparison.left_out().count(),
         comparison.of_another_kind()

@@ -5,10 +5,12 @@ use super::misfit::Misfit;
 use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt, TerminationReason};
 use nalgebra::storage::Owned;
 use nalgebra::{DMatrix, DVector, Dyn};
-use std::fmt::Display;
 
 /// Relative change of the misfit, and of the parameters, below which the iteration ends.
 const TOLERANCE: f64 = 1e-12;
+
+/// Why there is no Jacobian.
+pub(super) const NO_DERIVATIVE: &str = "a parameter cannot be changed enough for a derivative: the scene refuses it, or a point is out of reach";
 
 /// The residual of each point where there is none, so large that the step to there is taken back.
 const REFUSED: f64 = 1e100;
@@ -20,7 +22,7 @@ const REFUSED: f64 = 1e100;
 pub(super) fn minimise(misfit: &Misfit<'_>) -> Result<DVector<f64>, Error> {
     let (mut best, mut least) = (misfit.start(), f64::INFINITY);
     loop {
-        let scene = misfit.scene(&best).map_err(|why| not_converged(&why))?;
+        let scene = misfit.scene(&best)?;
         let problem = Problem {
             ranges: misfit.ranges(&scene),
             misfit,
@@ -34,7 +36,7 @@ pub(super) fn minimise(misfit: &Misfit<'_>) -> Result<DVector<f64>, Error> {
                 TerminationReason::NoImprovementPossible(_)
             );
         if !has_ended {
-            return Err(not_converged(&format!("{:?}", report.termination)));
+            return Err(Error::NotConverged(why(&report.termination)));
         }
         let is_better = report.objective_function < least * (1.0 - TOLERANCE);
         if is_better {
@@ -46,8 +48,13 @@ pub(super) fn minimise(misfit: &Misfit<'_>) -> Result<DVector<f64>, Error> {
     }
 }
 
-pub(super) fn not_converged(why: &dyn Display) -> Error {
-    Error::NotConverged(why.to_string())
+/// Why the iteration has ended early.
+fn why(termination: &TerminationReason) -> &'static str {
+    match termination {
+        TerminationReason::User(_) => NO_DERIVATIVE,
+        TerminationReason::LostPatience => "it takes too many steps",
+        _ => "numbers overflow",
+    }
 }
 
 /// The misfit, continued beyond its limits.

@@ -8,8 +8,8 @@ mod covariance;
 mod misfit;
 
 use crate::measured::{Comparison, Points, PointsError};
-use crate::scene::{Parameter, Scene, digits};
-use bounded::{minimise, not_converged};
+use crate::scene::{Parameter, Scene, SceneError, digits};
+use bounded::{NO_DERIVATIVE, minimise};
 use covariance::Covariance;
 use misfit::Misfit;
 
@@ -68,6 +68,9 @@ pub enum Error {
         /// The least and the greatest value.
         range: [f64; 2],
     },
+    /// Values that the scene refuses.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
     /// Points that the scene's whisker cannot touch.
     #[error(transparent)]
     Points(#[from] PointsError),
@@ -83,7 +86,7 @@ pub enum Error {
     },
     /// An iteration that has not ended at a minimum.
     #[error("the fit has not converged: {0}")]
-    NotConverged(String),
+    NotConverged(&'static str),
 }
 
 /// A range that is narrower, relative to the value, leaves nothing to fit.
@@ -107,12 +110,12 @@ pub fn fit(scene: &Scene, points: &Points, free: &[Parameter]) -> Result<Fit, Er
     }
     let misfit = Misfit::new(scene, &used, free);
     let best = minimise(&misfit)?;
-    let fitted = misfit.scene(&best).map_err(|why| not_converged(&why))?;
+    let fitted = misfit.scene(&best)?;
     let here = misfit.residuals(&best);
     let jacobian = here.as_ref().and_then(|here| misfit.jacobian(&best, here));
     let (here, jacobian) = here
         .zip(jacobian)
-        .ok_or_else(|| not_converged(&"the minimum has no derivatives"))?;
+        .ok_or(Error::NotConverged(NO_DERIVATIVE))?;
     let covariance = Covariance::new(&jacobian);
     let chi_square = here.norm_squared();
     let degrees_of_freedom = used.points.len() - covariance.rank;

@@ -104,7 +104,7 @@ fn table_scene_and_document_agree() {
     assert!((found["rms_deg"].as_f64().unwrap() - (squares / 6.0).sqrt()).abs() < 1e-12);
     assert!(
         run.out
-            .contains("points compared: 6, and 0 left out; 0 of another kind than predicted\n")
+            .contains("points compared: 6, 0 left out, 0 of another kind than predicted\n")
     );
 
     // The fitted scene is where the next fit stays; the same run makes the same bytes.
@@ -303,7 +303,7 @@ fn points_beside_the_curve() {
     assert_eq!(rows[3][..5], ["6", "cb", "15.0", "18.9", ""]);
     assert_eq!(rows[4][4..7].first(), Some(&"pull-off"));
     let said = [
-        "points compared: 6, and 0 left out; 0 of another kind than predicted\n",
+        "points compared: 6, 0 left out, 0 of another kind than predicted\n",
         "\nRMS: ",
         "\nbias: ",
     ];
@@ -348,7 +348,7 @@ fn points_that_never_detach() {
     let run = place.run(&["curve", "scene.toml", "--data", "points.csv"]);
     assert_eq!(run.code, Some(0), "{run:?}");
     let named = "warning: points.csv:2: left out: by theory this side never detaches at 14 mm\n\
-                 points compared: 1, and 1 left out; 0 of another kind than predicted\n";
+                 points compared: 1, 1 left out, 0 of another kind than predicted\n";
     assert!(run.err.starts_with(named), "{run:?}");
     assert_eq!(cells(&run.out, POINTS)[0][4..], ["", "", "unresolved", ""]);
     place.write("points.csv", "side,distance_mm,push_angle_deg\ncb,14,40\n");
