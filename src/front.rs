@@ -2,12 +2,18 @@
 
 use crate::accuracy::cheapest;
 use crate::classify::Regime;
+#[cfg(feature = "fit")]
+use crate::fit::{self, Fit};
 use crate::integrate::EngineError;
 #[cfg(feature = "gpu")]
 use crate::integrate::gpu::{Gpu, Precision};
 use crate::map::{self as stages, Panel, Progress, STATE_CHANNELS, Summary};
+#[cfg(feature = "fit")]
+use crate::measured::Points;
 use crate::plan::{Plan, PlanError};
 use crate::rod::Side;
+#[cfg(feature = "fit")]
+use crate::scene::Parameter;
 use crate::scene::{Grid, Morphology, Scene};
 use crate::shooting::Resolution;
 use crate::trace::{Branch, Detachment, NoState, Shape, curve_at, sides, whiskers_at_once};
@@ -192,6 +198,27 @@ pub fn shape(scene: &Scene, distance_mm: f64, push_angle_deg: f64) -> Result<Sha
     let branch = branch(scene, distance_mm, Side::of_push(push_angle_deg))?;
     let state = branch.state(push_angle_deg.to_radians(), true)?;
     Ok(Shape::new(&branch, &state, 200))
+}
+
+/// Fits parameters of the scene's first whisker and of its pole to measured detachments, from the scene's values on.
+///
+/// ```
+/// use whiskmap::measured::Points;
+/// use whiskmap::scene::{Parameter, Scene};
+///
+/// let cone = Scene::parse(include_str!("../scenes/cone.toml"), "cone.toml")?;
+/// let points = Points::parse("side,distance_mm,push_angle_deg\ncb,15.6604597633658,15.60793\n", "points.csv")?;
+/// let start = cone.with("whisker.tip_radius_um", 3)?;
+/// let fit = whiskmap::fit(&start, &points, &[Parameter::TipRadiusUm])?;
+/// assert!((fit.estimates[0].value - 1.5).abs() < 1e-5);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// When a parameter cannot be free, a point is beyond the whisker, points are too few, or the iteration does not converge.
+#[cfg(feature = "fit")]
+pub fn fit(scene: &Scene, points: &Points, free: &[Parameter]) -> Result<Fit, fit::Error> {
+    fit::fit(scene, points, free)
 }
 
 /// The steps that keep the tolerance, if there is one.

@@ -16,16 +16,19 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! [`map`](fn@map), [`curve`], [`branch`] and [`shape`] answer in memory; the modules are what they are made of. Features, all on by
-//! default: `cli` is the command `whiskmap`, `gpu` the compute shaders, `render` the pictures.
+//! [`map`](fn@map), [`curve`], [`branch`], [`shape`] and [`fit`](fn@fit) answer in memory; the modules are what they are made of. Features, all on by
+//! default: `cli` is the command `whiskmap`, `fit` least squares, `gpu` the compute shaders, `render` the pictures.
 
 pub mod accuracy;
 #[cfg(feature = "gpu")]
 pub mod bench;
 pub mod classify;
+#[cfg(feature = "fit")]
+pub mod fit;
 mod front;
 pub mod integrate;
 pub mod map;
+pub mod measured;
 #[cfg(feature = "render")]
 pub mod paper;
 pub mod plan;
@@ -37,6 +40,8 @@ pub mod sheet;
 pub mod store;
 pub mod trace;
 
+#[cfg(feature = "fit")]
+pub use front::fit;
 pub use front::{Error, Map, Options, branch, curve, map, shape};
 pub use whiskmap_mechanics::{numerics, rod, shooting};
 

@@ -4,6 +4,7 @@
 use assert_cmd::Command;
 use std::fs;
 use std::path::Path;
+use whiskmap::measured::Compared;
 use whiskmap::trace::{BranchPoint, Corner, Detachment, ShapePoint};
 
 /// The calls of `whiskmap` in the shell blocks of a page, without their remarks.
@@ -57,6 +58,7 @@ fn every_column_is_on_the_page_of_the_commands() {
     let tables = [
         Detachment::COLUMNS,
         Corner::COLUMNS,
+        Compared::COLUMNS,
         BranchPoint::COLUMNS,
         ShapePoint::COLUMNS,
     ];

@@ -1,14 +1,17 @@
 //! `whiskmap curve`.
 
 use super::columns;
-use super::failure::{Failure, check_resolved};
+use super::data;
+use super::failure::{Failure, check_resolved, say};
 use super::outputs::{Opened, Outputs};
+use super::pole::check_single;
 use super::progress;
 use super::tolerance::Tolerance;
 use clap::Args;
 use serde::Serialize;
-use std::path::PathBuf;
-use whiskmap::render::{CurveAxis, Ends, Stroke, curves};
+use std::path::{Path, PathBuf};
+use whiskmap::measured::{Angle, Compared};
+use whiskmap::render::{CurveAxis, Ends, Plot, Stroke, curves, measured};
 use whiskmap::rod::Side;
 use whiskmap::scene::{Morphology, Scene, Whisker};
 use whiskmap::shooting::Resolution;
@@ -20,15 +23,21 @@ Examples:
   whiskmap curve scenes/cone.toml --csv curve.csv --plot curve.svg
   whiskmap curve scenes/cone.toml --tolerance 1e-4deg
   whiskmap curve scenes/cone.toml --corner
+  whiskmap curve scenes/cone.toml --data scenes/cone_points.csv --plot points.svg
 
 One line per side and distance of the scene, CF before CB; angles are positive for CB and negative for CF. Ends \
 without values are out of reach, or unresolved, which is said on standard error. A scene with taper or curvature axes \
 gives the curve of every whisker, with the leading columns taper (1 - tip/base radius) and curvature_per_mm; a plot \
-shows one whisker.";
+shows one whisker.
+
+With --data the table has the measured points in place of the curve: a CSV file with the columns side (cb or cf), \
+distance_mm, push_angle_deg or push_chord_deg, and maybe kind (slip-off, pull-off or empty) and sd_deg. The plot has them \
+on the curve, slip-offs as open circles and pull-offs as filled ones. Their RMS and bias are told on standard error.";
 
 const TABLES: &[(&str, &[(&str, &str)])] = &[
     ("Columns", Detachment::COLUMNS),
     ("Columns with --corner", Corner::COLUMNS),
+    ("Columns with --data", Compared::COLUMNS),
 ];
 
 /// Options of `curve`.
@@ -40,6 +49,9 @@ pub struct Options {
     /// Tell only where slip-off turns into pull-off, or why it does not
     #[arg(long, conflicts_with_all = ["plot", "tolerance"])]
     corner: bool,
+    /// Measured detachments to compare with the curve; - reads them from standard input
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["corner", "tolerance"])]
+    data: Option<PathBuf>,
     #[command(flatten)]
     tolerance: Tolerance,
     #[command(flatten)]
@@ -54,6 +66,9 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         return Err(Failure::Input(format!(
             "--plot: the scene sweeps {whiskers} whiskers over grid.taper and grid.curvature_per_mm; a plot shows one"
         )));
+    }
+    if let Some(path) = &options.data {
+        return beside_points(options, &scene, path);
     }
     let mut outputs = options.outputs.open()?;
     let accuracy = options.tolerance.choose(&scene, &Side::BOTH)?;
@@ -92,12 +107,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     }
     bar.finish_and_clear();
     outputs.finish(scene.title.clone(), || {
-        let drawn = Ends {
-            rows: &drawn,
-            stroke: Stroke::Solid,
-            name: "",
-        };
-        curves("", &[drawn], AXES)
+        theory(&drawn, AXES)
     })?;
     check_resolved(unresolved, all, "ends", "the column `kind`")
 }
@@ -115,6 +125,52 @@ fn write<R: Serialize>(
     }
 }
 
+/// Compares the measured points of the file at `path` with the curve.
+fn beside_points(options: &Options, scene: &Scene, path: &Path) -> Result<(), Failure> {
+    check_single(scene, "curve --data")?;
+    let points = data::read(path)?;
+    let whisker = scene.first_whisker();
+    points.check_reach(&whisker, &scene.pole)?;
+    let mut outputs = options.outputs.open()?;
+    let comparison = points.beside(&whisker, &scene.pole);
+    data::name_left_out(&points, &comparison);
+    let rows = &comparison.rows;
+    outputs.rows(rows)?;
+    let distances = &scene.grid.distance_mm;
+    outputs.finish(scene.title.clone(), || {
+        let curve = |side| trace::curve(&whisker, &scene.pole, side, distances);
+        let ends: Vec<Detachment> = Side::BOTH.into_iter().flat_map(curve).collect();
+        let axes = match points.angle {
+            Angle::Push => AXES,
+            Angle::Chord => [AXES[0], CHORD],
+        };
+        let mut plot = theory(&ends, axes);
+        plot.dots = measured(rows);
+        plot
+    })?;
+    if comparison.count() == 0 {
+        return Err(Failure::Unresolved {
+            all: rows.len() as u64,
+            what: "points",
+            see: "the column `predicted_kind`",
+        });
+    }
+    for (name, value) in data::summary(&comparison) {
+        say(&format!("{name}: {value}"));
+    }
+    Ok(())
+}
+
+/// The detachment curve of one whisker.
+fn theory(rows: &[Detachment], axes: [CurveAxis; 2]) -> Plot {
+    let ends = Ends {
+        rows,
+        stroke: Stroke::Solid,
+        name: "",
+    };
+    curves("", &[ends], axes)
+}
+
 const AXES: [CurveAxis; 2] = [
     CurveAxis {
         label: "distance at first touch (mm)",
@@ -125,3 +181,8 @@ const AXES: [CurveAxis; 2] = [
         value: |end| end.push_angle_deg,
     },
 ];
+
+const CHORD: CurveAxis = CurveAxis {
+    label: "chord angle at detachment (deg)   CF < 0 < CB",
+    value: |end| end.push_chord_deg,
+};

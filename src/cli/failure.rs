@@ -3,7 +3,9 @@
 use std::io::{self, IsTerminal, Write};
 use std::path::PathBuf;
 use std::process::ExitCode;
+use whiskmap::fit;
 use whiskmap::integrate::EngineError;
+use whiskmap::measured::PointsError;
 use whiskmap::plan::PlanError;
 use whiskmap::render;
 use whiskmap::scene::SceneError;
@@ -16,6 +18,12 @@ pub enum Failure {
     /// The scene is not valid.
     #[error("{0}")]
     Scene(#[from] SceneError),
+    /// The measured points are not valid.
+    #[error(transparent)]
+    Points(#[from] PointsError),
+    /// There is no fit.
+    #[error(transparent)]
+    Fit(#[from] fit::Error),
     /// The scene is too large.
     #[error(transparent)]
     Plan(#[from] PlanError),
@@ -55,7 +63,8 @@ pub enum Failure {
 impl Failure {
     fn code(&self) -> u8 {
         let is_input = match self {
-            Self::Scene(_) | Self::Plan(_) | Self::Input(_) => true,
+            Self::Scene(_) | Self::Points(_) | Self::Plan(_) | Self::Input(_) => true,
+            Self::Fit(error) => !matches!(error, fit::Error::NotConverged(_)),
             Self::Store(store::Error::Encode(..)) | Self::Render(render::Error::Scale(_)) => true,
             Self::Store(error) | Self::Render(render::Error::Store(error)) => error.is_unreadable(),
             _ => false,

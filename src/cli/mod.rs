@@ -7,10 +7,12 @@ mod bench;
 mod branch;
 mod columns;
 mod curve;
+mod data;
 mod devices;
 mod engine;
 mod estimate;
 mod failure;
+mod fit;
 mod map;
 mod numbers;
 mod outputs;
@@ -44,6 +46,8 @@ Examples:
   whiskmap plan scenes/cone.toml                   what that would take, without doing it
   whiskmap render outputs/cone.exr --channel force_un
   whiskmap curve scenes/cone.toml --plot curve.png where the whisker detaches, distance by distance
+  whiskmap curve scenes/cone.toml --data scenes/cone_points.csv --plot points.svg
+  whiskmap fit scenes/cone.toml --data scenes/cone_points.csv --free tip_radius_um
   whiskmap branch scenes/cone.toml --distance 15.66 stable and unstable states in front of one pole
   whiskmap shape scenes/cone.toml --distance 15.66 --push-angle 10 --plot shape.svg
   whiskmap reproduce                               the theory of the paper's Figs. 1 to 5
@@ -61,6 +65,8 @@ enum Command {
     Render(render::Options),
     /// Compute the exact detachment curve of a scene, as CSV, PNG or SVG
     Curve(curve::Options),
+    /// Fit parameters of a scene to measured detachments
+    Fit(fit::Options),
     /// Follow the solution branch in front of one pole, through the fold and beyond
     Branch(branch::Options),
     /// Compute the shape of the whisker in one state
@@ -111,6 +117,7 @@ fn run(command: &Command) -> Result<(), Failure> {
         Command::Plan(options) => plan::run(options),
         Command::Render(options) => render::run(options),
         Command::Curve(options) => curve::run(options),
+        Command::Fit(options) => fit::run(options),
         Command::Branch(options) => branch::run(options),
         Command::Shape(options) => shape::run(options),
         Command::Reproduce(options) => reproduce::run(options),

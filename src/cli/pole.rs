@@ -7,6 +7,23 @@ use std::path::{Path, PathBuf};
 use whiskmap::scene::{Scene, Whisker, digits};
 use whiskmap::trace::NoState;
 
+/// Refuses scenes of several whiskers for `command`.
+pub fn check_single(scene: &Scene, command: &str) -> Result<(), Failure> {
+    let whiskers = scene.whisker_count();
+    if whiskers == 1 {
+        return Ok(());
+    }
+    let tapers = scene.grid.taper.as_ref();
+    let key = if tapers.is_some_and(|tapers| tapers.len() > 1) {
+        "grid.taper"
+    } else {
+        "grid.curvature_per_mm"
+    };
+    Err(Failure::Input(format!(
+        "{key}: the scene sweeps {whiskers} whiskers; {command} looks at one, so give the axis one value or leave it out"
+    )))
+}
+
 /// The scene, and where the pole stands.
 #[derive(Debug, Args)]
 pub struct Pole {
@@ -50,19 +67,7 @@ impl Poles {
 
 fn read(path: &Path, command: &str, distances: &[f64]) -> Result<(Scene, Whisker), Failure> {
     let scene = Scene::read(path)?;
-    let whiskers = scene.whisker_count();
-    if whiskers > 1 {
-        let tapers = scene.grid.taper.as_ref();
-        let key = if tapers.is_some_and(|tapers| tapers.len() > 1) {
-            "grid.taper"
-        } else {
-            "grid.curvature_per_mm"
-        };
-        return Err(Failure::Input(format!(
-            "{key}: the scene sweeps {whiskers} whiskers; {command} looks at one, so give the axis one value or leave it \
-             out"
-        )));
-    }
+    check_single(&scene, command)?;
     let (nearest, farthest) = scene.distances_mm();
     let radius = scene.pole.radius_mm;
     for &distance in distances {

@@ -27,4 +27,4 @@ pub use font::missing_glyphs;
 pub use format::Format;
 pub use map::{MapOptions, map};
 pub use picture::Picture;
-pub use traces::{Axis, BranchAxis, CurveAxis, Drawn, Ends, branches, curves, shapes};
+pub use traces::{Axis, BranchAxis, CurveAxis, Drawn, Ends, branches, curves, measured, shapes};

@@ -2,6 +2,7 @@
 //! whisker slips off and blue where it is pulled off, as in the paper.
 
 use super::chart::{Disc, Dot, Ink, Line, Plot, Stroke};
+use crate::measured::Compared;
 use crate::trace::{BranchPoint, Detachment, DetachmentKind, Mark, Shape};
 
 /// An axis of a plot of rows.
@@ -90,6 +91,25 @@ pub fn branches(title: &str, poles: &[(Ink, &[BranchPoint])], [x, y]: [BranchAxi
         }
     }
     plot
+}
+
+/// Measured detachments: slip-offs open, pull-offs filled, grey where it was not seen which.
+#[must_use]
+pub fn measured(points: &[Compared]) -> Vec<Dot> {
+    let dots = points.iter().map(|point| {
+        let (ink, open, name) = match point.kind {
+            Some(DetachmentKind::SlipOff) => (Ink::Black, true, "measured slip-off"),
+            Some(DetachmentKind::PullOff) => (Ink::Blue, false, "measured pull-off"),
+            _ => (Ink::Grey, false, "measured"),
+        };
+        Dot {
+            at: [point.distance_mm, point.measured_deg],
+            ink,
+            open,
+            name: Some(name.to_owned()),
+        }
+    });
+    dots.collect()
 }
 
 /// A shape to draw, and how.

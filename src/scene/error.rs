@@ -85,7 +85,7 @@ impl SceneError {
 const QUOTED: [usize; 2] = [60, 20];
 
 /// A text that may quote a value or a key of any length, without its middle where it is long.
-fn shortened(text: &str) -> String {
+pub(crate) fn shortened(text: &str) -> String {
     let [head, tail] = QUOTED;
     let count = text.chars().count();
     if count <= head + tail {

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 /// The nearest first touch is the whisker's length over this.
-pub(super) const NEAREST: f64 = 1000.0;
+pub(crate) const NEAREST: f64 = 1000.0;
 
 /// The farthest is the whisker's length times this.
 pub(super) const FARTHEST: f64 = 10.0;

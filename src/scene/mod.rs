@@ -19,6 +19,10 @@ mod shape;
 mod source;
 mod whisker;
 
+pub(crate) use error::shortened;
+pub(crate) use grid::NEAREST;
+pub(crate) use source::bounded;
+
 pub use checked::Scene;
 pub use error::SceneError;
 pub use grid::{Grid, Morphology};

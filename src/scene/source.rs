@@ -1,4 +1,4 @@
-//! Files, read no farther than a scene or a table of radii may reach.
+//! Files, read no farther than a scene, a table of radii or one of points may reach.
 
 use std::io::{self, Read};
 
@@ -6,7 +6,7 @@ use std::io::{self, Read};
 const MOST_BYTES: u64 = 1 << 20;
 
 /// All of a source that is no longer than a page or a table is.
-pub(super) fn bounded(source: impl Read) -> io::Result<Vec<u8>> {
+pub(crate) fn bounded(source: impl Read) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     source.take(MOST_BYTES + 1).read_to_end(&mut bytes)?;
     if bytes.len() as u64 > MOST_BYTES {

@@ -156,6 +156,16 @@ fn dots_and_discs_are_drawn_and_axes_are_equal() {
     }
 }
 
+/// Places and radii of the circles of a document.
+fn circles(svg: &str) -> Vec<[f64; 3]> {
+    let tags = svg.lines().filter(|line| line.starts_with("<circle"));
+    tags.map(|tag| {
+        let quoted: Vec<&str> = tag.split('"').collect();
+        [1, 3, 5].map(|value| quoted[value].parse().unwrap())
+    })
+    .collect()
+}
+
 #[test]
 fn a_line_of_one_point_is_a_dot_and_so_it_is_in_the_legend() {
     let point = |y: f64, ink: Ink| Line {
@@ -167,14 +177,7 @@ fn a_line_of_one_point_is_a_dot_and_so_it_is_in_the_legend() {
         ..Plot::default()
     });
     let (svg, picture) = both(&chart);
-    let circles: Vec<[f64; 3]> = svg
-        .lines()
-        .filter(|line| line.starts_with("<circle"))
-        .map(|tag| {
-            let quoted: Vec<&str> = tag.split('"').collect();
-            [1, 3, 5].map(|value| quoted[value].parse().unwrap())
-        })
-        .collect();
+    let circles = circles(&svg);
     assert_eq!(circles.len(), 3, "two points and the legend");
     for [x, y, radius] in circles {
         assert!(radius >= 5.0);
@@ -209,5 +212,27 @@ fn a_line_looks_the_same_however_many_points_it_has() {
         // A point is off by rounding alone, a hundredth of a grey level.
         let most = pairs.map(|(few, many)| few[0].abs_diff(many[0])).max();
         assert!(most <= Some(1), "{stroke:?}: {most:?}");
+    }
+}
+
+#[test]
+fn an_open_dot_is_a_ring_and_so_it_is_in_the_legend() {
+    let chart = single(Plot {
+        dots: vec![Dot {
+            at: [1.0, 1.0],
+            ink: Ink::Blue,
+            open: true,
+            name: Some("slip-off".to_owned()),
+        }],
+        ..Plot::default()
+    });
+    let (svg, picture) = both(&chart);
+    let circles = circles(&svg);
+    assert_eq!(circles.len(), 2, "the point and the legend");
+    for [x, y, radius] in circles {
+        assert_eq!(picture.at([x, y]), WHITE);
+        for away in [-radius, radius] {
+            assert_eq!(picture.at([x + away, y]), BLUE);
+        }
     }
 }

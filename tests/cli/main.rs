@@ -9,6 +9,7 @@ mod branch;
 mod curve;
 #[cfg(unix)]
 mod files;
+mod fit;
 mod map;
 mod other;
 mod paper;

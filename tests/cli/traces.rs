@@ -73,7 +73,7 @@ fn help_defines_the_columns() {
     let place = Place::with(SCENE);
     let corner = "side,distance_mm,push_angle_deg,reason";
     for (command, tables) in [
-        ("curve", &[CURVE, corner][..]),
+        ("curve", &[CURVE, corner, crate::fit::POINTS][..]),
         ("branch", &[BRANCH]),
         ("shape", &[SHAPE]),
     ] {

@@ -1,0 +1,194 @@
+//! `whiskmap fit`.
+
+use super::data;
+use super::failure::{Failure, say};
+use super::outputs::{STDOUT, create, unwritten};
+use super::pole::check_single;
+use clap::Args;
+use serde_json::{Map, Value, json};
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use whiskmap::fit::{Error, Fit, fit};
+use whiskmap::scene::{Parameter, Scene, digits};
+use whiskmap::store::Output;
+
+/// Options of `fit`.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  whiskmap fit scenes/cone.toml --data scenes/cone_points.csv --free tip_radius_um,parabola_per_mm
+  whiskmap fit scenes/cone.toml --data scenes/cone_points.csv --free tip_radius_um -o fitted.toml --json fit.json
+
+Least squares of measured less predicted angles, from the scene's values on and within its limits. Columns of the data: \
+side (cb or cf), distance_mm, push_angle_deg or push_chord_deg, and maybe kind (slip-off, pull-off or empty) and sd_deg, \
+the standard deviation of the angle. Without it, standard errors are those of points as exact as their residuals tell.
+
+Names for --free: length_mm, base_radius_um, tip_radius_um, taper, youngs_modulus_gpa, parabola_per_mm, vertex_mm, \
+spiral_per_mm, spiral_per_mm2, modulus_tip_to_base, arc_stretch, pole_radius_mm, friction. A parameter that the points do \
+not determine is named; the modulus never is one that they do, because no detachment depends on it.")]
+pub struct Options {
+    /// Scene file; - reads it from standard input
+    scene: PathBuf,
+    /// Measured detachments; - reads them from standard input
+    #[arg(long, value_name = "FILE")]
+    data: PathBuf,
+    /// Parameters to fit, with commas in between
+    #[arg(long, value_name = "NAMES", required = true, value_delimiter = ',', value_parser = parameter)]
+    free: Vec<Parameter>,
+    /// Scene to write, with the fitted values; - is standard output
+    #[arg(short, long, value_name = "FITTED.toml")]
+    output: Option<PathBuf>,
+    /// Result to write; - is standard output
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+}
+
+fn parameter(name: &str) -> Result<Parameter, String> {
+    let mut all = Parameter::ALL.into_iter();
+    all.find(|own| own.name() == name).ok_or_else(|| {
+        let names = Parameter::ALL.map(Parameter::name);
+        format!("must be some of {}", names.join(", "))
+    })
+}
+
+/// Runs `fit`.
+pub fn run(options: &Options) -> Result<(), Failure> {
+    let scene = Scene::read(&options.scene)?;
+    check_single(&scene, "fit")?;
+    let points = data::read(&options.data)?;
+    let toml = open("--output", options.output.as_deref())?;
+    let json = open("--json", options.json.as_deref())?;
+    if let (Some((toml, path)), Some((json, other))) = (&toml, &json)
+        && toml == json
+    {
+        return Err(Failure::Input(format!(
+            "--output {} and --json {}: must be two files",
+            path.display(),
+            other.display()
+        )));
+    }
+    let found = fit(&scene, &points, &options.free).map_err(|why| match why {
+        Error::Lacking { .. } | Error::Twice(..) | Error::Held { .. } => {
+            Failure::Input(format!("--free {why}"))
+        }
+        _ => why.into(),
+    })?;
+    data::name_left_out(&points, &found.comparison);
+    warn(&found);
+    let files = [
+        toml.map(|place| (place, found.scene.text.clone())),
+        json.map(|place| (place, format!("{:#}\n", document(&found)))),
+    ];
+    let streamed = [&options.output, &options.json];
+    let is_streamed = streamed
+        .into_iter()
+        .flatten()
+        .any(|path| path == Path::new(STDOUT));
+    if !is_streamed {
+        table(&scene.title, &found)?;
+    }
+    for ((output, path), text) in files.into_iter().flatten() {
+        let is_regular = output.is_regular();
+        write(output, &text).map_err(|cause| unwritten(path, cause))?;
+        if is_regular && !is_streamed {
+            writeln!(io::stdout(), "{}", path.display())?;
+        }
+    }
+    Ok(())
+}
+
+/// The output of `option`, if there is one, and its path.
+fn open<'a>(option: &str, path: Option<&'a Path>) -> Result<Option<(Output, &'a Path)>, Failure> {
+    let open = |path| Ok((create(option, path)?, path));
+    path.map(open).transpose()
+}
+
+fn write(mut output: Output, text: &str) -> io::Result<()> {
+    output.write_all(text.as_bytes())?;
+    output.finish()
+}
+
+/// Names parameters that the points do not determine, and those at a limit.
+fn warn(fit: &Fit) {
+    for estimate in &fit.estimates {
+        let name = estimate.parameter.name();
+        if estimate.standard_error.is_none() {
+            say(&format!("warning: {name}: not determined by these points"));
+        }
+        if estimate.is_at_limit {
+            say(&format!(
+                "warning: {name}: {} is the last value that the scene accepts",
+                digits(estimate.value)
+            ));
+        }
+    }
+}
+
+/// Values with all their digits, so that they can be read back.
+fn table(title: &str, fit: &Fit) -> io::Result<()> {
+    let mut out = io::stdout().lock();
+    writeln!(out, "{title}")?;
+    writeln!(
+        out,
+        "{:19} {:>22} {:>22}",
+        "parameter", "value", "standard error"
+    )?;
+    for estimate in &fit.estimates {
+        let error = estimate.standard_error.map(digits);
+        writeln!(
+            out,
+            "{:19} {:>22} {:>22}",
+            estimate.parameter.name(),
+            digits(estimate.value),
+            error.as_deref().unwrap_or("not determined")
+        )?;
+    }
+    for (i, estimate) in fit.estimates.iter().enumerate() {
+        for (other, correlation) in fit.estimates[..i].iter().zip(&fit.correlation[i]) {
+            let names = [other, estimate].map(|own| own.parameter.name());
+            if let Some(correlation) = correlation {
+                let correlation = digits(*correlation);
+                writeln!(
+                    out,
+                    "correlation of {} and {}: {correlation}",
+                    names[0], names[1]
+                )?;
+            }
+        }
+    }
+    writeln!(
+        out,
+        "chi-square: {}, {} degrees of freedom",
+        digits(fit.chi_square),
+        fit.degrees_of_freedom
+    )?;
+    for (name, value) in data::summary(&fit.comparison) {
+        writeln!(out, "{name}: {value}")?;
+    }
+    Ok(())
+}
+
+/// The fit by the names of its parameters.
+fn document(fit: &Fit) -> Value {
+    let names = fit.estimates.iter().map(|own| own.parameter.name());
+    let keyed = |values: Vec<Value>| -> Map<String, Value> {
+        names.clone().map(str::to_owned).zip(values).collect()
+    };
+    let estimates = fit.estimates.iter();
+    let values = estimates.clone().map(|own| json!(own.value)).collect();
+    let errors = estimates.map(|own| json!(own.standard_error)).collect();
+    let rows = fit.correlation.iter();
+    let rows = rows.map(|row| Value::Object(keyed(row.iter().map(|own| json!(own)).collect())));
+    let comparison = &fit.comparison;
+    json!({
+        "values": keyed(values),
+        "standard_errors": keyed(errors),
+        "correlation": keyed(rows.collect()),
+        "chi_square": fit.chi_square,
+        "degrees_of_freedom": fit.degrees_of_freedom,
+        "rms_deg": comparison.rms_deg(),
+        "bias_deg": comparison.bias_deg(),
+        "left_out": comparison.left_out().count(),
+        "points": comparison.rows,
+    })
+}

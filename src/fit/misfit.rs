@@ -1,0 +1,104 @@
+//! How far a scene is from its points, as a function of its free parameters.
+
+use crate::measured::Points;
+use crate::scene::{Parameter, Scene, SceneError, Whisker};
+use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
+
+/// Half of what central differences span, in units of the parameters. Truncation and the rounding of curves then take at most
+/// 5e-9 of a cone's derivatives, by each of its parameters; with ten times the step, 5e-7.
+const STEP: f64 = 1e-5;
+
+/// The residuals of points. Parameters are in units of [`Misfit::units`], so that all are of order 1.
+pub(super) struct Misfit<'a> {
+    scene: &'a Scene,
+    pub points: &'a Points,
+    free: &'a [Parameter],
+    /// Powers of 2, so that nothing is rounded by them.
+    pub units: Vec<f64>,
+}
+
+impl<'a> Misfit<'a> {
+    pub fn new(scene: &'a Scene, points: &'a Points, free: &'a [Parameter]) -> Self {
+        let whisker = scene.first_whisker();
+        let units = free.iter().map(|own| size(*own, &whisker));
+        Self {
+            scene,
+            points,
+            free,
+            units: units.map(|size| size.log2().round().exp2()).collect(),
+        }
+    }
+
+    /// The parameters of the scene itself, which has them all.
+    pub fn start(&self) -> DVector<f64> {
+        let values = self.free.iter().zip(&self.units);
+        let values = values.filter_map(|(own, unit)| Some(own.value(self.scene)? / unit));
+        DVector::from_iterator(self.free.len(), values)
+    }
+
+    /// The least and the greatest values that `scene` accepts, one parameter at a time.
+    pub fn ranges(&self, scene: &Scene) -> Vec<[f64; 2]> {
+        let free = self.free.par_iter().zip(&self.units);
+        free.map(|(own, unit)| own.range(scene).map(|end| end / unit))
+            .collect()
+    }
+
+    /// The scene with these parameters.
+    pub fn scene(&self, parameters: &DVector<f64>) -> Result<Scene, SceneError> {
+        let values = self.free.iter().zip(&self.units).zip(parameters);
+        let values: Vec<_> = values.map(|((own, unit), x)| (*own, unit * x)).collect();
+        self.scene.with_parameters(&values)
+    }
+
+    /// Predicted less measured angles over their standard deviations; `None` where the scene refuses the parameters, or a
+    /// point is out of reach or never detaches.
+    pub fn residuals(&self, parameters: &DVector<f64>) -> Option<DVector<f64>> {
+        let scene = self.scene(parameters).ok()?;
+        let whisker = scene.first_whisker();
+        self.points.check_reach(&whisker, &scene.pole).ok()?;
+        let rows = self.points.beside(&whisker, &scene.pole).rows;
+        let mut residuals = Vec::with_capacity(rows.len());
+        for (row, point) in rows.iter().zip(&self.points.points) {
+            residuals.push(-row.residual_deg? / point.sd_deg);
+        }
+        Some(DVector::from_vec(residuals))
+    }
+
+    /// Their derivatives by the parameters; `None` where one cannot be had on either side. `here` are the residuals themselves.
+    pub fn jacobian(&self, parameters: &DVector<f64>, here: &DVector<f64>) -> Option<DMatrix<f64>> {
+        let columns = (0..self.free.len()).into_par_iter().map(|i| {
+            let beside = |step: f64| {
+                let mut beside = parameters.clone();
+                beside[i] += step;
+                self.residuals(&beside)
+            };
+            let central = || Some((beside(STEP)? - beside(-STEP)?) / (2.0 * STEP));
+            let one_sided = |step: f64| {
+                let (near, far) = (beside(step)?, beside(2.0 * step)?);
+                Some((4.0 * near - far - 3.0 * here) / (2.0 * step))
+            };
+            central()
+                .or_else(|| one_sided(STEP))
+                .or_else(|| one_sided(-STEP))
+        });
+        let columns: Vec<DVector<f64>> = columns.collect::<Option<_>>()?;
+        Some(DMatrix::from_columns(&columns))
+    }
+}
+
+/// How large a change of a parameter changes a whisker or its contact altogether.
+fn size(parameter: Parameter, whisker: &Whisker) -> f64 {
+    let length = whisker.length_mm;
+    match parameter {
+        Parameter::LengthMm | Parameter::VertexMm | Parameter::PoleRadiusMm => length,
+        Parameter::BaseRadiusUm | Parameter::TipRadiusUm => whisker.base_radius_um,
+        Parameter::YoungsModulusGpa => whisker.youngs_modulus_gpa,
+        Parameter::ParabolaPerMm | Parameter::SpiralPerMm => 1.0 / length,
+        Parameter::SpiralPerMm2 => 1.0 / (length * length),
+        Parameter::Taper
+        | Parameter::ModulusTipToBase
+        | Parameter::ArcStretch
+        | Parameter::Friction => 1.0,
+    }
+}

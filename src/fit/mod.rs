@@ -1,0 +1,202 @@
+//! Parameters of a scene from measured detachments, by nonlinear least squares.
+//!
+//! The misfit is the sum of squares of measured less predicted angles, each over its standard deviation. Levenberg and
+//! Marquardt's method (MINPACK's, from the crate `levenberg-marquardt`) minimises it inside the limits of the scene.
+
+mod bounded;
+mod covariance;
+mod misfit;
+
+use crate::measured::{Comparison, Points, PointsError};
+use crate::scene::{Parameter, Scene, SceneError, digits};
+use bounded::{NO_DERIVATIVE, minimise};
+use covariance::Covariance;
+use misfit::Misfit;
+
+/// What a fit has found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fit {
+    /// The scene with the values that fit best.
+    pub scene: Scene,
+    /// These values, in the order in which they were set free.
+    pub estimates: Vec<Estimate>,
+    /// Their correlation; `None` for pairs of which one is not determined.
+    pub correlation: Vec<Vec<Option<f64>>>,
+    /// Sum of the squares of residuals over standard deviations: of 1 degree where the points have none.
+    pub chi_square: f64,
+    /// Points used, less parameters that they determine.
+    pub degrees_of_freedom: usize,
+    /// The points beside the fitted scene.
+    pub comparison: Comparison,
+}
+
+/// A fitted parameter.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Estimate {
+    /// Which one.
+    pub parameter: Parameter,
+    /// Its value; where it is not determined, one of many that fit as well.
+    pub value: f64,
+    /// Its standard error; `None` where the points do not determine it.
+    pub standard_error: Option<f64>,
+    /// Whether it is the least or the greatest value that the scene accepts.
+    pub is_at_limit: bool,
+}
+
+/// Why there is no fit.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum Error {
+    /// Nothing is free.
+    #[error("no parameter is free")]
+    NothingFree,
+    /// A scene without the parameter.
+    #[error("{}: the scene has no {}; give it a value to start from, or free some of {has}", .parameter.name(), .parameter.key())]
+    Lacking {
+        /// Which one.
+        parameter: Parameter,
+        /// Names of those that the scene has.
+        has: String,
+    },
+    /// A parameter that is free twice, maybe under two names.
+    #[error("{} and {}: both are {}; one of them may be free", .0.name(), .1.name(), .0.key())]
+    Twice(Parameter, Parameter),
+    /// A parameter that the rest of the scene holds.
+    #[error("{}: the rest of the scene allows no values but {} to {}", .parameter.name(), digits(.range[0]), digits(.range[1]))]
+    Held {
+        /// Which one.
+        parameter: Parameter,
+        /// The least and the greatest value.
+        range: [f64; 2],
+    },
+    /// Values that the scene refuses.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// Points that the scene's whisker cannot touch.
+    #[error(transparent)]
+    Points(#[from] PointsError),
+    /// Fewer points than parameters.
+    #[error("{free} free parameters need as many points: {origin} has {used} that detach")]
+    TooFew {
+        /// Name of the file of points.
+        origin: String,
+        /// Free parameters.
+        free: usize,
+        /// Points that can be used.
+        used: usize,
+    },
+    /// An iteration that has not ended at a minimum.
+    #[error("the fit has not converged: {0}")]
+    NotConverged(&'static str),
+}
+
+/// A range that is narrower, relative to the value, leaves nothing to fit.
+const NARROWEST: f64 = 1e-6;
+
+/// Fits the `free` parameters of the first whisker of `scene` and of its pole to `points`, from the scene's values on.
+///
+/// Points whose side never detaches at these values are left out; in [`Fit::comparison`] they have no residual.
+///
+/// # Errors
+/// If a parameter cannot be free, a point is beyond the whisker, points are too few, or the iteration does not converge.
+pub fn fit(scene: &Scene, points: &Points, free: &[Parameter]) -> Result<Fit, Error> {
+    check(scene, free)?;
+    let used = used(scene, points)?;
+    if used.points.len() < free.len() {
+        return Err(Error::TooFew {
+            origin: points.origin.clone(),
+            free: free.len(),
+            used: used.points.len(),
+        });
+    }
+    let misfit = Misfit::new(scene, &used, free);
+    let best = minimise(&misfit)?;
+    let fitted = misfit.scene(&best)?;
+    let here = misfit.residuals(&best);
+    let jacobian = here.as_ref().and_then(|here| misfit.jacobian(&best, here));
+    let (here, jacobian) = here
+        .zip(jacobian)
+        .ok_or(Error::NotConverged(NO_DERIVATIVE))?;
+    let covariance = Covariance::new(&jacobian);
+    let chi_square = here.norm_squared();
+    let degrees_of_freedom = used.points.len() - covariance.rank;
+    // Without standard deviations the residuals tell how exact the points are.
+    let variance = match (used.have_deviations, degrees_of_freedom) {
+        (true, _) => Some(1.0),
+        (false, 0) => None,
+        (false, freedom) => Some(chi_square / freedom as f64),
+    };
+    let estimate = |(i, [least, most]): (usize, [f64; 2])| {
+        let (value, unit) = (best[i], misfit.units[i]);
+        let error = covariance.deviation(i).zip(variance);
+        let error = error.map(|(deviation, variance)| deviation * variance.sqrt());
+        Estimate {
+            parameter: free[i],
+            value: unit * value,
+            standard_error: error
+                .filter(|error| *error < most - least)
+                .map(|error| unit * error),
+            is_at_limit: value == least || value == most,
+        }
+    };
+    let estimates = misfit.ranges(&fitted).into_iter().enumerate().map(estimate);
+    let estimates: Vec<Estimate> = estimates.collect();
+    let is_known = |i: usize| estimates[i].standard_error.is_some();
+    let correlation = |i, j| {
+        covariance
+            .correlation(i, j)
+            .filter(|_| is_known(i) && is_known(j))
+    };
+    let all = || 0..free.len();
+    Ok(Fit {
+        correlation: all()
+            .map(|i| all().map(|j| correlation(i, j)).collect())
+            .collect(),
+        chi_square,
+        degrees_of_freedom,
+        comparison: points.beside(&fitted.first_whisker(), &fitted.pole),
+        scene: fitted,
+        estimates,
+    })
+}
+
+/// Refuses parameters that cannot be free.
+fn check(scene: &Scene, free: &[Parameter]) -> Result<(), Error> {
+    if free.is_empty() {
+        return Err(Error::NothingFree);
+    }
+    for (i, &parameter) in free.iter().enumerate() {
+        let same = free[..i]
+            .iter()
+            .find(|other| other.key() == parameter.key());
+        if let Some(same) = same {
+            return Err(Error::Twice(*same, parameter));
+        }
+        let value = parameter.value(scene).ok_or_else(|| {
+            let all = Parameter::ALL.into_iter();
+            let has = all.filter(|own| own.value(scene).is_some());
+            let has: Vec<&str> = has.map(Parameter::name).collect();
+            Error::Lacking {
+                parameter,
+                has: has.join(", "),
+            }
+        })?;
+        let range @ [least, most] = parameter.range(scene);
+        if most - least < NARROWEST * value.abs() {
+            return Err(Error::Held { parameter, range });
+        }
+    }
+    Ok(())
+}
+
+/// The points that detach at the values of `scene`.
+fn used(scene: &Scene, points: &Points) -> Result<Points, PointsError> {
+    let whisker = scene.first_whisker();
+    points.check_reach(&whisker, &scene.pole)?;
+    let rows = points.beside(&whisker, &scene.pole).rows;
+    let detaching = points.points.iter().zip(rows);
+    let detaching = detaching.filter(|(_, row)| row.residual_deg.is_some());
+    Ok(Points {
+        points: detaching.map(|(point, _)| *point).collect(),
+        ..points.clone()
+    })
+}

@@ -1,0 +1,120 @@
+//! Points beside the theory of a whisker.
+
+use super::{Angle, Point, Points};
+use crate::rod::Side;
+use crate::scene::{Pole, Whisker};
+use crate::trace::row;
+use crate::trace::{Detachment, DetachmentKind, curve};
+use serde::Serialize;
+
+row! {
+    /// A measured detachment and the one that the theory predicts.
+    #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+    pub struct Compared {
+        /// Line of the file of points.
+        pub line: usize,
+        /// Side of the whisker that the pole is on: cb (convex) or cf (concave).
+        pub side: Side,
+        /// Distance from the base to the contact at first touch.
+        pub distance_mm: f64,
+        /// The measured angle: of the push or of the chord, as in the file.
+        pub measured_deg: f64,
+        /// How the push was seen to end: slip-off, pull-off or empty.
+        pub kind: Option<DetachmentKind>,
+        /// The same angle by theory; empty where the side never detaches.
+        pub predicted_deg: Option<f64>,
+        /// How the push ends by theory: slip-off, pull-off, out-of-reach or unresolved.
+        pub predicted_kind: DetachmentKind,
+        /// Measured less predicted angle.
+        pub residual_deg: Option<f64>,
+    }
+}
+
+/// Points beside the theory of one whisker and pole.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Comparison {
+    /// Each point, in the order of its file.
+    pub rows: Vec<Compared>,
+}
+
+impl Points {
+    /// The points beside the detachments of `whisker` at `pole`.
+    #[must_use]
+    pub fn beside(&self, whisker: &Whisker, pole: &Pole) -> Comparison {
+        let ends = Side::BOTH.map(|side| self.ends(whisker, pole, side));
+        let compared = |point: &Point| {
+            let ends = &ends[usize::from(point.side == Side::Cb)];
+            let place = ends.partition_point(|end| end.distance_mm < point.distance_mm);
+            let end = &ends[place];
+            let predicted_deg = match self.angle {
+                Angle::Push => end.push_angle_deg,
+                Angle::Chord => end.push_chord_deg,
+            };
+            Compared {
+                line: point.line,
+                side: point.side,
+                distance_mm: point.distance_mm,
+                measured_deg: point.angle_deg,
+                kind: point.kind,
+                predicted_deg,
+                predicted_kind: end.kind,
+                residual_deg: predicted_deg.map(|predicted| point.angle_deg - predicted),
+            }
+        };
+        Comparison {
+            rows: self.points.iter().map(compared).collect(),
+        }
+    }
+
+    /// The detachments on `side`, at growing distances, each once.
+    fn ends(&self, whisker: &Whisker, pole: &Pole, side: Side) -> Vec<Detachment> {
+        let points = self.points.iter().filter(|point| point.side == side);
+        let mut distances: Vec<f64> = points.map(|point| point.distance_mm).collect();
+        distances.sort_by(f64::total_cmp);
+        distances.dedup();
+        curve(whisker, pole, side, &distances)
+    }
+}
+
+impl Comparison {
+    /// Points for which there is no prediction.
+    pub fn left_out(&self) -> impl Iterator<Item = &Compared> {
+        self.rows.iter().filter(|row| row.residual_deg.is_none())
+    }
+
+    /// How many points are compared.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        self.residuals().count()
+    }
+
+    /// How many of those were seen to end in another way than predicted.
+    #[must_use]
+    pub fn of_another_kind(&self) -> usize {
+        let compared = self.rows.iter().filter(|row| row.residual_deg.is_some());
+        let differs = |row: &&Compared| row.kind.is_some_and(|kind| kind != row.predicted_kind);
+        compared.filter(differs).count()
+    }
+
+    /// Root mean square of the residuals; `None` without any.
+    #[must_use]
+    pub fn rms_deg(&self) -> Option<f64> {
+        let squares: f64 = self.residuals().map(|residual| residual * residual).sum();
+        self.mean(squares).map(f64::sqrt)
+    }
+
+    /// Mean of the residuals; `None` without any.
+    #[must_use]
+    pub fn bias_deg(&self) -> Option<f64> {
+        self.mean(self.residuals().sum())
+    }
+
+    fn mean(&self, sum: f64) -> Option<f64> {
+        let count = self.count();
+        (count > 0).then(|| sum / count as f64)
+    }
+
+    fn residuals(&self) -> impl Iterator<Item = f64> {
+        self.rows.iter().filter_map(|row| row.residual_deg)
+    }
+}

@@ -1,0 +1,83 @@
+//! Points without errors: the parameters that they were made with.
+
+use crate::{DISTANCES_MM, cone, detachments, free};
+use whiskmap::fit::fit;
+use whiskmap::measured::Angle;
+use whiskmap::scene::Parameter::{self, *};
+use whiskmap::scene::Scene;
+
+/// Fits `start` to the detachments of the same scene with these values, which must come back.
+fn comes_back(start: &Scene, angle: Angle, truth: &[(Parameter, f64)]) {
+    let scene = start.with_parameters(truth).unwrap();
+    let points = detachments(&scene, angle, &DISTANCES_MM);
+    let found = fit(start, &points, &free(truth)).unwrap();
+    for (estimate, (parameter, value)) in found.estimates.iter().zip(truth) {
+        let off = estimate.value / value - 1.0;
+        // Measured: at most 2e-10, with all ten at once; 1e-12 with one or two.
+        assert!(off.abs() < 1e-8, "{parameter:?} of {truth:?}: {off:e}");
+        assert_eq!(estimate.value, parameter.value(&found.scene).unwrap());
+        assert!(
+            estimate.standard_error.is_some(),
+            "{parameter:?} of {truth:?}"
+        );
+    }
+    assert!(found.comparison.rms_deg().unwrap() < 1e-8);
+    assert_eq!(found.comparison.of_another_kind(), 0);
+}
+
+/// Parameters that detachments determine together. The length is known from pull-offs alone, of which there are none at the
+/// start.
+const ALL: [(Parameter, f64); 7] = [
+    (TipRadiusUm, 5.0),
+    (ParabolaPerMm, 0.018),
+    (VertexMm, 2.0),
+    (PoleRadiusMm, 0.4),
+    (LengthMm, 20.4),
+    (ModulusTipToBase, 1.3),
+    (Friction, 0.2),
+];
+
+#[test]
+fn each_parameter_alone() {
+    let others = [(BaseRadiusUm, 40.0), (Taper, 0.8), (ArcStretch, 1.04)];
+    for truth in ALL.into_iter().chain(others) {
+        comes_back(&cone(), Angle::Push, &[truth]);
+    }
+}
+
+#[test]
+fn several_at_once() {
+    for truth in [&ALL[..2], &ALL[..3], &ALL[..4], &ALL[3..], &ALL] {
+        comes_back(&cone(), Angle::Push, truth);
+    }
+    // Tip, gradient and stretch are two ratios along the whisker.
+    let stretched = [ALL[1], ALL[3], (ArcStretch, 1.04), (ModulusTipToBase, 1.3)];
+    comes_back(&cone(), Angle::Push, &stretched);
+}
+
+#[test]
+fn chord_angles_do_as_well() {
+    comes_back(&cone(), Angle::Chord, &ALL[..4]);
+}
+
+#[test]
+fn from_far_away() {
+    let truth = [(TipRadiusUm, 15.0), (ParabolaPerMm, 0.005)];
+    comes_back(&cone(), Angle::Push, &truth);
+    let truth = [
+        (TipRadiusUm, 0.1),
+        (ParabolaPerMm, 0.001),
+        (PoleRadiusMm, 1.5),
+    ];
+    comes_back(&cone(), Angle::Push, &truth);
+}
+
+#[test]
+fn an_euler_spiral_and_measured_radii() {
+    let spiral = Scene::read("scenes/euler_spiral.toml").unwrap();
+    let [per_mm, per_mm2] = [SpiralPerMm, SpiralPerMm2].map(|own| own.value(&spiral).unwrap());
+    let truth = [(SpiralPerMm, 1.1 * per_mm), (SpiralPerMm2, 0.9 * per_mm2)];
+    comes_back(&spiral, Angle::Push, &truth);
+    let measured = Scene::read("scenes/measured.toml").unwrap();
+    comes_back(&measured, Angle::Push, &[(ParabolaPerMm, 0.018)]);
+}

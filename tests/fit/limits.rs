@@ -1,0 +1,171 @@
+//! Parameters that points do not determine, limits of the scene, and points without a prediction.
+
+use crate::noisy::Random;
+use crate::{DISTANCES_MM, cone, detachments};
+use whiskmap::fit::{Error, Fit, fit};
+use whiskmap::measured::{Angle, Points};
+use whiskmap::scene::Parameter::{self, *};
+use whiskmap::scene::Scene;
+
+/// Which parameters have a standard error.
+fn determined(fit: &Fit) -> Vec<Parameter> {
+    let known = fit
+        .estimates
+        .iter()
+        .filter(|own| own.standard_error.is_some());
+    known.map(|own| own.parameter).collect()
+}
+
+#[test]
+fn no_detachment_depends_on_the_modulus() {
+    let points = detachments(&cone(), Angle::Push, &DISTANCES_MM);
+    let found = fit(&cone(), &points, &[YoungsModulusGpa]).unwrap();
+    assert_eq!(determined(&found), []);
+    assert_eq!(
+        (found.estimates[0].value, found.degrees_of_freedom),
+        (3.0, 24)
+    );
+    let truth = cone().with_parameters(&[(TipRadiusUm, 2.0)]).unwrap();
+    let points = detachments(&truth, Angle::Push, &DISTANCES_MM);
+    let found = fit(&cone(), &points, &[YoungsModulusGpa, TipRadiusUm]).unwrap();
+    assert_eq!(determined(&found), [TipRadiusUm]);
+    assert_eq!(found.correlation, [[None, None], [None, Some(1.0)]]);
+    assert!((found.estimates[1].value - 2.0).abs() < 1e-8);
+}
+
+/// Only the ratio of the radii counts. Slip-offs of a cone, all before its tip, do not even tell where it ends.
+#[test]
+fn what_counts_only_together_is_not_determined() {
+    let truth = cone().with_parameters(&[(TipRadiusUm, 2.0), (ParabolaPerMm, 0.018)]);
+    let points = detachments(&truth.unwrap(), Angle::Push, &DISTANCES_MM);
+    let found = fit(
+        &cone(),
+        &points,
+        &[BaseRadiusUm, ParabolaPerMm, TipRadiusUm],
+    )
+    .unwrap();
+    assert_eq!(determined(&found), [ParabolaPerMm]);
+    assert_eq!(found.degrees_of_freedom, 22);
+    let whisker = found.scene.first_whisker();
+    let ratio = whisker.tip_radius_um / whisker.base_radius_um;
+    assert!((ratio * 15.0 - 1.0).abs() < 1e-8, "{ratio}");
+    assert!((found.estimates[1].value - 0.018).abs() < 1e-9);
+
+    let slips = Points {
+        points: points
+            .points
+            .iter()
+            .copied()
+            .filter(|point| point.distance_mm < 16.5)
+            .collect(),
+        ..points
+    };
+    let found = fit(&cone(), &slips, &[LengthMm, ParabolaPerMm, TipRadiusUm]).unwrap();
+    assert_eq!(determined(&found), [ParabolaPerMm]);
+}
+
+#[test]
+fn an_error_beyond_the_range_is_none() {
+    let mut points = detachments(&cone(), Angle::Push, &DISTANCES_MM);
+    points.have_deviations = true;
+    for (sd_deg, known) in [(1.0, vec![Friction]), (1e3, vec![])] {
+        points
+            .points
+            .iter_mut()
+            .for_each(|point| point.sd_deg = sd_deg);
+        let found = fit(&cone(), &points, &[Friction]).unwrap();
+        assert_eq!(determined(&found), known);
+    }
+}
+
+#[test]
+fn as_many_points_as_parameters_have_no_error_of_their_own() {
+    let mut points = detachments(&cone(), Angle::Push, &[12.0]);
+    let free = [TipRadiusUm, ParabolaPerMm];
+    let found = fit(&cone(), &points, &free).unwrap();
+    assert_eq!((determined(&found), found.degrees_of_freedom), (vec![], 0));
+    points.have_deviations = true;
+    assert_eq!(determined(&fit(&cone(), &points, &free).unwrap()), free);
+    points.points.pop();
+    let few = Error::TooFew {
+        origin: "points.csv".to_owned(),
+        free: 2,
+        used: 1,
+    };
+    assert_eq!(fit(&cone(), &points, &free), Err(few));
+}
+
+/// The limits, 0 and 30, are met from inside, and held by errors that pull beyond them.
+#[test]
+fn parameters_stay_within_the_scene() {
+    let start = cone().with_parameters(&[(Friction, 0.3)]).unwrap();
+    let mut points = detachments(&cone(), Angle::Push, &DISTANCES_MM);
+    let found = fit(&start, &points, &[Friction, TipRadiusUm]).unwrap();
+    assert!(found.estimates[0].value.abs() < 1e-8 && (found.estimates[1].value - 1.5).abs() < 1e-8);
+
+    // Less friction than none would fit better: then the others fit as if it were not free.
+    for point in &mut points.points {
+        point.angle_deg *= 0.98;
+    }
+    for from in [0.0, 0.3] {
+        let start = cone().with_parameters(&[(Friction, from)]).unwrap();
+        let found = fit(&start, &points, &[Friction, TipRadiusUm, ParabolaPerMm]).unwrap();
+        let alone = fit(&cone(), &points, &[TipRadiusUm, ParabolaPerMm]).unwrap();
+        assert_eq!(
+            (found.estimates[0].value, found.estimates[0].is_at_limit),
+            (0.0, true)
+        );
+        assert!((found.chi_square / alone.chi_square - 1.0).abs() < 1e-9);
+        for (one, other) in found.estimates[1..].iter().zip(&alone.estimates) {
+            assert!(
+                (one.value / other.value - 1.0).abs() < 1e-5,
+                "{one:?} {other:?}"
+            );
+            assert!(!one.is_at_limit);
+        }
+    }
+}
+
+/// A start at a limit is left.
+#[test]
+fn a_cylinder_becomes_a_cone_and_a_cone_a_cylinder() {
+    let cylinder = cone().with_parameters(&[(TipRadiusUm, 30.0)]).unwrap();
+    for (start, truth, tip_um) in [(&cylinder, &cone(), 1.5), (&cone(), &cylinder, 30.0)] {
+        let points = detachments(truth, Angle::Push, &DISTANCES_MM);
+        let found = fit(start, &points, &[TipRadiusUm]).unwrap();
+        assert!(
+            (found.estimates[0].value - tip_um).abs() < 1e-7,
+            "{found:?}"
+        );
+    }
+}
+
+/// Shorter whiskers do not reach the last point: such steps are taken back.
+#[test]
+fn the_whisker_keeps_reaching_its_points() {
+    let truth = cone().with_parameters(&[(LengthMm, 21.0)]).unwrap();
+    let start = cone().with_parameters(&[(LengthMm, 26.0)]).unwrap();
+    let distances = [10.0, 14.0, 19.0, 20.0, 20.6];
+    let mut random = Random(1);
+    let mut points = detachments(&truth, Angle::Push, &distances);
+    for point in &mut points.points {
+        point.angle_deg += 0.01 * random.normal();
+    }
+    let found = fit(&start, &points, &[LengthMm]).unwrap();
+    assert!((found.estimates[0].value - 21.0).abs() < 0.01, "{found:?}");
+}
+
+/// Beyond a hinge nothing slips off.
+#[test]
+fn points_that_never_detach_are_left_out() {
+    let hinged = "title = 'A hinge'\n[whisker]\nlength_mm = 20\nyoungs_modulus_gpa = 3\n\
+                  profile.rows = [[0, 30], [10, 0.03], [12, 30], [20, 30]]\n\
+                  [grid]\npush_angle_deg = [5, 10]\ndistance_mm = [5, 14]\n";
+    let scene = Scene::parse(hinged, "hinged.toml").unwrap();
+    let text = "side,distance_mm,push_angle_deg\ncb,5,13\ncb,14,40\n";
+    let points = Points::parse(text, "points.csv").unwrap();
+    let found = fit(&scene, &points, &[YoungsModulusGpa]).unwrap();
+    let left_out: Vec<usize> = found.comparison.left_out().map(|row| row.line).collect();
+    assert_eq!((left_out, found.comparison.count()), (vec![3], 1));
+    assert_eq!(found.degrees_of_freedom, 1);
+}

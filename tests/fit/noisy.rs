@@ -1,0 +1,85 @@
+//! Points with normal errors, always the same: standard errors say how far off a fit is.
+
+use crate::{DISTANCES_MM, cone, detachments, free};
+use std::f64::consts::TAU;
+use whiskmap::fit::fit;
+use whiskmap::measured::Angle;
+use whiskmap::scene::Parameter::{ParabolaPerMm, PoleRadiusMm, TipRadiusUm};
+
+/// Uniform numbers (splitmix64), and normal ones by pairs of them (Box and Muller).
+pub struct Random(pub u64);
+
+impl Random {
+    /// Between 0, which it never is, and 1.
+    fn uniform(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut bits = self.0;
+        bits = (bits ^ (bits >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        bits = (bits ^ (bits >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        bits ^= bits >> 31;
+        ((bits >> 11) as f64 + 0.5) / (1_u64 << 53) as f64
+    }
+
+    /// Of mean 0 and variance 1.
+    pub fn normal(&mut self) -> f64 {
+        let radius = (-2.0 * self.uniform().ln()).sqrt();
+        radius * (TAU * self.uniform()).cos()
+    }
+}
+
+/// Of 100 trials, those in which every parameter is within 3 standard errors, and the mean square of all errors over
+/// standard errors.
+fn trials(have_deviations: bool) -> (usize, f64) {
+    let truth = [
+        (TipRadiusUm, 2.5),
+        (ParabolaPerMm, 0.018),
+        (PoleRadiusMm, 0.4),
+    ];
+    let start = cone();
+    let exact = detachments(
+        &start.with_parameters(&truth).unwrap(),
+        Angle::Push,
+        &DISTANCES_MM,
+    );
+    let (mut within, mut squares) = (0, 0.0);
+    for seed in 0..100 {
+        let mut random = Random(seed);
+        let mut points = exact.clone();
+        points.have_deviations = have_deviations;
+        for (i, point) in points.points.iter_mut().enumerate() {
+            let sd_deg = if have_deviations {
+                0.2 + 0.05 * i as f64
+            } else {
+                0.7
+            };
+            point.angle_deg += sd_deg * random.normal();
+            if have_deviations {
+                point.sd_deg = sd_deg;
+            }
+        }
+        let found = fit(&start, &points, &free(&truth)).unwrap();
+        let pulls = found
+            .estimates
+            .iter()
+            .zip(&truth)
+            .map(|(estimate, (_, value))| {
+                (estimate.value - value) / estimate.standard_error.unwrap()
+            });
+        let pulls: Vec<f64> = pulls.collect();
+        within += usize::from(pulls.iter().all(|pull| pull.abs() <= 3.0));
+        squares += pulls.iter().map(|pull| pull * pull).sum::<f64>() / 300.0;
+        assert_eq!(found.degrees_of_freedom, 24 - 3);
+    }
+    (within, squares)
+}
+
+#[test]
+fn standard_errors_tell_how_far_off_a_fit_is() {
+    for have_deviations in [true, false] {
+        // Measured: 98 and 97, and mean squares of 0.98 and 1.07.
+        let (within, squares) = trials(have_deviations);
+        assert!(within >= 97, "{within}");
+        // 1 if they are right; of so many numbers, 0.75 and 1.25 are three deviations off.
+        assert!((0.75..1.25).contains(&squares), "{squares}");
+    }
+}

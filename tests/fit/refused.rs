@@ -1,0 +1,55 @@
+//! What a fit refuses.
+
+use crate::{DISTANCES_MM, cone, detachments};
+use whiskmap::fit::fit;
+use whiskmap::measured::Angle;
+use whiskmap::scene::Parameter::{self, *};
+use whiskmap::scene::Scene;
+
+/// The message of a fit that is refused.
+fn message(scene: &Scene, free: &[Parameter]) -> String {
+    let points = detachments(&cone(), Angle::Push, &DISTANCES_MM);
+    fit(scene, &points, free).unwrap_err().to_string()
+}
+
+#[test]
+fn parameters_that_cannot_be_free() {
+    let cylinder = Scene::read("scenes/cylinder.toml").unwrap();
+    let said = message(&cylinder, &[TipRadiusUm, Friction]);
+    assert!(said.starts_with(
+        "friction: the scene has no contact.friction; give it a value to start from, or free some of length_mm, base_radius_um,"
+    ), "{said}");
+    assert_eq!(
+        message(&cone(), &[TipRadiusUm, Taper]),
+        "tip_radius_um and taper: both are whisker.tip_radius_um; one of them may be free"
+    );
+    assert_eq!(message(&cone(), &[]), "no parameter is free");
+    let measured = Scene::read("scenes/measured.toml").unwrap();
+    let said = message(&measured, &[LengthMm]);
+    assert!(
+        said.starts_with("length_mm: the rest of the scene allows no values but 19.99"),
+        "{said}"
+    );
+}
+
+/// The stretch may be 1 to 1/taper, which is 1.000005 here.
+#[test]
+fn a_range_too_narrow_for_a_derivative() {
+    let sharp = cone().with("whisker.tip_radius_um", 1.5e-4).unwrap();
+    assert_eq!(
+        message(&sharp, &[ArcStretch]),
+        "the fit has not converged: a parameter cannot be changed enough for a derivative: the scene refuses it, or a point is out of reach"
+    );
+}
+
+#[test]
+fn points_beyond_the_whisker() {
+    let short = cone().with("whisker.length_mm", 19).unwrap();
+    let said = message(&short, &[TipRadiusUm]);
+    assert!(
+        said.starts_with(
+            "points.csv:12: distance_mm = 19.2: must be between 0.019 (length_mm / 1000) and 18."
+        ),
+        "{said}"
+    );
+}
