@@ -23,6 +23,7 @@ pub mod accuracy;
 #[cfg(feature = "gpu")]
 pub mod bench;
 pub mod classify;
+pub mod design;
 mod front;
 pub mod integrate;
 pub mod map;
@@ -36,6 +37,7 @@ pub mod scene;
 pub mod sheet;
 pub mod store;
 pub mod trace;
+pub mod uncertainty;
 
 pub use front::{Error, Map, Options, branch, curve, map, shape};
 pub use whiskmap_mechanics::{numerics, rod, shooting};

@@ -6,6 +6,7 @@
 mod axis;
 mod check;
 mod checked;
+mod deviations;
 mod error;
 mod file;
 mod grid;
@@ -20,6 +21,7 @@ mod source;
 mod whisker;
 
 pub use checked::Scene;
+pub use deviations::Deviations;
 pub use error::SceneError;
 pub use grid::{Grid, Morphology};
 pub use limits::digits;

@@ -82,6 +82,12 @@ impl Parameter {
         }
     }
 
+    /// The one of this name.
+    #[must_use]
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|one| one.name() == name)
+    }
+
     /// Where a scene file has it.
     #[must_use]
     pub const fn key(self) -> &'static str {

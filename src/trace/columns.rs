@@ -17,4 +17,4 @@ macro_rules! row {
     };
 }
 
-pub(super) use row;
+pub(crate) use row;

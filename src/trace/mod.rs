@@ -15,6 +15,8 @@ pub use curve::{Corner, Detachment, DetachmentKind, NoCorner, corner, curve, cur
 pub use shape::{Part, Shape, ShapePoint};
 pub use state::Found;
 
+pub(crate) use columns::row;
+
 use crate::rod::Side;
 use crate::scene::{Morphology, Whisker};
 use crate::shooting::Resolution;
