@@ -5,6 +5,7 @@ use super::failure::{Failure, check_resolved};
 use super::outputs::{Opened, Outputs};
 use super::progress;
 use super::tolerance::Tolerance;
+use super::uncertainty::{self, Sampling};
 use clap::Args;
 use serde::Serialize;
 use std::path::PathBuf;
@@ -13,6 +14,7 @@ use whiskmap::rod::Side;
 use whiskmap::scene::{Morphology, Scene, Whisker};
 use whiskmap::shooting::Resolution;
 use whiskmap::trace::{self, Corner, Detachment, DetachmentKind};
+use whiskmap::uncertainty::Spread;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -20,15 +22,21 @@ Examples:
   whiskmap curve scenes/cone.toml --csv curve.csv --plot curve.svg
   whiskmap curve scenes/cone.toml --tolerance 1e-4deg
   whiskmap curve scenes/cone.toml --corner
+  whiskmap curve scenes/uncertain.toml --samples 500 --csv bands.csv --plot bands.svg
 
 One line per side and distance of the scene, CF before CB; angles are positive for CB and negative for CF. Ends \
 without values are out of reach, or unresolved, which is said on standard error. A scene with taper or curvature axes \
 gives the curve of every whisker, with the leading columns taper (1 - tip/base radius) and curvature_per_mm; a plot \
-shows one whisker.";
+shows one whisker.
+
+With --samples, whiskers are drawn with the standard deviations of the scene's [uncertainty], independently and normally; \
+a draw that the scene's limits refuse is drawn again, and standard error says how often. Percentiles are linear between \
+neighbouring samples. Equal seeds give equal samples, whatever the number of threads.";
 
 const TABLES: &[(&str, &[(&str, &str)])] = &[
     ("Columns", Detachment::COLUMNS),
     ("Columns with --corner", Corner::COLUMNS),
+    ("Columns with --samples", Spread::COLUMNS),
 ];
 
 /// Options of `curve`.
@@ -38,8 +46,10 @@ pub struct Options {
     /// Scene file; - reads it from standard input
     scene: PathBuf,
     /// Tell only where slip-off turns into pull-off, or why it does not
-    #[arg(long, conflicts_with_all = ["plot", "tolerance"])]
+    #[arg(long, conflicts_with_all = ["plot", "tolerance", "samples"])]
     corner: bool,
+    #[command(flatten)]
+    sampling: Sampling,
     #[command(flatten)]
     tolerance: Tolerance,
     #[command(flatten)]
@@ -55,9 +65,13 @@ pub fn run(options: &Options) -> Result<(), Failure> {
             "--plot: the scene sweeps {whiskers} whiskers over grid.taper and grid.curvature_per_mm; a plot shows one"
         )));
     }
+    let draws = options.sampling.draw(&scene)?;
     let mut outputs = options.outputs.open()?;
     let accuracy = options.tolerance.choose(&scene, &Side::BOTH)?;
     let resolution = accuracy.map_or(Resolution::FINE, |accuracy| accuracy.resolution);
+    if let Some(draws) = draws {
+        return uncertainty::run(&scene, &draws, resolution, outputs);
+    }
     let mut drawn = Vec::new();
     let (mut unresolved, mut all) = (0, 0);
     let distances = &scene.grid.distance_mm;
@@ -108,7 +122,8 @@ fn write<R: Serialize>(
     }
 }
 
-const AXES: [CurveAxis; 2] = [
+/// What a plot shows across and upwards.
+pub const AXES: [CurveAxis; 2] = [
     CurveAxis {
         label: "distance at first touch (mm)",
         value: |end| Some(end.distance_mm),

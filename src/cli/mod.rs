@@ -7,6 +7,7 @@ mod bench;
 mod branch;
 mod columns;
 mod curve;
+mod design;
 mod devices;
 mod engine;
 mod estimate;
@@ -23,6 +24,7 @@ mod reproduce;
 mod shape;
 mod signals;
 mod tolerance;
+mod uncertainty;
 mod verify;
 
 use clap::{Parser, Subcommand};
@@ -46,6 +48,8 @@ Examples:
   whiskmap curve scenes/cone.toml --plot curve.png where the whisker detaches, distance by distance
   whiskmap branch scenes/cone.toml --distance 15.66 stable and unstable states in front of one pole
   whiskmap shape scenes/cone.toml --distance 15.66 --push-angle 10 --plot shape.svg
+  whiskmap curve scenes/uncertain.toml --samples 500 --plot bands.png   with the uncertainty of its numbers
+  whiskmap design scenes/robot.toml --distance 60 --slip-off 30deg --for taper   the taper that slips off there
   whiskmap reproduce                               the theory lines of the paper's figures
   whiskmap verify                                  every number that is known otherwise
   whiskmap bench scenes/cone.toml                  what accuracy costs in time, engine by engine
@@ -65,6 +69,8 @@ enum Command {
     Branch(branch::Options),
     /// Compute the shape of the whisker in one state
     Shape(shape::Options),
+    /// Find the values of a number of the scene at which the whisker detaches at a given push angle
+    Design(design::Options),
     /// Draw the theory lines of the paper's figures
     Reproduce(reproduce::Options),
     /// Compare with every number that is published, exact, or from an independent solver
@@ -113,6 +119,7 @@ fn run(command: &Command) -> Result<(), Failure> {
         Command::Curve(options) => curve::run(options),
         Command::Branch(options) => branch::run(options),
         Command::Shape(options) => shape::run(options),
+        Command::Design(options) => design::run(options),
         Command::Reproduce(options) => reproduce::run(options),
         Command::Verify => verify::run(),
         Command::Bench(options) => bench::run(options),

@@ -12,7 +12,7 @@ use crate::rod::Side;
 use crate::scene::{Parameter, Scene, SceneError, digits};
 use crate::trace::{DetachmentKind, curve};
 use rayon::prelude::*;
-use samples::{SAMPLES, samples};
+use samples::samples;
 
 /// How far the push angle of a solution may be from the one asked for, in degrees: exact ends are known to 1e-11.
 const TOLERANCE_DEG: f64 = 1e-9;
@@ -65,7 +65,7 @@ pub enum NoDesign {
     #[error("{0}: must be left out, as one number of one whisker is varied")]
     Sweep(&'static str),
     /// The scene does not give the parameter.
-    #[error("{}: the scene has no {}; add it, or choose one of {given}", .parameter.name(), .parameter.key())]
+    #[error("{}: must be one of {given}, which the scene has; it has no {}", .parameter.name(), .parameter.key())]
     Lacking {
         /// What was asked for.
         parameter: Parameter,
@@ -255,6 +255,3 @@ impl Search<'_> {
         solutions
     }
 }
-
-/// How many values are tried before any is refined.
-pub const TRIED: usize = SAMPLES;

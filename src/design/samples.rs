@@ -1,7 +1,7 @@
 //! Where a range is looked at.
 
 /// How many samples a range has.
-pub const SAMPLES: usize = 256;
+pub const SAMPLES: usize = 128;
 
 /// Ranges of positive numbers that span more than this are looked at by their logarithm, too.
 const WIDE: f64 = 10.0;

@@ -6,6 +6,7 @@
 //! the detachment boundary is a curve, drawn from the margins that the cells carry.
 
 mod axes;
+mod bands;
 mod bitmap;
 mod chart;
 mod error;
@@ -15,13 +16,15 @@ mod heading;
 mod map;
 mod palette;
 mod picture;
+mod polygons;
 mod strokes;
 mod svg;
 mod ticks;
 mod traces;
 mod units;
 
-pub use chart::{Chart, Disc, Dot, Ink, Line, Plot, Stroke};
+pub use bands::bands;
+pub use chart::{Band, Chart, Disc, Dot, Ink, Line, Plot, Shade, Stroke};
 pub use error::Error;
 pub use font::missing_glyphs;
 pub use format::Format;

@@ -125,7 +125,11 @@ impl Parameter {
         let Some(own) = self.value(scene) else {
             return [f64::NAN; 2];
         };
-        let accepts = |value: f64| scene.with_parameters(&[(self, value)]).is_ok();
+        // Next to a cylinder, a taper below 0 is lost in the rounding of the tip's radius.
+        let accepts = |value: f64| {
+            let is_taper = self != Self::Taper || (0.0..=1.0).contains(&value);
+            is_taper && scene.with_parameters(&[(self, value)]).is_ok()
+        };
         [f64::MIN, f64::MAX].map(|beyond| {
             let [mut inside, mut outside] = [own, beyond].map(rank);
             while inside.abs_diff(outside) > 1 {

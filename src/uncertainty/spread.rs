@@ -13,7 +13,7 @@ row! {
         pub side: Side,
         /// Distance from the base to the contact at first touch.
         pub distance_mm: f64,
-        /// How the push of the scene itself ends: slip-off, pull-off, out-of-reach or unresolved.
+        /// How the scene's own push ends: slip-off, pull-off, out-of-reach or unresolved.
         pub kind: DetachmentKind,
         /// Where it ends: positive CB, negative CF.
         pub push_angle_deg: Option<f64>,
@@ -29,7 +29,7 @@ row! {
         pub p5_deg: Option<f64>,
         /// 25th percentile.
         pub p25_deg: Option<f64>,
-        /// Median.
+        /// Median, the 50th percentile.
         pub p50_deg: Option<f64>,
         /// 75th percentile.
         pub p75_deg: Option<f64>,

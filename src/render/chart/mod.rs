@@ -7,7 +7,7 @@ mod plot;
 mod sheet;
 mod window;
 
-pub use data::{Chart, Disc, Dot, Ink, Line, Plot, Stroke};
+pub use data::{Band, Chart, Disc, Dot, Ink, Line, Plot, Shade, Stroke};
 
 use super::picture::Picture;
 use sheet::Sheet;
