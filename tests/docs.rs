@@ -5,6 +5,7 @@ use assert_cmd::Command;
 use std::fs;
 use std::path::Path;
 use whiskmap::trace::{BranchPoint, Corner, Detachment, ShapePoint};
+use whiskmap::uncertainty::Spread;
 
 /// The calls of `whiskmap` in the shell blocks of a page, without their remarks.
 fn calls(page: &str) -> Vec<Vec<String>> {
@@ -59,6 +60,7 @@ fn every_column_is_on_the_page_of_the_commands() {
         Corner::COLUMNS,
         BranchPoint::COLUMNS,
         ShapePoint::COLUMNS,
+        Spread::COLUMNS,
     ];
     for (name, meaning) in tables.into_iter().flatten() {
         let line = format!("| `{name}` | {} |", meaning.trim());

@@ -2,11 +2,14 @@
 
 use super::failure::Failure;
 use super::numbers::degrees;
+use super::outputs::open;
 use super::pole::Pole;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
 use std::io::{self, Write};
+use std::path::PathBuf;
 use whiskmap::design::{self, Design, NoDesign, Target};
+use whiskmap::render::designs;
 use whiskmap::rod::Side;
 use whiskmap::scene::{Parameter, digits};
 use whiskmap::trace::DetachmentKind;
@@ -14,7 +17,7 @@ use whiskmap::trace::DetachmentKind;
 const EXAMPLES: &str = "\
 Examples:
   whiskmap design scenes/robot.toml --distance 60 --side cb --slip-off 30deg --for taper
-  whiskmap design scenes/robot.toml --distance 60 --slip-off -30deg --for parabola_per_mm
+  whiskmap design scenes/robot.toml --distance 60 --slip-off -50deg --for parabola_per_mm --plot design.svg
   whiskmap design scenes/cylinder.toml --distance 19 --pull-off 40deg --for length_mm
 
 Every value that makes the whisker detach so, one a line, to 1e-9 of itself; where two solutions nearly meet, to the root of \
@@ -36,6 +39,9 @@ pub struct Options {
     /// Number of the scene to choose
     #[arg(long = "for", value_name = "NAME", value_parser = parameter())]
     parameter: Parameter,
+    /// Picture of the push angle over that number to write, PNG or SVG by its ending
+    #[arg(long, value_name = "FILE")]
+    plot: Option<PathBuf>,
 }
 
 /// How the push is to end.
@@ -68,7 +74,11 @@ fn parameter() -> impl TypedValueParser<Value = Parameter> {
 }
 
 fn angle(text: &str) -> Result<f64, String> {
-    let angle = degrees(text).ok_or("must be an angle, such as 30deg or 0.5rad")?;
+    let angle = match text.strip_suffix("rad") {
+        Some(radians) => radians.trim_end().parse().ok().map(f64::to_degrees),
+        None => degrees(text),
+    };
+    let angle = angle.ok_or("must be an angle, such as 30deg or 0.5rad")?;
     if angle.abs() <= 360.0 && angle != 0.0 {
         Ok(angle)
     } else {
@@ -112,6 +122,7 @@ impl Options {
 pub fn run(options: &Options) -> Result<(), Failure> {
     let target = options.target()?;
     let (scene, _) = options.pole.read("design")?;
+    let (_, picture) = open("--plot", None, options.plot.as_deref())?;
     let found = design::design(&scene, options.parameter, &target);
     let found = found.map_err(|why| match why {
         NoDesign::Sweep(_) => Failure::Input(why.to_string()),
@@ -121,6 +132,10 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         }
         NoDesign::Distance(why) => Failure::Scene(why),
     })?;
+    if let Some(picture) = picture {
+        let plot = designs(options.parameter, &target, &found);
+        picture.save(options.pole.title(&scene), plot)?;
+    }
     if found.values.is_empty() {
         return Err(Failure::NoValue(reached(
             options.parameter,

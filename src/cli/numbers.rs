@@ -8,11 +8,8 @@ pub fn number(text: &str) -> Result<f64, String> {
         .map_err(|_| "must be a number, such as 15.66".to_owned())
 }
 
-/// An angle in degrees: `30deg`, `30` or `0.5rad`; `None` for anything else.
+/// An angle in degrees, such as `30deg` or `30`.
 pub fn degrees(text: &str) -> Option<f64> {
-    if let Some(radians) = text.strip_suffix("rad") {
-        return Some(radians.trim_end().parse::<f64>().ok()?.to_degrees());
-    }
     let number = text.strip_suffix("deg").unwrap_or(text);
     number.trim_end().parse().ok()
 }

@@ -50,7 +50,7 @@ pub struct End {
 /// What a parameter can do.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Design {
-    /// Growing values, each of which makes the whisker detach as asked.
+    /// Growing values, each of which makes the whisker detach as asked; none where all push angles are the same.
     pub values: Vec<f64>,
     /// The least and the greatest value that were tried: all that the scene accepts.
     pub range: [f64; 2],
@@ -86,6 +86,12 @@ pub enum NoDesign {
 }
 
 impl Design {
+    /// Whether the range spans so much that the logarithm of the parameter says more.
+    #[must_use]
+    pub fn is_wide(&self) -> bool {
+        samples::is_wide(self.range)
+    }
+
     /// The least and the greatest push angle of ends of a kind.
     #[must_use]
     pub fn reached_deg(&self, kind: DetachmentKind) -> Option<[f64; 2]> {
@@ -148,11 +154,16 @@ pub fn design(scene: &Scene, parameter: Parameter, target: &Target) -> Result<De
         .collect();
     values.sort_by(f64::total_cmp);
     values.dedup_by(|b, a| (*b - *a).abs() <= EQUAL * a.abs());
-    Ok(Design {
+    let mut design = Design {
         values,
         range,
         ends,
-    })
+    };
+    let reached = design.reached_deg(target.kind);
+    if reached.is_some_and(|[low, high]| high - low <= TOLERANCE_DEG) {
+        design.values.clear();
+    }
+    Ok(design)
 }
 
 /// What is asked of what.

@@ -9,6 +9,7 @@ mod axes;
 mod bands;
 mod bitmap;
 mod chart;
+mod designs;
 mod error;
 mod font;
 mod format;
@@ -25,6 +26,7 @@ mod units;
 
 pub use bands::bands;
 pub use chart::{Band, Chart, Disc, Dot, Ink, Line, Plot, Shade, Stroke};
+pub use designs::designs;
 pub use error::Error;
 pub use font::missing_glyphs;
 pub use format::Format;

@@ -2,6 +2,7 @@
 
 use super::checked::Scene;
 use super::error::SceneError;
+use super::limits::digits;
 
 /// A number of the whisker or the pole.
 ///
@@ -125,11 +126,7 @@ impl Parameter {
         let Some(own) = self.value(scene) else {
             return [f64::NAN; 2];
         };
-        // Next to a cylinder, a taper below 0 is lost in the rounding of the tip's radius.
-        let accepts = |value: f64| {
-            let is_taper = self != Self::Taper || (0.0..=1.0).contains(&value);
-            is_taper && scene.with_parameters(&[(self, value)]).is_ok()
-        };
+        let accepts = |value: f64| scene.with_parameters(&[(self, value)]).is_ok();
         [f64::MIN, f64::MAX].map(|beyond| {
             let [mut inside, mut outside] = [own, beyond].map(rank);
             while inside.abs_diff(outside) > 1 {
@@ -152,6 +149,14 @@ impl Scene {
     ///
     /// If the scene would be refused with them.
     pub fn with_parameters(&self, values: &[(Parameter, f64)]) -> Result<Self, SceneError> {
+        // Next to the ends of this range, the rounding of the tip's radius would hide what lies beyond.
+        let is_taper = |(parameter, value): &(Parameter, f64)| {
+            *parameter != Parameter::Taper || (0.0..=1.0).contains(value)
+        };
+        if let Some((_, value)) = values.iter().find(|own| !is_taper(own)) {
+            let must = format!("{} is not between 0 and 1", digits(*value));
+            return Err(SceneError::whole(Parameter::Taper.name(), must));
+        }
         let base = values.iter().rev();
         let base = base
             .copied()

@@ -87,16 +87,12 @@ impl Draws {
         let varying = varying(scene, deviations);
         let draws = (0..samples as u64).into_par_iter();
         let draws = draws.map(|sample| draw(scene, &varying, Normal::new(seed, sample)));
-        let draws: Vec<(Scene, u64)> = draws.collect::<Result<_, _>>()?;
-        let refused = draws.iter().map(|(_, refused)| refused).sum();
-        let drawn = draws.into_iter();
+        let (drawn, refused): (Vec<_>, Vec<u64>) = draws.collect::<Result<_, _>>()?;
         Ok(Self {
             scene: scene.clone(),
             varying,
-            drawn: drawn
-                .map(|(scene, _)| (scene.first_whisker(), scene.pole))
-                .collect(),
-            refused,
+            drawn,
+            refused: refused.into_iter().sum(),
         })
     }
 
@@ -149,14 +145,17 @@ impl Draws {
 /// How a push ends, and at which push angle.
 type End = (DetachmentKind, Option<f64>);
 
-/// The first scene of a stream that is accepted, and how many are not.
-fn draw(scene: &Scene, varying: &[Varying], mut normal: Normal) -> Result<(Scene, u64), NoDraws> {
+/// A drawn whisker with its pole, and how many draws were refused before it.
+type Drawn = ((Whisker, Pole), u64);
+
+/// The first whisker of a stream that the scene accepts.
+fn draw(scene: &Scene, varying: &[Varying], mut normal: Normal) -> Result<Drawn, NoDraws> {
     let mut refused = 0;
     loop {
         let step = |one: &Varying| (*one, one.deviation * normal.draw());
         let steps: Vec<_> = varying.iter().map(step).collect();
         match moved(scene, &steps) {
-            Ok(drawn) => return Ok((drawn, refused)),
+            Ok(drawn) => return Ok(((drawn.first_whisker(), drawn.pole), refused)),
             Err(why) if refused + 1 == MOST_TRIES => {
                 let why = why.to_string();
                 let first = why.lines().next().unwrap_or_default();

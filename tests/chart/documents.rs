@@ -54,7 +54,7 @@ fn a_document_is_well_formed_whatever_the_texts() {
             }],
             dots: vec![Dot::default()],
             discs: vec![Disc::default()],
-            equal_axes: false,
+            ..Plot::default()
         }],
         columns: 3,
     };

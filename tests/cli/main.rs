@@ -7,6 +7,7 @@
 mod bench;
 mod branch;
 mod curve;
+mod design;
 #[cfg(unix)]
 mod files;
 mod map;
@@ -21,6 +22,7 @@ mod signals;
 mod sweep;
 mod tolerance;
 mod traces;
+mod uncertainty;
 
 use assert_cmd::Command;
 use std::fs;
