@@ -16,8 +16,8 @@ use whiskmap::trace::DetachmentKind;
 
 const EXAMPLES: &str = "\
 Examples:
-  whiskmap design scenes/robot.toml --distance 60 --side cb --slip-off 30deg --for taper
-  whiskmap design scenes/robot.toml --distance 60 --slip-off -50deg --for parabola_per_mm --plot design.svg
+  whiskmap design scenes/robot.toml --distance 60 --side cb --slip-off 30deg --for taper --plot taper.svg
+  whiskmap design scenes/robot.toml --distance 60 --slip-off -50deg --for parabola_per_mm
   whiskmap design scenes/cylinder.toml --distance 19 --pull-off 40deg --for length_mm
 
 Every value that makes the whisker detach so, one a line, to 1e-9 of itself; where two solutions nearly meet, to the root of \

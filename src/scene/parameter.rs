@@ -147,7 +147,7 @@ impl Scene {
     ///
     /// # Errors
     ///
-    /// If the scene would be refused with them.
+    /// If the scene would be refused with them, or a taper is not between 0 and 1.
     pub fn with_parameters(&self, values: &[(Parameter, f64)]) -> Result<Self, SceneError> {
         // Next to the ends of this range, the rounding of the tip's radius would hide what lies beyond.
         let is_taper = |(parameter, value): &(Parameter, f64)| {
