@@ -23,6 +23,7 @@ pub mod accuracy;
 #[cfg(feature = "gpu")]
 pub mod bench;
 pub mod classify;
+pub mod design;
 #[cfg(feature = "fit")]
 pub mod fit;
 mod front;
@@ -39,6 +40,7 @@ pub mod scene;
 pub mod sheet;
 pub mod store;
 pub mod trace;
+pub mod uncertainty;
 
 #[cfg(feature = "fit")]
 pub use front::fit;

@@ -6,6 +6,7 @@ use std::fs;
 use std::path::Path;
 use whiskmap::measured::Compared;
 use whiskmap::trace::{BranchPoint, Corner, Detachment, ShapePoint};
+use whiskmap::uncertainty::Spread;
 
 /// The calls of `whiskmap` in the shell blocks of a page, without their remarks.
 fn calls(page: &str) -> Vec<Vec<String>> {
@@ -61,6 +62,7 @@ fn every_column_is_on_the_page_of_the_commands() {
         Compared::COLUMNS,
         BranchPoint::COLUMNS,
         ShapePoint::COLUMNS,
+        Spread::COLUMNS,
     ];
     for (name, meaning) in tables.into_iter().flatten() {
         let line = format!("| `{name}` | {} |", meaning.trim());

@@ -7,6 +7,7 @@ use super::outputs::{Opened, Outputs};
 use super::pole::check_single;
 use super::progress;
 use super::tolerance::Tolerance;
+use super::uncertainty::{self, Sampling};
 use clap::Args;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -16,6 +17,7 @@ use whiskmap::rod::Side;
 use whiskmap::scene::{Morphology, Scene, Whisker};
 use whiskmap::shooting::Resolution;
 use whiskmap::trace::{self, Corner, Detachment, DetachmentKind};
+use whiskmap::uncertainty::Spread;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -24,6 +26,7 @@ Examples:
   whiskmap curve scenes/cone.toml --tolerance 1e-4deg
   whiskmap curve scenes/cone.toml --corner
   whiskmap curve scenes/cone.toml --data scenes/cone_points.csv --plot points.svg
+  whiskmap curve scenes/uncertain.toml --samples 500 --csv bands.csv --plot bands.svg
 
 One line per side and distance of the scene, CF before CB; angles are positive for CB and negative for CF. Ends \
 without values are out of reach, or unresolved, which is said on standard error. A scene with taper or curvature axes \
@@ -32,12 +35,17 @@ shows one whisker.
 
 With --data the table has the measured points in place of the curve: a CSV file with the columns side (cb or cf), \
 distance_mm, push_angle_deg or push_chord_deg, and maybe kind (slip-off, pull-off or empty) and sd_deg. The plot has them \
-on the curve, slip-offs as open circles and pull-offs as filled ones. Their RMS and bias are told on standard error.";
+on the curve, slip-offs as open circles and pull-offs as filled ones. Their RMS and bias are told on standard error.
+
+With --samples, whiskers are drawn with the standard deviations of the scene's [uncertainty], independently and normally; \
+a draw that the scene's limits refuse is drawn again, and standard error says how often. Percentiles are linear between \
+neighbouring samples. Equal seeds give equal samples, whatever the number of threads.";
 
 const TABLES: &[(&str, &[(&str, &str)])] = &[
     ("Columns", Detachment::COLUMNS),
     ("Columns with --corner", Corner::COLUMNS),
     ("Columns with --data", Compared::COLUMNS),
+    ("Columns with --samples", Spread::COLUMNS),
 ];
 
 /// Options of `curve`.
@@ -47,11 +55,13 @@ pub struct Options {
     /// Scene file; - reads it from standard input
     scene: PathBuf,
     /// Tell only where slip-off turns into pull-off, or why it does not
-    #[arg(long, conflicts_with_all = ["plot", "tolerance"])]
+    #[arg(long, conflicts_with_all = ["plot", "tolerance", "samples"])]
     corner: bool,
     /// Measured detachments to compare with the curve; - reads them from standard input
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["corner", "tolerance"])]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["corner", "tolerance", "samples"])]
     data: Option<PathBuf>,
+    #[command(flatten)]
+    sampling: Sampling,
     #[command(flatten)]
     tolerance: Tolerance,
     #[command(flatten)]
@@ -70,9 +80,13 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     if let Some(path) = &options.data {
         return beside_points(options, &scene, path);
     }
+    let draws = options.sampling.draw(&scene)?;
     let mut outputs = options.outputs.open()?;
     let accuracy = options.tolerance.choose(&scene, &Side::BOTH)?;
     let resolution = accuracy.map_or(Resolution::FINE, |accuracy| accuracy.resolution);
+    if let Some(draws) = draws {
+        return uncertainty::run(&scene, &draws, resolution, outputs);
+    }
     let mut drawn = Vec::new();
     let (mut unresolved, mut all) = (0, 0);
     let distances = &scene.grid.distance_mm;
@@ -106,9 +120,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         }
     }
     bar.finish_and_clear();
-    outputs.finish(scene.title.clone(), || {
-        theory(&drawn, AXES)
-    })?;
+    outputs.finish(scene.title.clone(), || theory(&drawn, AXES))?;
     check_resolved(unresolved, all, "ends", "the column `kind`")
 }
 
@@ -136,17 +148,15 @@ fn beside_points(options: &Options, scene: &Scene, path: &Path) -> Result<(), Fa
     data::name_left_out(&points, &comparison);
     let rows = &comparison.rows;
     outputs.rows(rows)?;
-    let distances = &scene.grid.distance_mm;
     outputs.finish(scene.title.clone(), || {
-        let curve = |side| trace::curve(&whisker, &scene.pole, side, distances);
-        let ends: Vec<Detachment> = Side::BOTH.into_iter().flat_map(curve).collect();
         let axes = match points.angle {
             Angle::Push => AXES,
             Angle::Chord => [AXES[0], CHORD],
         };
-        let mut plot = theory(&ends, axes);
-        plot.dots = measured(rows);
-        plot
+        Plot {
+            dots: measured(rows),
+            ..own_curve(scene, Resolution::FINE, axes)
+        }
     })?;
     if comparison.count() == 0 {
         return Err(Failure::Unresolved {
@@ -161,7 +171,15 @@ fn beside_points(options: &Options, scene: &Scene, path: &Path) -> Result<(), Fa
     Ok(())
 }
 
-/// The detachment curve of one whisker.
+/// The detachment curve of the scene's whisker.
+pub fn own_curve(scene: &Scene, resolution: Resolution, axes: [CurveAxis; 2]) -> Plot {
+    let (whisker, distances) = (scene.first_whisker(), &scene.grid.distance_mm);
+    let of_side = |side| trace::curve_at(resolution, &whisker, &scene.pole, side, distances);
+    let ends: Vec<Detachment> = Side::BOTH.into_iter().flat_map(of_side).collect();
+    theory(&ends, axes)
+}
+
+/// Computed ends of one whisker as a plot.
 fn theory(rows: &[Detachment], axes: [CurveAxis; 2]) -> Plot {
     let ends = Ends {
         rows,
@@ -171,7 +189,8 @@ fn theory(rows: &[Detachment], axes: [CurveAxis; 2]) -> Plot {
     curves("", &[ends], axes)
 }
 
-const AXES: [CurveAxis; 2] = [
+/// What a plot shows across and upwards.
+pub const AXES: [CurveAxis; 2] = [
     CurveAxis {
         label: "distance at first touch (mm)",
         value: |end| Some(end.distance_mm),

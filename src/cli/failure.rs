@@ -49,6 +49,9 @@ pub enum Failure {
         what: &'static str,
         see: &'static str,
     },
+    /// No value does what was asked for.
+    #[error("{0}")]
+    NoValue(String),
     /// Numbers are not what they should be.
     #[error("{failed} of {all} checks fail")]
     Checks { failed: usize, all: usize },

@@ -8,6 +8,7 @@ mod branch;
 mod columns;
 mod curve;
 mod data;
+mod design;
 mod devices;
 mod engine;
 mod estimate;
@@ -25,6 +26,7 @@ mod reproduce;
 mod shape;
 mod signals;
 mod tolerance;
+mod uncertainty;
 mod verify;
 
 use clap::{Parser, Subcommand};
@@ -50,6 +52,8 @@ Examples:
   whiskmap fit scenes/cone.toml --data scenes/cone_points.csv --free tip_radius_um
   whiskmap branch scenes/cone.toml --distance 15.66 stable and unstable states in front of one pole
   whiskmap shape scenes/cone.toml --distance 15.66 --push-angle 10 --plot shape.svg
+  whiskmap curve scenes/uncertain.toml --samples 500 --plot bands.png   with the uncertainty of its numbers
+  whiskmap design scenes/robot.toml --distance 60 --slip-off 30deg --for taper   the taper that slips off there
   whiskmap reproduce                               the theory of the paper's Figs. 1 to 5
   whiskmap verify                                  every number that is known otherwise
   whiskmap bench scenes/cone.toml                  what accuracy costs in time, engine by engine
@@ -71,6 +75,8 @@ enum Command {
     Branch(branch::Options),
     /// Compute the shape of the whisker in one state
     Shape(shape::Options),
+    /// Find the values of a number of the scene at which the whisker detaches at a given push angle
+    Design(design::Options),
     /// Draw the theory of the paper's Figs. 1 to 5, with a table for each panel
     Reproduce(reproduce::Options),
     /// Compare with every number that is published, exact, or from an independent solver
@@ -120,6 +126,7 @@ fn run(command: &Command) -> Result<(), Failure> {
         Command::Fit(options) => fit::run(options),
         Command::Branch(options) => branch::run(options),
         Command::Shape(options) => shape::run(options),
+        Command::Design(options) => design::run(options),
         Command::Reproduce(options) => reproduce::run(options),
         Command::Verify => verify::run(),
         Command::Bench(options) => bench::run(options),

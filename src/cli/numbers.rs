@@ -8,6 +8,12 @@ pub fn number(text: &str) -> Result<f64, String> {
         .map_err(|_| "must be a number, such as 15.66".to_owned())
 }
 
+/// An angle in degrees, such as `30deg` or `30`.
+pub fn degrees(text: &str) -> Option<f64> {
+    let number = text.strip_suffix("deg").unwrap_or(text);
+    number.trim_end().parse().ok()
+}
+
 /// A parser of whole numbers within `range`.
 pub fn whole(range: RangeInclusive<u32>) -> impl Fn(&str) -> Result<u32, String> + Clone {
     move |text| {

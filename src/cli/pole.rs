@@ -28,7 +28,7 @@ pub fn check_single(scene: &Scene, command: &str) -> Result<(), Failure> {
 #[derive(Debug, Args)]
 pub struct Pole {
     /// Scene file; - reads it from standard input
-    scene: PathBuf,
+    pub scene: PathBuf,
     /// Distance from the base to the contact at first touch
     #[arg(long, value_name = "MM", allow_hyphen_values = true, value_parser = number)]
     pub distance: f64,

@@ -1,6 +1,7 @@
 //! `--tolerance`: how exact is exact enough.
 
 use super::failure::{Failure, say};
+use super::numbers;
 use clap::Args;
 use whiskmap::accuracy::{Accuracy, BOUNDED, cheapest};
 use whiskmap::rod::Side;
@@ -26,11 +27,10 @@ const RANGE: std::ops::RangeInclusive<f64> = 1e-10..=1.0;
 const ROUNDED_UP: f64 = 1.06;
 
 fn degrees(text: &str) -> Result<f64, String> {
-    let number = text.strip_suffix("deg").unwrap_or(text).trim_end();
-    match number.parse() {
-        Ok(degrees) if RANGE.contains(&degrees) => Ok(degrees),
-        Ok(_) => Err("must be between 1e-10deg and 1deg".to_owned()),
-        Err(_) => Err("must be an angle in degrees, such as 1e-6deg".to_owned()),
+    match numbers::degrees(text) {
+        Some(degrees) if RANGE.contains(&degrees) => Ok(degrees),
+        Some(_) => Err("must be between 1e-10deg and 1deg".to_owned()),
+        None => Err("must be an angle in degrees, such as 1e-6deg".to_owned()),
     }
 }
 

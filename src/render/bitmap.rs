@@ -3,6 +3,7 @@
 use super::font::{self, CAPITALS};
 use super::palette::{INK, Rgb, WHITE};
 use super::picture::{Anchor, Mark, Pen, Picture};
+use super::polygons;
 use super::strokes::{Coverage, dashes};
 use png::Compression;
 
@@ -64,6 +65,12 @@ impl Bitmap {
                 }
             }
             Mark::Polyline(points, pen) => self.stroke(points, pen.width, pen.colour),
+            Mark::Polygon(corners, fill) => {
+                let corners: Vec<_> = corners.iter().map(|at| self.scaled(at)).collect();
+                for ([x, y], part) in polygons::fill(&corners, self.size) {
+                    self.blend([x as i64, y as i64], *fill, part);
+                }
+            }
             Mark::Circle(centre, radius, fill, outline) => {
                 let ring = outline.unwrap_or(Pen::solid(0.0, *fill));
                 self.stroke(&[*centre], 2.0 * radius + ring.width, ring.colour);
@@ -82,11 +89,15 @@ impl Bitmap {
     /// A polyline; a single point is a disc. No pixel is inked twice, so that many short segments look like one long
     /// one.
     fn stroke(&mut self, points: &[[f64; 2]], width: f64, ink: Rgb) {
-        let scaled = |point: &[f64; 2]| point.map(|at| at * self.scale);
-        let points: Vec<_> = points.iter().map(scaled).collect();
+        let points: Vec<_> = points.iter().map(|at| self.scaled(at)).collect();
         for ([x, y], part) in self.coverage.of(&points, 0.5 * width * self.scale) {
             mix(&mut self.pixels[y * self.size[0] + x], ink, part);
         }
+    }
+
+    /// A point of the picture in pixels.
+    fn scaled(&self, point: &[f64; 2]) -> [f64; 2] {
+        point.map(|at| at * self.scale)
     }
 
     fn text(&mut self, text: &str, at: [f64; 2], size: f64, anchor: Anchor) {

@@ -6,8 +6,10 @@
 //! the detachment boundary is a curve, drawn from the margins that the cells carry.
 
 mod axes;
+mod bands;
 mod bitmap;
 mod chart;
+mod designs;
 mod error;
 mod font;
 mod format;
@@ -15,13 +17,16 @@ mod heading;
 mod map;
 mod palette;
 mod picture;
+mod polygons;
 mod strokes;
 mod svg;
 mod ticks;
 mod traces;
 mod units;
 
-pub use chart::{Chart, Disc, Dot, Ink, Inset, Line, Note, Plot, Stroke};
+pub use bands::bands;
+pub use chart::{Band, Chart, Disc, Dot, Ink, Inset, Line, Note, Plot, Shade, Stroke};
+pub use designs::designs;
 pub use error::Error;
 pub use font::missing_glyphs;
 pub use format::Format;

@@ -17,6 +17,9 @@ pub(super) const INK: Rgb = rgb(0x222b33);
 /// Lines of charts beside [`INK`].
 pub(super) const BLUE: Rgb = rgb(0x1c6cc4);
 pub(super) const GREY: Rgb = rgb(0x9aa1a8);
+/// Areas of charts, the wider and the one inside.
+pub(super) const SHADE_LIGHT: Rgb = rgb(0xdbe4ee);
+pub(super) const SHADE_DARK: Rgb = rgb(0xa9bdd2);
 /// Cells without a value, and bodies in charts.
 pub(super) const BLANK: Rgb = rgb(0xdcddde);
 

@@ -75,6 +75,8 @@ pub(super) enum Anchor {
 pub(super) enum Mark {
     /// A line through points.
     Polyline(Vec<[f64; 2]>, Pen),
+    /// Corners and fill of an area.
+    Polygon(Vec<[f64; 2]>, Rgb),
     /// Centre, radius and fill of a circle, under an outline about its edge.
     Circle([f64; 2], f64, Rgb, Option<Pen>),
     /// A line of text, its point and its size.
@@ -130,6 +132,13 @@ impl Picture {
         let corners = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0), (0.0, 0.0)];
         let corners = corners.map(|(x, y)| area.point(x, y));
         self.polyline(&corners, Pen::solid(width, INK));
+    }
+
+    /// An area; one of fewer than three corners is nothing.
+    pub(super) fn polygon(&mut self, corners: Vec<[f64; 2]>, fill: Rgb) {
+        if corners.len() > 2 {
+            self.marks.push(Mark::Polygon(corners, fill));
+        }
     }
 
     pub(super) fn circle(&mut self, at: [f64; 2], radius: f64, fill: Rgb, outline: Option<Pen>) {

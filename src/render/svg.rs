@@ -20,6 +20,10 @@ pub(super) fn document(picture: &Picture) -> Result<String, Error> {
     for mark in &picture.marks {
         document += &match mark {
             Mark::Polyline(points, pen) => polyline(points, *pen),
+            Mark::Polygon(corners, fill) => {
+                let (corners, fill) = (places(corners), colour(*fill));
+                format!("<polygon points=\"{corners}\" fill=\"{fill}\"/>\n")
+            }
             Mark::Circle(centre, radius, fill, outline) => {
                 let ([x, y], radius) = (centre.map(number), number(*radius));
                 let (fill, outline) = (colour(*fill), outline.map(stroke).unwrap_or_default());
@@ -41,10 +45,6 @@ pub(super) fn document(picture: &Picture) -> Result<String, Error> {
 }
 
 fn polyline(points: &[[f64; 2]], pen: Pen) -> String {
-    let points: Vec<_> = points
-        .iter()
-        .map(|[x, y]| format!("{},{}", number(*x), number(*y)))
-        .collect();
     let dashes = if pen.dashed {
         let [dash, gap] = DASHES.map(number);
         format!(" stroke-dasharray=\"{dash} {gap}\"")
@@ -53,9 +53,15 @@ fn polyline(points: &[[f64; 2]], pen: Pen) -> String {
     };
     format!(
         "<polyline points=\"{}\" fill=\"none\"{} stroke-linecap=\"round\" stroke-linejoin=\"round\"{dashes}/>\n",
-        points.join(" "),
+        places(points),
         stroke(pen),
     )
+}
+
+/// The attribute of points.
+fn places(points: &[[f64; 2]]) -> String {
+    let places = points.iter().map(|at| at.map(number).join(","));
+    places.collect::<Vec<_>>().join(" ")
 }
 
 fn words(text: &str, at: [f64; 2], size: f64, anchor: Anchor) -> String {

@@ -6,6 +6,7 @@
 use toml::Spanned;
 
 use super::axis::{self, Axis};
+use super::deviations;
 use super::error::Fault;
 use super::file::{GridTable, OutputTable, SceneTable, WhiskerTable};
 use super::grid::{FARTHEST, Grid, NEAREST};
@@ -45,8 +46,11 @@ pub(super) fn setup(table: &SceneTable, text: &str, stem: &str) -> Result<Setup,
         radius_mm: pole_limits(&whisker, &grid).check_or(0.0, "pole.radius_mm", radius)?,
         friction: rough.check_or(0.0, "contact.friction", friction)?,
     };
+    let uncertainty = table.uncertainty.as_ref();
+    let uncertainty = uncertainty.map(|own| deviations::deviations(own, text, &whisker));
     Ok(Setup {
         title,
+        uncertainty: uncertainty.transpose()?,
         whisker,
         pole,
         grid,

@@ -44,7 +44,7 @@ impl SceneError {
                     "f64" => "a number",
                     "i64" => "a whole number",
                     "an array of length 2" => "a list of 2 numbers",
-                    kind if kind.starts_with("struct ") => "a table",
+                    kind if kind == "a map" || kind.starts_with("struct ") => "a table",
                     _ => expected,
                 };
                 format!("{found}, expected {expected}")

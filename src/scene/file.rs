@@ -1,6 +1,7 @@
 //! The tables of a scene file, as TOML has them: right in shape, not yet checked in value.
 
 use serde::Deserialize;
+use std::collections::BTreeMap;
 use toml::Spanned;
 
 use super::axis::Axis;
@@ -28,6 +29,7 @@ tables! {
         contact: Option<ContactTable>,
         grid: Spanned<GridTable>,
         output: Option<OutputTable>,
+        uncertainty: Option<Spanned<BTreeMap<String, Number>>>,
     }
     /// `[whisker]`
     WhiskerTable {

@@ -6,6 +6,7 @@
 mod axis;
 mod check;
 mod checked;
+mod deviations;
 mod error;
 mod file;
 mod grid;
@@ -24,6 +25,7 @@ pub(crate) use grid::NEAREST;
 pub(crate) use source::bounded;
 
 pub use checked::Scene;
+pub use deviations::Deviations;
 pub use error::SceneError;
 pub use grid::{Grid, Morphology};
 pub use limits::digits;

@@ -2,6 +2,7 @@
 
 use super::checked::Scene;
 use super::error::SceneError;
+use super::limits::digits;
 
 /// A number of the whisker or the pole.
 ///
@@ -82,6 +83,12 @@ impl Parameter {
         }
     }
 
+    /// The one of this name.
+    #[must_use]
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|one| one.name() == name)
+    }
+
     /// Where a scene file has it.
     #[must_use]
     pub const fn key(self) -> &'static str {
@@ -140,8 +147,16 @@ impl Scene {
     ///
     /// # Errors
     ///
-    /// If the scene would be refused with them.
+    /// If the scene would be refused with them, or a taper is not between 0 and 1.
     pub fn with_parameters(&self, values: &[(Parameter, f64)]) -> Result<Self, SceneError> {
+        // Next to the ends of this range, the rounding of the tip's radius would hide what lies beyond.
+        let is_taper = |(parameter, value): &(Parameter, f64)| {
+            *parameter != Parameter::Taper || (0.0..=1.0).contains(value)
+        };
+        if let Some((_, value)) = values.iter().find(|own| !is_taper(own)) {
+            let must = format!("{} is not between 0 and 1", digits(*value));
+            return Err(SceneError::whole(Parameter::Taper.name(), must));
+        }
         let base = values.iter().rev();
         let base = base
             .copied()

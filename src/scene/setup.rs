@@ -1,5 +1,6 @@
 //! What a scene holds, as plain data.
 
+use super::deviations::Deviations;
 use super::grid::{FARTHEST, Grid, Morphology, NEAREST};
 use super::whisker::{Curvature, Pole, Whisker};
 
@@ -15,6 +16,8 @@ pub struct Setup {
     pub pole: Pole,
     /// The sweep.
     pub grid: Grid,
+    /// How uncertain its numbers are, where the file says so.
+    pub uncertainty: Option<Deviations>,
     /// Stem of the output files.
     pub name: String,
     /// The file as it was read.

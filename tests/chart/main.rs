@@ -6,6 +6,7 @@
 )]
 
 mod axes;
+mod bands;
 mod documents;
 #[path = "../drawn/mod.rs"]
 mod drawn;

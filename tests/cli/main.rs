@@ -7,6 +7,7 @@
 mod bench;
 mod branch;
 mod curve;
+mod design;
 #[cfg(unix)]
 mod files;
 mod fit;
@@ -22,6 +23,7 @@ mod signals;
 mod sweep;
 mod tolerance;
 mod traces;
+mod uncertainty;
 
 use assert_cmd::Command;
 use std::fs;

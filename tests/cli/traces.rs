@@ -8,6 +8,8 @@ pub const CURVE: &str = "side,distance_mm,pole_distance_mm,kind,push_angle_deg,p
 pub const BRANCH: &str = "distance_mm,side,stable,push_angle_deg,push_chord_deg,arc_length_mm,contact_angle_deg,force_un,\
                       base_moment_nnm,det,mark,sliding";
 pub const SHAPE: &str = "arc_length_mm,x_mm,y_mm,angle_deg,curvature_per_mm,moment_nnm,part";
+pub const SPREAD: &str = "side,distance_mm,kind,push_angle_deg,slip_off,pull_off,out_of_reach,unresolved,p5_deg,p25_deg,\
+                      p50_deg,p75_deg,p95_deg,mean_deg,sd_deg,sd_first_order_deg";
 pub const CB: [&str; 5] = ["branch", "scene.toml", "--distance", "15.66", "--side=cb"];
 
 /// Runs the program, which must succeed and say nothing else.
@@ -73,7 +75,7 @@ fn help_defines_the_columns() {
     let place = Place::with(SCENE);
     let corner = "side,distance_mm,push_angle_deg,reason";
     for (command, tables) in [
-        ("curve", &[CURVE, corner, crate::fit::POINTS][..]),
+        ("curve", &[CURVE, corner, crate::fit::POINTS, SPREAD][..]),
         ("branch", &[BRANCH]),
         ("shape", &[SHAPE]),
     ] {

@@ -27,6 +27,7 @@ pub fn scene(
 ) -> Setup {
     Setup {
         title: "A made-up whisker in front of a pole".to_owned(),
+        uncertainty: None,
         whisker: Whisker {
             length_mm: 20.0,
             base_radius_um: 33.0,

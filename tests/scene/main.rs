@@ -91,6 +91,8 @@ fn every_shipped_scene_is_accepted() {
         "fig5_right",
         "measured",
         "morphology",
+        "robot",
+        "uncertain",
     ];
     assert_eq!(names, expected);
 }

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use whiskmap::scene::Scene;
+use whiskmap::scene::{Parameter, Scene};
 
 use crate::{BASE, parse, sweep, with_line};
 
@@ -249,5 +249,112 @@ fn the_modulus_at_the_tip_of_a_drooping_whisker_has_limits() {
     assert!(
         stiff.contains("the modulus at the tip is 20 times the base's (1.9)"),
         "{stiff}"
+    );
+}
+
+/// The table of standard deviations, which the base scene does not have.
+#[test]
+fn deviations_belong_to_numbers_of_the_scene() {
+    let with = |lines: &str| parse(&format!("{BASE}[uncertainty]\n{lines}\n"));
+    let names = "`length_mm`, `base_radius_um`, `tip_radius_um`, `taper`";
+    let measured = "profile = { rows = [[0, 30], [20, 1.5]] }";
+    for (lines, place, parts) in [
+        (
+            "",
+            "19:1",
+            ["uncertainty: must have at least one of", names],
+        ),
+        (
+            "radius = 1",
+            "20:10",
+            [
+                "uncertainty.radius = 1: is not known; must be one of",
+                names,
+            ],
+        ),
+        (
+            "length_mm = -1",
+            "20:13",
+            [
+                "uncertainty.length_mm = -1: must be",
+                "between 0 and 100000",
+            ],
+        ),
+        (
+            "length_mm = nan",
+            "20:13",
+            [
+                "uncertainty.length_mm = nan: must be",
+                "between 0 and 100000",
+            ],
+        ),
+        (
+            "length_mm = inf",
+            "20:13",
+            [
+                "uncertainty.length_mm = inf: must be",
+                "between 0 and 100000",
+            ],
+        ),
+        (
+            "length_mm = '1'",
+            "20:13",
+            ["invalid type: string", "expected a number"],
+        ),
+        (
+            "friction = 0.1",
+            "20:12",
+            [
+                "uncertainty.friction = 0.1: must be left out",
+                "contact.friction",
+            ],
+        ),
+        (
+            "profile_radius_um = 1",
+            "20:21",
+            ["must be left out", "there is no whisker.profile"],
+        ),
+        (
+            "tip_radius_um = 1\ntaper = 0.1",
+            "21:9",
+            ["uncertainty.taper = 0.1", "beside tip_radius_um"],
+        ),
+    ] {
+        let why = with(lines).expect_err(lines);
+        for part in parts.into_iter().chain([&*format!("test.toml:{place}")]) {
+            assert!(why.contains(part), "{lines}: no {part:?} in {why}");
+        }
+    }
+    let why = parse(&format!("uncertainty = 5\n{BASE}")).unwrap_err();
+    assert!(
+        why.contains("invalid type: integer `5`, expected a table"),
+        "{why}"
+    );
+    let scene = with("taper = 0.01\nlength_mm = 0").unwrap();
+    let deviations = scene.uncertainty.as_ref().unwrap();
+    assert_eq!(
+        deviations.parameters,
+        [(Parameter::LengthMm, 0.0), (Parameter::Taper, 0.01)]
+    );
+    assert_eq!(deviations.profile_radius_um, None);
+
+    let measured = BASE
+        .replace("base_radius_um = 30.0", measured)
+        .replace("tip_radius_um = 1.5", "");
+    let with = |lines: &str| parse(&format!("{measured}[uncertainty]\n{lines}\n"));
+    let scene = with("profile_radius_um = 0.5").unwrap();
+    assert_eq!(
+        scene.uncertainty.as_ref().unwrap().profile_radius_um,
+        Some(0.5)
+    );
+    let why = with("length_mm = 1").unwrap_err();
+    assert!(
+        why.contains("must be left out: whisker.profile.rows end at the length"),
+        "{why}"
+    );
+    let why = with("tip_radius_um = 1").unwrap_err();
+    assert!(
+        why.contains("the scene does not give whisker.tip_radius_um"),
+        "{why}"
     );
 }

@@ -89,6 +89,27 @@ pub struct Inset {
     pub notes: Vec<Note>,
 }
 
+/// How dark an area is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Shade {
+    /// For the wider of two areas.
+    #[default]
+    Light,
+    /// For the one inside.
+    Dark,
+}
+
+/// The area between two curves.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Band {
+    /// Across, and up from the one to the other curve, in data units. A point that cannot be drawn breaks the band.
+    pub points: Vec<[f64; 3]>,
+    /// How dark it is.
+    pub shade: Shade,
+    /// Its name in the legend, as that of a [`Line`].
+    pub name: Option<String>,
+}
+
 /// Curves over one pair of axes.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Plot {
@@ -100,11 +121,13 @@ pub struct Plot {
     pub x_label: String,
     /// What is shown upwards, with its unit.
     pub y_label: String,
+    /// Drawn before anything else, in this order.
+    pub bands: Vec<Band>,
     /// Drawn in this order, over the discs.
     pub lines: Vec<Line>,
     /// Drawn over the lines.
     pub dots: Vec<Dot>,
-    /// Drawn first.
+    /// Drawn below the lines.
     pub discs: Vec<Disc>,
     /// Drawn last.
     pub notes: Vec<Note>,

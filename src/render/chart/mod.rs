@@ -10,7 +10,7 @@ mod plot;
 mod sheet;
 mod window;
 
-pub use data::{Chart, Disc, Dot, Ink, Inset, Line, Note, Plot, Stroke};
+pub use data::{Band, Chart, Disc, Dot, Ink, Inset, Line, Note, Plot, Shade, Stroke};
 
 use super::picture::Picture;
 use sheet::Sheet;

@@ -1,11 +1,11 @@
 //! One plot: frame, ticks and what is inside.
 
-use super::data::{Disc, Ink, Line, Plot, Stroke};
-use super::window::{Window, drawable, drawable_disc};
+use super::data::{Band, Disc, Ink, Line, Plot, Shade, Stroke};
+use super::window::{Window, drawable, drawable_disc, drawable_span};
 use super::{inset, notes};
 use crate::render::axes::{Axes, FRAME};
 use crate::render::heading::{DOT, Heading, Sample};
-use crate::render::palette::{BLANK, BLUE, GREY, INK, Rgb, WHITE};
+use crate::render::palette::{BLANK, BLUE, Fill, GREY, INK, Rgb, SHADE_DARK, SHADE_LIGHT, WHITE};
 use crate::render::picture::{Area, Pen, Picture};
 use crate::render::{ticks, units};
 
@@ -23,6 +23,14 @@ pub(super) const fn colour(ink: Ink) -> Rgb {
         Ink::Black => INK,
         Ink::Blue => BLUE,
         Ink::Grey => GREY,
+    }
+}
+
+/// The colour that a shade stands for.
+const fn ground(shade: Shade) -> Rgb {
+    match shade {
+        Shade::Light => SHADE_LIGHT,
+        Shade::Dark => SHADE_DARK,
     }
 }
 
@@ -96,6 +104,9 @@ impl<'a> Layout<'a> {
 
     /// Draws the plot into `body`, with `left` pixels of room to the left of it.
     pub(super) fn draw(&self, picture: &mut Picture, body: Area, left: f64) {
+        for band in &self.plot.bands {
+            self.band(picture, body, band);
+        }
         for one in self.plot.discs.iter().filter(|one| drawable_disc(one)) {
             disc(picture, body, &self.window, one);
         }
@@ -121,6 +132,18 @@ impl<'a> Layout<'a> {
         }
     }
 
+    /// The stretches of a band between points that cannot be drawn.
+    fn band(&self, picture: &mut Picture, body: Area, band: &Band) {
+        for stretch in band.points.split(|point| !drawable_span(*point)) {
+            let there = stretch.iter().map(|[x, from, _]| [*x, *from]);
+            let back = stretch.iter().rev().map(|[x, _, to]| [*x, *to]);
+            let corners = there
+                .chain(back)
+                .map(|point| self.window.place(body, point));
+            picture.polygon(corners.collect(), ground(band.shade));
+        }
+    }
+
     /// What is in the legend: each name once, with what bears it first.
     fn samples(&self) -> Vec<(Sample, String)> {
         let lines = self.plot.lines.iter().map(|line| {
@@ -135,8 +158,10 @@ impl<'a> Layout<'a> {
             true => (Sample::Ring(rim(dot.ink)), &dot.name),
             false => (Sample::Dot(colour(dot.ink)), &dot.name),
         });
+        let bands = self.plot.bands.iter();
+        let bands = bands.map(|band| (Sample::Swatch(Fill::plain(ground(band.shade))), &band.name));
         let mut samples: Vec<(Sample, String)> = Vec::new();
-        for (sample, name) in lines.chain(dots) {
+        for (sample, name) in lines.chain(dots).chain(bands) {
             if let Some(name) = name.as_deref().filter(|name| !name.is_empty())
                 && samples.iter().all(|(_, known)| known != name)
             {

@@ -120,6 +120,11 @@ pub(super) fn drawable(point: [f64; 2]) -> bool {
     point.iter().all(|at| at.abs() <= HUGE)
 }
 
+/// Whether both ends of a band are drawn at a point of it.
+pub(super) fn drawable_span([x, from, to]: [f64; 3]) -> bool {
+    drawable([x, from]) && drawable([x, to])
+}
+
 /// Where a disc ends to the left and below, and to the right and above.
 fn corners(disc: &Disc) -> [[f64; 2]; 2] {
     [-disc.radius, disc.radius].map(|radius| disc.centre.map(|at| at + radius))
@@ -136,11 +141,15 @@ fn extent(plot: &Plot, axis: usize) -> [f64; 2] {
         .lines
         .iter()
         .flat_map(|line| line.points.iter().copied());
+    let bands = plot.bands.iter().flat_map(|band| &band.points);
+    let bands = bands.copied().filter(|point| drawable_span(*point));
+    let edges = bands.flat_map(|[x, from, to]| [[x, from], [x, to]]);
     let dots = plot.dots.iter().map(|dot| dot.at);
     let discs = plot.discs.iter().filter(|disc| drawable_disc(disc));
     let notes = plot.notes.iter();
     let notes = notes.flat_map(|note| std::iter::once(note.at).chain(note.to));
     let drawn = lines
+        .chain(edges)
         .chain(dots)
         .chain(notes)
         .filter(|point| drawable(*point))

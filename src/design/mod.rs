@@ -1,0 +1,268 @@
+//! Which values of a parameter make the whisker detach in a given way at a given push angle.
+//!
+//! The range that the scene accepts is scanned; where pushes begin to end in another way, and where their push angle
+//! turns back, is found between the samples; what is asked for then lies between two of all these places, and is
+//! bisected. Every solution is an end that was computed: a jump across the push angle is none.
+
+mod samples;
+mod turn;
+
+use crate::numerics::Bracket;
+use crate::rod::Side;
+use crate::scene::{Parameter, Scene, SceneError, digits};
+use crate::trace::{DetachmentKind, curve};
+use rayon::prelude::*;
+use samples::samples;
+
+/// How far the push angle of a solution may be from the one asked for, in degrees: exact ends are known to 1e-11.
+const TOLERANCE_DEG: f64 = 1e-9;
+
+/// Values closer than this, relative to them, are one solution, or leave no choice.
+const EQUAL: f64 = 1e-9;
+
+/// Halvings of the distance between two samples until a change of kind is known.
+const HALVINGS: u32 = 50;
+
+/// The end that is asked for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Target {
+    /// Distance from the base to the contact at first touch.
+    pub distance_mm: f64,
+    /// Side of the whisker that the pole is on.
+    pub side: Side,
+    /// How the push ends.
+    pub kind: DetachmentKind,
+    /// Where it ends: positive CB, negative CF.
+    pub push_angle_deg: f64,
+}
+
+/// The end of a push at a value of the parameter.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct End {
+    /// Value of the parameter.
+    pub value: f64,
+    /// How the push ends.
+    pub kind: DetachmentKind,
+    /// Where it ends.
+    pub push_angle_deg: Option<f64>,
+}
+
+/// What a parameter can do.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Design {
+    /// Growing values, each of which makes the whisker detach as asked; none where all push angles are the same.
+    pub values: Vec<f64>,
+    /// The least and the greatest value that were tried: all that the scene accepts.
+    pub range: [f64; 2],
+    /// Ends all over that range, at growing values.
+    pub ends: Vec<End>,
+}
+
+/// Why there is nothing to try.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum NoDesign {
+    /// An axis stands in the parameter's place.
+    #[error("{0}: must be left out, as one number of one whisker is varied")]
+    Sweep(&'static str),
+    /// The scene does not give the parameter.
+    #[error("{}: must be one of {given}, which the scene has; it has no {}", .parameter.name(), .parameter.key())]
+    Lacking {
+        /// What was asked for.
+        parameter: Parameter,
+        /// What the scene does give.
+        given: String,
+    },
+    /// The scene accepts its own value alone.
+    #[error("{}: the scene accepts no value but {} for {}, its other numbers being what they are", .parameter.name(), digits(*.value), .parameter.key())]
+    Fixed {
+        /// What was asked for.
+        parameter: Parameter,
+        /// Its own value.
+        value: f64,
+    },
+    /// No first touch at the distance.
+    #[error(transparent)]
+    Distance(#[from] SceneError),
+}
+
+impl Design {
+    /// Whether the range spans so much that the logarithm of the parameter says more.
+    #[must_use]
+    pub fn is_wide(&self) -> bool {
+        samples::is_wide(self.range)
+    }
+
+    /// The least and the greatest push angle of ends of a kind.
+    #[must_use]
+    pub fn reached_deg(&self, kind: DetachmentKind) -> Option<[f64; 2]> {
+        let ends = self.ends.iter().filter(|end| end.kind == kind);
+        let pushes = ends.filter_map(|end| end.push_angle_deg);
+        pushes.fold(None, |reached, push| {
+            let [low, high] = reached.unwrap_or([push; 2]);
+            Some([push.min(low), push.max(high)])
+        })
+    }
+}
+
+/// Every value of `parameter` that makes the whisker of `scene` detach as asked; its grid does not matter.
+///
+/// ```
+/// use whiskmap::design::{Target, design};
+/// use whiskmap::{rod::Side, trace::DetachmentKind};
+/// use whiskmap::scene::{Parameter, Scene};
+///
+/// let cone = Scene::parse(include_str!("../../scenes/cone.toml"), "cone.toml")?;
+/// let target = Target { distance_mm: 15.66, side: Side::Cb, kind: DetachmentKind::SlipOff, push_angle_deg: 20.0 };
+/// let design = design(&cone, Parameter::TipRadiusUm, &target)?;
+/// let [tip_radius_um] = design.values[..] else { panic!("{design:?}") };
+/// assert!((tip_radius_um - 3.3).abs() < 0.1);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// If the scene sweeps whiskers, does not give the parameter, or accepts one value only, or no pole at the distance.
+pub fn design(scene: &Scene, parameter: Parameter, target: &Target) -> Result<Design, NoDesign> {
+    if scene.grid.taper.is_some() {
+        return Err(NoDesign::Sweep("grid.taper"));
+    }
+    if scene.grid.curvature_per_mm.is_some() {
+        return Err(NoDesign::Sweep("grid.curvature_per_mm"));
+    }
+    let Some(value) = parameter.value(scene) else {
+        let given = Parameter::ALL.into_iter();
+        let given = given.filter(|other| other.value(scene).is_some());
+        let given: Vec<_> = given.map(Parameter::name).collect();
+        let given = given.join(", ");
+        return Err(NoDesign::Lacking { parameter, given });
+    };
+    // Other distances would limit what is accepted.
+    let scene = &scene.with("grid.distance_mm", [target.distance_mm])?;
+    let range = parameter.range(scene);
+    if range[1] - range[0] <= 3.0 * EQUAL * value.abs() {
+        return Err(NoDesign::Fixed { parameter, value });
+    }
+    let search = Search {
+        scene,
+        parameter,
+        target,
+    };
+    let ends = search.scan(range);
+    let mut values: Vec<f64> = ends
+        .chunk_by(|a, b| a.kind == b.kind)
+        .filter(|piece| piece[0].kind == target.kind)
+        .flat_map(|piece| search.solutions(piece))
+        .collect();
+    values.sort_by(f64::total_cmp);
+    values.dedup_by(|b, a| (*b - *a).abs() <= EQUAL * a.abs());
+    let mut design = Design {
+        values,
+        range,
+        ends,
+    };
+    let reached = design.reached_deg(target.kind);
+    if reached.is_some_and(|[low, high]| high - low <= TOLERANCE_DEG) {
+        design.values.clear();
+    }
+    Ok(design)
+}
+
+/// What is asked of what.
+struct Search<'a> {
+    scene: &'a Scene,
+    parameter: Parameter,
+    target: &'a Target,
+}
+
+impl Search<'_> {
+    /// The end at a value of the parameter; unresolved where the scene refuses it.
+    fn end(&self, value: f64) -> End {
+        let moved = self.scene.with_parameters(&[(self.parameter, value)]);
+        let end = moved.ok().and_then(|scene| {
+            let distances = &scene.grid.distance_mm;
+            curve(&scene.whisker, &scene.pole, self.target.side, distances).pop()
+        });
+        End {
+            value,
+            kind: end.map_or(DetachmentKind::Unresolved, |end| end.kind),
+            push_angle_deg: end.and_then(|end| end.push_angle_deg),
+        }
+    }
+
+    /// How far, in degrees, an end is from the one that is asked for; NaN where it is of another kind.
+    fn miss(&self, end: &End) -> f64 {
+        let push = end
+            .push_angle_deg
+            .filter(|_| end.kind == self.target.kind)
+            .unwrap_or(f64::NAN);
+        push - self.target.push_angle_deg
+    }
+
+    fn miss_at(&self, value: f64) -> f64 {
+        self.miss(&self.end(value))
+    }
+
+    /// Ends all over the range, and on both sides of each change of kind.
+    fn scan(&self, range: [f64; 2]) -> Vec<End> {
+        let scanned: Vec<End> = samples(range)
+            .into_par_iter()
+            .map(|value| self.end(value))
+            .collect();
+        let mut ends = Vec::with_capacity(scanned.len());
+        for (i, end) in scanned.iter().enumerate() {
+            if let Some(before) = i.checked_sub(1).map(|i| scanned[i])
+                && before.kind != end.kind
+            {
+                ends.extend(self.change(before, *end));
+            }
+            ends.push(*end);
+        }
+        ends
+    }
+
+    /// The last end of the kind of `before` and the first one of another, on the way to `after`.
+    fn change(&self, mut before: End, mut after: End) -> [End; 2] {
+        for _ in 0..HALVINGS {
+            let middle = self.end(before.value.midpoint(after.value));
+            if middle.kind == before.kind {
+                before = middle;
+            } else {
+                after = middle;
+            }
+        }
+        [before, after]
+    }
+
+    /// The solutions within a piece of the range where all ends are of the kind that is asked for.
+    fn solutions(&self, piece: &[End]) -> Vec<f64> {
+        let mut places: Vec<[f64; 2]> = piece
+            .iter()
+            .map(|end| [end.value, self.miss(end)])
+            .collect();
+        let turns = places.windows(3).filter_map(|three| {
+            let three = [three[0], three[1], three[2]];
+            turn::toward_zero(three, |value| self.miss_at(value))
+        });
+        let turns: Vec<[f64; 2]> = turns.collect();
+        places.extend(turns);
+        places.sort_by(|a, b| a[0].total_cmp(&b[0]));
+
+        let crosses: Vec<bool> = places
+            .windows(2)
+            .map(|pair| (pair[0][1] < 0.0) != (pair[1][1] < 0.0))
+            .collect();
+        let mut solutions = Vec::new();
+        for (i, [value, miss]) in places.iter().enumerate() {
+            let after = crosses.get(i).is_some_and(|crosses| *crosses);
+            let before = i.checked_sub(1).is_some_and(|before| crosses[before]);
+            if after {
+                let [next, miss_there] = places[i + 1];
+                let bracket = Bracket::new([*value, next], [*miss, miss_there]);
+                solutions.push(bracket.bisect(|value| self.miss_at(value)));
+            } else if !before && miss.abs() <= TOLERANCE_DEG {
+                solutions.push(*value);
+            }
+        }
+        solutions.retain(|value| self.miss_at(*value).abs() <= TOLERANCE_DEG);
+        solutions
+    }
+}

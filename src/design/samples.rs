@@ -1,0 +1,57 @@
+//! Where a range is looked at.
+
+/// How many samples a range has.
+pub const SAMPLES: usize = 128;
+
+/// Ranges of positive numbers that span more than this are looked at by their logarithm, too.
+const WIDE: f64 = 10.0;
+
+/// Values from one end of the range to the other: evenly spaced, or, in a wide range of positive numbers, half of them
+/// evenly and half of them evenly in the logarithm.
+pub fn samples([low, high]: [f64; 2]) -> Vec<f64> {
+    let even = |count: usize| {
+        (0..count).map(move |i| match i {
+            0 => low,
+            _ if i == count - 1 => high,
+            _ => low + (high - low) * (i as f64 / (count - 1) as f64),
+        })
+    };
+    if !is_wide([low, high]) {
+        return even(SAMPLES).collect();
+    }
+    let half = SAMPLES / 2;
+    // Without the ends, which are there already.
+    let inner = (1..=half).map(|i| low * (high / low).powf(i as f64 / (half + 1) as f64));
+    let mut values: Vec<f64> = even(half).chain(inner).collect();
+    values.sort_by(f64::total_cmp);
+    values.dedup();
+    values
+}
+
+/// Whether a range of positive numbers spans much.
+pub fn is_wide([low, high]: [f64; 2]) -> bool {
+    low > 0.0 && high > WIDE * low
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn samples_grow_from_end_to_end() {
+        for range in [
+            [0.0, 1.0],
+            [-200.0, 35.0],
+            [1e-6, 1e4],
+            [5e-11, 0.5],
+            [1.0, 2.0],
+        ] {
+            let values = samples(range);
+            assert_eq!([values[0], values[SAMPLES - 1]], range);
+            assert!(values.is_sorted_by(|a, b| a < b), "{range:?}");
+        }
+        let wide = samples([1e-3, 1e3]);
+        let steps = wide.windows(2).map(|pair| pair[1] / pair[0]);
+        assert!(steps.fold(0.0, f64::max) < 1.25);
+    }
+}

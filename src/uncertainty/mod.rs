@@ -1,0 +1,176 @@
+//! How uncertain detachments are where the numbers of a scene are: by whiskers drawn at random, and to first order.
+//!
+//! Numbers vary independently and normally, with the standard deviations of `[uncertainty]`. A draw that the scene's own
+//! limits refuse is drawn again. Equal seeds give equal draws, whatever the number of threads.
+
+mod first_order;
+mod normal;
+mod spread;
+mod varying;
+
+pub use spread::Spread;
+
+use crate::rod::Side;
+use crate::scene::{Deviations, Pole, Scene, Whisker};
+use crate::shooting::Resolution;
+use crate::trace::{DetachmentKind, curve_at};
+use normal::Normal;
+use rayon::prelude::*;
+use varying::{Varying, moved, varying};
+
+/// Most ends on one side, of some 24 bytes each.
+const MOST_ENDS: usize = 1 << 24;
+
+/// Draws of one sample until the scene accepts one.
+const MOST_TRIES: u64 = 1000;
+
+/// Whiskers drawn from the uncertainty of a scene.
+#[derive(Clone, Debug)]
+pub struct Draws {
+    scene: Scene,
+    varying: Vec<Varying>,
+    drawn: Vec<(Whisker, Pole)>,
+    /// How many draws the scene's limits have refused.
+    pub refused: u64,
+}
+
+/// Why there are no draws.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum NoDraws {
+    /// Nothing is said to vary.
+    #[error(
+        "the scene has no [uncertainty]: add that table, such as `base_radius_um = 1.0`, a standard deviation"
+    )]
+    NoTable,
+    /// Several whiskers.
+    #[error("{0}: must be left out, as one whisker is drawn around")]
+    Sweep(&'static str),
+    /// More ends than memory should hold.
+    #[error(
+        "makes {ends} ends at the scene's {distances} distances on each side; must make at most {MOST_ENDS}"
+    )]
+    TooMany {
+        /// Samples times distances.
+        ends: usize,
+        /// Of the scene.
+        distances: usize,
+    },
+    /// The deviations are far larger than what the scene accepts.
+    #[error(
+        "{MOST_TRIES} draws in a row are outside of the scene's limits; [uncertainty] must have smaller deviations; the \
+         last one: {why}"
+    )]
+    Refused {
+        /// What is wrong with the last one.
+        why: String,
+    },
+}
+
+impl Draws {
+    /// Draws `samples` whiskers.
+    ///
+    /// # Errors
+    /// If the scene has no `[uncertainty]`, sweeps whiskers, or refuses almost every draw, or if there are too many.
+    pub fn new(scene: &Scene, samples: usize, seed: u64) -> Result<Self, NoDraws> {
+        let deviations: &Deviations = scene.uncertainty.as_ref().ok_or(NoDraws::NoTable)?;
+        if scene.grid.taper.is_some() {
+            return Err(NoDraws::Sweep("grid.taper"));
+        }
+        if scene.grid.curvature_per_mm.is_some() {
+            return Err(NoDraws::Sweep("grid.curvature_per_mm"));
+        }
+        let distances = scene.grid.distance_mm.len();
+        let ends = samples.saturating_mul(distances);
+        if ends > MOST_ENDS {
+            return Err(NoDraws::TooMany { ends, distances });
+        }
+        let varying = varying(scene, deviations);
+        let draws = (0..samples as u64).into_par_iter();
+        let draws = draws.map(|sample| draw(scene, &varying, Normal::new(seed, sample)));
+        let (drawn, refused): (Vec<_>, Vec<u64>) = draws.collect::<Result<_, _>>()?;
+        Ok(Self {
+            scene: scene.clone(),
+            varying,
+            drawn,
+            refused: refused.into_iter().sum(),
+        })
+    }
+
+    /// How many whiskers there are.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.drawn.len()
+    }
+
+    /// Whether there are none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.drawn.is_empty()
+    }
+
+    /// How the ends of pushes on one side spread at every distance of the scene; `tick` is called after every whisker.
+    #[must_use]
+    pub fn spread(
+        &self,
+        resolution: Resolution,
+        side: Side,
+        tick: impl Fn() + Sync,
+    ) -> Vec<Spread> {
+        let distances = &self.scene.grid.distance_mm;
+        let curve = |whisker: &Whisker, pole: &Pole| {
+            let curve = curve_at(resolution, whisker, pole, side, distances);
+            let ends = curve.iter().map(|end| (end.kind, end.push_angle_deg));
+            ends.collect::<Vec<End>>()
+        };
+        let ends: Vec<Vec<End>> = self
+            .drawn
+            .par_iter()
+            .map(|(whisker, pole)| {
+                let ends = curve(whisker, pole);
+                tick();
+                ends
+            })
+            .collect();
+        let own = curve(&self.scene.first_whisker(), &self.scene.pole);
+        let first_order = first_order::deviations_deg(&self.scene, &self.varying, resolution, side);
+        let rows = distances.iter().zip(own).zip(first_order).enumerate();
+        rows.map(|(row, ((distance_mm, own), first_order_deg))| {
+            let ends = ends.iter().map(|ends| ends[row]);
+            Spread::new(side, *distance_mm, own, ends, first_order_deg)
+        })
+        .collect()
+    }
+}
+
+/// How a push ends, and at which push angle.
+type End = (DetachmentKind, Option<f64>);
+
+/// A drawn whisker with its pole, and how many draws were refused before it.
+type Drawn = ((Whisker, Pole), u64);
+
+/// The first whisker of a stream that the scene accepts.
+fn draw(scene: &Scene, varying: &[Varying], mut normal: Normal) -> Result<Drawn, NoDraws> {
+    let mut refused = 0;
+    loop {
+        let step = |one: &Varying| (*one, one.deviation * normal.draw());
+        let steps: Vec<_> = varying.iter().map(step).collect();
+        match moved(scene, &steps) {
+            Ok(drawn) => return Ok(((drawn.first_whisker(), drawn.pole), refused)),
+            Err(why) if refused + 1 == MOST_TRIES => {
+                let why = why.to_string();
+                let first = why.lines().next().unwrap_or_default();
+                let why = first.trim_start_matches("error: ").to_owned();
+                return Err(NoDraws::Refused { why });
+            }
+            Err(_) => refused += 1,
+        }
+    }
+}
+
+/// The push angles of the ends of `scene`.
+fn pushes_deg(scene: &Scene, resolution: Resolution, side: Side) -> Vec<Option<f64>> {
+    let distances = &scene.grid.distance_mm;
+    let whisker = scene.first_whisker();
+    let ends = curve_at(resolution, &whisker, &scene.pole, side, distances);
+    ends.iter().map(|end| end.push_angle_deg).collect()
+}

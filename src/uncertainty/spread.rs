@@ -1,0 +1,155 @@
+//! What many ends have in common: percentiles, mean and standard deviation.
+
+use super::End;
+use crate::rod::Side;
+use crate::trace::{DetachmentKind, row};
+use serde::Serialize;
+
+row! {
+    /// How the ends of pushes spread at one distance. Percentiles are those of the detachments, of either kind.
+    #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+    pub struct Spread {
+        /// Side of the whisker that the pole is on: cb (convex) or cf (concave).
+        pub side: Side,
+        /// Distance from the base to the contact at first touch.
+        pub distance_mm: f64,
+        /// How the scene's own push ends: slip-off, pull-off, out-of-reach or unresolved.
+        pub kind: DetachmentKind,
+        /// Where it ends: positive CB, negative CF.
+        pub push_angle_deg: Option<f64>,
+        /// Samples that slip off.
+        pub slip_off: u64,
+        /// Samples that are pulled off.
+        pub pull_off: u64,
+        /// Samples that do not reach the pole.
+        pub out_of_reach: u64,
+        /// Samples whose end was not found.
+        pub unresolved: u64,
+        /// 5th percentile of the push angles at detachment.
+        pub p5_deg: Option<f64>,
+        /// 25th percentile.
+        pub p25_deg: Option<f64>,
+        /// Median, the 50th percentile.
+        pub p50_deg: Option<f64>,
+        /// 75th percentile.
+        pub p75_deg: Option<f64>,
+        /// 95th percentile.
+        pub p95_deg: Option<f64>,
+        /// Mean push angle at detachment.
+        pub mean_deg: Option<f64>,
+        /// Standard deviation of the samples.
+        pub sd_deg: Option<f64>,
+        /// Standard deviation to first order, from derivatives alone.
+        pub sd_first_order_deg: Option<f64>,
+    }
+}
+
+impl Spread {
+    /// The spread of the `ends` of samples around the scene's `own` one.
+    pub(super) fn new(
+        side: Side,
+        distance_mm: f64,
+        own: End,
+        ends: impl Iterator<Item = End>,
+        sd_first_order_deg: Option<f64>,
+    ) -> Self {
+        let mut counts = [0; 4];
+        let mut pushes = Vec::new();
+        for (kind, push) in ends {
+            let place = match kind {
+                DetachmentKind::SlipOff => 0,
+                DetachmentKind::PullOff => 1,
+                DetachmentKind::OutOfReach => 2,
+                DetachmentKind::Unresolved => 3,
+            };
+            counts[place] += 1;
+            pushes.extend(push);
+        }
+        pushes.sort_by(f64::total_cmp);
+        let count = pushes.len() as f64;
+        let mean = (count > 0.0).then(|| pushes.iter().sum::<f64>() / count);
+        let squares = mean.filter(|_| count > 1.0).map(|mean| {
+            let squares = pushes.iter().map(|push| (push - mean).powi(2));
+            squares.sum::<f64>()
+        });
+        let [slip_off, pull_off, out_of_reach, unresolved] = counts;
+        let (kind, push_angle_deg) = own;
+        Self {
+            side,
+            distance_mm,
+            kind,
+            push_angle_deg,
+            slip_off,
+            pull_off,
+            out_of_reach,
+            unresolved,
+            p5_deg: quantile(&pushes, 0.05),
+            p25_deg: quantile(&pushes, 0.25),
+            p50_deg: quantile(&pushes, 0.5),
+            p75_deg: quantile(&pushes, 0.75),
+            p95_deg: quantile(&pushes, 0.95),
+            mean_deg: mean,
+            sd_deg: squares.map(|squares| (squares / (count - 1.0)).sqrt()),
+            sd_first_order_deg,
+        }
+    }
+}
+
+/// Linear between neighbours of the `sorted` values, of which the first is the quantile of 0 and the last that of 1
+/// (definition 7 of Hyndman and Fan, Am. Stat. 50, 361, 1996).
+fn quantile(sorted: &[f64], part: f64) -> Option<f64> {
+    let last = sorted.len().checked_sub(1)?;
+    let place = part * last as f64;
+    let below = (place as usize).min(last);
+    let above = sorted[(below + 1).min(last)];
+    Some(sorted[below] + (place - below as f64) * (above - sorted[below]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The values that `numpy.quantile` gives.
+    #[test]
+    fn quantiles_are_linear_between_neighbours() {
+        let values = [1.0, 2.0, 4.0, 8.0, 16.0];
+        let parts = [0.05, 0.25, 0.5, 0.75, 0.95];
+        let expected = [1.2, 2.0, 4.0, 8.0, 14.4].map(Some);
+        for (part, expected) in parts.into_iter().zip(expected) {
+            let found = quantile(&values, part);
+            assert!(
+                found
+                    .zip(expected)
+                    .is_some_and(|(a, b)| (a - b).abs() < 1e-14)
+            );
+        }
+        assert_eq!(quantile(&[3.0], 0.95), Some(3.0));
+        assert_eq!(quantile(&[], 0.5), None);
+    }
+
+    #[test]
+    fn what_does_not_detach_is_counted_and_left_out() {
+        use DetachmentKind::{OutOfReach, PullOff, SlipOff, Unresolved};
+        let ends = [
+            (SlipOff, Some(3.0)),
+            (OutOfReach, None),
+            (PullOff, Some(1.0)),
+            (Unresolved, None),
+            (SlipOff, Some(5.0)),
+        ];
+        let spread = Spread::new(Side::Cb, 10.0, ends[0], ends.into_iter(), None);
+        let counts = [
+            spread.slip_off,
+            spread.pull_off,
+            spread.out_of_reach,
+            spread.unresolved,
+        ];
+        assert_eq!(counts, [2, 1, 1, 1]);
+        assert_eq!((spread.mean_deg, spread.sd_deg), (Some(3.0), Some(2.0)));
+        let nothing = Spread::new(Side::Cb, 10.0, ends[1], std::iter::empty(), None);
+        assert_eq!(
+            (nothing.p50_deg, nothing.mean_deg, nothing.sd_deg),
+            (None, None, None)
+        );
+    }
+}

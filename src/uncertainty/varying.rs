@@ -1,0 +1,77 @@
+//! The numbers of a scene that vary.
+
+use crate::scene::{Deviations, Parameter, Scene, SceneError};
+
+/// A number that varies.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Varying {
+    source: Source,
+    /// What the scene says.
+    pub value: f64,
+    /// Its standard deviation, more than 0.
+    pub deviation: f64,
+}
+
+/// Where it stands.
+#[derive(Clone, Copy, Debug)]
+enum Source {
+    Parameter(Parameter),
+    /// The radius of a row of the profile, in micrometres.
+    Row(usize),
+}
+
+/// The numbers of `scene` whose `deviations` are not 0.
+pub(super) fn varying(scene: &Scene, deviations: &Deviations) -> Vec<Varying> {
+    let parameters = deviations.parameters.iter().filter_map(|own| {
+        let (parameter, deviation) = *own;
+        Some(Varying {
+            source: Source::Parameter(parameter),
+            value: parameter.value(scene)?,
+            deviation,
+        })
+    });
+    let rows = deviations.profile_radius_um.map(|deviation| {
+        let rows = rows(scene).into_iter().enumerate();
+        rows.map(move |(row, [_, value])| Varying {
+            source: Source::Row(row),
+            value,
+            deviation,
+        })
+    });
+    let all = parameters.chain(rows.into_iter().flatten());
+    all.filter(|one| one.deviation > 0.0).collect()
+}
+
+/// The scene with each number away from its own value by the step beside it.
+///
+/// # Errors
+/// If the scene would be refused with them.
+pub(super) fn moved(scene: &Scene, steps: &[(Varying, f64)]) -> Result<Scene, SceneError> {
+    let mut values = Vec::new();
+    let mut rows = rows(scene);
+    let mut has_rows = false;
+    for (Varying { source, value, .. }, step) in steps {
+        match *source {
+            Source::Parameter(parameter) => values.push((parameter, value + step)),
+            Source::Row(row) => {
+                rows[row][1] = value + step;
+                has_rows = true;
+            }
+        }
+    }
+    if has_rows {
+        scene.with(ROWS, rows)?.with_parameters(&values)
+    } else {
+        scene.with_parameters(&values)
+    }
+}
+
+const ROWS: &str = "whisker.profile.rows";
+
+/// Arclength in millimetres and radius in micrometres of the rows of the profile.
+fn rows(scene: &Scene) -> Vec<[f64; 2]> {
+    let whisker = &scene.whisker;
+    let rows = whisker.profile.iter().flatten();
+    rows.map(|[s, radius]| [s * whisker.length_mm, radius * whisker.base_radius_um])
+        .collect()
+}

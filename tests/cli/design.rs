@@ -1,0 +1,191 @@
+//! `whiskmap design`.
+
+use crate::traces::good;
+use crate::{Place, SCENE};
+
+const TAPER: [&str; 6] = [
+    "design",
+    "scene.toml",
+    "--distance",
+    "15.66",
+    "--for",
+    "taper",
+];
+
+/// What a run with more arguments leaves.
+fn run(place: &Place, more: &[&str]) -> crate::Run {
+    place.run(&[&TAPER[..], more].concat())
+}
+
+/// Every line is a number that, put into the scene, detaches as asked.
+#[test]
+fn a_value_is_a_line() {
+    let place = Place::with(SCENE);
+    let found = run(&place, &["--side", "cb", "--slip-off", "20deg"]);
+    assert_eq!((found.code, &*found.err), (Some(0), ""), "{found:?}");
+    let [line] = found.out.lines().collect::<Vec<_>>()[..] else {
+        panic!("{found:?}");
+    };
+    let taper: f64 = line.parse().unwrap();
+    let tip = format!("tip_radius_um = {:?}", 30.0 * (1.0 - taper));
+    let designed = SCENE.replace("tip_radius_um = 1.5", &tip);
+    let designed = designed.replace("{ from = 2, to = 20, count = 24 }", "[15.66]");
+    place.write("designed.toml", &designed);
+    let curve = good(&place, &["curve", "designed.toml"]).out;
+    let end: Vec<&str> = curve.lines().nth(2).unwrap().split(',').collect();
+    assert_eq!((end[0], end[3]), ("cb", "slip-off"));
+    assert!(
+        (end[4].parse::<f64>().unwrap() - 20.0).abs() < 1e-9,
+        "{curve}"
+    );
+    // The picture changes nothing, and has one dot at the solution.
+    let plotted = run(&place, &["--slip-off", "20deg", "--plot", "p.svg"]);
+    assert_eq!((plotted.code, plotted.out), (Some(0), found.out.clone()));
+    let svg = String::from_utf8(place.bytes("p.svg")).unwrap();
+    assert!(svg.contains(">taper<") && svg.contains(">20 deg<"), "{svg}");
+    assert_eq!(
+        svg.matches("<circle").count(),
+        2,
+        "the dot, and its sample in the legend"
+    );
+    // The same angle in other words; the side is that of its sign.
+    for angle in ["20", "20 deg", "0.3490658503988659rad"] {
+        assert_eq!(
+            run(&place, &["--slip-off", angle]).out,
+            found.out,
+            "{angle}"
+        );
+    }
+}
+
+#[test]
+fn what_is_out_of_reach_says_what_is_not() {
+    let place = Place::with(SCENE);
+    let none = |more: &[&str], parts: &[&str]| {
+        let run = run(&place, more);
+        assert_eq!((run.code, &*run.out), (Some(1), ""), "{run:?}");
+        for part in parts {
+            assert!(run.err.contains(part), "no {part} in {run:?}");
+        }
+    };
+    let range = "error: no taper between 0 and 1 ";
+    none(
+        &["--slip-off", "5deg"],
+        &[
+            range,
+            "makes the whisker slip off at 5 deg: it slips off between ",
+            ", and it is pulled off between ",
+        ],
+    );
+    none(
+        &["--pull-off", "-5"],
+        &[range, "pulls the whisker off at -5 deg: "],
+    );
+    let far = [
+        "design",
+        "scene.toml",
+        "--distance",
+        "150",
+        "--for",
+        "taper",
+        "--slip-off",
+        "9",
+    ];
+    let far = place.run(&far);
+    assert_eq!(far.code, Some(1), "{far:?}");
+    assert!(far.err.contains("it does not reach the pole"), "{far:?}");
+    let stiff = [
+        "design",
+        "scene.toml",
+        "--distance",
+        "15.66",
+        "--for",
+        "youngs_modulus_gpa",
+        "--slip-off",
+        "9",
+    ];
+    let stiff = place.run(&stiff);
+    assert_eq!(stiff.code, Some(1), "{stiff:?}");
+    assert!(
+        stiff.err.contains("it slips off at 15.6") && stiff.err.contains("whatever the value"),
+        "{stiff:?}"
+    );
+}
+
+#[test]
+fn what_cannot_be_designed_is_refused() {
+    let place = Place::with(SCENE);
+    let refused = |more: &[&str], parts: &[&str]| run(&place, more).assert_refused(parts);
+    refused(&[], &["--slip-off <ANGLE>|--pull-off <ANGLE>"]);
+    refused(
+        &["--slip-off", "9", "--pull-off", "9"],
+        &["cannot be used with"],
+    );
+    refused(
+        &["--slip-off", "9", "--plot", "p.gif"],
+        &["--plot p.gif: must end in .png or .svg"],
+    );
+    refused(
+        &["--slip-off", "nine"],
+        &["'nine'", "must be an angle, such as 30deg or 0.5rad"],
+    );
+    for angle in ["0", "361", "nan", "7rad"] {
+        refused(
+            &["--slip-off", angle],
+            &["must be between -360deg and 360deg, and not 0"],
+        );
+    }
+    refused(
+        &["--slip-off", "-9", "--side", "cb"],
+        &["--slip-off -9: a push angle of --side cb must be positive"],
+    );
+    refused(
+        &["--pull-off", "9", "--side", "cf"],
+        &["--pull-off 9: a push angle of --side cf must be negative"],
+    );
+    let other = |scene: &str, name: &str, parts: &[&str]| {
+        let words = [
+            "design",
+            scene,
+            "--distance",
+            "9",
+            "--slip-off",
+            "9",
+            "--for",
+            name,
+        ];
+        place.run(&words).assert_refused(parts);
+    };
+    other(
+        "scene.toml",
+        "friction",
+        &[
+            "scene.toml: --for friction: must be one of length_mm, ",
+            "it has no contact.friction",
+        ],
+    );
+    other(
+        "scene.toml",
+        "stiffness",
+        &["'stiffness'", "--for", "taper"],
+    );
+    place.write("sweep.toml", &format!("{SCENE}curvature_per_mm = [0.02]\n"));
+    other(
+        "sweep.toml",
+        "taper",
+        &["grid.curvature_per_mm: must be left out"],
+    );
+    let far = [
+        "design",
+        "scene.toml",
+        "--distance",
+        "1e9",
+        "--slip-off",
+        "9",
+        "--for",
+        "taper",
+    ];
+    place
+        .run(&far)
+        .assert_refused(&["--distance 1000000000: must be between"]);
+}

@@ -1,0 +1,130 @@
+//! `whiskmap curve --samples`, and `[uncertainty]` elsewhere.
+
+use crate::traces::{CURVE, SPREAD, cells, good};
+use crate::{Place, SCENE, names};
+
+const UNCERTAIN: &str = "[uncertainty]\nbase_radius_um = 1.0\ntip_radius_um = 0.3\n";
+
+fn uncertain() -> Place {
+    Place::with(&format!("{SCENE}{UNCERTAIN}"))
+}
+
+#[test]
+fn a_spread_is_a_table_and_bands() {
+    let place = uncertain();
+    let sample = ["curve", "scene.toml", "--samples", "20"];
+    let run = good(&place, &sample);
+    let rows = cells(&run.out, SPREAD);
+    assert_eq!(rows.len(), 48);
+    let own = good(&place, &["curve", "scene.toml"]).out;
+    for (row, own) in rows.iter().zip(cells(&own, CURVE)) {
+        assert_eq!(
+            (row[0], row[1], row[2], row[3]),
+            (own[0], own[1], own[3], own[4])
+        );
+        let counts = row[4..8].iter().map(|count| count.parse::<u32>().unwrap());
+        assert_eq!(counts.sum::<u32>(), 20, "{row:?}");
+        let percentiles: Vec<f64> = row[8..13].iter().flat_map(|p| p.parse()).collect();
+        assert!(
+            percentiles.is_sorted() && (percentiles.len() == 5 || row[6] == "20"),
+            "{row:?}"
+        );
+    }
+    // The seed is 1 where it is not given.
+    let seeded = |seed| good(&place, &[&sample[..], &["--seed", seed]].concat()).out;
+    assert_eq!(seeded("1"), run.out);
+    assert_ne!(seeded("2"), run.out);
+
+    let files = ["--csv", "t.csv", "--plot", "p.svg"];
+    good(&place, &[&sample[..], &files].concat());
+    assert_eq!(place.bytes("t.csv"), run.out.as_bytes());
+    let svg = String::from_utf8(place.bytes("p.svg")).unwrap();
+    assert_eq!(svg.matches("<polygon").count(), 4, "two sides, two bands");
+    assert!(svg.contains(">5 to 95 % of samples<") && svg.contains(">25 to 75 % of samples<"));
+}
+
+/// What does not draw whiskers does not look at the table, nor does what reads a stored scene.
+#[test]
+fn other_commands_leave_the_table_alone() {
+    let place = uncertain();
+    place.write("plain.toml", SCENE);
+    let both = |arguments: &[&str]| {
+        let outs = ["scene.toml", "plain.toml"].map(|scene| {
+            let words: Vec<&str> = arguments
+                .iter()
+                .map(|word| if *word == "SCENE" { scene } else { word })
+                .collect();
+            good(&place, &words).out
+        });
+        assert_eq!(outs[0], outs[1], "{arguments:?}");
+    };
+    both(&["curve", "SCENE"]);
+    both(&["branch", "SCENE", "--distance=9"]);
+    both(&["shape", "SCENE", "--distance=9", "--push-angle=9"]);
+    both(&[
+        "design",
+        "SCENE",
+        "--distance=15.66",
+        "--slip-off=20",
+        "--for=taper",
+    ]);
+    place.map(&["scene.toml"]).assert_settled();
+    good(&place, &["render", "outputs/scene.exr", "-o", "again.png"]);
+}
+
+#[test]
+fn draws_outside_of_the_limits_are_told() {
+    let place = Place::with(&format!("{SCENE}[uncertainty]\ntip_radius_um = 1.5\n"));
+    let run = place.run(&["curve", "scene.toml", "--samples", "50"]);
+    assert_eq!(run.code, Some(0), "{run:?}");
+    let told = "draws were outside of the scene's limits, and were drawn again\n";
+    assert!(
+        run.err.starts_with("note: ") && run.err.ends_with(told),
+        "{run:?}"
+    );
+}
+
+#[test]
+fn samples_without_sense_are_refused() {
+    let place = uncertain();
+    place.write("plain.toml", SCENE);
+    let sample = ["curve", "plain.toml", "--samples", "20", "--csv", "t.csv"];
+    let missing = ["--samples 20: the scene has no [uncertainty]: add that table"];
+    place.run(&sample).assert_refused(&missing);
+    let refused = |more: &[&str], parts: &[&str]| {
+        place
+            .run(&[&["curve", "scene.toml"], more].concat())
+            .assert_refused(parts);
+    };
+    refused(
+        &["--samples", "1"],
+        &["'1'", "must be a whole number between 2 and 1000000"],
+    );
+    refused(&["--samples", "9", "--seed", "-1"], &["'-1'"]);
+    refused(&["--seed", "9"], &["--samples"]);
+    refused(&["--samples", "9", "--corner"], &["cannot be used with"]);
+    refused(
+        &["--samples", "1000000"],
+        &[
+            "--samples 1000000: makes 24000000 ends at the scene's 24 distances",
+            "at most 16777216",
+        ],
+    );
+    place.write(
+        "wide.toml",
+        &format!("{SCENE}[uncertainty]\nradius_mm = 0.1\n"),
+    );
+    let unknown = [
+        "uncertainty.radius_mm = 0.1: is not known",
+        "`pole_radius_mm`",
+        "wide.toml:15:13",
+    ];
+    place.run(&["curve", "wide.toml"]).assert_refused(&unknown);
+    let sweep = format!("{SCENE}curvature_per_mm = [0.02]\n{UNCERTAIN}");
+    place.write("sweep.toml", &sweep);
+    place
+        .run(&["curve", "sweep.toml", "--samples", "20"])
+        .assert_refused(&["grid.curvature_per_mm: must be left out"]);
+    let left = ["plain.toml", "scene.toml", "sweep.toml", "wide.toml"];
+    assert_eq!(names(&place.path("")), left);
+}

@@ -1,0 +1,235 @@
+//! The values that make a whisker detach where it should: known ones come back, none is missed, none is made up.
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use whiskmap::design::{Design, NoDesign, Target, design};
+use whiskmap::rod::Side;
+use whiskmap::scene::{Parameter, Scene};
+use whiskmap::trace::{Detachment, DetachmentKind, curve};
+
+fn robot() -> Scene {
+    Scene::parse(include_str!("../scenes/robot.toml"), "robot.toml").unwrap()
+}
+
+/// A scene that gives every number but a spiral's.
+fn everything() -> Scene {
+    let text = "
+        title = 'everything'
+        [whisker]
+        length_mm = 20
+        base_radius_um = 30
+        tip_radius_um = 4
+        youngs_modulus_gpa = 3
+        curvature = { parabola_per_mm = 0.02, vertex_mm = 1 }
+        modulus_gradient.tip_to_base = 1.3
+        projection.arc_stretch = 1.02
+        [pole]
+        radius_mm = 0.25
+        [contact]
+        friction = 0.1
+        [grid]
+        push_angle_deg = [10]
+        distance_mm = [15]
+    ";
+    Scene::parse(text, "everything.toml").unwrap()
+}
+
+/// The end of a push at one distance.
+fn end(scene: &Scene, distance_mm: f64, side: Side) -> Detachment {
+    curve(&scene.first_whisker(), &scene.pole, side, &[distance_mm])[0]
+}
+
+fn target(distance_mm: f64, side: Side, kind: DetachmentKind, push_angle_deg: f64) -> Target {
+    Target {
+        distance_mm,
+        side,
+        kind,
+        push_angle_deg,
+    }
+}
+
+/// Every value does what is asked for, to the last of the tolerance.
+fn assert_sound(scene: &Scene, parameter: Parameter, target: &Target, design: &Design) {
+    for value in &design.values {
+        let moved = scene.with_parameters(&[(parameter, *value)]).unwrap();
+        let end = end(&moved, target.distance_mm, target.side);
+        assert_eq!(end.kind, target.kind, "{parameter:?} {value}");
+        let miss = (end.push_angle_deg.unwrap() - target.push_angle_deg).abs();
+        assert!(miss <= 1e-9, "{parameter:?} {value}: {miss}");
+    }
+}
+
+/// A scene's own numbers come back from where its whisker detaches. The worst of them is off by 2e-13 of itself.
+#[test]
+fn known_values_come_back() {
+    let scene = everything();
+    let spiral = include_str!("../scenes/euler_spiral.toml");
+    let spiral = Scene::parse(spiral, "euler_spiral.toml").unwrap();
+    let mut found = 0;
+    for (scene, distance, side) in [
+        (&scene, 13.0, Side::Cf),
+        (&scene, 18.5, Side::Cb),
+        (&spiral, 12.0, Side::Cb),
+    ] {
+        let own = end(scene, distance, side);
+        let target = target(distance, side, own.kind, own.push_angle_deg.unwrap());
+        for parameter in Parameter::ALL {
+            let Some(value) = parameter.value(scene) else {
+                continue;
+            };
+            if parameter == Parameter::YoungsModulusGpa {
+                continue;
+            }
+            let design = design(scene, parameter, &target).unwrap();
+            assert_sound(scene, parameter, &target, &design);
+            let off = design.values.iter().map(|other| (other - value).abs());
+            let off = off.fold(f64::INFINITY, f64::min);
+            assert!(off <= 1e-9 * value.abs(), "{parameter:?} {side:?}: {off}");
+            found += 1;
+        }
+    }
+    assert_eq!(found, 2 * 10 + 7);
+}
+
+/// The push angle of the robot's whisker is least at some curvature: above it there are two solutions, below it none.
+#[test]
+fn a_pair_of_solutions_is_found_however_close() {
+    let scene = robot();
+    let parameter = Parameter::ParabolaPerMm;
+    let ask = |push| {
+        let target = target(60.0, Side::Cb, DetachmentKind::SlipOff, push);
+        let design = design(&scene, parameter, &target).unwrap();
+        assert_sound(&scene, parameter, &target, &design);
+        design
+    };
+    let push = |value| {
+        let moved = scene.with_parameters(&[(parameter, value)]).unwrap();
+        end(&moved, 60.0, Side::Cb).push_angle_deg.unwrap()
+    };
+    // By thirds.
+    let (mut low, mut high) = (0.005, 0.02);
+    while high - low > 1e-7 {
+        let [one, other] = [2.0 * low + high, low + 2.0 * high].map(|sum| sum / 3.0);
+        if push(one) < push(other) {
+            high = other;
+        } else {
+            low = one;
+        }
+    }
+    let least = push(low);
+    for above in [1.0, 1e-2, 1e-4, 1e-6, 1e-8] {
+        let values = ask(least + above).values;
+        let [one, other] = values[..] else {
+            panic!("{above}: {values:?}");
+        };
+        assert!(one < low && low < other, "{above}: {values:?} {low}");
+        assert_eq!(ask(least - above).values, [0.0; 0]);
+    }
+}
+
+/// Slip-off and pull-off follow each other as the taper falls; what belongs to the other kind is no solution.
+#[test]
+fn kinds_are_told_apart() {
+    let scene = robot();
+    let ask = |kind, push| {
+        let target = target(60.0, Side::Cb, kind, push);
+        let design = design(&scene, Parameter::Taper, &target).unwrap();
+        assert_sound(&scene, Parameter::Taper, &target, &design);
+        design
+    };
+    let far = ask(DetachmentKind::SlipOff, 1.0);
+    assert_eq!(far.values, [0.0; 0]);
+    assert_eq!(far.range, [0.0, 1.0]);
+    let [least, corner] = far.reached_deg(DetachmentKind::SlipOff).unwrap();
+    let [same, most] = far.reached_deg(DetachmentKind::PullOff).unwrap();
+    assert!(least < corner && same < most && (same - corner).abs() < 1e-9);
+    assert_eq!(far.reached_deg(DetachmentKind::OutOfReach), None);
+    // On both sides of the corner, far within one step of the scan.
+    for away in [1e-7, 0.1] {
+        assert_eq!(ask(DetachmentKind::SlipOff, corner - away).values.len(), 1);
+        assert_eq!(ask(DetachmentKind::PullOff, corner + away).values.len(), 1);
+        assert_eq!(ask(DetachmentKind::SlipOff, corner + away).values.len(), 0);
+        assert_eq!(ask(DetachmentKind::PullOff, corner - away).values.len(), 0);
+    }
+    // The ends of the range are solutions, too.
+    for (kind, push, value) in [
+        (DetachmentKind::SlipOff, least, 1.0),
+        (DetachmentKind::PullOff, most, 0.0),
+    ] {
+        let values = ask(kind, push).values;
+        assert!(
+            values.iter().any(|own| (own - value).abs() < 1e-6),
+            "{values:?}"
+        );
+    }
+}
+
+/// A whisker that just reaches the pole: between the last length that does not and the next sample.
+#[test]
+fn solutions_next_to_out_of_reach_are_found() {
+    let cylinder = include_str!("../scenes/cylinder.toml");
+    let cylinder = Scene::parse(cylinder, "cylinder.toml").unwrap();
+    for push in [1.0, 0.01] {
+        let target = target(19.0, Side::Cb, DetachmentKind::PullOff, push);
+        let design = design(&cylinder, Parameter::LengthMm, &target).unwrap();
+        assert_sound(&cylinder, Parameter::LengthMm, &target, &design);
+        assert_eq!(design.values.len(), 1, "{push}");
+    }
+}
+
+#[test]
+fn what_cannot_be_asked_for_is_refused() {
+    let scene = robot();
+    let asked = target(60.0, Side::Cb, DetachmentKind::SlipOff, 30.0);
+    let why = design(&scene, Parameter::Friction, &asked).unwrap_err();
+    let said = why.to_string();
+    assert!(matches!(why, NoDesign::Lacking { .. }));
+    for part in [
+        "friction: must be one of length_mm, ",
+        "taper",
+        "it has no contact.friction",
+    ] {
+        assert!(said.contains(part), "{said}");
+    }
+    let measured =
+        include_str!("../scenes/measured.toml").replace("\"measured.csv\"", "[[0, 30], [20, 1.5]]");
+    let measured = Scene::parse(&measured, "measured.toml").unwrap();
+    let near = Target {
+        distance_mm: 15.0,
+        ..asked
+    };
+    let why = design(&measured, Parameter::LengthMm, &near).unwrap_err();
+    assert!(
+        why.to_string()
+            .contains("accepts no value but 20 for whisker.length_mm"),
+        "{why}"
+    );
+    assert!(matches!(
+        design(&measured, Parameter::Taper, &near),
+        Err(NoDesign::Lacking { .. })
+    ));
+    let axis = scene.with("grid.curvature_per_mm", [0.004]).unwrap();
+    let why = design(&axis, Parameter::ParabolaPerMm, &asked).unwrap_err();
+    assert_eq!(why, NoDesign::Sweep("grid.curvature_per_mm"));
+    let far = Target {
+        distance_mm: 1e9,
+        ..asked
+    };
+    assert!(matches!(
+        design(&scene, Parameter::Taper, &far),
+        Err(NoDesign::Distance(_))
+    ));
+}
+
+/// Nothing that detaches depends on Young's modulus.
+#[test]
+fn a_number_that_does_not_matter_has_no_solution() {
+    let scene = robot();
+    let own = end(&scene, 60.0, Side::Cb).push_angle_deg.unwrap();
+    for push in [own, own + 1.0] {
+        let target = target(60.0, Side::Cb, DetachmentKind::SlipOff, push);
+        let design = design(&scene, Parameter::YoungsModulusGpa, &target).unwrap();
+        assert_eq!(design.values, [0.0; 0]);
+        let [low, high] = design.reached_deg(DetachmentKind::SlipOff).unwrap();
+        assert!(high - low < 1e-9);
+    }
+}
