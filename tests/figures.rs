@@ -1,8 +1,10 @@
 //! The paper's figures, panel by panel: what each shows, on which axes, with which lines, colours and circles.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-use whiskmap::paper::{Figure, Measured, Measurements, figures};
+use whiskmap::measured::Point;
+use whiskmap::paper::{Figure, Measurements, figures};
 use whiskmap::render::{Dot, Ink, Line, Plot, Stroke};
+use whiskmap::rod::Side;
 use whiskmap::trace::DetachmentKind;
 
 fn figure(name: &str, measured: &Measurements) -> Figure {
@@ -276,10 +278,13 @@ fn detachment_curves_enclose_the_stable_region() {
 
 #[test]
 fn measured_ends_are_circles_over_the_theory() {
-    let end = |push_angle_deg, kind| Measured {
-        push_angle_deg,
+    let end = |angle_deg, kind| Point {
+        line: 1,
+        side: Side::of_push(angle_deg),
         distance_mm: 9.0,
-        kind,
+        angle_deg,
+        kind: Some(kind),
+        sd_deg: 1.0,
     };
     let both = vec![
         end(20.0, DetachmentKind::SlipOff),

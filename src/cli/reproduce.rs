@@ -1,11 +1,13 @@
 //! `whiskmap reproduce`.
 
+use super::data;
 use super::failure::Failure;
 use super::outputs::{self, unwritten};
 use clap::Args;
 use std::io::Write;
-use std::path::PathBuf;
-use whiskmap::paper;
+use std::path::{Path, PathBuf};
+use whiskmap::measured::{Angle, Point};
+use whiskmap::paper::{self, Measurements};
 use whiskmap::render::Format;
 use whiskmap::store::{Output, Table};
 
@@ -15,6 +17,7 @@ use whiskmap::store::{Output, Table};
 Examples:
   whiskmap reproduce
   whiskmap reproduce /tmp/figures
+  whiskmap reproduce --fig5c-right scenes/cone_points.csv
 
 Writes fig1, fig2, fig3, fig4d and fig5c as SVG and PNG, and a CSV for each panel. Solid lines are stable states or \
 whiskers, dashed ones unstable states or cylinders; black is slip-off and blue is pull-off, as in the paper. The push \
@@ -23,14 +26,49 @@ pub struct Options {
     /// Folder for the files; it is made if it is missing
     #[arg(value_name = "DIR", default_value = "outputs")]
     folder: PathBuf,
+    /// Measured detachments for Fig. 4D, drawn as circles: slip-offs open, pull-offs filled; as curve --data reads them
+    #[arg(long, value_name = "FILE")]
+    fig4d: Option<PathBuf>,
+    /// The same for the whisker on the left of Fig. 5C
+    #[arg(long, value_name = "FILE")]
+    fig5c_left: Option<PathBuf>,
+    /// The same for the one on the right
+    #[arg(long, value_name = "FILE")]
+    fig5c_right: Option<PathBuf>,
+}
+
+impl Options {
+    fn measurements(&self) -> Result<Measurements, Failure> {
+        Ok(Measurements {
+            fig4d: points("--fig4d", self.fig4d.as_deref())?,
+            fig5c_left: points("--fig5c-left", self.fig5c_left.as_deref())?,
+            fig5c_right: points("--fig5c-right", self.fig5c_right.as_deref())?,
+        })
+    }
+}
+
+/// The points of a file, if there is one. The figures show push angles.
+fn points(option: &str, path: Option<&Path>) -> Result<Vec<Point>, Failure> {
+    let Some(path) = path else {
+        return Ok(Vec::new());
+    };
+    let points = data::read(path)?;
+    match points.angle {
+        Angle::Push => Ok(points.points),
+        Angle::Chord => Err(Failure::Input(format!(
+            "{option} {}: has push_chord_deg; must have push_angle_deg, which the figure shows",
+            path.display()
+        ))),
+    }
 }
 
 /// Runs `reproduce`.
 pub fn run(options: &Options) -> Result<(), Failure> {
+    let measured = options.measurements()?;
     let folder = &options.folder;
     outputs::folder("DIR", folder)?;
     let mut out = std::io::stdout().lock();
-    for figure in paper::figures(&paper::Measurements::default()).map_err(Failure::State)? {
+    for figure in paper::figures(&measured).map_err(Failure::State)? {
         for (ending, format) in [("png", Format::Png), ("svg", Format::Svg)] {
             let path = folder.join(figure.name).with_extension(ending);
             figure.chart.picture().save(&path, format)?;

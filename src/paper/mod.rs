@@ -12,7 +12,7 @@ mod reference;
 mod whiskers;
 
 pub use check::{Check, Expected, Verdict};
-pub use figures::{Figure, Measured, Measurements, Rows, figures};
+pub use figures::{Figure, Measurements, Rows, figures};
 
 /// Every number that is known otherwise: published, in closed form, or from an independent solver.
 #[must_use]

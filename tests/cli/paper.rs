@@ -49,6 +49,28 @@ fn figures_come_with_their_tables() {
 }
 
 #[test]
+fn figures_show_measured_points() {
+    let place = Place::with(SCENE);
+    let circles = |folder: &str| {
+        let picture = place.bytes(&format!("{folder}/fig4d.svg"));
+        let picture = String::from_utf8(picture).unwrap();
+        picture.matches("<circle").count()
+    };
+    good(&place, &["reproduce", "theory"]);
+    place.write(
+        "points.csv",
+        "side,distance_mm,push_angle_deg\ncb,9,21\ncf,9,-33\n",
+    );
+    good(&place, &["reproduce", "both", "--fig4d", "points.csv"]);
+    // Two points, and one in the legend.
+    assert_eq!(circles("both"), circles("theory") + 3);
+    place.write("chord.csv", "side,distance_mm,push_chord_deg\ncb,9,21\n");
+    place
+        .run(&["reproduce", "none", "--fig4d", "chord.csv"])
+        .assert_refused(&["--fig4d chord.csv: has push_chord_deg; must have push_angle_deg"]);
+}
+
+#[test]
 fn verify_says_pass_for_every_number_but_one_of_the_papers() {
     let run = good(&Place::with(SCENE), &["verify"]);
     let said = |verdict| {

@@ -1,6 +1,7 @@
 //! Detachment curves in the plane of push angle and distance, with measured ends over them.
 
 use super::Panel;
+use crate::measured::Point;
 use crate::paper::whiskers::POLE;
 use crate::render::{CurveAxis, Dot, Ends, Ink, Line, Stroke, curves};
 use crate::rod::{Rest, Side};
@@ -8,26 +9,15 @@ use crate::scene::Whisker;
 use crate::trace::{Detachment, DetachmentKind, curve};
 use serde::Serialize;
 
-/// A measured end of a push.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Measured {
-    /// Rotation of the base since first touch: positive CB, negative CF.
-    pub push_angle_deg: f64,
-    /// Distance from the base to the contact.
-    pub distance_mm: f64,
-    /// Slip-off is black, everything else blue.
-    pub kind: DetachmentKind,
-}
-
-/// Measured ends for the panels that can show them; there may be none.
+/// Measured detachments, by their push angles, for the panels that can show them; there may be none.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Measurements {
     /// Slip-offs are open circles (the whisker's), others filled ones (the hair's).
-    pub fig4d: Vec<Measured>,
+    pub fig4d: Vec<Point>,
     /// Open circles.
-    pub fig5c_left: Vec<Measured>,
+    pub fig5c_left: Vec<Point>,
     /// Open circles.
-    pub fig5c_right: Vec<Measured>,
+    pub fig5c_right: Vec<Point>,
 }
 
 /// A row of a table: the end of a push.
@@ -120,12 +110,13 @@ fn reach(rows: &[Detachment], stroke: Stroke) -> Line {
 }
 
 /// Measured ends as circles.
-pub fn dots(measured: &[Measured], is_open: impl Fn(DetachmentKind) -> bool) -> Vec<Dot> {
-    let dot = |end: &Measured| Dot {
-        at: [end.push_angle_deg, end.distance_mm],
+pub fn dots(measured: &[Point], is_open: impl Fn(Option<DetachmentKind>) -> bool) -> Vec<Dot> {
+    let dot = |end: &Point| Dot {
+        at: [end.angle_deg, end.distance_mm],
         ink: match end.kind {
-            DetachmentKind::SlipOff => Ink::Black,
-            _ => Ink::Blue,
+            Some(DetachmentKind::SlipOff) => Ink::Black,
+            Some(_) => Ink::Blue,
+            None => Ink::Grey,
         },
         open: is_open(end.kind),
         name: Some("measured".to_owned()),

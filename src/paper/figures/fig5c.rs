@@ -1,12 +1,13 @@
 //! Fig. 5C: two whiskers of behaving mice, each beside a cylinder.
 
-use super::detachment::{Measured, dots, panel};
+use super::detachment::{dots, panel};
 use super::{Figure, PUSH, Panel, figure};
+use crate::measured::Point;
 use crate::paper::whiskers::{FIG5_LEFT, FIG5_RIGHT, cylinder_of};
 use crate::render::Stroke;
 use crate::scene::Whisker;
 
-pub fn fig5c([left, right]: [&[Measured]; 2]) -> Figure {
+pub fn fig5c([left, right]: [&[Point]; 2]) -> Figure {
     let panels = vec![
         (
             "fig5c_left".to_owned(),
@@ -29,7 +30,7 @@ fn beside_cylinder(
     letter: &'static str,
     title: &str,
     whisker: &Whisker,
-    measured: &[Measured],
+    measured: &[Point],
 ) -> Panel {
     let cylinder = cylinder_of(whisker);
     let whiskers = [

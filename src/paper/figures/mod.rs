@@ -11,7 +11,7 @@ mod fig3;
 mod fig4d;
 mod fig5c;
 
-pub use detachment::{Measured, Measurements};
+pub use detachment::Measurements;
 
 use crate::render::{Chart, Plot};
 use crate::store::Table;
