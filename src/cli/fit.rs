@@ -24,8 +24,8 @@ side (cb or cf), distance_mm, push_angle_deg or push_chord_deg, and maybe kind (
 the standard deviation of the angle. Without it, standard errors are those of points as exact as their residuals tell.
 
 Names for --free: length_mm, base_radius_um, tip_radius_um, taper, youngs_modulus_gpa, parabola_per_mm, vertex_mm, \
-spiral_per_mm, spiral_per_mm2, modulus_tip_to_base, arc_stretch, pole_radius_mm, friction. A parameter that the points do \
-not determine is named; the modulus never is one that they do, because no detachment depends on it.")]
+spiral_per_mm, spiral_per_mm2, modulus_tip_to_base, arc_stretch, pole_radius_mm, friction. Parameters that the points \
+do not determine are named; youngs_modulus_gpa is always one of them, because no detachment depends on it.")]
 pub struct Options {
     /// Scene file; - reads it from standard input
     scene: PathBuf,

@@ -1,7 +1,8 @@
 //! Parameters of a scene from measured detachments, by nonlinear least squares.
 //!
 //! The misfit is the sum of squares of measured less predicted angles, each over its standard deviation. Levenberg and
-//! Marquardt's method (MINPACK's, from the crate `levenberg-marquardt`) minimises it inside the limits of the scene.
+//! Marquardt's method (MINPACK's, from the crate `levenberg-marquardt`) minimises it inside the limits of the scene. Angles are
+//! continuous where slip-off turns into pull-off, their derivatives are not: the trust region gets over that.
 
 mod bounded;
 mod covariance;

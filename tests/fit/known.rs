@@ -13,8 +13,8 @@ fn comes_back(start: &Scene, angle: Angle, truth: &[(Parameter, f64)]) {
     let found = fit(start, &points, &free(truth)).unwrap();
     for (estimate, (parameter, value)) in found.estimates.iter().zip(truth) {
         let off = estimate.value / value - 1.0;
-        // Measured: at most 2e-10, with all ten at once; 1e-12 with one or two.
-        assert!(off.abs() < 1e-8, "{parameter:?} of {truth:?}: {off:e}");
+        // Measured: at most 2e-12.
+        assert!(off.abs() < 1e-10, "{parameter:?} of {truth:?}: {off:e}");
         assert_eq!(estimate.value, parameter.value(&found.scene).unwrap());
         assert!(
             estimate.standard_error.is_some(),
