@@ -115,7 +115,7 @@ impl Design {
 /// let target = Target { distance_mm: 15.66, side: Side::Cb, kind: DetachmentKind::SlipOff, push_angle_deg: 20.0 };
 /// let design = design(&cone, Parameter::TipRadiusUm, &target)?;
 /// let [tip_radius_um] = design.values[..] else { panic!("{design:?}") };
-/// assert!((tip_radius_um - 3.3).abs() < 0.1);
+/// assert!((tip_radius_um - 4.063).abs() < 1e-3);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
