@@ -76,7 +76,7 @@ pub fn newton(
                     residual: LEFT_BY_STEP * length * length * (s + full.map.pole.length())
                         + ROUNDING,
                 };
-                let (end, steps) = (verdict(sheet, &state), steps + 1);
+                let (end, steps) = (verdict(sheet, &shots[i], &state), steps + 1);
                 cells[i] = Refined { state, steps, end };
                 return;
             }
@@ -84,7 +84,7 @@ pub fn newton(
             let stuck = residual <= TOLERANCE && residual > 0.5 * before;
             let has_converged = residual <= GOAL || stuck;
             let end = match has_converged {
-                true => verdict(sheet, &state),
+                true => verdict(sheet, &shots[i], &state),
                 false => End::NotConverged,
             };
             cells[i] = Refined { state, steps, end };
@@ -97,9 +97,20 @@ pub fn newton(
     }
 }
 
+/// How far a state may be from its guess where a sheet has no samples that tell one branch from another, in parts of what changes
+/// everything. Nodes of a continuation are about as far apart.
+const NEAR: f64 = 0.05;
+
+fn is_near(shot: &Shot, state: &ContactState, s: f64) -> bool {
+    let per_load = shot.load.abs() + 1.0 / (s * s);
+    (state.tau - shot.tau).abs() <= NEAR * s && (state.load - shot.load).abs() <= NEAR * per_load
+}
+
 /// Whether a converged state counts.
-fn verdict(sheet: &Sheet, state: &ContactState) -> End {
-    if !sheet.is_stable(state.tau, state.load, &state.full.map) {
+fn verdict(sheet: &Sheet, shot: &Shot, state: &ContactState) -> End {
+    let s = arclength(&sheet.rod, state.tau);
+    let is_astray = sheet.is_walked() && !is_near(shot, state, s);
+    if is_astray || !sheet.is_stable(state.tau, state.load, &state.full.map) {
         End::NotConverged
     } else if state.tau > sheet.tip[0] && !state.is_at_tip(sheet) {
         End::BeyondTip

@@ -26,7 +26,8 @@ pub use row::{Crossing, Edge, Row};
 use crate::rod::{Rest, Rod, Side};
 use crate::shooting::ShootingMap;
 use crate::shooting::batch::Method;
-use continuation::pair_crossings;
+use continuation::walked::WalkedPiece;
+use continuation::{StablePiece, stable_pieces};
 use edges::Edges;
 use edges::crossings::crossings;
 use fold::contact_nodes::{ContactNodes, NARROW_SPACING, SPACING};
@@ -55,8 +56,16 @@ pub struct Sheet {
     /// then the ends of each other piece of the row, in the direction of growing push angles.
     pub crossings: Vec<Vec<Crossing>>,
     method: Method,
-    /// `None` where samples do not show all of the sheet: its rows are then walked.
-    samples: Option<Samples>,
+    guesses: Guesses,
+}
+
+/// Where guesses come from.
+#[derive(Clone, Debug)]
+enum Guesses {
+    /// Samples that show all of the sheet.
+    Sampled(Box<Samples>),
+    /// Its rows, walked because no samples do; piece by piece.
+    Walked(Vec<Vec<WalkedPiece>>),
 }
 
 /// A sheet, sampled.
@@ -112,16 +121,22 @@ impl Sheet {
             let is_pair = usize::from(touches) + crossings.len() == 2;
             let is_simple = crossings.is_empty() && !touches
                 || fold_grows && is_pair && crossings.iter().all(Crossing::is_sound);
-            if !(is_certified && is_simple) {
-                let level = LevelCurve::new(method, rod, side, row);
-                *crossings = pair_crossings(&level, touches, crossings);
+            if is_certified && is_simple {
+                return Vec::new();
             }
+            let level = LevelCurve::new(method, rod, side, row);
+            let pieces = stable_pieces(&level, touches, crossings);
+            let ends = |piece: &StablePiece| [piece.begin, Some(piece.end)];
+            *crossings = pieces.iter().flat_map(ends).flatten().collect();
             if samples.is_none() && !touches {
                 crossings.push(Crossing::unknown());
             }
+            let walked = |piece: &StablePiece| WalkedPiece::new(&piece.nodes, side);
+            pieces.iter().map(walked).collect()
         };
         let rows_with_crossings = rows.par_iter().zip(&mut crossings);
-        rows_with_crossings.with_min_len(TOGETHER).for_each(walk);
+        let walked = rows_with_crossings.with_min_len(TOGETHER).map(walk);
+        let walked: Vec<Vec<WalkedPiece>> = walked.collect();
         let tip = rod.tau_tip();
         Self {
             rod: rod.clone(),
@@ -130,7 +145,17 @@ impl Sheet {
             rows,
             crossings,
             method,
-            samples: samples.filter(|_| is_certified),
+            guesses: match samples.filter(|_| is_certified) {
+                Some(samples) => Guesses::Sampled(Box::new(samples)),
+                None => Guesses::Walked(walked),
+            },
+        }
+    }
+
+    fn samples(&self) -> Option<&Samples> {
+        match &self.guesses {
+            Guesses::Sampled(samples) => Some(samples),
+            Guesses::Walked(_) => None,
         }
     }
 
@@ -143,7 +168,7 @@ impl Sheet {
     /// Whether samples do not show all of it, so that its rows are walked.
     #[must_use]
     pub fn is_walked(&self) -> bool {
-        self.samples.is_none()
+        self.samples().is_none()
     }
 
     /// The level curve of `row`.
@@ -161,20 +186,23 @@ impl Sheet {
     /// How far from the tip, in `tau`, the integration cannot tell a contact from one at the tip.
     #[must_use]
     pub fn tip_blur(&self) -> f64 {
-        self.samples
-            .as_ref()
+        self.samples()
             .map_or(0.0, |samples| 2.0 * samples.edges.tip_error)
     }
 
-    /// Guesses for the cells of `row` at growing `pushes` (magnitudes, in radians); `None` outside the sheet, and where its rows are
-    /// walked.
+    /// Guesses for the cells of `row` at growing `pushes` (magnitudes, in radians); `None` outside the sheet.
     pub fn guesses(&self, row: usize, pushes: impl Iterator<Item = f64>) -> Vec<Option<Guess>> {
-        let row = &self.rows[row];
-        match &self.samples {
-            Some(Samples {
-                contacts, lattice, ..
-            }) => lattice.row_curve(contacts, row).guesses(pushes),
-            None => pushes.map(|_| None).collect(),
+        match &self.guesses {
+            Guesses::Sampled(samples) => {
+                let row = samples
+                    .lattice
+                    .row_curve(&samples.contacts, &self.rows[row]);
+                row.guesses(pushes)
+            }
+            Guesses::Walked(rows) => {
+                let guess = |push| rows[row].iter().find_map(|piece| piece.guess(push));
+                pushes.map(guess).collect()
+            }
         }
     }
 
@@ -183,15 +211,12 @@ impl Sheet {
     #[must_use]
     pub fn is_stable(&self, tau: f64, load: f64, map: &ShootingMap) -> bool {
         let load = self.side.sign() * load;
-        let is_loaded = self
-            .samples
-            .as_ref()
-            .is_none_or(|Samples { contacts, .. }| {
-                load >= 0.0 && contacts.is_below_folds(tau, load) || {
-                    let part = load / contacts.fold_load(tau);
-                    part > -UNLOADED && part < 1.0 + 1e-4
-                }
-            });
+        let is_loaded = self.samples().is_none_or(|Samples { contacts, .. }| {
+            load >= 0.0 && contacts.is_below_folds(tau, load) || {
+                let part = load / contacts.fold_load(tau);
+                part > -UNLOADED && part < 1.0 + 1e-4
+            }
+        });
         let scale = map.by_tau.length() * map.by_load.length();
         is_loaded && map.det() > -1e-7 * scale
     }

@@ -4,6 +4,7 @@
 //! sheet: the level curve of a row is then in several pieces, whose push angles may overlap.
 
 pub mod level_curve;
+pub mod walked;
 
 use crate::sheet::continuation::level_curve::{LevelCurve, Node, ON_CURVE};
 use crate::sheet::edges::edge_newton::{EdgeProblem, edge_newton_fine};
@@ -166,37 +167,68 @@ fn edge(level: &LevelCurve, edge: Edge, from: &Node, to: &Node) -> Option<Node> 
 /// How far apart, relative to contact and load, two crossings are at most if they are the same.
 const SAME: f64 = 1e-5;
 
-/// The `crossings` of a row in pairs, but for the first, where a push from first touch ends if the row `touches`. A piece on
-/// which the continuation gets lost is left out; none are left if it is the one from first touch.
-pub fn pair_crossings(level: &LevelCurve, touches: bool, crossings: &[Crossing]) -> Vec<Crossing> {
-    let mut connected = Vec::new();
+/// A part of a level curve on the stable sheet, in the direction of growing push angles.
+#[derive(Clone, Debug)]
+pub struct StablePiece {
+    /// Where it begins; `None` for first touch.
+    pub begin: Option<Crossing>,
+    /// Where it ends.
+    pub end: Crossing,
+    /// Its nodes, in this direction or the other.
+    pub nodes: Vec<Node>,
+}
+
+/// The pieces of a row with these `crossings`, which tell where to look; that from first touch comes first if the row `touches`.
+/// A piece on which the continuation gets lost is left out; none are left if it is the one from first touch.
+pub fn stable_pieces(
+    level: &LevelCurve,
+    touches: bool,
+    crossings: &[Crossing],
+) -> Vec<StablePiece> {
+    let mut pieces: Vec<StablePiece> = Vec::new();
     if touches {
         let at_touch = crossings.iter().copied().find(Crossing::is_at_touch);
-        let end = at_touch.or_else(|| end_of_piece(level, level.touch()?));
-        let Some(end) = end else {
+        let at_touch = at_touch.map(|end| (end, Vec::new()));
+        let Some((end, nodes)) = at_touch.or_else(|| end_of_piece(level, level.touch()?)) else {
             return Vec::new();
         };
-        connected.push(end);
+        pieces.push(StablePiece {
+            begin: None,
+            end,
+            nodes,
+        });
     }
     for from in crossings {
-        let known = |crossing: &Crossing| connected.iter().any(|other| same(crossing, other));
-        let Some(from) = entry(level, from).filter(|from| !known(from)) else {
+        let is_known = |crossing: &Crossing| {
+            let ends = |piece: &StablePiece| [piece.begin, Some(piece.end)];
+            let mut known = pieces.iter().flat_map(ends).flatten();
+            known.any(|other| same(crossing, &other))
+        };
+        let Some(from) = entry(level, from).filter(|from| !is_known(from)) else {
             continue;
         };
         let Some(start) = level.at_crossing(&from) else {
             continue;
         };
         // From where a piece ends, the way on leads nowhere, and the way back to where it begins.
-        let leads = |end: &Crossing| !same(&from, end);
-        if let Some(end) = end_of_piece(level, start).filter(leads) {
-            connected.extend([from, end]);
-        } else if let Some(begin) = end_of_piece(&level.backward(), start).filter(leads)
-            && !connected.iter().any(|other| same(&begin, other))
+        let leads = |(end, _): &(Crossing, Vec<Node>)| !same(&from, end);
+        if let Some((end, nodes)) = end_of_piece(level, start).filter(leads) {
+            pieces.push(StablePiece {
+                begin: Some(from),
+                end,
+                nodes,
+            });
+        } else if let Some((begin, nodes)) = end_of_piece(&level.backward(), start).filter(leads)
+            && !is_known(&begin)
         {
-            connected.extend([begin, from]);
+            pieces.push(StablePiece {
+                begin: Some(begin),
+                end: from,
+                nodes,
+            });
         }
     }
-    connected
+    pieces
 }
 
 /// `crossing` itself, or, if it is only near the level curve, where the piece begins that it is near to.
@@ -204,21 +236,43 @@ fn entry(level: &LevelCurve, crossing: &Crossing) -> Option<Crossing> {
     if crossing.is_sound() {
         return Some(*crossing);
     }
-    end_of_piece(&level.backward(), level.at_crossing(crossing)?)
+    let (begin, _) = end_of_piece(&level.backward(), level.at_crossing(crossing)?)?;
+    Some(begin)
 }
 
-/// Where the piece of the level curve that begins at `start` ends.
-fn end_of_piece(level: &LevelCurve, start: Node) -> Option<Crossing> {
-    let piece = level.continuation(start, false)?;
-    let end = piece.nodes.last()?;
+/// Where the piece of the level curve that begins at `start` ends, and its nodes: followed coarsely to an end that is then made exact,
+/// or, where that does not hold, exactly all the way.
+fn end_of_piece(level: &LevelCurve, start: Node) -> Option<(Crossing, Vec<Node>)> {
+    let piece = followed_coarsely(level, start).or_else(|| level.continuation(start, false))?;
+    let end = *piece.nodes.last()?;
     let distance = end.full.map.pole.length();
-    Some(Crossing {
+    let crossing = Crossing {
         edge: piece.end,
         tau: end.point.x,
         load: end.point.y,
         push: level.side.sign() * end.push,
         residual: (level.row.pole_distance / distance).ln().abs(),
-    })
+    };
+    Some((crossing, piece.nodes))
+}
+
+/// The least gradient of `ln D`, per [`LevelCurve::gradient`], at which a coarse level curve and an exact one surely go the same way:
+/// where they part, at a saddle, it is the root of the coarse curve's error.
+const CLEAR_OF_SADDLE: f64 = 0.02;
+
+/// The piece from `start` on with coarse nodes and an exact end; `None` where it might not be the piece.
+fn followed_coarsely(level: &LevelCurve, start: Node) -> Option<Continuation> {
+    let mut piece = level.coarsely().continuation(start, false)?;
+    let is_clear = |node: &Node| level.gradient(node).length() > CLEAR_OF_SADDLE;
+    let [.., before, last] = &mut piece.nodes[..] else {
+        return None;
+    };
+    *last = edge(level, piece.end, before, last)?;
+    let is_first = match piece.end {
+        Edge::Fold => last.point.x <= level.rod.tau_tip(),
+        Edge::Tip => last.full.map.det() > 0.0,
+    };
+    (is_first && piece.nodes.iter().all(is_clear)).then_some(piece)
 }
 
 fn same(one: &Crossing, other: &Crossing) -> bool {

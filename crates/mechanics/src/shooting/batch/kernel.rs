@@ -6,6 +6,7 @@ use super::{InitialCondition, Method, OutputSet};
 use crate::numerics::{Lanes, LanesTask, SimdTask, WIDTH};
 use crate::rod::Effects;
 use crate::shooting::contact::{Contact, radius_and_arclength};
+use crate::shooting::resolution::StepCount;
 use crate::shooting::sensitivity::{Arrival, SensitivitySet};
 use crate::shooting::{
     Bent, Graded, Integrator, Measured, Nystrom8, RodSystem, Scales, Section, Spiral, Straight,
@@ -75,9 +76,9 @@ impl<O: OutputSet> SimdTask for Trajectories<'_, O> {
 
     #[inline(always)]
     fn run<T: Lanes>(self) -> Self::Output {
-        let BlockKey { effects, steps, .. } = self.key;
+        let (effects, count) = (self.key.effects, self.key.count());
         self.block
-            .in_parts::<T, _>(|conditions| by_effects::<Nystrom8, O, T>(effects, steps, conditions))
+            .in_parts::<T, _>(|conditions| by_effects::<Nystrom8, O, T>(effects, count, conditions))
     }
 }
 
@@ -131,14 +132,14 @@ fn steps<T: Lanes>(method: Method, conditions: &Conditions) -> [(f64, u32); WIDT
 #[inline(always)]
 pub fn by_effects<M: Integrator, O: OutputSet, T: Lanes>(
     effects: Effects,
-    steps: u32,
+    count: StepCount,
     conditions: &Conditions,
 ) -> [O; WIDTH] {
     /// The kernel for a rest shape and a material, with these sensitivities, on a rod that changes along its length or not.
     macro_rules! kernel {
         ($rest:ty, $material:ty, $set:ident, $advances:literal) => {
             T::outlined(Kernel::<M, O, O::$set<T>, $rest, $material, $advances> {
-                steps,
+                count,
                 conditions,
                 of: PhantomData,
             })
@@ -168,7 +169,7 @@ pub fn by_effects<M: Integrator, O: OutputSet, T: Lanes>(
 
 /// Integrates as many trajectories in step as there are lanes.
 struct Kernel<'a, M, O, S, I, C, const ADVANCES: bool> {
-    steps: u32,
+    count: StepCount,
     conditions: &'a Conditions<'a>,
     of: PhantomData<(M, O, S, I, C)>,
 }
@@ -187,7 +188,7 @@ where
     #[inline(always)]
     fn run(self) -> [O; WIDTH] {
         let Self {
-            steps, conditions, ..
+            count, conditions, ..
         } = self;
         let tau: T = lanes(conditions, |condition| condition.tau);
         let load: T = lanes(conditions, |condition| condition.load);
@@ -212,6 +213,7 @@ where
         let mut here = ArcPosition { tau, radius, s };
         for piece in (0..C::pieces(conditions, s)).rev() {
             let there = C::begin(conditions, piece);
+            let steps = C::steps(conditions, piece, count);
             let h = (here.tau - there.tau) / T::of(f64::from(steps));
             let system = RodSystem {
                 force: contact.force,
