@@ -98,8 +98,8 @@ pub fn newton(
 }
 
 /// How far a state may be from its guess where a sheet has no samples that tell one branch from another, in parts of what changes
-/// everything. Nodes of a continuation are about as far apart.
-const NEAR: f64 = 0.05;
+/// everything: a tenth of the way from node to node of a continuation.
+const NEAR: f64 = 0.005;
 
 fn is_near(shot: &Shot, state: &ContactState, s: f64) -> bool {
     let per_load = shot.load.abs() + 1.0 / (s * s);

@@ -7,7 +7,7 @@ use std::path::Path;
 
 use serde::Deserialize;
 use serde::de::value::SeqAccessDeserializer;
-use serde::de::{Deserializer, SeqAccess, Visitor};
+use serde::de::{Deserializer, Error as _, SeqAccess, Visitor};
 use toml::Spanned;
 
 use super::error::Fault;
@@ -23,7 +23,21 @@ const MOST: usize = 256;
 pub(super) enum Rows {
     Named(String),
     Read(Vec<CsvRow>),
-    Listed(Vec<Spanned<[f64; 2]>>),
+    Listed(Vec<Spanned<Pair>>),
+}
+
+/// Arclength in millimetres and radius in micrometres.
+#[derive(Clone, Copy)]
+pub(super) struct Pair([f64; 2]);
+
+impl<'de> Deserialize<'de> for Pair {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let numbers = Vec::<f64>::deserialize(deserializer)?;
+        let pair = <[f64; 2]>::try_from(numbers);
+        let refuse =
+            |numbers: Vec<f64>| D::Error::invalid_length(numbers.len(), &"a list of 2 numbers");
+        pair.map(Self).map_err(refuse)
+    }
 }
 
 /// A row and its line in the file.
@@ -38,7 +52,7 @@ impl Rows {
         match self {
             Self::Named(_) => Vec::new(),
             Self::Read(rows) => rows.iter().map(|row| row.values).collect(),
-            Self::Listed(rows) => rows.iter().map(|row| *row.get_ref()).collect(),
+            Self::Listed(rows) => rows.iter().map(|row| row.get_ref().0).collect(),
         }
     }
 
@@ -104,9 +118,12 @@ fn from_csv(path: &Path) -> Result<Vec<CsvRow>, String> {
         .comment(Some(b'#'))
         .from_reader(&*bytes);
     let headers = reader.headers().map_err(|why| why.to_string())?.clone();
-    let row = |record: csv::Result<csv::StringRecord>| {
+    let text = String::from_utf8_lossy(&bytes);
+    let is_record = |line: &str| !line.is_empty() && !line.starts_with('#');
+    let lines = text.lines().zip(1..).filter(|(line, _)| is_record(line));
+    let lines = lines.map(|(_, line)| line).skip(1);
+    let row = |(record, line): (csv::Result<csv::StringRecord>, u64)| {
         let record = record.map_err(|why| why.to_string())?;
-        let line = record.position().map_or(0, csv::Position::line);
         let Columns {
             arc_length_mm,
             radius_um,
@@ -116,7 +133,8 @@ fn from_csv(path: &Path) -> Result<Vec<CsvRow>, String> {
         let values = [arc_length_mm, radius_um];
         Ok(CsvRow { line, values })
     };
-    reader.records().take(MOST + 1).map(row).collect()
+    let records = reader.records().zip(lines);
+    records.take(MOST + 1).map(row).collect()
 }
 
 /// What a row's error says, without the place, which is said already.

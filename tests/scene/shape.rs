@@ -140,7 +140,14 @@ fn radii_that_are_refused() {
         ("\"no.csv\"", "rows = \"no.csv\": No such file"),
         ("5", "expected the name of a CSV file or a list"),
         ("[]", "must be 2 to 256 rows, are 0"),
-        ("[[0, 30], [20]]", "expected"),
+        (
+            "[[0, 30], [20]]",
+            "invalid length 1, expected a list of 2 numbers",
+        ),
+        (
+            "[[0, 30, 1], [20, 1]]",
+            "invalid length 3, expected a list of 2 numbers",
+        ),
         ("[[0, 30], [20, \"thin\"]]", "expected a number"),
         ("[[0, 30], [20, 0]]", "rows[1]: the radius must be between"),
         (
@@ -203,8 +210,8 @@ fn a_bad_csv_file_is_named_with_its_line() {
         ),
         ("arc_length_mm,radius_um\n0,30\n1\n", "line: 3"),
         (
-            "arc_length_mm,radius_um\n# a remark\n0,30\n20,nan\n",
-            "line 4: the radius must be",
+            "arc_length_mm,radius_um\n# a remark\n0,30\n\n# another\n20,nan\n",
+            "line 6: the radius must be",
         ),
         (
             "arc_length_mm,radius_um\n0,30\n20,0.001\n",

@@ -18,9 +18,6 @@ const CORRECTOR_ITERATIONS: usize = 12;
 /// `ln D` at which a point lies on the curve, to rounding.
 pub const ON_CURVE: f64 = 1e-14;
 
-/// `ln D` at which a point is as near to the curve as coarse trajectories can tell.
-const NEAR_CURVE: f64 = 1e-6;
-
 /// A state on the level curve.
 #[derive(Clone, Copy, Debug)]
 pub struct Node {
@@ -47,8 +44,6 @@ pub struct LevelCurve {
     pub row: Row,
     /// Whether it is followed in the direction of growing push angles.
     forward: bool,
-    /// `ln D` that a node may miss.
-    miss: f64,
 }
 
 impl LevelCurve {
@@ -61,17 +56,6 @@ impl LevelCurve {
             side,
             row: *row,
             forward: true,
-            miss: ON_CURVE,
-        }
-    }
-
-    /// The same, followed by [`Method::coarsely`] as closely as that is exact.
-    #[must_use]
-    pub fn coarsely(&self) -> Self {
-        Self {
-            method: self.method.coarsely(),
-            miss: NEAR_CURVE,
-            ..self.clone()
         }
     }
 
@@ -151,12 +135,13 @@ impl LevelCurve {
     /// The next node, about `step` further on, where the corrector finds the curve again.
     #[must_use]
     pub fn step(&self, from: &Node, step: f64) -> Option<Node> {
-        let (scale, gradient) = (self.scale(from.point), self.gradient(from));
+        let scale = self.scale(from.point);
+        let gradient = scale * gradient(from);
         // Along the curve the push angle changes by minus `det` times its direction (by_load, -by_tau).
         let heading = if self.forward { 1.0 } else { -1.0 };
         let along = -heading * self.side.sign() * DVec2::new(gradient.y, -gradient.x).normalize();
         let predicted = from.point + step * scale * along;
-        let (point, full) = self.correct(&[predicted], self.miss).pop()??;
+        let (point, full) = self.correct(&[predicted], ON_CURVE).pop()??;
         let turned = (point - from.point) / scale;
         let node = self.node(point, &full, from.push, from.angle);
         (turned.dot(along) > 0.5 * turned.length()).then_some(node)
@@ -205,13 +190,6 @@ impl LevelCurve {
         shot.iter().map(|variation| variation.full).collect()
     }
 
-    /// `d ln D/d(tau, load)` per [`LevelCurve::scale`].
-    #[must_use]
-    pub fn gradient(&self, node: &Node) -> DVec2 {
-        let map = &node.full.map;
-        self.scale(node.point) * DVec2::new(map.by_tau.x, map.by_load.x)
-    }
-
     /// How much `tau` and load can change before the state changes by about as much as it is.
     fn scale(&self, point: DVec2) -> DVec2 {
         let s = arclength(&self.rod, point.x);
@@ -230,4 +208,9 @@ impl LevelCurve {
     pub fn length(&self, from: &Node, to: &Node) -> f64 {
         self.place(from).distance(self.place(to))
     }
+}
+
+/// `d ln D/d(tau, load)`.
+fn gradient(node: &Node) -> DVec2 {
+    DVec2::new(node.full.map.by_tau.x, node.full.map.by_load.x)
 }

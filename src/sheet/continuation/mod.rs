@@ -240,11 +240,10 @@ fn entry(level: &LevelCurve, crossing: &Crossing) -> Option<Crossing> {
     Some(begin)
 }
 
-/// Where the piece of the level curve that begins at `start` ends, and its nodes: followed coarsely to an end that is then made exact,
-/// or, where that does not hold, exactly all the way.
+/// Where the piece of the level curve that begins at `start` ends, and its nodes.
 fn end_of_piece(level: &LevelCurve, start: Node) -> Option<(Crossing, Vec<Node>)> {
-    let piece = followed_coarsely(level, start).or_else(|| level.continuation(start, false))?;
-    let end = *piece.nodes.last()?;
+    let piece = level.continuation(start, false)?;
+    let end = piece.nodes.last()?;
     let distance = end.full.map.pole.length();
     let crossing = Crossing {
         edge: piece.end,
@@ -254,25 +253,6 @@ fn end_of_piece(level: &LevelCurve, start: Node) -> Option<(Crossing, Vec<Node>)
         residual: (level.row.pole_distance / distance).ln().abs(),
     };
     Some((crossing, piece.nodes))
-}
-
-/// The least gradient of `ln D`, per [`LevelCurve::gradient`], at which a coarse level curve and an exact one surely go the same way:
-/// where they part, at a saddle, it is the root of the coarse curve's error.
-const CLEAR_OF_SADDLE: f64 = 0.02;
-
-/// The piece from `start` on with coarse nodes and an exact end; `None` where it might not be the piece.
-fn followed_coarsely(level: &LevelCurve, start: Node) -> Option<Continuation> {
-    let mut piece = level.coarsely().continuation(start, false)?;
-    let is_clear = |node: &Node| level.gradient(node).length() > CLEAR_OF_SADDLE;
-    let [.., before, last] = &mut piece.nodes[..] else {
-        return None;
-    };
-    *last = edge(level, piece.end, before, last)?;
-    let is_first = match piece.end {
-        Edge::Fold => last.point.x <= level.rod.tau_tip(),
-        Edge::Tip => last.full.map.det() > 0.0,
-    };
-    (is_first && piece.nodes.iter().all(is_clear)).then_some(piece)
 }
 
 fn same(one: &Crossing, other: &Crossing) -> bool {

@@ -47,10 +47,9 @@ impl Piece {
 pub struct RadiusProfile {
     /// From the base on; the last one continues beyond the last row, as the cone from the first row to the last does.
     pub pieces: Vec<Piece>,
-    /// Per piece: the largest change of `ln radius` over it, along `tau` and up to the tip.
-    pub changes: Vec<f64>,
-    /// Per piece: that change and the piece's length along `tau`, or those of a piece nearer to the base if they are larger.
-    pub largest_changes: Vec<[f64; 2]>,
+    /// Per piece: the largest change of `ln radius` over it, and its length, both along `tau` and up to the tip, or those
+    /// of a piece nearer to the base if they are larger.
+    pub changes: Vec<[f64; 2]>,
     /// Of the cone from the first row to the last, continued.
     taper: f64,
     /// Per piece: into how many parts its quadrature divides it, along `tau`.
@@ -104,8 +103,7 @@ impl RadiusProfile {
         });
         widths.push((whole - end).max(0.0));
         let mut largest = [0.0_f64; 2];
-        let (mut changes, mut largest_changes) = (Vec::new(), Vec::new());
-        let mut parts = Vec::new();
+        let (mut changes, mut parts) = (Vec::new(), Vec::new());
         for (piece, width) in pieces.iter().zip(&widths) {
             let length = tau_at(taper, piece.from + width) - tau_at(taper, piece.from);
             let steepest = (0..=LOOKS)
@@ -113,14 +111,12 @@ impl RadiusProfile {
                 .map(|s| (1.0 - taper * s) * (piece.slope(s) / piece.radius(s)).abs())
                 .fold(0.0, f64::max);
             largest = [largest[0].max(length * steepest), largest[1].max(length)];
-            changes.push(length * steepest);
-            largest_changes.push(largest);
+            changes.push(largest);
             parts.push((length * steepest).ceil().max(1.0) as u32);
         }
         let mut profile = Self {
             pieces,
             changes,
-            largest_changes,
             taper,
             parts,
             compliances: vec![[0.0; 2]],

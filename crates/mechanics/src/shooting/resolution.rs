@@ -52,25 +52,16 @@ impl Resolution {
         }
     }
 
-    /// Steps for a trajectory from `tau` under `load` on `rod`; with a profile, steps for the piece of it that takes most.
+    /// Steps for a trajectory from `tau` under `load` on `rod`; with a profile, steps for every piece of it.
     ///
     /// What is needed grows with the root of the load above all, so that a whisker that hardly bends takes a third of the steps.
     /// The weights are those of 20,000 random trajectories that had to reach 1e-8, 1e-10 and 3e-12 (`benches/NOTES.md`).
     #[must_use]
     pub fn steps(&self, rod: &Rod, tau: f64, load: f64) -> u32 {
-        let s = arclength(rod, tau);
-        let steps = self.steps_from(rod, tau, load, s);
-        rod.profile.as_ref().map_or(steps, |profile| {
-            let [change, _] = profile.largest_changes[profile.piece(s)];
-            let count = StepCount {
-                fewest: steps,
-                longest: self.longest,
-            };
-            count.on_piece(change)
-        })
+        self.steps_from(rod, tau, load, arclength(rod, tau))
     }
 
-    /// The same where the arclength `s` of the contact is known already; with a profile, the fewest for a piece of it.
+    /// The same where the arclength `s` of the contact is known already.
     #[inline(always)]
     pub(super) fn steps_from(&self, rod: &Rod, tau: f64, load: f64, s: f64) -> u32 {
         let bend = rod.sharpest_bend();
@@ -89,10 +80,10 @@ impl Resolution {
         let weight = weight(bending, bend * s);
         let (weight, needed) = match &rod.profile {
             Some(profile) => {
-                let [_, length] = profile.largest_changes[profile.piece(s)];
+                let [change, length] = profile.changes[profile.piece(s)];
                 let share = CONCENTRATED * profile.largest_share(s);
                 let weight = (share * (weight + 0.17)).max(FEWEST);
-                (weight, fastest * length)
+                (weight, change.max(fastest * length))
             }
             None => (weight + weight_of_taper(rod.taper * tau), fastest * tau),
         };
@@ -128,25 +119,6 @@ impl Resolution {
     }
 }
 
-/// How many steps the pieces of a profile take; a rod without one is one piece.
-#[derive(Clone, Copy, Debug)]
-pub struct StepCount {
-    /// On each.
-    pub fewest: u32,
-    /// The longest step in the logarithm of the radius.
-    pub longest: f64,
-}
-
-impl StepCount {
-    /// On a piece along which the logarithm of the radius changes by `change`.
-    #[inline(always)]
-    pub(super) fn on_piece(self, change: f64) -> u32 {
-        let whole = (change / self.longest) as u32;
-        let more = u32::from(f64::from(whole) * self.longest < change);
-        self.fewest.max(whole + more)
-    }
-}
-
 /// Of the load and of the rest shape, which turns by `bend` between base and contact.
 #[inline(always)]
 fn weight(bending: f64, bend: f64) -> f64 {
@@ -168,8 +140,9 @@ fn fastest(taper: f64, bend: f64) -> f64 {
 /// Under more than a small load the bend gathers in the softest piece.
 const CONCENTRATED: f64 = 2.0;
 
-/// A piece of a profile may be much shorter than what the rod needs as a step; it takes this part of `least`.
-const FEWEST: f64 = 0.05;
+/// A piece of a profile may be much shorter than what the rod needs as a step; it takes this part of `least`, so that twice as
+/// many steps are twice as many.
+const FEWEST: f64 = 0.15;
 
 /// Bounds the work on a trajectory that a lost Newton step has sent far away.
 const MOST: f64 = 8192.0;

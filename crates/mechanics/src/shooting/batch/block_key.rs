@@ -2,7 +2,6 @@
 
 use super::{InitialCondition, Method};
 use crate::rod::Effects;
-use crate::shooting::resolution::StepCount;
 use std::sync::Arc;
 
 /// What the trajectories of a block have in common: lanes step together.
@@ -14,10 +13,8 @@ pub struct BlockKey {
     profile: usize,
     /// The piece of the profile with the contact.
     piece: usize,
-    /// Steps of a trajectory, or the fewest on a piece of the profile.
+    /// Steps of a trajectory, or per piece of the profile.
     pub steps: u32,
-    /// The bits of [`Resolution::longest`](crate::shooting::Resolution::longest), which are in the order of the numbers.
-    longest: u64,
 }
 
 impl BlockKey {
@@ -34,15 +31,6 @@ impl BlockKey {
             profile: profile.map_or(0, |profile| Arc::as_ptr(profile).addr()),
             piece: rod.piece(s),
             steps,
-            longest: method.resolution.longest.to_bits(),
-        }
-    }
-
-    /// How many steps the pieces take.
-    pub const fn count(&self) -> StepCount {
-        StepCount {
-            fewest: self.steps,
-            longest: f64::from_bits(self.longest),
         }
     }
 

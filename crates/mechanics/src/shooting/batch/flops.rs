@@ -3,7 +3,6 @@
 use crate::numerics::{Lanes, Real, WIDTH};
 use crate::rod::Effects;
 use crate::shooting::batch::{InitialCondition, kernel::by_effects};
-use crate::shooting::resolution::StepCount;
 use crate::shooting::{Integrator, Nystrom8, Rk4, ShootingMap};
 use std::cell::Cell;
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -88,10 +87,6 @@ fn flops<M: Integrator>(effects: Effects, steps: u32, condition: &InitialConditi
         .and(condition.rod)
         .reaching(condition.rod.taper * condition.tau);
     COUNT.set(0);
-    let count = StepCount {
-        fewest: steps,
-        longest: f64::INFINITY,
-    };
-    let _ = by_effects::<M, ShootingMap, Counted>(effects, count, &[condition; WIDTH]);
+    let _ = by_effects::<M, ShootingMap, Counted>(effects, steps, &[condition; WIDTH]);
     COUNT.get()
 }

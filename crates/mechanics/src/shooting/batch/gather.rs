@@ -4,7 +4,6 @@ use crate::numerics::{Lanes, WIDTH};
 use crate::rod::{Piece, Rod};
 use crate::shooting::batch::InitialCondition;
 use crate::shooting::contact::{arc, parabola_tangent};
-use crate::shooting::resolution::StepCount;
 use crate::shooting::{Bent, Graded, Intrinsic, Material, Measured, Spiral, Straight, Uniform};
 
 /// One condition for every lane.
@@ -52,12 +51,6 @@ pub trait GatherMaterial<T: Lanes>: Material<T> {
             radius: T::of(1.0),
             s: T::of(0.0),
         }
-    }
-
-    /// Steps on piece `piece`.
-    #[inline(always)]
-    fn steps(_conditions: &Conditions, _piece: usize, count: StepCount) -> u32 {
-        count.fewest
     }
 
     /// How many pieces the way from the contacts at the arclengths `s` to the base has.
@@ -126,14 +119,6 @@ impl<T: Lanes> GatherMaterial<T> for Measured<T> {
             radius: lanes(conditions, |at| 1.0 - at.rod.taper * begin(at.rod)),
             s: lanes(conditions, |at| begin(at.rod)),
         }
-    }
-
-    #[inline(always)]
-    fn steps(conditions: &Conditions, piece: usize, count: StepCount) -> u32 {
-        let profile = conditions[0].rod.profile.as_ref();
-        profile.map_or(count.fewest, |profile| {
-            count.on_piece(profile.changes[piece])
-        })
     }
 
     #[inline(always)]

@@ -6,7 +6,6 @@ use super::{InitialCondition, Method, OutputSet};
 use crate::numerics::{Lanes, LanesTask, SimdTask, WIDTH};
 use crate::rod::Effects;
 use crate::shooting::contact::{Contact, radius_and_arclength};
-use crate::shooting::resolution::StepCount;
 use crate::shooting::sensitivity::{Arrival, SensitivitySet};
 use crate::shooting::{
     Bent, Graded, Integrator, Measured, Nystrom8, RodSystem, Scales, Section, Spiral, Straight,
@@ -76,9 +75,9 @@ impl<O: OutputSet> SimdTask for Trajectories<'_, O> {
 
     #[inline(always)]
     fn run<T: Lanes>(self) -> Self::Output {
-        let (effects, count) = (self.key.effects, self.key.count());
+        let BlockKey { effects, steps, .. } = self.key;
         self.block
-            .in_parts::<T, _>(|conditions| by_effects::<Nystrom8, O, T>(effects, count, conditions))
+            .in_parts::<T, _>(|conditions| by_effects::<Nystrom8, O, T>(effects, steps, conditions))
     }
 }
 
@@ -132,14 +131,14 @@ fn steps<T: Lanes>(method: Method, conditions: &Conditions) -> [(f64, u32); WIDT
 #[inline(always)]
 pub fn by_effects<M: Integrator, O: OutputSet, T: Lanes>(
     effects: Effects,
-    count: StepCount,
+    steps: u32,
     conditions: &Conditions,
 ) -> [O; WIDTH] {
     /// The kernel for a rest shape and a material, with these sensitivities, on a rod that changes along its length or not.
     macro_rules! kernel {
         ($rest:ty, $material:ty, $set:ident, $advances:literal) => {
             T::outlined(Kernel::<M, O, O::$set<T>, $rest, $material, $advances> {
-                count,
+                steps,
                 conditions,
                 of: PhantomData,
             })
@@ -169,7 +168,7 @@ pub fn by_effects<M: Integrator, O: OutputSet, T: Lanes>(
 
 /// Integrates as many trajectories in step as there are lanes.
 struct Kernel<'a, M, O, S, I, C, const ADVANCES: bool> {
-    count: StepCount,
+    steps: u32,
     conditions: &'a Conditions<'a>,
     of: PhantomData<(M, O, S, I, C)>,
 }
@@ -188,7 +187,7 @@ where
     #[inline(always)]
     fn run(self) -> [O; WIDTH] {
         let Self {
-            count, conditions, ..
+            steps, conditions, ..
         } = self;
         let tau: T = lanes(conditions, |condition| condition.tau);
         let load: T = lanes(conditions, |condition| condition.load);
@@ -213,7 +212,6 @@ where
         let mut here = ArcPosition { tau, radius, s };
         for piece in (0..C::pieces(conditions, s)).rev() {
             let there = C::begin(conditions, piece);
-            let steps = C::steps(conditions, piece, count);
             let h = (here.tau - there.tau) / T::of(f64::from(steps));
             let system = RodSystem {
                 force: contact.force,
