@@ -10,7 +10,7 @@ use serde::Serialize;
 use std::path::PathBuf;
 use whiskmap::render::{CurveAxis, curves};
 use whiskmap::rod::Side;
-use whiskmap::scene::{Morphology, Scene, Whisker};
+use whiskmap::scene::{Place, Scene, Swept};
 use whiskmap::shooting::Resolution;
 use whiskmap::trace::{self, Corner, Detachment, DetachmentKind};
 
@@ -22,9 +22,8 @@ Examples:
   whiskmap curve scenes/cone.toml --corner
 
 One line per side and distance of the scene, CF before CB; angles are positive for CB and negative for CF. Ends \
-without values are out of reach, or unresolved, which is said on standard error. A scene with taper or curvature axes \
-gives the curve of every whisker, with the leading columns taper (1 - tip/base radius) and curvature_per_mm; a plot \
-shows one whisker.";
+without values are out of reach, or unresolved, which is said on standard error. A scene with sweep axes, such as \
+grid.taper, gives the curve of every whisker, with a leading column for each; a plot shows one whisker.";
 
 const TABLES: &[(&str, &[(&str, &str)])] = &[
     ("Columns", Detachment::COLUMNS),
@@ -52,7 +51,8 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     let whiskers = scene.whisker_count();
     if options.outputs.has_plot() && whiskers > 1 {
         return Err(Failure::Input(format!(
-            "--plot: the scene sweeps {whiskers} whiskers over grid.taper and grid.curvature_per_mm; a plot shows one"
+            "--plot: the scene sweeps {whiskers} whiskers over {}; a plot shows one",
+            axes(&scene)
         )));
     }
     let mut outputs = options.outputs.open()?;
@@ -67,16 +67,16 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     let at_once = trace::whiskers_at_once(distances.len());
     for group in scene.whisker_groups(at_once) {
         if options.corner {
-            let corner = |whisker: &Whisker, side| {
-                let corner = trace::corner(whisker, &scene.pole, side);
+            let corner = |own: &Swept, side| {
+                let corner = trace::corner(&own.whisker, &own.pole, side);
                 bar.inc(1);
                 vec![corner]
             };
             write(&scene, &mut outputs, &trace::sides(&group, corner))?;
             continue;
         }
-        let curve = |whisker: &Whisker, side| {
-            let ends = trace::curve_at(resolution, whisker, &scene.pole, side, distances);
+        let curve = |own: &Swept, side| {
+            let ends = trace::curve_at(resolution, &own.whisker, &own.pole, side, distances);
             bar.inc(ends.len() as u64);
             ends
         };
@@ -95,11 +95,20 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     check_resolved(unresolved, all, "ends", "the column `kind`")
 }
 
-/// Writes the rows of some whiskers, with the leading columns only where the scene has an axis for them.
+/// The sweep axes by their keys.
+fn axes(scene: &Scene) -> String {
+    let keys = scene.grid.sweep.iter();
+    let keys: Vec<String> = keys
+        .map(|axis| format!("grid.{}", axis.parameter.axis()))
+        .collect();
+    keys.join(", ")
+}
+
+/// Writes the rows of some whiskers, with a leading column for each sweep axis.
 fn write<R: Serialize>(
     scene: &Scene,
     outputs: &mut Opened,
-    rows: &[(Morphology, R)],
+    rows: &[(Place, R)],
 ) -> Result<(), Failure> {
     if scene.is_sweep() {
         outputs.rows(rows)

@@ -21,7 +21,9 @@ mod progress;
 mod render;
 mod reproduce;
 mod shape;
+mod sharded;
 mod signals;
+mod status;
 mod tolerance;
 mod verify;
 
@@ -41,6 +43,8 @@ const EXAMPLES: &str = "\
 Examples:
   whiskmap map scenes/cone.toml                    regime map as outputs/cone.exr and outputs/cone.png
   whiskmap map scenes/cone.toml --engine gpu       the same, shot by the GPU
+  whiskmap map scenes/morphology.toml --format zarr --shard 0/8   an eighth of a store that many processes fill
+  whiskmap status outputs/morphology.zarr          what it has, and what it lacks
   whiskmap plan scenes/cone.toml                   what that would take, without doing it
   whiskmap render outputs/cone.exr --channel force_un
   whiskmap curve scenes/cone.toml --plot curve.png where the whisker detaches, distance by distance
@@ -57,6 +61,8 @@ enum Command {
     Map(map::Options),
     /// Say what a map of a scene would take: effects, cells, memory, seconds
     Plan(plan::Options),
+    /// Say what a store has, and what it lacks
+    Status(status::Options),
     /// Draw a stored map again, its regimes or any channel
     Render(render::Options),
     /// Compute the exact detachment curve of a scene, as CSV, PNG or SVG
@@ -109,6 +115,7 @@ fn run(command: &Command) -> Result<(), Failure> {
     match command {
         Command::Map(options) => map::run(options),
         Command::Plan(options) => plan::run(options),
+        Command::Status(options) => status::run(options),
         Command::Render(options) => render::run(options),
         Command::Curve(options) => curve::run(options),
         Command::Branch(options) => branch::run(options),

@@ -23,14 +23,11 @@ impl Pole {
         let scene = Scene::read(&self.scene)?;
         let whiskers = scene.whisker_count();
         if whiskers > 1 {
-            let tapers = scene.grid.taper.as_ref();
-            let key = if tapers.is_some_and(|tapers| tapers.len() > 1) {
-                "grid.taper"
-            } else {
-                "grid.curvature_per_mm"
-            };
+            let mut axes = scene.grid.sweep.iter();
+            let key = axes.find(|axis| axis.values.len() > 1);
+            let key = key.map_or("", |axis| axis.parameter.axis());
             return Err(Failure::Input(format!(
-                "{key}: the scene sweeps {whiskers} whiskers; {command} looks at one, so give the axis one value or leave \
+                "grid.{key}: the scene sweeps {whiskers} whiskers; {command} looks at one, so give the axis one value or leave \
                  it out"
             )));
         }
@@ -44,7 +41,7 @@ impl Pole {
                  and more than {radius} (pole.radius_mm)"
             )));
         }
-        let whisker = scene.first_whisker();
+        let whisker = scene.first_whisker().whisker;
         Ok((scene, whisker))
     }
 

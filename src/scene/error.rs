@@ -122,6 +122,20 @@ impl Fault {
         }
     }
 
+    /// Whether it is the value of `key` that does not.
+    pub fn is_about(&self, key: &str) -> bool {
+        self.key == key
+    }
+
+    /// The same of a sweep's whisker with these `values`, and of the axis `key` if that gives the number.
+    pub fn of_sweep(self, key: Option<String>, values: &str) -> Self {
+        Self {
+            key: key.unwrap_or(self.key),
+            must: format!("{}; refused is {values}", self.must),
+            ..self
+        }
+    }
+
     /// `key = value: must ...`, with the value as the file writes it.
     pub fn in_scene(self, origin: &str, text: &str) -> SceneError {
         let Self { key, span, must } = self;
