@@ -38,9 +38,15 @@ pub(super) fn setup(table: &mut SceneTable, text: &str, stem: &str) -> Result<Se
     let lengths_mm = sweep::lengths_mm(table)?;
     sweep::refuse_at_odds(table)?;
     let grid = grid(table, lengths_mm)?;
+    let mut refused = Vec::new();
+    let mut corners = 0;
     for place in sweep::corners(&grid) {
         table.put(&place);
-        whisker_and_pole(table, &grid).map_err(|fault| sweep::located(fault, &place))?;
+        refused.extend(whisker_and_pole(table, &grid).err().zip(Some(place)));
+        corners += 1;
+    }
+    if let Some(fault) = sweep::located(refused, corners) {
+        return Err(fault);
     }
     table.put(&grid.place(0));
     let (mut whisker, pole) = whisker_and_pole(table, &grid)?;

@@ -102,6 +102,7 @@ fn within_a_line(text: &str, span: Range<usize>) -> Option<Range<usize>> {
 }
 
 /// What the checks refuse, before the file's name and text join it.
+#[derive(PartialEq)]
 pub(super) struct Fault {
     key: String,
     span: Option<Range<usize>>,
@@ -127,10 +128,14 @@ impl Fault {
         self.key == key
     }
 
-    /// The same of a sweep's whisker with these `values`, and of the axis `key` if that gives the number.
-    pub fn of_sweep(self, key: Option<String>, values: &str) -> Self {
+    /// The same of another key.
+    pub fn renamed(self, key: String) -> Self {
+        Self { key, ..self }
+    }
+
+    /// The same of a sweep's whisker with these `values`.
+    pub fn at(self, values: &str) -> Self {
         Self {
-            key: key.unwrap_or(self.key),
             must: format!("{}; refused is {values}", self.must),
             ..self
         }

@@ -169,17 +169,22 @@ impl SceneTable {
     }
 }
 
-/// A fault found at one `place` of the sweep: it is the axis' own where that gives the number.
-pub(super) fn located(fault: Fault, place: &Place) -> Fault {
+/// The first of the faults found at some of so many `corners`: it is that of an axis where one gives the number, and tells
+/// the place unless it is the same everywhere.
+pub(super) fn located(faults: Vec<(Fault, Place)>, corners: usize) -> Option<Fault> {
+    let is_everywhere =
+        faults.len() == corners && faults.iter().all(|(fault, _)| *fault == faults[0].0);
+    let (fault, place) = faults.into_iter().next()?;
     let mut axes = place.values();
     let own = axes.find(|(parameter, _)| fault.is_about(parameter.key()));
-    let values: Vec<String> = place
-        .values()
-        .map(|(parameter, value)| format!("{} = {value}", parameter.axis()))
-        .collect();
-    if values.is_empty() {
-        return fault;
+    let fault = match own {
+        Some((parameter, _)) => fault.renamed(key(parameter)),
+        None => fault,
+    };
+    if is_everywhere {
+        return Some(fault);
     }
-    let values = values.join(", ");
-    fault.of_sweep(own.map(|(parameter, _)| key(parameter)), &values)
+    let values = place.values();
+    let values = values.map(|(parameter, value)| format!("{} = {value}", parameter.axis()));
+    Some(fault.at(&values.collect::<Vec<_>>().join(", ")))
 }

@@ -8,7 +8,7 @@ use crate::scene::{Grid, Parameter, Setup, SweepAxis};
 use exr::meta::attribute::{AttributeValue, Text};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 
 /// What is known before the run, and written first.
 #[derive(Clone, Copy, Debug)]
@@ -156,10 +156,26 @@ pub(super) fn decode_axes(mut found: Vec<Axis>) -> Result<Grid, String> {
     Ok(grid)
 }
 
+/// The same with the names in every object in their order: whether `serde_json` keeps another one depends on what else is
+/// built with it.
+fn sorted(value: &Value) -> Value {
+    match value {
+        Value::Object(names) => {
+            let names: BTreeMap<_, _> = names
+                .iter()
+                .map(|(name, value)| (name.clone(), sorted(value)))
+                .collect();
+            names.into_iter().collect()
+        }
+        Value::Array(values) => values.iter().map(sorted).collect(),
+        other => other.clone(),
+    }
+}
+
 /// JSON in which every character beyond ASCII is written as `\uXXXX`, in surrogate pairs where needed: other readers
 /// refuse a whole file for a single `µ`.
 fn ascii_json(value: &Value) -> String {
-    let json = value.to_string();
+    let json = sorted(value).to_string();
     let mut ascii = String::with_capacity(json.len());
     for unit in json.encode_utf16() {
         match u8::try_from(unit) {

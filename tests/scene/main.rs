@@ -6,6 +6,7 @@
 )]
 
 mod any_text;
+mod axes;
 mod refused;
 mod shape;
 

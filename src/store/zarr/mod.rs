@@ -139,7 +139,7 @@ impl ZarrStore {
     fn write_metadata(&self) -> Result<(), Error> {
         let coordinates = metadata::coordinates(&self.scene.grid);
         let coordinates = coordinates.map_err(Error::at(&self.path, Error::Pack))?;
-        let json = |value: &Value| format!("{value:#}\n").into_bytes();
+        let json = |value: &Value| value.to_string().into_bytes();
         for (array, values) in coordinates {
             let folder = self.path.join(&array.name);
             write(&folder.join(METADATA), &json(&array.metadata))?;
