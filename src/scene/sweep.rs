@@ -11,7 +11,7 @@ use super::file::{
     ContactTable, CurvatureTable, GradientTable, PoleTable, ProjectionTable, SceneTable,
 };
 use super::grid::{Grid, Place, SweepAxis};
-use super::limits::Limits;
+use super::limits::{Limits, Number};
 use super::parameter::Parameter;
 use super::shape;
 
@@ -30,6 +30,14 @@ pub(super) fn axes(table: &SceneTable, lengths_mm: [f64; 2]) -> Result<Vec<Sweep
             Parameter::ArcStretch => Limits::between(1.0, MOST_STRETCH),
             _ => Limits::between(-1e6, 1e6),
         };
+        // The scene's own number is replaced, not forgotten.
+        if let Some(own) = table.own(parameter) {
+            limits.check(parameter.key(), own)?;
+            if parameter == Parameter::ParabolaPerMm {
+                let key = parameter.key();
+                shape::refuse_faint(&[*own.get_ref()], lengths_mm[0], key, own.span())?;
+            }
+        }
         let values = axis::values(axis, &key(parameter), &limits)?;
         Ok(SweepAxis { parameter, values })
     });
@@ -158,6 +166,24 @@ impl SceneTable {
             let span = self.span(Parameter::Taper);
             self.whisker.tip_radius_um =
                 base.map(|base| Spanned::new(span, base.get_ref() * (1.0 - taper)));
+        }
+    }
+
+    /// The scene's own number, where the file gives it.
+    fn own(&self, parameter: Parameter) -> Option<&Number> {
+        let whisker = &self.whisker;
+        let curvature = whisker.curvature.as_ref().map(Spanned::get_ref);
+        match parameter {
+            Parameter::LengthMm => Some(&whisker.length_mm),
+            Parameter::BaseRadiusUm => whisker.base_radius_um.as_ref(),
+            Parameter::TipRadiusUm => whisker.tip_radius_um.as_ref(),
+            Parameter::ParabolaPerMm => curvature?.parabola_per_mm.as_ref(),
+            Parameter::VertexMm => curvature?.vertex_mm.as_ref(),
+            Parameter::ModulusTipToBase => Some(&whisker.modulus_gradient.as_ref()?.tip_to_base),
+            Parameter::ArcStretch => Some(&whisker.projection.as_ref()?.arc_stretch),
+            Parameter::PoleRadiusMm => Some(&self.pole.as_ref()?.radius_mm),
+            Parameter::Friction => Some(&self.contact.as_ref()?.friction),
+            _ => None,
         }
     }
 

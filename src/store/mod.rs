@@ -16,6 +16,8 @@ mod header;
 mod layout;
 mod output;
 mod reader;
+#[cfg(feature = "zarr")]
+mod stored;
 mod table;
 mod tally;
 mod unfinished;
@@ -28,6 +30,8 @@ pub use error::Error;
 pub use layout::Layout;
 pub use output::Output;
 pub use reader::{MapHeader, Samples, StoredMap};
+#[cfg(feature = "zarr")]
+pub use stored::Stored;
 pub use table::Table;
 pub use tally::Counts;
 pub use unfinished::abandon;

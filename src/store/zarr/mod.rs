@@ -177,6 +177,18 @@ impl ZarrStore {
         self.channels
     }
 
+    /// What the store says of the whole, such as `scene` or `tolerances`.
+    ///
+    /// # Errors
+    ///
+    /// There is no such attribute.
+    pub fn attribute(&self, name: &str) -> Result<Value, Error> {
+        let value = self.attributes.get(name).cloned();
+        value.ok_or_else(|| {
+            Error::NotAStore(self.path.clone(), format!("there is no attribute `{name}`"))
+        })
+    }
+
     /// How many blocks there are, done or not.
     #[must_use]
     pub fn block_count(&self) -> usize {
