@@ -63,7 +63,7 @@ impl Selection {
             let axes: Vec<(&'static str, &Vec<f64>)> = axes.chain(inside).collect();
             let place = axes
                 .iter()
-                .position(|(name, _)| known(name))
+                .position(|(name, _)| *name == at.name)
                 .ok_or_else(|| {
                     let names: Vec<&str> = axes.iter().map(|(name, _)| *name).collect();
                     let names = names.join(", ");

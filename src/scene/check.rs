@@ -36,8 +36,8 @@ const LONGEST_NAME: usize = 200;
 pub(super) fn setup(table: &mut SceneTable, text: &str, stem: &str) -> Result<Setup, Fault> {
     let title = title(&table.title)?;
     let lengths_mm = sweep::lengths_mm(table)?;
-    sweep::refuse_at_odds(table)?;
     let grid = grid(table, lengths_mm)?;
+    sweep::refuse_at_odds(table)?;
     let mut refused = Vec::new();
     let mut corners = 0;
     for place in sweep::corners(&grid) {
