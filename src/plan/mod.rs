@@ -113,7 +113,7 @@ impl Plan {
             engine_calls: whiskers / panels_at_once * calls(panels_at_once)
                 + calls(whiskers % panels_at_once),
             cells: cells * whiskers,
-            parts: vec![0..whiskers],
+            parts: std::iter::once(0..whiskers).collect(),
             channels: Channels::ALL,
             sides,
             panels_at_once,
