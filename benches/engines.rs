@@ -153,6 +153,7 @@ fn files(criterion: &mut Criterion) {
         scene: &scene,
         engine: &whiskmap::integrate::Description::of(None),
         tolerances: &serde_json::json!({}),
+        channels: whiskmap::map::Channels::ALL,
     };
     let write = |path: &Path| -> Result<(), Error> {
         let mut writer = MapWriter::create(path, &about)?;

@@ -14,7 +14,7 @@ use crate::plan::{Plan, PlanError};
 use crate::rod::Side;
 #[cfg(feature = "fit")]
 use crate::scene::Parameter;
-use crate::scene::{Grid, Morphology, Scene};
+use crate::scene::{Grid, Place, Scene, Swept};
 use crate::shooting::Resolution;
 use crate::trace::{Branch, Detachment, NoState, Shape, curve_at, sides, whiskers_at_once};
 use std::convert::Infallible;
@@ -151,12 +151,12 @@ pub fn map(scene: &Scene, options: Options) -> Result<Map, Error> {
 ///
 /// # Errors
 /// When the tolerance cannot be kept.
-pub fn curve(scene: &Scene, options: Options) -> Result<Vec<(Morphology, Detachment)>, Error> {
+pub fn curve(scene: &Scene, options: Options) -> Result<Vec<(Place, Detachment)>, Error> {
     let resolution = resolution(scene, options, &Side::BOTH)?;
     let distances = &scene.grid.distance_mm;
     let curves = |group: Vec<_>| {
-        sides(&group, |whisker, side| {
-            curve_at(resolution, whisker, &scene.pole, side, distances)
+        sides(&group, |own: &Swept, side| {
+            curve_at(resolution, &own.whisker, &own.pole, side, distances)
         })
     };
     let groups = scene.whisker_groups(whiskers_at_once(distances.len()));
@@ -177,7 +177,8 @@ pub fn curve(scene: &Scene, options: Options) -> Result<Vec<(Morphology, Detachm
 /// # Errors
 /// When the whisker at rest does not reach the pole, or the continuation gets lost.
 pub fn branch(scene: &Scene, distance_mm: f64, side: Side) -> Result<Branch, NoState> {
-    Branch::new(&scene.first_whisker(), &scene.pole, side, distance_mm)
+    let first = scene.first_whisker();
+    Branch::new(&first.whisker, &first.pole, side, distance_mm)
 }
 
 /// The stable shape of the scene's first whisker, in 200 places, after a push from first touch at `distance_mm`.

@@ -87,7 +87,7 @@ fn the_estimate_bounds_the_error_of_every_scene() {
             assert!(found.resolution.least >= last);
             last = found.resolution.least;
             let (mut at_ends, mut in_cells) = (0.0_f64, 0.0_f64);
-            for (_, whisker) in scene.whiskers() {
+            for whisker in scene.whiskers().map(|own| own.whisker) {
                 for side in Side::BOTH {
                     let ends = ends(&scene, &whisker, side, found.resolution);
                     let cells = cells(&scene, &whisker, side, found.resolution);
@@ -120,7 +120,7 @@ fn whiskers_that_coil_up_have_an_estimate() {
     let scene = Scene::parse(text, "coiled").unwrap();
     for tolerance_deg in [1e-1, 1e-4] {
         let found = cheapest(&scene, &Side::BOTH, tolerance_deg).unwrap();
-        let whisker = scene.whisker_at(None, None);
+        let whisker = scene.first_whisker().whisker;
         let errors = Side::BOTH.map(|side| cells(&scene, &whisker, side, found.resolution));
         assert!(
             errors.iter().all(|error| *error <= found.error_deg),

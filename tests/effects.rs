@@ -315,7 +315,7 @@ fn radius_and_modulus_are_read_at_the_real_arclength() {
             "drooping",
         )
         .unwrap();
-        let rod = scene.first_whisker().rod(&scene.pole, Side::Cb);
+        let rod = scene.first_whisker().rod(Side::Cb);
         let (contact, force) = (0.75, 1e-5);
         let softness = |planar: f64| {
             let real = arc_stretch * planar;

@@ -12,7 +12,7 @@ use whiskmap::accuracy::cheapest;
 use whiskmap::classify::{Regime, RowBoundary, Status, TIE};
 use whiskmap::plan::Plan;
 use whiskmap::rod::Side;
-use whiskmap::scene::{Scene, Whisker};
+use whiskmap::scene::{Scene, Swept, Whisker};
 use whiskmap::sheet::{Crossing, Edge};
 use whiskmap::shooting::Resolution;
 use whiskmap::trace::{Detachment, DetachmentKind, curve_at};
@@ -64,8 +64,8 @@ fn the_shape_at_rest_decides_at_the_straight_length() {
                 "{case}"
             );
             let regimes: Vec<Vec<u32>> = panels.into_iter().map(|panel| panel.regime).collect();
-            for ((morphology, whisker), regimes) in scene.whiskers().zip(&regimes) {
-                let case = format!("{case}, taper {}", morphology.taper);
+            for (Swept { whisker, .. }, regimes) in scene.whiskers().zip(&regimes) {
+                let case = format!("{case}, taper {}", whisker.taper());
                 for side in Side::BOTH {
                     let case = format!("{case}, {side:?}");
                     agrees_with_its_curve(&scene, &whisker, side, resolution, regimes, &case);

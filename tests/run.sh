@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Everything that must hold: format, lints, documentation, tests, and that Python reads a map. On Debian or Ubuntu it
+# Everything that must hold: format, lints, documentation, tests, and that Python reads a map and a store. On Debian or Ubuntu it
 # installs Mesa's software Vulkan driver (lavapipe) first where no Vulkan driver is found, so that the shaders run on any
-# machine, and pip where Python has neither OpenEXR nor that.
+# machine, and pip where Python has neither what reads them nor that.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -28,11 +28,14 @@ WHISKMAP_REQUIRE_GPU=1 cargo test --profile checked --locked --no-fail-fast
 # The documentation's Python reads what the tests' program writes.
 target="${CARGO_TARGET_DIR:-target}"
 export PYTHONPATH="$target/python${PYTHONPATH:+:$PYTHONPATH}"
-if ! python3 -c 'import numpy, OpenEXR' 2>/dev/null; then
+if ! python3 -c 'import numpy, OpenEXR, xarray, zarr' 2>/dev/null; then
     python3 -m pip --version >/dev/null || as_root apt-get install -y -q --no-install-recommends python3-pip
-    python3 -m pip install -q --target "$target/python" numpy OpenEXR
+    python3 -m pip install -q --target "$target/python" numpy OpenEXR xarray zarr
 fi
 for scene in cone morphology; do
     "$target/checked/whiskmap" map "scenes/$scene.toml" --engine cpu --no-png -o "$target/maps"
     python3 tests/read_map.py "$target/maps/$scene.exr"
 done
+rm -rf "$target/maps/morphology.zarr"
+"$target/checked/whiskmap" map scenes/morphology.toml --engine cpu --format zarr -o "$target/maps"
+python3 tests/read_store.py "$target/maps/morphology.zarr"

@@ -87,7 +87,7 @@ fn first_order_is_the_sum_of_squares() {
     let scene = scene(&table.join("\n"));
     let distances = &scene.grid.distance_mm;
     let pushes = |scene: &Scene, side| -> Vec<f64> {
-        let ends = curve(&scene.first_whisker(), &scene.pole, side, distances);
+        let ends = curve(&scene.whisker, &scene.pole, side, distances);
         ends.iter().map(|end| end.push_angle_deg.unwrap()).collect()
     };
     for (i, row) in spreads(&scene, 2, 1).iter().enumerate() {
@@ -125,7 +125,7 @@ fn every_row_of_a_profile_varies() {
                 let mut rows = rows;
                 rows[place][1] += step;
                 let moved = scene.with("whisker.profile.rows", rows).unwrap();
-                let end = curve(&moved.first_whisker(), &moved.pole, row.side, &[12.0])[0];
+                let end = curve(&moved.whisker, &moved.pole, row.side, &[12.0])[0];
                 end.push_angle_deg.unwrap()
             });
             ((after - before) / 2e-4 * 0.5).powi(2)

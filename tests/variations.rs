@@ -143,7 +143,7 @@ fn residuals_are_bounds() {
     ];
     for name in scenes {
         let scene = Scene::read(format!("scenes/{name}.toml")).unwrap();
-        let whisker = scene.whiskers().next().unwrap().1;
+        let whisker = scene.first_whisker().whisker;
         for side in Side::BOTH {
             let rod = whisker.rod(&scene.pole, side);
             for least in [3, 5, 9, 18] {

@@ -36,8 +36,8 @@ const SAFETY: f64 = 4.0;
 /// Where none is: the finest, and its estimate.
 pub fn cheapest(scene: &Scene, sides: &[Side], tolerance_deg: f64) -> Result<Accuracy, Accuracy> {
     let sample = Sample::new(scene, sides);
-    let (nearest, length) = (scene.grid.distance_mm[0], scene.whisker.length_mm);
-    let left = GOAL * length / nearest;
+    let lengths = scene.corner_whiskers().map(|own| own.whisker.length_mm);
+    let left = GOAL * lengths.fold(0.0, f64::max) / scene.grid.distance_mm[0];
     let mut tried = Accuracy {
         resolution: Resolution::FINE,
         error_deg: f64::INFINITY,

@@ -2,7 +2,7 @@
 
 use crate::refine::states;
 use crate::rod::{Effects, Rod, Side};
-use crate::scene::{Grid, Scene, Setup, Whisker};
+use crate::scene::{Scene, Setup, Swept};
 use crate::sheet::{Edge, Sheet};
 use crate::shooting::batch::{Batch, InitialCondition, Method};
 use crate::shooting::{Resolution, ShootingMap};
@@ -35,19 +35,17 @@ impl Sample {
         let whiskers = whiskers(scene);
         let pairs: Vec<_> = whiskers
             .iter()
-            .flat_map(|whisker| sides.iter().map(move |side| (whisker, *side)))
-            .map(|(whisker, side)| (whisker.rod(&scene.pole, side), side))
+            .flat_map(|own| sides.iter().map(move |side| (own, *side)))
+            .map(|(own, side)| (own.rod(side), side, own.whisker.length_mm))
             .collect();
-        let effects = Effects::of(pairs.iter().map(|(rod, _)| rod));
-        let distances: Vec<f64> = spread(&scene.grid.distance_mm, DISTANCES)
-            .iter()
-            .map(|d| d / scene.whisker.length_mm)
-            .collect();
+        let effects = Effects::of(pairs.iter().map(|(rod, ..)| rod));
+        let distances_mm = spread(&scene.grid.distance_mm, DISTANCES);
         let pushes = spread(&scene.grid.push_angle_deg, PUSHES);
         let rods = pairs
             .into_par_iter()
-            .map(|(rod, side)| {
+            .map(|(rod, side, length_mm)| {
                 let method = Method::fine().with_effects(effects);
+                let distances: Vec<f64> = distances_mm.iter().map(|d| d / length_mm).collect();
                 let sheet = Sheet::new(method.coarsely(), &rod, side, &distances);
                 let solved = states(method.coarsely(), &sheet, &pushes).into_iter();
                 let solved = solved.map(|(_, state)| Point {
@@ -114,18 +112,18 @@ fn worse(a: f64, b: f64) -> f64 {
     if b.is_nan() { f64::INFINITY } else { a.max(b) }
 }
 
-/// The whiskers at some values of the sweep's axes.
-fn whiskers(scene: &Scene) -> Vec<Whisker> {
-    let few = |axis: &Option<Vec<f64>>| axis.as_ref().map(|values| spread(values, WHISKERS));
-    let few = Setup {
-        grid: Grid {
-            taper: few(&scene.grid.taper),
-            curvature_per_mm: few(&scene.grid.curvature_per_mm),
-            ..scene.grid.clone()
-        },
-        ..Setup::clone(scene)
+/// The whiskers at some values of the sweep's axes: at the ends alone where there are many.
+fn whiskers(scene: &Scene) -> Vec<Swept> {
+    let mut few = Setup::clone(scene);
+    let most = if few.grid.sweep.len() > 2 {
+        2
+    } else {
+        WHISKERS
     };
-    few.whiskers().map(|(_, whisker)| whisker).collect()
+    for axis in &mut few.grid.sweep {
+        axis.values = spread(&axis.values, most);
+    }
+    few.whiskers().collect()
 }
 
 /// At most `most` values, the first and the last among them.

@@ -30,9 +30,9 @@ pub fn measure(scene: &Scene, runs: usize) -> Vec<Detachments> {
     let curves = |resolution: Resolution| -> Vec<Detachment> {
         faces
             .par_iter()
-            .flat_map_iter(|(whisker, side)| {
+            .flat_map_iter(|(own, side)| {
                 let distances = &scene.grid.distance_mm;
-                curve_at(resolution, whisker, &scene.pole, *side, distances)
+                curve_at(resolution, &own.whisker, &own.pole, *side, distances)
             })
             .collect()
     };

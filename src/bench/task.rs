@@ -6,7 +6,7 @@ use crate::numerics::Unit;
 use crate::plan::Plan;
 use crate::refine::states;
 use crate::rod::{Effects, Rod, Side, arclength};
-use crate::scene::{Scene, Whisker};
+use crate::scene::{Scene, Swept};
 use crate::sheet::Sheet;
 use crate::shooting::batch::{Batch, InitialCondition, Method};
 use crate::shooting::{Resolution, ShootingMap};
@@ -39,9 +39,9 @@ pub fn places(hits: &[Hit]) -> Vec<(f64, f64)> {
 }
 
 /// The whiskers of a scene, each on the sides that its push angles ask for.
-pub fn faces(scene: &Scene) -> Vec<(Whisker, Side)> {
+pub fn faces(scene: &Scene) -> Vec<(Swept, Side)> {
     let sides = Plan::sides(scene);
-    let both = |(_, whisker): (_, Whisker)| sides.iter().map(move |side| (whisker.clone(), *side));
+    let both = |own: Swept| sides.iter().map(move |side| (own.clone(), *side));
     scene.whiskers().flat_map(both).collect()
 }
 
@@ -91,14 +91,15 @@ impl Task {
     /// The states of every cell of `scene` that has one.
     pub fn new(scene: &Scene) -> Self {
         let faces = faces(scene);
-        let rod = |(whisker, side): &(Whisker, Side)| whisker.rod(&scene.pole, *side);
+        let rod = |(own, side): &(Swept, Side)| own.rod(*side);
         let rods: Vec<Rod> = faces.iter().map(rod).collect();
         let effects = Effects::of(&rods);
         let method = Method::fine().with_effects(effects);
-        let length = scene.whisker.length_mm;
-        let distances: Vec<f64> = scene.grid.distance_mm.iter().map(|d| d / length).collect();
+        let distances_mm = &scene.grid.distance_mm;
         let (shots, starts): (Vec<Shot>, Vec<Shot>) = (rods.par_iter().zip(&faces).enumerate())
-            .flat_map_iter(|(index, (rod, (_, side)))| {
+            .flat_map_iter(|(index, (rod, (own, side)))| {
+                let length = own.whisker.length_mm;
+                let distances: Vec<f64> = distances_mm.iter().map(|d| d / length).collect();
                 let sheet = Sheet::new(method, rod, *side, &distances);
                 let solved = states(method, &sheet, &scene.grid.push_angle_deg);
                 solved.into_iter().map(move |(shot, state)| {

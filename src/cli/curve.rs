@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 use whiskmap::measured::{Angle, Compared};
 use whiskmap::render::{CurveAxis, Ends, Plot, Stroke, curves, measured};
 use whiskmap::rod::Side;
-use whiskmap::scene::{Morphology, Scene, Whisker};
+use whiskmap::scene::{Place, Scene, Swept};
 use whiskmap::shooting::Resolution;
 use whiskmap::trace::{self, Corner, Detachment, DetachmentKind};
 use whiskmap::uncertainty::Spread;
@@ -29,9 +29,8 @@ Examples:
   whiskmap curve scenes/uncertain.toml --samples 500 --csv bands.csv --plot bands.svg
 
 One line per side and distance of the scene, CF before CB; angles are positive for CB and negative for CF. Ends \
-without values are out of reach, or unresolved, which is said on standard error. A scene with taper or curvature axes \
-gives the curve of every whisker, with the leading columns taper (1 - tip/base radius) and curvature_per_mm; a plot \
-shows one whisker.
+without values are out of reach, or unresolved, which is said on standard error. A scene with sweep axes, such as \
+grid.taper, gives the curve of every whisker, with a leading column for each; a plot shows one whisker.
 
 With --data the table has the measured points in place of the curve: a CSV file with the columns side (cb or cf), \
 distance_mm, push_angle_deg or push_chord_deg, and maybe kind (slip-off, pull-off or empty) and sd_deg. The plot has them \
@@ -74,7 +73,8 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     let whiskers = scene.whisker_count();
     if options.outputs.has_plot() && whiskers > 1 {
         return Err(Failure::Input(format!(
-            "--plot: the scene sweeps {whiskers} whiskers over grid.taper and grid.curvature_per_mm; a plot shows one"
+            "--plot: the scene sweeps {whiskers} whiskers over {}; a plot shows one",
+            axes(&scene)
         )));
     }
     if let Some(path) = &options.data {
@@ -96,16 +96,16 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     let at_once = trace::whiskers_at_once(distances.len());
     for group in scene.whisker_groups(at_once) {
         if options.corner {
-            let corner = |whisker: &Whisker, side| {
-                let corner = trace::corner(whisker, &scene.pole, side);
+            let corner = |own: &Swept, side| {
+                let corner = trace::corner(&own.whisker, &own.pole, side);
                 bar.inc(1);
                 vec![corner]
             };
             write(&scene, &mut outputs, &trace::sides(&group, corner))?;
             continue;
         }
-        let curve = |whisker: &Whisker, side| {
-            let ends = trace::curve_at(resolution, whisker, &scene.pole, side, distances);
+        let curve = |own: &Swept, side| {
+            let ends = trace::curve_at(resolution, &own.whisker, &own.pole, side, distances);
             bar.inc(ends.len() as u64);
             ends
         };
@@ -124,11 +124,20 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     check_resolved(unresolved, all, "ends", "the column `kind`")
 }
 
-/// Writes the rows of some whiskers, with the leading columns only where the scene has an axis for them.
+/// The sweep axes by their keys.
+fn axes(scene: &Scene) -> String {
+    let keys = scene.grid.sweep.iter();
+    let keys: Vec<String> = keys
+        .map(|axis| format!("grid.{}", axis.parameter.axis()))
+        .collect();
+    keys.join(", ")
+}
+
+/// Writes the rows of some whiskers, with a leading column for each sweep axis.
 fn write<R: Serialize>(
     scene: &Scene,
     outputs: &mut Opened,
-    rows: &[(Morphology, R)],
+    rows: &[(Place, R)],
 ) -> Result<(), Failure> {
     if scene.is_sweep() {
         outputs.rows(rows)
@@ -141,10 +150,10 @@ fn write<R: Serialize>(
 fn beside_points(options: &Options, scene: &Scene, path: &Path) -> Result<(), Failure> {
     check_single(scene, "curve --data")?;
     let points = data::read(path)?;
-    let whisker = scene.first_whisker();
-    points.check_reach(&whisker, &scene.pole)?;
+    let Swept { whisker, pole, .. } = scene.first_whisker();
+    points.check_reach(&whisker, &pole)?;
     let mut outputs = options.outputs.open()?;
-    let comparison = points.beside(&whisker, &scene.pole);
+    let comparison = points.beside(&whisker, &pole);
     data::name_left_out(&points, &comparison);
     let rows = &comparison.rows;
     outputs.rows(rows)?;
@@ -173,8 +182,9 @@ fn beside_points(options: &Options, scene: &Scene, path: &Path) -> Result<(), Fa
 
 /// The detachment curve of the scene's whisker.
 pub fn own_curve(scene: &Scene, resolution: Resolution, axes: [CurveAxis; 2]) -> Plot {
-    let (whisker, distances) = (scene.first_whisker(), &scene.grid.distance_mm);
-    let of_side = |side| trace::curve_at(resolution, &whisker, &scene.pole, side, distances);
+    let Swept { whisker, pole, .. } = scene.first_whisker();
+    let distances = &scene.grid.distance_mm;
+    let of_side = |side| trace::curve_at(resolution, &whisker, &pole, side, distances);
     let ends: Vec<Detachment> = Side::BOTH.into_iter().flat_map(of_side).collect();
     theory(&ends, axes)
 }

@@ -52,6 +52,13 @@ pub enum Failure {
     /// No value does what was asked for.
     #[error("{0}")]
     NoValue(String),
+    /// A store that lacks something.
+    #[error("{} is not complete: {missing} blocks are missing, {damaged} are damaged", store.display())]
+    Incomplete {
+        store: PathBuf,
+        missing: usize,
+        damaged: usize,
+    },
     /// Numbers are not what they should be.
     #[error("{failed} of {all} checks fail")]
     Checks { failed: usize, all: usize },

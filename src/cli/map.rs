@@ -6,17 +6,19 @@ use super::numbers::whole;
 use super::outputs;
 use super::picture::save;
 use super::progress;
+use super::sharded::{self, Shard};
 use super::tolerance::Tolerance;
-use clap::Args;
+use clap::{Args, ValueEnum};
 use std::io::Write;
 use std::path::PathBuf;
+use std::str::FromStr;
 use std::time::Instant;
 use whiskmap::accuracy::{Accuracy, BOUNDED};
 use whiskmap::classify::Regime;
 use whiskmap::integrate::gpu::Precision;
 use whiskmap::map::Stage;
 use whiskmap::map::{self, Progress, Summary};
-use whiskmap::plan::Plan;
+use whiskmap::plan::{Channels, Plan};
 use whiskmap::refine::{GOAL, TOLERANCE};
 use whiskmap::render;
 use whiskmap::render::{Format, MapOptions};
@@ -30,7 +32,13 @@ Examples:
   whiskmap map scenes/cone.toml
   whiskmap map scenes/morphology.toml -o /tmp --engine cpu --threads 1
   whiskmap map scenes/morphology.toml --tolerance 1e-3deg
-  whiskmap map - < my_whisker.toml")]
+  whiskmap map scenes/morphology.toml --format zarr --channels regime,force_un
+  whiskmap map scenes/morphology.toml --format zarr --resume
+  whiskmap map scenes/morphology.toml --format zarr --shard 3/8 --resume
+  whiskmap map - < my_whisker.toml
+
+A sweep over more than two axes goes to a Zarr store, NAME.zarr, a folder which any number of runs may fill: each run \
+finishes blocks of whiskers, and what is finished stays.")]
 pub struct Options {
     /// Scene file; - reads it from standard input
     scene: PathBuf,
@@ -48,24 +56,63 @@ pub struct Options {
     pub threads: Option<u32>,
     #[command(flatten)]
     tolerance: Tolerance,
+    /// What to compute and store of each cell, by names with commas between them [default: everything]
+    #[arg(long, value_name = "LIST", value_parser = Channels::from_str)]
+    channels: Option<Channels>,
+    /// What to write
+    #[arg(long, value_enum, default_value = "exr")]
+    format: MapFormat,
+    /// Go on with a store: compute only what it lacks
+    #[arg(long)]
+    resume: bool,
+    /// Part of a store to compute, from 0/N to N-1/N, each in a process of its own
+    #[arg(long, value_name = "I/N")]
+    shard: Option<Shard>,
     /// Write no picture
     #[arg(long)]
     no_png: bool,
 }
 
+/// Formats of a map.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum MapFormat {
+    /// One OpenEXR file, and a picture of it
+    Exr,
+    /// A Zarr store, for any number of axes, runs and machines
+    Zarr,
+}
+
 /// Runs `map`.
 pub fn run(options: &Options) -> Result<(), Failure> {
     let scene = Scene::read(&options.scene)?;
+    options.check(&scene)?;
     let mut plan = Plan::new(&scene)?;
     let accuracy = options.tolerance.choose(&scene, &plan.sides)?;
     if let Some(accuracy) = &accuracy {
         plan.method.resolution = accuracy.resolution;
     }
+    plan.channels = options.channels.unwrap_or(Channels::ALL);
     let (mut engine, why) = engine::open(options.engine, options.precision)?;
     let about = whiskmap::integrate::Description::of(engine.as_deref());
+    outputs::folder("--output", &options.output)?;
+    if options.format == MapFormat::Zarr {
+        let tolerances = tolerances(accuracy);
+        let about = Description {
+            scene: &scene,
+            engine: &about,
+            tolerances: &tolerances,
+            channels: plan.channels,
+        };
+        let path = options.output.join(format!("{}.zarr", scene.name));
+        let run = sharded::Run {
+            shard: options.shard,
+            resume: options.resume,
+            engine: engine.as_mut().map(|engine| &mut **engine as _),
+        };
+        return run.fill(&path, &scene, plan, &about);
+    }
     let file = options.output.join(format!("{}.exr", scene.name));
     let picture = (!options.no_png).then(|| file.with_extension("png"));
-    outputs::folder("--output", &options.output)?;
     let is_regular = outputs::create("--output", &file)?.is_regular();
     if let Some(picture) = &picture {
         outputs::create("--output", picture)?;
@@ -88,6 +135,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
             scene: &scene,
             engine: &about,
             tolerances: &tolerances(accuracy),
+            channels: plan.channels,
         },
     )?;
     let bar = progress::bar(plan.cells, "cells");
@@ -115,6 +163,38 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     check_resolved(summary.unresolved(), summary.cells(), "cells", see)
 }
 
+impl Options {
+    /// Finds out whether the format can do what is asked of it.
+    fn check(&self, scene: &Scene) -> Result<(), Failure> {
+        if self.format == MapFormat::Zarr {
+            return Ok(());
+        }
+        let refuse = |why: String| Err(Failure::Input(format!("{why}; give --format zarr")));
+        let axes = scene.grid.sweep.iter().map(|axis| axis.parameter.axis());
+        let axes: Vec<&str> = axes.collect();
+        if axes.len() > 2 {
+            let axes = axes.join(", ");
+            return refuse(format!(
+                "grid: an EXR file has room for two sweep axes, the scene has {axes}"
+            ));
+        }
+        if self.resume {
+            return refuse("--resume: an EXR file is written at once".to_owned());
+        }
+        if self.shard.is_some() {
+            return refuse("--shard: an EXR file has one writer".to_owned());
+        }
+        let regimes = |channels: Channels| channels.contains("regime");
+        if !self.no_png && !self.channels.is_none_or(regimes) {
+            return Err(Failure::Input(
+                "--channels: must have regime, of which the picture is drawn; or give --no-png"
+                    .to_owned(),
+            ));
+        }
+        Ok(())
+    }
+}
+
 /// What the file says of its accuracy.
 fn tolerances(accuracy: Option<Accuracy>) -> serde_json::Value {
     let mut tolerances = serde_json::json!({
@@ -128,7 +208,12 @@ fn tolerances(accuracy: Option<Accuracy>) -> serde_json::Value {
     tolerances
 }
 
-fn print(scene: &Scene, summary: &Summary, seconds: f64, files: &[PathBuf]) -> std::io::Result<()> {
+pub(super) fn print(
+    scene: &Scene,
+    summary: &Summary,
+    seconds: f64,
+    files: &[PathBuf],
+) -> std::io::Result<()> {
     let mut out = std::io::stdout().lock();
     writeln!(out, "{}", scene.title)?;
     for (regime, cells) in Regime::ALL.iter().zip(summary.regimes) {

@@ -12,6 +12,7 @@ mod design;
 mod devices;
 mod engine;
 mod estimate;
+mod extract;
 mod failure;
 mod fit;
 mod map;
@@ -23,8 +24,11 @@ mod pole;
 mod progress;
 mod render;
 mod reproduce;
+mod selection;
 mod shape;
+mod sharded;
 mod signals;
+mod status;
 mod tolerance;
 mod uncertainty;
 mod verify;
@@ -45,6 +49,9 @@ const EXAMPLES: &str = "\
 Examples:
   whiskmap map scenes/cone.toml                    regime map as outputs/cone.exr and outputs/cone.png
   whiskmap map scenes/cone.toml --engine gpu       the same, shot by the GPU
+  whiskmap map scenes/morphology.toml --format zarr --shard 0/8   an eighth of a store that many processes fill
+  whiskmap status outputs/morphology.zarr          what it has, and what it lacks
+  whiskmap extract outputs/morphology.zarr --at taper=0.5 -o slice.csv
   whiskmap plan scenes/cone.toml                   what that would take, without doing it
   whiskmap render outputs/cone.exr --channel force_un
   whiskmap curve scenes/cone.toml --plot curve.png where the whisker detaches, distance by distance
@@ -65,6 +72,10 @@ enum Command {
     Map(map::Options),
     /// Say what a map of a scene would take: effects, cells, memory, seconds
     Plan(plan::Options),
+    /// Take a part of a map or a store, as a table, an array or a map
+    Extract(extract::Options),
+    /// Say what a store has, and what it lacks
+    Status(status::Options),
     /// Draw a stored map again, its regimes or any channel
     Render(render::Options),
     /// Compute the exact detachment curve of a scene, as CSV, PNG or SVG
@@ -121,6 +132,8 @@ fn run(command: &Command) -> Result<(), Failure> {
     match command {
         Command::Map(options) => map::run(options),
         Command::Plan(options) => plan::run(options),
+        Command::Extract(options) => extract::run(options),
+        Command::Status(options) => status::run(options),
         Command::Render(options) => render::run(options),
         Command::Curve(options) => curve::run(options),
         Command::Fit(options) => fit::run(options),

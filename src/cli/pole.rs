@@ -13,14 +13,11 @@ pub fn check_single(scene: &Scene, command: &str) -> Result<(), Failure> {
     if whiskers == 1 {
         return Ok(());
     }
-    let tapers = scene.grid.taper.as_ref();
-    let key = if tapers.is_some_and(|tapers| tapers.len() > 1) {
-        "grid.taper"
-    } else {
-        "grid.curvature_per_mm"
-    };
+    let mut axes = scene.grid.sweep.iter();
+    let key = axes.find(|axis| axis.values.len() > 1);
+    let key = key.map_or("", |axis| axis.parameter.axis());
     Err(Failure::Input(format!(
-        "{key}: the scene sweeps {whiskers} whiskers; {command} looks at one, so give the axis one value or leave it out"
+        "grid.{key}: the scene sweeps {whiskers} whiskers; {command} looks at one, so give the axis one value or leave it out"
     )))
 }
 
@@ -80,7 +77,7 @@ fn read(path: &Path, command: &str, distances: &[f64]) -> Result<(Scene, Whisker
             )));
         }
     }
-    let whisker = scene.first_whisker();
+    let whisker = scene.first_whisker().whisker;
     Ok((scene, whisker))
 }
 

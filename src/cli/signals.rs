@@ -1,5 +1,15 @@
 //! Interrupts: unfinished files are removed, one line says so, and the exit code is 128 and the signal's number.
 
+use std::sync::OnceLock;
+
+/// What an interrupted command says at last.
+static ADVICE: OnceLock<&str> = OnceLock::new();
+
+/// From now on an interrupt ends with this `advice`.
+pub fn advise(advice: &'static str) {
+    let _ = ADVICE.set(advice);
+}
+
 /// From now on SIGHUP, SIGINT and SIGTERM end the process at once, whatever its threads do. One that is ignored, as `nohup`
 /// has it, stays so.
 #[cfg(unix)]
@@ -25,7 +35,10 @@ pub fn handle() {
         let start = if is_watched { "\n" } else { "" };
         let name = low_level::signal_name(signal).unwrap_or("a signal");
         super::failure::say(&format!(
-            "{start}error: interrupted by {name}; unfinished files are removed"
+            "{start}error: interrupted by {name}; unfinished files are removed{}",
+            ADVICE
+                .get()
+                .map_or_else(String::new, |advice| format!("; {advice}"))
         ));
         low_level::exit(128 + signal);
     });

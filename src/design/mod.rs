@@ -62,7 +62,7 @@ pub struct Design {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum NoDesign {
     /// An axis stands in the parameter's place.
-    #[error("{0}: must be left out, as one number of one whisker is varied")]
+    #[error("grid.{0}: must be left out, as one number of one whisker is varied")]
     Sweep(&'static str),
     /// The scene does not give the parameter.
     #[error("{}: must be one of {given}, which the scene has; it has no {}", .parameter.name(), .parameter.key())]
@@ -122,11 +122,8 @@ impl Design {
 /// # Errors
 /// If the scene sweeps whiskers, does not give the parameter, or accepts one value only, or no pole at the distance.
 pub fn design(scene: &Scene, parameter: Parameter, target: &Target) -> Result<Design, NoDesign> {
-    if scene.grid.taper.is_some() {
-        return Err(NoDesign::Sweep("grid.taper"));
-    }
-    if scene.grid.curvature_per_mm.is_some() {
-        return Err(NoDesign::Sweep("grid.curvature_per_mm"));
+    if let Some(axis) = scene.grid.sweep.first() {
+        return Err(NoDesign::Sweep(axis.parameter.axis()));
     }
     let Some(value) = parameter.value(scene) else {
         let given = Parameter::ALL.into_iter();

@@ -1,7 +1,7 @@
 //! How far a scene is from its points, as a function of its free parameters.
 
 use crate::measured::Points;
-use crate::scene::{Parameter, Scene, SceneError, Whisker};
+use crate::scene::{Parameter, Scene, SceneError, Swept, Whisker};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
@@ -20,8 +20,8 @@ pub(super) struct Misfit<'a> {
 
 impl<'a> Misfit<'a> {
     pub fn new(scene: &'a Scene, points: &'a Points, free: &'a [Parameter]) -> Self {
-        let whisker = scene.first_whisker();
-        let units = free.iter().map(|own| size(*own, &whisker));
+        let first = scene.first_whisker();
+        let units = free.iter().map(|own| size(*own, &first.whisker));
         Self {
             scene,
             points,
@@ -55,9 +55,9 @@ impl<'a> Misfit<'a> {
     /// point is out of reach or never detaches.
     pub fn residuals(&self, parameters: &DVector<f64>) -> Option<DVector<f64>> {
         let scene = self.scene(parameters).ok()?;
-        let whisker = scene.first_whisker();
-        self.points.check_reach(&whisker, &scene.pole).ok()?;
-        let rows = self.points.beside(&whisker, &scene.pole).rows;
+        let Swept { whisker, pole, .. } = scene.first_whisker();
+        self.points.check_reach(&whisker, &pole).ok()?;
+        let rows = self.points.beside(&whisker, &pole).rows;
         let mut residuals = Vec::with_capacity(rows.len());
         for (row, point) in rows.iter().zip(&self.points.points) {
             residuals.push(-row.residual_deg? / point.sd_deg);

@@ -9,7 +9,7 @@ mod covariance;
 mod misfit;
 
 use crate::measured::{Comparison, Points, PointsError};
-use crate::scene::{Parameter, Scene, SceneError, digits};
+use crate::scene::{Parameter, Scene, SceneError, Swept, digits};
 use bounded::{NO_DERIVATIVE, minimise};
 use covariance::Covariance;
 use misfit::Misfit;
@@ -148,13 +148,14 @@ pub fn fit(scene: &Scene, points: &Points, free: &[Parameter]) -> Result<Fit, Er
             .filter(|_| is_known(i) && is_known(j))
     };
     let all = || 0..free.len();
+    let first = fitted.first_whisker();
     Ok(Fit {
         correlation: all()
             .map(|i| all().map(|j| correlation(i, j)).collect())
             .collect(),
         chi_square,
         degrees_of_freedom,
-        comparison: points.beside(&fitted.first_whisker(), &fitted.pole),
+        comparison: points.beside(&first.whisker, &first.pole),
         scene: fitted,
         estimates,
     })
@@ -191,9 +192,9 @@ fn check(scene: &Scene, free: &[Parameter]) -> Result<(), Error> {
 
 /// The points that detach at the values of `scene`.
 fn used(scene: &Scene, points: &Points) -> Result<Points, PointsError> {
-    let whisker = scene.first_whisker();
-    points.check_reach(&whisker, &scene.pole)?;
-    let rows = points.beside(&whisker, &scene.pole).rows;
+    let Swept { whisker, pole, .. } = scene.first_whisker();
+    points.check_reach(&whisker, &pole)?;
+    let rows = points.beside(&whisker, &pole).rows;
     let detaching = points.points.iter().zip(rows);
     let detaching = detaching.filter(|(_, row)| row.residual_deg.is_some());
     Ok(Points {

@@ -3,8 +3,7 @@
 use super::cells::{Cell, Settled};
 use super::{Face, Panel, STATE_CHANNELS, doubt};
 use crate::classify::{Regime, RowBoundary, Sliding, Status};
-use crate::rod::Units;
-use crate::scene::Whisker;
+use crate::scene::Swept;
 use crate::sheet::Sheet;
 use crate::shooting::{Reader, Reading};
 use glam::DVec2;
@@ -13,19 +12,24 @@ use rayon::prelude::*;
 /// Judges the cells of `settled` and writes them into `panels`; face `i` belongs to panel `i / faces_per_panel`.
 pub fn fill(
     width: usize,
-    whiskers: &[Whisker],
+    whiskers: &[Swept],
     faces: &[Face],
     faces_per_panel: usize,
     settled: &Settled,
     panels: &mut [Panel],
 ) {
+    let has_state = panels
+        .iter()
+        .any(|panel| panel.state.iter().any(|channel| !channel.is_empty()));
     let answers: Vec<Vec<Answer>> = settled
         .rows
         .par_iter()
         .map(|row| {
             let face = &faces[row.face];
-            let units = whiskers[row.face / faces_per_panel].units();
-            let mut answers = answers(&units, face, row.row, || settled.cells(face, row));
+            let units = whiskers[row.face / faces_per_panel].whisker.units();
+            let reader = Reader::new(units, &face.sheet.rod);
+            let reader = has_state.then_some(&reader);
+            let mut answers = answers(reader, face, row.row, || settled.cells(face, row));
             mark_toward_base(face, row.row, &mut answers);
             answers
         })
@@ -40,23 +44,24 @@ pub fn fill(
             panel.residual[at] = answer.residual;
             panel.margin_deg[at] = answer.margin_deg;
             for (channel, value) in panel.state.iter_mut().zip(answer.state) {
-                channel[at] = value;
+                if let Some(cell) = channel.get_mut(at) {
+                    *cell = value;
+                }
             }
         }
     }
 }
 
-/// The answers for the `cells` of `row`, which are settled once more where they are in doubt.
+/// The answers for the `cells` of `row`, with states if there is a `reader` of them, which are settled once more where they are in doubt.
 fn answers<C: Iterator<Item = Cell>>(
-    units: &Units,
+    reader: Option<&Reader>,
     face: &Face,
     row: usize,
     cells: impl Fn() -> C,
 ) -> Vec<Answer> {
     let sheet = &face.sheet;
-    let reader = Reader::new(*units, &sheet.rod);
     let boundary = RowBoundary::new(sheet.touches(row), &sheet.crossings[row]);
-    let answer = |cell: &Cell| answer(cell, sheet, row, &boundary, &reader);
+    let answer = |cell: &Cell| answer(cell, sheet, row, &boundary, reader);
     let answers: Vec<Answer> = cells().map(|cell| answer(&cell)).collect();
     let in_doubt = |(cell, answer): (Cell, &Answer)| {
         let is_touch = cell.is_first_touch(&boundary);
@@ -124,7 +129,7 @@ fn answer(
     sheet: &Sheet,
     row: usize,
     boundary: &RowBoundary,
-    reader: &Reader,
+    reader: Option<&Reader>,
 ) -> Answer {
     let push = cell.push.angle;
     let span = boundary.span(push.abs());
@@ -143,8 +148,10 @@ fn answer(
     if matches!(regime, Regime::Contact | Regime::Unreachable) {
         answer.point = Some(DVec2::new(state.tau, state.load));
         let touch = sheet.rows[row].touch;
-        answer.state =
-            channels(&reader.read(state.tau, &state.full, touch, push)).map(|value| value as f32);
+        if let Some(reader) = reader {
+            let reading = reader.read(state.tau, &state.full, touch, push);
+            answer.state = channels(&reading).map(|value| value as f32);
+        }
         answer.residual = state.residual as f32;
         answer.margin_deg = span.map_or(f32::NAN, |span| {
             (span.to - push.abs()).max(0.0).to_degrees() as f32

@@ -9,12 +9,13 @@ mod summary;
 
 use crate::integrate::{Engine, Fallback};
 use crate::plan::Plan;
+pub use crate::plan::{Channels, STATE_CHANNELS};
 use crate::rod::Side;
-use crate::scene::{Scene, Whisker};
+use crate::scene::{Scene, Swept};
 use crate::sheet::Sheet;
 use crate::shooting::batch::Method;
 use cells::SettledRow;
-pub use panel::{Panel, STATE_CHANNELS};
+pub use panel::Panel;
 use pushes::Pushes;
 use rayon::prelude::*;
 pub use summary::{Shots, Stage, Summary};
@@ -38,7 +39,7 @@ struct Face<'a> {
     sheet: Sheet,
 }
 
-/// Computes every panel of `scene` as `plan` says, on the threads of the current pool, best from within it
+/// Computes the panels of `scene` as `plan` says, on the threads of the current pool, best from within it
 /// (`rayon::ThreadPool::install`): from outside, every stage of every strip of rows wakes it up. `engine` shoots before the
 /// refinement; without one, or where it fails, the CPU does it all.
 ///
@@ -64,17 +65,19 @@ pub fn run<E>(
     let mut summary = Summary::default();
     let pushes = |side: &Side| Pushes::new(&scene.grid.push_angle_deg, *side);
     let sides: Vec<Pushes> = plan.sides.iter().map(pushes).collect();
-    for group in scene.whisker_groups(plan.panels_at_once) {
-        let whiskers: Vec<Whisker> = group.into_iter().map(|(_, whisker)| whisker).collect();
-        let faces = summary.time(Stage::Sheets, || {
-            faces(scene, plan.method, &whiskers, &sides)
-        });
-        let mut panels = vec![Panel::unresolved(width * height); whiskers.len()];
+    let groups = plan.parts.iter().flat_map(|part| {
+        let firsts = part.clone().step_by(plan.panels_at_once);
+        firsts.map(|first| first..(first + plan.panels_at_once).min(part.end))
+    });
+    for group in groups {
+        let group: Vec<Swept> = group.map(|index| scene.whisker(index)).collect();
+        let faces = summary.time(Stage::Sheets, || faces(scene, plan.method, &group, &sides));
+        let mut panels = vec![Panel::unresolved(width * height, plan.channels); group.len()];
         let rows = (0..faces.len()).flat_map(|face| (0..height).map(move |row| (face, row)));
         for strip in rows.collect::<Vec<_>>().chunks(rows_at_once) {
             let settled = cells::settle(plan.method, &faces, strip, &mut engine, &mut summary);
             summary.time(Stage::Regimes, || {
-                answers::fill(width, &whiskers, &faces, sides.len(), &settled, &mut panels);
+                answers::fill(width, &group, &faces, sides.len(), &settled, &mut panels);
             });
             let columns = |row: &SettledRow| faces[row.face].pushes.columns.len();
             observe(Progress::Settled(settled.rows.iter().map(columns).sum()))?;
@@ -92,15 +95,15 @@ pub fn run<E>(
 fn faces<'a>(
     scene: &Scene,
     method: Method,
-    whiskers: &[Whisker],
+    whiskers: &[Swept],
     sides: &'a [Pushes],
 ) -> Vec<Face<'a>> {
-    let of_whisker = |whisker| sides.iter().map(move |side| (whisker, side));
-    let pairs: Vec<(&Whisker, &'a Pushes)> = whiskers.iter().flat_map(of_whisker).collect();
-    let face = |&(whisker, pushes): &(&Whisker, &'a Pushes)| {
-        let rod = whisker.rod(&scene.pole, pushes.side);
+    let of_whisker = |swept| sides.iter().map(move |side| (swept, side));
+    let pairs: Vec<(&Swept, &'a Pushes)> = whiskers.iter().flat_map(of_whisker).collect();
+    let face = |&(swept, pushes): &(&Swept, &'a Pushes)| {
+        let rod = swept.rod(pushes.side);
         let distances = scene.grid.distance_mm.iter();
-        let distances: Vec<f64> = distances.map(|d| d / whisker.length_mm).collect();
+        let distances: Vec<f64> = distances.map(|d| d / swept.whisker.length_mm).collect();
         let sheet = Sheet::new(method, &rod, pushes.side, &distances);
         Face { pushes, sheet }
     };

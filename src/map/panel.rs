@@ -1,19 +1,7 @@
 //! One whisker's map.
 
 use crate::classify::{Regime, Status};
-
-/// The channels of a state, in the order of [`Panel::state`].
-pub const STATE_CHANNELS: [&str; 9] = [
-    "arc_length_mm",
-    "contact_angle_deg",
-    "force_un",
-    "base_force_x_un",
-    "base_force_y_un",
-    "base_moment_nnm",
-    "push_chord_deg",
-    "contact_distance_mm",
-    "energy_nj",
-];
+use crate::plan::{Channels, STATE_CHANNELS};
 
 /// One whisker's map. Every vector has `distances * push_angles` cells; cell `(row, column)` is at
 /// `row * push_angles + column`; row 0 is the first distance, column 0 the first push angle.
@@ -23,7 +11,7 @@ pub struct Panel {
     pub regime: Vec<u32>,
     /// [`Status`] codes.
     pub status: Vec<u32>,
-    /// One vector per name in [`STATE_CHANNELS`]; NaN where there is no contact.
+    /// One vector per name in [`STATE_CHANNELS`]; NaN where there is no contact, empty where it is not wanted.
     pub state: [Vec<f32>; STATE_CHANNELS.len()],
     /// Distance of the solution's pole centre from the wanted one, relative to the whisker's length; that of
     /// the last state computed where a cell is unresolved, NaN where there is no contact.
@@ -35,13 +23,17 @@ pub struct Panel {
 }
 
 impl Panel {
-    /// A panel of so many cells, none of which has an answer.
+    /// A panel of so many cells, none of which has an answer; of a state it has these `channels`.
     #[must_use]
-    pub fn unresolved(cells: usize) -> Self {
+    pub fn unresolved(cells: usize, channels: Channels) -> Self {
+        let of_state = STATE_CHANNELS.map(|name| {
+            let cells = if channels.contains(name) { cells } else { 0 };
+            vec![f32::NAN; cells]
+        });
         Self {
             regime: vec![Regime::Unresolved.code(); cells],
             status: vec![Status::NotConverged.code(); cells],
-            state: std::array::from_fn(|_| vec![f32::NAN; cells]),
+            state: of_state,
             residual: vec![f32::NAN; cells],
             margin_deg: vec![f32::NAN; cells],
             newton_steps: vec![0; cells],

@@ -1,7 +1,7 @@
 //! The effects by name: which are on, and which line of the scene decides it. The only list of them.
 
 use crate::rod::Effects;
-use crate::scene::{Scene, Setup, Whisker};
+use crate::scene::{Parameter, Scene, Setup, Swept, Whisker};
 
 /// An effect of the scene.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -31,33 +31,48 @@ pub enum Cost {
 #[must_use]
 pub fn effects(scene: &Scene, kernels: Effects) -> Vec<Effect> {
     let Setup { whisker, pole, .. } = &**scene;
-    let taper = match (&scene.grid.taper, &whisker.profile) {
-        (_, Some(_)) => "the radii are measured".to_owned(),
-        (Some(axis), None) => swept("grid.taper", axis),
-        (None, None) => radii(whisker),
+    let why = |parameter: Parameter, own: String| match scene.grid.axis(parameter) {
+        Some(values) => swept(&format!("grid.{}", parameter.axis()), values),
+        None => own,
+    };
+    let taper = match &whisker.profile {
+        Some(_) => "the radii are measured".to_owned(),
+        None => [
+            Parameter::BaseRadiusUm,
+            Parameter::TipRadiusUm,
+            Parameter::Taper,
+        ]
+        .into_iter()
+        .fold(radii(whisker), |own, parameter| why(parameter, own)),
     };
     let measured = whisker.profile.as_ref().map_or_else(
         || "no whisker.profile".to_owned(),
         |rows| format!("{} rows of whisker.profile", rows.len()),
     );
     let own = whisker.curvature.map_or(0.0, |own| own.parabola_per_mm);
-    let parabola = match &scene.grid.curvature_per_mm {
-        Some(axis) => swept("grid.curvature_per_mm", axis),
-        None => given("parabola_per_mm", own, 0.0),
-    };
+    let parabola = given("parabola_per_mm", own, 0.0);
+    let parabola = why(Parameter::ParabolaPerMm, parabola);
     let spiral = whisker.euler_spiral.map_or_else(
         || "euler_spiral is 0 or left out".to_owned(),
         |own| format!("per_mm {}, per_mm2 {}", own.per_mm, own.per_mm2),
     );
     let gradient = given("tip_to_base", whisker.modulus_tip_to_base, 1.0);
+    let gradient = why(Parameter::ModulusTipToBase, gradient);
     let radius = given("radius_mm", pole.radius_mm, 0.0);
+    let radius = why(Parameter::PoleRadiusMm, radius);
     let friction = given("friction", pole.friction, 0.0);
-    let stretched = whisker.arc_stretch != 1.0;
+    let friction = why(Parameter::Friction, friction);
+    let corners: Vec<Swept> = scene.corner_whiskers().collect();
+    let any = |differs: fn(&Swept) -> bool| corners.iter().any(differs);
+    let stretched = any(|own| own.whisker.arc_stretch != 1.0);
     let varies = kernels.taper || kernels.profile || kernels.gradient;
-    let mut stretch = given("arc_stretch", whisker.arc_stretch, 1.0);
+    let stretch = given("arc_stretch", whisker.arc_stretch, 1.0);
+    let mut stretch = why(Parameter::ArcStretch, stretch);
     if stretched && !varies {
         stretch += " does nothing without taper or modulus gradient";
     }
+    let is_disc = any(|own| own.pole.radius_mm != 0.0);
+    let is_rough = any(|own| own.pole.friction != 0.0);
     let effect = |name, on, cost, why| Effect {
         name,
         on,
@@ -71,8 +86,8 @@ pub fn effects(scene: &Scene, kernels: Effects) -> Vec<Effect> {
         effect("curvature", kernels.curvature, Cost::Kernel, parabola),
         effect("euler spiral", kernels.spiral, Cost::Kernel, spiral),
         effect("modulus gradient", kernels.gradient, Cost::Kernel, gradient),
-        effect("pole radius", pole.radius_mm != 0.0, Cost::Start, radius),
-        effect("friction", pole.friction != 0.0, Cost::Start, friction),
+        effect("pole radius", is_disc, Cost::Start, radius),
+        effect("friction", is_rough, Cost::Start, friction),
         effect("projection", stretched && varies, Cost::Taper, stretch),
     ];
     effects

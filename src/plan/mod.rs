@@ -1,12 +1,15 @@
 //! What will be computed, decided before anything is: pure, no device, no disk, no clock.
 
+mod channels;
 mod effects;
 
+pub use channels::{Channels, STATE_CHANNELS};
 pub use effects::{Cost, Effect, effects};
 
-use crate::rod::{Effects, Side};
+use crate::rod::{Effects, Rod, Side};
 use crate::scene::Scene;
 use crate::shooting::batch::Method;
+use std::ops::Range;
 
 /// Bytes that a run may take for its panels.
 pub const MEMORY_LIMIT: u64 = 4 << 30;
@@ -48,6 +51,10 @@ pub struct Plan {
     pub sides: Vec<Side>,
     /// Cells of all panels.
     pub cells: usize,
+    /// The whiskers to compute, in some runs of their indices.
+    pub parts: Vec<Range<usize>>,
+    /// What to compute of each cell.
+    pub channels: Channels,
     /// Panels computed together, so that small panels fill an engine too.
     pub panels_at_once: usize,
     /// Most rows of a panel handed to an engine at once.
@@ -94,15 +101,20 @@ impl Plan {
                 needed: bytes >> 20,
             });
         }
-        let last = scene.last_whisker().rod(&scene.pole, Side::Cb);
+        let corners: Vec<Rod> = scene
+            .corner_whiskers()
+            .map(|own| own.rod(Side::Cb))
+            .collect();
         let sides = Self::sides(scene);
         let rows_at_once = (CELLS_IN_FLIGHT / push_angles).max(1);
         let calls = |group: usize| (group * sides.len() * distances).div_ceil(rows_at_once);
         Ok(Self {
-            method: Method::fine().with_effects(Effects::of([&last])),
+            method: Method::fine().with_effects(Effects::of(&corners)),
             engine_calls: whiskers / panels_at_once * calls(panels_at_once)
                 + calls(whiskers % panels_at_once),
             cells: cells * whiskers,
+            parts: std::iter::once(0..whiskers).collect(),
+            channels: Channels::ALL,
             sides,
             panels_at_once,
             rows_at_once,

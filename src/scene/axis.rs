@@ -1,4 +1,4 @@
-//! An axis of the sweep: `{ from, to, count }` or an explicit list, turned into values.
+//! An axis of the sweep: `{ from, to, count, scale }` or an explicit list, turned into values.
 
 use std::fmt;
 
@@ -16,16 +16,29 @@ const MOST_VALUES: usize = 65_536;
 /// An axis as the file has it.
 pub(super) enum Axis {
     List(Vec<Number>),
-    Uniform(Uniform),
+    Range(Range),
 }
 
-/// `count` values from `from` to `to` at equal distances; one value needs no `to`.
+/// `count` values from `from` to `to`; one value needs no `to`.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Uniform {
+pub(super) struct Range {
     from: Number,
     to: Option<Number>,
     count: Spanned<i64>,
+    #[serde(default)]
+    scale: Scale,
+}
+
+/// How the values of a range are spaced.
+#[derive(Clone, Copy, Default, PartialEq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+enum Scale {
+    /// At equal distances.
+    #[default]
+    Linear,
+    /// At equal ratios.
+    Log,
 }
 
 /// The values of an axis: within the limits, strictly increasing, at least one.
@@ -39,7 +52,7 @@ pub(super) fn values(axis: &Spanned<Axis>, key: &str, limits: &Limits) -> Result
             );
             Err(Fault::new(key, axis.span(), must))
         }
-        Axis::Uniform(axis) => uniform(axis, key, limits),
+        Axis::Range(axis) => range(axis, key, limits),
     }
 }
 
@@ -57,7 +70,7 @@ fn listed(list: &[Number], key: &str, limits: &Limits) -> Result<Vec<f64>, Fault
     Ok(values)
 }
 
-fn uniform(axis: &Uniform, key: &str, limits: &Limits) -> Result<Vec<f64>, Fault> {
+fn range(axis: &Range, key: &str, limits: &Limits) -> Result<Vec<f64>, Fault> {
     let count_key = format!("{key}.count");
     let to_key = format!("{key}.to");
     let refuse_count = |must: String| Fault::new(&*count_key, axis.count.span(), must);
@@ -66,7 +79,12 @@ fn uniform(axis: &Uniform, key: &str, limits: &Limits) -> Result<Vec<f64>, Fault
         .ok()
         .filter(|count| (1..=MOST_VALUES).contains(count))
         .ok_or_else(|| refuse_count(format!("must be between 1 and {MOST_VALUES}")))?;
-    let from = limits.check(&format!("{key}.from"), &axis.from)?;
+    let from_key = format!("{key}.from");
+    let from = limits.check(&from_key, &axis.from)?;
+    if axis.scale == Scale::Log && from <= 0.0 {
+        let must = "must be greater than 0 where scale is \"log\"";
+        return Err(Fault::new(from_key, axis.from.span(), must));
+    }
     let Some(end) = &axis.to else {
         return match count {
             1 => Ok(vec![from]),
@@ -92,6 +110,7 @@ fn uniform(axis: &Uniform, key: &str, limits: &Limits) -> Result<Vec<f64>, Fault
         .map(|i| match i {
             // `from + (to - from)` may miss `to` by a rounding.
             _ if i == last => to,
+            _ if axis.scale == Scale::Log => from * (to / from).powf(i as f64 / last as f64),
             _ => from + (to - from) * i as f64 / last as f64,
         })
         .collect();
@@ -125,6 +144,6 @@ impl<'de> Visitor<'de> for AxisVisitor {
     }
 
     fn visit_map<A: MapAccess<'de>>(self, table: A) -> Result<Axis, A::Error> {
-        Deserialize::deserialize(MapAccessDeserializer::new(table)).map(Axis::Uniform)
+        Deserialize::deserialize(MapAccessDeserializer::new(table)).map(Axis::Range)
     }
 }

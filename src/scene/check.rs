@@ -5,47 +5,55 @@
 
 use toml::Spanned;
 
-use super::axis::{self, Axis};
+use super::axis;
 use super::deviations;
 use super::error::Fault;
-use super::file::{GridTable, OutputTable, SceneTable, WhiskerTable};
+use super::file::{OutputTable, SceneTable, WhiskerTable};
 use super::grid::{FARTHEST, Grid, NEAREST};
 use super::limits::Limits;
+use super::parameter::Parameter;
 use super::profile;
 use super::setup::Setup;
-use super::shape::{self, refuse_faint};
-use super::whisker::{Pole, Whisker};
+use super::shape;
+use super::sweep;
+use super::whisker::{Curvature, Pole, Whisker};
 
 /// As many as 16,384 x 16,384; a stored cell takes about 60 bytes.
 const MOST_CELLS: u128 = 1 << 28;
 
 /// Rubber on concrete; the whiskers of rats on steel have about 0.5.
-const MOST_FRICTION: f64 = 2.0;
+pub(super) const MOST_FRICTION: f64 = 2.0;
 
 /// Measured ratios lie between 0.7 and 1.4.
-const STIFFEST_TIP: f64 = 20.0;
+pub(super) const STIFFEST_TIP: f64 = 20.0;
 
 /// A whisker that is twice as long as it looks.
-const MOST_STRETCH: f64 = 2.0;
+pub(super) const MOST_STRETCH: f64 = 2.0;
 
 /// File systems allow 255 bytes; the output adds its own endings.
 const LONGEST_NAME: usize = 200;
 
 /// The scene that the tables describe; `stem` names its output where it does not itself.
-pub(super) fn setup(table: &SceneTable, text: &str, stem: &str) -> Result<Setup, Fault> {
+pub(super) fn setup(table: &mut SceneTable, text: &str, stem: &str) -> Result<Setup, Fault> {
     let title = title(&table.title)?;
-    let length_mm =
-        Limits::between(1e-3, 1e5).check("whisker.length_mm", &table.whisker.length_mm)?;
-    let grid = grid(&table.grid, length_mm)?;
-    refuse_two_of_a_kind(&table.whisker, &table.grid)?;
-    let whisker = whisker(&table.whisker, length_mm, &grid)?;
-    let radius = table.pole.as_ref().map(|pole| &pole.radius_mm);
-    let friction = table.contact.as_ref().map(|contact| &contact.friction);
-    let rough = Limits::between(0.0, MOST_FRICTION);
-    let pole = Pole {
-        radius_mm: pole_limits(&whisker, &grid).check_or(0.0, "pole.radius_mm", radius)?,
-        friction: rough.check_or(0.0, "contact.friction", friction)?,
-    };
+    let lengths_mm = sweep::lengths_mm(table)?;
+    let grid = grid(table, lengths_mm)?;
+    sweep::refuse_at_odds(table)?;
+    let mut refused = Vec::new();
+    let mut corners = 0;
+    for place in sweep::corners(&grid) {
+        table.put(&place);
+        refused.extend(whisker_and_pole(table, &grid).err().zip(Some(place)));
+        corners += 1;
+    }
+    if let Some(fault) = sweep::located(refused, corners) {
+        return Err(fault);
+    }
+    table.put(&grid.place(0));
+    let (mut whisker, pole) = whisker_and_pole(table, &grid)?;
+    if grid.axis(Parameter::ParabolaPerMm).is_none() {
+        whisker.curvature = whisker.curvature.filter(Curvature::bends);
+    }
     let uncertainty = table.uncertainty.as_ref();
     let uncertainty = uncertainty.map(|own| deviations::deviations(own, text, &whisker));
     Ok(Setup {
@@ -59,20 +67,17 @@ pub(super) fn setup(table: &SceneTable, text: &str, stem: &str) -> Result<Setup,
     })
 }
 
-/// An axis may replace a linear taper or a parabola, not what stands in their place.
-fn refuse_two_of_a_kind(whisker: &WhiskerTable, grid: &Spanned<GridTable>) -> Result<(), Fault> {
-    let axes = grid.get_ref();
-    if let (Some(axis), Some(_)) = (&axes.taper, &whisker.profile) {
-        let must = "must be left out: the radii are those of whisker.profile";
-        return Err(Fault::new("grid.taper", axis.span(), must));
-    }
-    let curvature = whisker.curvature.as_ref().map(Spanned::get_ref);
-    let spiral = curvature.and_then(|own| own.euler_spiral.as_ref());
-    if let (Some(axis), Some(_)) = (&axes.curvature_per_mm, spiral) {
-        let must = "must be left out: the whisker is an Euler spiral";
-        return Err(Fault::new("grid.curvature_per_mm", axis.span(), must));
-    }
-    Ok(())
+/// The whisker and the pole of the file; a straight parabola keeps its vertex.
+fn whisker_and_pole(table: &SceneTable, grid: &Grid) -> Result<(Whisker, Pole), Fault> {
+    let whisker = whisker(&table.whisker)?;
+    let radius = table.pole.as_ref().map(|pole| &pole.radius_mm);
+    let friction = table.contact.as_ref().map(|contact| &contact.friction);
+    let rough = Limits::between(0.0, MOST_FRICTION);
+    let pole = Pole {
+        radius_mm: pole_limits(&whisker, grid).check_or(0.0, "pole.radius_mm", radius)?,
+        friction: rough.check_or(0.0, "contact.friction", friction)?,
+    };
+    Ok((whisker, pole))
 }
 
 fn title(title: &Spanned<String>) -> Result<String, Fault> {
@@ -84,13 +89,13 @@ fn title(title: &Spanned<String>) -> Result<String, Fault> {
     Ok(text.clone())
 }
 
-/// The whisker of the file; the largest taper and curvature of the `grid` count where there are such axes.
-fn whisker(table: &WhiskerTable, length_mm: f64, grid: &Grid) -> Result<Whisker, Fault> {
-    let radii = profile::radii(table, length_mm, grid.taper.as_deref())?;
+fn whisker(table: &WhiskerTable) -> Result<Whisker, Fault> {
+    let length_mm = sweep::length_limits().check("whisker.length_mm", &table.length_mm)?;
+    let radii = profile::radii(table, length_mm)?;
     let youngs_modulus_gpa = Limits::between(1e-6, 1e4)
         .check("whisker.youngs_modulus_gpa", &table.youngs_modulus_gpa)?;
     let (curvature, euler_spiral) = match &table.curvature {
-        Some(table) => shape::shape(table, length_mm, largest(&grid.curvature_per_mm))?,
+        Some(table) => shape::shape(table, length_mm)?,
         None => (None, None),
     };
     let ratio = table.modulus_gradient.as_ref().map(|own| &own.tip_to_base);
@@ -98,7 +103,7 @@ fn whisker(table: &WhiskerTable, length_mm: f64, grid: &Grid) -> Result<Whisker,
     let modulus_tip_to_base =
         Limits::between(1.0 / STIFFEST_TIP, STIFFEST_TIP).check_or(1.0, key, ratio)?;
     let own_taper = 1.0 - radii.tip_radius_um / radii.base_radius_um;
-    let pointed = 1.0 / largest(&grid.taper).unwrap_or(own_taper);
+    let pointed = 1.0 / own_taper;
     let gradient = modulus_tip_to_base - 1.0;
     let [softest, stiffest] = [1.0 / STIFFEST_TIP, STIFFEST_TIP].map(|tip| (tip - 1.0) / gradient);
     let mut end = ("twice as long", MOST_STRETCH);
@@ -133,46 +138,30 @@ fn whisker(table: &WhiskerTable, length_mm: f64, grid: &Grid) -> Result<Whisker,
     })
 }
 
-fn largest(axis: &Option<Vec<f64>>) -> Option<f64> {
-    axis.as_ref()?.last().copied()
-}
-
-fn grid(table: &Spanned<GridTable>, length_mm: f64) -> Result<Grid, Fault> {
-    let axes = table.get_ref();
+fn grid(table: &SceneTable, [shortest, longest]: [f64; 2]) -> Result<Grid, Fault> {
+    let axes = table.grid.get_ref();
     let turn = Limits::between(-360.0, 360.0);
     let push_angle_deg = axis::values(&axes.push_angle_deg, "grid.push_angle_deg", &turn)?;
-    let near = ("length_mm / 1000", length_mm / NEAREST);
-    let far = ("10 * length_mm", FARTHEST * length_mm);
+    let near = ("length_mm / 1000", longest / NEAREST);
+    let far = ("10 * length_mm", FARTHEST * shortest);
     let reach = Limits::between(near, far);
     let distance_mm = axis::values(&axes.distance_mm, "grid.distance_mm", &reach)?;
-    let optional = |axis: &Option<Spanned<Axis>>, key, limits| {
-        let values = |axis| axis::values(axis, key, &limits);
-        axis.as_ref().map(values).transpose()
-    };
-    let taper = optional(&axes.taper, "grid.taper", Limits::between(0.0, 1.0))?;
-    let key = "grid.curvature_per_mm";
-    let limits = shape::parabola_limits(length_mm);
-    let curvature_per_mm = optional(&axes.curvature_per_mm, key, limits)?;
-    if let (Some(values), Some(axis)) = (&curvature_per_mm, &axes.curvature_per_mm) {
-        refuse_faint(values, length_mm, key, axis.span())?;
-    }
+    let sweep = sweep::axes(table, [shortest, longest])?;
 
-    let counts = [
-        push_angle_deg.len(),
-        distance_mm.len(),
-        taper.as_ref().map_or(1, Vec::len),
-        curvature_per_mm.as_ref().map_or(1, Vec::len),
-    ];
-    let cells: u128 = counts.iter().map(|&count| count as u128).product();
-    if cells > MOST_CELLS {
-        let must = format!("must have at most {MOST_CELLS} cells over all axes, has {cells}");
-        return Err(Fault::new("grid", table.span(), must));
+    let mut counts = vec![push_angle_deg.len(), distance_mm.len()];
+    counts.extend(sweep.iter().map(|axis| axis.values.len()));
+    let cells = counts
+        .iter()
+        .try_fold(1, |cells: u128, &count| cells.checked_mul(count as u128));
+    if cells.is_none_or(|cells| cells > MOST_CELLS) {
+        let has = cells.map_or_else(String::new, |cells| format!(", has {cells}"));
+        let must = format!("must have at most {MOST_CELLS} cells over all axes{has}");
+        return Err(Fault::new("grid", table.grid.span(), must));
     }
     Ok(Grid {
         push_angle_deg,
         distance_mm,
-        taper,
-        curvature_per_mm,
+        sweep,
     })
 }
 
@@ -180,8 +169,7 @@ fn grid(table: &Spanned<GridTable>, length_mm: f64) -> Result<Grid, Fault> {
 /// whisker `1 -+ r kappa` times as fast as the chord's square (the sign is the side). So with `r` below the
 /// whisker's smallest radius of curvature, first touch is one-to-one and the base stays outside the pole.
 fn pole_limits(whisker: &Whisker, grid: &Grid) -> Limits {
-    let steepest = largest(&grid.curvature_per_mm).map(|a| 2.0 * a);
-    let sharpest = 1.0 / steepest.unwrap_or(whisker.sharpest_bend_per_mm());
+    let sharpest = 1.0 / whisker.sharpest_bend_per_mm();
     let nearest = grid.distance_mm[0];
     let end = if sharpest < nearest {
         ("the whisker's smallest radius of curvature", sharpest)

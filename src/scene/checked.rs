@@ -113,17 +113,16 @@ impl Scene {
         number_in(&toml::from_str(&self.text).ok()?, key)
     }
 
-    /// The same scene with at most `lines` push angles and distances, and at most `values` tapers and curvatures, from all
-    /// over each axis. Its text stays that of the whole.
+    /// The same scene with at most `lines` push angles and distances, and at most `values` of each sweep axis, from all over
+    /// the axis. Its text stays that of the whole.
     #[must_use]
     pub fn thinned(&self, lines: usize, values: usize) -> Self {
         let mut thinned = self.clone();
         let grid = &mut thinned.0.grid;
         thin(&mut grid.push_angle_deg, lines);
         thin(&mut grid.distance_mm, lines);
-        let sweep = [&mut grid.taper, &mut grid.curvature_per_mm];
-        for axis in sweep.into_iter().flatten() {
-            thin(axis, values);
+        for axis in &mut grid.sweep {
+            thin(&mut axis.values, values);
         }
         thinned
     }
@@ -136,7 +135,7 @@ impl Scene {
         let profile = table.whisker.profile.as_mut();
         let inlined = profile.map_or(Ok(None), |own| rows::read(&mut own.rows, text, folder));
         inlined
-            .and_then(|inlined| check::setup(&table, inlined.as_deref().unwrap_or(text), &stem))
+            .and_then(|inlined| check::setup(&mut table, inlined.as_deref().unwrap_or(text), &stem))
             .map(Self)
             .map_err(|fault| fault.in_scene(origin, text))
     }

@@ -102,6 +102,7 @@ fn within_a_line(text: &str, span: Range<usize>) -> Option<Range<usize>> {
 }
 
 /// What the checks refuse, before the file's name and text join it.
+#[derive(PartialEq)]
 pub(super) struct Fault {
     key: String,
     span: Option<Range<usize>>,
@@ -119,6 +120,24 @@ impl Fault {
             key: key.into(),
             span: span.into(),
             must: must.into(),
+        }
+    }
+
+    /// Whether it is the value of `key` that does not.
+    pub fn is_about(&self, key: &str) -> bool {
+        self.key == key
+    }
+
+    /// The same of another key.
+    pub fn renamed(self, key: String) -> Self {
+        Self { key, ..self }
+    }
+
+    /// The same of a sweep's whisker with these `values`.
+    pub fn at(self, values: &str) -> Self {
+        Self {
+            must: format!("{}; refused is {values}", self.must),
+            ..self
         }
     }
 

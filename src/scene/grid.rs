@@ -1,6 +1,9 @@
 //! The axes of a sweep, and where a whisker stands in it.
 
 use serde::Serialize;
+use serde::ser::{SerializeStruct, Serializer};
+
+use super::parameter::Parameter;
 
 /// The nearest first touch is the whisker's length over this.
 pub(crate) const NEAREST: f64 = 1000.0;
@@ -15,17 +18,102 @@ pub struct Grid {
     pub push_angle_deg: Vec<f64>,
     /// Distance from the base to the contact at first touch.
     pub distance_mm: Vec<f64>,
-    /// `1 - tip/base radius`, in place of the whisker's own.
-    pub taper: Option<Vec<f64>>,
-    /// Parabola coefficient `A`, in place of the whisker's own.
-    pub curvature_per_mm: Option<Vec<f64>>,
+    /// What differs from whisker to whisker, in the order of the file; but of two axes, a curvature is the second.
+    pub sweep: Vec<SweepAxis>,
 }
 
-/// Where a whisker stands in a sweep.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Morphology {
-    /// `1 - tip/base radius`.
-    pub taper: f64,
-    /// Parabola coefficient `A`.
-    pub curvature_per_mm: f64,
+/// An axis along which whiskers, or their poles, differ.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SweepAxis {
+    /// What differs.
+    pub parameter: Parameter,
+    /// Its values, in place of the scene's own.
+    pub values: Vec<f64>,
+}
+
+impl Grid {
+    /// The values of the axis of `parameter`, if there is one.
+    #[must_use]
+    pub fn axis(&self, parameter: Parameter) -> Option<&[f64]> {
+        let mut axes = self.sweep.iter();
+        let axis = axes.find(|axis| axis.parameter == parameter);
+        axis.map(|axis| &*axis.values)
+    }
+
+    /// The axes along x and along y of an atlas, which has room for two; a curvature alone lies along y.
+    #[must_use]
+    pub fn atlas(&self) -> [Option<&SweepAxis>; 2] {
+        match &*self.sweep {
+            [only] if only.parameter == Parameter::ParabolaPerMm => [None, Some(only)],
+            axes => [axes.first(), axes.get(1)],
+        }
+    }
+
+    /// How many whiskers the sweep has.
+    #[must_use]
+    pub fn whisker_count(&self) -> usize {
+        self.sweep.iter().map(|axis| axis.values.len()).product()
+    }
+
+    /// Where whisker `index` stands on each axis; the first axis varies fastest.
+    #[must_use]
+    pub fn indices(&self, index: usize) -> Vec<usize> {
+        let mut rest = index;
+        let axes = self.sweep.iter();
+        axes.map(|axis| {
+            let at = rest % axis.values.len();
+            rest /= axis.values.len();
+            at
+        })
+        .collect()
+    }
+
+    /// The values of whisker `index` on the axes.
+    #[must_use]
+    pub fn place(&self, index: usize) -> Place {
+        let axes = self.sweep.iter().zip(self.indices(index));
+        Place(
+            axes.map(|(axis, at)| (axis.parameter, axis.values[at]))
+                .collect(),
+        )
+    }
+
+    /// The same with the ends of every sweep axis alone.
+    pub(super) fn ends(&self) -> Self {
+        let mut ends = self.clone();
+        for axis in &mut ends.sweep {
+            if let [first, .., last] = axis.values[..] {
+                axis.values = vec![first, last];
+            }
+        }
+        ends
+    }
+}
+
+/// Where a whisker stands in a sweep: a value for each axis, in their order. As a row of a table it has a column for each.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Place(Vec<(Parameter, f64)>);
+
+impl Place {
+    /// The value on the axis of `parameter`, if there is one.
+    #[must_use]
+    pub fn value(&self, parameter: Parameter) -> Option<f64> {
+        let mut axes = self.0.iter();
+        axes.find_map(|(own, value)| (*own == parameter).then_some(*value))
+    }
+
+    /// The axes and the values on them.
+    pub fn values(&self) -> impl Iterator<Item = (Parameter, f64)> + '_ {
+        self.0.iter().copied()
+    }
+}
+
+impl Serialize for Place {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut columns = serializer.serialize_struct("Place", self.0.len())?;
+        for (parameter, value) in &self.0 {
+            columns.serialize_field(parameter.axis(), value)?;
+        }
+        columns.end()
+    }
 }

@@ -1,6 +1,6 @@
 //! From the whisker of a scene to the rod without dimensions, and back to its units.
 
-use super::{Pole, Whisker};
+use super::{Pole, Swept, Whisker};
 use crate::rod::{RadiusProfile, Rod, Side, Units};
 use std::sync::Arc;
 
@@ -33,5 +33,13 @@ impl Whisker {
     #[must_use]
     pub fn units(&self) -> Units {
         Units::new(self.length_mm, self.base_radius_um, self.youngs_modulus_gpa)
+    }
+}
+
+impl Swept {
+    /// The rod of the whisker with its pole on `side`.
+    #[must_use]
+    pub fn rod(&self, side: Side) -> Rod {
+        self.whisker.rod(&self.pole, side)
     }
 }

@@ -1,6 +1,6 @@
 //! A scene: what to simulate, read from TOML and checked. An accepted scene is valid everywhere after.
 //!
-//! Text (`source`, `checked`) becomes tables (`file`, `axis`, `rows`), tables become a [`Setup`] (`check`, `limits`), and
+//! Text (`source`, `checked`) becomes tables (`file`, `axis`, `rows`), tables become a [`Setup`] (`check`, `sweep`, `limits`), and
 //! whatever is refused becomes one message that points into the text (`error`). Only what was checked is a [`Scene`].
 
 mod axis;
@@ -18,6 +18,7 @@ mod rows;
 mod setup;
 mod shape;
 mod source;
+mod sweep;
 mod whisker;
 
 pub(crate) use error::shortened;
@@ -27,8 +28,8 @@ pub(crate) use source::bounded;
 pub use checked::Scene;
 pub use deviations::Deviations;
 pub use error::SceneError;
-pub use grid::{Grid, Morphology};
+pub use grid::{Grid, Place, SweepAxis};
 pub use limits::digits;
 pub use parameter::Parameter;
 pub use setup::Setup;
-pub use whisker::{Curvature, EulerSpiral, Pole, Whisker};
+pub use whisker::{Curvature, EulerSpiral, Pole, Swept, Whisker};

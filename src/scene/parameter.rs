@@ -89,6 +89,62 @@ impl Parameter {
         Self::ALL.into_iter().find(|one| one.name() == name)
     }
 
+    /// Those that an axis of the sweep can have.
+    pub const SWEPT: [Self; 10] = [
+        Self::Taper,
+        Self::TipRadiusUm,
+        Self::BaseRadiusUm,
+        Self::LengthMm,
+        Self::ParabolaPerMm,
+        Self::VertexMm,
+        Self::PoleRadiusMm,
+        Self::Friction,
+        Self::ModulusTipToBase,
+        Self::ArcStretch,
+    ];
+
+    /// The name of its axis: its own, but a parabola's is `curvature_per_mm`.
+    #[must_use]
+    pub const fn axis(self) -> &'static str {
+        match self {
+            Self::ParabolaPerMm => "curvature_per_mm",
+            _ => self.name(),
+        }
+    }
+
+    /// Its unit; `1` for a ratio.
+    #[must_use]
+    pub const fn unit(self) -> &'static str {
+        match self {
+            Self::LengthMm | Self::VertexMm | Self::PoleRadiusMm => "mm",
+            Self::BaseRadiusUm | Self::TipRadiusUm => "um",
+            Self::YoungsModulusGpa => "GPa",
+            Self::ParabolaPerMm | Self::SpiralPerMm => "1/mm",
+            Self::SpiralPerMm2 => "1/mm2",
+            Self::Taper | Self::ModulusTipToBase | Self::ArcStretch | Self::Friction => "1",
+        }
+    }
+
+    /// What people call it.
+    #[must_use]
+    pub const fn title(self) -> &'static str {
+        match self {
+            Self::LengthMm => "length",
+            Self::BaseRadiusUm => "radius at the base",
+            Self::TipRadiusUm => "radius at the tip",
+            Self::Taper => "taper (1 \u{2212} tip/base radius)",
+            Self::YoungsModulusGpa => "Young's modulus",
+            Self::ParabolaPerMm => "curvature",
+            Self::VertexMm => "vertex of the parabola",
+            Self::SpiralPerMm => "curvature of the spiral at the base",
+            Self::SpiralPerMm2 => "growth of the spiral's curvature",
+            Self::ModulusTipToBase => "modulus, tip over base",
+            Self::ArcStretch => "arc stretch",
+            Self::PoleRadiusMm => "pole radius",
+            Self::Friction => "friction",
+        }
+    }
+
     /// Where a scene file has it.
     #[must_use]
     pub const fn key(self) -> &'static str {

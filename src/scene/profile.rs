@@ -24,12 +24,8 @@ pub(super) struct Radii {
     pub profile: Option<Vec<[f64; 2]>>,
 }
 
-/// The radii of a whisker of `length_mm`; an axis of `tapers` gives the tip its radius, the first one here.
-pub(super) fn radii(
-    table: &WhiskerTable,
-    length_mm: f64,
-    tapers: Option<&[f64]>,
-) -> Result<Radii, Fault> {
+/// The radii of a whisker of `length_mm`.
+pub(super) fn radii(table: &WhiskerTable, length_mm: f64) -> Result<Radii, Fault> {
     let ends = [
         ("whisker.base_radius_um", &table.base_radius_um),
         ("whisker.tip_radius_um", &table.tip_radius_um),
@@ -46,16 +42,8 @@ pub(super) fn radii(
         number.as_ref().ok_or_else(absent)
     });
     let base_radius_um = Limits::between(1e-3, 1e5).check(ends[0].0, base?)?;
-    let tip_radius_um = match (tapers, tip) {
-        (Some(_), Ok(tip)) => {
-            let must = "must be left out: grid.taper gives every whisker of the sweep its tip";
-            return Err(Fault::new(ends[1].0, tip.span(), must));
-        }
-        (Some(tapers), Err(_)) => base_radius_um * (1.0 - tapers[0]),
-        (None, tip) => {
-            Limits::between(0.0, ("base_radius_um", base_radius_um)).check(ends[1].0, tip?)?
-        }
-    };
+    let tip_radius_um =
+        Limits::between(0.0, ("base_radius_um", base_radius_um)).check(ends[1].0, tip?)?;
     Ok(Radii {
         base_radius_um,
         tip_radius_um,

@@ -1,18 +1,18 @@
 //! What a scene holds, as plain data.
 
 use super::deviations::Deviations;
-use super::grid::{FARTHEST, Grid, Morphology, NEAREST};
-use super::whisker::{Curvature, Pole, Whisker};
+use super::grid::{FARTHEST, Grid, NEAREST, Place};
+use super::parameter::Parameter;
+use super::whisker::{Curvature, Pole, Swept, Whisker};
 
 /// What a [`Scene`](super::Scene) holds. It says nothing of whether the values are right; only a scene does.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Setup {
     /// One line for people.
     pub title: String,
-    /// The whisker as the file describes it, and the first one of a taper axis; [`Setup::whiskers`] yields those to
-    /// simulate.
+    /// The whisker as the file describes it, and the first one of a sweep; [`Setup::whiskers`] yields those to simulate.
     pub whisker: Whisker,
-    /// The pole.
+    /// The pole, and the first one of a sweep.
     pub pole: Pole,
     /// The sweep.
     pub grid: Grid,
@@ -25,45 +25,55 @@ pub struct Setup {
 }
 
 impl Setup {
-    /// The scene's whisker with a taper (`1 - tip/base radius`) and a parabola coefficient in place of its
-    /// own. The vertex stays: the whisker's own, or 0 where its file gives no curvature.
+    /// The scene's whisker and pole with the values of `place` in place of their own. A taper gives the tip its radius; the
+    /// vertex of a curvature axis is the whisker's own, or 0 where its file gives none.
     #[must_use]
-    pub fn whisker_at(&self, taper: Option<f64>, curvature_per_mm: Option<f64>) -> Whisker {
-        let mut whisker = self.whisker.clone();
-        if let Some(taper) = taper {
+    pub fn whisker_at(&self, place: Place) -> Swept {
+        let (mut whisker, mut pole) = (self.whisker.clone(), self.pole);
+        let straight = Curvature {
+            parabola_per_mm: 0.0,
+            vertex_mm: 0.0,
+        };
+        let mut curvature = whisker.curvature.unwrap_or(straight);
+        for (parameter, value) in place.values() {
+            match parameter {
+                Parameter::LengthMm => whisker.length_mm = value,
+                Parameter::BaseRadiusUm => whisker.base_radius_um = value,
+                Parameter::TipRadiusUm => whisker.tip_radius_um = value,
+                Parameter::ParabolaPerMm => curvature.parabola_per_mm = value,
+                Parameter::VertexMm => curvature.vertex_mm = value,
+                Parameter::ModulusTipToBase => whisker.modulus_tip_to_base = value,
+                Parameter::ArcStretch => whisker.arc_stretch = value,
+                Parameter::PoleRadiusMm => pole.radius_mm = value,
+                Parameter::Friction => pole.friction = value,
+                _ => {}
+            }
+        }
+        if let Some(taper) = place.value(Parameter::Taper) {
             whisker.tip_radius_um = whisker.base_radius_um * (1.0 - taper);
         }
-        if let Some(parabola_per_mm) = curvature_per_mm {
-            let vertex_mm = whisker.curvature.map_or(0.0, |own| own.vertex_mm);
-            whisker.curvature = Some(Curvature {
-                parabola_per_mm,
-                vertex_mm,
-            });
+        whisker.curvature = Some(curvature).filter(Curvature::bends);
+        Swept {
+            place,
+            whisker,
+            pole,
         }
-        whisker.curvature = whisker.curvature.filter(|c| c.parabola_per_mm != 0.0);
-        whisker
     }
 
-    /// Every whisker of the sweep, in the order of the atlas: taper varies fastest (its columns), curvature
-    /// slowest (its rows). Without such axes, the one whisker of the file.
-    pub fn whiskers(&self) -> impl Iterator<Item = (Morphology, Whisker)> {
-        let tapers = choices(self.grid.taper.as_deref());
-        let curvatures = choices(self.grid.curvature_per_mm.as_deref()).into_iter();
-        curvatures.flat_map(move |curvature| {
-            tapers.clone().into_iter().map(move |taper| {
-                let whisker = self.whisker_at(taper, curvature);
-                let own = whisker.curvature.map_or(0.0, |own| own.parabola_per_mm);
-                let morphology = Morphology {
-                    taper: taper.unwrap_or(whisker.taper()),
-                    curvature_per_mm: curvature.unwrap_or(own),
-                };
-                (morphology, whisker)
-            })
-        })
+    /// Every whisker of the sweep, in the order of the atlas: the first axis varies fastest, along its columns. Without axes,
+    /// the one whisker of the file.
+    pub fn whiskers(&self) -> impl Iterator<Item = Swept> {
+        (0..self.whisker_count()).map(|index| self.whisker(index))
+    }
+
+    /// Whisker `index` of the sweep.
+    #[must_use]
+    pub fn whisker(&self, index: usize) -> Swept {
+        self.whisker_at(self.grid.place(index))
     }
 
     /// The same, `size` whiskers at a time; the last group has what is left.
-    pub fn whisker_groups(&self, size: usize) -> impl Iterator<Item = Vec<(Morphology, Whisker)>> {
+    pub fn whisker_groups(&self, size: usize) -> impl Iterator<Item = Vec<Swept>> {
         let mut whiskers = self.whiskers();
         let next = move || -> Vec<_> { whiskers.by_ref().take(size).collect() };
         std::iter::repeat_with(next).take_while(|group| !group.is_empty())
@@ -72,28 +82,26 @@ impl Setup {
     /// How many whiskers the sweep has.
     #[must_use]
     pub fn whisker_count(&self) -> usize {
-        let values = |axis: &Option<Vec<f64>>| axis.as_ref().map_or(1, Vec::len);
-        values(&self.grid.taper) * values(&self.grid.curvature_per_mm)
+        self.grid.whisker_count()
     }
 
     /// The first whisker of the sweep, or the only one.
     #[must_use]
-    pub fn first_whisker(&self) -> Whisker {
-        let first = |axis: &Option<Vec<f64>>| axis.as_ref().and_then(|axis| axis.first().copied());
-        self.whisker_at(first(&self.grid.taper), first(&self.grid.curvature_per_mm))
+    pub fn first_whisker(&self) -> Swept {
+        self.whisker(0)
     }
 
-    /// The last one. Axes grow from 0 at least, so it tapers and is curved if any whisker is.
-    #[must_use]
-    pub fn last_whisker(&self) -> Whisker {
-        let last = |axis: &Option<Vec<f64>>| axis.as_ref().and_then(|axis| axis.last().copied());
-        self.whisker_at(last(&self.grid.taper), last(&self.grid.curvature_per_mm))
+    /// The whiskers at the ends of the sweep axes: an effect that any whisker has, one of these has.
+    pub fn corner_whiskers(&self) -> impl Iterator<Item = Swept> {
+        let ends = self.grid.ends();
+        let corners = 0..ends.whisker_count();
+        corners.map(move |index| self.whisker_at(ends.place(index)))
     }
 
-    /// Whether whiskers are swept: whether there is an axis of taper or curvature.
+    /// Whether whiskers are swept: whether there is an axis beside push angle and distance.
     #[must_use]
     pub fn is_sweep(&self) -> bool {
-        self.grid.taper.is_some() || self.grid.curvature_per_mm.is_some()
+        !self.grid.sweep.is_empty()
     }
 
     /// The smallest and the largest distance of first touch; it must be more than the pole's radius, too.
@@ -102,9 +110,4 @@ impl Setup {
         let length = self.whisker.length_mm;
         (length / NEAREST, FARTHEST * length)
     }
-}
-
-/// What an axis puts in place of the whisker's own value: its values one by one, or nothing, once.
-fn choices(axis: Option<&[f64]>) -> Vec<Option<f64>> {
-    axis.map_or(vec![None], |axis| axis.iter().copied().map(Some).collect())
 }

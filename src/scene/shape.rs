@@ -21,17 +21,16 @@ const LOOKS: u32 = 8192;
 /// The least cosine of that angle: the distance from the base grows everywhere.
 const LEAST_COS: f64 = 0.05;
 
-/// The parabola or the Euler spiral of the table; `steepest` is the largest `A` of a curvature axis.
+/// The parabola, which may be straight, or the Euler spiral of the table.
 pub(super) fn shape(
     table: &Spanned<CurvatureTable>,
     length_mm: f64,
-    steepest: Option<f64>,
 ) -> Result<(Option<Curvature>, Option<EulerSpiral>), Fault> {
     let fields = table.get_ref();
     match (&fields.parabola_per_mm, &fields.euler_spiral) {
         (Some(number), None) => {
-            let parabola = parabola(number, fields.vertex_mm.as_ref(), length_mm, steepest)?;
-            Ok((parabola, None))
+            let parabola = parabola(number, fields.vertex_mm.as_ref(), length_mm)?;
+            Ok((Some(parabola), None))
         }
         (None, Some(spiral)) if fields.vertex_mm.is_none() => {
             Ok((None, euler_spiral(spiral, length_mm)?))
@@ -51,15 +50,14 @@ fn parabola(
     number: &Number,
     vertex_mm: Option<&Number>,
     length_mm: f64,
-    steepest: Option<f64>,
-) -> Result<Option<Curvature>, Fault> {
+) -> Result<Curvature, Fault> {
     let key = "whisker.curvature.parabola_per_mm";
     let parabola_per_mm = parabola_limits(length_mm).check(key, number)?;
     refuse_faint(&[parabola_per_mm], length_mm, key, number.span())?;
 
     let vertex_mm = match vertex_mm {
         Some(number) => {
-            let turning = SQRT_2 / steepest.unwrap_or(parabola_per_mm);
+            let turning = SQRT_2 / parabola_per_mm;
             let far = 10.0 * length_mm;
             let end = if turning < far {
                 ("sqrt(2) / the largest parabola coefficient", turning)
@@ -72,12 +70,10 @@ fn parabola(
         }
         None => 0.0,
     };
-    // With an axis, a coefficient of 0 is replaced but its vertex is not.
-    let bent = parabola_per_mm > 0.0 || steepest.is_some();
-    Ok(bent.then_some(Curvature {
+    Ok(Curvature {
         parabola_per_mm,
         vertex_mm,
-    }))
+    })
 }
 
 pub(super) fn parabola_limits(length_mm: f64) -> Limits {

@@ -1,5 +1,18 @@
 //! What is pushed and what it is pushed against: a whisker at rest and a pole.
 
+use super::grid::Place;
+
+/// One whisker of a sweep, in front of its pole.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Swept {
+    /// Where it stands in the sweep.
+    pub place: Place,
+    /// The whisker.
+    pub whisker: Whisker,
+    /// What it is pushed against.
+    pub pole: Pole,
+}
+
 /// A whisker at rest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Whisker {
@@ -51,6 +64,13 @@ pub struct Curvature {
     pub parabola_per_mm: f64,
     /// Where the vertex lies.
     pub vertex_mm: f64,
+}
+
+impl Curvature {
+    /// Whether the shape is not straight.
+    pub(super) fn bends(&self) -> bool {
+        self.parabola_per_mm != 0.0
+    }
 }
 
 /// The undeflected shape whose curvature is linear in the arclength (Starostin et al. 2020).

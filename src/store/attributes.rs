@@ -3,12 +3,12 @@
 use super::layout::Layout;
 use super::tally::{Counts, regimes, statuses};
 use crate::integrate;
-use crate::map::Shots;
-use crate::scene::{Grid, Setup};
+use crate::map::{Channels, Shots};
+use crate::scene::{Grid, Parameter, Setup, SweepAxis};
 use exr::meta::attribute::{AttributeValue, Text};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 
 /// What is known before the run, and written first.
 #[derive(Clone, Copy, Debug)]
@@ -19,6 +19,8 @@ pub struct Description<'a> {
     pub engine: &'a integrate::Description,
     /// Tolerances and step limits.
     pub tolerances: &'a Value,
+    /// What is stored of each cell.
+    pub channels: Channels,
 }
 
 /// An axis of the map.
@@ -33,17 +35,16 @@ pub(super) struct Axis {
     values: Vec<f64>,
 }
 
-/// Name, unit, direction and place of the first value of every axis there can be, in the order of the attribute.
-const AXES: [[&str; 4]; 4] = [
+/// Name, unit, direction and place of the first value of the axes inside a panel.
+const INSIDE: [[&str; 4]; 2] = [
     ["push_angle_deg", "deg", "x", "column 0 of the panel (left)"],
     ["distance_mm", "mm", "y", "row 0 of the panel (top)"],
-    ["taper", "1", "panel x", "column 0 of the atlas (left)"],
-    [
-        "curvature_per_mm",
-        "1/mm",
-        "panel y",
-        "row 0 of the atlas (top)",
-    ],
+];
+
+/// Direction and place of the first value of the axes from one panel to the next.
+const ATLAS: [[&str; 2]; 2] = [
+    ["panel x", "column 0 of the atlas (left)"],
+    ["panel y", "row 0 of the atlas (top)"],
 ];
 
 /// Texts by name, as the EXR library has them.
@@ -97,60 +98,84 @@ pub(super) fn counts_width() -> usize {
 
 /// The axes as they are written.
 fn axes(grid: &Grid) -> Vec<Axis> {
-    let values = [
-        Some(&grid.push_angle_deg),
-        Some(&grid.distance_mm),
-        grid.taper.as_ref(),
-        grid.curvature_per_mm.as_ref(),
+    let axis = |[name, unit, direction, first]: [&str; 4], values: &[f64]| Axis {
+        name: name.to_owned(),
+        unit: unit.to_owned(),
+        direction: direction.to_owned(),
+        first: first.to_owned(),
+        values: values.to_owned(),
+    };
+    let [push_angle, distance] = INSIDE;
+    let inside = [
+        axis(push_angle, &grid.push_angle_deg),
+        axis(distance, &grid.distance_mm),
     ];
-    let described = AXES.iter().zip(values).filter_map(|(about, values)| {
-        let [name, unit, direction, first] = about.map(str::to_owned);
-        Some(Axis {
-            name,
-            unit,
-            direction,
-            first,
-            values: values?.clone(),
-        })
+    let atlas = grid.atlas().into_iter().zip(ATLAS);
+    let atlas = atlas.filter_map(|(own, [direction, first])| {
+        let SweepAxis { parameter, values } = own?;
+        let about = [parameter.axis(), parameter.unit(), direction, first];
+        Some(axis(about, values))
     });
-    described.collect()
+    inside.into_iter().chain(atlas).collect()
 }
 
 /// The sweep that the attribute `axes` describes.
 ///
 /// # Errors
 ///
-/// An axis is unknown or missing, or its values are not increasing.
+/// An axis is unknown, missing or one too many, or its values are not increasing.
 pub(super) fn decode_axes(mut found: Vec<Axis>) -> Result<Grid, String> {
-    let mut take = |name: &str| {
-        let place = found.iter().position(|axis| axis.name == name)?;
-        Some(found.swap_remove(place).values)
-    };
-    let [push_angle_deg, distance_mm, taper, curvature_per_mm] = AXES.map(|[name, ..]| take(name));
-    let grid = Grid {
-        push_angle_deg: push_angle_deg.ok_or("there is no axis push_angle_deg")?,
-        distance_mm: distance_mm.ok_or("there is no axis distance_mm")?,
-        taper,
-        curvature_per_mm,
-    };
-    if let Some(axis) = found.first() {
-        return Err(format!(
-            "the axis `{}` is unknown or there twice",
-            axis.name
-        ));
-    }
-    for axis in axes(&grid) {
+    for axis in &found {
         if axis.values.is_empty() || !axis.values.is_sorted_by(|one, next| one < next) {
             return Err(format!("the values of `{}` do not increase", axis.name));
         }
     }
+    let mut take = |name: &str| {
+        let place = found.iter().position(|axis| axis.name == name);
+        let place = place.ok_or_else(|| format!("there is no axis {name}"))?;
+        Ok::<_, String>(found.remove(place).values)
+    };
+    let [push_angle_deg, distance_mm] = INSIDE.map(|[name, ..]| take(name));
+    let mut grid = Grid {
+        push_angle_deg: push_angle_deg?,
+        distance_mm: distance_mm?,
+        sweep: Vec::new(),
+    };
+    found.sort_by(|one, next| one.direction.cmp(&next.direction));
+    for Axis { name, values, .. } in found {
+        let known = Parameter::SWEPT.into_iter();
+        let parameter = known
+            .filter(|parameter| grid.axis(*parameter).is_none())
+            .find(|parameter| parameter.axis() == name)
+            .ok_or_else(|| format!("the axis `{name}` is unknown or there twice"))?;
+        grid.sweep.push(SweepAxis { parameter, values });
+    }
+    if grid.sweep.len() > ATLAS.len() {
+        return Err("an atlas has at most two axes".to_owned());
+    }
     Ok(grid)
+}
+
+/// The same with the names in every object in their order: whether `serde_json` keeps another one depends on what else is
+/// built with it.
+fn sorted(value: &Value) -> Value {
+    match value {
+        Value::Object(names) => {
+            let names: BTreeMap<_, _> = names
+                .iter()
+                .map(|(name, value)| (name.clone(), sorted(value)))
+                .collect();
+            names.into_iter().collect()
+        }
+        Value::Array(values) => values.iter().map(sorted).collect(),
+        other => other.clone(),
+    }
 }
 
 /// JSON in which every character beyond ASCII is written as `\uXXXX`, in surrogate pairs where needed: other readers
 /// refuse a whole file for a single `µ`.
 fn ascii_json(value: &Value) -> String {
-    let json = value.to_string();
+    let json = sorted(value).to_string();
     let mut ascii = String::with_capacity(json.len());
     for unit in json.encode_utf16() {
         match u8::try_from(unit) {

@@ -15,6 +15,37 @@ pub enum Error {
     /// The map cannot be expressed as EXR, such as an atlas wider than 2^30 pixels.
     #[error("cannot write {file} as EXR: {1}", file = .0.display())]
     Encode(PathBuf, exr::error::Error),
+    /// A sweep over more axes than an atlas has.
+    #[error("cannot write {} as EXR: it has room for two sweep axes, the scene has {axes}", path.display())]
+    TooManyAxes {
+        /// The file.
+        path: PathBuf,
+        /// The axes, by name.
+        axes: String,
+    },
+    /// A store that is there, and was not asked to be continued.
+    #[error("{folder} is there already: go on with it by --resume, or remove it", folder = .0.display())]
+    Exists(PathBuf),
+    /// A store that was begun otherwise.
+    #[error(
+        "{} was begun with another {name}: {there} there, {here} here; go on as it was begun, or give another --output", path.display()
+    )]
+    AtOdds {
+        /// The store.
+        path: PathBuf,
+        /// The attribute.
+        name: &'static str,
+        /// Its value in the store.
+        there: String,
+        /// Its value in this run.
+        here: String,
+    },
+    /// A folder of Zarr that this program did not write, and what is missing or different.
+    #[error("{folder} is not a store of whiskmap: {1}", folder = .0.display())]
+    NotAStore(PathBuf, String),
+    /// The codecs of Zarr refused.
+    #[error("cannot pack {file}: {1}", file = .0.display())]
+    Pack(PathBuf, String),
     /// A folder, a pipe or a device.
     #[error("{file} is no regular file; a map is one", file = .0.display())]
     NotAFile(PathBuf),
@@ -83,7 +114,7 @@ impl Error {
         move |cause| kind(path.to_owned(), cause)
     }
 
-    /// Whether a file is no map that can be read, however that came to light.
+    /// Whether a file is no map that can be read, or continued, however that came to light.
     #[must_use]
     pub fn is_unreadable(&self) -> bool {
         matches!(
@@ -93,6 +124,9 @@ impl Error {
                 | Self::NotExr(_)
                 | Self::NotAMap(..)
                 | Self::Damaged(..)
+                | Self::Exists(_)
+                | Self::AtOdds { .. }
+                | Self::NotAStore(..)
         )
     }
 }

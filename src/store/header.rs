@@ -1,8 +1,8 @@
 //! The header: what precedes the blocks, written and read.
 
-use super::Error;
 use super::attributes::Attributes;
 use super::layout::Layout;
+use super::{Channels, Error};
 use exr::io::PeekRead;
 use exr::meta::attribute;
 use exr::meta::header::Header;
@@ -56,7 +56,11 @@ pub(super) fn read_offsets(
 }
 
 /// Compares parts, channels, size, tiles and compression with what `layout` is written as.
-pub(super) fn check_layout(meta: &MetaData, layout: Layout) -> Result<(), String> {
+pub(super) fn check_layout(
+    meta: &MetaData,
+    layout: Layout,
+    channels: Channels,
+) -> Result<(), String> {
     if parse::<[usize; 2]>(meta, "panels")? != [layout.columns, layout.rows] {
         return Err("attributes `panels` and `axes` differ".to_owned());
     }
@@ -64,10 +68,17 @@ pub(super) fn check_layout(meta: &MetaData, layout: Layout) -> Result<(), String
     for header in &mut found {
         header.own_attributes.other.clear();
     }
-    if found != layout.headers(&Attributes::new()) {
+    if found != layout.headers(channels, &Attributes::new()) {
         return Err("the parts and channels are not those that the axes demand".to_owned());
     }
     Ok(())
+}
+
+/// The channels that there are.
+pub(super) fn channels(meta: &MetaData) -> Channels {
+    let lists = meta.headers.iter().map(|header| &header.channels.list);
+    let found: Vec<_> = lists.flatten().map(|channel| &channel.name).collect();
+    Channels::those(|name| found.iter().any(|own| own.bytes() == name.as_bytes()))
 }
 
 /// An attribute of the first part, decoded.

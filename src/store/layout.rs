@@ -1,6 +1,6 @@
 //! Where each value lies in the file: parts, channels, tiles and blocks.
 
-use super::{Panel, STATE_CHANNELS};
+use super::{Channels, Panel, STATE_CHANNELS};
 use crate::scene::Grid;
 use exr::block::BlockIndex;
 use exr::math::{RoundingMode, Vec2};
@@ -15,9 +15,9 @@ use std::collections::HashMap;
 /// How many panels, and how many cells in each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Layout {
-    /// Panels along x, one per taper.
+    /// Panels along x, one per value of the first sweep axis.
     pub columns: usize,
-    /// Panels along y, one per curvature.
+    /// Panels along y, one per value of the second.
     pub rows: usize,
     /// Cells along x in a panel, one per push angle.
     pub push_angles: usize,
@@ -26,18 +26,21 @@ pub struct Layout {
 }
 
 impl Layout {
-    /// The layout of a sweep.
+    /// The layout of a sweep over at most two axes.
     #[must_use]
     pub fn of(grid: &Grid) -> Self {
+        let [columns, rows] = grid
+            .atlas()
+            .map(|axis| axis.map_or(1, |own| own.values.len()));
         Self {
-            columns: grid.taper.as_ref().map_or(1, Vec::len),
-            rows: grid.curvature_per_mm.as_ref().map_or(1, Vec::len),
+            columns,
+            rows,
             push_angles: grid.push_angle_deg.len(),
             distances: grid.distance_mm.len(),
         }
     }
 
-    /// Number of panels. Panel `row * columns + column` belongs to that curvature and that taper.
+    /// Number of panels. Panel `row * columns + column` belongs to those values of the axes.
     #[must_use]
     pub const fn panels(&self) -> usize {
         self.columns * self.rows
@@ -92,9 +95,14 @@ impl Layout {
     }
 
     /// One header per part, all with the same attributes, so that each part stands alone.
-    pub(super) fn headers(&self, attributes: &HashMap<Text, AttributeValue>) -> Headers {
+    pub(super) fn headers(
+        &self,
+        channels: Channels,
+        attributes: &HashMap<Text, AttributeValue>,
+    ) -> Headers {
         let size = Vec2(self.columns * self.push_angles, self.rows * self.distances);
-        let described = parts(&Panel::unresolved(0)).map(|part| {
+        let nothing = Panel::unresolved(0, channels);
+        let described = parts(&nothing, channels).into_iter().map(|part| {
             let channels = part.channels.into_iter();
             let channels = channels.map(|own| ChannelDescription::named(own.name, own.kind));
             let mut header = Header::new(Text::from(part.name), size, channels.collect())
@@ -102,7 +110,7 @@ impl Layout {
             header.own_attributes.other = attributes.clone();
             header
         });
-        described.into_iter().collect()
+        described.collect()
     }
 }
 
@@ -122,8 +130,8 @@ pub(super) struct Channel<'a> {
     pub(super) bytes: &'a [u8],
 }
 
-/// The parts of a panel, in the order of the file.
-pub(super) fn parts(panel: &Panel) -> [Part<'_>; 3] {
+/// The parts of a panel that have some of the `channels`, in the order of the file.
+pub(super) fn parts(panel: &Panel, channels: Channels) -> Vec<Part<'_>> {
     let mut state: Vec<_> = STATE_CHANNELS
         .into_iter()
         .zip(&panel.state)
@@ -140,7 +148,14 @@ pub(super) fn parts(panel: &Panel) -> [Part<'_>; 3] {
         quantity("residual", &panel.residual),
     ];
     [("regime", regime), ("state", state), ("numerics", numerics)]
-        .map(|(name, channels)| Part { name, channels })
+        .map(|(name, mut own)| {
+            own.retain(|channel| channels.contains(channel.name));
+            let channels = own;
+            Part { name, channels }
+        })
+        .into_iter()
+        .filter(|part| !part.channels.is_empty())
+        .collect()
 }
 
 fn quantity<'a>(name: &'static str, values: &'a [f32]) -> Channel<'a> {

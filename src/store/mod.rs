@@ -2,9 +2,11 @@
 //!
 //! A map is written panel by panel and read panel by panel, so neither side's memory grows with the number of
 //! whiskers. The file has three parts, `regime`, `state` and `numerics`. Column 0 is the first push angle and row 0
-//! the first distance. One whisker fills the image; a sweep of whiskers is an atlas with one tile per whisker, taper
-//! along x and curvature along y. Every attribute is ASCII JSON: `axes`, `scene`, `title`, `whiskmap_version`,
+//! the first distance. One whisker fills the image; a sweep of whiskers is an atlas with one tile per whisker, the
+//! first sweep axis along x and the second along y. Every attribute is ASCII JSON: `axes`, `scene`, `title`, `whiskmap_version`,
 //! `engine`, `adapter`, `tolerances`, `regime_names`, `status_names`, `counts` and `panels`.
+//!
+//! A sweep that outgrows a machine goes to a Zarr store instead, a folder that many processes fill.
 //!
 //! Invariant: a file that bears its final name is complete.
 
@@ -14,20 +16,28 @@ mod header;
 mod layout;
 mod output;
 mod reader;
+#[cfg(feature = "zarr")]
+mod stored;
 mod table;
 mod tally;
 mod unfinished;
 mod writer;
+#[cfg(feature = "zarr")]
+mod zarr;
 
 pub use attributes::Description;
 pub use error::Error;
 pub use layout::Layout;
 pub use output::Output;
 pub use reader::{MapHeader, Samples, StoredMap};
+#[cfg(feature = "zarr")]
+pub use stored::Stored;
 pub use table::Table;
 pub use tally::Counts;
 pub use unfinished::abandon;
 pub use writer::MapWriter;
+#[cfg(feature = "zarr")]
+pub use zarr::ZarrStore;
 
 /// What a file holds of one whisker, and of the whole run.
-pub use crate::map::{Panel, STATE_CHANNELS, Shots};
+pub use crate::map::{Channels, Panel, STATE_CHANNELS, Shots};

@@ -2,7 +2,7 @@
 
 use super::attributes;
 use super::layout::{self, Layout, SAMPLE_BYTES};
-use super::{Counts, Error, Panel, header};
+use super::{Channels, Counts, Error, Panel, header};
 use crate::scene::Grid;
 use exr::block::UncompressedBlock;
 use exr::block::chunk::Chunk;
@@ -72,6 +72,7 @@ pub struct StoredMap {
     meta: MetaData,
     /// Where the blocks of each part begin.
     offsets: OffsetTables,
+    channels: Channels,
     header: MapHeader,
 }
 
@@ -97,7 +98,8 @@ impl StoredMap {
         let grid = attributes::decode_axes(axes)
             .map_err(|reason| foreign(format!("attribute `axes`: {reason}")))?;
         let layout = Layout::of(&grid);
-        header::check_layout(&meta, layout).map_err(&foreign)?;
+        let channels = header::channels(&meta);
+        header::check_layout(&meta, layout, channels).map_err(&foreign)?;
         Ok(Self {
             offsets: header::read_offsets(path, &mut file, &meta)?,
             header: MapHeader {
@@ -111,6 +113,7 @@ impl StoredMap {
             },
             path: path.to_owned(),
             meta,
+            channels,
         })
     }
 
@@ -133,12 +136,15 @@ impl StoredMap {
     /// The names of all channels, part by part.
     #[must_use]
     pub fn channels(&self) -> Vec<&'static str> {
-        let nothing = Panel::unresolved(0);
-        let channels = layout::parts(&nothing).map(|part| part.channels);
-        channels.iter().flatten().map(|own| own.name).collect()
+        let nothing = Panel::unresolved(0, self.channels);
+        let parts = layout::parts(&nothing, self.channels).into_iter();
+        parts
+            .flat_map(|part| part.channels)
+            .map(|own| own.name)
+            .collect()
     }
 
-    /// A whole channel, panel after panel: `[curvature][taper][distance][push angle]`, the last one fastest.
+    /// A whole channel, panel after panel: `[second axis][first axis][distance][push angle]`, the last one fastest.
     ///
     /// # Errors
     ///
@@ -181,7 +187,8 @@ impl StoredMap {
 
     /// Part, place in that part, and type of a channel.
     fn find(&self, name: &str) -> Result<(usize, usize, SampleType), Error> {
-        for (part, about) in layout::parts(&Panel::unresolved(0)).iter().enumerate() {
+        let nothing = Panel::unresolved(0, self.channels);
+        for (part, about) in layout::parts(&nothing, self.channels).iter().enumerate() {
             if let Some(place) = about.channels.iter().position(|own| own.name == name) {
                 return Ok((part, place, about.channels[place].kind));
             }

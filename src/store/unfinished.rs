@@ -80,6 +80,12 @@ impl Unfinished {
     }
 }
 
+/// Removes what killed runs have left in `folder`.
+#[cfg(feature = "zarr")]
+pub(super) fn sweep_folder(folder: &Path) {
+    sweep(folder, &prefix());
+}
+
 /// Removes the files of this host in `folder` whose process is gone: its lock is.
 fn sweep(folder: &Path, prefix: &str) {
     for entry in fs::read_dir(folder).into_iter().flatten().flatten() {

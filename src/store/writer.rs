@@ -3,7 +3,7 @@
 use super::attributes::{self, Description, attribute};
 use super::layout::{self, Channel, Layout, Part, SAMPLE_BYTES};
 use super::tally::{self, Counts};
-use super::{Error, Output, Panel, header};
+use super::{Channels, Error, Output, Panel, header};
 use crate::classify::Regime;
 use crate::map::Shots;
 use exr::block::UncompressedBlock;
@@ -24,6 +24,7 @@ pub struct MapWriter {
     /// Where the next block goes.
     position: u64,
     layout: Layout,
+    channels: Channels,
     headers: Headers,
     /// Where the table of each part is, which tells where its blocks begin. They are filled in as blocks come: those of a large
     /// sweep would not fit in memory.
@@ -38,12 +39,20 @@ impl MapWriter {
     ///
     /// # Errors
     ///
-    /// The folder is not writable, or the map is too large for EXR.
+    /// The folder is not writable, or the map is too large for EXR or has more than two sweep axes.
     pub fn create(path: &Path, about: &Description<'_>) -> Result<Self, Error> {
+        let sweep = &about.scene.grid.sweep;
+        if sweep.len() > 2 {
+            let names: Vec<&str> = sweep.iter().map(|axis| axis.parameter.axis()).collect();
+            return Err(Error::TooManyAxes {
+                path: path.to_owned(),
+                axes: names.join(", "),
+            });
+        }
         let layout = Layout::of(&about.scene.grid);
         let mut attributes = attributes::encode(about);
         attributes.extend([attribute("counts", &" ".repeat(attributes::counts_width()))]);
-        let headers = layout.headers(&attributes);
+        let headers = layout.headers(about.channels, &attributes);
 
         let preamble = header::encode(&headers).map_err(Error::at(path, Error::Encode))?;
         let mut position = preamble.len() as u64;
@@ -59,6 +68,7 @@ impl MapWriter {
             file: BufWriter::new(file),
             position,
             layout,
+            channels: about.channels,
             headers,
             tables,
             written: 0,
@@ -68,7 +78,7 @@ impl MapWriter {
         Ok(writer)
     }
 
-    /// Compresses, side by side, and appends the next panels: taper after taper, for one curvature after another.
+    /// Compresses, side by side, and appends the next panels, in the order of the sweep.
     ///
     /// # Errors
     ///
@@ -81,7 +91,11 @@ impl MapWriter {
                 panels: all,
             });
         }
-        let parts: Vec<_> = panels.iter().map(layout::parts).collect();
+        let channels = self.channels;
+        let parts: Vec<_> = panels
+            .iter()
+            .map(|panel| layout::parts(panel, channels))
+            .collect();
         for (index, parts) in (first..).zip(&parts) {
             self.check_sizes(index, parts)?;
         }

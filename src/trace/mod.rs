@@ -18,7 +18,7 @@ pub use state::Found;
 pub(crate) use columns::row;
 
 use crate::rod::Side;
-use crate::scene::{Morphology, Whisker};
+use crate::scene::{Place, Swept};
 use crate::shooting::Resolution;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -56,20 +56,15 @@ pub fn whiskers_at_once(distances: usize) -> usize {
 
 /// What `of_side` makes of each side of each whisker, in their order, CF before CB.
 pub fn sides<R: Send>(
-    whiskers: &[(Morphology, Whisker)],
-    of_side: impl Fn(&Whisker, Side) -> Vec<R> + Sync,
-) -> Vec<(Morphology, R)> {
-    let both = |(place, whisker)| Side::BOTH.map(|side| (place, whisker, side));
-    let faces: Vec<(&Morphology, &Whisker, Side)> = whiskers
-        .iter()
-        .map(|(place, whisker)| (place, whisker))
-        .flat_map(both)
-        .collect();
-    let of_face = |(place, whisker, side): (&Morphology, &Whisker, Side)| {
-        let place = *place;
-        of_side(whisker, side)
-            .into_iter()
-            .map(move |row| (place, row))
+    whiskers: &[Swept],
+    of_side: impl Fn(&Swept, Side) -> Vec<R> + Sync,
+) -> Vec<(Place, R)> {
+    let both = |swept| Side::BOTH.map(|side| (swept, side));
+    let faces: Vec<(&Swept, Side)> = whiskers.iter().flat_map(both).collect();
+    let of_face = |(swept, side): (&Swept, Side)| {
+        let place = swept.place.clone();
+        let rows = of_side(swept, side).into_iter();
+        rows.map(move |row| (place.clone(), row))
     };
     faces.into_par_iter().flat_map_iter(of_face).collect()
 }

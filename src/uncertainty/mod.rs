@@ -43,7 +43,7 @@ pub enum NoDraws {
     )]
     NoTable,
     /// Several whiskers.
-    #[error("{0}: must be left out, as one whisker is drawn around")]
+    #[error("grid.{0}: must be left out, as one whisker is drawn around")]
     Sweep(&'static str),
     /// More ends than memory should hold.
     #[error(
@@ -73,11 +73,8 @@ impl Draws {
     /// If the scene has no `[uncertainty]`, sweeps whiskers, or refuses almost every draw, or if there are too many.
     pub fn new(scene: &Scene, samples: usize, seed: u64) -> Result<Self, NoDraws> {
         let deviations: &Deviations = scene.uncertainty.as_ref().ok_or(NoDraws::NoTable)?;
-        if scene.grid.taper.is_some() {
-            return Err(NoDraws::Sweep("grid.taper"));
-        }
-        if scene.grid.curvature_per_mm.is_some() {
-            return Err(NoDraws::Sweep("grid.curvature_per_mm"));
+        if let Some(axis) = scene.grid.sweep.first() {
+            return Err(NoDraws::Sweep(axis.parameter.axis()));
         }
         let distances = scene.grid.distance_mm.len();
         let ends = samples.saturating_mul(distances);
@@ -131,7 +128,7 @@ impl Draws {
                 ends
             })
             .collect();
-        let own = curve(&self.scene.first_whisker(), &self.scene.pole);
+        let own = curve(&self.scene.whisker, &self.scene.pole);
         let first_order = first_order::deviations_deg(&self.scene, &self.varying, resolution, side);
         let rows = distances.iter().zip(own).zip(first_order).enumerate();
         rows.map(|(row, ((distance_mm, own), first_order_deg))| {
@@ -155,7 +152,7 @@ fn draw(scene: &Scene, varying: &[Varying], mut normal: Normal) -> Result<Drawn,
         let step = |one: &Varying| (*one, one.deviation * normal.draw());
         let steps: Vec<_> = varying.iter().map(step).collect();
         match moved(scene, &steps) {
-            Ok(drawn) => return Ok(((drawn.first_whisker(), drawn.pole), refused)),
+            Ok(drawn) => return Ok(((drawn.whisker.clone(), drawn.pole), refused)),
             Err(why) if refused + 1 == MOST_TRIES => {
                 let why = why.to_string();
                 let first = why.lines().next().unwrap_or_default();
@@ -170,7 +167,6 @@ fn draw(scene: &Scene, varying: &[Varying], mut normal: Normal) -> Result<Drawn,
 /// The push angles of the ends of `scene`.
 fn pushes_deg(scene: &Scene, resolution: Resolution, side: Side) -> Vec<Option<f64>> {
     let distances = &scene.grid.distance_mm;
-    let whisker = scene.first_whisker();
-    let ends = curve_at(resolution, &whisker, &scene.pole, side, distances);
+    let ends = curve_at(resolution, &scene.whisker, &scene.pole, side, distances);
     ends.iter().map(|end| end.push_angle_deg).collect()
 }

@@ -13,7 +13,7 @@ fn a_curve_is_a_table_of_exact_numbers() {
     let run = good(&place, &["curve", "scene.toml"]);
     let rows = cells(&run.out, CURVE);
     let scene = Scene::parse(SCENE, "scene").unwrap();
-    let whisker = scene.whisker_at(None, None);
+    let whisker = scene.first_whisker().whisker;
     let expected: Vec<_> = Side::BOTH
         .into_iter()
         .flat_map(|side| curve(&whisker, &scene.pole, side, &scene.grid.distance_mm))

@@ -20,6 +20,8 @@ mod render;
 mod shape;
 #[cfg(unix)]
 mod signals;
+#[cfg(unix)]
+mod store;
 mod sweep;
 mod tolerance;
 mod traces;
@@ -147,6 +149,12 @@ impl Run {
         assert_eq!(self.count("unresolved"), 0, "{self:?}");
         let disagreements = "disagreements between cells and boundaries";
         assert_eq!(self.count(disagreements), 0, "{self:?}");
+    }
+
+    /// It ended with this exit code, and said this.
+    fn assert_said(&self, code: i32, said: &str) {
+        assert_eq!(self.code, Some(code), "{self:?}");
+        assert!(self.err.contains(said), "{self:?}");
     }
 
     /// Refused as wrong input: exit code 2, nothing on standard output, one message that says all of `parts`.

@@ -2,6 +2,7 @@
 
 use crate::{Place, names};
 use std::path::Path;
+use whiskmap::scene::Parameter;
 use whiskmap::store::{Layout, StoredMap};
 
 const SWEEP: &str = r#"title = "A small sweep"
@@ -59,8 +60,8 @@ fn every_panel_is_the_map_of_its_whisker() {
         distances: 24,
     };
     assert_eq!(sweep.layout, layout);
-    let tapers = sweep.grid.taper.as_ref().unwrap();
-    let curvatures = sweep.grid.curvature_per_mm.as_ref().unwrap();
+    let tapers = sweep.grid.axis(Parameter::Taper).unwrap();
+    let curvatures = sweep.grid.axis(Parameter::ParabolaPerMm).unwrap();
     assert_eq!([tapers[0], tapers[3]], [0.0, 1.0]);
     assert_eq!(*curvatures, [0.0, 0.02, 0.04]);
 

@@ -6,8 +6,8 @@ use std::path::Path;
 use std::sync::LazyLock;
 use whiskmap::classify::Regime;
 use whiskmap::integrate;
-use whiskmap::map::{Panel, STATE_CHANNELS, Shots};
-use whiskmap::scene::{Grid, Pole, Setup, Whisker};
+use whiskmap::map::{Channels, Panel, STATE_CHANNELS, Shots};
+use whiskmap::scene::{Grid, Parameter, Pole, Setup, SweepAxis, Whisker};
 use whiskmap::store::{Counts, Description, MapWriter};
 
 /// `count` values from `first` to `last`.
@@ -43,8 +43,16 @@ pub fn scene(
         grid: Grid {
             push_angle_deg: spread(-60.0, 70.0, push_angles),
             distance_mm: spread(3.0, 20.5, distances),
-            taper,
-            curvature_per_mm,
+            sweep: [
+                (Parameter::Taper, taper),
+                (Parameter::ParabolaPerMm, curvature_per_mm),
+            ]
+            .into_iter()
+            .filter_map(|(parameter, values)| {
+                let values = values?;
+                Some(SweepAxis { parameter, values })
+            })
+            .collect(),
         },
         name: "made-up".to_owned(),
         text: "title = \"A made-up whisker\"\n".to_owned(),
@@ -114,6 +122,7 @@ pub fn describe<'a>(scene: &'a Setup, tolerances: &'a Value) -> Description<'a> 
         scene,
         engine: &ENGINE,
         tolerances,
+        channels: Channels::ALL,
     }
 }
 
@@ -121,10 +130,7 @@ pub fn describe<'a>(scene: &'a Setup, tolerances: &'a Value) -> Description<'a> 
 pub fn write(path: &Path, scene: &Setup) -> Counts {
     let tolerances = json!({"rtol": 0.1 + 0.2});
     let mut writer = MapWriter::create(path, &describe(scene, &tolerances)).unwrap();
-    let grid = &scene.grid;
-    let tapers = grid.taper.as_ref().map_or(1, Vec::len);
-    let curvatures = grid.curvature_per_mm.as_ref().map_or(1, Vec::len);
-    let panels: Vec<Panel> = (0..tapers * curvatures)
+    let panels: Vec<Panel> = (0..scene.whisker_count())
         .map(|index| panel(scene, index))
         .collect();
     // Not always as many at once.

@@ -79,12 +79,12 @@ proptest! {
         let text: String = chars.into_iter().collect();
         match Scene::parse(&text, "test.toml") {
             Ok(scene) => {
-                let axes = [Some(&scene.grid.push_angle_deg), Some(&scene.grid.distance_mm), scene.grid.taper.as_ref()];
+                let axes = [Some(&scene.grid.push_angle_deg), Some(&scene.grid.distance_mm), scene.grid.sweep.first().map(|axis| &axis.values)];
                 for axis in axes.into_iter().flatten() {
                     prop_assert!(!axis.is_empty() && axis.iter().all(|x| x.is_finite()));
                     prop_assert!(axis.is_sorted_by(|a, b| a < b));
                 }
-                for (_, whisker) in scene.whiskers() {
+                for whisker in scene.whiskers().map(|own| own.whisker) {
                     prop_assert!((0.0..=whisker.base_radius_um).contains(&whisker.tip_radius_um));
                 }
             }

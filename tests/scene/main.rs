@@ -6,13 +6,14 @@
 )]
 
 mod any_text;
+mod axes;
 mod refused;
 mod shape;
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use whiskmap::scene::{Curvature, Morphology, Parameter, Scene};
+use whiskmap::scene::{Curvature, Parameter, Scene};
 
 /// A valid scene with every table and all axes but one, to be spoilt line by line. Lines are counted from 1.
 const BASE: &str = r#"title = "base"
@@ -106,14 +107,21 @@ fn every_value_arrives_where_it_belongs() {
     assert_eq!(scene.whisker.base_radius_um, 30.0);
     assert_eq!(scene.whisker.tip_radius_um, 1.5);
     assert_eq!(scene.whisker.youngs_modulus_gpa, 3.0);
-    assert_eq!(scene.whisker.curvature, curvature(0.02, 2.5));
+    // The first of the axis, and the vertex that it keeps.
+    assert_eq!(scene.whisker.curvature, curvature(0.0, 2.5));
     assert_eq!(scene.pole.radius_mm, 0.25);
     assert_eq!(scene.grid.push_angle_deg, [-70.0, -35.0, 0.0, 35.0, 70.0]);
     assert_eq!(scene.grid.distance_mm, [2.0, 7.5, 20.0]);
-    assert_eq!(scene.grid.taper, None);
-    assert_eq!(scene.grid.curvature_per_mm, Some(vec![0.0, 0.04]));
+    assert_eq!(scene.grid.axis(Parameter::Taper), None);
+    assert_eq!(
+        scene.grid.axis(Parameter::ParabolaPerMm),
+        Some(&[0.0, 0.04][..])
+    );
     let swept = parse(&sweep()).unwrap();
-    assert_eq!(swept.grid.taper, Some(vec![0.0, 0.5, 1.0]));
+    assert_eq!(
+        swept.grid.axis(Parameter::Taper),
+        Some(&[0.0, 0.5, 1.0][..])
+    );
     // The first of the axis.
     assert_eq!(swept.whisker.tip_radius_um, 30.0);
 }
@@ -139,11 +147,12 @@ fn what_may_be_left_out_may_be_left_out() {
     assert_eq!(scene.grid.distance_mm, [2.0]);
     assert_eq!(scene.name, "test");
     let whiskers: Vec<_> = scene.whiskers().collect();
-    let straight_cone = Morphology {
-        taper: 1.0,
-        curvature_per_mm: 0.0,
-    };
-    assert_eq!(whiskers, [(straight_cone, scene.whisker.clone())]);
+    assert_eq!(whiskers.len(), 1);
+    assert_eq!(whiskers[0].place.values().count(), 0);
+    assert_eq!(
+        (&whiskers[0].whisker, whiskers[0].pole),
+        (&scene.whisker, scene.pole)
+    );
     assert!(!scene.is_sweep());
 }
 
@@ -151,11 +160,8 @@ fn what_may_be_left_out_may_be_left_out() {
 fn a_parabola_of_zero_is_straight_but_lends_its_vertex_to_an_axis() {
     let own_zero = with_line(8, "parabola_per_mm = 0");
     let scene = parse(&own_zero).unwrap();
-    assert_eq!(
-        scene.whisker_at(None, Some(0.04)).curvature,
-        curvature(0.04, 2.5)
-    );
-    assert_eq!(scene.whisker_at(None, None).curvature, None);
+    let curvatures: Vec<_> = scene.whiskers().map(|own| own.whisker.curvature).collect();
+    assert_eq!(curvatures, [None, curvature(0.04, 2.5)]);
 
     let no_axis = own_zero.replace("curvature_per_mm = [0, 0.04]", "");
     assert_eq!(parse(&no_axis).unwrap().whisker.curvature, None);
@@ -203,7 +209,10 @@ fn whiskers_come_in_atlas_order_taper_first() {
     let scene = parse(&sweep()).unwrap();
     let seen: Vec<_> = scene
         .whiskers()
-        .map(|(place, whisker)| (place.taper, whisker.tip_radius_um, whisker.curvature))
+        .map(|own| {
+            let taper = own.place.value(Parameter::Taper).unwrap();
+            (taper, own.whisker.tip_radius_um, own.whisker.curvature)
+        })
         .collect();
     assert!(scene.is_sweep());
     let bent = curvature(0.04, 2.5);
@@ -224,10 +233,7 @@ fn whiskers_come_in_atlas_order_taper_first() {
         assert_eq!(groups.concat(), all);
     }
     assert_eq!(scene.whisker_count(), all.len());
-    assert_eq!(
-        (scene.first_whisker(), scene.last_whisker()),
-        (all[0].1.clone(), all[5].1.clone())
-    );
+    assert_eq!(scene.first_whisker(), all[0]);
 }
 
 /// The bound on the vertex is that beyond which the chord from the base stops growing.
@@ -271,7 +277,7 @@ fn few_values_stay_and_many_are_represented() {
         .thinned(2, 1);
     assert_eq!(thinned.grid.push_angle_deg, [4.0, 12.0]);
     assert_eq!(thinned.grid.distance_mm, [2.0, 20.0]);
-    assert_eq!(thinned.grid.taper, Some(vec![0.5]));
+    assert_eq!(thinned.grid.axis(Parameter::Taper), Some(&[0.5][..]));
     assert_eq!(scene.thinned(9, 9), scene);
 }
 

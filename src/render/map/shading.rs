@@ -94,8 +94,11 @@ impl Shading {
     }
 }
 
-/// Whether any panel shows a stretch of the detachment boundary.
+/// Whether any panel shows a stretch of the detachment boundary, which takes the margins.
 fn has_boundary(map: &StoredMap) -> Result<bool, Error> {
+    if !map.channels().contains(&"margin_deg") {
+        return Ok(false);
+    }
     for index in 0..map.layout.panels() {
         let margin_deg = map.read_panel("margin_deg", index)?;
         if !boundary::stretches(&map.grid, &margin_deg).is_empty() {

@@ -1,4 +1,5 @@
-//! Where the panels of a map stand: one whisker alone, or a contact sheet with taper to the right and curvature upwards.
+//! Where the panels of a map stand: one whisker alone, or a contact sheet with the first sweep axis to the right and the
+//! second upwards.
 
 use super::cells::Cells;
 use super::panel;
@@ -11,6 +12,7 @@ use crate::render::heading::{ALONE, HEAD_ROOM, Heading, SIDES, TICK, TITLE, TITL
 use crate::render::picture::{Anchor, Area, Picture};
 use crate::render::ticks::{self, Tick};
 use crate::render::units;
+use crate::scene::SweepAxis;
 use crate::store::{Layout, StoredMap};
 
 /// All panels of a contact sheet together are at most this wide and high, whatever their number.
@@ -66,19 +68,22 @@ impl Sheet {
         let pitch = PANEL.min(SHEET[0] / panels[0]).min(SHEET[1] / panels[1]);
         let gap = (0.06 * pitch).min(10.0);
         let size = panels.map(|panels| pitch * panels - gap);
-        let axis = |values: &Option<Vec<f64>>, label: &'static str, size: f64| {
-            let Some(values) = values else {
-                return (Vec::new(), "");
-            };
-            let middle = |place: usize| (pitch * place as f64 + 0.5 * (pitch - gap)) / size;
-            let labels = ticks::labels(values).into_iter().enumerate();
-            let ticks = labels.map(|(place, label)| Tick::new(middle(place), label));
-            (ticks.collect(), label)
+        let label = |axis: &SweepAxis| match axis.parameter.unit() {
+            "1" => axis.parameter.title().to_owned(),
+            unit => format!("{} ({unit})", axis.parameter.title()),
         };
-        let taper = "taper (1 \u{2212} tip/base radius)";
+        let [across, upwards] = grid.atlas();
+        let labels = [across, upwards].map(|axis| axis.map_or_else(String::new, label));
+        let ticks = |axis: Option<&SweepAxis>, size: f64| {
+            let middle = |place: usize| (pitch * place as f64 + 0.5 * (pitch - gap)) / size;
+            let labels = axis.map_or_else(Vec::new, |own| ticks::labels(&own.values));
+            let labels = labels.into_iter().enumerate();
+            let ticks = labels.map(|(place, label)| Tick::new(middle(place), label));
+            ticks.collect()
+        };
         let axes = [
-            axis(&grid.taper, taper, size[0]),
-            axis(&grid.curvature_per_mm, "curvature (1/mm)", size[1]),
+            (ticks(across, size[0]), &*labels[0]),
+            (ticks(upwards, size[1]), &*labels[1]),
         ];
         let ends = |values: &[f64], unit: f64| {
             ticks::labels(&[values[0] / unit, values[values.len() - 1] / unit]).join(" to ")

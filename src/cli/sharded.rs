@@ -1,0 +1,117 @@
+//! `whiskmap map --format zarr`: a run fills some blocks of a store.
+
+use super::failure::{Failure, check_resolved, say};
+use super::{map::print, progress, signals};
+use std::path::Path;
+use std::str::FromStr;
+use std::time::Instant;
+use whiskmap::integrate::Engine;
+use whiskmap::map::{self, Panel, Progress};
+use whiskmap::plan::Plan;
+use whiskmap::scene::Scene;
+use whiskmap::store::{Description, ZarrStore};
+
+/// The blocks that one of `count` processes computes: every `count`-th.
+#[derive(Clone, Copy, Debug)]
+pub struct Shard {
+    index: usize,
+    count: usize,
+}
+
+impl Shard {
+    fn has(self, block: usize) -> bool {
+        block % self.count == self.index
+    }
+}
+
+impl FromStr for Shard {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let numbers = text.split_once('/').and_then(|(index, count)| {
+            let [index, count] = [index, count].map(|number| number.parse().ok());
+            Some((index?, count?))
+        });
+        match numbers {
+            Some((index, count)) if index < count => Ok(Self { index, count }),
+            _ => Err("must be I/N with I from 0 to N-1, such as 0/8".to_owned()),
+        }
+    }
+}
+
+/// What a run does to a store.
+pub struct Run<'a> {
+    /// The part of it that the run computes; all without it.
+    pub shard: Option<Shard>,
+    /// Whether blocks that are there are left as they are.
+    pub resume: bool,
+    /// What shoots before the refinement.
+    pub engine: Option<&'a mut dyn Engine>,
+}
+
+impl Run<'_> {
+    /// Computes the blocks that are due, and writes each when it is done.
+    pub fn fill(
+        self,
+        path: &Path,
+        scene: &Scene,
+        mut plan: Plan,
+        about: &Description<'_>,
+    ) -> Result<(), Failure> {
+        let start = Instant::now();
+        let may_exist = self.resume || self.shard.is_some();
+        let store = ZarrStore::begin(path, scene, about, may_exist)?;
+        let is_due = |block: &usize| {
+            let is_ours = self.shard.is_none_or(|shard| shard.has(*block));
+            is_ours && !(self.resume && store.is_done(*block))
+        };
+        let blocks: Vec<usize> = (0..store.block_count()).filter(is_due).collect();
+        plan.parts = blocks.iter().map(|block| store.whiskers(*block)).collect();
+        let panel = scene.grid.push_angle_deg.len() * scene.grid.distance_mm.len();
+        let whiskers: usize = plan.parts.iter().map(ExactSizeIterator::len).sum();
+        say(&format!(
+            "engine: {}; blocks: {} of {}",
+            about.engine.engine,
+            blocks.len(),
+            store.block_count()
+        ));
+        signals::advise("finished blocks stay: go on by the same command with --resume");
+
+        let bar = progress::bar(panel * whiskers, "cells");
+        let mut due = blocks
+            .iter()
+            .map(|block| (*block, store.whiskers(*block).len()));
+        let mut next = due.next();
+        let mut panels: Vec<Panel> = Vec::new();
+        let result = map::run(scene, &plan, self.engine, &mut |progress| match progress {
+            Progress::Settled(cells) => {
+                bar.inc(cells as u64);
+                Ok(())
+            }
+            Progress::Panels(finished) => {
+                panels.extend_from_slice(finished);
+                if let Some((block, whiskers)) = next
+                    && panels.len() == whiskers
+                {
+                    store.write(block, &panels)?;
+                    panels.clear();
+                    next = due.next();
+                }
+                Ok::<(), whiskmap::store::Error>(())
+            }
+        });
+        bar.finish_and_clear();
+        let summary = result?;
+        if let Some(failure) = &summary.engine_failure {
+            say(&format!("warning: {failure}; the CPU went on in its stead"));
+        }
+        print(
+            scene,
+            &summary,
+            start.elapsed().as_secs_f64(),
+            &[path.to_owned()],
+        )?;
+        let see = "the channel `status`";
+        check_resolved(summary.unresolved(), summary.cells(), "cells", see)
+    }
+}

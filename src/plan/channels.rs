@@ -1,0 +1,105 @@
+//! What a map tells of every cell, and the choice of it that is computed and stored.
+
+use std::fmt;
+use std::str::FromStr;
+
+/// The channels of a state.
+pub const STATE_CHANNELS: [&str; 9] = [
+    "arc_length_mm",
+    "contact_angle_deg",
+    "force_un",
+    "base_force_x_un",
+    "base_force_y_un",
+    "base_moment_nnm",
+    "push_chord_deg",
+    "contact_distance_mm",
+    "energy_nj",
+];
+
+/// Channels beside those of a state.
+const OTHERS: [&str; 5] = ["regime", "status", "margin_deg", "newton_steps", "residual"];
+
+/// How many channels there are.
+const COUNT: usize = OTHERS.len() + STATE_CHANNELS.len();
+
+/// Some of the channels of a map.
+///
+/// ```
+/// use whiskmap::plan::Channels;
+///
+/// let some: Channels = "regime,force_un".parse()?;
+/// assert!(some.contains("force_un") && !some.contains("energy_nj"));
+/// assert_eq!(some.to_string(), "regime, force_un");
+/// assert!("force".parse::<Channels>().is_err());
+/// # Ok::<(), String>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Channels([bool; COUNT]);
+
+impl Channels {
+    /// Every channel.
+    pub const ALL: Self = Self([true; COUNT]);
+
+    /// Those that `is_wanted` says.
+    #[must_use]
+    pub fn those(is_wanted: impl Fn(&str) -> bool) -> Self {
+        let mut chosen = [false; COUNT];
+        for (chosen, name) in chosen.iter_mut().zip(names()) {
+            *chosen = is_wanted(name);
+        }
+        Self(chosen)
+    }
+
+    /// The same and `name`.
+    #[must_use]
+    pub fn with(self, name: &str) -> Self {
+        Self::those(|other| other == name || self.contains(other))
+    }
+
+    /// Whether there is one of this name among them.
+    #[must_use]
+    pub fn contains(&self, name: &str) -> bool {
+        self.names().any(|own| own == name)
+    }
+
+    /// Their names: regime and status, those of a state, those of the numerics.
+    pub fn names(&self) -> impl Iterator<Item = &'static str> {
+        let chosen = names().zip(self.0);
+        chosen.filter_map(|(name, is_chosen)| is_chosen.then_some(name))
+    }
+
+    /// Whether there is one of a state among them.
+    #[must_use]
+    pub fn has_state(&self) -> bool {
+        STATE_CHANNELS.iter().any(|name| self.contains(name))
+    }
+}
+
+/// The names of all channels.
+fn names() -> impl Iterator<Item = &'static str> {
+    let (verdict, numerics) = OTHERS.split_at(2);
+    let all = verdict.iter().chain(&STATE_CHANNELS).chain(numerics);
+    all.copied()
+}
+
+impl fmt::Display for Channels {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.names().collect::<Vec<_>>().join(", "))
+    }
+}
+
+impl FromStr for Channels {
+    type Err = String;
+
+    /// Names with commas between them.
+    fn from_str(list: &str) -> Result<Self, String> {
+        let wanted: Vec<&str> = list.split(',').map(str::trim).collect();
+        match wanted.iter().find(|name| !Self::ALL.contains(name)) {
+            Some(_) => Err(format!(
+                "must be names with commas between them, out of {}",
+                Self::ALL
+            )),
+            None => Ok(Self::those(|name| wanted.contains(&name))),
+        }
+    }
+}

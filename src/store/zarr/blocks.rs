@@ -1,0 +1,188 @@
+//! How a sweep is cut into blocks: a block of whiskers is one file of each array, and what a run finishes as a whole.
+
+use crate::scene::Grid;
+use std::ops::Range;
+
+/// Fewest and most cells of a block: what is lost with it takes seconds, and its panels 120 MB of memory.
+const CELLS: [usize; 2] = [1 << 14, 1 << 21];
+
+/// Blocks of a sweep whose size lies between these limits; there is a file for each of them and each array.
+const WANTED: usize = 128;
+
+/// Most cells of a chunk, which is what is packed and read as a whole: 4 MB of a quantity.
+const CELLS_OF_A_CHUNK: usize = 1 << 20;
+
+/// The blocks of a sweep. They depend on its grid alone, so that any number of processes agree on them.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Blocks {
+    /// Values of each sweep axis.
+    axes: Vec<usize>,
+    /// Values of each sweep axis in a block; the last block of an axis may have fewer.
+    shape: Vec<usize>,
+    /// Distances and push angles.
+    panel: [usize; 2],
+}
+
+impl Blocks {
+    /// The blocks of `grid`. Along the first axes a block has all values, along one of them some, and one along the
+    /// rest: its whiskers follow one another.
+    pub(super) fn of(grid: &Grid) -> Self {
+        let axes: Vec<usize> = grid.sweep.iter().map(|axis| axis.values.len()).collect();
+        let panel = [grid.distance_mm.len(), grid.push_angle_deg.len()];
+        let cells = panel[0] * panel[1];
+        let wanted = cells * grid.whisker_count() / WANTED;
+        let mut room = (wanted.clamp(CELLS[0], CELLS[1]) / cells).max(1);
+        let shape = axes.iter().map(|&values| {
+            let taken = values.min(room);
+            room = if taken == values { room / values } else { 1 };
+            room = room.max(1);
+            taken
+        });
+        Self {
+            shape: shape.collect(),
+            axes,
+            panel,
+        }
+    }
+
+    /// How many blocks there are.
+    pub(super) fn count(&self) -> usize {
+        self.blocks_per_axis().product()
+    }
+
+    fn blocks_per_axis(&self) -> impl Iterator<Item = usize> {
+        let axes = self.axes.iter().zip(&self.shape);
+        axes.map(|(values, block)| values.div_ceil(*block))
+    }
+
+    /// The place of a block on every axis of an array.
+    pub(super) fn place(&self, block: usize) -> Vec<usize> {
+        let mut rest = block;
+        let on_axes = self.blocks_per_axis().map(|blocks| {
+            let at = rest % blocks;
+            rest /= blocks;
+            at
+        });
+        on_axes.collect()
+    }
+
+    /// The whiskers of a block, by their indices in the sweep.
+    pub(super) fn whiskers(&self, block: usize) -> Range<usize> {
+        let (mut first, mut count, mut stride) = (0, 1, 1);
+        for (axis, at) in self.place(block).into_iter().enumerate() {
+            let (values, block) = (self.axes[axis], self.shape[axis]);
+            first += at * block * stride;
+            count *= block.min(values - at * block);
+            stride *= values;
+        }
+        first..first + count
+    }
+
+    /// The block of a whisker, and its place in the block.
+    pub(super) fn find(&self, whisker: usize) -> (usize, usize) {
+        let whole = (0..self.count()).find(|block| self.whiskers(*block).contains(&whisker));
+        let block = whole.unwrap_or_default();
+        (block, whisker - self.whiskers(block).start)
+    }
+
+    /// Where whisker `index` of `block` is among those that its files have room for, the last axis varying fastest.
+    pub(super) fn slot(&self, block: usize, index: usize) -> usize {
+        let mut rest = index;
+        let at = self.place(block);
+        let mut slot = 0;
+        for (axis, room) in self.shape.iter().enumerate() {
+            let here = (*room).min(self.axes[axis] - at[axis] * room);
+            slot = slot * room + rest % here;
+            rest /= here;
+        }
+        slot
+    }
+
+    /// Whiskers that the files of a block have room for.
+    pub(super) fn slots(&self) -> usize {
+        self.shape.iter().product()
+    }
+
+    /// Values along every sweep axis, in all and in a block.
+    pub(super) fn sweep(&self) -> [&[usize]; 2] {
+        [&self.axes, &self.shape]
+    }
+
+    /// Distances and push angles of a panel.
+    pub(super) const fn panel(&self) -> [usize; 2] {
+        self.panel
+    }
+
+    /// Distances of a chunk, and of a panel filled up to whole chunks.
+    pub(super) fn distances(&self) -> [usize; 2] {
+        let [distances, push_angles] = self.panel;
+        let chunk = (CELLS_OF_A_CHUNK / push_angles).clamp(1, distances);
+        [chunk, distances.div_ceil(chunk) * chunk]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Parameter, SweepAxis};
+
+    fn grid(axes: &[usize], panel: [usize; 2]) -> Grid {
+        let values = |count: usize| (0..count).map(|i| i as f64).collect();
+        let axes = axes.iter().zip(Parameter::SWEPT);
+        Grid {
+            push_angle_deg: values(panel[1]),
+            distance_mm: values(panel[0]),
+            sweep: axes
+                .map(|(&count, parameter)| SweepAxis {
+                    parameter,
+                    values: values(count),
+                })
+                .collect(),
+        }
+    }
+
+    /// In a block, as in the sweep, the first axis varies fastest; in its files it varies slowest.
+    #[test]
+    fn every_whisker_is_in_one_place() {
+        for (axes, panel) in [
+            (&[][..], [7, 5]),
+            (&[5], [64, 64]),
+            (&[4, 7, 3], [64, 64]),
+            (&[3, 1, 4, 2], [128, 128]),
+            (&[100, 9], [2048, 2048]),
+        ] {
+            let grid = grid(axes, panel);
+            let blocks = Blocks::of(&grid);
+            let mut next = 0;
+            for block in 0..blocks.count() {
+                let whiskers = blocks.whiskers(block);
+                assert_eq!(whiskers.start, next);
+                next = whiskers.end;
+                let at = blocks.place(block);
+                let mut slots: Vec<usize> = Vec::new();
+                for (index, whisker) in whiskers.enumerate() {
+                    assert_eq!(blocks.find(whisker), (block, index));
+                    let inside = grid.indices(whisker);
+                    let mut slot = 0;
+                    for (axis, room) in blocks.shape.iter().enumerate() {
+                        slot = slot * room + inside[axis] - at[axis] * room;
+                    }
+                    assert_eq!(blocks.slot(block, index), slot);
+                    slots.push(slot);
+                }
+                slots.sort_unstable();
+                slots.dedup();
+                assert_eq!(slots.len(), blocks.whiskers(block).len());
+                assert!(slots.iter().all(|slot| *slot < blocks.slots()));
+            }
+            assert_eq!(next, grid.whisker_count());
+        }
+    }
+
+    #[test]
+    fn large_panels_are_cut_into_chunks() {
+        let blocks = Blocks::of(&grid(&[2], [3000, 2000]));
+        assert_eq!(blocks.distances(), [524, 3144]);
+        assert_eq!(Blocks::of(&grid(&[2], [300, 200])).distances(), [300, 300]);
+    }
+}

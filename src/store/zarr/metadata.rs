@@ -1,0 +1,217 @@
+//! What a store says of itself: its arrays, and the attributes of the whole.
+
+use super::array::{Array, Kind, NOT_COMPUTED, about};
+use super::blocks::Blocks;
+use crate::classify::{Regime, Status};
+use crate::scene::{Grid, Setup};
+use crate::store::{Channels, Description};
+use serde_json::{Map, Value, json};
+
+/// The number of cells of each regime, whisker by whisker.
+pub(super) const CELLS: &str = "regime_cells";
+
+/// The codes of the regimes, along the last axis of [`CELLS`].
+const CODES: &str = "regime_code";
+
+/// Units and meaning of every channel.
+const MEANINGS: [(&str, Option<&str>, &str); 14] = [
+    ("regime", None, "what becomes of the whisker"),
+    ("status", None, "how that was settled"),
+    (
+        "arc_length_mm",
+        Some("mm"),
+        "arclength from the base to the contact",
+    ),
+    (
+        "contact_angle_deg",
+        Some("degree"),
+        "angle of the whisker at the contact",
+    ),
+    (
+        "force_un",
+        Some("uN"),
+        "force between pole and whisker, normal to both",
+    ),
+    (
+        "base_force_x_un",
+        Some("uN"),
+        "force that the pole puts on the base, along its tangent",
+    ),
+    (
+        "base_force_y_un",
+        Some("uN"),
+        "force that the pole puts on the base, across its tangent",
+    ),
+    (
+        "base_moment_nnm",
+        Some("nN m"),
+        "moment that the pole puts on the base",
+    ),
+    (
+        "push_chord_deg",
+        Some("degree"),
+        "angle at the base between the contact and the resting whisker as far away",
+    ),
+    (
+        "contact_distance_mm",
+        Some("mm"),
+        "straight distance from the base to the contact",
+    ),
+    ("energy_nj", Some("nJ"), "energy of bending"),
+    (
+        "margin_deg",
+        Some("degree"),
+        "push angle left until detachment",
+    ),
+    ("newton_steps", None, "Newton steps"),
+    (
+        "residual",
+        Some("1"),
+        "distance from the wanted pole over the whisker's length",
+    ),
+];
+
+/// The arrays that are filled block by block. The regime, without which a block is not there, is the last.
+pub(super) fn arrays(
+    grid: &Grid,
+    blocks: &Blocks,
+    channels: Channels,
+) -> Result<Vec<Array>, String> {
+    let sweep = grid.sweep.iter().map(|axis| axis.parameter.axis());
+    let sweep: Vec<&str> = sweep.collect();
+    let of_cells = [&sweep[..], &["distance_mm", "push_angle_deg"]].concat();
+    let of_regimes = [&sweep[..], &[CODES]].concat();
+    let mut arrays = vec![Array::of_whiskers(
+        CELLS,
+        Kind::Count,
+        blocks,
+        Regime::ALL.len(),
+        &of_regimes,
+        Value::Object(about(None, "cells of each regime")),
+    )?];
+    let mut names: Vec<&str> = channels.names().filter(|name| *name != "regime").collect();
+    names.push("regime");
+    for name in names {
+        let kind = match name {
+            "regime" | "status" => Kind::Code,
+            "newton_steps" => Kind::Count,
+            _ => Kind::Quantity,
+        };
+        let about = Value::Object(of_channel(name));
+        arrays.push(Array::of_cells(name, kind, blocks, &of_cells, about)?);
+    }
+    Ok(arrays)
+}
+
+/// The attributes of a channel; codes are flags in the sense of the CF conventions.
+fn of_channel(name: &str) -> Map<String, Value> {
+    let meaning = MEANINGS.iter().find(|(own, ..)| *own == name);
+    let (_, units, long_name) = *meaning.unwrap_or(&("", None, ""));
+    let mut about = about(units, long_name);
+    let mut flags = |codes: Vec<u32>, names: Vec<&str>| {
+        let names = names.iter().map(|name| word(name));
+        let names = names.chain(["not_computed".to_owned()]).collect::<Vec<_>>();
+        let codes = codes.into_iter().chain([u32::from(NOT_COMPUTED)]);
+        about.insert("flag_values".to_owned(), json!(codes.collect::<Vec<_>>()));
+        about.insert("flag_meanings".to_owned(), json!(names.join(" ")));
+    };
+    match name {
+        "regime" => flags(
+            Regime::ALL.map(Regime::code).to_vec(),
+            Regime::ALL.map(Regime::name).to_vec(),
+        ),
+        "status" => flags(
+            Status::ALL.map(Status::code).to_vec(),
+            Status::ALL.map(Status::name).to_vec(),
+        ),
+        _ => {}
+    }
+    about
+}
+
+/// A name as one word.
+fn word(name: &str) -> String {
+    let parts = name.split(|c: char| !c.is_ascii_alphanumeric());
+    let parts: Vec<&str> = parts.filter(|part| !part.is_empty()).collect();
+    parts.join("_")
+}
+
+/// The coordinates along every axis, with their values as bytes.
+pub(super) fn coordinates(grid: &Grid) -> Result<Vec<(Array, Vec<u8>)>, String> {
+    let inside = [
+        (
+            "distance_mm",
+            "mm",
+            "distance at first touch",
+            &grid.distance_mm,
+        ),
+        (
+            "push_angle_deg",
+            "degree",
+            "push angle; CF < 0 < CB",
+            &grid.push_angle_deg,
+        ),
+    ];
+    let sweep = grid.sweep.iter().map(|axis| {
+        let parameter = axis.parameter;
+        let title = parameter.title();
+        (parameter.axis(), parameter.unit(), title, &axis.values)
+    });
+    let mut all = Vec::new();
+    for (name, units, title, values) in sweep.chain(inside) {
+        let about = Value::Object(about(Some(units), title));
+        let array = Array::of_axis(name, Kind::Coordinate, values.len(), about)?;
+        all.push((array, bytemuck::cast_slice(values).to_vec()));
+    }
+    let codes = Regime::ALL.map(|regime| regime.code() as u8).to_vec();
+    let about = Value::Object(of_channel("regime"));
+    all.push((
+        Array::of_axis(CODES, Kind::Code, codes.len(), about)?,
+        codes,
+    ));
+    Ok(all)
+}
+
+/// The attributes in which all runs that fill a store must agree, before those that follow from them.
+pub(super) const AGREED: [&str; 5] = [
+    "whiskmap_version",
+    "engine",
+    "tolerances",
+    "channels",
+    "scene",
+];
+
+/// The attributes of a store, which are the same on every machine.
+pub(super) fn attributes(about: &Description<'_>, scene: &Setup) -> Map<String, Value> {
+    let attributes = json!({
+        "Conventions": "CF-1.11",
+        "title": scene.title,
+        "whiskmap_version": env!("CARGO_PKG_VERSION"),
+        "engine": about.engine.engine,
+        "tolerances": about.tolerances,
+        "channels": about.channels.to_string(),
+        "scene": scene.text,
+    });
+    match attributes {
+        Value::Object(attributes) => attributes,
+        _ => Map::new(),
+    }
+}
+
+/// The metadata of the whole, those of the arrays among them.
+pub(super) fn group<'a>(
+    attributes: &Map<String, Value>,
+    arrays: impl Iterator<Item = &'a Array>,
+) -> Value {
+    let arrays = arrays.map(|array| (array.name.clone(), array.metadata.clone()));
+    json!({
+        "zarr_format": 3,
+        "node_type": "group",
+        "attributes": attributes,
+        "consolidated_metadata": {
+            "kind": "inline",
+            "must_understand": false,
+            "metadata": arrays.collect::<Map<_, _>>(),
+        },
+    })
+}

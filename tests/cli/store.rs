@@ -1,0 +1,431 @@
+//! `whiskmap map --format zarr` and `whiskmap status`: whoever fills a store, and however often, it is the same.
+
+use crate::{Place, Run};
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use whiskmap::store::{StoredMap, ZarrStore};
+
+/// Eight blocks of three whiskers.
+const SWEEP: &str = r#"title = "A sweep in blocks"
+[whisker]
+length_mm = 20
+base_radius_um = 30.0
+youngs_modulus_gpa = 3.0
+[grid]
+push_angle_deg = { from = -70, to = 70, count = 64 }
+distance_mm = { from = 2, to = 20, count = 64 }
+taper = [0, 0.5, 1]
+friction = [0, 0.3]
+pole_radius_mm = { from = 0.1, to = 0.8, count = 4, scale = "log" }
+"#;
+
+const MAP: [&str; 5] = ["map", "scene.toml", "--engine=cpu", "--format=zarr", "-o"];
+
+fn map(place: &Place, folder: &str, options: &[&str]) -> Run {
+    place.run(&[&MAP[..], &[folder], options].concat())
+}
+
+fn good(place: &Place, folder: &str, options: &[&str]) -> Run {
+    let run = map(place, folder, options);
+    assert_eq!(run.code, Some(0), "{run:?}");
+    run
+}
+
+/// Every file below a folder, with its bytes.
+fn files(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
+    let mut found = BTreeMap::new();
+    let mut folders = vec![folder.to_owned()];
+    while let Some(next) = folders.pop() {
+        for entry in fs::read_dir(next).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                folders.push(path);
+            } else {
+                let name = path.strip_prefix(folder).unwrap().to_owned();
+                found.insert(name, fs::read(path).unwrap());
+            }
+        }
+    }
+    found
+}
+
+fn assert_same(place: &Place, one: &str, other: &str) {
+    let [one, other] = [one, other].map(|folder| files(&place.path(folder)));
+    let names = |files: &BTreeMap<PathBuf, _>| files.keys().cloned().collect::<Vec<_>>();
+    assert_eq!(names(&one), names(&other));
+    for (name, bytes) in &one {
+        assert!(*bytes == other[name], "{}", name.display());
+    }
+}
+
+fn assert_complete(place: &Place, store: &str) {
+    let run = place.run(&["status", store, "--verify"]);
+    assert_eq!((run.code, &*run.err), (Some(0), ""), "{run:?}");
+    assert_eq!(run.count("of 8 blocks"), 8);
+    assert_eq!(run.count("of 98304 cells"), 98304);
+}
+
+#[test]
+fn a_store_has_the_values_of_the_map() {
+    let two = SWEEP.replace("pole_radius_mm = {", "# {");
+    let place = Place::with(&two);
+    place.map(&["scene.toml", "-o", "exr", "--no-png"]);
+    good(&place, "zarr", &[]);
+    let exr = StoredMap::open(&place.path("exr/scene.exr")).unwrap();
+    let zarr = ZarrStore::open(&place.path("zarr/scene.zarr")).unwrap();
+    assert_eq!(*zarr.grid(), exr.grid);
+    for channel in exr.channels() {
+        for whisker in 0..6 {
+            let [a, b] = [
+                exr.read_panel(channel, whisker).unwrap(),
+                zarr.read_panel(channel, whisker).unwrap(),
+            ];
+            let mut pairs = a.values().zip(b.values());
+            let same = pairs.all(|(a, b)| a == b || a.is_nan() && b.is_nan());
+            assert!(same, "{channel}, whisker {whisker}");
+        }
+    }
+    assert!(zarr.read_panel("force", 0).is_err());
+}
+
+#[test]
+fn any_shards_in_any_order_give_one_store() {
+    let place = Place::with(SWEEP);
+    good(&place, "whole", &[]);
+    assert_complete(&place, "whole/scene.zarr");
+
+    good(&place, "parts", &["--shard=2/3", "--threads=1"]);
+    let run = place.run(&["status", "parts/scene.zarr"]);
+    assert_eq!(run.code, Some(1), "{run:?}");
+    assert_eq!(run.count("of 8 blocks"), 2);
+    assert!(
+        run.out.contains("missing blocks: 0-1, 3-4, 6-7\n"),
+        "{run:?}"
+    );
+    assert!(
+        run.err.contains("6 blocks are missing, 0 are damaged"),
+        "{run:?}"
+    );
+
+    // Twice, at once, and what is there once more.
+    let spawn = |shard| {
+        let arguments = [&MAP[..], &["parts", shard]].concat();
+        let mut command = place.plain_command(&arguments);
+        command.stdout(Stdio::null()).stderr(Stdio::piped());
+        command.spawn().unwrap()
+    };
+    let runs = ["--shard=0/3", "--shard=0/3", "--shard=1/3", "--shard=2/3"].map(spawn);
+    for child in runs {
+        let run = Run::of(&child.wait_with_output().unwrap());
+        assert_eq!(run.code, Some(0), "{run:?}");
+    }
+    assert_same(&place, "whole", "parts");
+    let run = good(&place, "parts", &["--resume"]);
+    assert!(run.err.contains("blocks: 0 of 8"), "{run:?}");
+    assert_same(&place, "whole", "parts");
+}
+
+/// A run that has finished so many blocks, and is at work on the next one.
+fn begun(place: &Place, folder: &str, blocks: usize) -> Child {
+    let arguments = [&MAP[..], &[folder, "--resume", "--threads=1"]].concat();
+    let mut command = place.plain_command(&arguments);
+    command.stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut child = command.spawn().unwrap();
+    let regimes = place.path(folder).join("scene.zarr/regime");
+    let done = || {
+        let names = crate::names(&regimes);
+        names.iter().filter(|name| name.starts_with("c.")).count()
+    };
+    while done() < blocks {
+        assert!(child.try_wait().unwrap().is_none(), "it ended early");
+        std::thread::yield_now();
+    }
+    child
+}
+
+#[test]
+fn a_killed_run_goes_on_where_it_was() {
+    let place = Place::with(SWEEP);
+    good(&place, "whole", &[]);
+    for blocks in 0..7 {
+        // With no block asked for it is killed before, or while, the store is begun.
+        let mut child = begun(&place, "killed", blocks);
+        child.kill().unwrap();
+        child.wait().unwrap();
+    }
+    let run = good(&place, "killed", &["--resume"]);
+    assert!(!run.err.contains("blocks: 8 of 8"), "{run:?}");
+    assert_same(&place, "whole", "killed");
+}
+
+/// The kernel stops a writer in the middle of a file.
+#[test]
+fn a_file_that_grows_too_large_is_never_there_in_part() {
+    let place = Place::with(SWEEP);
+    good(&place, "whole", &[]);
+    let script = "ulimit -f 40; exec \"$0\" \"$@\"";
+    let mut shell = Command::new("sh");
+    shell.args(["-c", script, env!("CARGO_BIN_EXE_whiskmap")]);
+    shell.args(MAP).arg("torn").current_dir(place.path(""));
+    let output = shell.output().unwrap();
+    assert!(!output.status.success());
+    let run = place.run(&["status", "torn/scene.zarr", "--verify"]);
+    assert!(run.err.contains(" 0 are damaged"), "{run:?}");
+    good(&place, "torn", &["--resume"]);
+    assert_same(&place, "whole", "torn");
+}
+
+#[test]
+fn an_interrupted_run_says_how_to_go_on() {
+    let place = Place::with(SWEEP);
+    good(&place, "whole", &[]);
+    let child = begun(&place, "out", 2);
+    let kill = format!("kill -TERM {}", child.id());
+    assert!(
+        Command::new("sh")
+            .args(["-c", &kill])
+            .status()
+            .unwrap()
+            .success()
+    );
+    let run = Run::of(&child.wait_with_output().unwrap());
+    assert_eq!(run.code, Some(143), "{run:?}");
+    let said = "interrupted by SIGTERM; unfinished files are removed; finished blocks stay: go on by the same command with --resume\n";
+    assert!(run.err.ends_with(said), "{run:?}");
+    let is_hidden = |path: &PathBuf| path.file_name().unwrap().to_str().unwrap().starts_with('.');
+    assert!(!files(&place.path("out")).keys().any(is_hidden));
+    good(&place, "out", &["--resume"]);
+    assert_same(&place, "whole", "out");
+}
+
+#[test]
+fn what_is_torn_or_missing_is_told_and_made_again() {
+    let place = Place::with(SWEEP);
+    good(&place, "whole", &[]);
+    good(&place, "out", &[]);
+    let torn = place.path("out/scene.zarr/force_un/c.0.1.2.0.0");
+    let bytes = fs::read(&torn).unwrap();
+    fs::write(&torn, &bytes[..bytes.len() / 2]).unwrap();
+    fs::remove_file(place.path("out/scene.zarr/status/c.0.0.0.0.0")).unwrap();
+    let run = place.run(&["status", "out/scene.zarr", "--verify"]);
+    assert_eq!(run.code, Some(1), "{run:?}");
+    assert!(
+        run.err.contains("force_un/c.0.1.2.0.0 is damaged"),
+        "{run:?}"
+    );
+    assert!(
+        run.err.contains("1 blocks are missing, 1 are damaged"),
+        "{run:?}"
+    );
+    fs::remove_file(torn).unwrap();
+    let run = good(&place, "out", &["--resume"]);
+    assert!(run.err.contains("blocks: 2 of 8"), "{run:?}");
+    assert_same(&place, "whole", "out");
+}
+
+#[test]
+fn a_store_is_not_continued_otherwise_than_it_was_begun() {
+    let place = Place::with(SWEEP);
+    good(&place, ".", &["--shard=0/8"]);
+    map(&place, ".", &[]).assert_refused(&["scene.zarr is there already", "--resume"]);
+    map(&place, ".", &["--resume", "--channels=force_un"])
+        .assert_refused(&["was begun with another channels: ", "regime, force_un here"]);
+    map(&place, ".", &["--resume", "--tolerance=1e-3deg"])
+        .assert_said(2, "was begun with another tolerances");
+    place.write("scene.toml", &SWEEP.replace("[0, 0.5, 1]", "[0, 0.6, 1]"));
+    map(&place, ".", &["--shard=1/8"]).assert_refused(&[
+        "was begun with another scene: ",
+        "`taper = [0, 0.5, 1]` in line 9 there, `taper = [0, 0.6, 1]` in line 9 here",
+    ]);
+    place
+        .run(&["status", "nothing.zarr"])
+        .assert_refused(&["cannot read nothing.zarr/zarr.json"]);
+    place.write("zarr.json", "{}");
+    place
+        .run(&["status", "."])
+        .assert_refused(&["is not a store of whiskmap"]);
+}
+
+#[test]
+fn an_exr_file_refuses_what_only_a_store_can() {
+    let place = Place::with(SWEEP);
+    let exr =
+        |options: &[&str]| place.run(&[&["map", "scene.toml", "--engine=cpu"], options].concat());
+    exr(&[]).assert_refused(&[
+        "two sweep axes, the scene has taper, friction, pole_radius_mm",
+        "--format zarr",
+    ]);
+    place.write("scene.toml", &SWEEP.replace("pole_radius_mm = {", "# {"));
+    exr(&["--resume"]).assert_refused(&["--resume", "--format zarr"]);
+    exr(&["--shard=0/2"]).assert_refused(&["--shard", "--format zarr"]);
+    for shard in ["2/2", "-1/2", "1", "a/b", "0/0"] {
+        exr(&[&format!("--shard={shard}")]).assert_refused(&["must be I/N"]);
+    }
+    exr(&["--channels=force_un"]).assert_refused(&["--channels: must have regime", "--no-png"]);
+    exr(&["--channels=force"]).assert_refused(&["names with commas", "force_un"]);
+}
+
+#[test]
+fn channels_that_are_not_wanted_are_not_stored() {
+    let place = Place::with(&SWEEP.replace("pole_radius_mm = {", "# {"));
+    place.map(&["scene.toml", "-o", "all"]);
+    place.map(&["scene.toml", "-o", "some", "--channels", "regime,force_un"]);
+    good(&place, "some", &["--channels", "force_un"]);
+    let [all, some] = ["all", "some"]
+        .map(|folder| StoredMap::open(&place.path(&format!("{folder}/scene.exr"))).unwrap());
+    assert_eq!(some.channels(), ["regime", "force_un"]);
+    for name in some.channels() {
+        let [all, some] = [&all, &some].map(|map| map.read_channel(name).unwrap());
+        let mut pairs = all.values().zip(some.values());
+        assert!(
+            pairs.all(|(a, b)| a == b || a.is_nan() && b.is_nan()),
+            "{name}"
+        );
+    }
+    assert!(some.read_channel("status").is_err());
+    let store = ZarrStore::open(&place.path("some/scene.zarr")).unwrap();
+    assert_eq!(store.channels().to_string(), "regime, force_un");
+    let place = place.path("some/scene.zarr");
+    assert!(place.join("force_un").exists() && !place.join("status").exists());
+}
+
+/// Values of a table or a list of bytes against those of the store.
+#[test]
+fn a_slice_is_what_the_store_has_there() {
+    let place = Place::with(SWEEP);
+    good(&place, ".", &[]);
+    let store = ZarrStore::open(&place.path("scene.zarr")).unwrap();
+    let run = |arguments: &[&str]| place.run(&[&["extract", "scene.zarr"], arguments].concat());
+
+    // The nearest radius is 0.2, the second of the third axis.
+    let at = [
+        "--at=taper=0.6",
+        "--at=pole_radius_mm=0.21",
+        "--at=push_angle_deg=-70",
+    ];
+    let said = run(&[
+        &at[..],
+        &["--channel=regime", "--channel=force_un", "-o", "s.csv"],
+    ]
+    .concat());
+    assert_eq!((said.code, &*said.out), (Some(0), "s.csv\n"), "{said:?}");
+    assert!(
+        said.err.starts_with("taper = 0.5\npole_radius_mm = 0.2"),
+        "{said:?}"
+    );
+    let table = fs::read_to_string(place.path("s.csv")).unwrap();
+    let mut lines = table.lines();
+    let header = "taper,friction,pole_radius_mm,distance_mm,push_angle_deg,regime,force_un";
+    assert_eq!(lines.next(), Some(header));
+    for friction in 0..2 {
+        let whisker = 1 + 3 * friction + 6;
+        let [regime, force] =
+            ["regime", "force_un"].map(|name| store.read_panel(name, whisker).unwrap());
+        for row in 0..64 {
+            let cells: Vec<&str> = lines.next().unwrap().split(',').collect();
+            assert_eq!(cells[1], ["0.0", "0.3"][friction]);
+            assert_eq!(cells[4..6], ["-70.0", &regime.value(row * 64).to_string()]);
+            let own = force.value(row * 64);
+            let found = cells[6].parse::<f32>().map(f64::from).ok();
+            assert_eq!(found, Some(own).filter(|own| own.is_finite()));
+        }
+    }
+    assert_eq!(lines.next(), None);
+
+    let npy = [
+        "--at=taper=0.5",
+        "--channel=force_un",
+        "--exact",
+        "-o",
+        "s.npy",
+    ];
+    assert_eq!(run(&npy).code, Some(0));
+    let bytes = place.bytes("s.npy");
+    let start = bytes.len() - 2 * 4 * 4096 * 4;
+    let header = String::from_utf8_lossy(&bytes[..start]).into_owned();
+    assert!(
+        header.contains("'shape': (2,4,64,64,)") && start.is_multiple_of(64),
+        "{header}"
+    );
+    // Friction is the slower one of the two that are left.
+    let second = store.read_panel("force_un", 1 + 6).unwrap();
+    let values: Vec<f32> = bytes[start + 4 * 4096..][..4 * 4096]
+        .chunks(4)
+        .map(|bytes| f32::from_le_bytes(bytes.try_into().unwrap()))
+        .collect();
+    let mut pairs = values
+        .iter()
+        .map(|value| f64::from(*value))
+        .zip(second.values());
+    assert!(pairs.all(|(a, b)| a == b || a.is_nan() && b.is_nan()));
+
+    for (arguments, said) in [
+        (
+            &["-o", "s.exr"][..],
+            "room for two sweep axes, there are taper, friction, pole_radius_mm",
+        ),
+        (&["-o", "s.npy"], "give one --channel"),
+        (&["-o", "s.txt"], "must end in .csv, .npy or .exr"),
+        (
+            &["--at=colour=1", "-o", "s.csv"],
+            "--at colour: must be one of the axes, taper, friction",
+        ),
+        (&["--at=taper", "-o", "s.csv"], "must be AXIS=VALUE"),
+        (
+            &["--at=taper=0.6", "--exact", "-o", "s.csv"],
+            "--at taper=0.6: is no value of the axis, and --exact is given; the nearest is 0.5",
+        ),
+        (
+            &["--channel=force", "-o", "s.csv"],
+            "--channel force: must be one of regime",
+        ),
+    ] {
+        run(arguments).assert_refused(&[said]);
+    }
+}
+
+/// The map of a slice is that of the scene with this value, but for what the whole sweep makes of the order of rounding.
+#[test]
+fn a_map_of_a_slice_can_be_drawn() {
+    let place = Place::with(SWEEP);
+    good(&place, ".", &[]);
+    let extract = [
+        "extract",
+        "scene.zarr",
+        "--at=friction=0.3",
+        "-o",
+        "slice.exr",
+    ];
+    assert_eq!(place.run(&extract).code, Some(0));
+    let slice = StoredMap::open(&place.path("slice.exr")).unwrap();
+    assert_eq!(slice.title, "A sweep in blocks, friction = 0.3");
+    assert_eq!((slice.layout.columns, slice.layout.rows), (3, 4));
+    let store = ZarrStore::open(&place.path("scene.zarr")).unwrap();
+    for panel in 0..12 {
+        let whisker = panel % 3 + 3 + panel / 3 * 6;
+        for name in slice.channels() {
+            let own = slice.read_panel(name, panel).unwrap();
+            let whole = store.read_panel(name, whisker).unwrap();
+            let mut pairs = own.values().zip(whole.values());
+            assert!(
+                pairs.all(|(a, b)| a == b || a.is_nan() && b.is_nan()),
+                "{name}"
+            );
+        }
+    }
+    assert_eq!(
+        place.run(&["render", "slice.exr", "-o", "slice.png"]).code,
+        Some(0)
+    );
+    let again = ["extract", "slice.exr", "--at=taper=1", "-o", "again.exr"];
+    assert_eq!(place.run(&again).code, Some(0));
+    assert_eq!(
+        StoredMap::open(&place.path("again.exr"))
+            .unwrap()
+            .layout
+            .columns,
+        4
+    );
+}
