@@ -35,7 +35,7 @@ fn everything() -> Scene {
 
 /// The end of a push at one distance.
 fn end(scene: &Scene, distance_mm: f64, side: Side) -> Detachment {
-    curve(&scene.first_whisker(), &scene.pole, side, &[distance_mm])[0]
+    curve(&scene.whisker, &scene.pole, side, &[distance_mm])[0]
 }
 
 fn target(distance_mm: f64, side: Side, kind: DetachmentKind, push_angle_deg: f64) -> Target {
@@ -209,7 +209,7 @@ fn what_cannot_be_asked_for_is_refused() {
     ));
     let axis = scene.with("grid.curvature_per_mm", [0.004]).unwrap();
     let why = design(&axis, Parameter::ParabolaPerMm, &asked).unwrap_err();
-    assert_eq!(why, NoDesign::Sweep("grid.curvature_per_mm"));
+    assert_eq!(why, NoDesign::Sweep("curvature_per_mm"));
     let far = Target {
         distance_mm: 1e9,
         ..asked

@@ -208,7 +208,7 @@ fn what_cannot_be_drawn_is_refused() {
     };
     assert_eq!(why(&many, 10_000_000), too_many);
     let axis = many.with("grid.curvature_per_mm", [0.02]).unwrap();
-    assert_eq!(why(&axis, 10), NoDraws::Sweep("grid.curvature_per_mm"));
+    assert_eq!(why(&axis, 10), NoDraws::Sweep("curvature_per_mm"));
     let wide =
         scene("length_mm = 1e5\nbase_radius_um = 1e5\nvertex_mm = 1e5\npole_radius_mm = 1e5");
     let said = why(&wide, 10).to_string();

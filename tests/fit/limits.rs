@@ -46,7 +46,7 @@ fn what_counts_only_together_is_not_determined() {
     .unwrap();
     assert_eq!(determined(&found), [ParabolaPerMm]);
     assert_eq!(found.degrees_of_freedom, 22);
-    let whisker = found.scene.first_whisker();
+    let whisker = found.scene.first_whisker().whisker;
     let ratio = whisker.tip_radius_um / whisker.base_radius_um;
     assert!((ratio * 15.0 - 1.0).abs() < 1e-8, "{ratio}");
     assert!((found.estimates[1].value - 0.018).abs() < 1e-9);

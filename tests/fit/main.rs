@@ -26,7 +26,7 @@ const DISTANCES_MM: [f64; 12] = [
 
 /// The detachments of a scene, without any error.
 fn detachments(scene: &Scene, angle: Angle, distances_mm: &[f64]) -> Points {
-    let whisker = scene.first_whisker();
+    let whisker = scene.first_whisker().whisker;
     let side = |side| curve(&whisker, &scene.pole, side, distances_mm);
     let ends = Side::BOTH.into_iter().flat_map(side);
     let points = ends.enumerate().map(|(i, end)| Point {

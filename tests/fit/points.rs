@@ -153,7 +153,7 @@ fn points_are_compared_one_by_one() {
                 cb,19.5,3,slip-off\ncb,15.66,15,slip-off\ncf,15.66,-29,\ncb,15.66,17,pull-off\n";
     let points = Points::parse(text, "p.csv").unwrap();
     let scene = cone();
-    let whisker = scene.first_whisker();
+    let whisker = scene.first_whisker().whisker;
     points.check_reach(&whisker, &scene.pole).unwrap();
     let beside = points.beside(&whisker, &scene.pole);
     let [far, first, cf, again] = beside.rows[..] else {
