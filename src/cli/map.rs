@@ -1,6 +1,6 @@
 //! `whiskmap map`.
 
-use super::engine::{self, Choice};
+use super::engine::EngineOptions;
 use super::failure::{Failure, check_resolved, say};
 use super::numbers::whole;
 use super::outputs;
@@ -13,7 +13,6 @@ use std::path::PathBuf;
 use std::time::Instant;
 use whiskmap::accuracy::{Accuracy, BOUNDED};
 use whiskmap::classify::Regime;
-use whiskmap::integrate::gpu::Precision;
 use whiskmap::map::Stage;
 use whiskmap::map::{self, Progress, Summary};
 use whiskmap::plan::Plan;
@@ -30,6 +29,7 @@ Examples:
   whiskmap map scenes/cone.toml
   whiskmap map scenes/morphology.toml -o /tmp --engine cpu --threads 1
   whiskmap map scenes/morphology.toml --tolerance 1e-3deg
+  whiskmap map scenes/cone.toml --engine gpu --adapter 0
   whiskmap map - < my_whisker.toml")]
 pub struct Options {
     /// Scene file; - reads it from standard input
@@ -37,12 +37,8 @@ pub struct Options {
     /// Folder for the files; it is made if it is missing
     #[arg(short, long, value_name = "DIR", default_value = "outputs")]
     output: PathBuf,
-    /// What solves the cells
-    #[arg(long, value_enum, default_value = "auto")]
-    engine: Choice,
-    /// Scalar of the shaders [default: f32]
-    #[arg(long, value_enum)]
-    precision: Option<Precision>,
+    #[command(flatten)]
+    engine: EngineOptions,
     /// Threads of the CPU [default: all cores]
     #[arg(long, value_name = "N", value_parser = whole(1..=1024))]
     pub threads: Option<u32>,
@@ -61,7 +57,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     if let Some(accuracy) = &accuracy {
         plan.method.resolution = accuracy.resolution;
     }
-    let (mut engine, why) = engine::open(options.engine, options.precision)?;
+    let (mut engine, why) = options.engine.open(&scene, &plan)?;
     let about = whiskmap::integrate::Description::of(engine.as_deref());
     let file = options.output.join(format!("{}.exr", scene.name));
     let picture = (!options.no_png).then(|| file.with_extension("png"));
