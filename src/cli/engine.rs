@@ -125,7 +125,7 @@ impl EngineOptions {
 /// The variable by which other programs that use wgpu choose an adapter, too.
 const NAME: &str = "WGPU_ADAPTER_NAME";
 
-/// Which adapter is taken: the one `asked` for, the one named by [`NAME`], or else the preferred one; `None` without any.
+/// Which adapter is taken: the one `asked` for, the one named by `WGPU_ADAPTER_NAME`, or else the preferred one; `None` without any.
 ///
 /// # Errors
 /// When the one that was asked for or named is not among the `reports`.

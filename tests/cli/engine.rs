@@ -1,4 +1,5 @@
 //! Which engine and which adapter a map takes.
+#![allow(clippy::print_stderr, reason = "a skipped test says so")]
 
 use crate::{Place, Run, SCENE};
 

@@ -205,7 +205,7 @@ impl LevelCurve {
         shot.iter().map(|variation| variation.full).collect()
     }
 
-    /// `d ln D/d(tau, load)` per [`LevelCurve::scale`].
+    /// `d ln D/d(tau, load)` per `LevelCurve::scale`.
     #[must_use]
     pub fn gradient(&self, node: &Node) -> DVec2 {
         let map = &node.full.map;
