@@ -1,26 +1,31 @@
 //! `whiskmap devices`.
 
-use super::engine::{self, Choice};
+use super::engine::chosen;
 use super::failure::Failure;
 use std::io::Write;
 use whiskmap::integrate::Description;
-use whiskmap::integrate::gpu::{Precision, adapters, preferred};
+use whiskmap::integrate::gpu::{Precision, adapters};
 
 /// Runs `devices`.
 pub fn run() -> Result<(), Failure> {
     let mut out = std::io::stdout().lock();
     let reports = adapters();
+    let cpu = Description::of(None);
+    let cpu = format!("{} on {}", cpu.engine, cpu.adapter);
     if reports.is_empty() {
         writeln!(out, "no GPU adapter found")?;
+        writeln!(out, "--engine auto takes {cpu}")?;
+        return Ok(());
     }
-    let taken = preferred(&reports, Precision::F32);
+    let taken = chosen(&reports, None, Precision::F32);
     for (i, report) in reports.iter().enumerate() {
         let info = &report.info;
-        let mark = if taken == Some(i) { "*" } else { " " };
+        let is_taken = matches!(taken, Ok(Some(taken)) if taken == i);
+        let mark = if is_taken { "*" } else { " " };
         let has_f64 = if report.shader_f64 { "yes" } else { "no" };
         writeln!(
             out,
-            "{mark} {} ({}, {})",
+            "{mark} {i} {} ({}, {})",
             info.name,
             report.kind(),
             info.backend
@@ -34,15 +39,11 @@ pub fn run() -> Result<(), Failure> {
             report.most_workgroups
         )?;
     }
-    if taken.is_some() {
-        writeln!(out, "* is what --engine gpu takes")?;
-    }
-    let (engine, why) = engine::open(Choice::Auto, None)?;
-    let description = Description::of(engine.as_deref());
+    taken?;
+    writeln!(out, "* is what --engine gpu takes")?;
     writeln!(
         out,
-        "--engine auto takes {} on {} ({why})",
-        description.engine, description.adapter
+        "--engine auto times it and {cpu} on a sample of the scene, and takes the faster"
     )?;
     Ok(())
 }

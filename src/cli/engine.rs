@@ -1,56 +1,166 @@
 //! Which engine a command takes.
 
+use super::estimate::{compare, estimate};
 use super::failure::Failure;
-use clap::ValueEnum;
-use whiskmap::integrate::gpu::{Gpu, Precision, adapters, preferred};
-use whiskmap::integrate::{Engine, EngineError};
+use clap::{Args, ValueEnum};
+use std::env;
+use whiskmap::integrate::gpu::{AdapterReport, Gpu, Precision, adapters, named, preferred};
+use whiskmap::integrate::{Description, Engine, EngineError};
+use whiskmap::plan::Plan;
+use whiskmap::scene::Scene;
 
 /// Engines by name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Choice {
-    /// A hardware GPU if there is one, else the CPU
+enum Choice {
+    /// The faster one on a sample of the scene
     Auto,
     /// f64 on all cores
     Cpu,
-    /// Compute shaders on the preferred adapter, a software one too
+    /// Compute shaders on an adapter, a software one too
     Gpu,
 }
 
-/// Opens what shoots before the refinement, nothing for the CPU alone, and says in one line why.
-pub fn open(
-    choice: Choice,
-    asked: Option<Precision>,
-) -> Result<(Option<Box<dyn Engine>>, String), Failure> {
-    let precision = asked.unwrap_or(Precision::F32);
-    match choice {
-        Choice::Cpu if asked == Some(Precision::F32) => Err(Failure::Input(
-            "--precision f32: the CPU engine computes in f64; allowed with --engine gpu".to_owned(),
-        )),
-        Choice::Cpu => Ok((None, "asked for".to_owned())),
-        Choice::Gpu => match Gpu::new(precision) {
-            Ok(gpu) => Ok((Some(Box::new(gpu)), "asked for".to_owned())),
-            Err(error @ EngineError::Unsupported { .. }) => Err(Failure::Input(format!(
-                "--engine gpu --precision {precision}: {error}; --precision f32 works on every adapter"
+/// Options that choose an engine.
+#[derive(Debug, Args)]
+pub struct EngineOptions {
+    /// What solves the cells
+    #[arg(long, value_enum, default_value = "auto")]
+    engine: Choice,
+    /// Scalar of the shaders [default: f32]
+    #[arg(long, value_enum)]
+    precision: Option<Precision>,
+    /// Adapter of the GPU, by its number or a part of its name in `whiskmap devices` [default: the one marked there]
+    #[arg(long, value_name = "N|NAME")]
+    adapter: Option<String>,
+}
+
+/// What shoots before the refinement, nothing for the CPU alone, and in one line why it was taken.
+pub type Opened = (Option<Box<dyn Engine>>, String);
+
+/// Seconds that samples may take to see whether a GPU is worth starting, and then those that compare it with the CPU.
+const FIRST_LOOK: f64 = 0.01;
+const COMPARISON: f64 = 0.04;
+
+/// Seconds from nothing to the first answer of a GPU, measured on lavapipe: a map that takes the CPU less does not wait for one.
+const OPENING: f64 = 0.1;
+
+impl EngineOptions {
+    /// Opens the engine for a map of `scene` as in `plan`.
+    pub fn open(&self, scene: &Scene, plan: &Plan) -> Result<Opened, Failure> {
+        let asked = || "asked for".to_owned();
+        match (self.engine, self.precision, &self.adapter) {
+            (Choice::Cpu, Some(Precision::F32), _) => Err(Failure::Input(
+                "--precision f32: the CPU engine computes in f64; allowed with --engine gpu"
+                    .to_owned(),
+            )),
+            (Choice::Auto, Some(Precision::F32), _) => Err(Failure::Input(
+                "--precision f32: --engine auto may take the CPU engine, which computes in f64; allowed with --engine gpu"
+                    .to_owned(),
+            )),
+            (Choice::Cpu, _, Some(adapter)) => Err(Failure::Input(format!(
+                "--adapter {adapter}: the CPU engine has none; allowed with --engine gpu and --engine auto"
             ))),
-            Err(error) => Err(error.into()),
-        },
-        Choice::Auto => Ok(automatic(precision)),
+            (Choice::Cpu, ..) => Ok((None, asked())),
+            (Choice::Gpu, ..) => match self.gpu(self.adapter()?.map(|(index, _)| index)) {
+                Ok(gpu) => Ok((Some(gpu), asked())),
+                Err(error @ EngineError::Unsupported { .. }) => Err(Failure::Input(format!(
+                    "--engine gpu --precision {}: {error}; --precision f32 works on every adapter",
+                    self.precision()
+                ))),
+                Err(error) => Err(error.into()),
+            },
+            (Choice::Auto, ..) => self.faster(scene, plan),
+        }
+    }
+
+    fn precision(&self) -> Precision {
+        self.precision.unwrap_or(Precision::F32)
+    }
+
+    /// The adapter that a GPU engine takes, if there is any, and its name.
+    fn adapter(&self) -> Result<Option<(usize, String)>, Failure> {
+        let reports = adapters();
+        let index = chosen(&reports, self.adapter.as_deref(), self.precision())?;
+        Ok(index.map(|index| (index, reports[index].info.name.clone())))
+    }
+
+    fn gpu(&self, adapter: Option<usize>) -> Result<Box<dyn Engine>, EngineError> {
+        let gpu = match adapter {
+            Some(index) => Gpu::at(index, self.precision()),
+            None => Gpu::new(self.precision()),
+        };
+        gpu.map(|gpu| Box::new(gpu) as _)
+    }
+
+    /// The engine that is expected to be done first with `plan`, by what samples of `scene` take. Every state is refined in `f64`
+    /// by the same method, so that all engines meet every tolerance.
+    fn faster(&self, scene: &Scene, plan: &Plan) -> Result<Opened, Failure> {
+        // Who names an adapter is told that there is none, even where the CPU would not wait for it.
+        if self.adapter.is_some() || env::var_os(NAME).is_some() {
+            self.adapter()?;
+        }
+        if estimate(scene, plan, FIRST_LOOK)?.seconds < OPENING {
+            return Ok((None, "auto: done before a GPU has started".to_owned()));
+        }
+        let (index, name) = self.adapter()?.unzip();
+        let gpu = match self.gpu(index) {
+            Ok(gpu) => gpu,
+            Err(error) => return Ok((None, format!("auto: {error}"))),
+        };
+        let gpu_name = format!("{} on {}", gpu.describe().engine, name.unwrap_or_default());
+        let mut engine = Some(gpu);
+        match compare(scene, plan, &mut engine, COMPARISON) {
+            Ok([cpu, gpu]) if gpu < cpu => {
+                let alone = Description::of(None);
+                let alone = format!("{} on {}", alone.engine, alone.adapter);
+                Ok((engine, format!("auto: {:.1} times {alone}", cpu / gpu)))
+            }
+            Ok([cpu, gpu]) => Ok((None, format!("auto: {:.1} times {gpu_name}", gpu / cpu))),
+            Err(Failure::Engine(error)) => Ok((None, format!("auto: {error}"))),
+            Err(failure) => Err(failure),
+        }
     }
 }
 
-/// A hardware adapter with this precision, or else the CPU, always in f64.
-fn automatic(precision: Precision) -> (Option<Box<dyn Engine>>, String) {
-    let reports = adapters();
-    let why = match preferred(&reports, precision).map(|i| &reports[i]) {
-        Some(report) if !report.is_software() => match Gpu::new(precision) {
-            Ok(gpu) => return (Some(Box::new(gpu)), "auto: a hardware adapter".to_owned()),
-            Err(error) => format!("auto: {error}"),
-        },
-        Some(report) => format!(
-            "auto: {} is software, slower than the CPU engine",
-            report.info.name
-        ),
-        None => format!("auto: no GPU adapter with {precision}"),
+/// The variable by which other programs that use wgpu choose an adapter, too.
+const NAME: &str = "WGPU_ADAPTER_NAME";
+
+/// Which adapter is taken: the one `asked` for, the one named by `WGPU_ADAPTER_NAME`, or else the preferred one; `None` without any.
+///
+/// # Errors
+/// When the one that was asked for or named is not among the `reports`.
+pub fn chosen(
+    reports: &[AdapterReport],
+    asked: Option<&str>,
+    precision: Precision,
+) -> Result<Option<usize>, Failure> {
+    let (what, found) = match (asked, env::var(NAME)) {
+        (Some(asked), _) => {
+            let number = asked.parse::<usize>().ok();
+            let found = match number {
+                Some(number) => (number < reports.len()).then_some(number),
+                None => named(reports, asked, precision),
+            };
+            (format!("--adapter {asked}"), found)
+        }
+        (None, Ok(name)) => (format!("{NAME}={name}"), named(reports, &name, precision)),
+        (None, Err(_)) => {
+            let preferred = |precision| preferred(reports, precision);
+            return Ok(preferred(precision).or_else(|| preferred(Precision::F32)));
+        }
     };
-    (None, why)
+    if found.is_some() {
+        return Ok(found);
+    }
+    let list = reports.iter().enumerate();
+    let list: Vec<String> = list
+        .map(|(i, report)| format!("{i} ({})", report.info.name))
+        .collect();
+    let allowed = match &list[..] {
+        [] => "there is none".to_owned(),
+        list => format!("must be one of {}", list.join(", ")),
+    };
+    Err(Failure::Input(format!(
+        "{what}: no such GPU adapter; {allowed}"
+    )))
 }

@@ -1,54 +1,100 @@
-//! What a map would take, measured: samples of it are computed on the CPU engine and thrown away.
+//! What a map would take, measured: samples of it are computed and thrown away.
 
 use super::failure::Failure;
 use std::convert::Infallible;
 use std::time::Instant;
-use whiskmap::map::{self, Stage};
+use whiskmap::integrate::Engine;
+use whiskmap::map::{self, Progress, Stage};
 use whiskmap::plan::{Plan, SAMPLE_LINES, SAMPLE_VALUES};
 use whiskmap::scene::Scene;
 
 /// What a map would take.
 pub struct Estimate {
-    /// Seconds on the threads of the CPU engine, without the files.
+    /// Seconds on the engine and the CPU's threads, without the files.
     pub seconds: f64,
     /// Newton steps per cell, each one trajectory.
     pub steps_per_cell: f64,
 }
 
-/// Seconds that the last sample may take, as the one before it foretells.
-const LONGEST: f64 = 2.0;
+/// Lines of the first sample.
+const FIRST_LINES: usize = 8;
 
 /// From one sample to the next: so many times as many push angles, and distances.
-const DENSER: usize = 4;
+const DENSER: usize = 2;
 
-/// Measures samples of `scene`, each [`DENSER`] than the one before, as far as there is time, and scales the last one to `plan`:
-/// sheets by whiskers, sides and distances, the rest by cells.
-pub fn estimate(scene: &Scene, plan: &Plan) -> Result<Estimate, Failure> {
-    let mut lines = SAMPLE_LINES / DENSER.pow(2);
+/// Measures samples of `scene` on the CPU alone, each [`DENSER`] than the one before, and scales the last one to `plan`: sheets by
+/// whiskers, sides and distances, the rest by cells. All samples, but for the first, take so many `seconds` together, as the ones
+/// before foretell.
+pub fn estimate(scene: &Scene, plan: &Plan, seconds: f64) -> Result<Estimate, Failure> {
+    let (mut lines, mut left) = (FIRST_LINES, seconds);
     loop {
         let start = Instant::now();
-        let estimate = measured(scene, plan, lines)?;
-        match denser(lines, start.elapsed().as_secs_f64()) {
+        let estimate = measured(scene, plan, &mut None, lines)?;
+        let last = start.elapsed().as_secs_f64();
+        left -= last;
+        match denser(lines, last, left) {
             Some(denser) => lines = denser,
             None => return Ok(estimate),
         }
     }
 }
 
-/// The lines of the sample after one that took so many `seconds`; none where that is the last.
-fn denser(lines: usize, seconds: f64) -> Option<usize> {
-    let is_short = seconds * (DENSER * DENSER) as f64 <= LONGEST;
+/// Rounds for which [`compare`] keeps time: one alone may have been held up.
+const ROUNDS: f64 = 3.0;
+
+/// Seconds that `plan` would take the CPU alone, and with `engine`: samples in turn, as dense as so many `seconds` in all allow, and of
+/// each the fastest. Before them `engine` has one that does not count, for which it compiles.
+///
+/// # Errors
+/// When the engine fails.
+pub fn compare(
+    scene: &Scene,
+    plan: &Plan,
+    engine: &mut Option<Box<dyn Engine>>,
+    seconds: f64,
+) -> Result<[f64; 2], Failure> {
+    measured(scene, plan, engine, FIRST_LINES)?;
+    let (mut lines, mut left) = (FIRST_LINES, seconds);
+    let mut fastest = [f64::INFINITY; 2];
+    loop {
+        let start = Instant::now();
+        let cpu = measured(scene, plan, &mut None, lines)?.seconds;
+        let with_engine = measured(scene, plan, engine, lines)?.seconds;
+        fastest = [fastest[0].min(cpu), fastest[1].min(with_engine)];
+        let last = start.elapsed().as_secs_f64();
+        left -= last;
+        if let Some(denser) = denser(lines, ROUNDS * last, left) {
+            (lines, fastest) = (denser, [f64::INFINITY; 2]);
+        } else if left < last {
+            return Ok(fastest);
+        }
+    }
+}
+
+/// The lines of the samples after some that took `last` seconds, with so many `left`; none where those are the last.
+fn denser(lines: usize, last: f64, left: f64) -> Option<usize> {
+    let is_short = last * (DENSER * DENSER) as f64 <= left;
     (is_short && lines < SAMPLE_LINES).then_some(lines * DENSER)
 }
 
 /// Measures a sample of at most so many `lines` each way.
-fn measured(scene: &Scene, plan: &Plan, lines: usize) -> Result<Estimate, Failure> {
+fn measured(
+    scene: &Scene,
+    plan: &Plan,
+    engine: &mut Option<Box<dyn Engine>>,
+    lines: usize,
+) -> Result<Estimate, Failure> {
     let small = scene.thinned(lines, SAMPLE_VALUES);
     let small_plan = Plan {
         method: plan.method,
         ..Plan::new(&small)?
     };
-    let Ok(summary) = map::run(&small, &small_plan, None, &mut |_| Ok::<(), Infallible>(()));
+    let engine = engine.as_mut().map(|engine| &mut **engine as _);
+    let discard = &mut |_: Progress| Ok::<(), Infallible>(());
+    let Ok(summary) = map::run(&small, &small_plan, engine, discard);
+    if let Some(failure) = summary.engine_failure {
+        return Err(failure.into());
+    }
     let rows = |scene: &Scene, plan: &Plan| {
         (plan.whiskers * plan.sides.len() * scene.grid.distance_mm.len()) as f64
     };
@@ -70,9 +116,10 @@ mod tests {
 
     #[test]
     fn a_slow_sample_is_the_last() {
-        assert_eq!(denser(8, 0.01), Some(32));
-        assert_eq!(denser(32, 0.01), Some(SAMPLE_LINES));
-        assert_eq!(denser(SAMPLE_LINES, 0.01), None);
-        assert_eq!(denser(8, 0.2), None);
+        assert_eq!(denser(8, 0.01, 0.05), Some(16));
+        assert_eq!(denser(64, 0.01, 0.05), Some(SAMPLE_LINES));
+        assert_eq!(denser(SAMPLE_LINES, 0.01, 0.05), None);
+        assert_eq!(denser(8, 0.01, 0.03), None);
+        assert_eq!(denser(8, 0.01, -0.01), None);
     }
 }

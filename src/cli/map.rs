@@ -1,6 +1,6 @@
 //! `whiskmap map`.
 
-use super::engine::{self, Choice};
+use super::engine::EngineOptions;
 use super::failure::{Failure, check_resolved, say};
 use super::numbers::whole;
 use super::outputs;
@@ -15,7 +15,6 @@ use std::str::FromStr;
 use std::time::Instant;
 use whiskmap::accuracy::{Accuracy, BOUNDED};
 use whiskmap::classify::Regime;
-use whiskmap::integrate::gpu::Precision;
 use whiskmap::map::Stage;
 use whiskmap::map::{self, Progress, Summary};
 use whiskmap::plan::{Channels, Plan};
@@ -32,6 +31,7 @@ Examples:
   whiskmap map scenes/cone.toml
   whiskmap map scenes/morphology.toml -o /tmp --engine cpu --threads 1
   whiskmap map scenes/morphology.toml --tolerance 1e-3deg
+  whiskmap map scenes/cone.toml --engine gpu --adapter 0
   whiskmap map scenes/morphology.toml --format zarr --channels regime,force_un
   whiskmap map scenes/morphology.toml --format zarr --resume
   whiskmap map scenes/morphology.toml --format zarr --shard 3/8 --resume
@@ -45,12 +45,8 @@ pub struct Options {
     /// Folder for the files; it is made if it is missing
     #[arg(short, long, value_name = "DIR", default_value = "outputs")]
     output: PathBuf,
-    /// What solves the cells
-    #[arg(long, value_enum, default_value = "auto")]
-    engine: Choice,
-    /// Scalar of the shaders [default: f32]
-    #[arg(long, value_enum)]
-    precision: Option<Precision>,
+    #[command(flatten)]
+    engine: EngineOptions,
     /// Threads of the CPU [default: all cores]
     #[arg(long, value_name = "N", value_parser = whole(1..=1024))]
     pub threads: Option<u32>,
@@ -92,7 +88,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         plan.method.resolution = accuracy.resolution;
     }
     plan.channels = options.channels.unwrap_or(Channels::ALL);
-    let (mut engine, why) = engine::open(options.engine, options.precision)?;
+    let (mut engine, why) = options.engine.open(&scene, &plan)?;
     let about = whiskmap::integrate::Description::of(engine.as_deref());
     outputs::folder("--output", &options.output)?;
     if options.format == MapFormat::Zarr {

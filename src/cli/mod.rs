@@ -64,7 +64,7 @@ Examples:
   whiskmap reproduce                               the theory of the paper's Figs. 1 to 5
   whiskmap verify                                  every number that is known otherwise
   whiskmap bench scenes/cone.toml                  what accuracy costs in time, engine by engine
-  whiskmap devices                                 adapters, and which one `auto` takes";
+  whiskmap devices                                 GPU adapters, by number and name";
 
 #[derive(Debug, Subcommand)]
 enum Command {

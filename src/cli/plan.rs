@@ -26,11 +26,14 @@ pub struct Options {
     scene: PathBuf,
 }
 
+/// Seconds that the samples may take.
+const SAMPLE_SECONDS: f64 = 2.0;
+
 /// Runs `plan`.
 pub fn run(options: &Options) -> Result<(), Failure> {
     let scene = Scene::read(&options.scene)?;
     let plan = Plan::new(&scene)?;
-    let estimate = estimate(&scene, &plan)?;
+    let estimate = estimate(&scene, &plan, SAMPLE_SECONDS)?;
     print(&scene, &plan, &estimate)?;
     Ok(())
 }

@@ -8,6 +8,7 @@ mod bench;
 mod branch;
 mod curve;
 mod design;
+mod engine;
 #[cfg(unix)]
 mod files;
 mod fit;

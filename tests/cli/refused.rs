@@ -170,8 +170,6 @@ fn arguments_out_of_range() {
     let shape = [&shape[..5], &["1e99"]].concat();
     place.run(&shape).assert_refused(&[turned]);
     map(&["--engine", "abacus"]).assert_refused(&["'abacus'", "--engine", "auto, cpu, gpu"]);
-    let f32 = ["--precision f32", "f64", "--engine gpu"];
-    map(&["--engine", "cpu", "--precision", "f32"]).assert_refused(&f32);
     place.run(&["map"]).assert_refused(&["<SCENE>"]);
     for file in ["scene.exr", "scene.png"] {
         assert!(!place.path("outputs").join(file).exists());

@@ -1,7 +1,7 @@
 //! Which adapter is taken.
 
 use wgpu::{AdapterInfo, Backend, DeviceType};
-use whiskmap::integrate::gpu::{AdapterReport, Precision, preferred};
+use whiskmap::integrate::gpu::{AdapterReport, Precision, named, preferred};
 
 fn report(kind: DeviceType) -> AdapterReport {
     AdapterReport {
@@ -34,4 +34,19 @@ fn f64_is_asked_of_an_adapter_that_has_it() {
     assert_eq!(preferred(&reports, Precision::F64), None);
     reports[1].shader_f64 = true;
     assert_eq!(preferred(&reports, Precision::F64), Some(1));
+}
+
+#[test]
+fn a_part_of_a_name_is_enough_whatever_the_case() {
+    let mut reports = [DeviceType::Cpu, DeviceType::IntegratedGpu, DeviceType::Cpu].map(report);
+    for (report, name) in reports.iter_mut().zip(["llvmpipe", "Iris Xe", "Pipe"]) {
+        name.clone_into(&mut report.info.name);
+    }
+    assert_eq!(named(&reports, "IRIS", Precision::F32), Some(1));
+    assert_eq!(named(&reports, "pipe", Precision::F32), Some(0));
+    assert_eq!(named(&reports, "abacus", Precision::F32), None);
+    // Without `f64` anywhere the name decides, and opening it says what is missing.
+    assert_eq!(named(&reports, "pipe", Precision::F64), Some(0));
+    reports[2].shader_f64 = true;
+    assert_eq!(named(&reports, "pipe", Precision::F64), Some(2));
 }

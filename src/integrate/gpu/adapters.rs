@@ -44,10 +44,8 @@ impl AdapterReport {
         self.ranked_kind().1
     }
 
-    /// Whether it is a program on the CPU: right answers, but slower than the CPU engine.
-    #[must_use]
-    pub fn is_software(&self) -> bool {
-        self.info.device_type == DeviceType::Cpu
+    fn computes_in(&self, precision: Precision) -> bool {
+        precision == Precision::F32 || self.shader_f64
     }
 }
 
@@ -63,10 +61,26 @@ pub fn adapters() -> Vec<AdapterReport> {
     enumerate().iter().map(AdapterReport::new).collect()
 }
 
+/// The first of the best kind among those that are `good`.
+fn best(reports: &[AdapterReport], good: impl Fn(&AdapterReport) -> bool) -> Option<usize> {
+    (0..reports.len())
+        .filter(|&i| good(&reports[i]))
+        .min_by_key(|&i| reports[i].ranked_kind().0)
+}
+
 /// Which adapter the engine takes: the first of the best kind among those with this precision.
 #[must_use]
 pub fn preferred(reports: &[AdapterReport], precision: Precision) -> Option<usize> {
-    (0..reports.len())
-        .filter(|&i| precision == Precision::F32 || reports[i].shader_f64)
-        .min_by_key(|&i| reports[i].ranked_kind().0)
+    best(reports, |report| report.computes_in(precision))
+}
+
+/// Which adapter has `part` in its name, whatever the case: the first of the best kind, with this precision if there is one.
+#[must_use]
+pub fn named(reports: &[AdapterReport], part: &str, precision: Precision) -> Option<usize> {
+    let part = part.to_lowercase();
+    let is_named = |report: &AdapterReport| report.info.name.to_lowercase().contains(&part);
+    best(reports, |report| {
+        is_named(report) && report.computes_in(precision)
+    })
+    .or_else(|| best(reports, is_named))
 }

@@ -21,15 +21,10 @@ impl Device {
     pub fn open(precision: Precision) -> Result<Self, EngineError> {
         let found = enumerate();
         let reports: Vec<_> = found.iter().map(AdapterReport::new).collect();
-        let Some(best) = preferred(&reports, Precision::F32) else {
+        let chosen = preferred(&reports, precision);
+        let Some(chosen) = chosen.or_else(|| preferred(&reports, Precision::F32)) else {
             let tried = "no driver of Vulkan, Metal or DirectX 12 answered".to_owned();
             return Err(EngineError::NoAdapter(tried));
-        };
-        let Some(chosen) = preferred(&reports, precision) else {
-            return Err(EngineError::Unsupported {
-                adapter: reports[best].info.name.clone(),
-                what: "compute in f64 (no SHADER_F64)".to_owned(),
-            });
         };
         Self::on(&found[chosen], precision)
     }
@@ -44,7 +39,14 @@ impl Device {
     }
 
     fn on(adapter: &wgpu::Adapter, precision: Precision) -> Result<Self, EngineError> {
-        let clock = adapter.features() & wgpu::Features::TIMESTAMP_QUERY;
+        let features = adapter.features();
+        if precision == Precision::F64 && !features.contains(wgpu::Features::SHADER_F64) {
+            return Err(EngineError::Unsupported {
+                adapter: adapter.get_info().name,
+                what: "compute in f64 (no SHADER_F64)".to_owned(),
+            });
+        }
+        let clock = features & wgpu::Features::TIMESTAMP_QUERY;
         let required_features = match precision {
             Precision::F32 => clock,
             Precision::F64 => clock | wgpu::Features::SHADER_F64,

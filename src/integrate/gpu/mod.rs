@@ -18,7 +18,7 @@ mod precision;
 pub mod shaders;
 mod stamps;
 
-pub use adapters::{AdapterReport, adapters, preferred};
+pub use adapters::{AdapterReport, adapters, named, preferred};
 pub use flight::Times;
 pub use guard::is_guarded;
 pub use precision::Precision;
@@ -33,7 +33,7 @@ use std::collections::hash_map::Entry;
 use std::collections::{HashMap, VecDeque};
 use std::time::Instant;
 
-/// The GPU engine on the [`preferred`] adapter.
+/// The GPU engine on one adapter.
 #[derive(Debug)]
 pub struct Gpu {
     precision: Precision,
@@ -54,7 +54,7 @@ pub struct Gpu {
 const IN_FLIGHT: usize = 2;
 
 impl Gpu {
-    /// Opens the adapter.
+    /// Opens the [`preferred`] adapter.
     ///
     /// # Errors
     /// [`EngineError::NoAdapter`] without a driver, [`EngineError::Unsupported`] where the adapter has no
@@ -63,14 +63,22 @@ impl Gpu {
         Device::open(precision).map(|device| Self::with_device(precision, device))
     }
 
-    /// Opens the adapter that is at `index` of [`adapters`], to have it timed stage by stage.
+    /// Opens the adapter that is at `index` of [`adapters`].
     ///
     /// # Errors
-    /// [`EngineError::Device`] when the driver refuses a device.
+    /// Those of [`Gpu::new`].
+    pub fn at(index: usize, precision: Precision) -> Result<Self, EngineError> {
+        Device::at(index, precision).map(|device| Self::with_device(precision, device))
+    }
+
+    /// The same, to have it timed stage by stage.
+    ///
+    /// # Errors
+    /// Those of [`Gpu::new`].
     pub fn timed(index: usize, precision: Precision) -> Result<Self, EngineError> {
         Ok(Self {
             times: Some(Times::default()),
-            ..Self::with_device(precision, Device::at(index, precision)?)
+            ..Self::at(index, precision)?
         })
     }
 
@@ -94,7 +102,7 @@ impl Gpu {
         self.times
     }
 
-    /// Opens the adapter for a shader other than [`shaders::shoot`]: a seam for tests, which spoil it.
+    /// Opens the [`preferred`] adapter for a shader other than [`shaders::shoot`]: a seam for tests, which spoil it.
     ///
     /// # Errors
     /// Those of [`Gpu::new`].
