@@ -70,7 +70,13 @@ fn assert_complete(place: &Place, store: &str) {
 #[test]
 fn a_store_has_the_values_of_the_map() {
     let two = SWEEP.replace("pole_radius_mm = {", "# {");
-    let place = Place::with(&two);
+    has_the_values_of_the_map(&two);
+    // All whiskers in one block.
+    has_the_values_of_the_map(&two.replace("count = 64", "count = 20"));
+}
+
+fn has_the_values_of_the_map(scene: &str) {
+    let place = Place::with(scene);
     place.map(&["scene.toml", "-o", "exr", "--no-png"]);
     good(&place, "zarr", &[]);
     let exr = StoredMap::open(&place.path("exr/scene.exr")).unwrap();
@@ -171,6 +177,12 @@ fn a_file_that_grows_too_large_is_never_there_in_part() {
     shell.args(MAP).arg("torn").current_dir(place.path(""));
     let output = shell.output().unwrap();
     assert!(!output.status.success());
+    let whole = files(&place.path("whole"));
+    let is_named = |path: &&PathBuf| !path.file_name().unwrap().to_str().unwrap().starts_with('.');
+    for name in files(&place.path("torn")).keys().filter(is_named) {
+        let bytes = place.bytes(&format!("torn/{}", name.display()));
+        assert!(bytes == whole[name], "{}", name.display());
+    }
     let run = place.run(&["status", "torn/scene.zarr", "--verify"]);
     assert!(run.err.contains(" 0 are damaged"), "{run:?}");
     good(&place, "torn", &["--resume"]);
