@@ -6,13 +6,14 @@ use super::failure::{Failure, check_resolved, say};
 use super::outputs::{Opened, Outputs};
 use super::pole::check_single;
 use super::progress;
+use super::theory::{AXES, CHORD, own_curve, theory};
 use super::tolerance::Tolerance;
 use super::uncertainty::{self, Sampling};
 use clap::Args;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use whiskmap::measured::{Angle, Compared};
-use whiskmap::render::{CurveAxis, Ends, Plot, Stroke, curves, measured};
+use whiskmap::render::{Plot, measured};
 use whiskmap::rod::Side;
 use whiskmap::scene::{Place, Scene, Swept};
 use whiskmap::shooting::Resolution;
@@ -179,39 +180,3 @@ fn beside_points(options: &Options, scene: &Scene, path: &Path) -> Result<(), Fa
     }
     Ok(())
 }
-
-/// The detachment curve of the scene's whisker.
-pub fn own_curve(scene: &Scene, resolution: Resolution, axes: [CurveAxis; 2]) -> Plot {
-    let Swept { whisker, pole, .. } = scene.first_whisker();
-    let distances = &scene.grid.distance_mm;
-    let of_side = |side| trace::curve_at(resolution, &whisker, &pole, side, distances);
-    let ends: Vec<Detachment> = Side::BOTH.into_iter().flat_map(of_side).collect();
-    theory(&ends, axes)
-}
-
-/// Computed ends of one whisker as a plot.
-fn theory(rows: &[Detachment], axes: [CurveAxis; 2]) -> Plot {
-    let ends = Ends {
-        rows,
-        stroke: Stroke::Solid,
-        name: "",
-    };
-    curves("", &[ends], axes)
-}
-
-/// What a plot shows across and upwards.
-pub const AXES: [CurveAxis; 2] = [
-    CurveAxis {
-        label: "distance at first touch (mm)",
-        value: |end| Some(end.distance_mm),
-    },
-    CurveAxis {
-        label: "push angle at detachment (deg)   CF < 0 < CB",
-        value: |end| end.push_angle_deg,
-    },
-];
-
-const CHORD: CurveAxis = CurveAxis {
-    label: "chord angle at detachment (deg)   CF < 0 < CB",
-    value: |end| end.push_chord_deg,
-};

@@ -7,16 +7,14 @@ use super::outputs;
 use super::picture::save;
 use super::progress;
 use super::sharded::{self, Shard};
+use super::summary::print;
 use super::tolerance::Tolerance;
 use clap::{Args, ValueEnum};
-use std::io::Write;
 use std::path::PathBuf;
 use std::str::FromStr;
 use std::time::Instant;
 use whiskmap::accuracy::{Accuracy, BOUNDED};
-use whiskmap::classify::Regime;
-use whiskmap::map::Stage;
-use whiskmap::map::{self, Progress, Summary};
+use whiskmap::map::{self, Progress};
 use whiskmap::plan::{Channels, Plan};
 use whiskmap::refine::{GOAL, TOLERANCE};
 use whiskmap::render;
@@ -202,59 +200,4 @@ fn tolerances(accuracy: Option<Accuracy>) -> serde_json::Value {
         tolerances["bounded"] = BOUNDED.into();
     }
     tolerances
-}
-
-pub(super) fn print(
-    scene: &Scene,
-    summary: &Summary,
-    seconds: f64,
-    files: &[PathBuf],
-) -> std::io::Result<()> {
-    let mut out = std::io::stdout().lock();
-    writeln!(out, "{}", scene.title)?;
-    for (regime, cells) in Regime::ALL.iter().zip(summary.regimes) {
-        if cells > 0 || *regime == Regime::Unresolved {
-            writeln!(out, "{cells:>12}  {}", regime.name())?;
-        }
-    }
-    writeln!(
-        out,
-        "{:>12}  refined in f64, {:.2} Newton steps each, worst residual {:.1e} of the length",
-        summary.refined,
-        summary.steps as f64 / summary.refined.max(1) as f64,
-        summary.worst_residual
-    )?;
-    for (cells, what) in [
-        (
-            summary.shots.restarted,
-            "shots without a solution from the engine, restarted in f64",
-        ),
-        (
-            summary.shots.on_cpu_instead,
-            "shots left to the refinement, after the engine had failed",
-        ),
-        (
-            summary.toward_base,
-            "slide toward the base, against the friction assumed: force and moment are off",
-        ),
-    ] {
-        if cells > 0 {
-            writeln!(out, "{cells:>12}  {what}")?;
-        }
-    }
-    writeln!(
-        out,
-        "{:>12}  disagreements between cells and boundaries",
-        summary.disagreements
-    )?;
-    let rate = summary.cells() as f64 / seconds;
-    write!(out, "{rate:>12.0}  cells/s; {seconds:.2} s:")?;
-    for (stage, name) in Stage::ALL {
-        write!(out, " {name} {:.2}", summary.seconds(stage))?;
-    }
-    writeln!(out)?;
-    for file in files {
-        writeln!(out, "{}", file.display())?;
-    }
-    Ok(())
 }

@@ -29,6 +29,8 @@ mod shape;
 mod sharded;
 mod signals;
 mod status;
+mod summary;
+mod theory;
 mod tolerance;
 mod uncertainty;
 mod verify;

@@ -1,7 +1,8 @@
 //! `whiskmap map --format zarr`: a run fills some blocks of a store.
 
 use super::failure::{Failure, check_resolved, say};
-use super::{map::print, progress, signals};
+use super::summary::print;
+use super::{progress, signals};
 use std::path::Path;
 use std::str::FromStr;
 use std::time::Instant;

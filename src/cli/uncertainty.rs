@@ -1,10 +1,10 @@
 //! `whiskmap curve --samples`: the curve with the uncertainty of the scene's numbers.
 
-use super::curve::{AXES, own_curve};
 use super::failure::{Failure, check_resolved, say};
 use super::numbers::whole;
 use super::outputs::Opened;
 use super::progress;
+use super::theory::{AXES, own_curve};
 use clap::Args;
 use whiskmap::render::{Plot, bands};
 use whiskmap::rod::Side;

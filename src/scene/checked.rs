@@ -108,11 +108,6 @@ impl Scene {
         Self::checked(&document.to_string(), origin, Path::new(&path))
     }
 
-    /// The number that the text has at `key`.
-    pub(super) fn number(&self, key: &str) -> Option<f64> {
-        number_in(&toml::from_str(&self.text).ok()?, key)
-    }
-
     /// The same scene with at most `lines` push angles and distances, and at most `values` of each sweep axis, from all over
     /// the axis. Its text stays that of the whole.
     #[must_use]
@@ -153,19 +148,6 @@ impl Scene {
         })?;
         Self::checked(&text, origin, path)
     }
-}
-
-/// The number that a document has at `key`.
-pub(super) fn number_in(root: &toml::Table, key: &str) -> Option<f64> {
-    let (tables, last) = key.rsplit_once('.').unwrap_or(("", key));
-    let tables = tables.split('.').filter(|name| !name.is_empty());
-    let found = tables
-        .into_iter()
-        .try_fold(root, |table, name| table.get(name)?.as_table())?
-        .get(last)?;
-    found
-        .as_float()
-        .or_else(|| Some(found.as_integer()? as f64))
 }
 
 fn unreadable(origin: &str, why: &io::Error) -> SceneError {

@@ -4,7 +4,6 @@ use std::collections::BTreeMap;
 
 use toml::Spanned;
 
-use super::checked::number_in;
 use super::error::Fault;
 use super::limits::{Limits, Number};
 use super::parameter::Parameter;
@@ -58,7 +57,7 @@ pub(super) fn deviations(
                     "must be left out beside tip_radius_um: both vary the tip's radius".into(),
                 );
             }
-            Some(own) if number_in(&scene, own.key()).is_none() => {
+            Some(own) if own.number_in(&scene).is_none() => {
                 let at = own.key();
                 return refuse(format!("must be left out: the scene does not give {at}"));
             }

@@ -19,6 +19,7 @@ mod setup;
 mod shape;
 mod source;
 mod sweep;
+mod varied;
 mod whisker;
 
 pub(crate) use error::shortened;

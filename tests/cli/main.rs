@@ -9,6 +9,7 @@ mod branch;
 mod curve;
 mod design;
 mod engine;
+mod extract;
 #[cfg(unix)]
 mod files;
 mod fit;

@@ -8,7 +8,7 @@ use std::process::{Child, Command, Stdio};
 use whiskmap::store::{StoredMap, ZarrStore};
 
 /// Eight blocks of three whiskers.
-const SWEEP: &str = r#"title = "A sweep in blocks"
+pub const SWEEP: &str = r#"title = "A sweep in blocks"
 [whisker]
 length_mm = 20
 base_radius_um = 30.0
@@ -27,7 +27,7 @@ fn map(place: &Place, folder: &str, options: &[&str]) -> Run {
     place.run(&[&MAP[..], &[folder], options].concat())
 }
 
-fn good(place: &Place, folder: &str, options: &[&str]) -> Run {
+pub fn good(place: &Place, folder: &str, options: &[&str]) -> Run {
     let run = map(place, folder, options);
     assert_eq!(run.code, Some(0), "{run:?}");
     run
@@ -301,143 +301,4 @@ fn channels_that_are_not_wanted_are_not_stored() {
     assert_eq!(store.channels().to_string(), "regime, force_un");
     let place = place.path("some/scene.zarr");
     assert!(place.join("force_un").exists() && !place.join("status").exists());
-}
-
-/// Values of a table or a list of bytes against those of the store.
-#[test]
-fn a_slice_is_what_the_store_has_there() {
-    let place = Place::with(SWEEP);
-    good(&place, ".", &[]);
-    let store = ZarrStore::open(&place.path("scene.zarr")).unwrap();
-    let run = |arguments: &[&str]| place.run(&[&["extract", "scene.zarr"], arguments].concat());
-
-    // The nearest radius is 0.2, the second of the third axis.
-    let at = [
-        "--at=taper=0.6",
-        "--at=pole_radius_mm=0.21",
-        "--at=push_angle_deg=-70",
-    ];
-    let said = run(&[
-        &at[..],
-        &["--channel=regime", "--channel=force_un", "-o", "s.csv"],
-    ]
-    .concat());
-    assert_eq!((said.code, &*said.out), (Some(0), "s.csv\n"), "{said:?}");
-    assert!(
-        said.err.starts_with("taper = 0.5\npole_radius_mm = 0.2"),
-        "{said:?}"
-    );
-    let table = fs::read_to_string(place.path("s.csv")).unwrap();
-    let mut lines = table.lines();
-    let header = "taper,friction,pole_radius_mm,distance_mm,push_angle_deg,regime,force_un";
-    assert_eq!(lines.next(), Some(header));
-    for friction in 0..2 {
-        let whisker = 1 + 3 * friction + 6;
-        let [regime, force] =
-            ["regime", "force_un"].map(|name| store.read_panel(name, whisker).unwrap());
-        for row in 0..64 {
-            let cells: Vec<&str> = lines.next().unwrap().split(',').collect();
-            assert_eq!(cells[1], ["0.0", "0.3"][friction]);
-            assert_eq!(cells[4..6], ["-70.0", &regime.value(row * 64).to_string()]);
-            let own = force.value(row * 64);
-            let found = cells[6].parse::<f32>().map(f64::from).ok();
-            assert_eq!(found, Some(own).filter(|own| own.is_finite()));
-        }
-    }
-    assert_eq!(lines.next(), None);
-
-    let npy = [
-        "--at=taper=0.5",
-        "--channel=force_un",
-        "--exact",
-        "-o",
-        "s.npy",
-    ];
-    assert_eq!(run(&npy).code, Some(0));
-    let bytes = place.bytes("s.npy");
-    let start = bytes.len() - 2 * 4 * 4096 * 4;
-    let header = String::from_utf8_lossy(&bytes[..start]).into_owned();
-    assert!(
-        header.contains("'shape': (2,4,64,64,)") && start.is_multiple_of(64),
-        "{header}"
-    );
-    // Friction is the slower one of the two that are left.
-    let second = store.read_panel("force_un", 1 + 6).unwrap();
-    let values: Vec<f32> = bytes[start + 4 * 4096..][..4 * 4096]
-        .chunks(4)
-        .map(|bytes| f32::from_le_bytes(bytes.try_into().unwrap()))
-        .collect();
-    let mut pairs = values
-        .iter()
-        .map(|value| f64::from(*value))
-        .zip(second.values());
-    assert!(pairs.all(|(a, b)| a == b || a.is_nan() && b.is_nan()));
-
-    for (arguments, said) in [
-        (
-            &["-o", "s.exr"][..],
-            "room for two sweep axes, there are taper, friction, pole_radius_mm",
-        ),
-        (&["-o", "s.npy"], "give one --channel"),
-        (&["-o", "s.txt"], "must end in .csv, .npy or .exr"),
-        (
-            &["--at=colour=1", "-o", "s.csv"],
-            "--at colour: must be one of the axes, taper, friction",
-        ),
-        (&["--at=taper", "-o", "s.csv"], "must be AXIS=VALUE"),
-        (
-            &["--at=taper=0.6", "--exact", "-o", "s.csv"],
-            "--at taper=0.6: is no value of the axis, and --exact is given; the nearest is 0.5",
-        ),
-        (
-            &["--channel=force", "-o", "s.csv"],
-            "--channel force: must be one of regime",
-        ),
-    ] {
-        run(arguments).assert_refused(&[said]);
-    }
-}
-
-/// The map of a slice is that of the scene with this value, but for what the whole sweep makes of the order of rounding.
-#[test]
-fn a_map_of_a_slice_can_be_drawn() {
-    let place = Place::with(SWEEP);
-    good(&place, ".", &[]);
-    let extract = [
-        "extract",
-        "scene.zarr",
-        "--at=friction=0.3",
-        "-o",
-        "slice.exr",
-    ];
-    assert_eq!(place.run(&extract).code, Some(0));
-    let slice = StoredMap::open(&place.path("slice.exr")).unwrap();
-    assert_eq!(slice.title, "A sweep in blocks, friction = 0.3");
-    assert_eq!((slice.layout.columns, slice.layout.rows), (3, 4));
-    let store = ZarrStore::open(&place.path("scene.zarr")).unwrap();
-    for panel in 0..12 {
-        let whisker = panel % 3 + 3 + panel / 3 * 6;
-        for name in slice.channels() {
-            let own = slice.read_panel(name, panel).unwrap();
-            let whole = store.read_panel(name, whisker).unwrap();
-            let mut pairs = own.values().zip(whole.values());
-            assert!(
-                pairs.all(|(a, b)| a == b || a.is_nan() && b.is_nan()),
-                "{name}"
-            );
-        }
-    }
-    assert_eq!(
-        place.run(&["render", "slice.exr", "-o", "slice.png"]).code,
-        Some(0)
-    );
-    let again = ["extract", "slice.exr", "--at=taper=1", "-o", "again.exr"];
-    assert_eq!(place.run(&again).code, Some(0));
-    assert_eq!(
-        StoredMap::open(&place.path("again.exr"))
-            .unwrap()
-            .layout
-            .columns,
-        4
-    );
 }

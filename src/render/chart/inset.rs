@@ -1,8 +1,8 @@
 //! Insets: a square of a plot, enlarged.
 
 use super::data::{Inset, Plot};
+use super::marks::{disc, polyline};
 use super::notes;
-use super::plot::{disc, polyline};
 use super::window::{Window, drawable};
 use crate::render::axes::FRAME;
 use crate::render::palette::GREY;

@@ -5,6 +5,7 @@
 
 mod data;
 mod inset;
+mod marks;
 mod notes;
 mod plot;
 mod sheet;

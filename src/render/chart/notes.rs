@@ -1,7 +1,7 @@
 //! Notes: short texts and arrows among the lines.
 
 use super::data::Note;
-use super::plot::colour;
+use super::marks::colour;
 use super::window::Window;
 use crate::render::font;
 use crate::render::heading::NAME;

@@ -1,75 +1,23 @@
 //! One plot: frame, ticks and what is inside.
 
-use super::data::{Band, Disc, Ink, Line, Plot, Shade, Stroke};
+use super::data::{Band, Plot, Shade};
+use super::marks::{LINE, colour, disc, pen, polyline, rim};
 use super::window::{Window, drawable, drawable_disc, drawable_span};
 use super::{inset, notes};
 use crate::render::axes::{Axes, FRAME};
 use crate::render::heading::{DOT, Heading, Sample};
-use crate::render::palette::{BLANK, BLUE, Fill, GREY, INK, Rgb, SHADE_DARK, SHADE_LIGHT, WHITE};
+use crate::render::palette::{Fill, Rgb, SHADE_DARK, SHADE_LIGHT, WHITE};
 use crate::render::picture::{Area, Pen, Picture};
 use crate::render::{ticks, units};
 
-/// Width of lines.
-const LINE: f64 = 3.0;
 /// Width of the white ring that sets a dot off.
 const RING: f64 = 2.0;
-/// Radius of a point of a line that has no neighbour, and of the smallest disc.
-const POINT: f64 = 5.0;
-const DISC: f64 = 3.0;
-
-/// The colour that an ink stands for.
-pub(super) const fn colour(ink: Ink) -> Rgb {
-    match ink {
-        Ink::Black => INK,
-        Ink::Blue => BLUE,
-        Ink::Grey => GREY,
-    }
-}
 
 /// The colour that a shade stands for.
 const fn ground(shade: Shade) -> Rgb {
     match shade {
         Shade::Light => SHADE_LIGHT,
         Shade::Dark => SHADE_DARK,
-    }
-}
-
-/// What a line is drawn with.
-fn pen(line: &Line) -> Pen {
-    Pen {
-        width: LINE,
-        colour: colour(line.ink),
-        dashed: line.stroke == Stroke::Dashed,
-    }
-}
-
-/// What an open dot is drawn with.
-const fn rim(ink: Ink) -> Pen {
-    Pen::solid(LINE, colour(ink))
-}
-
-/// Draws a disc in the data units of `window`, which fills `body`.
-pub(super) fn disc(picture: &mut Picture, body: Area, window: &Window, disc: &Disc) {
-    let centre = window.place(body, disc.centre);
-    let radius = window.pixels(body, disc.radius).max(DISC);
-    let fill = if disc.dark { GREY } else { BLANK };
-    picture.circle(centre, radius, fill, Some(Pen::solid(FRAME, INK)));
-}
-
-/// Draws drawable points the way a line is drawn; a single one is a dot.
-pub(super) fn polyline(
-    picture: &mut Picture,
-    body: Area,
-    window: &Window,
-    points: &[[f64; 2]],
-    line: &Line,
-) {
-    let pen = pen(line);
-    let places = points.iter().map(|point| window.place(body, *point));
-    match places.collect::<Vec<_>>()[..] {
-        [] => {}
-        [only] => picture.circle(only, POINT, pen.colour, None),
-        ref places => picture.polyline(places, pen),
     }
 }
 

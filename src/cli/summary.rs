@@ -1,0 +1,63 @@
+//! What a run of `map` has done, on standard output.
+
+use std::io::Write;
+use std::path::PathBuf;
+use whiskmap::classify::Regime;
+use whiskmap::map::{Stage, Summary};
+use whiskmap::scene::Scene;
+
+/// Prints the `summary` of a map that took so many `seconds`, and the `files` written.
+pub fn print(
+    scene: &Scene,
+    summary: &Summary,
+    seconds: f64,
+    files: &[PathBuf],
+) -> std::io::Result<()> {
+    let mut out = std::io::stdout().lock();
+    writeln!(out, "{}", scene.title)?;
+    for (regime, cells) in Regime::ALL.iter().zip(summary.regimes) {
+        if cells > 0 || *regime == Regime::Unresolved {
+            writeln!(out, "{cells:>12}  {}", regime.name())?;
+        }
+    }
+    writeln!(
+        out,
+        "{:>12}  refined in f64, {:.2} Newton steps each, worst residual {:.1e} of the length",
+        summary.refined,
+        summary.steps as f64 / summary.refined.max(1) as f64,
+        summary.worst_residual
+    )?;
+    for (cells, what) in [
+        (
+            summary.shots.restarted,
+            "shots without a solution from the engine, restarted in f64",
+        ),
+        (
+            summary.shots.on_cpu_instead,
+            "shots left to the refinement, after the engine had failed",
+        ),
+        (
+            summary.toward_base,
+            "slide toward the base, against the friction assumed: force and moment are off",
+        ),
+    ] {
+        if cells > 0 {
+            writeln!(out, "{cells:>12}  {what}")?;
+        }
+    }
+    writeln!(
+        out,
+        "{:>12}  disagreements between cells and boundaries",
+        summary.disagreements
+    )?;
+    let rate = summary.cells() as f64 / seconds;
+    write!(out, "{rate:>12.0}  cells/s; {seconds:.2} s:")?;
+    for (stage, name) in Stage::ALL {
+        write!(out, " {name} {:.2}", summary.seconds(stage))?;
+    }
+    writeln!(out)?;
+    for file in files {
+        writeln!(out, "{}", file.display())?;
+    }
+    Ok(())
+}
