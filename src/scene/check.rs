@@ -10,7 +10,7 @@ use super::deviations;
 use super::error::Fault;
 use super::file::{OutputTable, SceneTable, WhiskerTable};
 use super::grid::{FARTHEST, Grid, NEAREST};
-use super::limits::Limits;
+use super::limits::{Limits, MOST_FRICTION, MOST_STRETCH, STIFFEST_TIP};
 use super::parameter::Parameter;
 use super::profile;
 use super::setup::Setup;
@@ -20,15 +20,6 @@ use super::whisker::{Curvature, Pole, Whisker};
 
 /// As many as 16,384 x 16,384; a stored cell takes about 60 bytes.
 const MOST_CELLS: u128 = 1 << 28;
-
-/// Rubber on concrete; the whiskers of rats on steel have about 0.5.
-pub(super) const MOST_FRICTION: f64 = 2.0;
-
-/// Measured ratios lie between 0.7 and 1.4.
-pub(super) const STIFFEST_TIP: f64 = 20.0;
-
-/// A whisker that is twice as long as it looks.
-pub(super) const MOST_STRETCH: f64 = 2.0;
 
 /// File systems allow 255 bytes; the output adds its own endings.
 const LONGEST_NAME: usize = 200;

@@ -10,6 +10,15 @@ use super::error::Fault;
 /// A number and where the file has it. Integers are numbers too.
 pub(super) type Number = Spanned<f64>;
 
+/// Rubber on concrete; the whiskers of rats on steel have about 0.5.
+pub(super) const MOST_FRICTION: f64 = 2.0;
+
+/// Measured ratios lie between 0.7 and 1.4.
+pub(super) const STIFFEST_TIP: f64 = 20.0;
+
+/// A whisker that is twice as long as it looks.
+pub(super) const MOST_STRETCH: f64 = 2.0;
+
 /// A range of numbers. NaN is in none, and no range here reaches infinity.
 pub(super) struct Limits {
     range: (Bound<f64>, Bound<f64>),

@@ -5,13 +5,12 @@ use std::ops::Range;
 use toml::Spanned;
 
 use super::axis;
-use super::check::{MOST_FRICTION, MOST_STRETCH, STIFFEST_TIP};
 use super::error::Fault;
 use super::file::{
     ContactTable, CurvatureTable, GradientTable, PoleTable, ProjectionTable, SceneTable,
 };
 use super::grid::{Grid, Place, SweepAxis};
-use super::limits::{Limits, Number};
+use super::limits::{Limits, MOST_FRICTION, MOST_STRETCH, Number, STIFFEST_TIP};
 use super::parameter::Parameter;
 use super::shape;
 
