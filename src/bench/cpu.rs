@@ -1,10 +1,10 @@
 //! The CPU: scalar, vectors on one thread, vectors on all.
 
-use super::solver::Solver;
+use super::solver::{Hit, Solver};
 use super::task::{Task, places};
 use super::watch::watch;
 use super::{Engine, Measurement, Report, Rung, Stages};
-use crate::integrate::{EngineError, Hit};
+use crate::integrate::EngineError;
 use crate::numerics::{MultiplyAndAdd, Unit};
 use crate::shooting::Resolution;
 use crate::shooting::batch::flops_of_nystrom8;

@@ -1,15 +1,30 @@
-//! Newton's method as the shaders do it (`shaders/shoot.wgsl`), in `f64` on the CPU: on any SIMD unit, at any resolution.
+//! Newton's method on shots alone, in `f64` on the CPU: on any SIMD unit, at any resolution.
 
-use crate::integrate::{Hit, MOST_STEPS, Outcome, Shot};
 use crate::numerics::Unit;
+use crate::refine::Shot;
 use crate::rod::{Effects, Rod, arclength};
 use crate::shooting::batch::{Batch, InitialCondition, Method};
 use crate::shooting::{Resolution, ShootingMap};
-use glam::DVec2;
 use rayon::prelude::*;
 
 /// Shots that go through all steps as one batch: enough for full lanes, few enough to stay in the inner cache.
 const BATCH: usize = 1024;
+
+/// Newton steps that a shot may take.
+const MOST_STEPS: u32 = 4;
+
+/// What was made of a shot.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hit {
+    /// `tau` of the contact.
+    pub tau: f64,
+    /// Signed load.
+    pub load: f64,
+    /// Distance of the pole from the wanted place at the last trajectory, in whisker lengths.
+    pub residual: f64,
+    /// Newton steps taken.
+    pub steps: u32,
+}
 
 /// How the CPU solves shots.
 #[derive(Clone, Copy, Debug)]
@@ -35,7 +50,13 @@ impl Solver {
     fn solve_batch(self, effects: Effects, rods: &[Rod], shots: &[Shot]) -> Vec<Hit> {
         let method = Method::new(self.resolution).with_effects(effects);
         let batch = Batch::new(method).on(self.unit);
-        let mut hits: Vec<Hit> = shots.iter().map(Hit::untouched).collect();
+        let start = |shot: &Shot| Hit {
+            tau: shot.tau,
+            load: shot.load,
+            residual: f64::INFINITY,
+            steps: 0,
+        };
+        let mut hits: Vec<Hit> = shots.iter().map(start).collect();
         let mut open: Vec<usize> = (0..shots.len()).collect();
         for round in 0..=MOST_STEPS {
             let condition = |&i: &usize| InitialCondition {
@@ -46,29 +67,19 @@ impl Solver {
             let conditions: Vec<InitialCondition> = open.iter().map(condition).collect();
             let maps: Vec<ShootingMap> = batch.shoot(&conditions);
             for ((&i, condition), map) in open.iter().zip(&conditions).zip(&maps) {
-                let (hit, wanted) = (&mut hits[i], shots[i].pole);
-                self.step(condition.rod, hit, map, wanted, round < MOST_STEPS);
+                let (hit, shot) = (&mut hits[i], &shots[i]);
+                hit.residual = map.pole.distance(shot.pole);
+                if round < MOST_STEPS && hit.residual.is_finite() {
+                    let s = arclength(condition.rod, hit.tau);
+                    let step = map.newton_step(shot.pole, s, hit.load);
+                    hit.tau += step.x;
+                    hit.load += step.y;
+                    hit.steps += 1;
+                }
             }
-            open.retain(|&i| hits[i].outcome == Outcome::Stalled);
+            // The step after a small residual is the last.
+            open.retain(|&i| hits[i].residual > self.tolerance && hits[i].residual.is_finite());
         }
         hits
-    }
-
-    /// Judges a map and, unless it is the last, takes a Newton step from it.
-    fn step(&self, rod: &Rod, hit: &mut Hit, map: &ShootingMap, wanted: DVec2, more: bool) {
-        hit.residual = map.pole.distance(wanted);
-        if !hit.residual.is_finite() {
-            hit.outcome = Outcome::NotFinite;
-            return;
-        }
-        if hit.residual <= self.tolerance {
-            hit.outcome = Outcome::Converged;
-        }
-        if more {
-            let step = map.newton_step(wanted, arclength(rod, hit.tau), hit.load);
-            hit.tau += step.x;
-            hit.load += step.y;
-            hit.steps += 1;
-        }
     }
 }

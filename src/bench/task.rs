@@ -1,10 +1,9 @@
 //! The states of a scene, with exact answers.
 
-use super::solver::Solver;
-use crate::integrate::{Hit, Shot};
+use super::solver::{Hit, Solver};
 use crate::numerics::Unit;
 use crate::plan::Plan;
-use crate::refine::states;
+use crate::refine::{Shot, states};
 use crate::rod::{Effects, Rod, Side, arclength};
 use crate::scene::{Scene, Swept};
 use crate::sheet::Sheet;

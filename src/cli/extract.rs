@@ -9,7 +9,7 @@ use std::io::{self, BufWriter, IntoInnerError, Write};
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 use whiskmap::integrate;
-use whiskmap::map::{Channels, Panel, STATE_CHANNELS, Shots};
+use whiskmap::map::{Audit, Channels, EngineCells, Panel, STATE_CHANNELS};
 use whiskmap::scene::{Scene, Setup, digits};
 use whiskmap::store::{Description, MapWriter, Output, Samples, Stored, Table};
 
@@ -254,7 +254,7 @@ fn map(
         let panel = panel(selection, channels, &samples, about.channels);
         writer.write_panels(&[panel])?;
     }
-    writer.finish(Shots::default())?;
+    writer.finish(EngineCells::default(), Audit::default())?;
     Ok(())
 }
 

@@ -143,7 +143,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     });
     bar.finish_and_clear();
     let summary = result?;
-    writer.finish(summary.shots)?;
+    writer.finish(summary.engine_cells, summary.audit)?;
     if let Some(failure) = &summary.engine_failure {
         say(&format!("warning: {failure}; the CPU went on in its stead"));
     }

@@ -14,6 +14,7 @@ pub fn print(
     files: &[PathBuf],
 ) -> std::io::Result<()> {
     let mut out = std::io::stdout().lock();
+    let engine = &summary.engine_cells;
     writeln!(out, "{}", scene.title)?;
     for (regime, cells) in Regime::ALL.iter().zip(summary.regimes) {
         if cells > 0 || *regime == Regime::Unresolved {
@@ -22,20 +23,23 @@ pub fn print(
     }
     writeln!(
         out,
-        "{:>12}  refined in f64, {:.2} Newton steps each, worst residual {:.1e} of the length",
+        "{:>12}  states, {:.2} Newton steps each, worst residual {:.1e} of the length",
         summary.refined,
         summary.steps as f64 / summary.refined.max(1) as f64,
         summary.worst_residual
     )?;
     for (cells, what) in [
+        (engine.solved, "solved by the engine"),
         (
-            summary.shots.restarted,
-            "shots without a solution from the engine, restarted in f64",
+            engine.near_edge + engine.far + engine.missed + engine.not_finite,
+            "handed over by the engine, and refined in f64",
         ),
         (
-            summary.shots.on_cpu_instead,
-            "shots left to the refinement, after the engine had failed",
+            engine.on_cpu_instead,
+            "refined in f64 after the engine had failed",
         ),
+        (summary.audit.cells, "of the engine's cells audited in f64"),
+        (summary.audit.differing, "of them differed by more than they may"),
         (
             summary.toward_base,
             "slide toward the base, against the friction assumed: force and moment are off",

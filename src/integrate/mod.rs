@@ -1,9 +1,9 @@
-//! Engines: what shoots before the refinement, thousands of shooting problems at once.
+//! Engines: what solves whole cells in place of the refinement, thousands at once.
 //!
-//! A [`Shot`] asks for the contact and the load under which the pole is at a wanted place; an engine takes
-//! Newton steps, each one trajectory with its sensitivities. What comes back is a start for the refinement in
-//! `f64`, which alone decides what is a solution: an engine can be fast, but it cannot make a map wrong.
-//! On the CPU nothing would be spared: the refinement takes the same steps, from the guesses.
+//! A row of a map comes with [`Reference`]s, exact states along it. An engine integrates what is different in a cell, takes
+//! Newton's step from there, and answers with the difference of everything that people want to know, and with a bound on the
+//! miss. Cells that it does not vouch for, it hands over by an [`Outcome`]: they are refined in `f64`. So are rows without
+//! references, and a sample of all others.
 
 mod fallback;
 #[cfg(feature = "gpu")]
@@ -12,64 +12,67 @@ pub mod gpu;
 pub use fallback::Fallback;
 
 use crate::numerics::Unit;
+use crate::plan::STATE_CHANNELS;
 use crate::rod::{Effects, Rod};
-use glam::DVec2;
+use crate::shooting::FirstVariation;
+use crate::shooting::batch::Method;
+use std::ops::Range;
 
-/// A shooting problem.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Shot {
+/// Powers of the way along a row in its Taylor polynomials.
+pub const POWERS: usize = 12;
+
+/// What is known along a row: push angle, `tau`, the direction of the point of the resting whisker that is as far from the base as the
+/// contact, and the derivatives of `(ln D, phi)` by `tau` and by load.
+pub type RowNumbers = [f64; 7];
+
+/// A state of a row of cells, exact, and its neighbourhood on the row.
+#[derive(Clone, Debug)]
+pub struct Reference {
     /// Which of the rods of the call.
     pub rod: u32,
-    /// Guess for `tau` of the contact.
-    pub tau: f64,
-    /// Guess for the signed load `f/rho^2`.
-    pub load: f64,
-    /// Wanted centre of the pole in the frame of the base, in whisker lengths.
-    pub pole: DVec2,
-}
-
-/// What an engine made of a shot.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Hit {
     /// `tau` of the contact.
     pub tau: f64,
     /// Signed load.
     pub load: f64,
-    /// Distance of the pole from the wanted place at the last trajectory, in whisker lengths.
-    pub residual: f64,
-    /// Newton steps taken.
-    pub steps: u32,
-    /// How it ended.
+    /// Signed push angle since first touch, in radians.
+    pub push: f64,
+    /// The state, seen from the contact.
+    pub state: FirstVariation,
+    /// The signed load over the way along the row, which is counted in parts of the whole: it goes with `load tau^2`.
+    pub per_way: f64,
+    /// Taylor's polynomials of the row by the way from here; the numbers that [`Reference`] has itself begin with the first power.
+    pub row: [RowNumbers; POWERS],
+    /// The cells next to it: those at these of the call's push angles.
+    pub cells: Range<u32>,
+}
+
+/// By how much the state of a cell differs from that of its reference.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CellDifference {
+    /// In the order of [`STATE_CHANNELS`], in whisker lengths, radians, `E I_base/L_w^2`, `E I_base/L_w`; forces are signed and whole.
+    pub numbers: [f32; STATE_CHANNELS.len()],
+    /// Bound on the distance of the pole from the wanted place, in whisker lengths.
+    pub residual: f32,
+    /// Whether the engine vouches for it.
     pub outcome: Outcome,
 }
 
-impl Hit {
-    /// The guess of `shot`, before any step.
-    #[must_use]
-    pub const fn untouched(shot: &Shot) -> Self {
-        Self {
-            tau: shot.tau,
-            load: shot.load,
-            residual: f64::INFINITY,
-            steps: 0,
-            outcome: Outcome::Stalled,
-        }
-    }
-}
-
-/// How a shot ended. A failed shot is data, not an error.
+/// What became of a cell. A failed one is data, not an error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Outcome {
-    /// The residual is below the engine's tolerance.
-    Converged,
-    /// The steps were used up.
-    Stalled,
-    /// A number was not finite.
+    /// A number was not finite, or nothing was written.
     NotFinite,
+    /// A stable state.
+    Solved,
+    /// A stable state of a longer whisker: the contact lies beyond the tip.
+    BeyondTip,
+    /// Handed over: next to the fold or to the tip.
+    NearEdge,
+    /// Handed over: too different from its reference.
+    Far,
+    /// Handed over: the bound on its miss is too large.
+    Missed,
 }
-
-/// Newton steps that an engine may take per shot.
-pub const MOST_STEPS: u32 = 4;
 
 /// What solves a map, for people and for the record.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -92,22 +95,28 @@ impl Description {
     }
 }
 
-/// Something that solves shots before the refinement.
+/// Something that solves cells.
 pub trait Engine {
     /// Which engine this is.
     fn describe(&self) -> Description;
 
-    /// Solves `shots`, each on one of `rods`; answers in the same order. `effects` are those of the scene, a
-    /// superset of every rod's own.
+    /// Whether its kernels have these effects, and why not.
     ///
     /// # Errors
-    /// When the device fails; a shot that does not converge is no error.
-    fn shoot(
+    /// What the kernels lack.
+    fn can(&self, effects: Effects) -> Result<(), &'static str>;
+
+    /// Solves the cells of the `references`, in order, each on one of `rods`, at some of the signed `pushes` (radians).
+    ///
+    /// # Errors
+    /// When the device fails; a cell that is handed over is no error.
+    fn solve(
         &mut self,
-        effects: Effects,
+        method: Method,
         rods: &[Rod],
-        shots: &[Shot],
-    ) -> Result<Vec<Hit>, EngineError>;
+        pushes: &[f64],
+        references: &[Reference],
+    ) -> Result<Vec<CellDifference>, EngineError>;
 }
 
 /// A device that failed.

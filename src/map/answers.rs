@@ -1,11 +1,13 @@
 //! From settled cells to the answers of a panel, in the units of the map.
 
-use super::cells::{Cell, Settled};
+use super::cells::{Cell, Settled, State};
+use super::channels::{Numbers, channels, of_cell, of_reference};
 use super::{Face, Panel, STATE_CHANNELS, doubt};
 use crate::classify::{Regime, RowBoundary, Sliding, Status};
+use crate::integrate::Reference;
 use crate::scene::Swept;
 use crate::sheet::Sheet;
-use crate::shooting::{Reader, Reading};
+use crate::shooting::Reader;
 use glam::DVec2;
 use rayon::prelude::*;
 
@@ -28,8 +30,9 @@ pub fn fill(
             let face = &faces[row.face];
             let units = whiskers[row.face / faces_per_panel].whisker.units();
             let reader = Reader::new(units, &face.sheet.rod);
-            let reader = has_state.then_some(&reader);
-            let mut answers = answers(reader, face, row.row, || settled.cells(face, row));
+            let mut readings = has_state.then(|| Readings::new(reader, face, row.row));
+            let cells = || settled.cells(face, row);
+            let mut answers = answers(readings.as_mut(), face, row.row, cells);
             mark_toward_base(face, row.row, &mut answers);
             answers
         })
@@ -52,16 +55,56 @@ pub fn fill(
     }
 }
 
-/// The answers for the `cells` of `row`, with states if there is a `reader` of them, which are settled once more where they are in doubt.
-fn answers<C: Iterator<Item = Cell>>(
-    reader: Option<&Reader>,
+/// What turns the states of a row into numbers of the map.
+struct Readings<'a> {
+    reader: Reader,
+    /// What a difference of one is.
+    of_one: Numbers,
+    touch: f64,
+    /// The reference that was read last.
+    reference: Option<(&'a Reference, Numbers)>,
+}
+
+impl<'a> Readings<'a> {
+    fn new(reader: Reader, face: &Face, row: usize) -> Self {
+        Self {
+            of_one: channels(&reader.of_one(face.sheet.side.sign())),
+            touch: face.sheet.rows[row].touch,
+            reader,
+            reference: None,
+        }
+    }
+
+    /// The channels of a cell in contact.
+    fn read(&mut self, cell: &Cell<'a>) -> Option<Numbers> {
+        match cell.state {
+            State::Unknown => None,
+            State::Refined(state) => {
+                let reading = self.reader.read(state.tau, &state.full, self.touch, cell.push.angle);
+                Some(channels(&reading))
+            }
+            State::Different(reference, difference) => {
+                let known = self.reference.filter(|(known, _)| std::ptr::eq(*known, reference));
+                let (_, numbers) = known.unwrap_or_else(|| {
+                    (reference, of_reference(&self.reader, reference, self.touch))
+                });
+                self.reference = Some((reference, numbers));
+                Some(of_cell(&numbers, &self.of_one, difference))
+            }
+        }
+    }
+}
+
+/// The answers for the `cells` of `row`, with states if there are `readings` of them, which are settled once more where they are in doubt.
+fn answers<'a, C: Iterator<Item = Cell<'a>>>(
+    mut readings: Option<&mut Readings<'a>>,
     face: &Face,
     row: usize,
     cells: impl Fn() -> C,
 ) -> Vec<Answer> {
     let sheet = &face.sheet;
     let boundary = RowBoundary::new(sheet.touches(row), &sheet.crossings[row]);
-    let answer = |cell: &Cell| answer(cell, sheet, row, &boundary, reader);
+    let mut answer = |cell: &Cell<'a>| answer(cell, sheet, &boundary, readings.as_deref_mut());
     let answers: Vec<Answer> = cells().map(|cell| answer(&cell)).collect();
     let in_doubt = |(cell, answer): (Cell, &Answer)| {
         let is_touch = cell.is_first_touch(&boundary);
@@ -124,55 +167,43 @@ impl Answer {
     }
 }
 
-fn answer(
-    cell: &Cell,
+fn answer<'a>(
+    cell: &Cell<'a>,
     sheet: &Sheet,
-    row: usize,
     boundary: &RowBoundary,
-    reader: Option<&Reader>,
+    readings: Option<&mut Readings<'a>>,
 ) -> Answer {
     let push = cell.push.angle;
     let span = boundary.span(push.abs());
-    let at_tip = cell.state.is_some_and(|state| state.is_at_tip(sheet));
     // At the tip both verdicts are right; the boundary's is taken.
-    let status = if at_tip && cell.status == Status::Solved && span.is_none() {
-        Status::BeyondTip
-    } else {
-        cell.status
+    let status = match cell.state {
+        State::Refined(state)
+            if cell.status == Status::Solved && span.is_none() && state.is_at_tip(sheet) =>
+        {
+            Status::BeyondTip
+        }
+        _ => cell.status,
     };
     let (regime, status) = boundary.judge(push.abs(), status);
     let mut answer = Answer::new(regime, status, cell.steps);
-    let Some(state) = &cell.state else {
-        return answer;
+    let residual = match cell.state {
+        State::Unknown => return answer,
+        State::Refined(state) => {
+            answer.point = Some(DVec2::new(state.tau, state.load));
+            state.residual as f32
+        }
+        State::Different(_, difference) => difference.residual,
     };
     if matches!(regime, Regime::Contact | Regime::Unreachable) {
-        answer.point = Some(DVec2::new(state.tau, state.load));
-        let touch = sheet.rows[row].touch;
-        if let Some(reader) = reader {
-            let reading = reader.read(state.tau, &state.full, touch, push);
-            answer.state = channels(&reading).map(|value| value as f32);
+        if let Some(numbers) = readings.and_then(|readings| readings.read(cell)) {
+            answer.state = numbers.map(|value| value as f32);
         }
-        answer.residual = state.residual as f32;
+        answer.residual = residual;
         answer.margin_deg = span.map_or(f32::NAN, |span| {
             (span.to - push.abs()).max(0.0).to_degrees() as f32
         });
     } else if regime == Regime::Unresolved {
-        answer.residual = state.residual as f32;
+        answer.residual = residual;
     }
     answer
-}
-
-/// The channels of [`STATE_CHANNELS`].
-fn channels(reading: &Reading) -> [f64; STATE_CHANNELS.len()] {
-    [
-        reading.arc_length_mm,
-        reading.contact_angle_deg,
-        reading.force_un,
-        reading.base_force_un.x,
-        reading.base_force_un.y,
-        reading.base_moment_nnm,
-        reading.push_chord_deg,
-        reading.contact_distance_mm,
-        reading.energy_nj,
-    ]
 }

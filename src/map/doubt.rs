@@ -4,7 +4,7 @@
 //! along a line of constant load, as near the tip of a perfect cone, and where it turns back, as with friction.
 //! Continuation needs no guesses. It costs some hundred trajectories a row, so only rows with a cell in doubt are followed.
 
-use super::cells::Cell;
+use super::cells::{Cell, State};
 use crate::classify::{RowBoundary, Status};
 use crate::refine::{ContactState, TOLERANCE};
 use crate::sheet::{Edge, LevelCurve, Node, ON_CURVE, Sheet};
@@ -14,11 +14,11 @@ use crate::sheet::{Edge, LevelCurve, Node, ON_CURVE, Sheet};
 const SAME_END: f64 = 1e-5;
 
 /// Settles `cells` of `row` again. Cells that no continuation reaches keep what they have.
-pub fn settle<'a>(
+pub fn settle<'a, 'b: 'a>(
     sheet: &Sheet,
     row: usize,
     boundary: &RowBoundary,
-    cells: impl Iterator<Item = &'a mut Cell>,
+    cells: impl Iterator<Item = &'a mut Cell<'b>>,
 ) {
     let level = sheet.level(row);
     let sign = sheet.side.sign();
@@ -53,7 +53,7 @@ pub fn settle<'a>(
                     let state = state(&level, &node, push);
                     if state.residual <= TOLERANCE {
                         cell.status = Status::Solved;
-                        cell.state = Some(state);
+                        cell.state = State::Refined(state);
                     }
                 }
             }
@@ -69,7 +69,7 @@ pub fn settle<'a>(
             && let Some(touch) = first_touch(&level, push)
         {
             cell.status = Status::Solved;
-            cell.state = Some(touch);
+            cell.state = State::Refined(touch);
         }
     }
 }

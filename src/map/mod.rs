@@ -1,7 +1,9 @@
-//! The stages in order, for a whole scene: sheets, guesses, shooting, refinement, regimes, panels.
+//! The stages in order, for a whole scene: sheets, an engine's cells, guesses and refinement of all others, regimes, panels.
 
 mod answers;
+mod audit;
 mod cells;
+mod channels;
 mod doubt;
 mod panel;
 mod pushes;
@@ -10,7 +12,6 @@ mod summary;
 use crate::integrate::{Engine, Fallback};
 use crate::plan::Plan;
 pub use crate::plan::{Channels, STATE_CHANNELS};
-use crate::rod::Side;
 use crate::scene::{Scene, Swept};
 use crate::sheet::Sheet;
 use crate::shooting::batch::Method;
@@ -18,7 +19,7 @@ use cells::SettledRow;
 pub use panel::Panel;
 use pushes::Pushes;
 use rayon::prelude::*;
-pub use summary::{Shots, Stage, Summary};
+pub use summary::{Audit, EngineCells, Stage, Summary};
 
 /// Cells in flight for each thread where no engine shoots: so many that nearly all blocks of the refinement are full, and
 /// hardly a page of memory is new for them.
@@ -40,8 +41,8 @@ struct Face<'a> {
 }
 
 /// Computes the panels of `scene` as `plan` says, on the threads of the current pool, best from within it
-/// (`rayon::ThreadPool::install`): from outside, every stage of every strip of rows wakes it up. `engine` shoots before the
-/// refinement; without one, or where it fails, the CPU does it all.
+/// (`rayon::ThreadPool::install`): from outside, every stage of every strip of rows wakes it up. `engine` solves
+/// cells in place of the refinement; without one, or where it fails, the CPU does it all.
 ///
 /// # Errors
 /// What `observe` refuses panels with, which ends the run; a cell without an answer is no error.
@@ -63,8 +64,14 @@ pub fn run<E>(
     let failure = None;
     let mut engine = Fallback { engine, failure };
     let mut summary = Summary::default();
-    let pushes = |side: &Side| Pushes::new(&scene.grid.push_angle_deg, *side);
-    let sides: Vec<Pushes> = plan.sides.iter().map(pushes).collect();
+    let mut sides: Vec<Pushes> = Vec::new();
+    let mut angles: Vec<f64> = Vec::new();
+    for side in &plan.sides {
+        // A row has fewer columns than `u32` can count.
+        let side = Pushes::new(&scene.grid.push_angle_deg, *side, angles.len() as u32);
+        angles.extend(side.columns.iter().map(|push| push.angle));
+        sides.push(side);
+    }
     let groups = plan.parts.iter().flat_map(|part| {
         let firsts = part.clone().step_by(plan.panels_at_once);
         firsts.map(|first| first..(first + plan.panels_at_once).min(part.end))
@@ -75,7 +82,7 @@ pub fn run<E>(
         let mut panels = vec![Panel::unresolved(width * height, plan.channels); group.len()];
         let rows = (0..faces.len()).flat_map(|face| (0..height).map(move |row| (face, row)));
         for strip in rows.collect::<Vec<_>>().chunks(rows_at_once) {
-            let settled = cells::settle(plan.method, &faces, strip, &mut engine, &mut summary);
+            let settled = cells::settle(plan.method, &faces, &angles, strip, &mut engine, &mut summary);
             summary.time(Stage::Regimes, || {
                 answers::fill(width, &group, &faces, sides.len(), &settled, &mut panels);
             });

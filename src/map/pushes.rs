@@ -21,11 +21,15 @@ pub struct Pushes {
     pub side: Side,
     /// The columns.
     pub columns: Vec<Push>,
+    /// Magnitudes of their push angles, in radians.
+    pub magnitudes: Vec<f64>,
+    /// Columns of the sides before.
+    pub first: u32,
 }
 
 impl Pushes {
-    /// Those of `push_angle_deg`, which grow, that are on `side`.
-    pub fn new(push_angle_deg: &[f64], side: Side) -> Self {
+    /// Those of `push_angle_deg`, which grow, that are on `side`; so many columns are on the sides `first`.
+    pub fn new(push_angle_deg: &[f64], side: Side, first: u32) -> Self {
         let all = push_angle_deg.iter().enumerate();
         let ours = all.filter(|(_, push)| Side::of_push(**push) == side);
         let mut columns: Vec<Push> = ours
@@ -41,7 +45,12 @@ impl Pushes {
         if side == Side::Cf {
             columns.reverse();
         }
-        Self { side, columns }
+        Self {
+            side,
+            magnitudes: columns.iter().map(|push| push.angle.abs()).collect(),
+            columns,
+            first,
+        }
     }
 }
 
@@ -53,7 +62,7 @@ mod tests {
     fn columns_go_away_from_no_push() {
         let all = [-70.0, -1e-9, -0.0, 0.0, 30.0];
         let columns = |side| {
-            let pushes = Pushes::new(&all, side);
+            let pushes = Pushes::new(&all, side, 0);
             pushes
                 .columns
                 .iter()
@@ -62,7 +71,7 @@ mod tests {
         };
         assert_eq!(columns(Side::Cf), [1, 0]);
         assert_eq!(columns(Side::Cb), [2, 3, 4]);
-        let Push { angle, turn, .. } = Pushes::new(&all, Side::Cf).columns[1];
+        let Push { angle, turn, .. } = Pushes::new(&all, Side::Cf, 0).columns[1];
         assert!(
             (turn.to_angle() - angle).abs() < 1e-15 && (angle + 1.2217304763960306).abs() < 1e-15
         );

@@ -2,7 +2,7 @@
 
 use super::Panel;
 use crate::classify::{Regime, Status};
-use crate::integrate::EngineError;
+use crate::integrate::{EngineError, Outcome};
 use serde::{Deserialize, Serialize};
 use std::time::{Duration, Instant};
 
@@ -13,7 +13,7 @@ pub enum Stage {
     Sheets,
     /// Guesses from the lattice.
     Guesses,
-    /// The engine.
+    /// References of rows, and the engine.
     Shooting,
     /// Newton's method in `f64`.
     Refinement,
@@ -35,16 +35,55 @@ impl Stage {
     ];
 }
 
-/// What became of the shots of a run, one for each cell with a guess.
+/// What became of the cells of a run that an engine was to solve.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Shots {
-    /// How many there were.
-    pub all: u64,
-    /// Those that ended without a solution, or with numbers that are not finite: the refinement in `f64` started them
-    /// again from their guess.
-    pub restarted: u64,
-    /// Those that no engine solved because that of the run had failed: the refinement started from their guesses.
+pub struct EngineCells {
+    /// Those that it solved.
+    pub solved: u64,
+    /// Handed over to the CPU: next to the fold or to the tip.
+    pub near_edge: u64,
+    /// Handed over: too different from the nearest reference of their row.
+    pub far: u64,
+    /// Handed over: the bound on their miss was too large.
+    pub missed: u64,
+    /// Handed over: numbers that are not finite.
+    pub not_finite: u64,
+    /// Those that the engine was not asked for: their row has no references there.
+    pub without_reference: u64,
+    /// Those that it did not solve because it had failed.
     pub on_cpu_instead: u64,
+}
+
+impl EngineCells {
+    /// Counts a cell.
+    pub(super) fn count(&mut self, outcome: Outcome) {
+        *match outcome {
+            Outcome::Solved | Outcome::BeyondTip => &mut self.solved,
+            Outcome::NearEdge => &mut self.near_edge,
+            Outcome::Far => &mut self.far,
+            Outcome::Missed => &mut self.missed,
+            Outcome::NotFinite => &mut self.not_finite,
+        } += 1;
+    }
+}
+
+/// What came of looking over an engine's shoulder.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Audit {
+    /// Cells computed once more in `f64`.
+    pub cells: u64,
+    /// Those of them that differed by more than they may.
+    pub differing: u64,
+    /// Cells that the CPU refined in the engine's stead because one among them differed.
+    pub turned_over: u64,
+}
+
+impl std::ops::AddAssign for Audit {
+    fn add_assign(&mut self, more: Self) {
+        self.cells += more.cells;
+        self.differing += more.differing;
+        self.turned_over += more.turned_over;
+    }
 }
 
 /// Counts and times of a run.
@@ -62,8 +101,10 @@ pub struct Summary {
     pub disagreements: u64,
     /// Cells with a state whose contact slides toward the base, against the friction assumed.
     pub toward_base: u64,
-    /// What became of the engine's shots.
-    pub shots: Shots,
+    /// What became of the engine's cells.
+    pub engine_cells: EngineCells,
+    /// What came of looking at some of them once more.
+    pub audit: Audit,
     /// Why the CPU went on in the engine's stead, if it did.
     pub engine_failure: Option<EngineError>,
     times: [Duration; Stage::ALL.len()],

@@ -1,4 +1,4 @@
-//! Refinement: Newton's method in `f64` from whatever an engine or a lattice offers, and the verdict.
+//! Refinement: Newton's method in `f64` from the lattice's guesses, and the verdict.
 //!
 //! "Newton converged" is not "still on the pole": a solution counts only on the stable sheet. Where Newton's
 //! method fails, the fold at the same distance decides: either the wanted direction lies beyond it, or the
@@ -6,11 +6,14 @@
 
 mod near_fold;
 mod newton;
+mod references;
 
-use crate::integrate::Shot;
+pub use references::{RowOfCells, references};
+
 use crate::sheet::Sheet;
 use crate::shooting::FullState;
 use crate::shooting::batch::{Method, chunk_size};
+use glam::DVec2;
 use near_fold::Verdict;
 use newton::newton;
 use rayon::prelude::*;
@@ -29,6 +32,19 @@ const STEPS: u32 = 8;
 
 /// Newton steps from the fold's normal form.
 const STEPS_NEAR_FOLD: u32 = 30;
+
+/// A shooting problem.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Shot {
+    /// Which of the rods of the call.
+    pub rod: u32,
+    /// Guess for `tau` of the contact.
+    pub tau: f64,
+    /// Guess for the signed load `f/rho^2`.
+    pub load: f64,
+    /// Wanted centre of the pole in the frame of the base, in whisker lengths.
+    pub pole: DVec2,
+}
 
 /// What became of a cell.
 #[derive(Clone, Copy, Debug, PartialEq)]

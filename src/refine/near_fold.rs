@@ -4,7 +4,7 @@
 //! `phi = phi_fold - c eta^2/2`. So the fold at the wanted distance tells whether the wanted direction has a
 //! solution at all, and `eta` where it is.
 
-use crate::integrate::Shot;
+use super::Shot;
 use crate::numerics::nearest_turn;
 use crate::sheet::{Edge, EdgeProblem, Sheet, edge_newton};
 use crate::shooting::SecondVariation;

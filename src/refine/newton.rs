@@ -1,7 +1,6 @@
 //! Newton's method on many cells at once, and when it may stop.
 
-use super::{ContactState, End, GOAL, Refined, TOLERANCE};
-use crate::integrate::Shot;
+use super::{ContactState, End, GOAL, Refined, Shot, TOLERANCE};
 use crate::rod::arclength;
 use crate::sheet::Sheet;
 use crate::shooting::batch::{Batch, InitialCondition, Method};

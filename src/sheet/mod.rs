@@ -206,6 +206,20 @@ impl Sheet {
         }
     }
 
+    /// Points of the lattice along `row`, by growing load, with their push angles (magnitudes, in radians); none of a walked sheet.
+    #[must_use]
+    pub fn points(&self, row: usize) -> Vec<(f64, Guess)> {
+        let Some(samples) = self.samples() else {
+            return Vec::new();
+        };
+        let curve = samples.lattice.row_curve(&samples.contacts, &self.rows[row]);
+        let point = |i: usize| {
+            let [tau, load] = [curve.tau[i], curve.load[i]];
+            (curve.push[i], Guess { tau, load })
+        };
+        (0..curve.count).map(point).collect()
+    }
+
     /// Whether a state, as far as the fold goes, is on the sheet: loaded toward the pole, on the stable side of
     /// the Jacobian's first singularity.
     #[must_use]

@@ -3,7 +3,7 @@
 use super::layout::Layout;
 use super::tally::{Counts, regimes, statuses};
 use crate::integrate;
-use crate::map::{Channels, Shots};
+use crate::map::{Audit, Channels, EngineCells};
 use crate::scene::{Grid, Parameter, Setup, SweepAxis};
 use exr::meta::attribute::{AttributeValue, Text};
 use serde::{Deserialize, Serialize};
@@ -87,10 +87,19 @@ pub(super) fn counts_width() -> usize {
         regimes: regimes().into_values().map(most).collect(),
         statuses: statuses().into_values().map(most).collect(),
         worst_residual: Some(-f64::MIN_POSITIVE),
-        shots: Shots {
-            all: u64::MAX,
-            restarted: u64::MAX,
+        engine_cells: EngineCells {
+            solved: u64::MAX,
+            near_edge: u64::MAX,
+            far: u64::MAX,
+            missed: u64::MAX,
+            not_finite: u64::MAX,
+            without_reference: u64::MAX,
             on_cpu_instead: u64::MAX,
+        },
+        audit: Audit {
+            cells: u64::MAX,
+            differing: u64::MAX,
+            turned_over: u64::MAX,
         },
     };
     ascii_json(&json!(counts)).len()

@@ -40,4 +40,4 @@ pub use writer::MapWriter;
 pub use zarr::ZarrStore;
 
 /// What a file holds of one whisker, and of the whole run.
-pub use crate::map::{Channels, Panel, STATE_CHANNELS, Shots};
+pub use crate::map::{Audit, Channels, EngineCells, Panel, STATE_CHANNELS};

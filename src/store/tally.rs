@@ -1,7 +1,7 @@
 //! How many cells there are of each regime and status.
 
 use crate::classify::{Regime, Status};
-use crate::map::Shots;
+use crate::map::{Audit, EngineCells};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -14,8 +14,10 @@ pub struct Counts {
     pub statuses: BTreeMap<String, u64>,
     /// The greatest residual, relative to the whisker's length; `None` where no cell is in contact.
     pub worst_residual: Option<f64>,
-    /// What the engine did for them.
-    pub shots: Shots,
+    /// What an engine did for them.
+    pub engine_cells: EngineCells,
+    /// What came of looking at some of its cells once more.
+    pub audit: Audit,
 }
 
 /// Names of the regimes by code.

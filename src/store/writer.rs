@@ -5,7 +5,7 @@ use super::layout::{self, Channel, Layout, Part, SAMPLE_BYTES};
 use super::tally::{self, Counts};
 use super::{Channels, Error, Output, Panel, header};
 use crate::classify::Regime;
-use crate::map::Shots;
+use crate::map::{Audit, EngineCells};
 use exr::block::UncompressedBlock;
 use exr::meta::Headers;
 use exr::meta::header::Header;
@@ -132,14 +132,15 @@ impl MapWriter {
     /// # Errors
     ///
     /// A panel is missing, or the file cannot be written or renamed; then no map appears.
-    pub fn finish(mut self, shots: Shots) -> Result<Counts, Error> {
+    pub fn finish(mut self, engine_cells: EngineCells, audit: Audit) -> Result<Counts, Error> {
         if self.written != self.layout.panels() {
             return Err(Error::Incomplete {
                 written: self.written,
                 panels: self.layout.panels(),
             });
         }
-        self.counts.shots = shots;
+        self.counts.engine_cells = engine_cells;
+        self.counts.audit = audit;
         let text = attributes::encode_counts(&self.counts);
         for header in &mut self.headers {
             let attributes = &mut header.own_attributes.other;

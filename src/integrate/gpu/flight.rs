@@ -2,10 +2,10 @@
 
 use super::EngineError;
 use super::device::{Device, answer};
-use super::layout::{BufferLayout, Steps};
+use super::layout::{BufferLayout, Packed};
 use super::shaders::WORKGROUP;
 use super::stamps::Stamps;
-use crate::integrate::{Hit, Shot};
+use crate::integrate::CellDifference;
 use std::time::{Duration, Instant};
 use wgpu::BufferUsages as Usage;
 
@@ -15,10 +15,10 @@ pub struct Call<'a> {
     pub device: &'a Device,
     pub layout: &'a BufferLayout,
     pub pipeline: &'a wgpu::ComputePipeline,
-    /// The rods.
-    pub rods: &'a wgpu::Buffer,
-    /// The pieces of their profile, and how many bytes they are.
-    pub pieces: Option<(&'a wgpu::Buffer, u64)>,
+    /// The rods, and how many there are.
+    pub rods: (&'a wgpu::Buffer, usize),
+    /// The push angles.
+    pub pushes: (&'a wgpu::Buffer, usize),
     /// Whether dispatches are timed by the device.
     pub timed: bool,
 }
@@ -26,35 +26,35 @@ pub struct Call<'a> {
 /// What the stages of a call took.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Times {
-    /// Packing and handing over.
+    /// Integrating references, packing and handing over.
     pub upload: Duration,
     /// The shader, by the device's own clock; 0 where it has none.
     pub dispatch: Duration,
+    /// Waiting for the device.
+    pub waiting: Duration,
     /// Unpacking, after the wait.
     pub readback: Duration,
 }
 
-/// Room for a number of shots and their hits.
+/// Room for what a dispatch reads and writes.
 #[derive(Debug)]
 pub struct Buffers {
     stamps: Option<Stamps>,
-    capacity: usize,
-    shots: wgpu::Buffer,
-    hits: wgpu::Buffer,
+    references: Option<wgpu::Buffer>,
+    starts: Option<wgpu::Buffer>,
+    cells: wgpu::Buffer,
     readback: wgpu::Buffer,
 }
 
 impl Buffers {
-    fn new(call: &Call, capacity: usize) -> Result<Self, EngineError> {
+    fn new(call: &Call, bytes: u64) -> Result<Self, EngineError> {
         let device = call.device;
-        let bytes = |each: usize| (capacity * each) as u64;
-        let (shots, hits) = (bytes(call.layout.shot), bytes(call.layout.hit));
         Ok(Self {
             stamps: Stamps::new(device, call.timed)?,
-            capacity,
-            shots: device.buffer("shots", shots, Usage::STORAGE | Usage::COPY_DST)?,
-            hits: device.buffer("hits", hits, Usage::STORAGE | Usage::COPY_SRC)?,
-            readback: device.buffer("readback", hits, Usage::MAP_READ | Usage::COPY_DST)?,
+            references: None,
+            starts: None,
+            cells: device.buffer("cells", bytes, Usage::STORAGE | Usage::COPY_SRC)?,
+            readback: device.buffer("readback", bytes, Usage::MAP_READ | Usage::COPY_DST)?,
         })
     }
 }
@@ -62,8 +62,8 @@ impl Buffers {
 /// A dispatch under way.
 #[derive(Debug)]
 pub struct Flight {
-    /// How many shots.
-    pub shots: usize,
+    /// How many cells.
+    pub cells: usize,
     /// When it was handed to the queue.
     pub submitted: Instant,
     index: wgpu::SubmissionIndex,
@@ -83,44 +83,46 @@ fn part(binding: u32, buffer: &wgpu::Buffer, size: u64) -> wgpu::BindGroupEntry<
 }
 
 impl Flight {
-    /// Sends shots, and the steps of their trajectories, on their way, in buffers of a finished flight if they are large enough.
+    /// Sends the cells of references on their way, in buffers of a finished flight if they are large enough.
     pub fn dispatch(
         call: &Call,
         buffers: Option<Buffers>,
-        shots: &[Shot],
-        steps: Steps,
+        packed: &Packed,
     ) -> Result<Self, EngineError> {
-        let (device, layout, count) = (call.device, call.layout, shots.len());
-        let buffers = match buffers {
-            Some(buffers) if buffers.capacity >= count => buffers,
-            _ => Buffers::new(call, count)?,
+        let (device, layout) = (call.device, call.layout);
+        let bytes = (packed.cells * layout.cell) as u64;
+        let mut buffers = match buffers {
+            Some(buffers) if buffers.cells.size() >= bytes => buffers,
+            _ => Buffers::new(call, bytes)?,
         };
-        let bytes = (layout.shots)(shots, steps);
-        device.queue.write_buffer(&buffers.shots, 0, &bytes);
-        let hits_size = (count * layout.hit) as u64;
-        let mut entries = vec![
-            part(0, call.rods, call.rods.size()),
-            part(1, &buffers.shots, bytes.len() as u64),
-            part(2, &buffers.hits, hits_size),
+        let references = &packed.references;
+        let (references_size, starts_size) = (references.len() as u64, packed.starts.len() as u64);
+        let references = device.upload("references", &mut buffers.references, references)?;
+        let starts = device.upload("steps", &mut buffers.starts, &packed.starts)?;
+        let entries = [
+            part(0, call.rods.0, (call.rods.1 * layout.rod) as u64),
+            part(1, references, references_size),
+            part(2, starts, starts_size),
+            part(3, call.pushes.0, (call.pushes.1 * layout.push) as u64),
+            part(4, &buffers.cells, bytes),
         ];
-        entries.extend(call.pieces.map(|(pieces, size)| part(3, pieces, size)));
         let bindings = device.handle.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("shoot"),
+            label: Some("cells"),
             layout: &call.pipeline.get_bind_group_layout(0),
             entries: &entries,
         });
         let mut commands = device.handle.create_command_encoder(&Default::default());
         {
             let mut pass = commands.begin_compute_pass(&wgpu::ComputePassDescriptor {
-                label: Some("shoot"),
+                label: Some("cells"),
                 timestamp_writes: buffers.stamps.as_ref().map(Stamps::writes),
             });
             pass.set_pipeline(call.pipeline);
             pass.set_bind_group(0, &bindings, &[]);
-            // The pace keeps the shots below what `u32` can count.
-            pass.dispatch_workgroups((count as u32).div_ceil(WORKGROUP), 1, 1);
+            // The pace keeps the cells below what `u32` can count.
+            pass.dispatch_workgroups((packed.cells as u32).div_ceil(WORKGROUP), 1, 1);
         }
-        answer(&mut commands, &buffers.hits, &buffers.readback, hits_size);
+        answer(&mut commands, &buffers.cells, &buffers.readback, bytes);
         if let Some(stamps) = &buffers.stamps {
             stamps.resolve(&mut commands);
         }
@@ -128,25 +130,27 @@ impl Flight {
         let index = device.queue.submit([commands.finish()]);
         device.check()?;
         Ok(Self {
-            shots: count,
+            cells: packed.cells,
             submitted,
             index,
             buffers,
         })
     }
 
-    /// Waits for the hits, appends them, and gives the buffers back.
+    /// Waits for the cells, appends them, and gives the buffers back.
     pub fn finish(
         self,
         call: &Call,
-        hits: &mut Vec<Hit>,
+        cells: &mut Vec<CellDifference>,
         times: &mut Times,
     ) -> Result<Buffers, EngineError> {
+        let begun = Instant::now();
         call.device.wait(self.index)?;
         let arrived = Instant::now();
-        let size = (self.shots * call.layout.hit) as u64;
+        times.waiting += arrived - begun;
+        let size = (self.cells * call.layout.cell) as u64;
         Device::read(&self.buffers.readback, size, |bytes| {
-            (call.layout.hits)(bytes, hits)
+            (call.layout.cells)(bytes, cells)
         })?;
         times.readback += arrived.elapsed();
         if let Some(stamps) = &self.buffers.stamps {

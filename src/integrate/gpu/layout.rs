@@ -1,30 +1,44 @@
-//! Rods, shots and hits as bytes: the structs of `shaders/rod.wgsl` and `shaders/shoot.wgsl`.
+//! Rods, push angles, references and cells as bytes: the structs of `shaders/nystrom8.wgsl` and `shaders/cells.wgsl`.
 
 use super::Precision;
-use crate::integrate::{Hit, Outcome, Shot};
+use crate::integrate::{CellDifference, Outcome, POWERS, Reference, RowNumbers};
 use crate::numerics::Real;
-use crate::rod::{Piece, Rod};
+use crate::plan::STATE_CHANNELS;
+use crate::rod::{Rest, Rod, arclength};
+use crate::shooting::{REST_TERMS, Resolution, StateDerivative, StepStart, step_starts};
 use bytemuck::{Pod, Zeroable};
+use glam::DVec2;
+use rayon::prelude::*;
 
 /// What buffers hold, for shaders of one precision.
 #[derive(Debug)]
 pub struct BufferLayout {
-    /// Bytes of a shot.
-    pub shot: usize,
-    /// Bytes of a hit.
-    pub hit: usize,
+    /// Bytes of a rod.
+    pub rod: usize,
+    /// Bytes of a push angle.
+    pub push: usize,
+    /// Bytes of a cell.
+    pub cell: usize,
     /// Rods to bytes.
     pub rods: fn(&[Rod]) -> Vec<u8>,
-    /// The pieces of a rod's profile to bytes.
-    pub pieces: fn(&Rod) -> Vec<u8>,
-    /// Shots to bytes.
-    pub shots: fn(&[Shot], Steps) -> Vec<u8>,
-    /// Hits from bytes, appended.
-    pub hits: fn(&[u8], &mut Vec<Hit>),
+    /// Push angles to bytes.
+    pub pushes: fn(&[f64]) -> Vec<u8>,
+    /// References on rods to bytes, with the steps that a resolution takes.
+    pub references: fn(&[Rod], Resolution, &[Reference]) -> Packed,
+    /// Cells from bytes, appended.
+    pub cells: fn(&[u8], &mut Vec<CellDifference>),
 }
 
-/// In how many steps the trajectories of a shot are integrated; with a profile, steps for every piece.
-pub type Steps<'a> = &'a dyn Fn(&Shot) -> u32;
+/// References, ready for a dispatch.
+#[derive(Debug)]
+pub struct Packed {
+    /// Cells of all of them.
+    pub cells: usize,
+    /// The references.
+    pub references: Vec<u8>,
+    /// The steps of their trajectories.
+    pub starts: Vec<u8>,
+}
 
 impl BufferLayout {
     /// The layout for shaders of this precision.
@@ -37,23 +51,24 @@ impl BufferLayout {
 
     const fn with<T: Scalar>() -> Self {
         Self {
-            shot: size_of::<GpuShot<T>>(),
-            hit: size_of::<GpuHit<T>>(),
+            rod: size_of::<GpuRod<T>>(),
+            push: size_of::<[T; 2]>(),
+            cell: size_of::<GpuCell>(),
             rods: |rods| bytes(rods.iter().map(GpuRod::<T>::from)),
-            pieces: |rod| match &rod.profile {
-                Some(profile) => bytes(profile.pieces.iter().map(|p| GpuPiece::<T>::of(rod, p))),
-                None => bytes([GpuPiece::<T>::of(rod, &Piece::cone(rod.taper))].into_iter()),
-            },
-            shots: |shots, steps| bytes(shots.iter().map(|s| GpuShot::<T>::of(s, steps(s)))),
-            hits: |bytes, hits| {
-                let each = bytes.chunks_exact(size_of::<GpuHit<T>>());
-                hits.extend(
-                    each.map(|hit| Hit::from(bytemuck::pod_read_unaligned::<GpuHit<T>>(hit))),
-                );
+            pushes: |pushes| bytes(pushes.iter().map(|push| halves::<T>(*push))),
+            references: packed::<T>,
+            cells: |bytes, cells| {
+                let each = bytes.chunks_exact(size_of::<GpuCell>());
+                cells.extend(each.map(|cell| {
+                    CellDifference::from(bytemuck::pod_read_unaligned::<GpuCell>(cell))
+                }));
             },
         }
     }
 }
+
+/// Numbers of a row.
+const ROW_NUMBERS: usize = size_of::<RowNumbers>() / size_of::<f64>();
 
 /// A scalar of the shaders.
 trait Scalar: Real + Pod + Into<f64> {}
@@ -68,11 +83,69 @@ fn bytes<P: Pod>(things: impl ExactSizeIterator<Item = P>) -> Vec<u8> {
     bytes
 }
 
+/// A number, and what the shaders' scalar leaves of it.
+fn halves<T: Scalar>(number: f64) -> [T; 2] {
+    let high = T::of(number);
+    [high, T::of(number - high.into())]
+}
+
+fn pair<T: Scalar>(of: DVec2) -> [T; 2] {
+    [T::of(of.x), T::of(of.y)]
+}
+
+/// The trajectory of a reference.
+struct Trip {
+    steps: u32,
+    /// How far bending has turned the base.
+    bent: f64,
+}
+
+/// The references of one thread at a time.
+const TOGETHER: usize = 64;
+
+fn packed<T: Scalar>(rods: &[Rod], resolution: Resolution, references: &[Reference]) -> Packed {
+    let parts = references.par_chunks(TOGETHER).map(|references| {
+        let mut starts = Vec::new();
+        let trips = references.iter().map(|reference| {
+            let rod = &rods[reference.rod as usize];
+            let Reference { tau, load, .. } = *reference;
+            let steps = resolution.steps(rod, tau, load);
+            let bent = step_starts(rod, tau, load, steps, &mut starts);
+            Trip { steps, bent }
+        });
+        let trips: Vec<Trip> = trips.collect();
+        (trips, bytes(starts.iter().map(GpuStart::<T>::from)))
+    });
+    let parts: Vec<(Vec<Trip>, Vec<u8>)> = parts.collect();
+    let mut packed = Packed {
+        cells: 0,
+        references: Vec::with_capacity(references.len() * size_of::<GpuReference<T>>()),
+        starts: Vec::with_capacity(parts.iter().map(|(_, starts)| starts.len()).sum()),
+    };
+    let mut first_step = 0;
+    let trips = parts.iter().flat_map(|(trips, _)| trips);
+    for (reference, trip) in references.iter().zip(trips) {
+        let rod = &rods[reference.rod as usize];
+        let packed_one = GpuReference::<T>::new(rod, reference, packed.cells, first_step, trip);
+        let bytes = bytemuck::bytes_of(&packed_one);
+        packed.references.extend_from_slice(bytes);
+        packed.cells += reference.cells.len();
+        first_step += trip.steps;
+    }
+    for (_, starts) in &parts {
+        packed.starts.extend_from_slice(starts);
+    }
+    packed
+}
+
 /// The codes that the shaders write, from 0. A kernel that writes nothing leaves zeros, which are no solution.
-pub const OUTCOMES: [(&str, Outcome); 3] = [
+pub const OUTCOMES: [(&str, Outcome); 6] = [
     ("NOT_FINITE", Outcome::NotFinite),
-    ("CONVERGED", Outcome::Converged),
-    ("STALLED", Outcome::Stalled),
+    ("SOLVED", Outcome::Solved),
+    ("BEYOND_TIP", Outcome::BeyondTip),
+    ("NEAR_EDGE", Outcome::NearEdge),
+    ("FAR", Outcome::Far),
+    ("MISSED", Outcome::Missed),
 ];
 
 #[derive(Clone, Copy, Pod, Zeroable)]
@@ -80,10 +153,6 @@ pub const OUTCOMES: [(&str, Outcome); 3] = [
 struct GpuRod<T> {
     taper: T,
     bend: T,
-    slope: T,
-    pole: T,
-    friction: T,
-    gradient: T,
     spiral: [T; 2],
 }
 
@@ -92,10 +161,6 @@ impl<T: Scalar> From<&Rod> for GpuRod<T> {
         Self {
             taper: T::of(rod.taper),
             bend: T::of(rod.bend),
-            slope: T::of(rod.slope),
-            pole: T::of(rod.pole),
-            friction: T::of(rod.friction),
-            gradient: T::of(rod.gradient),
             spiral: rod.spiral.unwrap_or_default().map(T::of),
         }
     }
@@ -103,70 +168,123 @@ impl<T: Scalar> From<&Rod> for GpuRod<T> {
 
 #[derive(Clone, Copy, Pod, Zeroable)]
 #[repr(C, packed)]
-struct GpuPiece<T> {
-    tau: T,
-    begin: T,
-    cubic: [T; 4],
+struct GpuStart<T> {
+    tangent: [T; 2],
+    position: [T; 2],
+    bent: T,
+    rest: [T; 2],
+    rest_turn: [T; REST_TERMS],
 }
 
-impl<T: Scalar> GpuPiece<T> {
-    fn of(rod: &Rod, piece: &Piece) -> Self {
+impl<T: Scalar> From<&StepStart> for GpuStart<T> {
+    fn from(start: &StepStart) -> Self {
         Self {
-            tau: T::of(rod.tau(piece.from)),
-            begin: T::of(piece.from),
-            cubic: piece.cubic.map(T::of),
+            tangent: pair(start.tangent),
+            position: pair(start.position),
+            bent: T::of(start.bent),
+            rest: pair(start.rest),
+            rest_turn: start.rest_turn.map(T::of),
         }
     }
 }
 
 #[derive(Clone, Copy, Pod, Zeroable)]
 #[repr(C, packed)]
-struct GpuShot<T> {
+struct GpuReference<T> {
     tau: T,
     load: T,
-    pole_x: T,
-    pole_y: T,
+    radius: T,
+    arclength: T,
+    force: T,
+    rest: [T; 2],
+    to_tip: T,
+    to_pole: [T; 2],
+    position: [T; 2],
+    tangent: [T; 2],
+    by_tau: [T; 4],
+    by_load: [T; 4],
+    bent: T,
+    energy: T,
+    push: [T; 2],
+    per_way: T,
+    row: [[T; ROW_NUMBERS]; POWERS],
     rod: u32,
+    first_cell: u32,
+    first_push: u32,
     steps: u32,
+    first_step: u32,
+    unused: u32,
 }
 
-impl<T: Scalar> GpuShot<T> {
-    fn of(shot: &Shot, steps: u32) -> Self {
+impl<T: Scalar> GpuReference<T> {
+    fn new(
+        rod: &Rod,
+        reference: &Reference,
+        first_cell: usize,
+        first_step: u32,
+        trip: &Trip,
+    ) -> Self {
+        let Reference {
+            tau,
+            load,
+            push,
+            state,
+            ..
+        } = reference;
+        let s = arclength(rod, *tau);
+        let full = &state.full;
+        let numbers = |by: &StateDerivative| {
+            [by.angle, by.position.x, by.position.y, by.energy].map(T::of)
+        };
+        let row = |numbers: &RowNumbers| numbers.map(T::of);
         Self {
-            tau: T::of(shot.tau),
-            load: T::of(shot.load),
-            pole_x: T::of(shot.pole.x),
-            pole_y: T::of(shot.pole.y),
-            rod: shot.rod,
-            steps,
+            tau: T::of(*tau),
+            load: T::of(*load),
+            radius: T::of(rod.radius(*tau)),
+            arclength: T::of(s),
+            force: T::of(full.force),
+            rest: pair(Rest::parabola_tangent(rod, s)),
+            to_tip: T::of(rod.tau_tip() - tau),
+            to_pole: pair(rod.to_pole() - full.position),
+            position: pair(full.position),
+            tangent: pair(full.tangent),
+            by_tau: numbers(&state.by_tau),
+            by_load: numbers(&state.by_load),
+            bent: T::of(trip.bent),
+            energy: T::of(if full.force == 0.0 { 0.0 } else { 2.0 * full.energy / full.force }),
+            push: halves(*push),
+            per_way: T::of(reference.per_way),
+            row: std::array::from_fn(|power| row(&reference.row[power])),
+            rod: reference.rod,
+            // A call has fewer cells than `u32` can count.
+            first_cell: first_cell as u32,
+            first_push: reference.cells.start,
+            steps: trip.steps,
+            first_step,
+            unused: 0,
         }
     }
 }
 
 #[derive(Clone, Copy, Pod, Zeroable)]
-#[repr(C, packed)]
-struct GpuHit<T> {
-    tau: T,
-    load: T,
-    residual: T,
-    steps: u32,
+#[repr(C)]
+struct GpuCell {
+    numbers: [f32; STATE_CHANNELS.len()],
+    residual: f32,
     outcome: u32,
 }
 
-impl<T: Scalar> From<GpuHit<T>> for Hit {
+impl From<GpuCell> for CellDifference {
     // Whatever the shader says, a number that is not finite is not a solution.
-    fn from(hit: GpuHit<T>) -> Self {
-        let numbers: [f64; 3] = [hit.tau.into(), hit.load.into(), hit.residual.into()];
+    fn from(cell: GpuCell) -> Self {
+        let is_finite = cell.numbers.iter().all(|x| x.is_finite()) && cell.residual.is_finite();
         let outcome = OUTCOMES
-            .get(hit.outcome as usize)
-            .filter(|_| numbers.iter().all(|x| x.is_finite()))
+            .get(cell.outcome as usize)
+            .filter(|_| is_finite)
             .map_or(Outcome::NotFinite, |&(_, outcome)| outcome);
-        let [tau, load, residual] = numbers;
         Self {
-            tau,
-            load,
-            residual,
-            steps: hit.steps,
+            numbers: cell.numbers,
+            residual: cell.residual,
             outcome,
         }
     }
@@ -177,7 +295,6 @@ impl<T: Scalar> From<GpuHit<T>> for Hit {
 mod tests {
     use super::*;
     use crate::integrate::gpu::shaders;
-    use crate::rod::Effects;
     use naga::TypeInner;
     use std::mem::offset_of;
 
@@ -185,12 +302,7 @@ mod tests {
     type Struct = (String, usize, Vec<(String, usize)>);
 
     fn in_shader(precision: Precision) -> Vec<Struct> {
-        let effects = Effects {
-            profile: true,
-            ..Effects::default()
-        };
-        let text = shaders::shoot(precision, effects);
-        let module = naga::front::wgsl::parse_str(&text).unwrap();
+        let module = naga::front::wgsl::parse_str(&shaders::cells(precision)).unwrap();
         let structs = module.types.iter().filter_map(|(_, found)| {
             let TypeInner::Struct { members, span } = &found.inner else {
                 return None;
@@ -203,11 +315,11 @@ mod tests {
     }
 
     macro_rules! in_rust {
-        ($type:ident, $name:literal, $($member:ident)+) => {
+        ($type:ty, $name:literal, $($member:ident)+) => {
             (
                 $name.to_owned(),
-                size_of::<$type<T>>(),
-                vec![$((stringify!($member).to_owned(), offset_of!($type<T>, $member))),+],
+                size_of::<$type>(),
+                vec![$((stringify!($member).to_owned(), offset_of!($type, $member))),+],
             )
         };
     }
@@ -215,10 +327,11 @@ mod tests {
     fn agrees<T: Scalar>(precision: Precision) {
         let shader = in_shader(precision);
         for rust in [
-            in_rust!(GpuRod, "Rod", taper bend slope pole friction gradient spiral),
-            in_rust!(GpuPiece, "Piece", tau begin cubic),
-            in_rust!(GpuShot, "Shot", tau load pole_x pole_y rod steps),
-            in_rust!(GpuHit, "Hit", tau load residual steps outcome),
+            in_rust!(GpuRod<T>, "Rod", taper bend spiral),
+            in_rust!(GpuStart<T>, "StepStart", tangent position bent rest rest_turn),
+            in_rust!(GpuReference<T>, "Reference", tau load radius arclength force rest to_tip to_pole position tangent
+                by_tau by_load bent energy push per_way row rod first_cell first_push steps first_step unused),
+            in_rust!(GpuCell, "Cell", numbers residual outcome),
         ] {
             assert_eq!(shader.iter().find(|s| s.0 == rust.0), Some(&rust));
         }
@@ -231,23 +344,21 @@ mod tests {
     }
 
     #[test]
-    fn a_hit_that_is_not_finite_or_not_written_is_no_solution() {
-        for (tau, code, outcome) in [
-            (1.0, 1, Outcome::Converged),
+    fn a_cell_that_is_not_finite_or_not_written_is_no_solution() {
+        for (first, code, outcome) in [
+            (1.0, 1, Outcome::Solved),
             (f32::NAN, 1, Outcome::NotFinite),
             (1.0, 9, Outcome::NotFinite),
             (0.0, 0, Outcome::NotFinite),
         ] {
-            let hit = GpuHit {
-                tau,
-                load: 0.0,
+            let cell = GpuCell {
+                numbers: [first; STATE_CHANNELS.len()],
                 residual: 0.0,
-                steps: 0,
                 outcome: code,
             };
-            let mut hits = Vec::new();
-            (BufferLayout::of(Precision::F32).hits)(bytemuck::bytes_of(&hit), &mut hits);
-            assert_eq!(hits[0].outcome, outcome);
+            let mut cells = Vec::new();
+            (BufferLayout::of(Precision::F32).cells)(bytemuck::bytes_of(&cell), &mut cells);
+            assert_eq!(cells[0].outcome, outcome);
         }
     }
 }

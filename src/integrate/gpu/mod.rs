@@ -1,4 +1,4 @@
-//! The GPU engine: WGSL compute shaders through wgpu, one Newton iteration per invocation.
+//! The GPU engine: WGSL compute shaders through wgpu, one cell per invocation.
 //!
 //! The shaders are joined from whole pieces ([`shaders`]), in `f32` or `f64` by a type alias; each set of
 //! effects has a pipeline of its own, made from `override` constants. Work goes out in dispatches short
@@ -23,8 +23,9 @@ pub use flight::Times;
 pub use guard::is_guarded;
 pub use precision::Precision;
 
-use super::{Description, Engine, EngineError, Hit, Outcome, Shot};
-use crate::rod::{Effects, Rod, arclength};
+use super::{CellDifference, Description, Engine, EngineError, Reference};
+use crate::rod::{Effects, Rod};
+use crate::shooting::batch::Method;
 use device::Device;
 use flight::{Buffers, Call, Flight};
 use layout::BufferLayout;
@@ -37,12 +38,12 @@ use std::time::Instant;
 #[derive(Debug)]
 pub struct Gpu {
     precision: Precision,
-    /// In place of [`shaders::shoot`].
+    /// In place of [`shaders::cells`].
     shader: Option<String>,
     layout: BufferLayout,
     device: Device,
     rods: Option<wgpu::Buffer>,
-    pieces: Option<wgpu::Buffer>,
+    pushes: Option<wgpu::Buffer>,
     /// Those of no flight.
     buffers: Vec<Buffers>,
     pipelines: HashMap<Effects, Pipeline>,
@@ -89,7 +90,7 @@ impl Gpu {
             layout: BufferLayout::of(precision),
             device,
             rods: None,
-            pieces: None,
+            pushes: None,
             buffers: Vec::new(),
             pipelines: HashMap::new(),
             times: None,
@@ -102,7 +103,7 @@ impl Gpu {
         self.times
     }
 
-    /// Opens the [`preferred`] adapter for a shader other than [`shaders::shoot`]: a seam for tests, which spoil it.
+    /// Opens the [`preferred`] adapter for a shader other than [`shaders::cells`]: a seam for tests, which spoil it.
     ///
     /// # Errors
     /// Those of [`Gpu::new`].
@@ -118,80 +119,6 @@ impl Gpu {
     pub const fn device(&self) -> &wgpu::Device {
         &self.device.handle
     }
-
-    fn run(
-        &mut self,
-        effects: Effects,
-        rods: &[Rod],
-        shots: &[Shot],
-    ) -> Result<Vec<Hit>, EngineError> {
-        let most = rods.iter().map(|rod| rod.taper * rod.tau_tip());
-        let effects = effects.reaching(most.fold(0.0, f64::max));
-        let (device, layout, precision) = (&self.device, &self.layout, self.precision);
-        // All rods share one profile.
-        let pieces = match rods.first().filter(|_| effects.profile) {
-            Some(rod) => {
-                let bytes = (layout.pieces)(rod);
-                let buffer = device.upload("pieces of a profile", &mut self.pieces, &bytes)?;
-                Some((buffer, bytes.len() as u64))
-            }
-            None => None,
-        };
-        let steps = |shot: &Shot| {
-            let measured = rods.get(shot.rod as usize).filter(|_| effects.profile);
-            precision.steps(measured, shot.tau, shot.load)
-        };
-        let rods = device.upload("rods", &mut self.rods, &(layout.rods)(rods))?;
-        let shader = || shaders::shoot(precision, effects);
-        let Pipeline { handle, pace } = match self.pipelines.entry(effects) {
-            Entry::Occupied(known) => known.into_mut(),
-            Entry::Vacant(new) => {
-                let text = self.shader.clone().unwrap_or_else(shader);
-                new.insert(Pipeline::new(device, &text, layout, effects)?)
-            }
-        };
-        let call = Call {
-            device,
-            layout,
-            pipeline: handle,
-            rods,
-            pieces,
-            timed: self.times.is_some(),
-        };
-        let mut times = Times::default();
-        let mut hits = Vec::with_capacity(shots.len());
-        let mut waiting = shots;
-        let mut flights: VecDeque<Flight> = VecDeque::new();
-        let mut idle_since = Instant::now();
-        loop {
-            if flights.len() < IN_FLIGHT && !waiting.is_empty() {
-                let (now, later) = waiting.split_at(pace.shots.min(waiting.len()));
-                waiting = later;
-                let begun = Instant::now();
-                flights.push_back(Flight::dispatch(&call, self.buffers.pop(), now, &steps)?);
-                times.upload += begun.elapsed();
-            } else if let Some(flight) = flights.pop_front() {
-                let (count, started) = (flight.shots, flight.submitted.max(idle_since));
-                self.buffers
-                    .push(flight.finish(&call, &mut hits, &mut times)?);
-                idle_since = Instant::now();
-                pace.learn(count, idle_since - started);
-            } else {
-                self.times = self.times.map(|_| times);
-                return Ok(hits);
-            }
-        }
-    }
-}
-
-/// The largest `|load| s^2`, times the softness, for which the shaders take enough steps. No cone has a fold beyond, unless it
-/// has friction or a gradient. Under larger loads a whisker coils up, and trajectories are wrong by more than the residual
-/// tells: measured 1e-4 whisker lengths beyond 30, 8e-4 beyond 100.
-const MOST_Q: f64 = 30.0;
-
-fn coils_up(rod: &Rod, hit: &Hit) -> bool {
-    let s = arclength(rod, hit.tau);
-    hit.load.abs() * s * s * rod.softness(hit.tau) > MOST_Q
 }
 
 impl Engine for Gpu {
@@ -206,22 +133,79 @@ impl Engine for Gpu {
         }
     }
 
-    fn shoot(
-        &mut self,
-        effects: Effects,
-        rods: &[Rod],
-        shots: &[Shot],
-    ) -> Result<Vec<Hit>, EngineError> {
-        if shots.is_empty() {
-            return Ok(Vec::new());
+    fn can(&self, effects: Effects) -> Result<(), &'static str> {
+        if effects.profile {
+            Err("measured radii are integrated on the CPU")
+        } else if effects.gradient {
+            Err("a modulus gradient is integrated on the CPU")
+        } else {
+            Ok(())
         }
-        let mut hits = self.run(effects, rods, shots)?;
-        for (hit, shot) in hits.iter_mut().zip(shots) {
-            let rod = rods.get(shot.rod as usize);
-            if hit.outcome == Outcome::Converged && rod.is_some_and(|rod| coils_up(rod, hit)) {
-                hit.outcome = Outcome::Stalled;
+    }
+
+    fn solve(
+        &mut self,
+        method: Method,
+        rods: &[Rod],
+        pushes: &[f64],
+        references: &[Reference],
+    ) -> Result<Vec<CellDifference>, EngineError> {
+        let effects = method.effects;
+        let (device, layout, precision) = (&self.device, &self.layout, self.precision);
+        let resolution = precision.resolution(method.resolution);
+        let uploads = [
+            device.upload("rods", &mut self.rods, &(layout.rods)(rods))?,
+            device.upload("push angles", &mut self.pushes, &(layout.pushes)(pushes))?,
+        ];
+        let Pipeline { handle, pace } = match self.pipelines.entry(effects) {
+            Entry::Occupied(known) => known.into_mut(),
+            Entry::Vacant(new) => {
+                let text = self.shader.clone();
+                let text = text.unwrap_or_else(|| shaders::cells(precision));
+                new.insert(Pipeline::new(device, &text, layout, effects)?)
+            }
+        };
+        let call = Call {
+            device,
+            layout,
+            pipeline: handle,
+            rods: (uploads[0], rods.len()),
+            pushes: (uploads[1], pushes.len()),
+            timed: self.times.is_some(),
+        };
+        let mut times = Times::default();
+        let mut cells = Vec::new();
+        let mut waiting = references;
+        let mut flights: VecDeque<Flight> = VecDeque::new();
+        let mut idle_since = Instant::now();
+        loop {
+            if flights.len() < IN_FLIGHT && !waiting.is_empty() {
+                let (now, later) = waiting.split_at(together(waiting, pace.cells));
+                waiting = later;
+                let begun = Instant::now();
+                let packed = (layout.references)(rods, resolution, now);
+                flights.push_back(Flight::dispatch(&call, self.buffers.pop(), &packed)?);
+                times.upload += begun.elapsed();
+            } else if let Some(flight) = flights.pop_front() {
+                let (count, started) = (flight.cells, flight.submitted.max(idle_since));
+                self.buffers
+                    .push(flight.finish(&call, &mut cells, &mut times)?);
+                idle_since = Instant::now();
+                pace.learn(count, idle_since - started);
+            } else {
+                self.times = self.times.map(|_| times);
+                return Ok(cells);
             }
         }
-        Ok(hits)
     }
+}
+
+/// How many of the first of the `references`, at least one, have together at most so many `cells`.
+fn together(references: &[Reference], cells: usize) -> usize {
+    let mut sum = 0;
+    let fits = references.iter().take_while(|reference| {
+        sum += reference.cells.len();
+        sum <= cells
+    });
+    fits.count().max(1)
 }

@@ -1,4 +1,4 @@
-//! How many shots go into one dispatch: decided from times, without a device.
+//! How many cells go into one dispatch: decided from times, without a device.
 
 use std::time::Duration;
 
@@ -6,42 +6,42 @@ use std::time::Duration;
 /// which some systems reset a GPU.
 const GOAL: Duration = Duration::from_millis(75);
 
-/// Shots of the first dispatch, when nothing is known yet: 10 ms on two cores of a CPU.
+/// Cells of the first dispatch, when nothing is known yet: 10 ms on two cores of a CPU.
 const FIRST: usize = 4096;
 
-/// Most shots per dispatch: 64 MiB of buffers per dispatch in flight; larger dispatches are no faster.
+/// Most cells per dispatch: 64 MiB of buffers per dispatch in flight; larger dispatches are no faster.
 const MOST: usize = 1 << 20;
 
-/// Shots per dispatch, learnt from the dispatches before.
+/// Cells per dispatch, learnt from the dispatches before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Pace {
-    /// Shots of the next dispatch.
-    pub shots: usize,
+    /// Cells of the next dispatch.
+    pub cells: usize,
     most: usize,
     warm: bool,
 }
 
 impl Pace {
-    /// For buffers of at most `most_bytes` with at most `shot_bytes` per shot, and `most_groups` groups of
-    /// `group` shots.
-    pub fn new(most_bytes: u64, shot_bytes: usize, most_groups: u32, group: u32) -> Self {
-        let by_bytes = usize::try_from(most_bytes).unwrap_or(usize::MAX) / shot_bytes;
+    /// For buffers of at most `most_bytes` with at most `cell_bytes` per cell, and `most_groups` groups of
+    /// `group` cells.
+    pub fn new(most_bytes: u64, cell_bytes: usize, most_groups: u32, group: u32) -> Self {
+        let by_bytes = usize::try_from(most_bytes).unwrap_or(usize::MAX) / cell_bytes;
         let by_groups = most_groups as usize * group as usize;
         let most = by_bytes.min(by_groups).min(MOST);
         Self {
-            shots: FIRST.min(most),
+            cells: FIRST.min(most),
             most,
             warm: false,
         }
     }
 
-    /// Learns that `shots` took at most `time`. The first dispatch of a pipeline compiles it and tells
+    /// Learns that `cells` took at most `time`. The first dispatch of a pipeline compiles it and tells
     /// nothing; a dispatch that was not full tells only that full ones take too long.
-    pub fn learn(&mut self, shots: usize, time: Duration) {
-        let full = shots >= self.shots;
+    pub fn learn(&mut self, cells: usize, time: Duration) {
+        let full = cells >= self.cells;
         if std::mem::replace(&mut self.warm, true) && (full || time > GOAL) {
-            let fitting = shots as f64 * GOAL.as_secs_f64() / time.as_secs_f64().max(1e-6);
-            self.shots = (fitting as usize).clamp(1, 4 * self.shots).min(self.most);
+            let fitting = cells as f64 * GOAL.as_secs_f64() / time.as_secs_f64().max(1e-6);
+            self.cells = (fitting as usize).clamp(1, 4 * self.cells).min(self.most);
         }
     }
 }
@@ -58,7 +58,7 @@ mod tests {
 
     #[test]
     fn the_first_dispatch_teaches_nothing() {
-        assert_eq!(warm().shots, FIRST);
+        assert_eq!(warm().cells, FIRST);
     }
 
     #[test]
@@ -70,11 +70,11 @@ mod tests {
         ] {
             let mut pace = Pace::new(bytes, 40, groups, 64);
             for _ in 0..20 {
-                pace.learn(pace.shots, Duration::ZERO);
+                pace.learn(pace.cells, Duration::ZERO);
             }
-            assert_eq!(pace.shots, most);
-            pace.learn(pace.shots, Duration::from_secs(3600));
-            assert_eq!(pace.shots, (most / 48_000).max(1));
+            assert_eq!(pace.cells, most);
+            pace.learn(pace.cells, Duration::from_secs(3600));
+            assert_eq!(pace.cells, (most / 48_000).max(1));
         }
     }
 
@@ -82,17 +82,17 @@ mod tests {
     fn full_dispatches_settle_at_the_goal() {
         let mut pace = warm();
         for _ in 0..10 {
-            pace.learn(pace.shots, Duration::from_micros(pace.shots as u64));
+            pace.learn(pace.cells, Duration::from_micros(pace.cells as u64));
         }
-        assert_eq!(pace.shots, 75_000);
+        assert_eq!(pace.cells, 75_000);
     }
 
     #[test]
     fn a_part_can_only_slow_down() {
         let mut pace = warm();
         pace.learn(1, Duration::from_micros(1));
-        assert_eq!(pace.shots, FIRST);
+        assert_eq!(pace.cells, FIRST);
         pace.learn(1000, Duration::from_millis(150));
-        assert_eq!(pace.shots, 500);
+        assert_eq!(pace.cells, 500);
     }
 }

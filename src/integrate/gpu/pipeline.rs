@@ -21,11 +21,10 @@ impl Pipeline {
         layout: &BufferLayout,
         effects: Effects,
     ) -> Result<Self, EngineError> {
-        let largest = layout.shot.max(layout.hit);
         let groups = device.handle.limits().max_compute_workgroups_per_dimension;
         Ok(Self {
-            handle: compile(device, "shoot", shader, &overrides(effects))?,
-            pace: Pace::new(device.most_bytes(), largest, groups, WORKGROUP),
+            handle: compile(device, "solve_cells", shader, &overrides(effects))?,
+            pace: Pace::new(device.most_bytes(), layout.cell, groups, WORKGROUP),
         })
     }
 }

@@ -1,6 +1,5 @@
 //! `f32` or `f64` in the shaders, and what follows from it.
 
-use crate::rod::Rod;
 use crate::shooting::Resolution;
 use std::fmt;
 
@@ -24,44 +23,42 @@ impl fmt::Display for Precision {
 }
 
 impl Precision {
-    /// Steps of [`Rk4`](crate::shooting::Rk4) per trajectory.
-    ///
-    /// Measured over taper up to 0.99, `A*` up to 0.8, both sides and `q` up to 6.5, worst distance of the
-    /// pole from where `f64` finds it: in `f32` 3.6e-5, 7e-6, 4e-6 and 9e-6 whisker lengths for 32, 48, 64 and
-    /// 128 steps (beyond 64 rounding grows); in `f64` 2.4e-6, 4.8e-7 and 1.5e-7 for 64, 96 and 128.
+    /// How finely differences are integrated where the CPU takes `resolution`: in `f32` more steps than these find nothing but
+    /// rounding, since a difference has only a small part of the integrator's error.
     #[must_use]
-    pub const fn least_steps(self) -> u32 {
+    pub fn resolution(self, resolution: Resolution) -> Resolution {
+        let enough = Resolution::of(10);
         match self {
-            Self::F32 => 64,
-            Self::F64 => 96,
+            Self::F32 if resolution.least > enough.least => enough,
+            _ => resolution,
         }
     }
 
-    /// Steps of a trajectory from `tau`; on a rod `measured`, steps for every piece of its profile: no coarser than those of
-    /// a cone of taper 0.99 without one.
+    /// The largest bound on a pole's miss, in whisker lengths, that the shaders vouch for.
     #[must_use]
-    pub fn steps(self, measured: Option<&Rod>, tau: f64, load: f64) -> u32 {
-        let least = self.least_steps();
-        let pieces = Resolution {
-            least: least / 2,
-            longest: LARGEST_TAPER_TAU / f64::from(least),
+    pub const fn goal(self) -> f64 {
+        match self {
+            Self::F32 => 1e-7,
+            Self::F64 => 1e-12,
+        }
+    }
+
+    /// Limits of what the shaders vouch for, by their names there.
+    #[must_use]
+    pub const fn limits(self) -> [(&'static str, f64); 8] {
+        let [clear_of_fold, clear_of_tip, longest, of_way, rounding] = match self {
+            Self::F32 => [0.02, 1e-6, 1e-5, 4e-7, 0.0],
+            Self::F64 => [1e-3, 1e-9, 1.5e-7, 1e-14, 6e-14],
         };
-        measured.map_or(least, |rod| pieces.steps(rod, tau, load))
-    }
-
-    /// Residual, in whisker lengths, at which a shot has converged.
-    ///
-    /// In `f32` iterating on ends between 0 and 3.6e-6 (median 1e-7, worst of 800,000 shots), so that a
-    /// smaller tolerance would call rounding a failure; in `f64` it is that of the CPU engine, above the
-    /// error of the integration.
-    #[must_use]
-    pub const fn tolerance(self) -> f64 {
-        match self {
-            Self::F32 => 5e-6,
-            Self::F64 => 1e-6,
-        }
+        [
+            ("GOAL", self.goal()),
+            ("LEFT_BY_STEP", 20.0),
+            ("ROUNDING_OF_WAY", of_way),
+            ("ROUNDING", rounding),
+            ("LONGEST_STEP", longest),
+            ("CLEAR_OF_FOLD", clear_of_fold),
+            ("CLEAR_OF_TIP", clear_of_tip),
+            ("FARTHEST_REST", 0.02),
+        ]
     }
 }
-
-/// `beta tau` at the tip of a cone of taper 0.99, `ln 100`.
-const LARGEST_TAPER_TAU: f64 = 4.605;

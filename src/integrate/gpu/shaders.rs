@@ -2,36 +2,38 @@
 
 use super::Precision;
 use super::layout::OUTCOMES;
-use crate::integrate::MOST_STEPS;
+use crate::integrate::{POWERS, RowNumbers};
+use crate::plan::STATE_CHANNELS;
 use crate::rod::Effects;
-use crate::shooting::LONGEST_STEP;
+use crate::shooting::REST_TERMS;
 
 /// Invocations per workgroup; every device allows this many.
 pub const WORKGROUP: u32 = 64;
 
-/// A trajectory and Newton's step from it.
-const MODEL: [&str; 5] = [
+/// Cells of rows as differences from references.
+const CELLS: [&str; 4] = [
     include_str!("../../../shaders/numbers.wgsl"),
-    include_str!("../../../shaders/rod.wgsl"),
-    include_str!("../../../shaders/rhs.wgsl"),
-    include_str!("../../../shaders/rk4.wgsl"),
-    include_str!("../../../shaders/shooting_map.wgsl"),
+    include_str!("../../../shaders/difference.wgsl"),
+    include_str!("../../../shaders/nystrom8.wgsl"),
+    include_str!("../../../shaders/cells.wgsl"),
 ];
-
-/// The material, and the way along it.
-const LINEAR: &str = include_str!("../../../shaders/linear.wgsl");
-const MEASURED: &str = include_str!("../../../shaders/measured.wgsl");
 
 /// The numbers and names that the pieces share with Rust.
 fn constants(precision: Precision) -> String {
-    let tolerance = precision.tolerance();
+    let numbers = RowNumbers::default().len();
+    let row = POWERS * numbers;
+    let channels = STATE_CHANNELS.len();
     let mut text = format!(
         "alias real = {precision};\n\
          const WORKGROUP = {WORKGROUP}u;\n\
-         const MOST_STEPS = {MOST_STEPS}u;\n\
-         const LONGEST_STEP = real({LONGEST_STEP:e});\n\
-         const TOLERANCE = real({tolerance:e});\n"
+         const REST_TERMS = {REST_TERMS};\n\
+         const ROW_NUMBERS = {numbers};\n\
+         const ROW_TERMS = {row};\n\
+         const CHANNELS = {channels};\n"
     );
+    for (name, value) in precision.limits() {
+        text += &format!("const {name} = real({value:e});\n");
+    }
     for (name, _) in overrides(Effects::default()) {
         text += &format!("override {name}: bool;\n");
     }
@@ -41,17 +43,10 @@ fn constants(precision: Precision) -> String {
     text
 }
 
-/// The pieces that compute a trajectory with these effects, without an entry point.
+/// The engine's shader; its entry point is `solve_cells`.
 #[must_use]
-pub fn model(precision: Precision, effects: Effects) -> String {
-    let material = if effects.profile { MEASURED } else { LINEAR };
-    constants(precision) + &MODEL.concat() + material
-}
-
-/// The engine's shader; its entry point is `shoot`.
-#[must_use]
-pub fn shoot(precision: Precision, effects: Effects) -> String {
-    model(precision, effects) + include_str!("../../../shaders/shoot.wgsl")
+pub fn cells(precision: Precision) -> String {
+    constants(precision) + &CELLS.concat()
 }
 
 /// A kernel that only multiplies and adds; its entry point is `peak`.
@@ -63,13 +58,11 @@ pub fn peak(precision: Precision) -> String {
 
 /// The values of the `override` constants.
 #[must_use]
-pub fn overrides(effects: Effects) -> [(&'static str, f64); 5] {
+pub fn overrides(effects: Effects) -> [(&'static str, f64); 3] {
     let flag = |on: bool| f64::from(u8::from(on));
     [
-        ("TAPER", flag(effects.advances())),
+        ("TAPER", flag(effects.taper)),
         ("CURVATURE", flag(effects.curvature)),
         ("SPIRAL", flag(effects.spiral)),
-        ("GRADIENT", flag(effects.gradient)),
-        ("SIMILAR", flag(effects.similar())),
     ]
 }

@@ -58,7 +58,7 @@ pub struct Bent<T> {
 
 /// Terms of the tangent's Taylor series along a parabola. It converges up to `2 A s = pi/4` at least; of a step that bends by
 /// 0.1, 0.2 or 0.4, 1e-13, 1e-9 or 8e-6 is left out.
-const TERMS: usize = 12;
+pub const TERMS: usize = 12;
 
 /// With `k = 2 A cos^2(alpha)`, the tangent's derivatives along a parabola are `cos(alpha) k^n P_n(sin alpha)`, where
 /// `P_1 = 1` and `P_(n+1)(x) = (1 - x^2) P_n'(x) - (2n + 1) x P_n(x)`. These are the coefficients of `P_n/n!`.
@@ -102,6 +102,18 @@ pub struct Series<T> {
     rate: T,
     /// `P_n/n!`.
     terms: [T; TERMS],
+}
+
+impl<T: Real> Series<T> {
+    /// The coefficients of [`Intrinsic::turn`] by the powers of `along`, from the first on.
+    #[must_use]
+    pub fn coefficients(&self) -> [T; TERMS] {
+        let mut power = self.tangent[0];
+        self.terms.map(|term| {
+            power = power * self.rate;
+            power * term
+        })
+    }
 }
 
 impl<T: Real> Intrinsic<T> for Bent<T> {

@@ -19,9 +19,10 @@ mod resolution;
 mod rhs;
 pub mod sensitivity;
 pub mod shape;
+mod steps;
 
 pub use integrator::{Integrator, Nystrom8, Rk4, STAGES, Scales, Stage, integrate};
-pub use intrinsic::{Bent, Intrinsic, Spiral, Straight};
+pub use intrinsic::{Bent, Intrinsic, Spiral, Straight, TERMS as REST_TERMS};
 pub use map::{
     FirstVariation, FullState, LONGEST_STEP, SecondVariation, ShootingMap, StateDerivative, limited,
 };
@@ -29,3 +30,4 @@ pub use material::{Graded, Liouville, Material, Measured, Uniform};
 pub use reading::{Reader, Reading};
 pub use resolution::Resolution;
 pub use rhs::{Carried, Planar, RodSystem, Section, Sensitivity, Shape, State};
+pub use steps::{StepStart, step_starts};

@@ -56,6 +56,24 @@ impl Reader {
         }
     }
 
+    /// What a difference of one in each number of a state, as seen without units, is in a reading: lengths in whisker lengths, angles
+    /// in radians, forces signed with `side` and whole.
+    #[must_use]
+    pub fn of_one(&self, side: f64) -> Reading {
+        let units = &self.units;
+        let degrees = 1f64.to_degrees();
+        Reading {
+            arc_length_mm: units.length_mm,
+            contact_angle_deg: degrees,
+            force_un: side * self.normal * units.force_un,
+            base_force_un: DVec2::splat(units.force_un),
+            base_moment_nnm: units.moment_nnm,
+            push_chord_deg: degrees,
+            contact_distance_mm: units.length_mm,
+            energy_nj: units.moment_nnm,
+        }
+    }
+
     /// The state `full`, in contact at `tau`, after the signed `push` (radians) since the pole was first touched in the
     /// direction `touch`.
     #[must_use]

@@ -1,0 +1,255 @@
+// The 8th-order formula of Dormand, El-Mikkawy and Prince's Nystrom pair for a reference and a cell side by side; the twin of
+// `nystrom8.rs`, `intrinsic.rs` and `material.rs` in `crates/mechanics/src/shooting/`, where the equations are.
+
+struct Rod {
+    taper: real,
+    bend: real,
+    // [k0, k1] of an Euler spiral
+    spiral: array<real, 2>,
+}
+
+// Where a step of the reference starts.
+struct StepStart {
+    tangent: array<real, 2>,
+    position: array<real, 2>,
+    // how far bending has turned the rod since the contact
+    bent: real,
+    // of the whisker at rest
+    rest: array<real, 2>,
+    // how far that turns along the step, by powers of the way
+    rest_turn: array<real, REST_TERMS>,
+}
+
+// What changes from the start of a step to one of its stages.
+struct Stage {
+    // arclength toward the base, over the radius at the start of the step
+    along: real,
+    // the part of the whole way to the base
+    part: real,
+    // m_0/m, (rho/m)/(rho_0/m_0), rho/rho_0
+    inverse_scale: Both,
+    forcing: Both,
+    grown: Both,
+}
+
+// What is the same in all steps: the way from the contact to the base, of the reference and the cell.
+struct Way {
+    rod: Rod,
+    // of the contact
+    tau: Both,
+    // a step
+    h: Both,
+    force: Both,
+    // ln of the cell's radius over the reference's, at the contact
+    widening: real,
+    // how much farther the cell's whisker at rest has turned at the contact
+    rest_at_contact: real,
+}
+
+// A step.
+struct Step {
+    // the part of the whole way that is left to the base
+    left: real,
+    radius: real,
+    arclength: real,
+    tangent: vec2<real>,
+    rest: vec2<real>,
+    // how far bending has turned the rod since the contact
+    bent: Both,
+    // h F/rho^3 and h rho
+    turning: Both,
+    reach: Both,
+    // h^2 m''/m
+    potential: Both,
+    index: u32,
+}
+
+// The rod of the cell less that of the reference.
+struct Apart {
+    bent: real,
+    x: real,
+    y: real,
+    // the integral of how far it has turned along -X
+    along: real,
+}
+
+fn stage_at(way: Way, steps: real, node: real) -> Stage {
+    let half = 0.5 * node * way.rod.taper * way.h.x;
+    let shrinks = expm1_small(-half);
+    let shrunk = 1.0 + shrinks;
+    let grown = 1.0 / (shrunk * shrunk);
+    // of the cell's over the reference's
+    let forcing = expm1_small(0.5 * node * way.widening / steps);
+    let inverse_scale = forcing * (3.0 + forcing * (3.0 + forcing));
+    let growth = -forcing * (2.0 + forcing) / ((1.0 + forcing) * (1.0 + forcing));
+    let cube = shrunk * shrunk * shrunk;
+    let x = 2.0 * half;
+    return Stage(
+        node * way.h.x * expm1_over_small(x),
+        node / steps,
+        Both(cube, cube * inverse_scale),
+        Both(shrunk, shrunk * forcing),
+        Both(grown, grown * growth),
+    );
+}
+
+// How far the whisker at rest turns from the start of a step to a stage.
+fn rest_turn(way: Way, step: Step, stage: Stage) -> real {
+    if SPIRAL {
+        let along = -step.radius * stage.along;
+        return along * (way.rod.spiral[0] + way.rod.spiral[1] * (step.arclength + 0.5 * along));
+    }
+    var sum = starts[step.index].rest_turn[REST_TERMS - 1];
+    for (var n = REST_TERMS - 1; n > 0; n--) {
+        sum = sum * stage.along + starts[step.index].rest_turn[n - 1];
+    }
+    return sum * stage.along;
+}
+
+// How much farther than the tangent `rest` at arclength `s` the whisker at rest has turned `ds` further on.
+fn rest_apart(rod: Rod, rest: vec2<real>, s: real, ds: real) -> real {
+    if SPIRAL {
+        return ds * (rod.spiral[0] + rod.spiral[1] * (s + 0.5 * ds));
+    }
+    let x = 2.0 * rod.bend * rest.x * rest.x * ds;
+    let sin = rest.y;
+    let y = sin * sin;
+    return rest.x * x * (1.0 + x * (-1.5 * sin + x * ((3.0 * y - 0.5) + x * (sin * (57.0 - 162.0 * y) / 24.0
+        + x * ((57.0 - y * (1056.0 - 1944.0 * y)) / 120.0 - x * sin * (2739.0 - y * (21504.0 - 29160.0 * y)) / 720.0)))));
+}
+
+// The rods at a stage: how far bending has turned them, and their tangents.
+struct Pose {
+    bent: Both,
+    tangent: Tangent,
+}
+
+// The poses at a stage where `chi` has come so far.
+fn pose_at(way: Way, step: Step, stage: Stage, chi: Both) -> Pose {
+    let bend = product(product(step.turning, stage.inverse_scale), chi);
+    let bent = step.bent + bend;
+    var turn = bend.x;
+    var apart = bent.y;
+    if CURVATURE || SPIRAL {
+        let at_rest = rest_turn(way, step, stage);
+        let left = step.left - stage.part;
+        let further = way.tau.y * left;
+        let widening = way.widening * left;
+        let radius = step.radius * stage.grown.x;
+        let ds = radius * further * expm1_over_small(widening);
+        let s = step.arclength - step.radius * stage.along;
+        turn += at_rest;
+        apart += rest_apart(way.rod, rotated(step.rest, at_rest), s, ds) - way.rest_at_contact;
+    }
+    return Pose(bent, tangents(rotated(step.tangent, turn), apart));
+}
+
+// chi''.
+fn pull(step: Step, stage: Stage, pose: Pose, chi: Both) -> Both {
+    let forced = product(product(step.reach, stage.forcing), pose.tangent.cos);
+    if TAPER {
+        return product(step.potential, chi) - forced;
+    }
+    return -forced;
+}
+
+// What the stage adds to Y and, in the second pair, to the integral of the bend along -X.
+fn climb(step: Step, stage: Stage, pose: Pose) -> vec4<real> {
+    let reach = product(step.reach, stage.grown);
+    return vec4<real>(-product(reach, pose.tangent.sin), product(reach, product(pose.tangent.cos, pose.bent)));
+}
+
+// From the contact to the base, along the reference's steps from `first` on.
+fn integrate(way: Way, radius_at_contact: real, arclength: real, first: u32, count: u32) -> Apart {
+    let steps = real(count);
+    let none = Stage(0.0, 0.0, Both(1.0, 0.0), Both(1.0, 0.0), Both(1.0, 0.0));
+    let s2 = stage_at(way, steps, 0.05);
+    let s3 = stage_at(way, steps, 0.1);
+    let s4 = stage_at(way, steps, 0.3);
+    let s5 = stage_at(way, steps, 0.5);
+    let s6 = stage_at(way, steps, 0.7);
+    let s7 = stage_at(way, steps, 0.9);
+    let s8 = stage_at(way, steps, 1.0);
+    let slower = way.tau.y / way.tau.x;
+    let potential = 2.25 * way.rod.taper * way.rod.taper * way.h.x * way.h.x;
+    // X = m (chi' - (m'/m) chi).
+    let growth = 1.5 * way.rod.taper * way.h;
+    let scale = expm1_small(0.5 * growth.x);
+    let at_end = (1.0 + scale) * (1.0 + scale);
+    let end_scale = Both(at_end, at_end * expm1_small(growth.y));
+    var apart = Apart(0.0, 0.0, 0.0, 0.0);
+    var radius = radius_at_contact;
+    var s = arclength;
+    for (var k = 0u; k < count; k++) {
+        let index = first + k;
+        let left = 1.0 - real(k) / steps;
+        let wider = expm1_small(way.widening * left);
+        let softer = expm1_small(-3.0 * way.widening * left);
+        let w = way.h.x / (radius * radius * radius);
+        let faster = slower + softer + slower * softer;
+        let reach = way.h.x * radius;
+        let step = Step(
+            left,
+            radius,
+            s,
+            vec2<real>(starts[index].tangent[0], starts[index].tangent[1]),
+            vec2<real>(starts[index].rest[0], starts[index].rest[1]),
+            Both(starts[index].bent, apart.bent),
+            w * product(Both(1.0, faster), way.force),
+            reach * Both(1.0, slower + wider + slower * wider),
+            potential * Both(1.0, slower * (2.0 + slower)),
+            index,
+        );
+        let speed = Both(starts[index].position[0], apart.x);
+        let p1 = pose_at(way, step, none, Both(0.0, 0.0));
+        let k1 = -product(step.reach, p1.tangent.cos);
+        var rise = (223.0 / 7938.0) * climb(step, none, p1);
+        var chi = 0.05 * speed + (1.0 / 800.0) * k1;
+        let k2 = pull(step, s2, pose_at(way, step, s2, chi), chi);
+        chi = 0.1 * speed + (1.0 / 600.0) * k1 + (1.0 / 300.0) * k2;
+        let p3 = pose_at(way, step, s3, chi);
+        let k3 = pull(step, s3, p3, chi);
+        rise += (5875.0 / 36288.0) * climb(step, s3, p3);
+        chi = 0.3 * speed + (9.0 / 200.0) * k1 + (-9.0 / 100.0) * k2 + (9.0 / 100.0) * k3;
+        let p4 = pose_at(way, step, s4, chi);
+        let k4 = pull(step, s4, p4, chi);
+        rise += (4625.0 / 21168.0) * climb(step, s4, p4);
+        chi = 0.5 * speed + (-66701.0 / 197352.0) * k1 + (28325.0 / 32892.0) * k2 + (-2665.0 / 5482.0) * k3
+            + (2170.0 / 24669.0) * k4;
+        let p5 = pose_at(way, step, s5, chi);
+        let k5 = pull(step, s5, p5, chi);
+        rise += (41.0 / 224.0) * climb(step, s5, p5);
+        chi = 0.7 * speed + (227015747.0 / 304251000.0) * k1 + (-54897451.0 / 30425100.0) * k2
+            + (12942349.0 / 10141700.0) * k3 + (-9499.0 / 304251.0) * k4 + (539.0 / 9250.0) * k5;
+        let p6 = pose_at(way, step, s6, chi);
+        let k6 = pull(step, s6, p6, chi);
+        rise += (4625.0 / 21168.0) * climb(step, s6, p6);
+        chi = 0.9 * speed + (-1131891597.0 / 901789000.0) * k1 + (41964921.0 / 12882700.0) * k2
+            + (-6663147.0 / 3220675.0) * k3 + (270954.0 / 644135.0) * k4 + (-108.0 / 5875.0) * k5
+            + (114.0 / 1645.0) * k6;
+        let p7 = pose_at(way, step, s7, chi);
+        let k7 = pull(step, s7, p7, chi);
+        rise += (5875.0 / 36288.0) * climb(step, s7, p7);
+        chi = speed + (13836959.0 / 3667458.0) * k1 + (-17731450.0 / 1833729.0) * k2
+            + (1063919505.0 / 156478208.0) * k3 + (-33213845.0 / 39119552.0) * k4 + (13335.0 / 28544.0) * k5
+            + (-705.0 / 14272.0) * k6 + (1645.0 / 57088.0) * k7;
+        let p8 = pose_at(way, step, s8, chi);
+        let k8 = pull(step, s8, p8, chi);
+        rise += (223.0 / 7938.0) * climb(step, s8, p8);
+        let end = speed + (223.0 / 7938.0) * k1 + (1175.0 / 8064.0) * k3 + (925.0 / 6048.0) * k4
+            + (41.0 / 448.0) * k5 + (925.0 / 14112.0) * k6 + (1175.0 / 72576.0) * k7;
+        let end_speed = speed + (223.0 / 7938.0) * k1 + (5875.0 / 36288.0) * k3 + (4625.0 / 21168.0) * k4
+            + (41.0 / 224.0) * k5 + (4625.0 / 21168.0) * k6 + (5875.0 / 36288.0) * k7 + (223.0 / 7938.0) * k8;
+        apart.bent += product(product(step.turning, s8.inverse_scale), end).y;
+        apart.y += rise.y;
+        apart.along += rise.w;
+        if TAPER {
+            apart.x = product(end_speed - product(growth, end), end_scale).y;
+        } else {
+            apart.x = end_speed.y;
+        }
+        s -= radius * s8.along;
+        radius *= s8.grown.x;
+    }
+    return apart;
+}
