@@ -126,10 +126,7 @@ pub fn design(scene: &Scene, parameter: Parameter, target: &Target) -> Result<De
         return Err(NoDesign::Sweep(axis.parameter.axis()));
     }
     let Some(value) = parameter.value(scene) else {
-        let given = Parameter::ALL.into_iter();
-        let given = given.filter(|other| other.value(scene).is_some());
-        let given: Vec<_> = given.map(Parameter::name).collect();
-        let given = given.join(", ");
+        let given = Parameter::given(scene);
         return Err(NoDesign::Lacking { parameter, given });
     };
     // Other distances would limit what is accepted.
