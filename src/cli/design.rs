@@ -3,7 +3,7 @@
 use super::failure::Failure;
 use super::numbers::degrees;
 use super::outputs::open;
-use super::pole::{Pole, title};
+use super::pole::{self, Pole, title};
 use super::side::OneSide;
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
@@ -113,7 +113,7 @@ impl Options {
 /// Runs `design`.
 pub fn run(options: &Options) -> Result<(), Failure> {
     let target = options.target()?;
-    let (scene, _) = options.pole.read("design")?;
+    let (scene, _) = pole::read(&options.pole.scene, "design", &[options.pole.distance])?;
     let (_, picture) = open("--plot", None, options.plot.as_deref())?;
     let found = design::design(&scene, options.parameter, &target);
     let found = found.map_err(|why| match why {

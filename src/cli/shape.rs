@@ -4,7 +4,7 @@ use super::columns;
 use super::failure::{Failure, say};
 use super::numbers::{number, whole};
 use super::outputs::Outputs;
-use super::pole::{Pole, refuse, title};
+use super::pole::{self, Pole, refuse, title};
 use super::side::OneSide;
 use clap::{Args, ValueEnum};
 use whiskmap::classify::Sliding;
@@ -59,7 +59,7 @@ enum Part {
 
 /// Runs `shape`.
 pub fn run(options: &Options) -> Result<(), Failure> {
-    let (scene, whisker) = options.pole.read("shape")?;
+    let (scene, whisker) = pole::read(&options.pole.scene, "shape", &[options.pole.distance])?;
     let push_deg = options.push_angle;
     if !(-360.0..=360.0).contains(&push_deg) {
         return Err(Failure::Input(format!(

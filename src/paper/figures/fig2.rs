@@ -42,27 +42,15 @@ pub fn fig2() -> Result<Figure, NoState> {
     let at_pull_off = ("pull-off", pull_off.push_angle_deg, Stroke::Solid);
     let stable = ("stable", PUSH_DEG, Stroke::Solid);
     let unstable = ("unstable", PUSH_DEG, Stroke::Dashed);
-    let panels = vec![
-        panel("A", "cone: the two solutions", &cone, &[stable, unstable])?,
-        panel(
-            "B",
-            "cone: the only solution at the saddle-node",
-            &cone,
-            &[at_slip_off],
-        )?,
-        panel(
-            "C",
-            "cylinder: the unstable solution would be longer than the whisker",
-            &cylinder,
-            &[stable],
-        )?,
-        panel(
-            "D",
-            "cylinder: the tip has reached the pole",
-            &cylinder,
-            &[at_pull_off],
-        )?,
+    #[rustfmt::skip]
+    let panels = [
+        ("A", "cone: the two solutions", &cone, &[stable, unstable][..]),
+        ("B", "cone: the only solution at the saddle-node", &cone, &[at_slip_off]),
+        ("C", "cylinder: the unstable solution would be longer than the whisker", &cylinder, &[stable]),
+        ("D", "cylinder: the tip has reached the pole", &cylinder, &[at_pull_off]),
     ];
+    let panels = panels.map(|(letter, title, branch, states)| panel(letter, title, branch, states));
+    let panels: Vec<Panel> = panels.into_iter().collect::<Result<_, _>>()?;
     let chord = |end: &BranchPoint| format!("{:.2}", end.push_chord_deg);
     let caption = vec![
         "Push angle \u{3b8}_p: rotation of the base since first touch, which gives the paper's 15.6 and 62.7 deg;".to_owned(),
