@@ -2,7 +2,7 @@
 
 use super::drawing::{MAGNIFIED, arrow, line, outline, sections};
 use super::fig2::{self, PUSH_DEG};
-use super::{Figure, PUSH, Panel, detachment, figure, lettered};
+use super::{Figure, PUSH, Panel, detachment, lettered};
 use crate::paper::whiskers::{CONE, CYLINDER, POLE, pole_distance_mm};
 use crate::render::{BranchAxis, Ink, Plot, Stroke, branches};
 use crate::rod::Side;
@@ -93,12 +93,7 @@ pub fn fig3() -> Result<Figure, NoState> {
             .to_owned(),
     ];
     let title = "Fig. 3: a cone and a cylinder pushed into a pole";
-    Ok(figure(
-        "fig3",
-        title,
-        caption,
-        lettered("fig3", panels.collect()),
-    ))
+    Ok(lettered("fig3", title, caption, panels.collect()))
 }
 
 /// Both branches at one pole, each on its own side of first touch.

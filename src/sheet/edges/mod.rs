@@ -2,6 +2,7 @@
 
 pub mod crossings;
 pub mod edge_newton;
+mod extremum;
 mod predictor;
 mod tip_edge;
 
