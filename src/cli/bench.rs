@@ -1,7 +1,7 @@
 //! `whiskmap bench`.
 
 use super::failure::{Failure, say};
-use super::outputs::{STDOUT, open, unwritten};
+use super::outputs::{STDOUT, open, write};
 use clap::Args;
 use std::io::{self, IsTerminal, Write};
 use std::path::{Path, PathBuf};
@@ -58,12 +58,9 @@ pub fn run(options: &Options) -> Result<(), Failure> {
             "grid: no cell of the sample has a state; give push angles and distances that keep the contact".to_owned(),
         )
     })?;
-    if let (Some(mut output), Some(path)) = (output, json) {
+    if let Some((output, path)) = output.zip(json) {
         let text = serde_json::to_string_pretty(&report).unwrap_or_default() + "\n";
-        let written = output.write_all(text.as_bytes());
-        written
-            .and_then(|()| output.finish())
-            .map_err(|cause| unwritten(path, cause))?;
+        write(output, path, &text)?;
     }
     if let Some(picture) = picture {
         let title = format!("What accuracy costs: {}", report.scene);
@@ -179,15 +176,10 @@ fn plot(report: &Report) -> Plot {
     let kind = |row: &Measurement| (row.engine.clone(), row.threads, row.rung.integrator);
     let engines = report.rows.chunk_by(|a, b| kind(a) == kind(b));
     let lines = engines.zip(looks.iter().cycle());
-    let lines = lines.map(|(rows, &(ink, stroke))| Line {
-        points: rows.iter().map(place).collect(),
-        ink,
-        stroke,
-        name: Some(format!(
-            "{}, {}",
-            named(&rows[0].engine, rows[0].threads),
-            rows[0].rung.integrator
-        )),
+    let lines = lines.map(|(rows, &(ink, stroke))| {
+        let engine = named(&rows[0].engine, rows[0].threads);
+        let name = format!("{engine}, {}", rows[0].rung.integrator);
+        Line::new(rows.iter().map(place).collect(), ink, stroke, name)
     });
     let front = report.rows.iter().filter(|row| row.pareto);
     let front = front.map(|row| Dot {

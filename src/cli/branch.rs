@@ -4,7 +4,7 @@ use super::columns;
 use super::failure::Failure;
 use super::numbers::whole;
 use super::outputs::Outputs;
-use super::pole::{Poles, refuse, title};
+use super::pole::{self, Poles, refuse, title};
 use clap::{Args, ValueEnum};
 use whiskmap::render::{BranchAxis, Ink, Note, Plot, branches};
 use whiskmap::rod::Side;
@@ -102,14 +102,14 @@ const PUSH: BranchAxis = BranchAxis {
 
 /// Runs `branch`.
 pub fn run(options: &Options) -> Result<(), Failure> {
-    let (scene, whisker) = options.poles.read("branch")?;
+    let distances = &options.poles.distance;
+    let (scene, whisker) = pole::read(&options.poles.scene, "branch", distances)?;
     let mut outputs = options.outputs.open()?;
     let sides: &[Side] = match options.side {
         Choice::Cb => &[Side::Cb],
         Choice::Cf => &[Side::Cf],
         Choice::Both => &Side::BOTH,
     };
-    let distances = &options.poles.distance;
     let mut points = Vec::new();
     for &distance in distances {
         for side in sides {

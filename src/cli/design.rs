@@ -3,9 +3,10 @@
 use super::failure::Failure;
 use super::numbers::degrees;
 use super::outputs::open;
-use super::pole::{Pole, title};
+use super::pole::{self, Pole, title};
+use super::side::OneSide;
+use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use clap::{Args, ValueEnum};
 use std::io::{self, Write};
 use std::path::PathBuf;
 use whiskmap::design::{self, Design, NoDesign, Target};
@@ -54,15 +55,6 @@ struct End {
     /// Push angle at which it is pulled off
     #[arg(long, value_name = "ANGLE", allow_hyphen_values = true, value_parser = angle)]
     pull_off: Option<f64>,
-}
-
-/// Sides by name.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum OneSide {
-    /// Concave backward: the pole is on the convex side
-    Cb,
-    /// Concave forward: the pole is on the concave side
-    Cf,
 }
 
 /// A parser of parameters' names.
@@ -121,7 +113,7 @@ impl Options {
 /// Runs `design`.
 pub fn run(options: &Options) -> Result<(), Failure> {
     let target = options.target()?;
-    let (scene, _) = options.pole.read("design")?;
+    let (scene, _) = pole::read(&options.pole.scene, "design", &[options.pole.distance])?;
     let (_, picture) = open("--plot", None, options.plot.as_deref())?;
     let found = design::design(&scene, options.parameter, &target);
     let found = found.map_err(|why| match why {

@@ -2,7 +2,7 @@
 
 use super::data;
 use super::failure::{Failure, say};
-use super::outputs::{STDOUT, create, unwritten};
+use super::outputs::{STDOUT, create, one_file, write};
 use super::pole::check_single;
 use clap::Args;
 use serde_json::{Map, Value, json};
@@ -44,8 +44,7 @@ pub struct Options {
 }
 
 fn parameter(name: &str) -> Result<Parameter, String> {
-    let mut all = Parameter::ALL.into_iter();
-    all.find(|own| own.name() == name).ok_or_else(|| {
+    Parameter::named(name).ok_or_else(|| {
         let names = Parameter::ALL.map(Parameter::name);
         format!("must be some of {}", names.join(", "))
     })
@@ -61,11 +60,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     if let (Some((toml, path)), Some((json, other))) = (&toml, &json)
         && toml == json
     {
-        return Err(Failure::Input(format!(
-            "--output {} and --json {}: must be two files",
-            path.display(),
-            other.display()
-        )));
+        return Err(one_file(("--output", path), ("--json", other)));
     }
     let found = fit(&scene, &points, &options.free).map_err(|why| match why {
         Error::Lacking { .. } | Error::Twice(..) | Error::Held { .. } => {
@@ -79,17 +74,14 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         toml.map(|place| (place, found.scene.text.clone())),
         json.map(|place| (place, format!("{:#}\n", document(&found)))),
     ];
-    let streamed = [&options.output, &options.json];
-    let is_streamed = streamed
-        .into_iter()
-        .flatten()
-        .any(|path| path == Path::new(STDOUT));
+    let mut outputs = [&options.output, &options.json].into_iter().flatten();
+    let is_streamed = outputs.any(|path| path == Path::new(STDOUT));
     if !is_streamed {
         table(&scene.title, &found)?;
     }
     for ((output, path), text) in files.into_iter().flatten() {
         let is_regular = output.is_regular();
-        write(output, &text).map_err(|cause| unwritten(path, cause))?;
+        write(output, path, &text)?;
         if is_regular && !is_streamed {
             writeln!(io::stdout(), "{}", path.display())?;
         }
@@ -101,11 +93,6 @@ pub fn run(options: &Options) -> Result<(), Failure> {
 fn open<'a>(option: &str, path: Option<&'a Path>) -> Result<Option<(Output, &'a Path)>, Failure> {
     let open = |path| Ok((create(option, path)?, path));
     path.map(open).transpose()
-}
-
-fn write(mut output: Output, text: &str) -> io::Result<()> {
-    output.write_all(text.as_bytes())?;
-    output.finish()
 }
 
 /// Names parameters that the points do not determine, and those at a limit.

@@ -27,6 +27,7 @@ mod reproduce;
 mod selection;
 mod shape;
 mod sharded;
+mod side;
 mod signals;
 mod status;
 mod summary;

@@ -119,11 +119,7 @@ pub fn open(
         && output == place
         && output.as_ref().is_some_and(Output::is_regular)
     {
-        return Err(Failure::Input(format!(
-            "{option} {} and --plot {}: must be two files",
-            data.display(),
-            plot.display()
-        )));
+        return Err(one_file((option, data), ("--plot", plot)));
     }
     let picture = plot.zip(format).zip(place);
     let picture = picture.map(|((path, format), place)| PlotFile {
@@ -132,6 +128,21 @@ pub fn open(
         is_regular: place.is_regular(),
     });
     Ok((output, picture))
+}
+
+/// Two options name one file.
+pub fn one_file((option, path): (&str, &Path), (other, same): (&str, &Path)) -> Failure {
+    let (path, same) = (path.display(), same.display());
+    Failure::Input(format!(
+        "{option} {path} and {other} {same}: must be two files"
+    ))
+}
+
+/// Writes all of the file at `path`.
+pub fn write(mut output: Output, path: &Path, text: &str) -> Result<(), Failure> {
+    let written = output.write_all(text.as_bytes());
+    let finished = written.and_then(|()| output.finish());
+    finished.map_err(|cause| unwritten(path, cause))
 }
 
 /// The output that `option` names.

@@ -35,7 +35,7 @@ pub struct Pole {
 #[derive(Debug, Args)]
 pub struct Poles {
     /// Scene file; - reads it from standard input
-    scene: PathBuf,
+    pub scene: PathBuf,
     /// Distance from the base to the contact at first touch; several with commas, or by several --distance
     #[arg(
         long,
@@ -48,21 +48,8 @@ pub struct Poles {
     pub distance: Vec<f64>,
 }
 
-impl Pole {
-    /// Reads the scene and its only whisker for `command`.
-    pub fn read(&self, command: &str) -> Result<(Scene, Whisker), Failure> {
-        read(&self.scene, command, &[self.distance])
-    }
-}
-
-impl Poles {
-    /// Reads the scene and its only whisker for `command`.
-    pub fn read(&self, command: &str) -> Result<(Scene, Whisker), Failure> {
-        read(&self.scene, command, &self.distance)
-    }
-}
-
-fn read(path: &Path, command: &str, distances: &[f64]) -> Result<(Scene, Whisker), Failure> {
+/// Reads the scene and its only whisker for `command`, with poles at these distances.
+pub fn read(path: &Path, command: &str, distances: &[f64]) -> Result<(Scene, Whisker), Failure> {
     let scene = Scene::read(path)?;
     check_single(&scene, command)?;
     let (nearest, farthest) = scene.distances_mm();

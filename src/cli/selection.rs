@@ -52,26 +52,19 @@ impl Selection {
             fixed: vec![None; whole.sweep.len()],
         };
         for at in wanted {
-            let axes = whole
-                .sweep
-                .iter()
-                .map(|axis| (axis.parameter.axis(), &axis.values));
+            let axes = whole.sweep.iter();
+            let axes = axes.map(|axis| (axis.parameter.axis(), &axis.values));
             let inside = [
                 ("distance_mm", &whole.distance_mm),
                 ("push_angle_deg", &whole.push_angle_deg),
             ];
             let axes: Vec<(&'static str, &Vec<f64>)> = axes.chain(inside).collect();
-            let place = axes
-                .iter()
-                .position(|(name, _)| *name == at.name)
-                .ok_or_else(|| {
-                    let names: Vec<&str> = axes.iter().map(|(name, _)| *name).collect();
-                    let names = names.join(", ");
-                    Failure::Input(format!(
-                        "--at {}: must be one of the axes, {names}",
-                        at.name
-                    ))
-                })?;
+            let Some(place) = axes.iter().position(|(name, _)| *name == at.name) else {
+                let names: Vec<&str> = axes.iter().map(|(name, _)| *name).collect();
+                let (name, names) = (&at.name, names.join(", "));
+                let must = format!("--at {name}: must be one of the axes, {names}");
+                return Err(Failure::Input(must));
+            };
             let (name, values) = axes[place];
             let index = nearest(values, at.value);
             let value = values[index];
@@ -97,10 +90,8 @@ impl Selection {
                 }
                 _ => {
                     selection.fixed[place] = Some(index);
-                    selection
-                        .grid
-                        .sweep
-                        .retain(|axis| axis.parameter.axis() != name);
+                    let sweep = &mut selection.grid.sweep;
+                    sweep.retain(|axis| axis.parameter.axis() != name);
                 }
             }
         }

@@ -4,7 +4,8 @@ use super::columns;
 use super::failure::{Failure, say};
 use super::numbers::{number, whole};
 use super::outputs::Outputs;
-use super::pole::{Pole, refuse, title};
+use super::pole::{self, Pole, refuse, title};
+use super::side::OneSide;
 use clap::{Args, ValueEnum};
 use whiskmap::classify::Sliding;
 use whiskmap::render::{Drawn, Ink, Line, Stroke, shapes};
@@ -33,6 +34,7 @@ pub struct Options {
     /// Rotation of the base since first touch: positive CB, negative CF
     #[arg(long, value_name = "DEG", allow_hyphen_values = true, value_parser = number)]
     push_angle: f64,
+    // Unstable states reach push angles of the other sign.
     /// Side of the whisker that the pole is on [default: that of the push angle's sign]
     #[arg(long, value_enum)]
     side: Option<OneSide>,
@@ -46,15 +48,6 @@ pub struct Options {
     outputs: Outputs,
 }
 
-/// Sides by name; unstable states reach push angles of the other sign.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum OneSide {
-    /// Concave backward: the pole is on the convex side
-    Cb,
-    /// Concave forward: the pole is on the concave side
-    Cf,
-}
-
 /// Parts of a branch by name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Part {
@@ -66,7 +59,7 @@ enum Part {
 
 /// Runs `shape`.
 pub fn run(options: &Options) -> Result<(), Failure> {
-    let (scene, whisker) = options.pole.read("shape")?;
+    let (scene, whisker) = pole::read(&options.pole.scene, "shape", &[options.pole.distance])?;
     let push_deg = options.push_angle;
     if !(-360.0..=360.0).contains(&push_deg) {
         return Err(Failure::Input(format!(
@@ -75,11 +68,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         )));
     }
     let mut outputs = options.outputs.open()?;
-    let side = match options.side {
-        Some(OneSide::Cb) => Side::Cb,
-        Some(OneSide::Cf) => Side::Cf,
-        None => Side::of_push(push_deg),
-    };
+    let side = options.side.map_or(Side::of_push(push_deg), Side::from);
     let stable = options.branch == Part::Stable;
     let refused = |why| match why {
         NoState::OutOfReach { .. } | NoState::Lost { .. } => refuse(options.pole.distance, why),
@@ -111,12 +100,8 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     };
     outputs.finish(title(&scene, &[options.pole.distance]), || {
         let mut plot = shapes("", &[drawn]);
-        let at_rest = Line {
-            points: Shape::at_rest(&branch, count),
-            ink: Ink::Grey,
-            name: Some("first touch".to_owned()),
-            ..Line::default()
-        };
+        let at_rest = Shape::at_rest(&branch, count);
+        let at_rest = Line::new(at_rest, Ink::Grey, Stroke::Solid, "first touch");
         plot.lines.insert(0, at_rest);
         plot
     })

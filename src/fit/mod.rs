@@ -173,14 +173,9 @@ fn check(scene: &Scene, free: &[Parameter]) -> Result<(), Error> {
         if let Some(same) = same {
             return Err(Error::Twice(*same, parameter));
         }
-        let value = parameter.value(scene).ok_or_else(|| {
-            let all = Parameter::ALL.into_iter();
-            let has = all.filter(|own| own.value(scene).is_some());
-            let has: Vec<&str> = has.map(Parameter::name).collect();
-            Error::Lacking {
-                parameter,
-                has: has.join(", "),
-            }
+        let value = parameter.value(scene).ok_or_else(|| Error::Lacking {
+            parameter,
+            has: Parameter::given(scene),
         })?;
         let range @ [least, most] = parameter.range(scene);
         if most - least < NARROWEST * value.abs() {

@@ -15,13 +15,8 @@ pub fn checks() -> Vec<Check> {
     let mut checks: Vec<Check> = Side::BOTH
         .map(|side| {
             let distance = Some(pole_distance_mm(&CONE, side));
-            near(
-                format!("Fig. 3, cone {}", name(side)),
-                "first touch (mm)",
-                PAPER,
-                (15.7, 0.05),
-                distance,
-            )
+            let case = format!("Fig. 3, cone {}", name(side));
+            near(case, "first touch (mm)", PAPER, (15.7, 0.05), distance)
         })
         .into();
     // Published, cut rather than rounded: 62.7 for 62.75.
@@ -31,12 +26,8 @@ pub fn checks() -> Vec<Check> {
         ("Fig. 2D, cylinder CB", CYLINDER, PullOff, "pull-off (deg)", (62.7, 0.1), (62.7532, 5e-5)),
     ];
     for (case, whisker, kind, quantity, published, exact) in fig2 {
-        let end = end(
-            &whisker,
-            &POLE,
-            Side::Cb,
-            pole_distance_mm(&whisker, Side::Cb),
-        );
+        let distance = pole_distance_mm(&whisker, Side::Cb);
+        let end = end(&whisker, &POLE, Side::Cb, distance);
         let push = push_if(kind, &end);
         checks.push(near(case, quantity, PAPER, published, push));
         checks.push(near(case, quantity, AUTO, exact, push));

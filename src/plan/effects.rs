@@ -49,25 +49,23 @@ pub fn effects(scene: &Scene, kernels: Effects) -> Vec<Effect> {
         || "no whisker.profile".to_owned(),
         |rows| format!("{} rows of whisker.profile", rows.len()),
     );
-    let own = whisker.curvature.map_or(0.0, |own| own.parabola_per_mm);
-    let parabola = given("parabola_per_mm", own, 0.0);
-    let parabola = why(Parameter::ParabolaPerMm, parabola);
+    let number = |parameter, key, value, neutral| why(parameter, given(key, value, neutral));
+    let bend = whisker.curvature.unwrap_or_default().parabola_per_mm;
+    let parabola = number(Parameter::ParabolaPerMm, "parabola_per_mm", bend, 0.0);
     let spiral = whisker.euler_spiral.map_or_else(
         || "euler_spiral is 0 or left out".to_owned(),
         |own| format!("per_mm {}, per_mm2 {}", own.per_mm, own.per_mm2),
     );
-    let gradient = given("tip_to_base", whisker.modulus_tip_to_base, 1.0);
-    let gradient = why(Parameter::ModulusTipToBase, gradient);
-    let radius = given("radius_mm", pole.radius_mm, 0.0);
-    let radius = why(Parameter::PoleRadiusMm, radius);
-    let friction = given("friction", pole.friction, 0.0);
-    let friction = why(Parameter::Friction, friction);
+    let ratio = whisker.modulus_tip_to_base;
+    let gradient = number(Parameter::ModulusTipToBase, "tip_to_base", ratio, 1.0);
+    let radius = number(Parameter::PoleRadiusMm, "radius_mm", pole.radius_mm, 0.0);
+    let friction = number(Parameter::Friction, "friction", pole.friction, 0.0);
     let corners: Vec<Swept> = scene.corner_whiskers().collect();
     let any = |differs: fn(&Swept) -> bool| corners.iter().any(differs);
     let stretched = any(|own| own.whisker.arc_stretch != 1.0);
     let varies = kernels.taper || kernels.profile || kernels.gradient;
-    let stretch = given("arc_stretch", whisker.arc_stretch, 1.0);
-    let mut stretch = why(Parameter::ArcStretch, stretch);
+    let stretch = whisker.arc_stretch;
+    let mut stretch = number(Parameter::ArcStretch, "arc_stretch", stretch, 1.0);
     if stretched && !varies {
         stretch += " does nothing without taper or modulus gradient";
     }

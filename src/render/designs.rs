@@ -13,23 +13,16 @@ pub fn designs(parameter: Parameter, target: &Target, design: &Design) -> Plot {
         false => (parameter.name().to_owned(), |value| value),
     };
     let push = target.push_angle_deg;
-    let mut lines = vec![Line {
-        points: design.range.map(|end| [x(end), push]).to_vec(),
-        ink: Ink::Grey,
-        stroke: Stroke::Dashed,
-        name: Some(format!("{push} deg")),
-    }];
+    let asked = design.range.map(|end| [x(end), push]).to_vec();
+    let name = format!("{push} deg");
+    let mut lines = vec![Line::new(asked, Ink::Grey, Stroke::Dashed, name)];
     for piece in design.ends.chunk_by(|a, b| a.kind == b.kind) {
         let Some((ink, name)) = look(piece[0].kind) else {
             continue;
         };
         let place = |end: &End| Some([x(end.value), end.push_angle_deg?]);
-        lines.push(Line {
-            points: piece.iter().filter_map(place).collect(),
-            ink,
-            name: Some(name.to_owned()),
-            ..Line::default()
-        });
+        let points = piece.iter().filter_map(place).collect();
+        lines.push(Line::new(points, ink, Stroke::Solid, name));
     }
     let ink = look(target.kind).map_or(Ink::Black, |(ink, _)| ink);
     let dots = design.values.iter().map(|value| Dot {
@@ -48,7 +41,7 @@ pub fn designs(parameter: Parameter, target: &Target, design: &Design) -> Plot {
 }
 
 /// How a kind of detachment is drawn and called.
-const fn look(kind: DetachmentKind) -> Option<(Ink, &'static str)> {
+pub(super) const fn look(kind: DetachmentKind) -> Option<(Ink, &'static str)> {
     match kind {
         DetachmentKind::SlipOff => Some((Ink::Black, "slip-off")),
         DetachmentKind::PullOff => Some((Ink::Blue, "pull-off")),

@@ -85,23 +85,19 @@ pub(super) fn qualitative(place: usize) -> Fill {
 
 /// From dark blue at 0 through green to yellow at 1 (viridis by S. van der Walt and N. Smith, every ninth of the way).
 pub(super) fn sequential(at: f64) -> Rgb {
-    between(
-        &[
-            0x440154, 0x482878, 0x3e4989, 0x31688e, 0x26828e, 0x1f9e89, 0x35b779, 0x6ece58,
-            0xb5de2b, 0xfde725,
-        ],
-        at,
-    )
+    const STOPS: [u32; 10] = [
+        0x440154, 0x482878, 0x3e4989, 0x31688e, 0x26828e, 0x1f9e89, 0x35b779, 0x6ece58, 0xb5de2b,
+        0xfde725,
+    ];
+    between(&STOPS, at)
 }
 
 /// From blue at 0 through white to red at 1 (ColorBrewer, RdBu).
 pub(super) fn diverging(at: f64) -> Rgb {
-    between(
-        &[
-            0x2166ac, 0x67a9cf, 0xd1e5f0, 0xf7f7f7, 0xfddbc7, 0xef8a62, 0xb2182b,
-        ],
-        at,
-    )
+    const STOPS: [u32; 7] = [
+        0x2166ac, 0x67a9cf, 0xd1e5f0, 0xf7f7f7, 0xfddbc7, 0xef8a62, 0xb2182b,
+    ];
+    between(&STOPS, at)
 }
 
 /// The colour at a part of the way along equidistant ones.

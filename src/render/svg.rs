@@ -5,6 +5,7 @@ use super::error::Error;
 use super::font::CAPITALS;
 use super::palette::{INK, Rgb, WHITE};
 use super::picture::{Anchor, DASHES, Mark, Pen, Picture};
+use base64::prelude::{BASE64_STANDARD, Engine};
 use png::Compression;
 
 /// The document of a picture.
@@ -33,7 +34,8 @@ pub(super) fn document(picture: &Picture) -> Result<String, Error> {
             Mark::Raster(corner, size, pixels) => {
                 let units = |pixels: usize| number(pixels as f64 / picture.scale);
                 let ([x, y], [width, height]) = (corner.map(units), size.map(units));
-                let png = base64(&bitmap::encode(*size, pixels, Compression::Balanced)?);
+                let png =
+                    BASE64_STANDARD.encode(bitmap::encode(*size, pixels, Compression::Balanced)?);
                 format!(
                     "<image x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" preserveAspectRatio=\"none\" \
                      style=\"image-rendering:pixelated\" xlink:href=\"data:image/png;base64,{png}\"/>\n"
@@ -103,22 +105,6 @@ fn escaped(text: &str) -> String {
     let text = text.replace('&', "&amp;").replace('<', "&lt;");
     let text = text.replace('>', "&gt;").replace('"', "&quot;");
     text.replace(['\u{fffe}', '\u{ffff}'], "\u{fffd}")
-}
-
-/// Bytes as text (RFC 4648).
-fn base64(bytes: &[u8]) -> String {
-    const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);
-    for three in bytes.chunks(3) {
-        let byte = |place: usize| u32::from(three.get(place).copied().unwrap_or(0));
-        let word = byte(0) << 16 | byte(1) << 8 | byte(2);
-        for digit in 0..4 {
-            let place = (word >> (18 - 6 * digit) & 63) as usize;
-            let used = digit <= three.len();
-            text.push(if used { char::from(DIGITS[place]) } else { '=' });
-        }
-    }
-    text
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 //! whisker slips off and blue where it is pulled off, as in the paper.
 
 use super::chart::{Disc, Dot, Ink, Line, Plot, Stroke};
+use super::designs::look;
 use crate::measured::Compared;
 use crate::trace::{BranchPoint, Detachment, DetachmentKind, Mark, Shape};
 
@@ -40,17 +41,13 @@ pub fn curves(title: &str, all: &[Ends], [x, y]: [CurveAxis; 2]) -> Plot {
         for side in rows.chunk_by(|a, b| a.side == b.side && a.distance_mm < b.distance_mm) {
             let kinds = side.chunk_by(|a, b| a.kind == b.kind);
             let parts = kinds.filter_map(|part| {
-                let (ink, kind) = match part[0].kind {
-                    DetachmentKind::SlipOff => (Ink::Black, "slip-off"),
-                    DetachmentKind::PullOff => (Ink::Blue, "pull-off"),
-                    DetachmentKind::OutOfReach | DetachmentKind::Unresolved => return None,
-                };
+                let (ink, kind) = look(part[0].kind)?;
                 let name = match *name {
                     "" => kind.to_owned(),
                     name => format!("{name}: {kind}"),
                 };
                 let points = part.iter().filter_map(place).collect();
-                Some(line(points, ink, *stroke, &name))
+                Some(Line::new(points, ink, *stroke, name))
             });
             plot.lines.extend(joined(parts));
         }
@@ -70,7 +67,7 @@ pub fn branches(title: &str, poles: &[(Ink, &[BranchPoint])], [x, y]: [BranchAxi
                     true => (Stroke::Solid, "stable"),
                     false => (Stroke::Dashed, "unstable"),
                 };
-                line(part.iter().map(place).collect(), *ink, stroke, name)
+                Line::new(part.iter().map(place).collect(), *ink, stroke, name)
             });
             plot.lines.extend(joined(parts));
             plot.dots.extend(branch.iter().filter_map(|point| {
@@ -132,7 +129,7 @@ pub fn shapes(title: &str, drawn: &[Drawn]) -> Plot {
     plot.equal_axes = true;
     plot.lines.extend(drawn.iter().map(|drawn| {
         let points = drawn.shape.points.iter().map(|p| [p.x_mm, p.y_mm]);
-        line(points.collect(), drawn.ink, drawn.stroke, &drawn.name)
+        Line::new(points.collect(), drawn.ink, drawn.stroke, &*drawn.name)
     }));
     plot.discs.extend(drawn.first().map(|drawn| Disc {
         centre: drawn.shape.pole_mm,
@@ -148,15 +145,6 @@ fn empty(title: &str, x_label: &str, y_label: &str) -> Plot {
         x_label: x_label.to_owned(),
         y_label: y_label.to_owned(),
         ..Plot::default()
-    }
-}
-
-fn line(points: Vec<[f64; 2]>, ink: Ink, stroke: Stroke, name: &str) -> Line {
-    Line {
-        points,
-        ink,
-        stroke,
-        name: Some(name.to_owned()),
     }
 }
 

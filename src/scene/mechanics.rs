@@ -8,9 +8,8 @@ impl Whisker {
     /// This whisker with `pole` on `side`.
     #[must_use]
     pub fn rod(&self, pole: &Pole, side: Side) -> Rod {
-        let (a, x0) = self
-            .curvature
-            .map_or((0.0, 0.0), |c| (c.parabola_per_mm, c.vertex_mm));
+        let parabola = self.curvature.unwrap_or_default();
+        let (a, x0) = (parabola.parabola_per_mm, parabola.vertex_mm);
         Rod {
             taper: self.taper() * self.arc_stretch,
             bend: a * self.length_mm,

@@ -76,12 +76,10 @@ fn measured(rows: &Spanned<Rows>, length_mm: f64) -> Result<Radii, Fault> {
             return refused(i, "the radius must be between 0.001 and 100000 um");
         }
         if !(thinnest..=SHARPEST_TIP * first[1]).contains(&radius) {
-            return refused(
-                i,
-                &format!(
-                    "the radius must be between a thousandth of that at the base ({thinnest}) and a thousand times it"
-                ),
+            let must = format!(
+                "the radius must be between a thousandth of that at the base ({thinnest}) and a thousand times it"
             );
+            return refused(i, &must);
         }
         before = s;
     }

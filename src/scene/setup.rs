@@ -30,11 +30,7 @@ impl Setup {
     #[must_use]
     pub fn whisker_at(&self, place: Place) -> Swept {
         let (mut whisker, mut pole) = (self.whisker.clone(), self.pole);
-        let straight = Curvature {
-            parabola_per_mm: 0.0,
-            vertex_mm: 0.0,
-        };
-        let mut curvature = whisker.curvature.unwrap_or(straight);
+        let mut curvature = whisker.curvature.unwrap_or_default();
         for (parameter, value) in place.values() {
             match parameter {
                 Parameter::LengthMm => whisker.length_mm = value,

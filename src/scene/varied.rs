@@ -16,6 +16,13 @@ impl Parameter {
         })
     }
 
+    /// The names of those that the scene gives, with commas between them.
+    pub(crate) fn given(scene: &Scene) -> String {
+        let all = Self::ALL.into_iter();
+        let given = all.filter(|own| own.value(scene).is_some());
+        given.map(Self::name).collect::<Vec<_>>().join(", ")
+    }
+
     /// The least and the greatest value that the scene accepts around its own, everything else as it is.
     ///
     /// Without a value of its own the scene accepts none: the range is empty, of two NaN.

@@ -57,8 +57,8 @@ impl Whisker {
     }
 }
 
-/// The undeflected shape `y = A (x - vertex)^2` with the base at `x = 0` (paper, Eq. 7).
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// The undeflected shape `y = A (x - vertex)^2` with the base at `x = 0` (paper, Eq. 7); straight by default.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Curvature {
     /// `A`.
     pub parabola_per_mm: f64,

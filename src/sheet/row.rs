@@ -100,6 +100,12 @@ impl Crossing {
         }
     }
 
+    /// Whether it is one of those.
+    #[must_use]
+    pub fn is_at_touch(&self) -> bool {
+        self.load == 0.0
+    }
+
     /// In place of crossings of a row that nobody can tell.
     #[must_use]
     pub fn unknown() -> Self {
@@ -110,11 +116,5 @@ impl Crossing {
             push: f64::NAN,
             residual: f64::INFINITY,
         }
-    }
-
-    /// Whether it is one of those.
-    #[must_use]
-    pub fn is_at_touch(&self) -> bool {
-        self.load == 0.0
     }
 }

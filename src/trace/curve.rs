@@ -4,7 +4,7 @@ use super::columns::row;
 use crate::classify::{RowBoundary, Sliding};
 use crate::rod::{Rest, Side};
 use crate::scene::{Pole, Whisker};
-use crate::sheet::{Crossing, Edge, Row, Sheet};
+use crate::sheet::{Crossing, Edge, Sheet};
 use crate::shooting::batch::{Batch, InitialCondition, Method};
 use crate::shooting::{FirstVariation, Reader, Reading, Resolution};
 use serde::{Deserialize, Serialize};
@@ -105,7 +105,6 @@ pub fn curve_at(
     let rod = &whisker.rod(pole, side);
     let method = Method::new(resolution);
     let reader = Reader::new(whisker.units(), rod);
-    let rest = Rest::new(rod);
     let distances: Vec<f64> = distances_mm.iter().map(|d| d / whisker.length_mm).collect();
     let sheet = Sheet::new(method, rod, side, &distances);
     let ends: Vec<Result<&Crossing, DetachmentKind>> = (0..distances.len())
@@ -125,9 +124,8 @@ pub fn curve_at(
         .collect();
     let states = Batch::new(method).shoot::<FirstVariation>(&conditions);
     let mut states = states.into_iter();
-    let rows = distances_mm.iter().zip(&distances).zip(&ends);
-    rows.map(|((distance_mm, distance), end)| {
-        let row = Row::new(&rest, *distance);
+    let rows = distances_mm.iter().zip(&sheet.rows).zip(&ends);
+    rows.map(|((distance_mm, row), end)| {
         let reached = end.ok().and_then(|end| Some((end, states.next()?)));
         let sliding = reached
             .as_ref()

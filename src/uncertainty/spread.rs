@@ -53,16 +53,11 @@ impl Spread {
         ends: impl Iterator<Item = End>,
         sd_first_order_deg: Option<f64>,
     ) -> Self {
+        // In the order of the kinds.
         let mut counts = [0; 4];
         let mut pushes = Vec::new();
         for (kind, push) in ends {
-            let place = match kind {
-                DetachmentKind::SlipOff => 0,
-                DetachmentKind::PullOff => 1,
-                DetachmentKind::OutOfReach => 2,
-                DetachmentKind::Unresolved => 3,
-            };
-            counts[place] += 1;
+            counts[kind as usize] += 1;
             pushes.extend(push);
         }
         pushes.sort_by(f64::total_cmp);

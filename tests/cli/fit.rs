@@ -1,23 +1,9 @@
-//! `whiskmap fit`, and `curve --data`.
+//! `whiskmap fit`.
 
-use crate::traces::cells;
+use crate::data::{DATA, curve, place};
 use crate::{Place, Run, SCENE, names};
 use serde_json::Value;
 use whiskmap::scene::Scene;
-
-pub const POINTS: &str =
-    "line,side,distance_mm,measured_deg,kind,predicted_deg,predicted_kind,residual_deg";
-
-/// Points of a whisker whose tip is 2 um thick.
-const DATA: &str = "# made up\nkind,side,distance_mm,push_angle_deg\n\
-                    slip-off,cf,10,-49.2\nslip-off,cf,15,-29.1\nslip-off,cb,10,40.1\n,cb,15,18.9\npull-off,cb,19.3,4.3\n\
-                    slip-off,cb,15,18.4\n";
-
-fn place() -> Place {
-    let place = Place::with(SCENE);
-    place.write("points.csv", DATA);
-    place
-}
 
 const FIT: [&str; 4] = ["fit", "scene.toml", "--data", "points.csv"];
 
@@ -226,16 +212,7 @@ fn wrong_input_is_refused_before_any_file_is_made() {
     let data = |text: &str, parts: &[&str]| {
         place.write("points.csv", text);
         refused(&["--free", "taper", "-o", "f.toml"], parts);
-        place
-            .run(&[
-                "curve",
-                "scene.toml",
-                "--data",
-                "points.csv",
-                "--csv",
-                "t.csv",
-            ])
-            .assert_refused(parts);
+        curve(&place, &["--csv", "t.csv"]).assert_refused(parts);
     };
     data(
         &DATA.replace("kind", "how"),
@@ -270,94 +247,9 @@ fn wrong_input_is_refused_before_any_file_is_made() {
         let run = place.run(&[command, &["sweep.toml", "--data", "points.csv"]].concat());
         run.assert_refused(&["grid.curvature_per_mm: the scene sweeps 2 whiskers"]);
     }
-    let corner = ["curve", "scene.toml", "--data", "points.csv", "--corner"];
-    place.run(&corner).assert_refused(&["--data", "--corner"]);
+    curve(&place, &["--corner"]).assert_refused(&["--data", "--corner"]);
     assert_eq!(
         names(&place.path("")),
         ["points.csv", "scene.toml", "sweep.toml"]
-    );
-}
-
-#[test]
-fn points_beside_the_curve() {
-    let place = place();
-    let run = place.run(&[
-        "curve",
-        "scene.toml",
-        "--data",
-        "points.csv",
-        "--csv",
-        "-",
-        "--plot",
-        "p.svg",
-    ]);
-    assert_eq!(run.code, Some(0), "{run:?}");
-    let table = run.out.strip_suffix("p.svg\n").unwrap();
-    let rows = cells(table, POINTS);
-    let firsts: Vec<&str> = rows.iter().map(|row| row[0]).collect();
-    assert_eq!(firsts, ["3", "4", "5", "6", "7", "8"]);
-    for row in &rows {
-        let number = |i: usize| row[i].parse::<f64>().unwrap();
-        assert_eq!(number(7), number(3) - number(5));
-        assert!(["slip-off", "pull-off"].contains(&row[6]), "{row:?}");
-    }
-    assert_eq!(rows[3][..5], ["6", "cb", "15.0", "18.9", ""]);
-    assert_eq!(rows[4][4..7].first(), Some(&"pull-off"));
-    let said = [
-        "points compared: 6, 0 left out, 0 of another kind than predicted\n",
-        "\nRMS: ",
-        "\nbias: ",
-    ];
-    for part in said {
-        assert!(run.err.contains(part), "{run:?}");
-    }
-    let svg = String::from_utf8(place.bytes("p.svg")).unwrap();
-    for name in ["measured slip-off", "measured pull-off", "measured"] {
-        assert!(svg.contains(&format!(">{name}<")), "{name}");
-    }
-
-    // The same angles of the chord lie on the curve of chord angles.
-    place.write(
-        "points.csv",
-        "side,distance_mm,push_chord_deg\ncb,15.66,15.14\n",
-    );
-    let run = place.run(&[
-        "curve",
-        "scene.toml",
-        "--data",
-        "points.csv",
-        "--csv",
-        "t.csv",
-        "--plot",
-        "p.svg",
-    ]);
-    assert_eq!(run.out, "t.csv\np.svg\n");
-    let svg = String::from_utf8(place.bytes("p.svg")).unwrap();
-    assert!(svg.contains("chord angle at detachment (deg)"));
-    let table = String::from_utf8(place.bytes("t.csv")).unwrap();
-    let residual: f64 = cells(&table, POINTS)[0][7].parse().unwrap();
-    assert!(residual.abs() < 0.01, "{residual}");
-}
-
-#[test]
-fn points_that_never_detach() {
-    let place = Place::with(crate::map::HINGED);
-    place.write(
-        "points.csv",
-        "side,distance_mm,push_angle_deg\ncb,14,40\ncb,7,5\n",
-    );
-    let run = place.run(&["curve", "scene.toml", "--data", "points.csv"]);
-    assert_eq!(run.code, Some(0), "{run:?}");
-    let named = "warning: points.csv:2: left out: by theory this side never detaches at 14 mm\n\
-                 points compared: 1, 1 left out, 0 of another kind than predicted\n";
-    assert!(run.err.starts_with(named), "{run:?}");
-    assert_eq!(cells(&run.out, POINTS)[0][4..], ["", "", "unresolved", ""]);
-    place.write("points.csv", "side,distance_mm,push_angle_deg\ncb,14,40\n");
-    let run = place.run(&["curve", "scene.toml", "--data", "points.csv"]);
-    assert_eq!(run.code, Some(1), "{run:?}");
-    assert!(
-        run.err
-            .contains("error: all 1 points are unresolved: see the column `predicted_kind`"),
-        "{run:?}"
     );
 }

@@ -7,6 +7,7 @@
 mod bench;
 mod branch;
 mod curve;
+mod data;
 mod design;
 mod engine;
 mod extract;

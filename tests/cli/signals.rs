@@ -34,7 +34,8 @@ fn unfinished(place: &Place, folder: &str) -> Vec<String> {
     names
 }
 
-fn send(signal: &str, child: &Child) {
+/// Sends the signal to the run.
+pub fn send(signal: &str, child: &Child) {
     let kill = format!("kill -{signal} {}", child.id());
     assert!(
         Command::new("sh")

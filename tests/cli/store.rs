@@ -194,14 +194,7 @@ fn an_interrupted_run_says_how_to_go_on() {
     let place = Place::with(SWEEP);
     good(&place, "whole", &[]);
     let child = begun(&place, "out", 2);
-    let kill = format!("kill -TERM {}", child.id());
-    assert!(
-        Command::new("sh")
-            .args(["-c", &kill])
-            .status()
-            .unwrap()
-            .success()
-    );
+    crate::signals::send("TERM", &child);
     let run = Run::of(&child.wait_with_output().unwrap());
     assert_eq!(run.code, Some(143), "{run:?}");
     let said = "interrupted by SIGTERM; unfinished files are removed; finished blocks stay: go on by the same command with --resume\n";

@@ -75,7 +75,7 @@ fn help_defines_the_columns() {
     let place = Place::with(SCENE);
     let corner = "side,distance_mm,push_angle_deg,reason";
     for (command, tables) in [
-        ("curve", &[CURVE, corner, crate::fit::POINTS, SPREAD][..]),
+        ("curve", &[CURVE, corner, crate::data::POINTS, SPREAD][..]),
         ("branch", &[BRANCH]),
         ("shape", &[SHAPE]),
     ] {

@@ -101,12 +101,8 @@ fn reach(rows: &[Detachment], stroke: Stroke) -> Line {
         let of_side = rows.iter().rfind(|end| end.side == side)?;
         Some([of_side.push_angle_deg?, of_side.distance_mm])
     };
-    Line {
-        points: Side::BOTH.into_iter().filter_map(farthest).collect(),
-        ink: Ink::Grey,
-        stroke,
-        name: Some("first touch at the tip".to_owned()),
-    }
+    let points = Side::BOTH.into_iter().filter_map(farthest).collect();
+    Line::new(points, Ink::Grey, stroke, "first touch at the tip")
 }
 
 /// Measured ends as circles.

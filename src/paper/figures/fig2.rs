@@ -1,6 +1,6 @@
 //! Fig. 2: shapes of a cone and a cylinder in front of one pole, CB.
 
-use super::{Figure, Panel, figure, lettered};
+use super::{Figure, Panel, lettered};
 use crate::paper::whiskers::{CONE, CYLINDER, POLE, pole_distance_mm};
 use crate::render::{Drawn, Ink, Inset, Plot, Stroke, shapes};
 use crate::rod::Side;
@@ -23,12 +23,8 @@ struct State {
 
 /// The branch of a whisker at the pole of Fig. 2, and its last stable state.
 pub fn branch(whisker: &Whisker) -> Result<(Branch, BranchPoint), NoState> {
-    let branch = Branch::new(
-        whisker,
-        &POLE,
-        Side::Cb,
-        pole_distance_mm(whisker, Side::Cb),
-    )?;
+    let distance = pole_distance_mm(whisker, Side::Cb);
+    let branch = Branch::new(whisker, &POLE, Side::Cb, distance)?;
     let points = branch.points(3)?;
     let is_end = |point: &&BranchPoint| matches!(point.mark, Some(Mark::SlipOff | Mark::PullOff));
     let end = points.iter().find(is_end).copied();
@@ -42,38 +38,22 @@ pub fn fig2() -> Result<Figure, NoState> {
     let at_pull_off = ("pull-off", pull_off.push_angle_deg, Stroke::Solid);
     let stable = ("stable", PUSH_DEG, Stroke::Solid);
     let unstable = ("unstable", PUSH_DEG, Stroke::Dashed);
-    let panels = vec![
-        panel("A", "cone: the two solutions", &cone, &[stable, unstable])?,
-        panel(
-            "B",
-            "cone: the only solution at the saddle-node",
-            &cone,
-            &[at_slip_off],
-        )?,
-        panel(
-            "C",
-            "cylinder: the unstable solution would be longer than the whisker",
-            &cylinder,
-            &[stable],
-        )?,
-        panel(
-            "D",
-            "cylinder: the tip has reached the pole",
-            &cylinder,
-            &[at_pull_off],
-        )?,
+    #[rustfmt::skip]
+    let panels = [
+        ("A", "cone: the two solutions", &cone, &[stable, unstable][..]),
+        ("B", "cone: the only solution at the saddle-node", &cone, &[at_slip_off]),
+        ("C", "cylinder: the unstable solution would be longer than the whisker", &cylinder, &[stable]),
+        ("D", "cylinder: the tip has reached the pole", &cylinder, &[at_pull_off]),
     ];
+    let panels = panels.map(|(letter, title, branch, states)| panel(letter, title, branch, states));
+    let panels: Vec<Panel> = panels.into_iter().collect::<Result<_, _>>()?;
     let chord = |end: &BranchPoint| format!("{:.2}", end.push_chord_deg);
     let caption = vec![
         "Push angle \u{3b8}_p: rotation of the base since first touch, which gives the paper's 15.6 and 62.7 deg;".to_owned(),
         format!("the chord angle of Fig. 1D gives {} and {}. Insets show the contact.", chord(&slip_off), chord(&pull_off)),
     ];
-    Ok(figure(
-        "fig2",
-        "Fig. 2: a cone and a cylinder in front of one pole, CB",
-        caption,
-        lettered("fig2", panels),
-    ))
+    let title = "Fig. 2: a cone and a cylinder in front of one pole, CB";
+    Ok(lettered("fig2", title, caption, panels))
 }
 
 fn panel(

@@ -2,13 +2,14 @@
 
 use super::drawing::{MAGNIFIED, arrow, line, outline, sections};
 use super::fig2::{self, PUSH_DEG};
-use super::{Figure, PUSH, Panel, detachment, figure, lettered};
+use super::{Figure, PUSH, Panel, detachment, lettered};
 use crate::paper::whiskers::{CONE, CYLINDER, POLE, pole_distance_mm};
 use crate::render::{BranchAxis, Ink, Plot, Stroke, branches};
 use crate::rod::Side;
 use crate::scene::Whisker;
 use crate::trace::{Branch, BranchPoint, Mark, NoState};
 use serde::Serialize;
+use serde::ser::{SerializeStruct, Serializer};
 
 /// Points per branch.
 const POINTS: usize = 160;
@@ -24,19 +25,16 @@ struct State {
     push_angle_deg: f64,
 }
 
-#[derive(Clone, Copy, Serialize)]
-struct ContactAngle {
-    theta_obj_deg: f64,
-}
+/// A column by its name, and what a state has in it.
+#[derive(Clone, Copy)]
+struct Column(&'static str, f64);
 
-#[derive(Clone, Copy, Serialize)]
-struct Force {
-    force_un: f64,
-}
-
-#[derive(Clone, Copy, Serialize)]
-struct Contact {
-    s_obj_mm: f64,
+impl Serialize for Column {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut columns = serializer.serialize_struct("Column", 1)?;
+        columns.serialize_field(self.0, &self.1)?;
+        columns.end()
+    }
 }
 
 #[derive(Clone, Copy, Serialize)]
@@ -95,12 +93,7 @@ pub fn fig3() -> Result<Figure, NoState> {
             .to_owned(),
     ];
     let title = "Fig. 3: a cone and a cylinder pushed into a pole";
-    Ok(figure(
-        "fig3",
-        title,
-        caption,
-        lettered("fig3", panels.collect()),
-    ))
+    Ok(lettered("fig3", title, caption, panels.collect()))
 }
 
 /// Both branches at one pole, each on its own side of first touch.
@@ -148,33 +141,20 @@ fn column(
         Panel::new(
             angle,
             plot(CONTACT_ANGLE),
-            rows(&points, |point| ContactAngle {
-                theta_obj_deg: (CONTACT_ANGLE.value)(point),
-            }),
+            rows(&points, "theta_obj_deg", CONTACT_ANGLE),
         ),
-        Panel::new(
-            force,
-            plot(FORCE),
-            rows(&points, |point| Force {
-                force_un: point.force_un,
-            }),
-        ),
-        Panel::new(
-            contact,
-            contacts,
-            rows(&points, |point| Contact {
-                s_obj_mm: point.arc_length_mm,
-            }),
-        ),
+        Panel::new(force, plot(FORCE), rows(&points, "force_un", FORCE)),
+        Panel::new(contact, contacts, rows(&points, "s_obj_mm", CONTACT)),
         detachment::panel(ends, name, &[(name, whisker, Stroke::Solid)]),
     ])
 }
 
-/// A table of what a panel shows upwards.
-fn rows<Y: Copy>(
+/// A table of what a panel shows upwards, in a column of this name.
+fn rows(
     points: &[BranchPoint],
-    y: impl Fn(&BranchPoint) -> Y,
-) -> Vec<(State, Y, Special)> {
+    column: &'static str,
+    axis: BranchAxis,
+) -> Vec<(State, Column, Special)> {
     let row = |point: &BranchPoint| {
         let state = State {
             distance_mm: point.distance_mm,
@@ -182,7 +162,8 @@ fn rows<Y: Copy>(
             stable: point.stable,
             push_angle_deg: point.push_angle_deg,
         };
-        (state, y(point), Special { mark: point.mark })
+        let upwards = Column(column, (axis.value)(point));
+        (state, upwards, Special { mark: point.mark })
     };
     points.iter().map(row).collect()
 }

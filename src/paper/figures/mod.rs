@@ -90,11 +90,11 @@ fn figure(
     }
 }
 
-/// Panels whose tables are called by the figure and the letter.
-fn lettered(figure: &str, panels: Vec<Panel>) -> Vec<(String, Panel)> {
-    let table = |panel: &Panel| format!("{figure}{}", panel.letter.to_lowercase());
-    let panels = panels.into_iter();
-    panels.map(|panel| (table(&panel), panel)).collect()
+/// The same where tables are called by the figure and the letter.
+fn lettered(name: &'static str, title: &str, caption: Vec<String>, panels: Vec<Panel>) -> Figure {
+    let table = |panel: &Panel| format!("{name}{}", panel.letter.to_lowercase());
+    let panels = panels.into_iter().map(|panel| (table(&panel), panel));
+    figure(name, title, caption, panels.collect())
 }
 
 /// What the push angle is, for captions.

@@ -36,6 +36,20 @@ pub struct Line {
     pub name: Option<String>,
 }
 
+impl Line {
+    /// A line with a name.
+    #[must_use]
+    pub fn new(points: Vec<[f64; 2]>, ink: Ink, stroke: Stroke, name: impl Into<String>) -> Self {
+        let name = Some(name.into());
+        Self {
+            points,
+            ink,
+            stroke,
+            name,
+        }
+    }
+}
+
 /// A point that stands out, such as a fold.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Dot {

@@ -2,13 +2,12 @@
 
 pub mod crossings;
 pub mod edge_newton;
+mod extremum;
 mod predictor;
 mod tip_edge;
 
 use crate::numerics::nearest_turn;
-use crate::rod::Rest;
-use crate::rod::Rod;
-use crate::rod::arclength;
+use crate::rod::{Rest, Rod, arclength};
 use crate::sheet::certificate::is_as_steep_as;
 use crate::sheet::edges::predictor::{FoldEdge, Prediction, Sample};
 use crate::sheet::edges::tip_edge::{SampledTipEdge, TipEdge};

@@ -5,29 +5,14 @@ use crate::numerics::lobatto::{LOBATTO_COUNT, LOBATTO_NODES, LobattoPolynomial, 
 use crate::numerics::newton_form::RootProblem;
 use crate::numerics::{Bracket, nearest_turn};
 use crate::rod::Rod;
+use crate::sheet::edges::extremum::Extremum;
 use crate::sheet::edges::predictor::{LAST_STEP_ALONG_EDGE, Prediction, Sample, place_between};
 use crate::sheet::fold::FoldPoint;
 use crate::sheet::lattice::directions;
+use crate::shooting::ShootingMap;
 use crate::shooting::batch::{Batch, InitialCondition, Method};
-use crate::shooting::{SecondVariation, ShootingMap};
 use glam::DVec2;
 use std::f64::consts::FRAC_PI_2;
-
-/// The last Newton step toward an extremum, relative to the distance of the places around it: its square is left.
-const LAST_STEP_TO_EXTREMUM: f64 = 1e-7;
-
-/// An extremum of the distance along the tip edge, as far as its samples tell.
-#[derive(Clone, Copy, Debug)]
-pub struct Extremum {
-    /// The sample before it.
-    pub after: usize,
-    /// The load.
-    pub load: f64,
-    /// Loads around it, of `dlnD/dload`.
-    pub loads: Bracket,
-    /// Second derivatives of `(ln D, phi)` by the load.
-    pub by_load_load: DVec2,
-}
 
 /// The tip edge between its samples, by the parts of the load at the corner.
 #[derive(Clone, Debug)]
@@ -248,35 +233,5 @@ impl TipEdge {
     fn by_load_load(&self, part: f64) -> DVec2 {
         let [distance, phi] = &self.by_load;
         DVec2::new(distance.at(part).1, phi.at(part).1) / self.corner
-    }
-}
-
-impl Extremum {
-    /// Its load and the map there. Mostly the polynomials know the second derivatives so well that one trajectory tells all; else
-    /// Newton's method has its own.
-    fn polished(&self, method: Method, at_tip: InitialCondition) -> (f64, ShootingMap) {
-        let (load, by_load_load) = (self.load, self.by_load_load);
-        let condition = |load| [InitialCondition { load, ..at_tip }];
-        let last_step = LAST_STEP_TO_EXTREMUM * (self.loads.above - self.loads.below).abs();
-        let map = Batch::new(method).shoot::<ShootingMap>(&condition(load))[0];
-        let step = -map.by_load.x / by_load_load.x;
-        if step.abs() <= last_step {
-            let here = SecondVariation {
-                map,
-                by_load_load,
-                ..SecondVariation::default()
-            };
-            return (load + step, here.extrapolated(DVec2::new(0.0, step)).map);
-        }
-        let newton = |load| {
-            let here = Batch::new(method).shoot::<SecondVariation>(&condition(load))[0];
-            let slope = here.map.by_load.x;
-            (slope, load - slope / here.by_load_load.x)
-        };
-        let load = self.loads.newton(load, |_| last_step, newton).x;
-        (
-            load,
-            Batch::new(method).shoot::<ShootingMap>(&condition(load))[0],
-        )
     }
 }

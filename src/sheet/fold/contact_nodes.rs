@@ -6,7 +6,8 @@
 
 use crate::numerics::newton_form::{stencil, through_slopes};
 use crate::rod::{Rod, Side};
-use crate::sheet::fold::coordinate::{Hermite, STENCIL, hermite, slope_of_u, tau_of, u_of};
+use crate::sheet::fold::change::{jumps, least_q, q, slopes_at};
+use crate::sheet::fold::coordinate::{Hermite, STENCIL, hermite, tau_of, u_of};
 use crate::sheet::fold::{FoldPoint, first_folds};
 use crate::sheet::row::Row;
 use crate::shooting::ShootingMap;
@@ -48,50 +49,11 @@ pub struct ContactNodes {
     pub ln_q: Vec<Hermite>,
 }
 
-/// The first fold jumps between two nodes if the change of `ln q` differs by this much from the slope at one of them. A jump
-/// with friction led from 29 to 15; without one, `scenes/measured.toml` has 0.19.
-const JUMP: f64 = 0.25;
-
 /// What rounding may leave of the slope of `ln D` where it is 0: at the tip of a perfect cone.
 const FLAT: f64 = 1e-6;
 
-/// Whether the fold jumps between two nodes from one to the other of which `ln q` changes by `change`.
-fn jumps(change: f64, slopes: [f64; 2]) -> bool {
-    let astray = slopes.map(|slope| (change - slope).abs());
-    astray[0].max(astray[1]) >= JUMP
-}
-
-/// The most that `d ln q/d ln tau` of a fold counts for; it is 2 toward a slender tip.
-const STEEPEST: f64 = 4.0;
-
 /// A load is surely below the folds where `|load| tau^2` is this part of the smallest; the rest allows for a jump between nodes.
 const SURELY_BELOW: f64 = 0.75;
-
-/// A lower bound of `|load| tau^2` of the folds, at the nodes and between them: a cubic through two values with their slopes falls
-/// below both by no more than this.
-fn least_q(values: &[[f64; 2]], slopes: &[[f64; 2]]) -> f64 {
-    let pairs = values.windows(2).zip(slopes.windows(2));
-    let least = pairs.map(|(values, slopes)| {
-        let (falling, rising) = (-slopes[0][1], slopes[1][1]);
-        let dip = 4.0 / 27.0 * (falling.max(0.0) + rising.max(0.0));
-        values[0][1].min(values[1][1]) - dip
-    });
-    least.fold(f64::INFINITY, f64::min).exp()
-}
-
-fn q(fold: &FoldPoint) -> f64 {
-    fold.load.abs() * fold.tau * fold.tau
-}
-
-/// Slopes of `ln tau` and `ln(|load| tau^2)` of the folds at `fold`, per node.
-fn slopes_at(rod: &Rod, fold: &FoldPoint, spacing: f64) -> [f64; 2] {
-    let ln_tau = spacing / slope_of_u(rod, fold.tau);
-    let by_det = fold.variation.det_gradient();
-    let ln_load = -by_det.x / by_det.y * fold.tau / fold.load;
-    // Next to a jump the fold edge may be vertical in load, and no polynomial is of any use.
-    let ln_q = (2.0 + ln_load).clamp(-STEEPEST, STEEPEST);
-    [ln_tau, ln_q * ln_tau]
-}
 
 /// The folds of nodes from the base outward. The first ones are so close to the base that a whisker held there does not reach the pole
 /// of `nearest`, whatever its shape.
@@ -252,15 +214,5 @@ mod tests {
             assert!((ln_distance - slope.x).abs() < 1e-5, "{i} {part}");
             assert!((phi - slope.y).abs() < 1e-5, "{i} {part}");
         }
-    }
-
-    /// A fold that falls as a root right after it has jumped down is as steep there as the jump.
-    #[test]
-    fn a_jump_is_seen_whatever_the_slopes() {
-        assert!(jumps(-0.6, [0.0, 0.0]));
-        assert!(jumps(-0.6, [0.0, -1.2]));
-        assert!(jumps(-0.6, [-0.6, -0.1]));
-        assert!(!jumps(0.47, [0.38, 0.29]));
-        assert!(!jumps(1.3, [1.3, 1.3]));
     }
 }

@@ -1,5 +1,6 @@
 //! The fold edge: the first load at which the Jacobian becomes singular, contact by contact.
 
+mod change;
 pub mod contact_nodes;
 pub mod coordinate;
 

@@ -3,10 +3,11 @@
 //! The curve is known at the Chebyshev-Lobatto nodes of the load. Between them push angle, contact and load are polynomials; the
 //! first one is solved for the load, the others are evaluated there. Sixteen cells of a row are solved side by side.
 
-use crate::numerics::lobatto::{LOBATTO_COUNT, LOBATTO_NODES, LobattoPolynomial, through_lobatto};
+use crate::numerics::WIDTH;
+use crate::numerics::lobatto::{LOBATTO_COUNT, LobattoPolynomial};
 use crate::numerics::newton_form::{RootProblem, stencil};
-use crate::numerics::newton_form_simd::{Numbers, SimdRoots, Terms};
-use crate::numerics::{Bracket, WIDTH};
+use crate::numerics::newton_form_simd::{SimdRoots, Terms};
+use crate::sheet::lattice::row_curve::{NEAR_CUT, RowCurve};
 
 /// Where Newton's method starts for one cell: contact and load, interpolated on the lattice.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,30 +18,8 @@ pub struct Guess {
     pub load: f64,
 }
 
-/// The level curve of `D` of one row, at neighbouring loads of the lattice.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct RowCurve {
-    /// Which load the first point has.
-    pub first: usize,
-    /// Points.
-    pub count: usize,
-    /// Push angle since first touch at each point, in radians, as a magnitude on the sheet's side.
-    pub push: Numbers,
-    /// `tau` of the contact.
-    pub tau: Numbers,
-    /// Signed load.
-    pub load: Numbers,
-}
-
-/// Points of a polynomial near the end of a row that leaves the lattice.
-const NEAR_CUT: usize = 7;
-
 /// The last Newton step along a row, in parts of the fold's load: its square is left, and interpolation leaves more than that.
 const LAST_PART_STEP: f64 = 1e-5;
-
-/// How far beyond the lattice's own detachment angle, in radians, a guess is still made: on most whiskers many times the
-/// interpolation error. A row with a cell that is missed for all that is followed by continuation.
-const MARGIN: f64 = 1e-4;
 
 impl RowCurve {
     /// Guesses for growing push angles (at least 0, in radians, as magnitudes); `None` outside the sheet.
@@ -67,49 +46,6 @@ impl RowCurve {
         }
         block.solve(self, &mut guesses);
         guesses
-    }
-
-    /// Push angle, contact and load by the part of the fold's load, through `count` points from the point `from` on.
-    fn polynomials(&self, from: usize, count: usize) -> [LobattoPolynomial; 3] {
-        let values = [&self.push, &self.tau, &self.load].map(|numbers| {
-            let mut values = [0.0; LOBATTO_COUNT];
-            values[..count].copy_from_slice(&numbers[from..from + count]);
-            values
-        });
-        through_lobatto(self.first + from, count, values)
-    }
-
-    /// The intervals between the points. A row leaves the lattice between two loads: its end is moved to the next one, unless the
-    /// push angle turns on the way there.
-    fn intervals(&self) -> Intervals {
-        let (first, count) = (self.first, self.count);
-        let near_cut = count.min(NEAR_CUT);
-        let (mut part, mut push) = ([0.0; WIDTH], self.push);
-        part[..count].copy_from_slice(&LOBATTO_NODES[first..first + count]);
-        if let Some(before) = first.checked_sub(1) {
-            let node = LOBATTO_NODES[before];
-            let at_node = self.polynomials(0, near_cut)[0].at(node).0;
-            if at_node < self.push[0] {
-                (part[0], push[0]) = (node, at_node);
-            }
-        }
-        if let Some(node) = LOBATTO_NODES.get(first + count) {
-            let ending = self.polynomials(count - near_cut, near_cut);
-            let at_node = ending[0].at(*node).0;
-            if at_node > self.push[count - 1] {
-                (part[count - 1], push[count - 1]) = (*node, at_node);
-            }
-        }
-        let summit = push[..count]
-            .iter()
-            .copied()
-            .fold(f64::NEG_INFINITY, f64::max);
-        Intervals {
-            part,
-            push,
-            summit,
-            below: push.map(|push| (summit - push).max(0.0).sqrt()),
-        }
     }
 }
 
@@ -159,42 +95,6 @@ impl Block {
     }
 }
 
-/// The points between which push angles are looked for.
-struct Intervals {
-    /// The loads, as parts of the fold's.
-    part: Numbers,
-    /// The push angles.
-    push: Numbers,
-    /// The largest of them.
-    summit: f64,
-    /// The roots of how far they are below it: at the fold the push angle is flat, and the load goes with this root.
-    below: Numbers,
-}
-
-impl Intervals {
-    /// Where to look for `push` between the point `i` and the next one; `None` where it is not near them.
-    fn problem(&self, i: usize, push: f64) -> Option<RootProblem> {
-        let pair = |numbers: &Numbers| [numbers[i], numbers[i + 1]];
-        let ([low, high], [from, to]) = (pair(&self.part), pair(&self.push));
-        if push < from - MARGIN || push > to + MARGIN {
-            return None;
-        }
-        let target = push.max(from).min(to);
-        let [below_low, below_high] = pair(&self.below);
-        let below = (self.summit - target).max(0.0).sqrt();
-        let between = if below_high < below_low {
-            (below_low - below) / (below_low - below_high)
-        } else {
-            1.0
-        };
-        Some(RootProblem {
-            target,
-            near: low + between * (high - low),
-            bracket: Bracket::new([low, high], [from, to]),
-        })
-    }
-}
-
 /// Contact and load where the push angle is as wanted.
 fn roots([push, tau, load]: &[LobattoPolynomial; 3]) -> SimdRoots<'_, LOBATTO_COUNT, 2> {
     SimdRoots {
@@ -207,6 +107,8 @@ fn roots([push, tau, load]: &[LobattoPolynomial; 3]) -> SimdRoots<'_, LOBATTO_CO
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::numerics::lobatto::LOBATTO_NODES;
+    use crate::sheet::lattice::row_curve::MARGIN;
     use std::f64::consts::FRAC_PI_2;
 
     fn curve(first: usize, pushes: &[f64]) -> RowCurve {

@@ -5,29 +5,18 @@
 //! along it the push angle grows from first touch to detachment.
 
 pub mod guesses;
+mod row_curve;
 
 use crate::numerics::lobatto::{LOBATTO_COUNT, LOBATTO_NODES};
-use crate::numerics::newton_form::{RootProblem, stencil, through_slopes};
-use crate::numerics::newton_form_simd::{Numbers, SimdRoots, Terms, keep, pack};
-use crate::numerics::{Bracket, Lanes, SimdTask, Unit, WIDTH, nearest_turn};
+use crate::numerics::nearest_turn;
+use crate::numerics::newton_form::through_slopes;
+use crate::numerics::newton_form_simd::Numbers;
 use crate::rod::{Rod, Side};
 use crate::sheet::certificate::stays_positive;
 use crate::sheet::fold::contact_nodes::ContactNodes;
-use crate::sheet::fold::coordinate::{STENCIL, TERMS};
-use crate::sheet::lattice::guesses::RowCurve;
-use crate::sheet::row::Row;
+use crate::sheet::fold::coordinate::TERMS;
 use crate::shooting::ShootingMap;
 use crate::shooting::batch::{Batch, InitialCondition, Method};
-use crate::shooting::contact::exp;
-
-/// Intervals between contact nodes over which one patch serves the loads of a row: one interval from its middle, interpolation is
-/// half as good.
-const SPAN: usize = 3;
-
-/// The last Newton step toward the contact of a row, in contact nodes: its square is left, and interpolation leaves more than that.
-const LAST_CONTACT_STEP: f64 = 5e-5;
-
-const _: () = assert!(LOBATTO_COUNT <= WIDTH, "a row's loads go together");
 
 /// The lattice.
 #[derive(Clone, Debug)]
@@ -125,122 +114,9 @@ impl Lattice {
     pub fn phi_at_fold(&self) -> impl Iterator<Item = f64> {
         self.lines.iter().map(|line| line.phi[LOBATTO_COUNT - 1])
     }
-
-    /// The contact node after which `ln D` crosses `target` at the load `m`; the one nearest to `near` if there are several.
-    fn crossing(&self, m: usize, target: f64, near: usize) -> Option<usize> {
-        let last = self.lines.len() - 1;
-        let is_before = |i: usize| self.lines[i].ln_distance[m] <= target;
-        let crosses = |i: usize| i < last && is_before(i) != is_before(i + 1);
-        for away in 0..=last {
-            if near >= away && crosses(near - away) {
-                return Some(near - away);
-            }
-            if crosses(near + away) {
-                return Some(near + away);
-            }
-        }
-        None
-    }
-
-    /// The level curve of `row` on the lattice.
-    #[must_use]
-    pub fn row_curve(&self, contacts: &ContactNodes, row: &Row) -> RowCurve {
-        let target = row.pole_distance.ln();
-        let mut curve = RowCurve::default();
-        let mut after = [0; LOBATTO_COUNT];
-        let mut near = 0;
-        for (m, after) in after.iter_mut().enumerate() {
-            let Some(i) = self.crossing(m, target, near) else {
-                if curve.count == 0 {
-                    continue;
-                }
-                break;
-            };
-            if curve.count == 0 {
-                curve.first = m;
-            }
-            near = i;
-            *after = i;
-            curve.count += 1;
-        }
-        let end = curve.first + curve.count;
-        let mut from = curve.first;
-        while from < end {
-            let [mut low, mut high] = [after[from]; 2];
-            let mut to = from + 1;
-            while to < end && high.max(after[to]) - low.min(after[to]) < SPAN {
-                [low, high] = [low.min(after[to]), high.max(after[to])];
-                to += 1;
-            }
-            let start = stencil((low + high) / 2, STENCIL, self.lines.len());
-            self.cross(contacts, row, start, &after[from..to], from, &mut curve);
-            from = to;
-        }
-        curve
-    }
-
-    /// Sets the points of `curve` from the load `from` on, where `ln D` crosses that of `row` after the contact nodes `after`. The
-    /// patch from the node `start` on serves them all.
-    fn cross(
-        &self,
-        contacts: &ContactNodes,
-        row: &Row,
-        start: usize,
-        after: &[usize],
-        from: usize,
-        curve: &mut RowCurve,
-    ) {
-        let (patch, target) = (&self.patches[start], row.pole_distance.ln());
-        let problem = |(m, &i): (usize, &usize)| {
-            let offset = i as f64 - start as f64;
-            let ends = [i, i + 1].map(|i| self.lines[i].ln_distance[m]);
-            RootProblem {
-                target,
-                near: offset + (target - ends[0]) / (ends[1] - ends[0]),
-                bracket: Bracket::new([offset, offset + 1.0], ends),
-            }
-        };
-        let problems: Vec<RootProblem> = (from..).zip(after).map(problem).collect();
-        let folds = [&contacts.ln_tau[start], &contacts.ln_q[start]];
-        let roots = SimdRoots {
-            nodes: &folds[0].nodes,
-            terms: Terms::Each(&patch.ln_distance),
-            others: [
-                Terms::Each(&patch.phi),
-                Terms::Same(&folds[0].differences),
-                Terms::Same(&folds[1].differences),
-            ],
-        };
-        let [phi, ln_tau, ln_q] = roots.solve(from, &problems, LAST_CONTACT_STEP);
-        let [tau, q] = Unit::detect().run(Exponentials([ln_tau, ln_q]));
-        let sign = self.side.sign();
-        for m in from..from + after.len() {
-            let point = m - curve.first;
-            curve.push[point] = sign * (phi[m] - row.touch);
-            curve.tau[point] = tau[m];
-            curve.load[point] = sign * q[m] / (tau[m] * tau[m]) * LOBATTO_NODES[m];
-        }
-    }
 }
 
-/// The exponentials of some numbers.
-struct Exponentials([Numbers; 2]);
-
-impl SimdTask for Exponentials {
-    type Output = [Numbers; 2];
-
-    #[inline(always)]
-    fn run<T: Lanes>(mut self) -> [Numbers; 2] {
-        for numbers in &mut self.0 {
-            for from in (0..WIDTH).step_by(T::LANES) {
-                keep(numbers, from, exp::<T>(pack(numbers, from)));
-            }
-        }
-        self.0
-    }
-}
-
-/// Through each [`STENCIL`] neighbours of `lines`, or through all where there are fewer.
+/// Through each [`STENCIL`](crate::sheet::fold::coordinate::STENCIL) neighbours of `lines`, or through all where there are fewer.
 fn patches(lines: &[LoadLine]) -> Vec<Patch> {
     let through = |value: fn(&LoadLine) -> Numbers, slope: usize| {
         let values: Vec<Numbers> = lines.iter().map(value).collect();

@@ -3,7 +3,7 @@
 mod pushed;
 
 use super::drawing::{MAGNIFIED, arc, arrow, extent, line, outline, sections, text};
-use super::{Figure, Panel, figure, lettered};
+use super::{Figure, Panel, lettered};
 use crate::paper::whiskers::{CONE, FIG5_LEFT, POLE};
 use crate::render::{Disc, Ink, Plot, Stroke};
 use crate::rod::Side;
@@ -42,12 +42,8 @@ pub fn fig1() -> Result<Figure, NoState> {
         "All shapes are computed; the frame is that of Eqs. 8-14: the pole stands still, and the base turns against it.".to_owned(),
     ];
     let panels = vec![cone(), pushed::contact()?, sides()?, pushed::push_angle()?];
-    Ok(figure(
-        "fig1",
-        "Fig. 1: the whisker in two dimensions",
-        caption,
-        lettered("fig1", panels),
-    ))
+    let title = "Fig. 1: the whisker in two dimensions";
+    Ok(lettered("fig1", title, caption, panels))
 }
 
 /// A drawing without axes.

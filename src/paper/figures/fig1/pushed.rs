@@ -4,7 +4,7 @@ use super::{PLACES, TOUCH_MM, drawing, places};
 use crate::paper::figures::Panel;
 use crate::paper::figures::drawing::{arc, arrow, line, text};
 use crate::paper::whiskers::{CONE, POLE};
-use crate::render::{Disc, Dot, Ink, Inset, Line, Note, Stroke};
+use crate::render::{Disc, Dot, Ink, Inset, Line, Stroke};
 use crate::rod::{Rest, Side};
 use crate::trace::{Branch, NoState, Part, Shape, ShapePoint};
 use glam::DVec2;
@@ -83,16 +83,11 @@ pub fn contact() -> Result<Panel, NoState> {
         grey(vec![base, at], Stroke::Solid),
         line(pushed.points(), Ink::Black, Stroke::Solid),
     ];
-    plot.dots = vec![
-        Dot {
-            at: base,
-            ..Dot::default()
-        },
-        Dot {
-            at: middle,
-            ..Dot::default()
-        },
-    ];
+    let dot = |at| Dot {
+        at,
+        ..Dot::default()
+    };
+    plot.dots = vec![dot(base), dot(middle)];
     let normal = angle + std::f64::consts::FRAC_PI_2;
     plot.notes = vec![
         text(base, "(x\u{2080}, y\u{2080})"),
@@ -149,10 +144,6 @@ pub fn push_angle() -> Result<Panel, NoState> {
         .collect();
     let at = [pushed.contact.x_mm, pushed.contact.y_mm];
     let [real, other] = [at, virtual_at].map(|at| DVec2::from(at).to_angle());
-    let named = |points: Vec<[f64; 2]>, ink, stroke, name: &str| Line {
-        name: Some(name.to_owned()),
-        ..line(points, ink, stroke)
-    };
 
     let mut plot = drawing("the push angle \u{3b8}_p between lines of equal length d");
     plot.discs = vec![
@@ -162,43 +153,32 @@ pub fn push_angle() -> Result<Panel, NoState> {
             ..pushed.pole(false)
         },
     ];
-    let rows = places("deflected", &pushed.points())
+    let deflected = pushed.points();
+    let rows = places("deflected", &deflected)
         .chain(places("undeflected", &pushed.at_rest))
         .chain(places("virtual", &virtual_whisker))
         .collect();
     plot.lines = vec![
         line(vec![at, [0.0, 0.0], virtual_at], Ink::Blue, Stroke::Solid),
         line(arc(6.0, [real, other]), Ink::Blue, Stroke::Solid),
-        named(
-            pushed.at_rest.clone(),
-            Ink::Grey,
-            Stroke::Solid,
-            "undeflected",
-        ),
-        named(
+        Line::new(pushed.at_rest, Ink::Grey, Stroke::Solid, "undeflected"),
+        Line::new(
             virtual_whisker,
             Ink::Grey,
             Stroke::Dashed,
             "virtual, undeflected",
         ),
-        named(pushed.points(), Ink::Black, Stroke::Solid, "deflected"),
+        Line::new(deflected, Ink::Black, Stroke::Solid, "deflected"),
     ];
-    let beside = |[x, y]: [f64; 2], words: &str| -> Vec<Note> {
-        vec![arrow(
-            [x + 1.8, y - 1.2],
-            [x + 0.35, y - 0.35],
-            words,
-            Ink::Grey,
-        )]
+    let beside = |[x, y]: [f64; 2], words: &str| {
+        let (begin, end) = ([x + 1.8, y - 1.2], [x + 0.35, y - 0.35]);
+        arrow(begin, end, words, Ink::Grey)
     };
-    plot.notes = [
-        vec![text(
-            from([0.0, 0.0], 7.0, 0.5 * (real + other)),
-            "\u{3b8}_p",
-        )],
+    let between = from([0.0, 0.0], 7.0, 0.5 * (real + other));
+    plot.notes = vec![
+        text(between, "\u{3b8}_p"),
         beside(at, "(x_obj, y_obj)"),
         beside(virtual_at, "(x_virtual, y_virtual)"),
-    ]
-    .concat();
+    ];
     Ok(Panel::new("D", plot, rows))
 }

@@ -1,0 +1,112 @@
+//! The search for ends at a push angle: a scan, changes of kind, and bisection between turns.
+
+use super::samples::samples;
+use super::{End, TOLERANCE_DEG, Target, turn};
+use crate::numerics::Bracket;
+use crate::scene::{Parameter, Scene};
+use crate::trace::{DetachmentKind, curve};
+use rayon::prelude::*;
+
+/// Halvings of the distance between two samples until a change of kind is known.
+const HALVINGS: u32 = 50;
+
+/// What is asked of what.
+pub struct Search<'a> {
+    pub scene: &'a Scene,
+    pub parameter: Parameter,
+    pub target: &'a Target,
+}
+
+impl Search<'_> {
+    /// The end at a value of the parameter; unresolved where the scene refuses it.
+    fn end(&self, value: f64) -> End {
+        let moved = self.scene.with_parameters(&[(self.parameter, value)]);
+        let end = moved.ok().and_then(|scene| {
+            let distances = &scene.grid.distance_mm;
+            curve(&scene.whisker, &scene.pole, self.target.side, distances).pop()
+        });
+        End {
+            value,
+            kind: end.map_or(DetachmentKind::Unresolved, |end| end.kind),
+            push_angle_deg: end.and_then(|end| end.push_angle_deg),
+        }
+    }
+
+    /// How far, in degrees, an end is from the one that is asked for; NaN where it is of another kind.
+    fn miss(&self, end: &End) -> f64 {
+        let push = end
+            .push_angle_deg
+            .filter(|_| end.kind == self.target.kind)
+            .unwrap_or(f64::NAN);
+        push - self.target.push_angle_deg
+    }
+
+    fn miss_at(&self, value: f64) -> f64 {
+        self.miss(&self.end(value))
+    }
+
+    /// Ends all over the range, and on both sides of each change of kind.
+    pub fn scan(&self, range: [f64; 2]) -> Vec<End> {
+        let scanned: Vec<End> = samples(range)
+            .into_par_iter()
+            .map(|value| self.end(value))
+            .collect();
+        let mut ends = Vec::with_capacity(scanned.len());
+        for (i, end) in scanned.iter().enumerate() {
+            if let Some(before) = i.checked_sub(1).map(|i| scanned[i])
+                && before.kind != end.kind
+            {
+                ends.extend(self.change(before, *end));
+            }
+            ends.push(*end);
+        }
+        ends
+    }
+
+    /// The last end of the kind of `before` and the first one of another, on the way to `after`.
+    fn change(&self, mut before: End, mut after: End) -> [End; 2] {
+        for _ in 0..HALVINGS {
+            let middle = self.end(before.value.midpoint(after.value));
+            if middle.kind == before.kind {
+                before = middle;
+            } else {
+                after = middle;
+            }
+        }
+        [before, after]
+    }
+
+    /// The solutions within a piece of the range where all ends are of the kind that is asked for.
+    pub fn solutions(&self, piece: &[End]) -> Vec<f64> {
+        let mut places: Vec<[f64; 2]> = piece
+            .iter()
+            .map(|end| [end.value, self.miss(end)])
+            .collect();
+        let turns = places.windows(3).filter_map(|three| {
+            let three = [three[0], three[1], three[2]];
+            turn::toward_zero(three, |value| self.miss_at(value))
+        });
+        let turns: Vec<[f64; 2]> = turns.collect();
+        places.extend(turns);
+        places.sort_by(|a, b| a[0].total_cmp(&b[0]));
+
+        let crosses: Vec<bool> = places
+            .windows(2)
+            .map(|pair| (pair[0][1] < 0.0) != (pair[1][1] < 0.0))
+            .collect();
+        let mut solutions = Vec::new();
+        for (i, [value, miss]) in places.iter().enumerate() {
+            let after = crosses.get(i).is_some_and(|crosses| *crosses);
+            let before = i.checked_sub(1).is_some_and(|before| crosses[before]);
+            if after {
+                let [next, miss_there] = places[i + 1];
+                let bracket = Bracket::new([*value, next], [*miss, miss_there]);
+                solutions.push(bracket.bisect(|value| self.miss_at(value)));
+            } else if !before && miss.abs() <= TOLERANCE_DEG {
+                solutions.push(*value);
+            }
+        }
+        solutions.retain(|value| self.miss_at(*value).abs() <= TOLERANCE_DEG);
+        solutions
+    }
+}

@@ -1,0 +1,60 @@
+//! How first folds change from contact node to contact node.
+
+use crate::rod::Rod;
+use crate::sheet::fold::FoldPoint;
+use crate::sheet::fold::coordinate::slope_of_u;
+
+/// `|load| tau^2` of a fold.
+pub fn q(fold: &FoldPoint) -> f64 {
+    fold.load.abs() * fold.tau * fold.tau
+}
+
+/// The most that `d ln q/d ln tau` of a fold counts for; it is 2 toward a slender tip.
+const STEEPEST: f64 = 4.0;
+
+/// Slopes of `ln tau` and `ln(|load| tau^2)` of the folds at `fold`, per node.
+pub fn slopes_at(rod: &Rod, fold: &FoldPoint, spacing: f64) -> [f64; 2] {
+    let ln_tau = spacing / slope_of_u(rod, fold.tau);
+    let by_det = fold.variation.det_gradient();
+    let ln_load = -by_det.x / by_det.y * fold.tau / fold.load;
+    // Next to a jump the fold edge may be vertical in load, and no polynomial is of any use.
+    let ln_q = (2.0 + ln_load).clamp(-STEEPEST, STEEPEST);
+    [ln_tau, ln_q * ln_tau]
+}
+
+/// A lower bound of `|load| tau^2` of the folds, at the nodes and between them: a cubic through two values with their slopes falls
+/// below both by no more than this.
+pub fn least_q(values: &[[f64; 2]], slopes: &[[f64; 2]]) -> f64 {
+    let pairs = values.windows(2).zip(slopes.windows(2));
+    let least = pairs.map(|(values, slopes)| {
+        let (falling, rising) = (-slopes[0][1], slopes[1][1]);
+        let dip = 4.0 / 27.0 * (falling.max(0.0) + rising.max(0.0));
+        values[0][1].min(values[1][1]) - dip
+    });
+    least.fold(f64::INFINITY, f64::min).exp()
+}
+
+/// The first fold jumps between two nodes if the change of `ln q` differs by this much from the slope at one of them. A jump
+/// with friction led from 29 to 15; without one, `scenes/measured.toml` has 0.19.
+const JUMP: f64 = 0.25;
+
+/// Whether the fold jumps between two nodes from one to the other of which `ln q` changes by `change`.
+pub fn jumps(change: f64, slopes: [f64; 2]) -> bool {
+    let astray = slopes.map(|slope| (change - slope).abs());
+    astray[0].max(astray[1]) >= JUMP
+}
+
+#[cfg(test)]
+mod tests {
+    use super::jumps;
+
+    /// A fold that falls as a root right after it has jumped down is as steep there as the jump.
+    #[test]
+    fn a_jump_is_seen_whatever_the_slopes() {
+        assert!(jumps(-0.6, [0.0, 0.0]));
+        assert!(jumps(-0.6, [0.0, -1.2]));
+        assert!(jumps(-0.6, [-0.6, -0.1]));
+        assert!(!jumps(0.47, [0.38, 0.29]));
+        assert!(!jumps(1.3, [1.3, 1.3]));
+    }
+}

@@ -1,0 +1,188 @@
+//! Tables that the base scene does not have, for effects and deviations: what they refuse.
+
+use whiskmap::scene::Parameter;
+
+use crate::{BASE, parse, sweep, with_line};
+
+/// The tables of the effects, which the base scene does not have.
+#[test]
+fn effects_have_their_ranges() {
+    for (table, key, bad, said) in [
+        (
+            "whisker.modulus_gradient",
+            "tip_to_base",
+            "0",
+            "must be between 0.05 and 20",
+        ),
+        (
+            "whisker.modulus_gradient",
+            "tip_to_base",
+            "nan",
+            "must be between 0.05 and 20",
+        ),
+        (
+            "whisker.projection",
+            "arc_stretch",
+            "0.9",
+            "must be between 1 and",
+        ),
+        (
+            "whisker.projection",
+            "arc_stretch",
+            "2.5",
+            "must be between 1 and",
+        ),
+        ("contact", "friction", "-0.1", "must be between 0 and 2"),
+        ("contact", "friction", "inf", "must be between 0 and 2"),
+    ] {
+        let text = format!("{BASE}\n[{table}]\n{key} = {bad}\n");
+        let message = parse(&text).unwrap_err();
+        let said = format!("{table}.{key} = {bad}: {said}");
+        assert!(message.contains(&said), "{said}: {message}");
+        let unknown = parse(&text.replace(key, "more")).unwrap_err();
+        assert!(unknown.contains("unknown field `more`"), "{unknown}");
+    }
+    // The sweep goes to a perfect cone, whose radius is 0 at the tip already.
+    let pointed = parse(&format!(
+        "{}\n[whisker.projection]\narc_stretch = 1.03\n",
+        sweep()
+    ))
+    .unwrap_err();
+    assert!(
+        pointed.contains("1 / taper, where the radius at the tip is 0 (1)"),
+        "{pointed}"
+    );
+}
+
+#[test]
+fn the_modulus_at_the_tip_of_a_drooping_whisker_has_limits() {
+    let stretched = |tip_to_base: f64, arc_stretch: f64| {
+        let effects = format!(
+            "tip_radius_um = 30\nmodulus_gradient.tip_to_base = {tip_to_base}\nprojection.arc_stretch = {arc_stretch}"
+        );
+        parse(&with_line(5, &effects))
+    };
+    assert_eq!(stretched(0.5, 1.89).map(|_| ()), Ok(()));
+    let soft = stretched(0.5, 1.91).unwrap_err();
+    assert!(
+        soft.contains("the modulus at the tip is 0.05 of the base's (1.9)"),
+        "{soft}"
+    );
+    assert!(
+        stretched(11.0, 1.89).is_ok()
+            && stretched(0.05, 1.0).is_ok()
+            && stretched(20.0, 1.0).is_ok()
+    );
+    let stiff = stretched(11.0, 1.91).unwrap_err();
+    assert!(
+        stiff.contains("the modulus at the tip is 20 times the base's (1.9)"),
+        "{stiff}"
+    );
+}
+
+/// The table of standard deviations, which the base scene does not have.
+#[test]
+fn deviations_belong_to_numbers_of_the_scene() {
+    let with = |lines: &str| parse(&format!("{BASE}[uncertainty]\n{lines}\n"));
+    let names = "`length_mm`, `base_radius_um`, `tip_radius_um`, `taper`";
+    let measured = "profile = { rows = [[0, 30], [20, 1.5]] }";
+    for (lines, place, parts) in [
+        (
+            "",
+            "19:1",
+            ["uncertainty: must have at least one of", names],
+        ),
+        (
+            "radius = 1",
+            "20:10",
+            [
+                "uncertainty.radius = 1: is not known; must be one of",
+                names,
+            ],
+        ),
+        (
+            "length_mm = -1",
+            "20:13",
+            [
+                "uncertainty.length_mm = -1: must be",
+                "between 0 and 100000",
+            ],
+        ),
+        (
+            "length_mm = nan",
+            "20:13",
+            [
+                "uncertainty.length_mm = nan: must be",
+                "between 0 and 100000",
+            ],
+        ),
+        (
+            "length_mm = inf",
+            "20:13",
+            [
+                "uncertainty.length_mm = inf: must be",
+                "between 0 and 100000",
+            ],
+        ),
+        (
+            "length_mm = '1'",
+            "20:13",
+            ["invalid type: string", "expected a number"],
+        ),
+        (
+            "friction = 0.1",
+            "20:12",
+            [
+                "uncertainty.friction = 0.1: must be left out",
+                "contact.friction",
+            ],
+        ),
+        (
+            "profile_radius_um = 1",
+            "20:21",
+            ["must be left out", "there is no whisker.profile"],
+        ),
+        (
+            "tip_radius_um = 1\ntaper = 0.1",
+            "21:9",
+            ["uncertainty.taper = 0.1", "beside tip_radius_um"],
+        ),
+    ] {
+        let why = with(lines).expect_err(lines);
+        for part in parts.into_iter().chain([&*format!("test.toml:{place}")]) {
+            assert!(why.contains(part), "{lines}: no {part:?} in {why}");
+        }
+    }
+    let why = parse(&format!("uncertainty = 5\n{BASE}")).unwrap_err();
+    assert!(
+        why.contains("invalid type: integer `5`, expected a table"),
+        "{why}"
+    );
+    let scene = with("taper = 0.01\nlength_mm = 0").unwrap();
+    let deviations = scene.uncertainty.as_ref().unwrap();
+    assert_eq!(
+        deviations.parameters,
+        [(Parameter::LengthMm, 0.0), (Parameter::Taper, 0.01)]
+    );
+    assert_eq!(deviations.profile_radius_um, None);
+
+    let measured = BASE
+        .replace("base_radius_um = 30.0", measured)
+        .replace("tip_radius_um = 1.5", "");
+    let with = |lines: &str| parse(&format!("{measured}[uncertainty]\n{lines}\n"));
+    let scene = with("profile_radius_um = 0.5").unwrap();
+    assert_eq!(
+        scene.uncertainty.as_ref().unwrap().profile_radius_um,
+        Some(0.5)
+    );
+    let why = with("length_mm = 1").unwrap_err();
+    assert!(
+        why.contains("must be left out: whisker.profile.rows end at the length"),
+        "{why}"
+    );
+    let why = with("tip_radius_um = 1").unwrap_err();
+    assert!(
+        why.contains("the scene does not give whisker.tip_radius_um"),
+        "{why}"
+    );
+}
