@@ -189,6 +189,12 @@ impl ZarrStore {
         })
     }
 
+    /// How many blocks the store of a sweep over `grid` has.
+    #[must_use]
+    pub fn blocks(grid: &Grid) -> usize {
+        Blocks::of(grid).count()
+    }
+
     /// How many blocks there are, done or not.
     #[must_use]
     pub fn block_count(&self) -> usize {
