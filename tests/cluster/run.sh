@@ -103,6 +103,7 @@ slurmctld -D -c -f "$SLURM_CONF" 2>"$scratch/slurmctld.log" &
 slurmd -D -c -f "$SLURM_CONF" -N n1 2>"$scratch/slurmd-n1.log" &
 slurmd -D -c -f "$SLURM_CONF" -N n2 2>"$scratch/slurmd-n2.log" &
 n2=$!
+disown -a # bash would tell of their end
 is_up() { [ "$(sinfo -h -t idle -o %D 2>/dev/null)" = 2 ]; }
 wait_until is_up
 
