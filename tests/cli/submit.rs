@@ -187,8 +187,7 @@ fn other_schedulers_fill_the_store_as_the_pages_say() {
 
     // Of the indexed job, its command for each index.
     let job = block("JOB_COMPLETION_INDEX");
-    let command = job.split_once("sh, -c, '").unwrap().1;
-    let command = command.split_once('\'').unwrap().0;
+    let command = job.split('\'').nth(1).unwrap();
     assert!(job.contains("completionMode: Indexed") && job.contains("completions: 8"));
     for index in 0..8 {
         let index = index.to_string();
