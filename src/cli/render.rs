@@ -9,7 +9,6 @@ use clap::Args;
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use whiskmap::render::{self, Format, MapOptions};
-use whiskmap::scene::digits;
 use whiskmap::store::Slice;
 
 /// Options of `render`.
@@ -86,8 +85,8 @@ pub fn run(options: &Options) -> Result<(), Failure> {
 /// The file to write and its format, found to be possible; `None` is standard output.
 fn target(options: &Options, map: &Slice) -> Result<Option<(PathBuf, Format)>, Failure> {
     let path = options.output.clone().unwrap_or_else(|| {
-        let chosen = map.chosen().iter();
-        let chosen = chosen.map(|(name, value)| format!("{name}={}", digits(*value)));
+        let chosen = map.readable();
+        let chosen = chosen.map(|(name, value)| format!("{name}={value}"));
         let parts = chosen.chain(options.channel.clone());
         let parts: Vec<String> = parts.chain(["png".to_owned()]).collect();
         options.file.with_extension(parts.join("."))

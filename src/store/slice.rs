@@ -146,11 +146,19 @@ impl Slice {
         &self.chosen
     }
 
+    /// The same, to four digits, for people.
+    pub fn readable(&self) -> impl Iterator<Item = (&'static str, String)> + '_ {
+        self.chosen.iter().map(|(name, value)| {
+            let rounded = format!("{value:.3e}").parse().unwrap_or(*value);
+            (*name, digits(rounded))
+        })
+    }
+
     /// One line for people, with the values chosen.
     #[must_use]
     pub fn title(&self) -> String {
-        let chosen = self.chosen.iter();
-        let chosen = chosen.map(|(name, value)| format!(", {name} = {}", digits(*value)));
+        let chosen = self.readable();
+        let chosen = chosen.map(|(name, value)| format!(", {name} = {value}"));
         std::iter::once(self.stored.title().to_owned())
             .chain(chosen)
             .collect()

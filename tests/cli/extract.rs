@@ -179,7 +179,7 @@ fn a_store_of_a_slice_has_the_values_of_the_whole() {
     assert!(
         slice
             .title()
-            .starts_with("A sweep in blocks, friction = 0.3, distance_mm = 5.")
+            .starts_with("A sweep in blocks, friction = 0.3, distance_mm = 5.143")
     );
     assert_eq!(slice.channels(), whole.channels());
     for name in slice.channels().names() {

@@ -155,8 +155,8 @@ fn other_schedulers_fill_the_store_as_the_pages_say() {
     let page = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/sweeps.md");
     let page = fs::read_to_string(page).unwrap();
     let block = |with: &str| {
-        let blocks = page.split("```").skip(1).step_by(2);
-        let block = blocks.filter(|block| block.contains(with)).next().unwrap();
+        let mut blocks = page.split("```").skip(1).step_by(2);
+        let block = blocks.find(|block| block.contains(with)).unwrap();
         block.split_once('\n').unwrap().1.to_owned()
     };
     let place = Place::with(SWEEP);
