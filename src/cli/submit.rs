@@ -132,9 +132,11 @@ impl Options {
 #SBATCH --requeue
 #SBATCH --open-mode=append
 {resources}
-# Whoever computes a block of the store, and however often, it is the same. So tasks may be killed, requeued or submitted again.
+# Whoever computes a block of the store, and however often, it is the same: tasks may
+# be killed, requeued or submitted again.
 
-# When all tasks have ended, a last job tells what the store has. It fails if anything is missing.
+# When all tasks have ended, a last job tells what the store has, and fails if anything
+# is missing.
 if [ "$SLURM_ARRAY_TASK_ID" = "$SLURM_ARRAY_TASK_MIN" ]; then
     sbatch --job-name={job}-status --dependency="afterany:$SLURM_ARRAY_JOB_ID"{partition} \
         --output="slurm-${{SLURM_ARRAY_JOB_ID}}_status.out" --wrap={status}
@@ -149,8 +151,8 @@ exec {program} map {scene} -o {folder} --format zarr{engine}{own} \
 
 /// Where a path leads from any folder.
 fn absolute(what: &str, path: &Path) -> Result<PathBuf, Failure> {
-    let path_shown = path.display();
-    std::path::absolute(path).map_err(|why| Failure::Input(format!("{what} {path_shown}: {why}")))
+    let absolute = std::path::absolute(path);
+    absolute.map_err(|why| Failure::Input(format!("{what} {}: {why}", path.display())))
 }
 
 /// A path as a word of the shell.

@@ -142,7 +142,7 @@ is_over() { jobs="$(squeue -h 2>/dev/null)" && [ -z "$jobs" ]; }
 wait_until is_over
 all="$(scontrol -o show job)"
 [ "$(grep -c JobState=COMPLETED <<<"$all")" = "$(wc -l <<<"$all")" ] || { echo "$all" && exit 1; }
-grep -q "ArrayTaskId=$shard .*Restarts=1" <<<"$all"
+grep -q "ArrayTaskId=$shard .*Restarts=[1-9]" <<<"$all"
 grep -q "blocks: 1 of 16" "slurm-${job}_$shard.out"
 grep -q " 16  of 16 blocks" "slurm-${job}_status.out"
 
