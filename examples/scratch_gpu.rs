@@ -46,7 +46,7 @@ fn main() {
             let flat: Vec<_> = refs.iter().flatten().cloned().collect();
             if flat.is_empty() { println!("no references"); continue }
             let t = Instant::now();
-            let diffs = gpu.solve(method, &[rod.clone()], &pushes, &flat).unwrap();
+            let _ = gpu.solve(method, &[rod.clone()], &pushes, &flat).unwrap(); println!("first {:.3}", t.elapsed().as_secs_f64()); let t = Instant::now(); let diffs = gpu.solve(method, &[rod.clone()], &pushes, &flat).unwrap(); println!("  {} refs {} cells: {:.3} s", flat.len(), diffs.len(), t.elapsed().as_secs_f64());
             t_gpu += t.elapsed().as_secs_f64();
             let reader = Reader::new(units, &rod);
             let one = ch(&reader.of_one(side.sign()));

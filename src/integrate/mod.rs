@@ -40,7 +40,7 @@ pub struct Reference {
     pub state: FirstVariation,
     /// The signed load over the way along the row, which is counted in parts of the whole: it goes with `load tau^2`.
     pub per_way: f64,
-    /// Taylor's polynomials of the row by the way from here; the numbers that [`Reference`] has itself begin with the first power.
+    /// Taylor's polynomials of the row by the way from here.
     pub row: [RowNumbers; POWERS],
     /// The cells next to it: those at these of the call's push angles.
     pub cells: Range<u32>,

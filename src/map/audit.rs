@@ -13,8 +13,8 @@ const ONE_IN: u64 = 256;
 /// The fewest cells of a whisker's side in it, as far as there are any.
 const AT_LEAST: u64 = 64;
 
-/// By how much a number may differ, in parts of itself and the largest that it has along the whisker.
-const TOLERANCE: f64 = 1e-6;
+/// By how much a number without units may differ, in parts of itself, of that of the reference, or of one.
+const TOLERANCE: f64 = 3e-6;
 
 /// Which cells of a row are in the sample: the same ones in every run.
 pub struct Sample {

@@ -160,10 +160,6 @@ fn expand(
         };
         let to = from + row.pushes[from..].partition_point(|push| *push < until);
         if to > from {
-            let mut along = row_here;
-            for number in &mut along[0][..3] {
-                *number = 0.0;
-            }
             references.push(Reference {
                 rod: row.sheet,
                 tau: conditions[m].tau,
@@ -171,7 +167,7 @@ fn expand(
                 push,
                 state: states[m],
                 per_way: whole / (conditions[m].tau * conditions[m].tau),
-                row: along,
+                row: row_here,
                 cells: row.first + from as u32..row.first + to as u32,
             });
         }
