@@ -40,8 +40,8 @@ fn kept(push_angles: &str, distances: &str, more: &str) -> (usize, usize) {
     let scene = Scene::parse(&text, "scene").unwrap();
     let plan = Plan::new(&scene).unwrap();
     let mut engine = Counting(0);
-    let discard = &mut |_: map::Progress| Ok::<(), Infallible>(());
-    let Ok(summary) = map::run(&scene, &plan, Some(&mut engine), discard);
+    let discard = &mut |_| Ok::<(), Infallible>(());
+    let Ok(summary) = map::run(&scene, &plan, Some(&mut engine), &mut |_| (), discard);
     assert_eq!(engine.0, plan.engine_calls);
     assert_eq!(summary.cells(), plan.cells as u64);
     let groups = plan.whiskers.div_ceil(plan.panels_at_once);

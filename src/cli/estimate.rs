@@ -1,12 +1,13 @@
 //! What a map would take, measured: samples of it are computed and thrown away.
 
 use super::failure::Failure;
-use std::convert::Infallible;
+use clap::ValueEnum;
 use std::time::Instant;
 use whiskmap::integrate::Engine;
-use whiskmap::map::{self, Progress, Stage};
+use whiskmap::map::{self, Panel, Stage};
 use whiskmap::plan::{Plan, SAMPLE_LINES, SAMPLE_VALUES};
 use whiskmap::scene::Scene;
+use whiskmap::store::{self, MapWriter, Packed, ZarrStore};
 
 /// What a map would take.
 pub struct Estimate {
@@ -14,6 +15,53 @@ pub struct Estimate {
     pub seconds: f64,
     /// Newton steps per cell, each one trajectory.
     pub steps_per_cell: f64,
+    /// What each format that was asked for takes beside.
+    pub files: Vec<Files>,
+}
+
+/// What the files of a map take.
+pub struct Files {
+    /// Their format.
+    pub format: Format,
+    /// Bytes on disk.
+    pub bytes: f64,
+    /// Seconds on the CPU's threads to pack them.
+    pub seconds: f64,
+}
+
+/// Formats of a map.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Format {
+    /// One OpenEXR file, and a picture of it
+    Exr,
+    /// A Zarr store, for any number of axes, runs and machines
+    Zarr,
+}
+
+impl Format {
+    /// Those that can hold a map of `scene`.
+    pub fn of(scene: &Scene) -> Vec<Self> {
+        let mut formats = vec![Self::Exr, Self::Zarr];
+        formats.retain(|format| *format == Self::Zarr || scene.grid.sweep.len() <= 2);
+        formats
+    }
+
+    /// Packs some panels of `scene`.
+    fn pack(self, scene: &Scene, plan: &Plan, panels: &[Panel]) -> Result<Packed, store::Error> {
+        match self {
+            Self::Exr => Ok(MapWriter::sample(&scene.grid, plan.channels, panels)),
+            Self::Zarr => ZarrStore::sample(scene, plan.channels, panels),
+        }
+    }
+}
+
+/// Lines of the sample that is packed to see whether a disk can hold a map.
+const PACKED_LINES: usize = 64;
+
+/// Bytes that the files of `plan` would have, from a packed sample.
+pub fn packed_bytes(scene: &Scene, plan: &Plan, format: Format) -> Result<f64, Failure> {
+    let estimate = measured(scene, plan, &mut None, PACKED_LINES, &[format])?;
+    Ok(estimate.files.iter().map(|files| files.bytes).sum())
 }
 
 /// Lines of the first sample.
@@ -25,11 +73,16 @@ const DENSER: usize = 2;
 /// Measures samples of `scene` on the CPU alone, each [`DENSER`] than the one before, and scales the last one to `plan`: sheets by
 /// whiskers, sides and distances, the rest by cells. All samples, but for the first, take so many `seconds` together, as the ones
 /// before foretell.
-pub fn estimate(scene: &Scene, plan: &Plan, seconds: f64) -> Result<Estimate, Failure> {
+pub fn estimate(
+    scene: &Scene,
+    plan: &Plan,
+    formats: &[Format],
+    seconds: f64,
+) -> Result<Estimate, Failure> {
     let (mut lines, mut left) = (FIRST_LINES, seconds);
     loop {
         let start = Instant::now();
-        let estimate = measured(scene, plan, &mut None, lines)?;
+        let estimate = measured(scene, plan, &mut None, lines, formats)?;
         let last = start.elapsed().as_secs_f64();
         left -= last;
         match denser(lines, last, left) {
@@ -53,13 +106,13 @@ pub fn compare(
     engine: &mut Option<Box<dyn Engine>>,
     seconds: f64,
 ) -> Result<[f64; 2], Failure> {
-    measured(scene, plan, engine, FIRST_LINES)?;
+    measured(scene, plan, engine, FIRST_LINES, &[])?;
     let (mut lines, mut left) = (FIRST_LINES, seconds);
     let mut fastest = [f64::INFINITY; 2];
     loop {
         let start = Instant::now();
-        let cpu = measured(scene, plan, &mut None, lines)?.seconds;
-        let with_engine = measured(scene, plan, engine, lines)?.seconds;
+        let cpu = measured(scene, plan, &mut None, lines, &[])?.seconds;
+        let with_engine = measured(scene, plan, engine, lines, &[])?.seconds;
         fastest = [fastest[0].min(cpu), fastest[1].min(with_engine)];
         let last = start.elapsed().as_secs_f64();
         left -= last;
@@ -77,21 +130,29 @@ fn denser(lines: usize, last: f64, left: f64) -> Option<usize> {
     (is_short && lines < SAMPLE_LINES).then_some(lines * DENSER)
 }
 
-/// Measures a sample of at most so many `lines` each way.
+/// Measures a sample of at most so many `lines` each way, and packs it in these `formats`.
 fn measured(
     scene: &Scene,
     plan: &Plan,
     engine: &mut Option<Box<dyn Engine>>,
     lines: usize,
+    formats: &[Format],
 ) -> Result<Estimate, Failure> {
     let small = scene.thinned(lines, SAMPLE_VALUES);
     let small_plan = Plan {
         method: plan.method,
+        channels: plan.channels,
         ..Plan::new(&small)?
     };
+    let mut packed = vec![Packed::default(); formats.len()];
+    let mut keep = |panels: Vec<Panel>| {
+        for (format, sum) in formats.iter().zip(&mut packed) {
+            *sum += format.pack(&small, &small_plan, &panels)?;
+        }
+        Ok::<(), store::Error>(())
+    };
     let engine = engine.as_mut().map(|engine| &mut **engine as _);
-    let discard = &mut |_: Progress| Ok::<(), Infallible>(());
-    let Ok(summary) = map::run(&small, &small_plan, engine, discard);
+    let summary = map::run(&small, &small_plan, engine, &mut |_| (), &mut keep)?;
     if let Some(failure) = summary.engine_failure {
         return Err(failure.into());
     }
@@ -102,9 +163,17 @@ fn measured(
     let by_cells = plan.cells as f64 / small_plan.cells as f64;
     let seconds = Stage::ALL.map(|(stage, _)| match stage {
         Stage::Sheets => summary.seconds(stage) * by_rows,
+        Stage::Files => 0.0,
         _ => summary.seconds(stage) * by_cells,
     });
+    let threads = rayon::current_num_threads() as f64;
+    let files = formats.iter().zip(packed).map(|(&format, sample)| Files {
+        format,
+        bytes: sample.bytes as f64 * by_cells,
+        seconds: sample.time.as_secs_f64() * by_cells / threads,
+    });
     Ok(Estimate {
+        files: files.collect(),
         seconds: seconds.iter().sum(),
         steps_per_cell: summary.steps as f64 / summary.cells() as f64,
     })

@@ -1,8 +1,9 @@
 //! `whiskmap plan`.
 
-use super::estimate::{Estimate, estimate};
+use super::estimate::{Estimate, Files, Format, estimate};
 use super::failure::Failure;
 use clap::Args;
+use indicatif::DecimalBytes;
 use std::io::Write;
 use std::path::PathBuf;
 use whiskmap::plan::{Cost, Plan, ROD_STATES, effects};
@@ -18,9 +19,10 @@ Examples:
 Sets of effects with kernels of their own cost work at every step of the integration. The others are free: pole \
 radius and friction only change where a trajectory starts, and projection is a faster taper and a steeper modulus gradient. The pole touches the \
 whisker's centre line: the whisker's own thickness does not add to the pole's radius. A GPU divides an engine \
-call into dispatches, as many as its speed asks for. Trajectories are those of the cells. They and the seconds are \
+call into dispatches, as many as its speed asks for. Trajectories are those of the cells. They, the seconds and the bytes are \
 scaled up from a sample of at most 128 x 128 cells and two values per sweep axis, fewer where these would take more than \
-some seconds, computed on this machine's CPU and thrown away; nothing is written and no GPU is opened.")]
+some seconds, computed and packed on this machine's CPU and thrown away; nothing is written and no GPU is opened. Files come with the seconds \
+that packing them adds; the picture of an EXR file and the disk's own speed are not in them.")]
 pub struct Options {
     /// Scene file; - reads it from standard input
     scene: PathBuf,
@@ -33,7 +35,7 @@ const SAMPLE_SECONDS: f64 = 2.0;
 pub fn run(options: &Options) -> Result<(), Failure> {
     let scene = Scene::read(&options.scene)?;
     let plan = Plan::new(&scene)?;
-    let estimate = estimate(&scene, &plan, SAMPLE_SECONDS)?;
+    let estimate = estimate(&scene, &plan, &Format::of(&scene), SAMPLE_SECONDS)?;
     print(&scene, &plan, &estimate)?;
     Ok(())
 }
@@ -95,7 +97,19 @@ fn print(scene: &Scene, plan: &Plan, estimate: &Estimate) -> std::io::Result<()>
         "time          about {} s on {} of the CPU engine, without the files",
         two_digits(estimate.seconds),
         counted(rayon::current_num_threads(), "thread")
-    )
+    )?;
+    let files: Vec<String> = estimate.files.iter().map(described).collect();
+    writeln!(out, "files         about {}", files.join(", "))
+}
+
+/// Bytes and seconds of a map's files.
+fn described(files: &Files) -> String {
+    let format = match files.format {
+        Format::Exr => "EXR",
+        Format::Zarr => "Zarr",
+    };
+    let bytes = DecimalBytes(files.bytes as u64);
+    format!("{bytes} and {} s as {format}", two_digits(files.seconds))
 }
 
 fn counted(count: usize, what: &str) -> String {

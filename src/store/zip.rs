@@ -1,0 +1,56 @@
+//! Blocks as EXR's ZIP has them, packed straight from the samples of a panel.
+//!
+//! OpenEXR (`ImfZip.cpp`): of all bytes of a block those at even places come first, then those at odd ones; each is replaced by its
+//! difference from the one before it, plus 128; and all that is deflated (zlib, RFC 1950). A block that does not get smaller
+//! is stored as it was.
+
+use miniz_oxide::deflate::compress_to_vec_zlib;
+
+/// Of the levels of `miniz_oxide` the fastest, at nearly the same size: see `benches/NOTES.md`.
+const LEVEL: u8 = 1;
+
+/// The block of these `lines` of samples, in the order of the file.
+pub(super) fn pack<'a>(lines: impl Iterator<Item = &'a [u8]> + Clone) -> Vec<u8> {
+    let mut bytes = separated(lines.clone());
+    take_differences(&mut bytes);
+    let packed = compress_to_vec_zlib(&bytes, LEVEL);
+    if packed.len() < bytes.len() {
+        return packed;
+    }
+    bytes.clear();
+    lines.for_each(|line| bytes.extend_from_slice(line));
+    bytes
+}
+
+/// The bytes at even places, then those at odd ones; every line has as many of both.
+fn separated<'a>(lines: impl Iterator<Item = &'a [u8]> + Clone) -> Vec<u8> {
+    let size = lines.clone().map(<[u8]>::len).sum();
+    let mut separated = vec![0; size];
+    let (mut evens, mut odds) = separated.split_at_mut(size / 2);
+    for line in lines {
+        let (pairs, _) = line.as_chunks::<2>();
+        let (even, odd);
+        (even, evens) = evens.split_at_mut(pairs.len());
+        (odd, odds) = odds.split_at_mut(pairs.len());
+        for ((even, odd), pair) in even.iter_mut().zip(odd).zip(pairs) {
+            [*even, *odd] = *pair;
+        }
+    }
+    separated
+}
+
+/// Bytes whose differences are taken together, by vectors.
+const TOGETHER: usize = 64;
+
+/// Puts the difference from the byte before, plus 128, in the place of every byte but the first.
+fn take_differences(bytes: &mut [u8]) {
+    let mut last = 128;
+    for part in bytes.chunks_mut(TOGETHER) {
+        let mut before = [last; TOGETHER];
+        before[1..part.len()].copy_from_slice(&part[..part.len() - 1]);
+        last = part[part.len() - 1];
+        for (byte, before) in part.iter_mut().zip(before) {
+            *byte = byte.wrapping_sub(before).wrapping_add(128);
+        }
+    }
+}
