@@ -1,6 +1,6 @@
 //! Whether a disk has room for what will be written.
 
-use super::estimate::{Format, packed_bytes};
+use super::estimate::{Format, files};
 use super::failure::Failure;
 use indicatif::DecimalBytes;
 use std::path::Path;
@@ -27,7 +27,9 @@ pub fn check(
         return Ok(());
     }
     let share = cells as f64 / plan.cells as f64;
-    let needed = (share * packed_bytes(scene, plan, format)?) as u64;
+    let files = files(scene, plan, &[format])?;
+    let bytes: f64 = files.iter().map(|files| files.bytes).sum();
+    let needed = (share * bytes) as u64;
     refused(folder, needed, free).map_or(Ok(()), |message| Err(Failure::Input(message)))
 }
 

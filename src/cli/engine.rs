@@ -99,7 +99,7 @@ impl EngineOptions {
         if self.adapter.is_some() || env::var_os(NAME).is_some() {
             self.adapter()?;
         }
-        if estimate(scene, plan, &[], FIRST_LOOK)?.seconds < OPENING {
+        if estimate(scene, plan, FIRST_LOOK)?.seconds < OPENING {
             return Ok((None, "auto: done before a GPU has started".to_owned()));
         }
         let (index, name) = self.adapter()?.unzip();

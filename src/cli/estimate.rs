@@ -2,6 +2,7 @@
 
 use super::failure::Failure;
 use clap::ValueEnum;
+use std::convert::Infallible;
 use std::time::Instant;
 use whiskmap::integrate::Engine;
 use whiskmap::map::{self, Panel, Stage};
@@ -15,8 +16,6 @@ pub struct Estimate {
     pub seconds: f64,
     /// Newton steps per cell, each one trajectory.
     pub steps_per_cell: f64,
-    /// What each format that was asked for takes beside.
-    pub files: Vec<Files>,
 }
 
 /// What the files of a map take.
@@ -55,13 +54,41 @@ impl Format {
     }
 }
 
-/// Lines of the sample that is packed to see whether a disk can hold a map.
-const PACKED_LINES: usize = 64;
+/// Cells of the sample that is packed, about: many lines, because the closer cells are, the better they pack.
+const PACKED_CELLS: usize = 1 << 18;
 
-/// Bytes that the files of `plan` would have, from a packed sample.
-pub fn packed_bytes(scene: &Scene, plan: &Plan, format: Format) -> Result<f64, Failure> {
-    let estimate = measured(scene, plan, &mut None, PACKED_LINES, &[format])?;
-    Ok(estimate.files.iter().map(|files| files.bytes).sum())
+/// What the files of `plan` would take in these `formats`, from a packed sample.
+pub fn files(scene: &Scene, plan: &Plan, formats: &[Format]) -> Result<Vec<Files>, Failure> {
+    let whiskers = scene.thinned(1, SAMPLE_VALUES).whisker_count();
+    let lines = (PACKED_CELLS / whiskers).isqrt().max(1);
+    let (small, small_plan) = thinned(scene, plan, lines)?;
+    let mut packed = vec![Packed::default(); formats.len()];
+    let mut keep = |panels: Vec<Panel>| {
+        for (format, sum) in formats.iter().zip(&mut packed) {
+            *sum += format.pack(&small, &small_plan, &panels)?;
+        }
+        Ok::<(), store::Error>(())
+    };
+    map::run(&small, &small_plan, None, &mut |_| (), &mut keep)?;
+    let by_cells = plan.cells as f64 / small_plan.cells as f64;
+    let threads = rayon::current_num_threads() as f64;
+    let files = formats.iter().zip(packed).map(|(&format, sample)| Files {
+        format,
+        bytes: sample.bytes as f64 * by_cells,
+        seconds: sample.time.as_secs_f64() * by_cells / threads,
+    });
+    Ok(files.collect())
+}
+
+/// A sample of at most so many `lines` each way, and its plan.
+fn thinned(scene: &Scene, plan: &Plan, lines: usize) -> Result<(Scene, Plan), Failure> {
+    let small = scene.thinned(lines, SAMPLE_VALUES);
+    let small_plan = Plan {
+        method: plan.method,
+        channels: plan.channels,
+        ..Plan::new(&small)?
+    };
+    Ok((small, small_plan))
 }
 
 /// Lines of the first sample.
@@ -73,16 +100,11 @@ const DENSER: usize = 2;
 /// Measures samples of `scene` on the CPU alone, each [`DENSER`] than the one before, and scales the last one to `plan`: sheets by
 /// whiskers, sides and distances, the rest by cells. All samples, but for the first, take so many `seconds` together, as the ones
 /// before foretell.
-pub fn estimate(
-    scene: &Scene,
-    plan: &Plan,
-    formats: &[Format],
-    seconds: f64,
-) -> Result<Estimate, Failure> {
+pub fn estimate(scene: &Scene, plan: &Plan, seconds: f64) -> Result<Estimate, Failure> {
     let (mut lines, mut left) = (FIRST_LINES, seconds);
     loop {
         let start = Instant::now();
-        let estimate = measured(scene, plan, &mut None, lines, formats)?;
+        let estimate = measured(scene, plan, &mut None, lines)?;
         let last = start.elapsed().as_secs_f64();
         left -= last;
         match denser(lines, last, left) {
@@ -106,13 +128,13 @@ pub fn compare(
     engine: &mut Option<Box<dyn Engine>>,
     seconds: f64,
 ) -> Result<[f64; 2], Failure> {
-    measured(scene, plan, engine, FIRST_LINES, &[])?;
+    measured(scene, plan, engine, FIRST_LINES)?;
     let (mut lines, mut left) = (FIRST_LINES, seconds);
     let mut fastest = [f64::INFINITY; 2];
     loop {
         let start = Instant::now();
-        let cpu = measured(scene, plan, &mut None, lines, &[])?.seconds;
-        let with_engine = measured(scene, plan, engine, lines, &[])?.seconds;
+        let cpu = measured(scene, plan, &mut None, lines)?.seconds;
+        let with_engine = measured(scene, plan, engine, lines)?.seconds;
         fastest = [fastest[0].min(cpu), fastest[1].min(with_engine)];
         let last = start.elapsed().as_secs_f64();
         left -= last;
@@ -130,29 +152,17 @@ fn denser(lines: usize, last: f64, left: f64) -> Option<usize> {
     (is_short && lines < SAMPLE_LINES).then_some(lines * DENSER)
 }
 
-/// Measures a sample of at most so many `lines` each way, and packs it in these `formats`.
+/// Measures a sample of at most so many `lines` each way.
 fn measured(
     scene: &Scene,
     plan: &Plan,
     engine: &mut Option<Box<dyn Engine>>,
     lines: usize,
-    formats: &[Format],
 ) -> Result<Estimate, Failure> {
-    let small = scene.thinned(lines, SAMPLE_VALUES);
-    let small_plan = Plan {
-        method: plan.method,
-        channels: plan.channels,
-        ..Plan::new(&small)?
-    };
-    let mut packed = vec![Packed::default(); formats.len()];
-    let mut keep = |panels: Vec<Panel>| {
-        for (format, sum) in formats.iter().zip(&mut packed) {
-            *sum += format.pack(&small, &small_plan, &panels)?;
-        }
-        Ok::<(), store::Error>(())
-    };
+    let (small, small_plan) = thinned(scene, plan, lines)?;
     let engine = engine.as_mut().map(|engine| &mut **engine as _);
-    let summary = map::run(&small, &small_plan, engine, &mut |_| (), &mut keep)?;
+    let discard = &mut |_| Ok::<(), Infallible>(());
+    let Ok(summary) = map::run(&small, &small_plan, engine, &mut |_| (), discard);
     if let Some(failure) = summary.engine_failure {
         return Err(failure.into());
     }
@@ -163,17 +173,9 @@ fn measured(
     let by_cells = plan.cells as f64 / small_plan.cells as f64;
     let seconds = Stage::ALL.map(|(stage, _)| match stage {
         Stage::Sheets => summary.seconds(stage) * by_rows,
-        Stage::Files => 0.0,
         _ => summary.seconds(stage) * by_cells,
     });
-    let threads = rayon::current_num_threads() as f64;
-    let files = formats.iter().zip(packed).map(|(&format, sample)| Files {
-        format,
-        bytes: sample.bytes as f64 * by_cells,
-        seconds: sample.time.as_secs_f64() * by_cells / threads,
-    });
     Ok(Estimate {
-        files: files.collect(),
         seconds: seconds.iter().sum(),
         steps_per_cell: summary.steps as f64 / summary.cells() as f64,
     })

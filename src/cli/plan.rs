@@ -1,6 +1,6 @@
 //! `whiskmap plan`.
 
-use super::estimate::{Estimate, Files, Format, estimate};
+use super::estimate::{Estimate, Files, Format, estimate, files};
 use super::failure::Failure;
 use clap::Args;
 use indicatif::DecimalBytes;
@@ -20,9 +20,10 @@ Sets of effects with kernels of their own cost work at every step of the integra
 radius and friction only change where a trajectory starts, and projection is a faster taper and a steeper modulus gradient. The pole touches the \
 whisker's centre line: the whisker's own thickness does not add to the pole's radius. A GPU divides an engine \
 call into dispatches, as many as its speed asks for. Trajectories are those of the cells. They, the seconds and the bytes are \
-scaled up from a sample of at most 128 x 128 cells and two values per sweep axis, fewer where these would take more than \
-some seconds, computed and packed on this machine's CPU and thrown away; nothing is written and no GPU is opened. Files come with the seconds \
-that packing them adds; the picture of an EXR file and the disk's own speed are not in them.")]
+scaled up from samples of at most 128 x 128 cells (for the bytes, some 2^18 in all) and two values per sweep axis, fewer where these \
+would take more than some seconds, computed and packed on this machine's CPU and thrown away; nothing is written and no GPU is \
+opened. Files come with the seconds that packing them adds; the picture of an EXR file and the disk's own speed are not in them. \
+A store keeps the packed panels of the block that it is at, too: at most 2 million cells.")]
 pub struct Options {
     /// Scene file; - reads it from standard input
     scene: PathBuf,
@@ -35,12 +36,13 @@ const SAMPLE_SECONDS: f64 = 2.0;
 pub fn run(options: &Options) -> Result<(), Failure> {
     let scene = Scene::read(&options.scene)?;
     let plan = Plan::new(&scene)?;
-    let estimate = estimate(&scene, &plan, &Format::of(&scene), SAMPLE_SECONDS)?;
-    print(&scene, &plan, &estimate)?;
+    let estimate = estimate(&scene, &plan, SAMPLE_SECONDS)?;
+    let files = files(&scene, &plan, &Format::of(&scene))?;
+    print(&scene, &plan, &estimate, &files)?;
     Ok(())
 }
 
-fn print(scene: &Scene, plan: &Plan, estimate: &Estimate) -> std::io::Result<()> {
+fn print(scene: &Scene, plan: &Plan, estimate: &Estimate, files: &[Files]) -> std::io::Result<()> {
     let mut out = std::io::stdout().lock();
     writeln!(out, "{}\n", scene.title)?;
     writeln!(out, "{:16}  {:3}  {:12}  why", "effect", "", "cost when on")?;
@@ -98,7 +100,7 @@ fn print(scene: &Scene, plan: &Plan, estimate: &Estimate) -> std::io::Result<()>
         two_digits(estimate.seconds),
         counted(rayon::current_num_threads(), "thread")
     )?;
-    let files: Vec<String> = estimate.files.iter().map(described).collect();
+    let files: Vec<String> = files.iter().map(described).collect();
     writeln!(out, "files         about {}", files.join(", "))
 }
 
@@ -109,7 +111,10 @@ fn described(files: &Files) -> String {
         Format::Zarr => "Zarr",
     };
     let bytes = DecimalBytes(files.bytes as u64);
-    format!("{bytes} and {} s as {format}", two_digits(files.seconds))
+    format!(
+        "{bytes} and {} s more as {format}",
+        two_digits(files.seconds)
+    )
 }
 
 fn counted(count: usize, what: &str) -> String {

@@ -93,8 +93,8 @@ impl Plan {
             .clamp(1, MOST_PANELS)
             .min(whiskers);
         let in_flight = CELLS_IN_FLIGHT.max(push_angles) as u64;
-        // Some panels are computed while the ones before them are packed.
-        let copies = if whiskers > panels_at_once { 3 } else { 2 };
+        // As computed and as packed; in a sweep, where a panel is one block, also rearranged, and some are computed meanwhile.
+        let copies = if whiskers > 1 { 4 } else { 2 };
         let panels = (copies * cells * panels_at_once) as u64;
         let bytes = panels * BYTES_PER_CELL + in_flight * BYTES_IN_FLIGHT;
         if bytes > MEMORY_LIMIT {

@@ -54,3 +54,41 @@ fn take_differences(bytes: &mut [u8]) {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use miniz_oxide::inflate::decompress_to_vec_zlib;
+
+    /// Lines of samples as a rule makes them.
+    fn lines(samples: usize, sample: impl Fn(u32) -> u32) -> Vec<Vec<u8>> {
+        let line = |y: u32| {
+            let samples = (0..samples as u32).map(|x| sample(x + y));
+            samples.flat_map(u32::to_le_bytes).collect()
+        };
+        (0..3).map(line).collect()
+    }
+
+    #[test]
+    fn the_filter_is_that_of_openexr() {
+        for samples in [9, 16, 123] {
+            let lines = lines(samples, |x| (x as f32).sqrt().to_bits());
+            let bytes = lines.concat();
+            let halves = [0, 1].map(|first| bytes.iter().skip(first).step_by(2));
+            let mut expected: Vec<u8> = halves.into_iter().flatten().copied().collect();
+            for i in (1..expected.len()).rev() {
+                let difference = i32::from(expected[i]) - i32::from(expected[i - 1]) + 128;
+                expected[i] = difference as u8;
+            }
+            let packed = pack(lines.iter().map(Vec::as_slice));
+            assert!(packed.len() < bytes.len());
+            assert_eq!(decompress_to_vec_zlib(&packed).ok(), Some(expected));
+        }
+    }
+
+    #[test]
+    fn noise_is_stored_as_it_is() {
+        let lines = lines(50, |x| x.wrapping_mul(0x9e37_79b9).rotate_left(x * x % 31));
+        assert_eq!(pack(lines.iter().map(Vec::as_slice)), lines.concat());
+    }
+}

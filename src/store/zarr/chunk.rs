@@ -140,3 +140,38 @@ pub(super) fn file<'a>(chunks: impl Iterator<Item = &'a [u8]> + Clone) -> Vec<Co
     index.extend(checksum.to_le_bytes());
     chunks.map(Cow::from).chain([index.into()]).collect()
 }
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+mod tests {
+    use super::*;
+
+    fn unpacked(chunk: &Chunk, bytes: Vec<u8>) -> Vec<f32> {
+        let array = &chunk.array;
+        let (kind, fill) = (array.data_type(), array.fill_value());
+        let shape: Vec<_> = NonZeroU64::new(chunk.values as u64).into_iter().collect();
+        let decoded = array
+            .codecs()
+            .decode(bytes.into(), &shape, kind, fill, &options());
+        let values = decoded.unwrap().into_fixed().unwrap();
+        bytemuck::pod_collect_to_vec(&values)
+    }
+
+    /// Two lines a chunk.
+    #[test]
+    fn lines_are_turned_and_the_last_chunk_is_filled_up() {
+        let values: Vec<f32> = (0..51).map(|i| i as f32).collect();
+        let chunk = Chunk::new(Kind::Quantity, 34, Some(17)).unwrap();
+        let packed = chunk.pack_all(bytemuck::cast_slice(&values)).unwrap();
+        let found: Vec<Vec<f32>> = packed
+            .into_iter()
+            .map(|bytes| unpacked(&chunk, bytes))
+            .collect();
+        assert_eq!(found.len(), 2);
+        for x in 0..17 {
+            assert_eq!(found[0][2 * x..][..2], [values[x], values[17 + x]]);
+            assert_eq!(found[1][2 * x], values[34 + x]);
+            assert!(found[1][2 * x + 1].is_nan());
+        }
+    }
+}
