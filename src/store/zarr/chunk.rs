@@ -93,13 +93,16 @@ impl Chunk {
     }
 }
 
+/// Blosc's level: zstd 3. Above it hardly anything gets smaller.
+const LEVEL: u8 = 2;
+
 /// A chunk is one block of Blosc: in those of 32 KB that it would choose itself, less repeats.
 fn packed(kind: Kind, values: usize) -> Value {
     json!([
         { "name": "bytes", "configuration": { "endian": "little" } },
         { "name": "blosc", "configuration": {
             "cname": "zstd",
-            "clevel": 1,
+            "clevel": LEVEL,
             "shuffle": if kind.size() > 1 { "shuffle" } else { "noshuffle" },
             "typesize": kind.size(),
             "blocksize": values * kind.size(),
