@@ -100,21 +100,15 @@ fn print(scene: &Scene, plan: &Plan, estimate: &Estimate, files: &[Files]) -> st
         two_digits(estimate.seconds),
         counted(rayon::current_num_threads(), "thread")
     )?;
-    let files: Vec<String> = files.iter().map(described).collect();
-    writeln!(out, "files         about {}", files.join(", "))
-}
-
-/// Bytes and seconds of a map's files.
-fn described(files: &Files) -> String {
-    let format = match files.format {
-        Format::Exr => "EXR",
-        Format::Zarr => "Zarr",
-    };
-    let bytes = DecimalBytes(files.bytes as u64);
-    format!(
-        "{bytes} and {} s more as {format}",
-        two_digits(files.seconds)
-    )
+    for own in files {
+        let name = match own.format {
+            Format::Exr => "EXR file",
+            Format::Zarr => "Zarr store",
+        };
+        let (bytes, seconds) = (DecimalBytes(own.bytes as u64), two_digits(own.seconds));
+        writeln!(out, "{name:12}  about {bytes}, {seconds} s more")?;
+    }
+    Ok(())
 }
 
 fn counted(count: usize, what: &str) -> String {

@@ -63,7 +63,7 @@ mod tests {
     /// Lines of samples as a rule makes them.
     fn lines(samples: usize, sample: impl Fn(u32) -> u32) -> Vec<Vec<u8>> {
         let line = |y: u32| {
-            let samples = (0..samples as u32).map(|x| sample(x + y));
+            let samples = (0..samples as u32).map(|x| sample(x + 200 * y));
             samples.flat_map(u32::to_le_bytes).collect()
         };
         (0..3).map(line).collect()
@@ -72,7 +72,7 @@ mod tests {
     #[test]
     fn the_filter_is_that_of_openexr() {
         for samples in [9, 16, 123] {
-            let lines = lines(samples, |x| (x as f32).sqrt().to_bits());
+            let lines = lines(samples, |x| ((x / 8) as f32).sqrt().to_bits());
             let bytes = lines.concat();
             let halves = [0, 1].map(|first| bytes.iter().skip(first).step_by(2));
             let mut expected: Vec<u8> = halves.into_iter().flatten().copied().collect();
@@ -88,7 +88,8 @@ mod tests {
 
     #[test]
     fn noise_is_stored_as_it_is() {
-        let lines = lines(50, |x| x.wrapping_mul(0x9e37_79b9).rotate_left(x * x % 31));
+        let mixed = |x: u32| (x ^ x >> 16).wrapping_mul(0x85eb_ca6b);
+        let lines = lines(50, |x| mixed(mixed(mixed(x + 1))));
         assert_eq!(pack(lines.iter().map(Vec::as_slice)), lines.concat());
     }
 }
