@@ -15,7 +15,7 @@ use std::path::Path;
 use whiskmap::bench::Solver;
 use whiskmap::integrate::Engine;
 use whiskmap::integrate::gpu::{Gpu, Precision};
-use whiskmap::map::{self, Progress};
+use whiskmap::map;
 use whiskmap::numerics::Unit;
 use whiskmap::plan::Plan;
 use whiskmap::refine::refine;
@@ -141,10 +141,8 @@ fn files(criterion: &mut Criterion) {
     let scene = scene();
     let plan = Plan::new(&scene).expect("the scene is small");
     let mut kept: Option<Panel> = None;
-    let Ok(_) = map::run(&scene, &plan, None, &mut |progress| {
-        if let Progress::Panels(panels) = progress {
-            kept = panels.first().cloned();
-        }
+    let Ok(_) = map::run(&scene, &plan, None, &mut |_| (), &mut |panels| {
+        kept = panels.into_iter().next();
         Ok::<(), Infallible>(())
     });
     let panel = kept.expect("the scene has a panel");

@@ -40,28 +40,34 @@ fn kept(push_angles: &str, distances: &str, more: &str) -> (usize, usize) {
     let scene = Scene::parse(&text, "scene").unwrap();
     let plan = Plan::new(&scene).unwrap();
     let mut engine = Counting(0);
-    let discard = &mut |_: map::Progress| Ok::<(), Infallible>(());
-    let Ok(summary) = map::run(&scene, &plan, Some(&mut engine), discard);
+    let discard = &mut |_| Ok::<(), Infallible>(());
+    let Ok(summary) = map::run(&scene, &plan, Some(&mut engine), &mut |_| (), discard);
     assert_eq!(engine.0, plan.engine_calls);
     assert_eq!(summary.cells(), plan.cells as u64);
     let groups = plan.whiskers.div_ceil(plan.panels_at_once);
     (groups, plan.engine_calls)
 }
 
-/// A panel is kept twice, with 4 bytes a channel: the state's, and `regime`, `status`, `residual`, `margin_deg`,
-/// `newton_steps`.
+/// A panel is kept twice, those of a sweep four times, with 4 bytes a channel: the state's, and `regime`, `status`,
+/// `residual`, `margin_deg`, `newton_steps`.
 #[test]
 fn memory_is_that_of_the_channels_there_are() {
-    let [small, large] = ["count = 100", "count = 300"].map(|count| {
+    let bytes = |count: usize, axis: &str| {
         let text = format!(
             "title = \"t\"\n[whisker]\nlength_mm = 20\nbase_radius_um = 30\ntip_radius_um = 3\n\
-             youngs_modulus_gpa = 3\n[grid]\npush_angle_deg = {{ from = 0, to = 9, {count} }}\ndistance_mm = [5, 9]"
+             youngs_modulus_gpa = 3\n[grid]\npush_angle_deg = {{ from = 0, to = 9, count = {count} }}\n\
+             distance_mm = [5, 9]\n{axis}"
         );
         let scene = Scene::parse(&text, "scene").unwrap();
         Plan::new(&scene).unwrap().bytes
-    });
+    };
     let channels = STATE_CHANNELS.len() as u64 + 5;
-    assert_eq!(large - small, 400 * 2 * 4 * channels);
+    assert_eq!(bytes(300, "") - bytes(100, ""), 400 * 2 * 4 * channels);
+    let sweep = "friction = [0, 0.1, 0.2]\n";
+    assert_eq!(
+        bytes(300, sweep) - bytes(100, sweep),
+        3 * 400 * 4 * 4 * channels
+    );
 }
 
 #[test]

@@ -1,12 +1,14 @@
 //! What a map would take, measured: samples of it are computed and thrown away.
 
 use super::failure::Failure;
+use clap::ValueEnum;
 use std::convert::Infallible;
 use std::time::Instant;
 use whiskmap::integrate::Engine;
-use whiskmap::map::{self, Progress, Stage};
+use whiskmap::map::{self, Panel, Stage};
 use whiskmap::plan::{Plan, SAMPLE_LINES, SAMPLE_VALUES};
 use whiskmap::scene::Scene;
+use whiskmap::store::{self, MapWriter, Packed, ZarrStore};
 
 /// What a map would take.
 pub struct Estimate {
@@ -14,6 +16,79 @@ pub struct Estimate {
     pub seconds: f64,
     /// Newton steps per cell, each one trajectory.
     pub steps_per_cell: f64,
+}
+
+/// What the files of a map take.
+pub struct Files {
+    /// Their format.
+    pub format: Format,
+    /// Bytes on disk.
+    pub bytes: f64,
+    /// Seconds on the CPU's threads to pack them.
+    pub seconds: f64,
+}
+
+/// Formats of a map.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Format {
+    /// One OpenEXR file, and a picture of it
+    Exr,
+    /// A Zarr store, for any number of axes, runs and machines
+    Zarr,
+}
+
+impl Format {
+    /// Those that can hold a map of `scene`.
+    pub fn of(scene: &Scene) -> Vec<Self> {
+        let mut formats = vec![Self::Exr, Self::Zarr];
+        formats.retain(|format| *format == Self::Zarr || scene.grid.sweep.len() <= 2);
+        formats
+    }
+
+    /// Packs some panels of `scene`.
+    fn pack(self, scene: &Scene, plan: &Plan, panels: &[Panel]) -> Result<Packed, store::Error> {
+        match self {
+            Self::Exr => Ok(MapWriter::sample(&scene.grid, plan.channels, panels)),
+            Self::Zarr => ZarrStore::sample(scene, plan.channels, panels),
+        }
+    }
+}
+
+/// Cells of the sample that is packed, about: many lines, because the closer cells are, the better they pack.
+const PACKED_CELLS: usize = 1 << 18;
+
+/// What the files of `plan` would take in these `formats`, from a packed sample.
+pub fn files(scene: &Scene, plan: &Plan, formats: &[Format]) -> Result<Vec<Files>, Failure> {
+    let whiskers = scene.thinned(1, SAMPLE_VALUES).whisker_count();
+    let lines = (PACKED_CELLS / whiskers).isqrt().max(1);
+    let (small, small_plan) = thinned(scene, plan, lines)?;
+    let mut packed = vec![Packed::default(); formats.len()];
+    let mut keep = |panels: Vec<Panel>| {
+        for (format, sum) in formats.iter().zip(&mut packed) {
+            *sum += format.pack(&small, &small_plan, &panels)?;
+        }
+        Ok::<(), store::Error>(())
+    };
+    map::run(&small, &small_plan, None, &mut |_| (), &mut keep)?;
+    let by_cells = plan.cells as f64 / small_plan.cells as f64;
+    let threads = rayon::current_num_threads() as f64;
+    let files = formats.iter().zip(packed).map(|(&format, sample)| Files {
+        format,
+        bytes: sample.bytes as f64 * by_cells,
+        seconds: sample.time.as_secs_f64() * by_cells / threads,
+    });
+    Ok(files.collect())
+}
+
+/// A sample of at most so many `lines` each way, and its plan.
+fn thinned(scene: &Scene, plan: &Plan, lines: usize) -> Result<(Scene, Plan), Failure> {
+    let small = scene.thinned(lines, SAMPLE_VALUES);
+    let small_plan = Plan {
+        method: plan.method,
+        channels: plan.channels,
+        ..Plan::new(&small)?
+    };
+    Ok((small, small_plan))
 }
 
 /// Lines of the first sample.
@@ -84,14 +159,10 @@ fn measured(
     engine: &mut Option<Box<dyn Engine>>,
     lines: usize,
 ) -> Result<Estimate, Failure> {
-    let small = scene.thinned(lines, SAMPLE_VALUES);
-    let small_plan = Plan {
-        method: plan.method,
-        ..Plan::new(&small)?
-    };
+    let (small, small_plan) = thinned(scene, plan, lines)?;
     let engine = engine.as_mut().map(|engine| &mut **engine as _);
-    let discard = &mut |_: Progress| Ok::<(), Infallible>(());
-    let Ok(summary) = map::run(&small, &small_plan, engine, discard);
+    let discard = &mut |_| Ok::<(), Infallible>(());
+    let Ok(summary) = map::run(&small, &small_plan, engine, &mut |_| (), discard);
     if let Some(failure) = summary.engine_failure {
         return Err(failure.into());
     }

@@ -8,7 +8,7 @@
 use std::convert::Infallible;
 use whiskmap::integrate::gpu::{Gpu, Precision};
 use whiskmap::integrate::{Description, Engine, EngineError, Hit, Outcome, Shot};
-use whiskmap::map::{self, Panel, Progress, STATE_CHANNELS, Summary};
+use whiskmap::map::{self, Panel, STATE_CHANNELS, Summary};
 use whiskmap::plan::Plan;
 use whiskmap::rod::{Effects, Rod};
 use whiskmap::scene::Scene;
@@ -26,10 +26,8 @@ pub fn compute_as(
     engine: Option<&mut dyn Engine>,
 ) -> (Summary, Vec<Panel>) {
     let mut all = Vec::new();
-    let Ok(summary) = map::run(scene, plan, engine, &mut |progress| {
-        if let Progress::Panels(panels) = progress {
-            all.extend_from_slice(panels);
-        }
+    let Ok(summary) = map::run(scene, plan, engine, &mut |_| (), &mut |panels| {
+        all.extend(panels);
         Ok::<(), Infallible>(())
     });
     (summary, all)
