@@ -104,7 +104,7 @@ pub fn estimate(scene: &Scene, plan: &Plan, seconds: f64) -> Result<Estimate, Fa
     let (mut lines, mut left) = (FIRST_LINES, seconds);
     loop {
         let start = Instant::now();
-        let estimate = measured(scene, plan, &mut None, lines)?;
+        let estimate = measured(scene, plan, &mut None, [lines, lines])?;
         let last = start.elapsed().as_secs_f64();
         left -= last;
         match denser(lines, last, left) {
@@ -113,6 +113,9 @@ pub fn estimate(scene: &Scene, plan: &Plan, seconds: f64) -> Result<Estimate, Fa
         }
     }
 }
+
+/// Most push angles of a sample for an engine, whose references cost the same for a row of few cells as for one of many.
+const WIDE: usize = 2048;
 
 /// Rounds for which [`compare`] keeps time: one alone may have been held up.
 const ROUNDS: f64 = 3.0;
@@ -128,13 +131,13 @@ pub fn compare(
     engine: &mut Option<Box<dyn Engine>>,
     seconds: f64,
 ) -> Result<[f64; 2], Failure> {
-    measured(scene, plan, engine, FIRST_LINES)?;
+    measured(scene, plan, engine, [WIDE, FIRST_LINES])?;
     let (mut lines, mut left) = (FIRST_LINES, seconds);
     let mut fastest = [f64::INFINITY; 2];
     loop {
         let start = Instant::now();
-        let cpu = measured(scene, plan, &mut None, lines)?.seconds;
-        let with_engine = measured(scene, plan, engine, lines)?.seconds;
+        let cpu = measured(scene, plan, &mut None, [WIDE, lines])?.seconds;
+        let with_engine = measured(scene, plan, engine, [WIDE, lines])?.seconds;
         fastest = [fastest[0].min(cpu), fastest[1].min(with_engine)];
         let last = start.elapsed().as_secs_f64();
         left -= last;
@@ -157,7 +160,7 @@ fn measured(
     scene: &Scene,
     plan: &Plan,
     engine: &mut Option<Box<dyn Engine>>,
-    lines: usize,
+    lines: [usize; 2],
 ) -> Result<Estimate, Failure> {
     let (small, small_plan) = thinned(scene, plan, lines)?;
     let engine = engine.as_mut().map(|engine| &mut **engine as _);

@@ -6,6 +6,7 @@ use clap::Args;
 use indicatif::DecimalBytes;
 use std::io::Write;
 use std::path::PathBuf;
+use whiskmap::integrate::on_gpu;
 use whiskmap::plan::{Cost, Plan, ROD_STATES, effects};
 use whiskmap::scene::Scene;
 
@@ -80,15 +81,18 @@ fn print(scene: &Scene, plan: &Plan, estimate: &Estimate, files: &[Files]) -> st
         "trajectories  about {:.0} at most: {steps:.2} Newton steps a cell and 1 to confirm",
         (steps + 1.0) * plan.cells as f64
     )?;
-    writeln!(
-        out,
-        "GPU calls     {}: groups of {}, {} of {}, {} a call",
-        plan.engine_calls,
-        counted(plan.panels_at_once, "whisker"),
-        counted(plan.sides.len(), "side"),
-        counted(distances, "row"),
-        counted(plan.rows_at_once, "row")
-    )?;
+    match on_gpu(plan.method.effects) {
+        Ok(()) => writeln!(
+            out,
+            "GPU calls     {}: groups of {}, {} of {}, {} a call",
+            plan.engine_calls,
+            counted(plan.panels_at_once, "whisker"),
+            counted(plan.sides.len(), "side"),
+            counted(distances, "row"),
+            counted(plan.rows_at_once, "row")
+        )?,
+        Err(why) => writeln!(out, "GPU calls     none: {why}")?,
+    }
     writeln!(
         out,
         "memory        at most {} MiB for panels and cells in flight",

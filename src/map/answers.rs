@@ -192,7 +192,13 @@ fn answer<'a>(
             answer.point = Some(DVec2::new(state.tau, state.load));
             state.residual as f32
         }
-        State::Different(_, difference) => difference.residual,
+        State::Different(reference, difference) => {
+            let rod = &sheet.rod;
+            let point = || DVec2::from(difference.point(rod, reference));
+            // Only friction asks for it.
+            answer.point = (rod.friction != 0.0).then(point);
+            difference.residual
+        }
     };
     if matches!(regime, Regime::Contact | Regime::Unreachable) {
         if let Some(numbers) = readings.and_then(|readings| readings.read(cell)) {

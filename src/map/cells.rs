@@ -6,7 +6,7 @@ use super::pushes::{Push, Pushes};
 use super::summary::{Audit, EngineCells};
 use super::{Face, Stage, Summary};
 use crate::classify::{RowBoundary, Status, TIE};
-use crate::integrate::{CellDifference, Fallback, Outcome, Reference};
+use crate::integrate::{CellDifference, Fallback, Outcome, Reference, on_gpu};
 use crate::refine::{self, ContactState, End, Refined, RowOfCells, Shot};
 use crate::rod::Rod;
 use crate::sheet::{Guess, Sheet};
@@ -83,15 +83,15 @@ impl Settled {
         for cell in &self.differences {
             counts.count(cell.outcome);
         }
-        let cells = self.references.iter().map(|reference| reference.cells.len());
-        let asked = cells.sum::<usize>();
-        let refined = self.refined.len() as u64;
-        if has_failed {
-            counts.on_cpu_instead += refined;
-        } else {
-            let _ = asked;
-            counts.without_reference += refined;
-        }
+        // Refined were those handed over, a sample of the others, and those without a reference.
+        let sources = self.rows.iter().flat_map(|row| &row.sources);
+        let refined = sources.filter(|source| matches!(source, Source::Refined(_)));
+        let handed_over = self.differences.iter().filter(|cell| !cell.outcome.is_vouched_for());
+        let others = (refined.count() - handed_over.count()) as u64;
+        *match has_failed {
+            true => &mut counts.on_cpu_instead,
+            false => &mut counts.without_reference,
+        } += others;
     }
 
     /// The cells of `row`, which is one of `face`.
@@ -218,7 +218,8 @@ struct Chosen {
 impl Strip<'_> {
     /// What an engine, if there is one that can, makes of the rows.
     fn solve(&self, angles: &[f64], engine: &mut Fallback<'_>) -> Option<Solved> {
-        engine.engine.as_ref()?.can(self.method.effects).ok()?;
+        engine.engine.as_ref()?;
+        on_gpu(self.method.effects).ok()?;
         let rows = self.places.iter().map(|place| RowOfCells {
             sheet: place.rod,
             row: place.row,
@@ -308,7 +309,7 @@ impl Place<'_> {
                 let cells = &solved.references[reference].cells;
                 for column in cells.clone().map(|index| (index - pushes.first) as usize) {
                     let outcome = solved.differences[cell].outcome;
-                    if matches!(outcome, Outcome::Solved | Outcome::BeyondTip) {
+                    if outcome.is_vouched_for() {
                         sources[column] = Source::Engine(reference as u32, cell as u32);
                         if audit.has(column) {
                             chosen.push((column, reference as u32, cell as u32));
