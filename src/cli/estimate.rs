@@ -61,7 +61,7 @@ const PACKED_CELLS: usize = 1 << 18;
 pub fn files(scene: &Scene, plan: &Plan, formats: &[Format]) -> Result<Vec<Files>, Failure> {
     let whiskers = scene.thinned(1, SAMPLE_VALUES).whisker_count();
     let lines = (PACKED_CELLS / whiskers).isqrt().max(1);
-    let (small, small_plan) = thinned(scene, plan, lines)?;
+    let (small, small_plan) = thinned(scene, plan, [lines, lines])?;
     let mut packed = vec![Packed::default(); formats.len()];
     let mut keep = |panels: Vec<Panel>| {
         for (format, sum) in formats.iter().zip(&mut packed) {
@@ -80,9 +80,9 @@ pub fn files(scene: &Scene, plan: &Plan, formats: &[Format]) -> Result<Vec<Files
     Ok(files.collect())
 }
 
-/// A sample of at most so many `lines` each way, and its plan.
-fn thinned(scene: &Scene, plan: &Plan, lines: usize) -> Result<(Scene, Plan), Failure> {
-    let small = scene.thinned(lines, SAMPLE_VALUES);
+/// A sample of at most so many push angles and distances, and its plan.
+fn thinned(scene: &Scene, plan: &Plan, lines: [usize; 2]) -> Result<(Scene, Plan), Failure> {
+    let small = scene.thinned_to(lines, SAMPLE_VALUES);
     let small_plan = Plan {
         method: plan.method,
         channels: plan.channels,
@@ -155,7 +155,7 @@ fn denser(lines: usize, last: f64, left: f64) -> Option<usize> {
     (is_short && lines < SAMPLE_LINES).then_some(lines * DENSER)
 }
 
-/// Measures a sample of at most so many `lines` each way.
+/// Measures a sample of at most so many push angles and distances.
 fn measured(
     scene: &Scene,
     plan: &Plan,
