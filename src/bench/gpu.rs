@@ -80,9 +80,13 @@ impl Sides {
             let by_row = references(method, &[&sheet], &rows);
             let pushes: Vec<f64> = magnitudes.iter().map(|push| side.sign() * push).collect();
             let shots = by_row.iter().enumerate().flat_map(|(row, references)| {
-                let cells = references.iter().flat_map(|reference| reference.cells.clone());
+                let cells = references
+                    .iter()
+                    .flat_map(|reference| reference.cells.clone());
                 let pole = |cell: u32| sheet.rows[row].pole(pushes[cell as usize]);
-                cells.map(|cell| task.shot(index as u32, pole(cell))).collect::<Vec<_>>()
+                cells
+                    .map(|cell| task.shot(index as u32, pole(cell)))
+                    .collect::<Vec<_>>()
             });
             Side {
                 rods: [rod.clone()],

@@ -92,7 +92,8 @@ impl EngineOptions {
         let precision = self.precision();
         let bound_deg = bound_deg(scene, precision);
         let is_coarser = tolerance_deg.is_some_and(|tolerance| bound_deg > tolerance);
-        is_coarser.then(|| format!("gpu {precision} only bounds the push angle to {bound_deg:.1e} deg"))
+        is_coarser
+            .then(|| format!("gpu {precision} only bounds the push angle to {bound_deg:.1e} deg"))
     }
 
     fn precision(&self) -> Precision {
@@ -145,7 +146,12 @@ impl EngineOptions {
 
 /// To how many degrees shaders bound push angles: their miss of the pole, as seen from the base at the nearest distance.
 fn bound_deg(scene: &Scene, precision: Precision) -> f64 {
-    let nearest = scene.grid.distance_mm.iter().copied().fold(f64::INFINITY, f64::min);
+    let nearest = scene
+        .grid
+        .distance_mm
+        .iter()
+        .copied()
+        .fold(f64::INFINITY, f64::min);
     let lengths = scene.corner_whiskers().map(|own| own.whisker.length_mm);
     let longest = lengths.fold(0.0, f64::max);
     (precision.goal() * longest / nearest).to_degrees()

@@ -82,7 +82,9 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         plan.method.resolution = accuracy.resolution;
     }
     plan.channels = options.channels.unwrap_or(Channels::ALL);
-    let (mut engine, why) = options.engine.open(&scene, &plan, options.tolerance.degrees())?;
+    let (mut engine, why) = options
+        .engine
+        .open(&scene, &plan, options.tolerance.degrees())?;
     let about = whiskmap::integrate::Description::of(engine.as_deref());
     outputs::folder("--output", &options.output)?;
     if options.format == Format::Zarr {

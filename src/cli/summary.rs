@@ -41,7 +41,10 @@ pub fn print(
             "refined in f64 after the engine had failed",
         ),
         (summary.audit.cells, "of the engine's cells audited in f64"),
-        (summary.audit.differing, "of them differed by more than they may"),
+        (
+            summary.audit.differing,
+            "of them differed by more than they may",
+        ),
         (
             summary.toward_base,
             "slide toward the base, against the friction assumed: force and moment are off",

@@ -80,11 +80,15 @@ impl<'a> Readings<'a> {
         match cell.state {
             State::Unknown => None,
             State::Refined(state) => {
-                let reading = self.reader.read(state.tau, &state.full, self.touch, cell.push.angle);
+                let reading = self
+                    .reader
+                    .read(state.tau, &state.full, self.touch, cell.push.angle);
                 Some(channels(&reading))
             }
             State::Different(reference, difference) => {
-                let known = self.reference.filter(|(known, _)| std::ptr::eq(*known, reference));
+                let known = self
+                    .reference
+                    .filter(|(known, _)| std::ptr::eq(*known, reference));
                 let (_, numbers) = known.unwrap_or_else(|| {
                     (reference, of_reference(&self.reader, reference, self.touch))
                 });

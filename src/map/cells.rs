@@ -86,7 +86,10 @@ impl Settled {
         // Refined were those handed over, a sample of the others, and those without a reference.
         let sources = self.rows.iter().flat_map(|row| &row.sources);
         let refined = sources.filter(|source| matches!(source, Source::Refined(_)));
-        let handed_over = self.differences.iter().filter(|cell| !cell.outcome.is_vouched_for());
+        let handed_over = self
+            .differences
+            .iter()
+            .filter(|cell| !cell.outcome.is_vouched_for());
         let others = (refined.count() - handed_over.count()) as u64;
         *match has_failed {
             true => &mut counts.on_cpu_instead,
@@ -266,8 +269,13 @@ impl Strip<'_> {
                     &solved.differences[chosen.cell as usize],
                 );
                 audit.cells += 1;
-                audit.differing +=
-                    u64::from(!audit::holds(&place.face.sheet, place.row, push, cell, refined));
+                audit.differing += u64::from(!audit::holds(
+                    &place.face.sheet,
+                    place.row,
+                    push,
+                    cell,
+                    refined,
+                ));
             }
             for source in &mut work.sources {
                 if let Source::Refined(index) = source {

@@ -125,7 +125,14 @@ impl<'a, 'e> Run<'a, 'e> {
         let mut panels = vec![Panel::unresolved(width * height, plan.channels); group.len()];
         let rows = (0..faces.len()).flat_map(|face| (0..height).map(move |row| (face, row)));
         for strip in rows.collect::<Vec<_>>().chunks(self.rows_at_once) {
-            let cells = cells::settle(plan.method, &faces, angles, strip, &mut self.engine, summary);
+            let cells = cells::settle(
+                plan.method,
+                &faces,
+                angles,
+                strip,
+                &mut self.engine,
+                summary,
+            );
             summary.time(Stage::Regimes, || {
                 answers::fill(width, &group, &faces, sides.len(), &cells, &mut panels);
             });

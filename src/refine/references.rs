@@ -64,8 +64,7 @@ pub fn references(method: Method, sheets: &[&Sheet], rows: &[RowOfCells]) -> Vec
                 return Vec::new();
             }
             let sheet = sheets[row.sheet as usize];
-            expand(sheet, row, &conditions[nodes.clone()], &states[nodes])
-                .unwrap_or_default()
+            expand(sheet, row, &conditions[nodes.clone()], &states[nodes]).unwrap_or_default()
         })
         .collect()
 }
@@ -138,7 +137,13 @@ fn expand(
         before = (push, resting);
         let (by_tau, by_load) = (full.map.by_tau, full.map.by_load);
         numbers[m] = [
-            push, condition.tau, resting, by_tau.x, by_tau.y, by_load.x, by_load.y,
+            push,
+            condition.tau,
+            resting,
+            by_tau.x,
+            by_tau.y,
+            by_load.x,
+            by_load.y,
         ];
     }
     if !ways.windows(2).all(|pair| pair[0] < pair[1]) {
@@ -153,7 +158,10 @@ fn expand(
         let until = match ways.get(m + 1) {
             Some(next) => {
                 let half = 0.5 * (next - ways[m]);
-                let ahead = row_here.iter().rev().fold(0.0, |sum, term| sum * half + term[0]);
+                let ahead = row_here
+                    .iter()
+                    .rev()
+                    .fold(0.0, |sum, term| sum * half + term[0]);
                 (sign * (ahead)).min(last)
             }
             None => last,
@@ -177,7 +185,10 @@ fn expand(
 }
 
 /// Newton's divided differences.
-fn divided_differences(nodes: &[f64; NODES], mut values: [RowNumbers; NODES]) -> [RowNumbers; NODES] {
+fn divided_differences(
+    nodes: &[f64; NODES],
+    mut values: [RowNumbers; NODES],
+) -> [RowNumbers; NODES] {
     for level in 1..NODES {
         for i in (level..NODES).rev() {
             let inverse = 1.0 / (nodes[i] - nodes[i - level]);
@@ -191,12 +202,20 @@ fn divided_differences(nodes: &[f64; NODES], mut values: [RowNumbers; NODES]) ->
 }
 
 /// The Taylor polynomials around `at` of those with these divided differences.
-fn expanded(nodes: &[f64; NODES], differences: &[RowNumbers; NODES], at: f64) -> [RowNumbers; POWERS] {
+fn expanded(
+    nodes: &[f64; NODES],
+    differences: &[RowNumbers; NODES],
+    at: f64,
+) -> [RowNumbers; POWERS] {
     let mut series = [RowNumbers::default(); POWERS];
     for (node, difference) in nodes.iter().zip(differences).rev() {
         let shift = at - node;
         for power in (0..POWERS).rev() {
-            let lower = if power > 0 { series[power - 1] } else { *difference };
+            let lower = if power > 0 {
+                series[power - 1]
+            } else {
+                *difference
+            };
             for (term, lower) in series[power].iter_mut().zip(lower) {
                 *term = *term * shift + lower;
             }

@@ -243,9 +243,8 @@ impl<T: Scalar> GpuReference<T> {
         } = reference;
         let s = arclength(rod, *tau);
         let full = &state.full;
-        let numbers = |by: &StateDerivative| {
-            [by.angle, by.position.x, by.position.y, by.energy].map(T::of)
-        };
+        let numbers =
+            |by: &StateDerivative| [by.angle, by.position.x, by.position.y, by.energy].map(T::of);
         let along = |i: usize| std::array::from_fn(|power| T::of(reference.row[power + 1][i]));
         Self {
             tau: T::of(*tau),
@@ -261,7 +260,11 @@ impl<T: Scalar> GpuReference<T> {
             by_tau: numbers(&state.by_tau),
             by_load: numbers(&state.by_load),
             bent: T::of(trip.bent),
-            energy: T::of(if full.force == 0.0 { 0.0 } else { 2.0 * full.energy / full.force }),
+            energy: T::of(if full.force == 0.0 {
+                0.0
+            } else {
+                2.0 * full.energy / full.force
+            }),
             push: halves(*push),
             per_way: T::of(reference.per_way),
             push_by_way: along(0),
