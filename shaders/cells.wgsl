@@ -69,30 +69,23 @@ fn jacobian_at(r: u32, way: real) -> vec4<real> {
     return sum;
 }
 
-// A polynomial without a constant.
-fn at_way(terms: array<real, POWERS>, way: real) -> real {
-    var own = terms;
-    var sum = real(0.0);
-    for (var n = POWERS - 1; n >= 0; n--) {
-        sum = (sum + own[n]) * way;
-    }
-    return sum;
+// A polynomial without a constant, and its slope; loops would keep the terms in memory.
+fn at_way(t: array<real, POWERS>, x: real) -> real {
+    return x * (t[0] + x * (t[1] + x * (t[2] + x * (t[3] + x * (t[4] + x * (t[5] + x * (t[6] + x * (t[7] + x * (t[8] + x * (t[9]
+        + x * t[10]))))))))));
+}
+
+fn slope_at(t: array<real, POWERS>, x: real) -> real {
+    return t[0] + x * (2.0 * t[1] + x * (3.0 * t[2] + x * (4.0 * t[3] + x * (5.0 * t[4] + x * (6.0 * t[5] + x * (7.0 * t[6]
+        + x * (8.0 * t[7] + x * (9.0 * t[8] + x * (10.0 * t[9] + x * 11.0 * t[10])))))))));
 }
 
 // The way along the row to where the push angle has changed by `push`: from the root of a parabola on by Newton's method.
-fn way_to(terms: array<real, POWERS>, push: real) -> real {
-    var own = terms;
-    let root = sqrt(max(own[0] * own[0] + 4.0 * own[1] * push, 0.0));
-    var way = 2.0 * push / (own[0] + select(-root, root, own[0] > 0.0));
+fn way_to(t: array<real, POWERS>, push: real) -> real {
+    let root = sqrt(max(t[0] * t[0] + 4.0 * t[1] * push, 0.0));
+    var way = 2.0 * push / (t[0] + select(-root, root, t[0] > 0.0));
     for (var round = 0; round < 4; round++) {
-        var value = real(0.0);
-        var slope = real(0.0);
-        for (var n = POWERS - 1; n >= 0; n--) {
-            value += own[n];
-            slope = slope * way + value;
-            value = value * way;
-        }
-        way -= (value - push) / slope;
+        way -= (at_way(t, way) - push) / slope_at(t, way);
     }
     return way;
 }

@@ -7,41 +7,22 @@ fn is_finite(x: real) -> bool {
 
 // (exp(x) - 1)/x for |x| <= 0.4: Taylor polynomial of degree 12, truncation below 1e-16.
 fn expm1_over_small(x: real) -> real {
-    var sum = real(1.0);
-    for (var n = 13; n > 1; n--) {
-        sum = 1.0 + sum * x / real(n);
-    }
-    return sum;
+    return 1.0 + x * (1.0 / 2.0) * (1.0 + x * (1.0 / 3.0) * (1.0 + x * (1.0 / 4.0) * (1.0 + x * (1.0 / 5.0) * (1.0
+        + x * (1.0 / 6.0) * (1.0 + x * (1.0 / 7.0) * (1.0 + x * (1.0 / 8.0) * (1.0 + x * (1.0 / 9.0) * (1.0
+        + x * (1.0 / 10.0) * (1.0 + x * (1.0 / 11.0) * (1.0 + x * (1.0 / 12.0) * (1.0 + x * (1.0 / 13.0))))))))))));
 }
 
-// exp(x) for |x| < 87: 2^k exp(r) with |r| <= ln(2)/2; ln(2) in two parts, the first with few digits.
-fn exponential(x: real) -> real {
-    let k = floor(x * 1.4426950408889634 + 0.5);
-    let r = x - k * 0.693359375 + k * 2.12194440054690583e-4;
-    let power = real(bitcast<f32>(u32(clamp(i32(k), -126, 127) + 127) << 23u));
-    return power * (1.0 + r * expm1_over_small(r));
+// exp(x) - 1 for |x| <= 0.4.
+fn expm1_small(x: real) -> real {
+    return x * expm1_over_small(x);
 }
 
-// (exp(x) - 1)/x without cancellation.
-fn expm1_over(x: real) -> real {
-    if abs(x) <= 0.4 {
-        return expm1_over_small(x);
-    }
-    return (exponential(x) - 1.0) / x;
-}
-
-// asinh(t): halved with sinh(u/2) = sinh(u)/sqrt(2 + 2 cosh(u)) until small, then 2 atanh(tanh(u/2)).
-fn arsinh(t: real) -> real {
-    var small = t;
-    var scale = real(2.0);
-    for (var i = 0; i < 10 && abs(small) > 0.25; i++) {
-        small = small / sqrt(2.0 + 2.0 * sqrt(1.0 + small * small));
-        scale = 2.0 * scale;
-    }
-    let w = small / (1.0 + sqrt(1.0 + small * small));
-    var sum = real(1.0 / 17.0);
-    for (var n = 15; n > 0; n -= 2) {
-        sum = 1.0 / real(n) + w * w * sum;
-    }
-    return scale * w * sum;
+// sin(x) and 1 - cos(x) for |x| <= 0.5: what is left out is below 3e-14.
+fn sine_and_versine(x: real) -> vec2<real> {
+    let y = x * x;
+    let sine = 1.0 - y * (1.0 / 6.0) * (1.0 - y * (1.0 / 20.0) * (1.0 - y * (1.0 / 42.0) * (1.0 - y * (1.0 / 72.0) * (1.0
+        - y * (1.0 / 110.0)))));
+    let versine = 1.0 - y * (1.0 / 12.0) * (1.0 - y * (1.0 / 30.0) * (1.0 - y * (1.0 / 56.0) * (1.0 - y * (1.0 / 90.0) * (1.0
+        - y * (1.0 / 132.0)))));
+    return vec2<real>(x * sine, 0.5 * y * versine);
 }

@@ -102,12 +102,11 @@ fn rest_turn(way: Way, step: Step, stage: Stage) -> real {
         let along = -step.radius * stage.along;
         return along * (way.rod.spiral[0] + way.rod.spiral[1] * (step.arclength + 0.5 * along));
     }
-    var terms = step.rest_turn;
-    var sum = real(0.0);
-    for (var n = REST_TERMS - 1; n >= 0; n--) {
-        sum = (sum + terms[n]) * stage.along;
-    }
-    return sum;
+    // A loop would keep the terms in memory.
+    let t = step.rest_turn;
+    let x = stage.along;
+    return x * (t[0] + x * (t[1] + x * (t[2] + x * (t[3] + x * (t[4] + x * (t[5] + x * (t[6] + x * (t[7] + x * (t[8] + x * (t[9]
+        + x * (t[10] + x * t[11])))))))))));
 }
 
 // How much farther than the tangent `rest` at arclength `s` the whisker at rest has turned `ds` further on.
@@ -118,8 +117,9 @@ fn rest_apart(rod: Rod, rest: vec2<real>, s: real, ds: real) -> real {
     let x = 2.0 * rod.bend * rest.x * rest.x * ds;
     let sin = rest.y;
     let y = sin * sin;
-    return rest.x * x * (1.0 + x * (-1.5 * sin + x * ((3.0 * y - 0.5) + x * (sin * (57.0 - 162.0 * y) / 24.0
-        + x * ((57.0 - y * (1056.0 - 1944.0 * y)) / 120.0 - x * sin * (2739.0 - y * (21504.0 - 29160.0 * y)) / 720.0)))));
+    return rest.x * x * (1.0 + x * (-1.5 * sin + x * ((3.0 * y - 0.5) + x * (sin * (57.0 - 162.0 * y) * (1.0 / 24.0)
+        + x * ((57.0 - y * (1056.0 - 1944.0 * y)) * (1.0 / 120.0)
+        - x * sin * (2739.0 - y * (21504.0 - 29160.0 * y)) * (1.0 / 720.0))))));
 }
 
 // The rods at a stage: how far bending has turned them, and their tangents.
