@@ -74,6 +74,14 @@ pub enum Outcome {
     Missed,
 }
 
+impl Outcome {
+    /// Whether the engine has solved the cell.
+    #[must_use]
+    pub const fn is_solved(self) -> bool {
+        matches!(self, Self::Solved | Self::BeyondTip)
+    }
+}
+
 /// What solves a map, for people and for the record.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Description {

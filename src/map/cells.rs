@@ -78,19 +78,18 @@ impl Cell<'_> {
 }
 
 impl Settled {
-    /// Adds to `counts` what became of the cells of an engine, which `has_failed` or not.
-    fn count(&self, has_failed: bool, counts: &mut EngineCells) {
+    /// Adds to `counts` what became of the cells of an engine, which `has_failed` or not, and has so many cells `audited`.
+    fn count(&self, has_failed: bool, audited: u64, counts: &mut EngineCells) {
         for cell in &self.differences {
             counts.count(cell.outcome);
         }
-        let cells = self.references.iter().map(|reference| reference.cells.len());
-        let asked = cells.sum::<usize>();
-        let refined = self.refined.len() as u64;
+        let is_left = |cell: &&CellDifference| !cell.outcome.is_solved();
+        let handed_over = self.differences.iter().filter(is_left).count() as u64;
+        let others = (self.refined.len() as u64).saturating_sub(audited + handed_over);
         if has_failed {
-            counts.on_cpu_instead += refined;
+            counts.on_cpu_instead += others;
         } else {
-            let _ = asked;
-            counts.without_reference += refined;
+            counts.without_reference += others;
         }
     }
 
@@ -163,7 +162,7 @@ pub fn settle(
     let solved = summary.time(Stage::Shooting, || strip.solve(angles, engine));
     let (settled, audit) = strip.finish(solved.unwrap_or_default(), summary);
     if had_engine {
-        settled.count(engine.failure.is_some(), &mut summary.engine_cells);
+        settled.count(engine.failure.is_some(), audit.cells, &mut summary.engine_cells);
     }
     summary.audit += audit;
     if audit.differing == 0 {
@@ -308,7 +307,7 @@ impl Place<'_> {
                 let cells = &solved.references[reference].cells;
                 for column in cells.clone().map(|index| (index - pushes.first) as usize) {
                     let outcome = solved.differences[cell].outcome;
-                    if matches!(outcome, Outcome::Solved | Outcome::BeyondTip) {
+                    if outcome.is_solved() {
                         sources[column] = Source::Engine(reference as u32, cell as u32);
                         if audit.has(column) {
                             chosen.push((column, reference as u32, cell as u32));

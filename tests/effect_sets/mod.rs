@@ -1,4 +1,5 @@
 //! The sets of effects that there are kernels for.
+#![allow(dead_code, reason = "each test program uses its own share")]
 
 use whiskmap::rod::Effects;
 
@@ -24,4 +25,9 @@ pub fn all() -> impl Iterator<Item = Effects> {
                 profile,
             })
     })
+}
+
+/// Those that the GPU has kernels for.
+pub fn on_gpu() -> impl Iterator<Item = Effects> {
+    all().filter(|effects| !effects.gradient && !effects.profile)
 }
