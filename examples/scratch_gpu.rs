@@ -28,10 +28,10 @@ fn main() {
         let mut gpu = match Gpu::with_shader(precision, head2 + &body) { Ok(g) => g, Err(e) => { println!("{e}"); continue } };
         let mut worst = [0.0f64; 9]; let mut sums: Vec<Vec<f64>> = vec![Vec::new(); 9];
         let mut counts = std::collections::BTreeMap::new();
-        let mut residuals = Vec::new(); let mut handed = 0; let mut all = 0; let mut wrong_end = 0;
+        let mut residuals = Vec::new(); let mut ratios: Vec<(f64, f64, f64, usize, f64)> = Vec::new(); let mut handed = 0; let mut all = 0; let mut wrong_end = 0;
         let (mut t_ref, mut t_gpu) = (0.0, 0.0);
         let mut shown = 0; let mut lens = std::collections::BTreeMap::new();
-        for own in scene.whiskers() { for side in Side::BOTH {
+        for own in scene.whiskers() { let mut wscale=[0.0f64;9]; let mut errs: Vec<[f64;9]> = Vec::new(); for side in Side::BOTH {
             let rod = own.rod(side);
             let units = Units { length_mm: 1.0, force_un: 1.0, moment_nnm: 1.0 };
             let distances: Vec<f64> = scene.grid.distance_mm.iter().map(|d| d / own.whisker.length_mm).collect();
@@ -62,7 +62,7 @@ fn main() {
                 let mut index = vec![None; shots.len()]; let mut n = 0;
                 for (i, s) in shots.iter().enumerate() { if s.is_some() { index[i] = Some(n); n += 1; } }
                 let mut scale = [0.0f64; 9];
-                for r in refs { let c = ch(&reader.read(r.tau, &r.state.full, touch, r.push)); for k in 0..9 { scale[k] = scale[k].max(c[k].abs()); } }
+                for r in refs { let c = ch(&reader.read(r.tau, &r.state.full, touch, r.push)); for k in 0..9 { scale[k] = scale[k].max(c[k].abs()); wscale[k] = wscale[k].max(c[k].abs()); } }
                 for (m, r) in refs.iter().enumerate() {
                     let base = ch(&reader.read(r.tau, &r.state.full, touch, r.push));
                     for col in r.cells.clone() {
@@ -77,23 +77,30 @@ fn main() {
                         if cpu.end != End::Solved { wrong_end += 1; if wrong_end < 5 { println!("end {:?} row {row} col {col} push {}", cpu.end, pushes[col as usize]); } continue }
                         let ours = ch(&reader.read(cpu.state.tau, &cpu.state.full, touch, pushes[col as usize]));
                         let mut bad = false;
+                        let mut ev = [0.0;9];
+                        { let s = whiskmap::rod::arclength(&rod, r.tau) + d.numbers[0] as f64; let tau = rod.tau(s); let rho = rod.radius(tau); let load = (r.state.full.force + d.numbers[2] as f64) / rho / rho;
+                          let map: Vec<whiskmap::shooting::ShootingMap> = whiskmap::shooting::batch::Batch::new(method).shoot(&[whiskmap::shooting::batch::InitialCondition { rod: &rod, tau, load }]);
+                          let miss = map[0].pole.distance(sheet.rows[row].pole(pushes[col as usize]));
+                          let s0 = whiskmap::rod::arclength(&rod, r.tau); let wl = ((tau - r.tau).abs() / s0).max((load - r.load).abs() / (r.load.abs() + 1.0 / s0 / s0));
+                          ratios.push((miss / d.residual as f64, miss / (wl * (s0 + sheet.rows[row].pole_distance)), miss, row, r.tau * rod.taper)); }
                         for k in 0..9 {
                             let theirs = base[k] + one[k] * d.numbers[k] as f64;
                             let e = (theirs - ours[k]).abs() / scale[k];
-                            if e > worst[k] { worst[k] = e; }
+                            ev[k] = (theirs - ours[k]).abs();
                             if e > 1e-6 { bad = true; }
-                            sums[k].push(e);
                         }
-                        if bad && shown < 6 { shown += 1; println!("row {row} d {:.4} side {side:?} ref {m} of {} tau {:.4} load {:.3} push {:.6} ref push {:.6} residual {:.1e}", distances[row], refs.len(), r.tau, r.load, pushes[col as usize], r.push, d.residual);
+                        errs.push(ev);
+                        if bad && shown < 0 { shown += 1; println!("row {row} d {:.4} side {side:?} ref {m} of {} tau {:.4} load {:.3} push {:.6} ref push {:.6} residual {:.1e}", distances[row], refs.len(), r.tau, r.load, pushes[col as usize], r.push, d.residual);
                             for k in 0..9 { let theirs = base[k] + one[k] * d.numbers[k] as f64; print!(" {:.1e}", (theirs-ours[k])/scale[k]); } println!(); }
                     }
                 }
             }
-        }}
+        } for e in &errs { for k in 0..9 { let e = e[k] / wscale[k]; worst[k] = worst[k].max(e); sums[k].push(e); } } }
         println!("{precision}: cells with guess {all}; {counts:?}; wrong end {wrong_end}; references {t_ref:.3} s, gpu {t_gpu:.3} s");
         if precision == Precision::F64 { let mut last = (false, 99); for ((s, (b, m)), e) in &lens { if last != (*s, *b) { print!("\n{s} {b}:"); last = (*s, *b); } print!(" {e:.0e}"); } println!(); }
         residuals.sort_by(f64::total_cmp);
         if residuals.is_empty() { continue }
+        for k in 0..3 { ratios.sort_by(|a, b| [a.0, a.1, a.2][k].total_cmp(&[b.0, b.1, b.2][k])); let n = ratios.len(); print!("  {}: {:.1e} {:.1e} {:.1e}", ["miss/bound", "miss/way", "miss"][k], [ratios[n/2].0, ratios[n/2].1, ratios[n/2].2][k], [ratios[n*99/100].0, ratios[n*99/100].1, ratios[n*99/100].2][k], [ratios[n-1].0, ratios[n-1].1, ratios[n-1].2][k]); println!(" row {} beta tau {:.3}", ratios[n-1].3, ratios[n-1].4); }
         println!("  residual median {:.1e} worst {:.1e}", residuals[residuals.len()/2], residuals.last().unwrap());
         for k in 0..9 { sums[k].sort_by(f64::total_cmp); print!("  [{k}] {:.1e} {:.1e} {:.1e}", sums[k][sums[k].len()/2], sums[k][sums[k].len()*99/100], worst[k]); } println!();
     }

@@ -140,7 +140,7 @@ fn solve(r: u32, rod: Rod, push: real) -> Cell {
         widening,
         rest_at_contact,
     );
-    let apart = integrate(trip, radius, s, references[r].first_step, steps);
+    let apart = integrate(trip, references[r].first_step, steps);
     let angle = apart.bent - rest_at_contact;
 
     // Newton's step.
@@ -155,8 +155,8 @@ fn solve(r: u32, rod: Rod, push: real) -> Cell {
     let step = vec2<real>(cross2(missed, by_load), cross2(by_tau, missed)) / det;
     let per_load = abs(load) + 1.0 / (s * s);
     let step_length = max(abs(step.x) / s, abs(step.y) / per_load);
-    let way_length = max(abs(by.x) / s, abs(by.y) / per_load);
-    let residual = (LEFT_BY_STEP * step_length * step_length + ROUNDING_OF_WAY * way_length) * (s + distance) + ROUNDING;
+    let moves = max(abs(angle), abs(apart.bent)) * distance + length(vec2<real>(apart.x, apart.y));
+    let residual = LEFT_BY_STEP * step_length * step_length * (s + distance) + ROUNDING_OF_WAY * moves + ROUNDING;
     cell.residual = f32(residual);
 
     // What people want to know.

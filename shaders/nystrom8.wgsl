@@ -10,6 +10,8 @@ struct Rod {
 
 // Where a step of the reference starts.
 struct StepStart {
+    radius: real,
+    arclength: real,
     tangent: array<real, 2>,
     position: array<real, 2>,
     // how far bending has turned the rod since the contact
@@ -160,7 +162,7 @@ fn climb(step: Step, stage: Stage, pose: Pose) -> vec4<real> {
 }
 
 // From the contact to the base, along the reference's steps from `first` on.
-fn integrate(way: Way, radius_at_contact: real, arclength: real, first: u32, count: u32) -> Apart {
+fn integrate(way: Way, first: u32, count: u32) -> Apart {
     let steps = real(count);
     let none = Stage(0.0, 0.0, Both(1.0, 0.0), Both(1.0, 0.0), Both(1.0, 0.0));
     let s2 = stage_at(way, steps, 0.05);
@@ -178,10 +180,9 @@ fn integrate(way: Way, radius_at_contact: real, arclength: real, first: u32, cou
     let at_end = (1.0 + scale) * (1.0 + scale);
     let end_scale = Both(at_end, at_end * expm1_small(growth.y));
     var apart = Apart(0.0, 0.0, 0.0, 0.0);
-    var radius = radius_at_contact;
-    var s = arclength;
     for (var k = 0u; k < count; k++) {
         let index = first + k;
+        let radius = starts[index].radius;
         let left = 1.0 - real(k) / steps;
         let wider = expm1_small(way.widening * left);
         let softer = expm1_small(-3.0 * way.widening * left);
@@ -191,7 +192,7 @@ fn integrate(way: Way, radius_at_contact: real, arclength: real, first: u32, cou
         let step = Step(
             left,
             radius,
-            s,
+            starts[index].arclength,
             vec2<real>(starts[index].tangent[0], starts[index].tangent[1]),
             vec2<real>(starts[index].rest[0], starts[index].rest[1]),
             Both(starts[index].bent, apart.bent),
@@ -248,8 +249,6 @@ fn integrate(way: Way, radius_at_contact: real, arclength: real, first: u32, cou
         } else {
             apart.x = end_speed.y;
         }
-        s -= radius * s8.along;
-        radius *= s8.grown.x;
     }
     return apart;
 }

@@ -8,13 +8,14 @@ use whiskmap::measured::Compared;
 use whiskmap::trace::{BranchPoint, Corner, Detachment, ShapePoint};
 use whiskmap::uncertainty::Spread;
 
-/// The calls of `whiskmap` in the shell blocks of a page, without their remarks.
+/// The calls of `whiskmap` in the shell blocks of a page, without their remarks and where their output goes.
 fn calls(page: &str) -> Vec<Vec<String>> {
     let blocks = page.split("```sh\n").skip(1);
     let lines = blocks.flat_map(|block| block.split("```").next().unwrap_or_default().lines());
     let calls = lines.filter_map(|line| line.strip_prefix("whiskmap "));
     let words = |call: &str| {
         let call = call.split(" #").next().unwrap_or_default();
+        let call = call.split(" > ").next().unwrap_or_default();
         call.split_whitespace().map(str::to_owned).collect()
     };
     calls.map(words).collect()

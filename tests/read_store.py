@@ -1,6 +1,6 @@
 """Reads a store by the Python of the documentation, and holds it against the store's own counts.
 
-Usage: python3 tests/read_store.py STORE. Needs `pip install xarray zarr`.
+Usage: python3 tests/read_store.py STORE [SLICE], the latter a store of a part of it. Needs `pip install xarray zarr`.
 """
 import pathlib
 import re
@@ -8,6 +8,7 @@ import sys
 import warnings
 
 import numpy as np
+import xarray
 
 SHOWN = '"outputs/morphology.zarr"'
 
@@ -34,7 +35,7 @@ def check(store):
         assert int((regime == code).sum()) == int(cells), (code, cells)
     contact = np.isin(regime, [1, 4])
     assert contact.any() and (np.isfinite(store.force_un.values) == contact).all()
-    print(f"{sys.argv[1]}: {regime.size} cells of {len(store)} variables, {contact.sum()} in contact")
+    print(f"{store.encoding['source']}: {regime.size} cells of {len(store)} variables, {contact.sum()} in contact")
 
 
 if __name__ == "__main__":
@@ -42,3 +43,6 @@ if __name__ == "__main__":
     found = {}
     exec(snippet().replace(SHOWN, repr(sys.argv[1])), found)
     check(found["store"])
+    for part in map(xarray.open_zarr, sys.argv[2:]):
+        check(part)
+        xarray.testing.assert_equal(part, found["store"].sel(part.indexes))

@@ -38,4 +38,6 @@ for scene in cone morphology; do
 done
 rm -rf "$target/maps/morphology.zarr"
 "$target/checked/whiskmap" map scenes/morphology.toml --engine cpu --format zarr -o "$target/maps"
-python3 tests/read_store.py "$target/maps/morphology.zarr"
+rm -rf "$target/maps/slice.zarr"
+"$target/checked/whiskmap" extract "$target/maps/morphology.zarr" --at taper=0.95 -o "$target/maps/slice.zarr"
+python3 tests/read_store.py "$target/maps/morphology.zarr" "$target/maps/slice.zarr"

@@ -76,14 +76,13 @@ fn row(task: &Task, runs: usize, engine: &Engine, solver: Solver) -> Measurement
     let rung = Rung {
         integrator: "nystrom8",
         steps: resolution.least,
-        newton_f64: 0,
     };
     let stages = Stages {
         dispatch: 1e3 * seconds.median,
         ..Stages::default()
     };
     let errors = task.errors(&places(&hits));
-    Measurement::new(engine, rung, seconds, stages, work, errors)
+    Measurement::new(engine, rung, seconds, stages, Some(work), errors)
 }
 
 /// Billions of operations per second of all threads of the pool at once.

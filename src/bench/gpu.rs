@@ -1,4 +1,171 @@
-//! x
-use super::task::Task;
-use super::Report;
-pub fn measure(_: &Task, _: usize, _: &mut Report, _: &mut dyn FnMut(&str)) {}
+//! Every GPU adapter, in `f32` and, where it can, in `f64`: the cells of the scene as differences from references of their rows.
+
+use super::task::{Task, faces, magnitudes};
+use super::watch::watch;
+use super::{Engine, Measurement, Report, Rung, Stages};
+use crate::integrate::gpu::{Gpu, Precision, adapters};
+use crate::integrate::{CellDifference, Engine as _, EngineError, Outcome, Reference};
+use crate::refine::{RowOfCells, references};
+use crate::rod::{Rod, arclength};
+use crate::scene::Scene;
+use crate::sheet::Sheet;
+use crate::shooting::batch::Method;
+use std::time::{Duration, Instant};
+
+/// Adds the rows of every adapter to `report`; one that fails is named with its reason.
+pub fn measure(
+    scene: &Scene,
+    task: &Task,
+    runs: usize,
+    report: &mut Report,
+    said: &mut dyn FnMut(&str),
+) {
+    let all = adapters();
+    if all.is_empty() {
+        return;
+    }
+    let sides = Sides::of(scene, task);
+    for (index, adapter) in all.iter().enumerate() {
+        for precision in [Precision::F32, Precision::F64] {
+            if precision == Precision::F64 && !adapter.shader_f64 {
+                let failure = format!("{}: no f64 in shaders", adapter.info.name);
+                report.failures.push(failure);
+                continue;
+            }
+            said(&format!("gpu {precision}, {}", adapter.info.name));
+            let name = match all.len() {
+                1 => format!("gpu {precision}"),
+                _ => format!("gpu {index} {precision}"),
+            };
+            if let Err(why) = engine(&sides, task, runs, report, name, (index, precision)) {
+                let failure = format!("{}, {precision}: {why}", adapter.info.name);
+                report.failures.push(failure);
+            }
+        }
+    }
+}
+
+/// What the engines are asked for.
+struct Sides {
+    method: Method,
+    all: Vec<Side>,
+}
+
+/// A whisker on one side.
+struct Side {
+    rods: [Rod; 1],
+    pushes: Vec<f64>,
+    references: Vec<Reference>,
+    /// Of each cell of the references, its shot in the task, if it has one.
+    shots: Vec<Option<usize>>,
+}
+
+impl Sides {
+    fn of(scene: &Scene, task: &Task) -> Self {
+        let method = Method::fine().with_effects(task.effects);
+        let all = faces(scene).into_iter().zip(&task.rods).enumerate();
+        let all = all.map(|(index, ((own, side), rod))| {
+            let distances = scene.grid.distance_mm.iter();
+            let distances: Vec<f64> = distances.map(|d| d / own.whisker.length_mm).collect();
+            let sheet = Sheet::new(method, rod, side, &distances);
+            let magnitudes = magnitudes(scene, side);
+            let rows = (0..distances.len()).map(|row| RowOfCells {
+                sheet: 0,
+                row,
+                pushes: &magnitudes,
+                first: 0,
+            });
+            let rows: Vec<RowOfCells> = rows.collect();
+            let by_row = references(method, &[&sheet], &rows);
+            let pushes: Vec<f64> = magnitudes.iter().map(|push| side.sign() * push).collect();
+            let shots = by_row.iter().enumerate().flat_map(|(row, references)| {
+                let cells = references.iter().flat_map(|reference| reference.cells.clone());
+                let pole = |cell: u32| sheet.rows[row].pole(pushes[cell as usize]);
+                cells.map(|cell| task.shot(index as u32, pole(cell))).collect::<Vec<_>>()
+            });
+            Side {
+                rods: [rod.clone()],
+                shots: shots.collect(),
+                references: by_row.into_iter().flatten().collect(),
+                pushes,
+            }
+        });
+        Self {
+            method,
+            all: all.collect(),
+        }
+    }
+
+    /// The states that `gpu` vouches for, `(tau, load)` by shot, and what its stages took.
+    fn solve(&self, gpu: &mut Gpu) -> Result<(Vec<(usize, (f64, f64))>, Stages), EngineError> {
+        let (mut points, mut stages) = (Vec::new(), Stages::default());
+        for side in &self.all {
+            let cells = gpu.solve(self.method, &side.rods, &side.pushes, &side.references)?;
+            let times = gpu.times().unwrap_or_default();
+            let ms = |duration: Duration| 1e3 * duration.as_secs_f64();
+            stages.upload += ms(times.upload);
+            stages.dispatch += ms(times.dispatch);
+            stages.waiting += ms(times.waiting);
+            stages.readback += ms(times.readback);
+            let references = side.references.iter();
+            let each = references.flat_map(|own| own.cells.clone().map(move |_| own));
+            for ((cell, reference), shot) in cells.iter().zip(each).zip(&side.shots) {
+                if let (Outcome::Solved, Some(shot)) = (cell.outcome, shot) {
+                    points.push((*shot, place(&side.rods[0], reference, cell)));
+                }
+            }
+        }
+        Ok((points, stages))
+    }
+}
+
+/// `(tau, load)` of a cell.
+fn place(rod: &Rod, reference: &Reference, cell: &CellDifference) -> (f64, f64) {
+    let [arc, _, force, ..] = cell.numbers.map(f64::from);
+    let tau = rod.tau(arclength(rod, reference.tau) + arc);
+    let load = (reference.state.full.force + force) / rod.radius(tau).powi(2);
+    (tau, load)
+}
+
+fn engine(
+    sides: &Sides,
+    task: &Task,
+    runs: usize,
+    report: &mut Report,
+    name: String,
+    (index, precision): (usize, Precision),
+) -> Result<(), EngineError> {
+    let start = Instant::now();
+    let mut gpu = Gpu::timed(index, precision)?;
+    if let Err(why) = gpu.can(task.effects) {
+        report.failures.push(format!("{name}: {why}"));
+        return Ok(());
+    }
+    sides.solve(&mut gpu)?;
+    let first_result_s = start.elapsed().as_secs_f64();
+    let engine = Engine {
+        name,
+        threads: None,
+        adapter: gpu.describe().adapter,
+        peak_gflops: 1e-9 * gpu.peak(runs)?,
+        first_result_s,
+    };
+    report.engines.push(engine.clone());
+    let mut stages = Vec::new();
+    let (seconds, points) = watch(runs, || {
+        let (points, of_run) = sides.solve(&mut gpu)?;
+        stages.push(of_run);
+        Ok::<_, EngineError>(points)
+    })?;
+    // The first run warms up.
+    let stages = Stages::medians(&stages[1..]);
+    let rung = Rung {
+        integrator: "differences",
+        steps: precision.resolution(sides.method.resolution).least,
+    };
+    let (shots, points): (Vec<usize>, Vec<(f64, f64)>) = points.into_iter().unzip();
+    let errors = task.only(&shots).errors(&points);
+    let row = Measurement::new(&engine, rung, seconds, stages, None, errors);
+    report.rows.push(row);
+    Ok(())
+}

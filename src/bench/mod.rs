@@ -1,6 +1,6 @@
 //! What accuracy costs in time: every engine of this machine, from coarse to exact, on the states of a scene.
 //!
-//! Engines are given the same shots and start from the same guesses, those of the lattice. Errors are those of the engine's
+//! The CPU is given shots, which start from the guesses of the lattice, a GPU the same cells with references of their rows. Errors are those of the engine's
 //! answers as far finer steps see them; times are medians, without the first run, which warms up.
 
 mod cpu;
@@ -40,12 +40,12 @@ pub struct Measurement {
     pub us_per_state: f64,
     /// States per second.
     pub states_per_s: f64,
-    /// Trajectories with first derivatives per second.
+    /// Trajectories per second.
     pub trajectories_per_s: f64,
-    /// Billions of floating-point operations per second in the integration.
-    pub gflops: f64,
+    /// Billions of floating-point operations per second in the integration, where they are counted: on the CPU.
+    pub gflops: Option<f64>,
     /// The same as a part of the device's measured peak.
-    pub of_peak: f64,
+    pub of_peak: Option<f64>,
     /// How far off the answers are.
     pub errors: Errors,
     /// Whether no other row is both faster and closer.
@@ -58,11 +58,12 @@ impl Measurement {
         rung: Rung,
         seconds: Timing,
         stages_ms: Stages,
-        work: Work,
+        work: Option<Work>,
         errors: Errors,
     ) -> Self {
         let states = errors.states as f64;
-        let gflops = 1e-9 * work.operations / seconds.median;
+        let trajectories = work.as_ref().map_or(states, |work| work.trajectories);
+        let gflops = work.map(|work| 1e-9 * work.operations / seconds.median);
         Self {
             engine: engine.name.clone(),
             threads: engine.threads,
@@ -71,9 +72,9 @@ impl Measurement {
             stages_ms,
             us_per_state: 1e6 * seconds.median / states,
             states_per_s: states / seconds.median,
-            trajectories_per_s: work.trajectories / seconds.median,
+            trajectories_per_s: trajectories / seconds.median,
             gflops,
-            of_peak: gflops / engine.peak_gflops,
+            of_peak: gflops.map(|gflops| gflops / engine.peak_gflops),
             errors,
             pareto: false,
         }
@@ -85,34 +86,27 @@ impl Measurement {
 pub struct Rung {
     /// The integrator of the engine.
     pub integrator: &'static str,
-    /// Its steps per trajectory: on the CPU those at the fold of a cylinder, fewer under less load; on a GPU all that there are,
-    /// or with measured radii those of a piece.
+    /// Its steps at the fold of a cylinder, fewer under less load.
     pub steps: u32,
-    /// Newton steps in `f64` after the engine.
-    pub newton_f64: usize,
 }
 
 impl fmt::Display for Rung {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} x{}", self.integrator, self.steps)?;
-        if self.newton_f64 > 0 {
-            write!(f, " + {} f64", self.newton_f64)?;
-        }
-        Ok(())
+        write!(f, "{} x{}", self.integrator, self.steps)
     }
 }
 
 /// Milliseconds per stage, medians of the runs; 0 where an engine has no such stage.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
 pub struct Stages {
-    /// Packing and handing to the device.
+    /// Trajectories of references, packing and handing to the device.
     pub upload: f64,
-    /// Shooting: by the device's own clock on a GPU that has one.
+    /// Solving: by the device's own clock on a GPU that has one.
     pub dispatch: f64,
+    /// Waiting for the device.
+    pub waiting: f64,
     /// Unpacking.
     pub readback: f64,
-    /// Newton steps in `f64` after the engine.
-    pub refine: f64,
 }
 
 impl Stages {
@@ -122,8 +116,8 @@ impl Stages {
         Self {
             upload: median(|run| run.upload),
             dispatch: median(|run| run.dispatch),
+            waiting: median(|run| run.waiting),
             readback: median(|run| run.readback),
-            refine: median(|run| run.refine),
         }
     }
 }
@@ -204,7 +198,7 @@ pub fn run(
         ..Report::default()
     };
     cpu::measure(&task, effort.runs, &mut report, said)?;
-    gpu::measure(&task, effort.runs, &mut report, said);
+    gpu::measure(&scene, &task, effort.runs, &mut report, said);
     said("detachments");
     report.detachments = detachment::measure(&scene, effort.runs);
     pareto::mark(&mut report.rows);

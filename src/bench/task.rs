@@ -9,8 +9,10 @@ use crate::scene::{Scene, Swept};
 use crate::sheet::Sheet;
 use crate::shooting::batch::{Batch, InitialCondition, Method};
 use crate::shooting::{Resolution, ShootingMap};
+use glam::DVec2;
 use rayon::prelude::*;
 use serde::Serialize;
+use std::collections::HashMap;
 
 /// Four times as many steps as [`Resolution::FINE`]: with order 8, errors that are 65,536 times smaller.
 pub const EXACT: Resolution = Resolution::FINE.doubled().doubled();
@@ -22,6 +24,11 @@ pub struct Task {
     pub shots: Vec<Shot>,
     /// The answers, `(tau, load)`.
     exact: Vec<(f64, f64)>,
+    by_pole: HashMap<(u32, [u64; 2]), usize>,
+}
+
+fn key(rod: u32, pole: DVec2) -> (u32, [u64; 2]) {
+    (rod, pole.to_array().map(f64::to_bits))
 }
 
 /// What a row's seconds were spent on.
@@ -42,6 +49,15 @@ pub fn faces(scene: &Scene) -> Vec<(Swept, Side)> {
     let sides = Plan::sides(scene);
     let both = |own: Swept| sides.iter().map(move |side| (own.clone(), *side));
     scene.whiskers().flat_map(both).collect()
+}
+
+/// The push angles of `scene` that are on `side`, growing magnitudes in radians.
+pub fn magnitudes(scene: &Scene, side: Side) -> Vec<f64> {
+    let pushes = scene.grid.push_angle_deg.iter();
+    let ours = pushes.filter(|push| Side::of_push(**push) == side);
+    let mut magnitudes: Vec<f64> = ours.map(|push| push.abs().to_radians()).collect();
+    magnitudes.sort_by(f64::total_cmp);
+    magnitudes
 }
 
 /// A number over all states.
@@ -115,11 +131,29 @@ impl Task {
             tolerance: 1e-13,
         };
         let exact = solver.solve(effects, &rods, &starts);
+        let by_pole = shots.iter().enumerate();
         Self {
             effects,
             exact: places(&exact),
+            by_pole: by_pole.map(|(i, shot)| (key(shot.rod, shot.pole), i)).collect(),
             rods,
             shots,
+        }
+    }
+
+    /// The shot of a rod toward this pole.
+    pub fn shot(&self, rod: u32, pole: DVec2) -> Option<usize> {
+        self.by_pole.get(&key(rod, pole)).copied()
+    }
+
+    /// Some of the shots alone.
+    pub fn only(&self, shots: &[usize]) -> Self {
+        Self {
+            effects: self.effects,
+            rods: self.rods.clone(),
+            shots: shots.iter().map(|i| self.shots[*i]).collect(),
+            exact: shots.iter().map(|i| self.exact[*i]).collect(),
+            by_pole: HashMap::new(),
         }
     }
 

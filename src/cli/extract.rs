@@ -1,17 +1,16 @@
 //! `whiskmap extract`.
 
-use super::failure::{Failure, say};
+use super::failure::Failure;
 use super::outputs::{create, unwritten};
-use super::selection::{At, Selection};
+use super::selection::{Selection, channels};
 use clap::Args;
 use serde::ser::{Serialize, SerializeStruct, Serializer};
 use std::io::{self, BufWriter, IntoInnerError, Write};
 use std::path::{Path, PathBuf};
-use std::str::FromStr;
 use whiskmap::integrate;
-use whiskmap::map::{Audit, Channels, EngineCells, Panel, STATE_CHANNELS};
-use whiskmap::scene::{Scene, Setup, digits};
-use whiskmap::store::{Description, MapWriter, Output, Samples, Stored, Table};
+use whiskmap::map::{Audit, Channels, EngineCells};
+use whiskmap::scene::{Scene, Setup};
+use whiskmap::store::{Description, MapWriter, Output, Samples, Slice, Table, ZarrStore};
 
 /// Options of `extract`.
 #[derive(Debug, Args)]
@@ -19,63 +18,45 @@ use whiskmap::store::{Description, MapWriter, Output, Samples, Stored, Table};
 Examples:
   whiskmap extract outputs/sweep.zarr --at taper=0.9 --at pole_radius_mm=0.25 -o slice.csv
   whiskmap extract outputs/sweep.zarr --at friction=0.2 --channel force_un -o force.npy
+  whiskmap extract outputs/sweep.zarr --at friction=0.2 -o slice.zarr
   whiskmap extract outputs/sweep.zarr -o map.exr
   whiskmap extract outputs/cone.exr --at distance_mm=15.66 --channel regime --channel force_un -o row.csv
 
 A table has a line for each cell, with the values of all axes first; a quantity that there is not is left empty. An array \
-has the axes that are left, in the order of the grid, then distance and push angle. A map has at most two sweep axes.")]
+has the axes that are left, in the order of the grid, then distance and push angle. A store keeps every axis, those of \
+--at with one value. A map has at most two sweep axes.")]
 pub struct Options {
     /// Map or store written by `whiskmap map`
     source: PathBuf,
-    /// Value of an axis to stay at: the nearest there is
-    #[arg(long, value_name = "AXIS=VALUE", value_parser = At::from_str, allow_hyphen_values = true)]
-    at: Vec<At>,
-    /// Take the values of --at alone, not the nearest
-    #[arg(long)]
-    exact: bool,
+    #[command(flatten)]
+    selection: Selection,
     /// Channel to extract, more than one if repeated [default: all]
     #[arg(long, value_name = "NAME")]
     channel: Vec<String>,
-    /// File to write: a table, an array of one channel or a map, by its ending .csv, .npy or .exr
+    /// What to write: a table, an array of one channel, a store or a map, by its ending .csv, .npy, .zarr or .exr
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
 }
 
 /// Runs `extract`.
 pub fn run(options: &Options) -> Result<(), Failure> {
-    let stored = Stored::open(&options.source)?;
-    let selection = Selection::new(stored.grid(), &options.at, options.exact)?;
-    let channels = channels(&stored, &options.channel)?;
+    let slice = options.selection.open(&options.source)?;
+    let channels = channels(&slice, &options.channel)?;
     let path = &options.output;
-    for (name, value) in &selection.taken {
-        say(&format!("{name} = {}", digits(*value)));
-    }
     match path.extension().and_then(|ending| ending.to_str()) {
-        Some("csv") => table(&stored, &selection, &channels, path)?,
-        Some("npy") => array(&stored, &selection, &channels, path)?,
-        Some("exr") => map(&stored, &selection, &channels, path)?,
-        _ => {
-            let path = path.display();
-            return Err(Failure::Input(format!(
-                "--output {path}: must end in .csv, .npy or .exr"
-            )));
-        }
+        Some("csv") => table(&slice, &channels, path)?,
+        Some("npy") => array(&slice, &channels, path)?,
+        Some("zarr") => store(&slice, &channels, path)?,
+        Some("exr") => map(&slice, &channels, path)?,
+        _ => return refuse(path, "must end in .csv, .npy, .zarr or .exr"),
     }
     writeln!(io::stdout(), "{}", path.display())?;
     Ok(())
 }
 
-/// The channels that were asked for, or all.
-fn channels(stored: &Stored, asked: &[String]) -> Result<Vec<&'static str>, Failure> {
-    let known = stored.channels();
-    if let Some(name) = asked.iter().find(|name| !known.contains(&name.as_str())) {
-        let known = known.join(", ");
-        return Err(Failure::Input(format!(
-            "--channel {name}: must be one of {known}"
-        )));
-    }
-    let is_wanted = |name: &&str| asked.is_empty() || asked.iter().any(|own| own == name);
-    Ok(known.into_iter().filter(is_wanted).collect())
+fn refuse(path: &Path, why: &str) -> Result<(), Failure> {
+    let path = path.display();
+    Err(Failure::Input(format!("--output {path}: {why}")))
 }
 
 /// A line of a table.
@@ -106,21 +87,20 @@ impl Serialize for Line<'_> {
     }
 }
 
-fn table(
-    stored: &Stored,
-    selection: &Selection,
-    channels: &[&'static str],
-    path: &Path,
-) -> Result<(), Failure> {
+fn table(slice: &Slice, channels: &[&'static str], path: &Path) -> Result<(), Failure> {
     let mut table = Table::new(create("--output", path)?);
-    let (grid, width) = (stored.grid(), stored.grid().push_angle_deg.len());
-    for whisker in selection.whiskers() {
-        let samples = read(stored, channels, whisker)?;
-        let place = selection.place(whisker);
-        for cell in selection.cells() {
+    let grid = slice.grid();
+    for whisker in slice.whiskers() {
+        let samples = channels.iter().map(|name| slice.read_panel(name, whisker));
+        let samples: Vec<Samples> = samples.collect::<Result<_, _>>()?;
+        let place = slice.place(whisker);
+        let rows = grid.distance_mm.iter();
+        let cells =
+            rows.flat_map(|row| grid.push_angle_deg.iter().map(move |column| (row, column)));
+        for (cell, (distance, push_angle)) in cells.enumerate() {
             let mut axes = place.clone();
-            axes.push(("distance_mm", grid.distance_mm[cell / width]));
-            axes.push(("push_angle_deg", grid.push_angle_deg[cell % width]));
+            axes.push(("distance_mm", *distance));
+            axes.push(("push_angle_deg", *push_angle));
             let line = Line {
                 axes: &axes,
                 channels,
@@ -133,45 +113,24 @@ fn table(
     table.finish().map_err(|cause| unwritten(path, cause))
 }
 
-/// The channels of a whisker.
-fn read(stored: &Stored, channels: &[&str], whisker: usize) -> Result<Vec<Samples>, Failure> {
-    let read = channels.iter().map(|name| stored.read_panel(name, whisker));
-    Ok(read.collect::<Result<_, _>>()?)
-}
-
-fn array(
-    stored: &Stored,
-    selection: &Selection,
-    channels: &[&'static str],
-    path: &Path,
-) -> Result<(), Failure> {
+fn array(slice: &Slice, channels: &[&'static str], path: &Path) -> Result<(), Failure> {
     let [channel] = channels else {
-        return Err(Failure::Input(format!(
-            "--output {}: an array has one channel; give one --channel",
-            path.display()
-        )));
+        return refuse(path, "an array has one channel; give one --channel");
     };
     let mut file = BufWriter::new(create("--output", path)?);
-    for (number, whisker) in selection.whiskers().into_iter().enumerate() {
-        let samples = stored.read_panel(channel, whisker)?;
-        let (kind, bytes): (_, Vec<u8>) = match &samples {
-            Samples::F32(values) => {
-                let cells = selection.cells();
-                (
-                    "<f4",
-                    cells.flat_map(|cell| values[cell].to_le_bytes()).collect(),
-                )
-            }
-            Samples::U32(codes) => {
-                let cells = selection.cells();
-                (
-                    "<u4",
-                    cells.flat_map(|cell| codes[cell].to_le_bytes()).collect(),
-                )
-            }
+    for (number, whisker) in slice.whiskers().into_iter().enumerate() {
+        let (kind, bytes): (_, Vec<u8>) = match slice.read_panel(channel, whisker)? {
+            Samples::F32(values) => (
+                "<f4",
+                values.into_iter().flat_map(f32::to_le_bytes).collect(),
+            ),
+            Samples::U32(codes) => (
+                "<u4",
+                codes.into_iter().flat_map(u32::to_le_bytes).collect(),
+            ),
         };
         let header = if number == 0 {
-            npy(kind, &selection.shape())
+            npy(kind, &slice.shape())
         } else {
             Vec::new()
         };
@@ -197,91 +156,97 @@ fn npy(kind: &str, shape: &[usize]) -> Vec<u8> {
     header
 }
 
-fn map(
-    stored: &Stored,
-    selection: &Selection,
-    channels: &[&'static str],
-    path: &Path,
-) -> Result<(), Failure> {
-    if let Some(missing) = ["regime", "status"]
-        .iter()
-        .find(|name| !channels.contains(*name))
-    {
-        let path = path.display();
-        return Err(Failure::Input(format!(
-            "--output {path}: a map needs the channel {missing}; name a .csv or .npy"
-        )));
+fn map(slice: &Slice, channels: &[&'static str], path: &Path) -> Result<(), Failure> {
+    let missing = ["regime", "status"]
+        .into_iter()
+        .find(|name| !channels.contains(name));
+    if let Some(missing) = missing {
+        let why = format!("a map needs the channel {missing}; name a .csv or .npy");
+        return refuse(path, &why);
     }
-    let axes: Vec<&str> = selection
-        .grid
-        .sweep
-        .iter()
-        .map(|axis| axis.parameter.axis())
-        .collect();
+    let sweep = slice.grid().sweep.iter();
+    let axes: Vec<&str> = sweep.map(|axis| axis.parameter.axis()).collect();
     if axes.len() > 2 {
-        return Err(Failure::Input(format!(
-            "--output {}: a map has room for two sweep axes, there are {}; give --at for the others",
-            path.display(),
-            axes.join(", ")
-        )));
+        let axes = axes.join(", ");
+        let why = format!(
+            "a map has room for two sweep axes, there are {axes}; give --at for the others"
+        );
+        return refuse(path, &why);
     }
-    let text = |name: &str| -> Result<String, Failure> {
-        let text = stored.attribute(name)?;
-        Ok(text.as_str().unwrap_or_default().to_owned())
-    };
-    let scene = Scene::parse(&text("scene")?, "the scene of the map")?;
-    let taken = selection.taken.iter();
-    let taken = taken.map(|(name, value)| format!(", {name} = {}", digits(*value)));
+    let (scene, origin) = (scene(slice)?, Origin::of(slice)?);
     let scene = Setup {
-        grid: selection.grid.clone(),
-        title: std::iter::once(stored.title().to_owned())
-            .chain(taken)
-            .collect(),
+        grid: slice.grid().clone(),
         ..Setup::clone(&scene)
     };
-    let about = Description {
-        scene: &scene,
-        engine: &integrate::Description {
-            engine: text("engine")?,
-            adapter: text("adapter").unwrap_or_default(),
-        },
-        tolerances: &stored.attribute("tolerances")?,
-        channels: Channels::those(|name| channels.contains(&name)),
-    };
+    let about = origin.describe(&scene, Channels::those(|name| channels.contains(&name)));
     let mut writer = MapWriter::create(path, &about)?;
-    for index in 0..selection.grid.whisker_count() {
-        let samples = read(stored, channels, selection.whisker(index))?;
-        let panel = panel(selection, channels, &samples, about.channels);
-        writer.write_panels(&[panel])?;
+    for whisker in 0..slice.grid().whisker_count() {
+        writer.write_panels(&[slice.panel(about.channels, whisker)?])?;
     }
     writer.finish(EngineCells::default(), Audit::default())?;
     Ok(())
 }
 
-/// The panel of a whisker, as far as its channels are known.
-fn panel(selection: &Selection, channels: &[&str], samples: &[Samples], chosen: Channels) -> Panel {
-    let cells: Vec<usize> = selection.cells().collect();
-    let mut panel = Panel::unresolved(cells.len(), chosen);
-    for (name, samples) in channels.iter().zip(samples) {
-        let state = STATE_CHANNELS.iter().position(|own| own == name);
-        match (samples, *name, state) {
-            (Samples::U32(codes), name, _) => {
-                let codes = cells.iter().map(|cell| codes[*cell]).collect();
-                match name {
-                    "regime" => panel.regime = codes,
-                    "status" => panel.status = codes,
-                    _ => panel.newton_steps = codes,
-                }
-            }
-            (Samples::F32(values), name, state) => {
-                let values = cells.iter().map(|cell| values[*cell]).collect();
-                match (name, state) {
-                    (_, Some(place)) => panel.state[place] = values,
-                    ("margin_deg", _) => panel.margin_deg = values,
-                    _ => panel.residual = values,
-                }
-            }
+fn store(slice: &Slice, channels: &[&'static str], path: &Path) -> Result<(), Failure> {
+    if !slice.channels().contains(&"regime") {
+        return refuse(
+            path,
+            "a store needs the channel regime; name a .csv or .npy",
+        );
+    }
+    let (scene, origin) = (scene(slice)?, Origin::of(slice)?);
+    let chosen = Channels::those(|name| channels.contains(&name));
+    let about = origin.describe(&scene, chosen.with("regime"));
+    let store = ZarrStore::begin(path, &scene, &about, true)?;
+    for block in 0..store.block_count() {
+        let whiskers = store.whiskers(block);
+        let panels = whiskers.map(|whisker| slice.panel(about.channels, whisker));
+        store.write(block, &panels.collect::<Result<Vec<_>, _>>()?)?;
+    }
+    Ok(())
+}
+
+/// The scene of the slice, in which each chosen axis has one value.
+fn scene(slice: &Slice) -> Result<Scene, Failure> {
+    let text = slice.stored().attribute("scene")?;
+    let text = text.as_str().unwrap_or_default();
+    let mut scene = Scene::parse(text, "the scene of the map")?;
+    scene = scene.with("title", slice.title())?;
+    for (axis, value) in slice.chosen() {
+        scene = scene.with(&format!("grid.{axis}"), [*value])?;
+    }
+    Ok(scene)
+}
+
+/// What computed the whole, and how exactly.
+struct Origin {
+    engine: integrate::Description,
+    tolerances: serde_json::Value,
+}
+
+impl Origin {
+    fn of(slice: &Slice) -> Result<Self, Failure> {
+        let text = |name: &str| {
+            let text = slice.stored().attribute(name)?;
+            Ok::<_, whiskmap::store::Error>(text.as_str().unwrap_or_default().to_owned())
+        };
+        let engine = integrate::Description {
+            engine: text("engine")?,
+            // A store, which many machines may have filled, has none.
+            adapter: text("adapter").unwrap_or_default(),
+        };
+        Ok(Self {
+            engine,
+            tolerances: slice.stored().attribute("tolerances")?,
+        })
+    }
+
+    fn describe<'a>(&'a self, scene: &'a Setup, channels: Channels) -> Description<'a> {
+        Description {
+            scene,
+            engine: &self.engine,
+            tolerances: &self.tolerances,
+            channels,
         }
     }
-    panel
 }

@@ -75,7 +75,8 @@ impl Failure {
         let is_input = match self {
             Self::Scene(_) | Self::Points(_) | Self::Plan(_) | Self::Input(_) => true,
             Self::Fit(error) => !matches!(error, fit::Error::NotConverged(_)),
-            Self::Store(store::Error::Encode(..)) | Self::Render(render::Error::Scale(_)) => true,
+            Self::Store(store::Error::Encode(..))
+            | Self::Render(render::Error::Scale(_) | render::Error::TooManyAxes(_)) => true,
             Self::Store(error) | Self::Render(render::Error::Store(error)) => error.is_unreadable(),
             _ => false,
         };

@@ -148,7 +148,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         say(&format!("warning: {failure}; the CPU went on in its stead"));
     }
     if let Some(picture) = &picture {
-        let regimes = render::map(&StoredMap::open(&file)?, &MapOptions::default())?;
+        let regimes = render::map(&StoredMap::open(&file)?.into(), &MapOptions::default())?;
         save(&regimes, picture, Format::Png)?;
     }
     let written: Vec<PathBuf> = [Some(file), picture].into_iter().flatten().collect();

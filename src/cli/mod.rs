@@ -30,6 +30,7 @@ mod sharded;
 mod side;
 mod signals;
 mod status;
+mod submit;
 mod summary;
 mod theory;
 mod tolerance;
@@ -54,6 +55,7 @@ Examples:
   whiskmap map scenes/cone.toml --engine gpu       the same, shot by the GPU
   whiskmap map scenes/morphology.toml --format zarr --shard 0/8   an eighth of a store that many processes fill
   whiskmap status outputs/morphology.zarr          what it has, and what it lacks
+  whiskmap submit scenes/morphology.toml --shards 8 > sweep.sbatch     the same as a job array for Slurm
   whiskmap extract outputs/morphology.zarr --at taper=0.5 -o slice.csv
   whiskmap plan scenes/cone.toml                   what that would take, without doing it
   whiskmap render outputs/cone.exr --channel force_un
@@ -79,6 +81,8 @@ enum Command {
     Extract(extract::Options),
     /// Say what a store has, and what it lacks
     Status(status::Options),
+    /// Write a job array for Slurm that fills a store
+    Submit(submit::Options),
     /// Draw a stored map again, its regimes or any channel
     Render(render::Options),
     /// Compute the exact detachment curve of a scene, as CSV, PNG or SVG
@@ -137,6 +141,7 @@ fn run(command: &Command) -> Result<(), Failure> {
         Command::Plan(options) => plan::run(options),
         Command::Extract(options) => extract::run(options),
         Command::Status(options) => status::run(options),
+        Command::Submit(options) => submit::run(options),
         Command::Render(options) => render::run(options),
         Command::Curve(options) => curve::run(options),
         Command::Fit(options) => fit::run(options),

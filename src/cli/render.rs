@@ -1,14 +1,15 @@
 //! `whiskmap render`.
 
-use super::failure::{Failure, say};
+use super::failure::Failure;
 use super::numbers::whole;
 use super::outputs::create;
 use super::picture::{save, warn_of_boxes};
+use super::selection::{Selection, channels};
 use clap::Args;
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use whiskmap::render::{self, Format, MapOptions};
-use whiskmap::store::StoredMap;
+use whiskmap::store::Slice;
 
 /// Options of `render`.
 #[derive(Debug, Args)]
@@ -19,12 +20,15 @@ Examples:
   whiskmap render outputs/cone.exr --channel force_un -o force.png --width 3000
   whiskmap render outputs/cone.exr --channel force_un --log --range 1,1000
   whiskmap render outputs/cone.exr -o - | display
+  whiskmap render outputs/sweep.zarr --at pole_radius_mm=0.25 --at friction=0.2
 
-An SVG has the cells as pixels, and text and lines as such. The ends of --range are in the unit that the channel's \
+A picture has at most two sweep axes: choose a value of each other one by --at. An SVG has the cells as pixels, and text and lines as such. The ends of --range are in the unit that the channel's \
 name ends in; the colour bar shows them in the unit that suits them.")]
 pub struct Options {
-    /// Map written by `whiskmap map`
+    /// Map or store written by `whiskmap map`
     file: PathBuf,
+    #[command(flatten)]
+    selection: Selection,
     /// Channel to draw with a colour bar; without it the regimes are drawn
     #[arg(long, value_name = "NAME")]
     channel: Option<String>,
@@ -37,8 +41,8 @@ pub struct Options {
     /// Width of the picture in pixels, from 300 to 8000 [default: by the map, about 1500]
     #[arg(long, value_name = "PX", value_parser = whole(300..=8000))]
     width: Option<u32>,
-    /// Picture to write, PNG or SVG by its ending; - is PNG on standard output [default: FILE.png or FILE.NAME.png
-    /// beside the map]
+    /// Picture to write, PNG or SVG by its ending; - is PNG on standard output [default: beside the map, by its
+    /// name, those of --at and the channel's]
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
 }
@@ -54,24 +58,9 @@ fn range(text: &str) -> Result<[f64; 2], String> {
 
 /// Runs `render`.
 pub fn run(options: &Options) -> Result<(), Failure> {
-    let map = StoredMap::open(&options.file)?;
-    if let Some(version) = map.foreign_version() {
-        let file = options.file.display();
-        say(&format!(
-            "warning: {file} was written by whiskmap {version}, not by {}; what it holds may mean something else",
-            env!("CARGO_PKG_VERSION")
-        ));
-    }
-    let channels = map.channels();
-    if let Some(name) = &options.channel
-        && !channels.contains(&name.as_str())
-    {
-        let channels = channels.join(", ");
-        return Err(Failure::Input(format!(
-            "--channel {name}: must be one of {channels}"
-        )));
-    }
-    let target = target(options)?;
+    let map = options.selection.open(&options.file)?;
+    channels(&map, options.channel.as_slice())?;
+    let target = target(options, &map)?;
     let picture = render::map(
         &map,
         &MapOptions {
@@ -94,11 +83,13 @@ pub fn run(options: &Options) -> Result<(), Failure> {
 }
 
 /// The file to write and its format, found to be possible; `None` is standard output.
-fn target(options: &Options) -> Result<Option<(PathBuf, Format)>, Failure> {
+fn target(options: &Options, map: &Slice) -> Result<Option<(PathBuf, Format)>, Failure> {
     let path = options.output.clone().unwrap_or_else(|| {
-        let name = options.channel.as_ref();
-        let ending = name.map_or("png".to_owned(), |name| format!("{name}.png"));
-        options.file.with_extension(ending)
+        let chosen = map.readable();
+        let chosen = chosen.map(|(name, value)| format!("{name}={value}"));
+        let parts = chosen.chain(options.channel.clone());
+        let parts: Vec<String> = parts.chain(["png".to_owned()]).collect();
+        options.file.with_extension(parts.join("."))
     });
     let refuse = |why: &str| {
         let path = path.display();

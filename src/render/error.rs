@@ -11,6 +11,11 @@ pub enum Error {
     /// The wanted colour scale cannot be had; the text says why, and what is allowed.
     #[error("{0}")]
     Scale(String),
+    /// A picture has room for two sweep axes; those that there are.
+    #[error(
+        "a picture has room for two sweep axes, there are {0}; choose a value of each other one by --at"
+    )]
+    TooManyAxes(String),
     /// The pixels cannot be encoded.
     #[error("cannot encode the picture as PNG: {0}")]
     Encode(#[from] png::EncodingError),

@@ -43,6 +43,9 @@ pub enum Error {
     /// A folder of Zarr that this program did not write, and what is missing or different.
     #[error("{folder} is not a store of whiskmap: {1}", folder = .0.display())]
     NotAStore(PathBuf, String),
+    /// A file of a block that has not been computed, or is lost.
+    #[error("{file} is not there: the store is not complete; `map --resume` goes on with it", file = .0.display())]
+    NotComputed(PathBuf),
     /// The codecs of Zarr refused.
     #[error("cannot pack {file}: {1}", file = .0.display())]
     Pack(PathBuf, String),
@@ -127,6 +130,7 @@ impl Error {
                 | Self::Exists(_)
                 | Self::AtOdds { .. }
                 | Self::NotAStore(..)
+                | Self::NotComputed(_)
         )
     }
 }

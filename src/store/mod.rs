@@ -16,7 +16,7 @@ mod header;
 mod layout;
 mod output;
 mod reader;
-#[cfg(feature = "zarr")]
+mod slice;
 mod stored;
 mod table;
 mod tally;
@@ -30,7 +30,7 @@ pub use error::Error;
 pub use layout::Layout;
 pub use output::Output;
 pub use reader::{MapHeader, Samples, StoredMap};
-#[cfg(feature = "zarr")]
+pub use slice::{At, NoChoice, Slice};
 pub use stored::Stored;
 pub use table::Table;
 pub use tally::Counts;

@@ -8,7 +8,7 @@ use exr::block::UncompressedBlock;
 use exr::block::chunk::Chunk;
 use exr::meta::attribute::SampleType;
 use exr::meta::{MetaData, OffsetTables};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs::File;
 use std::io::{self, BufReader, Seek, SeekFrom};
 use std::ops::{Deref, Range};
@@ -62,7 +62,6 @@ pub struct MapHeader {
     pub status_names: BTreeMap<u32, String>,
     /// What the map holds.
     pub counts: Counts,
-    version: String,
 }
 
 /// A map on disk whose header has been read and checked. It reads like its [`MapHeader`].
@@ -104,7 +103,6 @@ impl StoredMap {
             offsets: header::read_offsets(path, &mut file, &meta)?,
             header: MapHeader {
                 title: header::parse(&meta, "title").map_err(&foreign)?,
-                version: header::parse(&meta, "whiskmap_version").map_err(&foreign)?,
                 regime_names: header::parse(&meta, "regime_names").map_err(&foreign)?,
                 status_names: header::parse(&meta, "status_names").map_err(&foreign)?,
                 counts: header::parse(&meta, "counts").map_err(&foreign)?,
@@ -117,11 +115,15 @@ impl StoredMap {
         })
     }
 
-    /// The version of the program that wrote the map, if it is not compatible with this one.
-    #[must_use]
-    pub fn foreign_version(&self) -> Option<&str> {
-        let own = series(env!("CARGO_PKG_VERSION"));
-        Some(&*self.version).filter(|version| series(version) != own)
+    /// The codes of `regime` or `status` that occur, as the header has counted them.
+    pub(super) fn codes(&self, channel: &str) -> BTreeSet<u32> {
+        let (names, cells) = match channel {
+            "regime" => (&self.regime_names, &self.counts.regimes),
+            _ => (&self.status_names, &self.counts.statuses),
+        };
+        let occurs = |name: &String| cells.get(name).is_some_and(|cells| *cells > 0);
+        let present = names.iter().filter(|(_, name)| occurs(name));
+        present.map(|(code, _)| *code).collect()
     }
 
     /// Any attribute, such as `tolerances`; a text, such as `scene` or `adapter`, is a JSON string.
@@ -232,11 +234,4 @@ fn open(path: &Path) -> Result<BufReader<File>, Error> {
     }
     let file = File::open(path).map_err(Error::at(path, Error::Read))?;
     Ok(BufReader::new(file))
-}
-
-/// What compatible versions have in common: the numbers up to the first that is not 0.
-fn series(version: &str) -> Vec<&str> {
-    let zeros = version.split('.').take_while(|number| *number == "0");
-    let length = zeros.count() + 1;
-    version.split('.').take(length).collect()
 }

@@ -1,8 +1,11 @@
 //! What is at a path, a map or a store: both are read panel by panel.
 
-use super::{Error, Samples, StoredMap, ZarrStore};
+use super::{Error, Samples, StoredMap};
+#[cfg(feature = "zarr")]
+use super::{ZarrStore, tally};
 use crate::scene::Grid;
 use serde_json::Value;
+use std::collections::BTreeMap;
 use std::path::Path;
 
 /// A map or a store.
@@ -11,6 +14,7 @@ pub enum Stored {
     /// An EXR file.
     Exr(Box<StoredMap>),
     /// A Zarr store.
+    #[cfg(feature = "zarr")]
     Zarr(Box<ZarrStore>),
 }
 
@@ -21,11 +25,11 @@ impl Stored {
     ///
     /// It cannot be read, or is not of this program.
     pub fn open(path: &Path) -> Result<Self, Error> {
-        Ok(if path.is_dir() {
-            Self::Zarr(Box::new(ZarrStore::open(path)?))
-        } else {
-            Self::Exr(Box::new(StoredMap::open(path)?))
-        })
+        #[cfg(feature = "zarr")]
+        if path.is_dir() {
+            return Ok(Self::Zarr(Box::new(ZarrStore::open(path)?)));
+        }
+        Ok(Self::Exr(Box::new(StoredMap::open(path)?)))
     }
 
     /// One line for people.
@@ -33,6 +37,7 @@ impl Stored {
     pub fn title(&self) -> &str {
         match self {
             Self::Exr(map) => &map.title,
+            #[cfg(feature = "zarr")]
             Self::Zarr(store) => store.title(),
         }
     }
@@ -42,6 +47,7 @@ impl Stored {
     pub fn grid(&self) -> &Grid {
         match self {
             Self::Exr(map) => &map.grid,
+            #[cfg(feature = "zarr")]
             Self::Zarr(store) => store.grid(),
         }
     }
@@ -51,6 +57,7 @@ impl Stored {
     pub fn channels(&self) -> Vec<&'static str> {
         match self {
             Self::Exr(map) => map.channels(),
+            #[cfg(feature = "zarr")]
             Self::Zarr(store) => store.channels().names().collect(),
         }
     }
@@ -63,7 +70,38 @@ impl Stored {
     pub fn attribute(&self, name: &str) -> Result<Value, Error> {
         match self {
             Self::Exr(map) => map.attribute(name),
+            #[cfg(feature = "zarr")]
             Self::Zarr(store) => store.attribute(name),
+        }
+    }
+
+    /// The version of the program that wrote it, if that is not compatible with this one.
+    ///
+    /// # Errors
+    ///
+    /// It does not say.
+    pub fn foreign_version(&self) -> Result<Option<String>, Error> {
+        let version = self.attribute("whiskmap_version")?;
+        let version = version.as_str().unwrap_or_default();
+        let is_ours = series(version) == series(env!("CARGO_PKG_VERSION"));
+        Ok((!is_ours).then(|| version.to_owned()))
+    }
+
+    /// The names of the codes of a channel that is made of codes.
+    #[must_use]
+    pub fn names(&self, channel: &str) -> Option<BTreeMap<u32, String>> {
+        let [regimes, statuses] = match self {
+            Self::Exr(map) => [map.regime_names.clone(), map.status_names.clone()],
+            #[cfg(feature = "zarr")]
+            Self::Zarr(_) => [tally::regimes(), tally::statuses()].map(|names| {
+                let names = names.into_iter();
+                names.map(|(code, name)| (code, name.to_owned())).collect()
+            }),
+        };
+        match channel {
+            "regime" => Some(regimes),
+            "status" => Some(statuses),
+            _ => None,
         }
     }
 
@@ -75,7 +113,15 @@ impl Stored {
     pub fn read_panel(&self, name: &str, whisker: usize) -> Result<Samples, Error> {
         match self {
             Self::Exr(map) => map.read_panel(name, whisker),
+            #[cfg(feature = "zarr")]
             Self::Zarr(store) => store.read_panel(name, whisker),
         }
     }
+}
+
+/// What compatible versions have in common: the numbers up to the first that is not 0.
+fn series(version: &str) -> Vec<&str> {
+    let zeros = version.split('.').take_while(|number| *number == "0");
+    let length = zeros.count() + 1;
+    version.split('.').take(length).collect()
 }

@@ -1,10 +1,11 @@
 //! Temporary files, which nobody should ever find: they vanish when dropped, when the process is interrupted, and, after it
-//! was killed, when the next one writes into their folder.
+//! was killed, when the next one writes into their folder: one of the same host at once, one of another after a day.
 
-use std::fs::{self, File};
+use std::fs::{self, DirEntry, File, Metadata};
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
 use tempfile::NamedTempFile;
 
 /// A temporary file on its way to its name.
@@ -45,7 +46,6 @@ impl Unfinished {
     /// A new file in `folder`, from which those that killed runs have left are removed.
     pub(super) fn create(folder: &Path) -> io::Result<Self> {
         let prefix = prefix();
-        sweep(folder, &prefix);
         let mut options = File::options();
         options.read(true).write(true).create_new(true);
         loop {
@@ -61,6 +61,7 @@ impl Unfinished {
             let _ = file.as_file().lock();
             // Before it was locked, another process may have taken it for a leftover.
             if !matches!(file.path().try_exists(), Ok(false)) {
+                sweep(folder, &prefix, file.as_file());
                 return Ok(Self {
                     file,
                     _listed: listed,
@@ -80,18 +81,24 @@ impl Unfinished {
     }
 }
 
-/// Removes what killed runs have left in `folder`.
-#[cfg(feature = "zarr")]
-pub(super) fn sweep_folder(folder: &Path) {
-    sweep(folder, &prefix());
-}
+/// A file of another host to which nothing was written for so long is taken for a leftover.
+const ABANDONED: Duration = Duration::from_secs(24 * 3600);
 
-/// Removes the files of this host in `folder` whose process is gone: its lock is.
-fn sweep(folder: &Path, prefix: &str) {
+/// Removes the files in `folder` whose process is gone. One of this host has lost its lock then. Locks of other hosts may not be
+/// seen here, so their files must be old, too: older than `own`, which is new, by the clock that dates both.
+fn sweep(folder: &Path, prefix: &str, own: &File) {
+    let modified = |about: io::Result<Metadata>| about.and_then(|about| about.modified()).ok();
+    let now = modified(own.metadata());
+    let is_abandoned = |entry: &DirEntry| {
+        let age = now.zip(modified(entry.metadata()));
+        let age = age.and_then(|(now, then)| now.duration_since(then).ok());
+        age.is_some_and(|age| age > ABANDONED)
+    };
     for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
         let name = entry.file_name();
-        let is_ours = name.to_str().is_some_and(|name| name.starts_with(prefix));
-        if !is_ours || !entry.file_type().is_ok_and(|kind| kind.is_file()) {
+        let begins = |with: &str| name.to_str().is_some_and(|name| name.starts_with(with));
+        let is_gone = begins(prefix) || begins(PREFIX) && is_abandoned(&entry);
+        if !is_gone || !entry.file_type().is_ok_and(|kind| kind.is_file()) {
             continue;
         }
         // Kept open, and so locked, until it is removed.
@@ -102,7 +109,10 @@ fn sweep(folder: &Path, prefix: &str) {
     }
 }
 
-/// How the names begin. They name the host, because there are shared folders whose locks only one host sees.
+/// How the names of all hosts begin.
+const PREFIX: &str = ".whiskmap-";
+
+/// How the names of this host begin. They name the host, because there are shared folders whose locks only one host sees.
 fn prefix() -> String {
     #[cfg(unix)]
     let host = rustix::system::uname()
@@ -113,5 +123,5 @@ fn prefix() -> String {
     let host = std::env::var("COMPUTERNAME").unwrap_or_default();
     let plain = |c: &char| c.is_ascii_alphanumeric() || "-_.".contains(*c);
     let host: String = host.chars().filter(plain).take(64).collect();
-    format!(".whiskmap-{host}-")
+    format!("{PREFIX}{host}-")
 }

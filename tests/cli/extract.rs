@@ -3,6 +3,7 @@
 use crate::Place;
 use crate::store::{SWEEP, good};
 use std::fs;
+use whiskmap::scene::Parameter;
 use whiskmap::store::{StoredMap, ZarrStore};
 
 /// Values of a table or a list of bytes against those of the store.
@@ -81,7 +82,7 @@ fn a_slice_is_what_the_store_has_there() {
             "room for two sweep axes, there are taper, friction, pole_radius_mm",
         ),
         (&["-o", "s.npy"], "give one --channel"),
-        (&["-o", "s.txt"], "must end in .csv, .npy or .exr"),
+        (&["-o", "s.txt"], "must end in .csv, .npy, .zarr or .exr"),
         (
             &["--at=colour=1", "-o", "s.csv"],
             "--at colour: must be one of the axes, taper, friction",
@@ -89,7 +90,7 @@ fn a_slice_is_what_the_store_has_there() {
         (&["--at=taper", "-o", "s.csv"], "must be AXIS=VALUE"),
         (
             &["--at=taper=0.6", "--exact", "-o", "s.csv"],
-            "--at taper=0.6: is no value of the axis, and --exact is given; the nearest is 0.5",
+            "--at taper: 0.6 is no value of the axis; the nearest is 0.5",
         ),
         (
             &["--channel=force", "-o", "s.csv"],
@@ -142,4 +143,89 @@ fn a_map_of_a_slice_can_be_drawn() {
             .columns,
         4
     );
+}
+
+/// A store of a slice is one like any other: it says which scene it is of, and can be sliced and drawn again.
+#[test]
+fn a_store_of_a_slice_has_the_values_of_the_whole() {
+    let place = Place::with(SWEEP);
+    good(&place, ".", &[]);
+    let extract = |from: &str, arguments: &[&str]| {
+        let run = place.run(&[&["extract", from], arguments].concat());
+        assert_eq!(run.code, Some(0), "{run:?}");
+    };
+    let at = [
+        "--at=friction=0.2",
+        "--at=distance_mm=5.1",
+        "-o",
+        "slice.zarr",
+    ];
+    extract("scene.zarr", &at);
+    let status = place.run(&["status", "slice.zarr", "--verify"]);
+    assert_eq!((status.code, &*status.err), (Some(0), ""), "{status:?}");
+    let [whole, slice] =
+        ["scene.zarr", "slice.zarr"].map(|name| ZarrStore::open(&place.path(name)).unwrap());
+    let row = whole
+        .grid()
+        .distance_mm
+        .iter()
+        .position(|d| (d - 5.1).abs() < 0.1);
+    let row = row.unwrap();
+    assert_eq!(
+        slice.grid().distance_mm,
+        whole.grid().distance_mm[row..=row]
+    );
+    assert_eq!(slice.grid().axis(Parameter::Friction), Some(&[0.3][..]));
+    assert!(
+        slice
+            .title()
+            .starts_with("A sweep in blocks, friction = 0.3, distance_mm = 5.143")
+    );
+    assert_eq!(slice.channels(), whole.channels());
+    for name in slice.channels().names() {
+        for whisker in 0..12 {
+            let own = slice.read_panel(name, whisker).unwrap();
+            let from = whole
+                .read_panel(name, whisker % 3 + 3 + whisker / 3 * 6)
+                .unwrap();
+            let mut pairs = own.values().zip(from.values().skip(row * 64));
+            let same = pairs.all(|(a, b)| a == b || a.is_nan() && b.is_nan());
+            assert!(same, "{name}, whisker {whisker}");
+        }
+    }
+
+    // Of the slice, of a map, twice the same; but not another one in its place.
+    extract(
+        "slice.zarr",
+        &["--at=taper=1", "--exact", "-o", "again.zarr"],
+    );
+    extract(
+        "scene.zarr",
+        &["--at=taper=1", "--at=friction=0.3", "-o", "map.exr"],
+    );
+    for channel in [&[][..], &["--channel=force_un"]] {
+        let of_map = [&["--at=push_angle_deg=-70", "-o", "map.zarr"], channel].concat();
+        extract("map.exr", &of_map);
+        extract("map.exr", &of_map);
+        let other = [
+            "extract",
+            "map.exr",
+            "--at=push_angle_deg=70",
+            "-o",
+            "map.zarr",
+        ];
+        let run = place.run(&[&other, channel].concat());
+        run.assert_said(2, "map.zarr was begun with another scene");
+        run.assert_said(2, "push_angle_deg = -70\" there");
+        fs::remove_dir_all(place.path("map.zarr")).unwrap();
+    }
+    let draw = [
+        "render",
+        "again.zarr",
+        "--at=friction=0.3",
+        "--at=taper=1",
+        "-o",
+        "a.png",
+    ];
+    assert_eq!(place.run(&draw).code, Some(0));
 }

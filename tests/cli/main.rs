@@ -25,6 +25,8 @@ mod shape;
 mod signals;
 #[cfg(unix)]
 mod store;
+#[cfg(unix)]
+mod submit;
 mod sweep;
 mod tolerance;
 mod traces;

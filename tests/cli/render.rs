@@ -43,6 +43,75 @@ fn every_channel_can_be_drawn() {
     );
 }
 
+/// A part of a store is drawn like the map of that part.
+#[cfg(unix)]
+#[test]
+fn stores_and_parts_are_drawn_like_maps() {
+    let place = Place::with(crate::store::SWEEP);
+    crate::store::good(&place, ".", &[]);
+    let run = |arguments: &[&str]| {
+        let run = place.run(arguments);
+        assert_eq!(run.code, Some(0), "{run:?}");
+        run
+    };
+    let at = ["--at=friction=0.2", "--at=taper=0.5"];
+    run(&[&["extract", "scene.zarr", "-o", "part.exr"], &at[..]].concat());
+    for channel in [
+        &[][..],
+        &["--channel=status"],
+        &["--channel=force_un", "--log"],
+    ] {
+        run(&[&["render", "part.exr", "-o", "part.png"], channel].concat());
+        let drawn = [
+            &["render", "scene.zarr", "-o", "drawn.png"],
+            &at[..],
+            channel,
+        ]
+        .concat();
+        assert_eq!(run(&drawn).err, "friction = 0.3\ntaper = 0.5\n");
+        assert!(
+            place.bytes("drawn.png") == place.bytes("part.png"),
+            "{channel:?}"
+        );
+    }
+    // One whisker of a map of several, and one distance.
+    run(&[
+        "extract",
+        "scene.zarr",
+        "--at=friction=0",
+        "-o",
+        "whole.exr",
+    ]);
+    for at in ["--at=taper=1", "--at=distance_mm=5"] {
+        run(&["extract", "whole.exr", at, "-o", "part.exr"]);
+        run(&["render", "part.exr", "-o", "part.png"]);
+        run(&["render", "whole.exr", at, "-o", "drawn.png"]);
+        assert!(place.bytes("drawn.png") == place.bytes("part.png"), "{at}");
+    }
+    let beside = run(&[
+        "render",
+        "scene.zarr",
+        "--at=friction=0.3",
+        "--channel=force_un",
+    ]);
+    assert_eq!(beside.out, "scene.friction=0.3.force_un.png\n");
+
+    place.run(&["render", "scene.zarr"]).assert_refused(&[
+        "a picture has room for two sweep axes, there are taper, friction, pole_radius_mm",
+        "--at",
+    ]);
+    place
+        .run(&["render", "scene.zarr", "--at=colour=1"])
+        .assert_refused(&["--at colour: must be one of the axes, taper, friction"]);
+    std::fs::remove_file(place.path("scene.zarr/regime/c.0.0.0.0.0")).unwrap();
+    place
+        .run(&["render", "scene.zarr", "--at=friction=0", "--exact"])
+        .assert_said(
+            2,
+            "regime/c.0.0.0.0.0 is not there: the store is not complete",
+        );
+}
+
 #[test]
 fn render_refuses_what_is_no_map() {
     let place = Place::with(SCENE);

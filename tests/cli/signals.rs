@@ -3,6 +3,7 @@
 use crate::{Place, Run, SCENE, names};
 use std::fs;
 use std::process::{Child, Command, Stdio};
+use std::time::{Duration, SystemTime};
 
 /// A sweep that takes minutes.
 fn long() -> String {
@@ -108,11 +109,21 @@ fn what_a_killed_run_leaves_is_removed_by_the_next_one() {
     killed.kill().unwrap();
     killed.wait().unwrap();
     assert_eq!(unfinished(&place, "outputs"), left);
-    // Other hosts may see no lock of ours, and we none of theirs.
-    place.write("outputs/.whiskmap-another.host-abc123", "");
+    // Other hosts may see no lock of ours, and we none of theirs, but theirs grow old, by whatever clock.
+    let hour = Duration::from_secs(3600);
+    let now = SystemTime::now();
+    let dates = [now - 23 * hour, now - 25 * hour, now + 48 * hour];
+    for (name, date) in ["late", "old", "skewed"].into_iter().zip(dates) {
+        let path = place.path(&format!("outputs/.whiskmap-another.host-{name}"));
+        let file = fs::File::create(path).unwrap();
+        file.set_modified(date).unwrap();
+    }
     place.map(&["small.toml"]);
     assert_eq!(
         unfinished(&place, "outputs"),
-        [".whiskmap-another.host-abc123"]
+        [
+            ".whiskmap-another.host-late",
+            ".whiskmap-another.host-skewed"
+        ]
     );
 }

@@ -51,7 +51,7 @@ fn files(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     found
 }
 
-fn assert_same(place: &Place, one: &str, other: &str) {
+pub fn assert_same(place: &Place, one: &str, other: &str) {
     let [one, other] = [one, other].map(|folder| files(&place.path(folder)));
     let names = |files: &BTreeMap<PathBuf, _>| files.keys().cloned().collect::<Vec<_>>();
     assert_eq!(names(&one), names(&other));
@@ -166,27 +166,49 @@ fn a_killed_run_goes_on_where_it_was() {
     assert_same(&place, "whole", "killed");
 }
 
-/// The kernel stops a writer in the middle of a file.
+/// The kernel stops a writer in the middle of a file, by a signal or, where that is ignored, by an error like a full disk's.
 #[test]
 fn a_file_that_grows_too_large_is_never_there_in_part() {
     let place = Place::with(SWEEP);
     good(&place, "whole", &[]);
-    let script = "ulimit -f 40; exec \"$0\" \"$@\"";
-    let mut shell = Command::new("sh");
-    shell.args(["-c", script, env!("CARGO_BIN_EXE_whiskmap")]);
-    shell.args(MAP).arg("torn").current_dir(place.path(""));
-    let output = shell.output().unwrap();
-    assert!(!output.status.success());
+    for ignored in ["", "trap '' XFSZ; "] {
+        let script = format!("{ignored}ulimit -f 40; exec \"$0\" \"$@\"");
+        let mut shell = Command::new("sh");
+        shell.args(["-c", &script, env!("CARGO_BIN_EXE_whiskmap")]);
+        shell.args(MAP).arg("torn").current_dir(place.path(""));
+        let output = shell.output().unwrap();
+        if ignored.is_empty() {
+            assert_eq!(output.status.code(), None);
+        } else {
+            let run = Run::of(&output);
+            run.assert_said(1, "error: cannot write torn/scene.zarr/");
+            run.assert_said(1, ": File too large (os error 27)\n");
+            let hidden = files(&place.path("torn")).into_keys();
+            assert_eq!(hidden.filter(|path| is_hidden(path)).count(), 0);
+        }
+        goes_on(&place);
+        fs::remove_dir_all(place.path("torn")).unwrap();
+    }
+}
+
+fn is_hidden(path: &Path) -> bool {
+    path.file_name().unwrap().to_str().unwrap().starts_with('.')
+}
+
+/// What is there of the store in the folder `torn` is whole, and a run that goes on finishes it.
+fn goes_on(place: &Place) {
     let whole = files(&place.path("whole"));
-    let is_named = |path: &&PathBuf| !path.file_name().unwrap().to_str().unwrap().starts_with('.');
-    for name in files(&place.path("torn")).keys().filter(is_named) {
+    for name in files(&place.path("torn")).keys() {
+        if is_hidden(name) {
+            continue;
+        }
         let bytes = place.bytes(&format!("torn/{}", name.display()));
         assert!(bytes == whole[name], "{}", name.display());
     }
     let run = place.run(&["status", "torn/scene.zarr", "--verify"]);
     assert!(run.err.contains(" 0 are damaged"), "{run:?}");
-    good(&place, "torn", &["--resume"]);
-    assert_same(&place, "whole", "torn");
+    good(place, "torn", &["--resume"]);
+    assert_same(place, "whole", "torn");
 }
 
 #[test]
@@ -199,8 +221,7 @@ fn an_interrupted_run_says_how_to_go_on() {
     assert_eq!(run.code, Some(143), "{run:?}");
     let said = "interrupted by SIGTERM; unfinished files are removed; finished blocks stay: go on by the same command with --resume\n";
     assert!(run.err.ends_with(said), "{run:?}");
-    let is_hidden = |path: &PathBuf| path.file_name().unwrap().to_str().unwrap().starts_with('.');
-    assert!(!files(&place.path("out")).keys().any(is_hidden));
+    assert!(!files(&place.path("out")).keys().any(|path| is_hidden(path)));
     good(&place, "out", &["--resume"]);
     assert_same(&place, "whole", "out");
 }
@@ -251,6 +272,26 @@ fn a_store_is_not_continued_otherwise_than_it_was_begun() {
     place
         .run(&["status", "."])
         .assert_refused(&["is not a store of whiskmap"]);
+}
+
+/// `/sys` is a folder in which nobody makes files, not even root.
+#[test]
+fn a_store_that_cannot_be_written_is_said_before_any_work() {
+    let place = Place::with(SWEEP);
+    good(&place, ".", &["--shard=0/8"]);
+    let before = files(&place.path("scene.zarr"));
+    let [force, aside] = ["scene.zarr/force_un", "aside"].map(|name| place.path(name));
+    fs::rename(&force, &aside).unwrap();
+    std::os::unix::fs::symlink("/sys", &force).unwrap();
+    let run = map(&place, ".", &["--shard=1/8"]);
+    run.assert_said(
+        1,
+        "error: cannot write ./scene.zarr/force_un: Permission denied (os error 13)\n",
+    );
+    assert_eq!(run.out, "");
+    fs::remove_file(&force).unwrap();
+    fs::rename(&aside, &force).unwrap();
+    assert_eq!(files(&place.path("scene.zarr")), before);
 }
 
 #[test]

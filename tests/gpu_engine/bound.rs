@@ -6,8 +6,8 @@ use crate::random_rods::USUAL;
 use crate::every_kind;
 use whiskmap::integrate::gpu::{Gpu, Precision, shaders};
 use whiskmap::integrate::{CellDifference, Reference};
-use whiskmap::rod::{Rod, arclength};
-use whiskmap::shooting::ShootingMap;
+use whiskmap::rod::{Rest, Rod, arclength};
+use whiskmap::shooting::FirstVariation;
 use whiskmap::shooting::batch::{Batch, InitialCondition};
 
 /// The `(tau, load)` of a cell on a rod.
@@ -52,9 +52,19 @@ struct Seen {
     /// In whisker lengths.
     median_miss: f64,
     worst_miss: f64,
-    /// Miss over bound, and over the way from the reference times `s + D`, at the worst.
+    /// Miss over bound at the worst, and over how far base and pole move from the reference to the cell, in the median and at the worst.
     of_bound: f64,
-    of_way: f64,
+    median_of_moves: f64,
+    of_moves: f64,
+}
+
+/// The direction of the resting whisker at `tau`.
+fn resting(rod: &Rod, tau: f64) -> f64 {
+    let s = arclength(rod, tau);
+    match rod.spiral {
+        Some([k0, k1]) => s * (k0 + 0.5 * k1 * s),
+        None => Rest::parabola_tangent(rod, s).to_angle(),
+    }
 }
 
 fn look(cells: &Cells, gpu: &mut Gpu, place: Place) -> Seen {
@@ -71,25 +81,30 @@ fn look(cells: &Cells, gpu: &mut Gpu, place: Place) -> Seen {
         InitialCondition { rod, tau, load }
     };
     let conditions: Vec<InitialCondition> = solved.iter().map(condition).collect();
-    let maps = Batch::new(cells.method).shoot::<ShootingMap>(&conditions);
-    let (mut misses, mut of_bound, mut of_way) = (Vec::new(), 0.0_f64, 0.0_f64);
-    for (((cell, reference, shot), here), map) in solved.iter().zip(&conditions).zip(&maps) {
-        let miss = map.pole.distance(shot.pole);
-        let s = arclength(here.rod, reference.tau);
-        let per_load = reference.load.abs() + 1.0 / (s * s);
-        let way = f64::max((here.tau - reference.tau).abs() / s, (here.load - reference.load).abs() / per_load);
+    let states = Batch::new(cells.method).shoot::<FirstVariation>(&conditions);
+    let (mut misses, mut of_bound, mut of_moves) = (Vec::new(), 0.0_f64, Vec::new());
+    for (((cell, reference, shot), here), map) in solved.iter().zip(&conditions).zip(&states) {
+        let map = map.full;
+        let miss = map.map.pole.distance(shot.pole);
         misses.push(miss);
         of_bound = of_bound.max(miss / f64::from(cell.residual));
+        let before = reference.state.full;
+        let turn = (map.tangent.to_angle() - before.tangent.to_angle()).abs();
+        let bent = (turn - resting(here.rod, here.tau) + resting(here.rod, reference.tau)).abs();
+        let bent = bent.min((-turn - resting(here.rod, here.tau) + resting(here.rod, reference.tau)).abs());
+        let moves = turn.max(bent) * shot.pole.length() + map.position.distance(before.position);
         // What rounding alone leaves of a miss says nothing of the way.
-        of_way = of_way.max((miss - 1e-13) / (way * (s + shot.pole.length())));
+        of_moves.push((miss - 1e-13) / moves);
     }
     misses.sort_by(f64::total_cmp);
+    of_moves.sort_by(f64::total_cmp);
     Seen {
         solved: misses.len(),
         median_miss: misses[misses.len() / 2],
         worst_miss: misses[misses.len() - 1],
         of_bound,
-        of_way,
+        median_of_moves: of_moves[of_moves.len() / 2],
+        of_moves: of_moves[of_moves.len() - 1],
     }
 }
 

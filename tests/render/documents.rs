@@ -74,7 +74,7 @@ fn errors_leave_no_picture() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("map.exr");
     write(&file, &scene(2, 2, None, None));
-    let map = StoredMap::open(&file).unwrap();
+    let map = StoredMap::open(&file).unwrap().into();
     let options = MapOptions {
         channel: Some("weight"),
         ..MapOptions::default()

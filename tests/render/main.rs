@@ -57,7 +57,7 @@ fn picture(
     let mut writer = MapWriter::create(&file, &map::describe(scene, &tolerances)).unwrap();
     writer.write_panels(panels).unwrap();
     writer.finish(EngineCells::default(), Audit::default()).unwrap();
-    render::map(&StoredMap::open(&file).unwrap(), options)
+    render::map(&StoredMap::open(&file).unwrap().into(), options)
 }
 
 /// Draws one channel of a map, or the regimes.

@@ -4,6 +4,10 @@ use super::adapters::{AdapterReport, enumerate, preferred};
 use super::guard::guarded;
 use super::{EngineError, Precision};
 use std::sync::{Arc, mpsc};
+use std::time::Duration;
+
+/// How long a device may take for a dispatch: hundreds of times what the pace aims at.
+const PATIENCE: Duration = Duration::from_secs(60);
 
 /// A device, its queue, and the errors that nobody has seen yet.
 ///
@@ -90,7 +94,7 @@ impl Device {
     pub fn wait(&self, submission: wgpu::SubmissionIndex) -> Result<(), EngineError> {
         let waiting = wgpu::PollType::Wait {
             submission_index: Some(submission),
-            timeout: None,
+            timeout: Some(PATIENCE),
         };
         let waited = guarded(|| self.handle.poll(waiting).map_err(|error| error.to_string()));
         self.check()?;

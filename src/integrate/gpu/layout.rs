@@ -169,6 +169,8 @@ impl<T: Scalar> From<&Rod> for GpuRod<T> {
 #[derive(Clone, Copy, Pod, Zeroable)]
 #[repr(C, packed)]
 struct GpuStart<T> {
+    radius: T,
+    arclength: T,
     tangent: [T; 2],
     position: [T; 2],
     bent: T,
@@ -179,6 +181,8 @@ struct GpuStart<T> {
 impl<T: Scalar> From<&StepStart> for GpuStart<T> {
     fn from(start: &StepStart) -> Self {
         Self {
+            radius: T::of(start.radius),
+            arclength: T::of(start.arclength),
             tangent: pair(start.tangent),
             position: pair(start.position),
             bent: T::of(start.bent),
@@ -328,7 +332,7 @@ mod tests {
         let shader = in_shader(precision);
         for rust in [
             in_rust!(GpuRod<T>, "Rod", taper bend spiral),
-            in_rust!(GpuStart<T>, "StepStart", tangent position bent rest rest_turn),
+            in_rust!(GpuStart<T>, "StepStart", radius arclength tangent position bent rest rest_turn),
             in_rust!(GpuReference<T>, "Reference", tau load radius arclength force rest to_tip to_pole position tangent
                 by_tau by_load bent energy push per_way row rod first_cell first_push steps first_step unused),
             in_rust!(GpuCell, "Cell", numbers residual outcome),

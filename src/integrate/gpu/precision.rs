@@ -44,11 +44,14 @@ impl Precision {
     }
 
     /// Limits of what the shaders vouch for, by their names there.
+    ///
+    /// `LEFT_BY_STEP` is that of the refinement. `ROUNDING_OF_WAY` bounds the pole's miss over how far base and pole move from the
+    /// reference to the cell: measured on the shipped scenes at most 5.1e-7 in `f32`, in the median 5e-8.
     #[must_use]
     pub const fn limits(self) -> [(&'static str, f64); 8] {
         let [clear_of_fold, clear_of_tip, longest, of_way, rounding] = match self {
-            Self::F32 => [0.02, 1e-6, 1e-5, 4e-7, 0.0],
-            Self::F64 => [1e-3, 1e-9, 1.5e-7, 1e-14, 6e-14],
+            Self::F32 => [0.02, 1e-6, 1e-5, 6e-7, 0.0],
+            Self::F64 => [1e-3, 1e-9, 1.5e-7, 2e-15, 6e-14],
         };
         [
             ("GOAL", self.goal()),

@@ -12,7 +12,7 @@ pub use options::MapOptions;
 
 use super::error::Error;
 use super::picture::Picture;
-use crate::store::StoredMap;
+use crate::store::Slice;
 use shading::Shading;
 use sheet::Sheet;
 
@@ -20,8 +20,13 @@ use sheet::Sheet;
 ///
 /// # Errors
 ///
-/// There is no such channel, it does not have the wanted colour scale, or the map is damaged.
-pub fn map(map: &StoredMap, options: &MapOptions<'_>) -> Result<Picture, Error> {
+/// More than two sweep axes are left, there is no such channel, it does not have the wanted colour scale, or the map is
+/// damaged.
+pub fn map(map: &Slice, options: &MapOptions<'_>) -> Result<Picture, Error> {
+    if map.grid().sweep.len() > 2 {
+        let axes = map.grid().sweep.iter().map(|axis| axis.parameter.axis());
+        return Err(Error::TooManyAxes(axes.collect::<Vec<_>>().join(", ")));
+    }
     let channel = options.channel.unwrap_or("regime");
     let shading = Shading::of(map, channel, options)?;
     Sheet::of(map).draw(map, channel, &shading, options.width)

@@ -6,17 +6,17 @@ use super::shading::Shading;
 use crate::render::error::Error;
 use crate::render::palette::{INK, WHITE};
 use crate::render::picture::{Area, Pen, Picture};
-use crate::store::StoredMap;
+use crate::store::Slice;
 
 /// Draws panel `index` of a channel into `area`, distance upwards, with lines of the given width.
 pub(super) fn draw(
     picture: &mut Picture,
     area: Area,
-    (map, channel, index): (&StoredMap, &str, usize),
+    (map, channel, index): (&Slice, &str, usize),
     shading: &Shading,
     width: f64,
 ) -> Result<(), Error> {
-    let grid = &map.grid;
+    let grid = map.grid();
     let angles = Cells::new(&grid.push_angle_deg);
     let distances = Cells::new(&grid.distance_mm);
     let samples = map.read_panel(channel, index)?;

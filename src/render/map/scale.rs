@@ -8,7 +8,7 @@ use crate::render::picture::{Anchor, Area, Pen, Picture};
 use crate::render::ticks::{self, Tick};
 use crate::render::{axes, units};
 use crate::scene::digits;
-use crate::store::{Samples, StoredMap};
+use crate::store::{Samples, Slice};
 
 /// Room that the colour bar takes to the right of the picture's body.
 pub(super) const BAR_ROOM: f64 = 190.0;
@@ -28,18 +28,14 @@ pub(super) struct Scale {
 
 impl Scale {
     /// Decides from the whole map, so that the panels of an atlas can be compared.
-    pub(super) fn of(
-        map: &StoredMap,
-        channel: &str,
-        options: &MapOptions<'_>,
-    ) -> Result<Self, Error> {
+    pub(super) fn of(map: &Slice, channel: &str, options: &MapOptions<'_>) -> Result<Self, Error> {
         let log = options.log;
         if let Some(range) = options.range {
             check(range, log)?;
         }
         let (mut none, mut below, mut whole) = (false, 0_u64, false);
         let mut extent: Option<[f64; 2]> = None;
-        for index in 0..map.layout.panels() {
+        for index in 0..map.layout().panels() {
             let samples = map.read_panel(channel, index)?;
             whole = matches!(samples, Samples::U32(_));
             for value in samples.values() {

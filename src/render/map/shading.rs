@@ -7,7 +7,7 @@ use crate::render::error::Error;
 use crate::render::heading::Sample;
 use crate::render::palette::{self, Fill, INK};
 use crate::render::picture::Pen;
-use crate::store::StoredMap;
+use crate::store::Slice;
 use std::collections::BTreeMap;
 
 /// How the values of a channel are shown.
@@ -28,15 +28,9 @@ pub(super) enum Shading {
 
 impl Shading {
     /// Decides from the whole map, so that the panels of an atlas can be compared.
-    pub(super) fn of(
-        map: &StoredMap,
-        channel: &str,
-        options: &MapOptions<'_>,
-    ) -> Result<Self, Error> {
-        let (names, cells) = match channel {
-            "regime" => (&map.regime_names, &map.counts.regimes),
-            "status" => (&map.status_names, &map.counts.statuses),
-            _ => return Ok(Self::Scale(Scale::of(map, channel, options)?)),
+    pub(super) fn of(map: &Slice, channel: &str, options: &MapOptions<'_>) -> Result<Self, Error> {
+        let Some(names) = map.names(channel) else {
+            return Ok(Self::Scale(Scale::of(map, channel, options)?));
         };
         if options.log || options.range.is_some() {
             return Err(Error::Scale(format!(
@@ -51,10 +45,10 @@ impl Shading {
                 _ => (code, palette::qualitative(place)),
             })
             .collect();
-        let occurs = |name: &String| cells.get(name).is_some_and(|cells| *cells > 0);
-        let present = names.iter().filter(|(_, name)| occurs(name));
+        let codes = map.codes(channel)?;
+        let present = names.into_iter().filter(|(code, _)| codes.contains(code));
         let mut present: Vec<_> = present
-            .map(|(code, name)| (Sample::Swatch(fills[code]), name.clone()))
+            .map(|(code, name)| (Sample::Swatch(fills[&code]), name))
             .collect();
         let boundary = channel == "regime" && has_boundary(map)?;
         if boundary {
@@ -95,13 +89,13 @@ impl Shading {
 }
 
 /// Whether any panel shows a stretch of the detachment boundary, which takes the margins.
-fn has_boundary(map: &StoredMap) -> Result<bool, Error> {
+fn has_boundary(map: &Slice) -> Result<bool, Error> {
     if !map.channels().contains(&"margin_deg") {
         return Ok(false);
     }
-    for index in 0..map.layout.panels() {
+    for index in 0..map.layout().panels() {
         let margin_deg = map.read_panel("margin_deg", index)?;
-        if !boundary::stretches(&map.grid, &margin_deg).is_empty() {
+        if !boundary::stretches(map.grid(), &margin_deg).is_empty() {
             return Ok(true);
         }
     }

@@ -13,7 +13,7 @@ use crate::render::picture::{Anchor, Area, Picture};
 use crate::render::ticks::{self, Tick};
 use crate::render::units;
 use crate::scene::SweepAxis;
-use crate::store::{Layout, StoredMap};
+use crate::store::{Layout, Slice};
 
 /// All panels of a contact sheet together are at most this wide and high, whatever their number.
 const SHEET: [f64; 2] = [1720.0, 1500.0];
@@ -40,18 +40,18 @@ pub(super) struct Sheet {
 }
 
 impl Sheet {
-    pub(super) fn of(map: &StoredMap) -> Self {
-        if map.layout.panels() == 1 {
+    pub(super) fn of(map: &Slice) -> Self {
+        if map.layout().panels() == 1 {
             Self::alone(map)
         } else {
             Self::atlas(map)
         }
     }
 
-    fn alone(map: &StoredMap) -> Self {
+    fn alone(map: &Slice) -> Self {
         let (label, unit) = distance(map);
-        let across = Cells::new(&map.grid.push_angle_deg).ticks(1.0);
-        let upwards = Cells::new(&map.grid.distance_mm).ticks(unit);
+        let across = Cells::new(&map.grid().push_angle_deg).ticks(1.0);
+        let upwards = Cells::new(&map.grid().distance_mm).ticks(unit);
         Self {
             size: ALONE,
             pitch: ALONE,
@@ -62,8 +62,8 @@ impl Sheet {
         }
     }
 
-    fn atlas(map: &StoredMap) -> Self {
-        let (layout, grid) = (map.layout, &map.grid);
+    fn atlas(map: &Slice) -> Self {
+        let (layout, grid) = (map.layout(), map.grid());
         let panels = [layout.columns, layout.rows].map(|panels| panels as f64);
         let pitch = PANEL.min(SHEET[0] / panels[0]).min(SHEET[1] / panels[1]);
         let gap = (0.06 * pitch).min(10.0);
@@ -107,7 +107,7 @@ impl Sheet {
     /// Draws every panel with what stands around them.
     pub(super) fn draw(
         &self,
-        map: &StoredMap,
+        map: &Slice,
         channel: &str,
         shading: &Shading,
         wanted: Option<u32>,
@@ -126,11 +126,12 @@ impl Sheet {
         let body = Area::new([left, HEAD_ROOM + heading.height], self.size);
         let below = BELOW + NOTE * self.notes.len() as f64;
         let mut picture = Picture::new([width, body.bottom() + below], wanted);
-        let title = fitted(&map.title, TITLE, room);
+        let title = fitted(&map.title(), TITLE, room);
         picture.fitted(&title, [left, TITLE_LINE], Anchor::Left);
         heading.draw(&mut picture, [left, HEAD_ROOM], left);
-        for index in 0..map.layout.panels() {
-            let area = self.panel(body, map.layout, index);
+        let layout = map.layout();
+        for index in 0..layout.panels() {
+            let area = self.panel(body, layout, index);
             let cells = (map, channel, index);
             panel::draw(&mut picture, area, cells, shading, self.line)?;
         }
@@ -155,7 +156,7 @@ impl Sheet {
 }
 
 /// The label of the distances and its unit in mm.
-fn distance(map: &StoredMap) -> (String, f64) {
-    let largest = map.grid.distance_mm.last().copied().unwrap_or_default();
+fn distance(map: &Slice) -> (String, f64) {
+    let largest = map.grid().distance_mm.last().copied().unwrap_or_default();
     units::readable(DISTANCE, largest)
 }

@@ -12,7 +12,6 @@ mod metadata;
 use self::array::Array;
 use self::blocks::Blocks;
 use self::metadata::{AGREED, CELLS};
-use super::unfinished::sweep_folder;
 use super::{Channels, Description, Error, Output, Panel, STATE_CHANNELS, Samples};
 use crate::classify::Regime;
 use crate::scene::{Grid, Scene};
@@ -43,7 +42,7 @@ impl ZarrStore {
     /// # Errors
     ///
     /// The store was begun with another scene, version, engine, accuracy or choice of channels; it is there although it
-    /// must not be; or it cannot be written.
+    /// must not be; or one of its folders cannot be written.
     pub fn begin(
         path: &Path,
         scene: &Scene,
@@ -65,8 +64,10 @@ impl ZarrStore {
             own.write_metadata()?;
         }
         let folders = own.arrays.iter().map(|array| path.join(&array.name));
-        folders.for_each(|folder| sweep_folder(&folder));
-        sweep_folder(path);
+        for folder in folders.chain([path.to_owned()]) {
+            // Whoever begins a file removes what killed runs have left beside it.
+            Output::create(&folder.join(METADATA)).map_err(Error::at(&folder, Error::Write))?;
+        }
         Ok(own)
     }
 
@@ -189,6 +190,12 @@ impl ZarrStore {
         })
     }
 
+    /// How many blocks the store of a sweep over `grid` has.
+    #[must_use]
+    pub fn blocks(grid: &Grid) -> usize {
+        Blocks::of(grid).count()
+    }
+
     /// How many blocks there are, done or not.
     #[must_use]
     pub fn block_count(&self) -> usize {
@@ -288,7 +295,10 @@ impl ZarrStore {
 
     fn read(&self, array: &Array, block: usize) -> Result<Vec<u8>, Error> {
         let file = self.file(array, block);
-        let bytes = fs::read(&file).map_err(Error::at(&file, Error::Read))?;
+        let bytes = fs::read(&file).map_err(|why| match why.kind() {
+            io::ErrorKind::NotFound => Error::NotComputed(file.clone()),
+            _ => Error::Read(file.clone(), why),
+        })?;
         let values = array
             .decode(bytes)
             .map_err(Error::at(&file, Error::Damaged))?;
@@ -345,13 +355,14 @@ fn values(name: &str, panel: &Panel) -> Vec<u8> {
     }
 }
 
-/// Writes a file as a whole, into a folder that is made if need be.
+/// Writes a file as a whole, into a folder that is made if need be. It is on the disk before others follow: after a crash, what
+/// is there counts as done.
 fn write(path: &Path, bytes: &[u8]) -> Result<(), Error> {
     let done = || -> io::Result<()> {
         path.parent().map_or(Ok(()), fs::create_dir_all)?;
         let mut output = Output::create(path)?;
         output.write_all(bytes)?;
-        output.finish()
+        output.finish_durably()
     };
     done().map_err(Error::at(path, Error::Write))
 }

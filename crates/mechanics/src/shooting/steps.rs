@@ -11,6 +11,10 @@ use glam::DVec2;
 /// The whisker where a step starts, as seen from the contact, in axes whose second one is along the force.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StepStart {
+    /// Radius over the base radius.
+    pub radius: f64,
+    /// Arclength from the base, in whisker lengths.
+    pub arclength: f64,
     /// Unit tangent.
     pub tangent: DVec2,
     /// Position, in whisker lengths.
@@ -88,6 +92,8 @@ fn follow<I: Intrinsic<f64>>(
         let (rest, ([cos, sin, x, y, bent], _)) = state;
         let (rest, rest_turn) = at_rest(&section, rest);
         starts.push(StepStart {
+            radius: section.rho,
+            arclength: section.arclength,
             tangent: DVec2::new(cos, sin),
             position: DVec2::new(x, y),
             bent,

@@ -1,0 +1,199 @@
+//! `whiskmap submit`: a script that Slurm runs; here a shell does, task by task. `tests/cluster` has a real Slurm.
+
+use crate::store::{SWEEP, assert_same, good};
+use crate::{Place, Run};
+use std::fs;
+use std::os::unix::fs::PermissionsExt;
+use std::path::Path;
+use std::process::Command;
+
+/// Runs a script in the shell, with these variables; `sbatch` notes how it is called.
+fn shell(place: &Place, script: &[&str], variables: &[(&str, &str)]) -> Run {
+    let tools = place.path("tools");
+    fs::create_dir_all(&tools).unwrap();
+    let sbatch = tools.join("sbatch");
+    fs::write(&sbatch, "#!/bin/sh\nprintf '%s\\n' \"$@\" >> sbatch.log\n").unwrap();
+    fs::set_permissions(&sbatch, fs::Permissions::from_mode(0o755)).unwrap();
+    let program = Path::new(env!("CARGO_BIN_EXE_whiskmap")).parent().unwrap();
+    let others = std::env::var("PATH").unwrap();
+    let path = format!("{}:{}:{others}", tools.display(), program.display());
+    let mut command = Command::new("sh");
+    command.args(script).envs(variables.iter().copied());
+    let command = command.env("PATH", path).current_dir(place.path(""));
+    Run::of(&command.output().unwrap())
+}
+
+#[test]
+fn the_tasks_of_the_script_fill_the_store_and_a_last_job_tells() {
+    let place = Place::with(SWEEP);
+    good(&place, "whole", &["--channels=regime,force_un"]);
+    let folder = "it's \"a\" folder $HOME";
+    fs::create_dir(place.path(folder)).unwrap();
+    let scene = format!("{folder}/scene.toml");
+    place.write(&scene, SWEEP);
+    let submit = [
+        "submit",
+        &scene,
+        "--output",
+        folder,
+        "--shards=3",
+        "--partition=short",
+        "--time=1-12:00:00",
+        "--cpus-per-task=2",
+        "--mem=500M",
+        "--",
+        "--channels",
+        "regime, force_un",
+    ];
+    let run = place.run(&submit);
+    assert_eq!((run.code, &*run.err), (Some(0), ""), "{run:?}");
+    for line in [
+        "#SBATCH --job-name=scene",
+        "#SBATCH --array=0-2",
+        "#SBATCH --requeue",
+        "#SBATCH --partition=short",
+        "#SBATCH --time=1-12:00:00",
+        "#SBATCH --cpus-per-task=2",
+        "#SBATCH --mem=500M",
+    ] {
+        assert!(run.out.lines().any(|own| own == line), "{line}: {run:?}");
+    }
+    assert!(run.out.lines().count() < 25, "{run:?}");
+    place.write("sweep.sbatch", &run.out);
+
+    // From another folder, as nodes may; one task twice, as if requeued.
+    for task in ["2", "0", "0", "1"] {
+        let variables = [
+            ("SLURM_ARRAY_JOB_ID", "7"),
+            ("SLURM_ARRAY_TASK_ID", task),
+            ("SLURM_ARRAY_TASK_MIN", "0"),
+            ("SLURM_CPUS_ON_NODE", "2"),
+        ];
+        let run = shell(&place, &["sweep.sbatch"], &variables);
+        assert_eq!(run.code, Some(0), "{run:?}");
+    }
+    fs::create_dir(place.path("found")).unwrap();
+    fs::rename(
+        place.path(&format!("{folder}/scene.zarr")),
+        place.path("found/scene.zarr"),
+    )
+    .unwrap();
+    assert_same(&place, "whole", "found");
+
+    let log = fs::read_to_string(place.path("sbatch.log")).unwrap();
+    let calls: Vec<&str> = log.lines().collect();
+    let (first, again) = calls.split_at(calls.len() / 2);
+    assert_eq!(first, again);
+    assert_eq!(
+        first[..4],
+        [
+            "--job-name=scene-status",
+            "--dependency=afterany:7",
+            "--partition=short",
+            "--output=slurm-7_status.out"
+        ]
+    );
+    let status = first[4].strip_prefix("--wrap=").unwrap();
+    let run = shell(&place, &["-c", status], &[]);
+    assert_eq!(run.code, Some(2), "the store is elsewhere: {run:?}");
+    assert!(run.err.contains(&format!("{folder}/scene.zarr")), "{run:?}");
+    fs::rename(
+        place.path("found/scene.zarr"),
+        place.path(&format!("{folder}/scene.zarr")),
+    )
+    .unwrap();
+    let run = shell(&place, &["-c", status], &[]);
+    assert_eq!(
+        (run.code, run.count("of 8 blocks")),
+        (Some(0), 8),
+        "{run:?}"
+    );
+}
+
+#[test]
+fn submit_refuses_what_no_task_could_do() {
+    let place = Place::with(SWEEP);
+    let submit = |options: &[&str]| place.run(&[&["submit", "scene.toml"], options].concat());
+    submit(&[]).assert_refused(&["--shards <N>"]);
+    for shards in ["0", "-1", "some", "1.5", ""] {
+        submit(&[&format!("--shards={shards}")]).assert_refused(&["--shards <N>"]);
+    }
+    submit(&["--shards=9"])
+        .assert_refused(&["--shards 9: must be at most 8, the number of blocks"]);
+    for word in ["--time=1 h", "--partition=a\nb", "--mem="] {
+        submit(&["--shards=2", word]).assert_refused(&["must be letters, digits and"]);
+    }
+    for (own, said) in [
+        (&["--colour"][..], "unexpected argument '--colour'"),
+        (
+            &["--shard", "0/2"],
+            "'--shard <I/N>' cannot be used multiple times",
+        ),
+        (
+            &["--channels", "force"],
+            "--channels force: invalid value 'force'",
+        ),
+        (&["another.toml"], "unexpected argument 'another.toml'"),
+    ] {
+        let options = [&["--shards=2", "--"], own].concat();
+        submit(&options).assert_refused(&["error: -- ", said]);
+    }
+    submit(&["--shards=2", "-o", "a\nb"]).assert_refused(&["--output", "without line breaks"]);
+    let scene = |scene: &str| place.run(&["submit", scene, "--shards=2"]);
+    scene("-").assert_refused(&["scene -: must be a file"]);
+    scene("nowhere.toml").assert_refused(&["nowhere.toml: cannot be read"]);
+    place.write(
+        "wrong.toml",
+        &SWEEP.replace("length_mm = 20", "length_mm = -20"),
+    );
+    scene("wrong.toml").assert_refused(&["length_mm = -20"]);
+}
+
+/// The lines of the pages for GNU parallel and Kubernetes.
+#[test]
+fn other_schedulers_fill_the_store_as_the_pages_say() {
+    let page = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/sweeps.md");
+    let page = fs::read_to_string(page).unwrap();
+    let block = |with: &str| {
+        let mut blocks = page.split("```").skip(1).step_by(2);
+        let block = blocks.find(|block| block.contains(with)).unwrap();
+        block.split_once('\n').unwrap().1.to_owned()
+    };
+    let place = Place::with(SWEEP);
+    fs::create_dir(place.path("scenes")).unwrap();
+    place.write("scenes/morphology.toml", SWEEP);
+    good(&place, "whole", &["--channels=regime,force_un"]);
+    let as_whole = || {
+        fs::create_dir_all(place.path("found")).unwrap();
+        let store = place.path("outputs/morphology.zarr");
+        fs::rename(store, place.path("found/scene.zarr")).unwrap();
+        assert_same(&place, "whole", "found");
+        fs::remove_dir_all(place.path("found")).unwrap();
+    };
+
+    // Where there is no GNU parallel, a loop with its `{}`.
+    let parallel = "command -v parallel || parallel() {
+        while [ \"$1\" != whiskmap ]; do shift; done
+        while read -r line; do eval \"$(echo \"$@\" | sed \"s/{}/$line/g\")\" || return; done
+    }\n";
+    let lines = block("| parallel");
+    let run = shell(&place, &["-ec", &format!("{parallel}{lines}")], &[]);
+    assert_eq!(
+        (run.code, run.count("of 8 blocks")),
+        (Some(0), 8),
+        "{run:?}"
+    );
+    as_whole();
+
+    // Of the indexed job, its command for each index.
+    let job = block("JOB_COMPLETION_INDEX");
+    let command = job.split('\'').nth(1).unwrap();
+    assert!(job.contains("completionMode: Indexed") && job.contains("completions: 8"));
+    for index in 0..8 {
+        let index = index.to_string();
+        let variables = [("JOB_COMPLETION_INDEX", &*index)];
+        let run = shell(&place, &["-ec", command], &variables);
+        assert_eq!(run.code, Some(0), "{run:?}");
+    }
+    as_whole();
+}
