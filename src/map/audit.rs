@@ -13,7 +13,7 @@ const ONE_IN: u64 = 256;
 /// The fewest cells of a whisker's side in it, as far as there are any.
 const AT_LEAST: u64 = 64;
 
-/// By how much a number may differ, in parts of itself and the largest that it has along the whisker.
+/// By how much a number may differ, in parts of itself and of one: a whisker's length, a radian, a force of `E I_base/L_w^2`.
 const TOLERANCE: f64 = 1e-6;
 
 /// Which cells of a row are in the sample: the same ones in every run.
@@ -70,9 +70,10 @@ pub fn holds(
             let reference = of_reference(&reader, reference, touch);
             let ours = channels(&reader.read(refined.state.tau, &refined.state.full, touch, push));
             let theirs = of_cell(&reference, &of_one, difference);
-            let pairs = ours.iter().zip(theirs).zip(reference);
-            pairs.into_iter().all(|((ours, theirs), reference)| {
-                (ours - theirs).abs() <= TOLERANCE * (1.0 + ours.abs().max(reference.abs()))
+            let pairs = ours.iter().zip(theirs).zip(reference.iter().zip(of_one));
+            pairs.into_iter().all(|((ours, theirs), (reference, of_one))| {
+                let size = of_one.abs() + ours.abs().max(reference.abs());
+                (ours - theirs).abs() <= TOLERANCE * size
             })
         }
         _ => false,

@@ -2,6 +2,7 @@
 
 use crate::cells::Cells;
 use crate::compute::{open, open_with};
+use crate::random_rods::USUAL;
 use crate::{PRECISIONS, every_kind};
 use whiskmap::integrate::gpu::{Gpu, Precision, shaders};
 use whiskmap::integrate::{Outcome, Reference};
@@ -25,6 +26,14 @@ fn numbers(reading: &Reading) -> Numbers {
         reading.energy_nj,
     ]
 }
+
+/// The part of the cells that is solved at least. Measured 99 % in `f32`, and 87 % in `f64`, with the most friction.
+const SOLVED: f64 = 0.85;
+
+/// How far numbers may be off, in parts of the largest along the whisker. Measured 1.4e-9 in the median, and at worst 1.1e-6 at the tip
+/// of a sharp cone.
+const MEDIAN: f64 = 3e-9;
+const WORST: f64 = 2e-6;
 
 /// What was seen of cells that the engine solved.
 #[derive(Debug)]
@@ -112,10 +121,15 @@ fn cells_are_those_of_the_refinement() {
             let seen = compare(&cells, &mut gpu);
             let most = |pick: fn(&(f64, f64)) -> f64| seen.apart.iter().map(pick).fold(0.0, f64::max);
             let (median, worst) = (most(|apart| apart.0), most(|apart| apart.1));
-            eprintln!(
-                "{precision} {name}: {} of {} solved, {} contradicted, median {median:.1e}, worst {worst:.1e}",
-                seen.solved, seen.asked, seen.contradicted
-            );
+            let Seen {
+                asked,
+                solved,
+                contradicted,
+                ..
+            } = seen;
+            eprintln!("{precision} {name}: {solved} of {asked} solved, median {median:.1e}, worst {worst:.1e} {:?}", seen.apart.map(|a| a.1));
+            assert!(solved as f64 > SOLVED * asked as f64, "{name}: {seen:?}");
+            assert!(contradicted == 0 && median < MEDIAN && worst < WORST, "{name}: {seen:?}");
         }
     }
 }
@@ -123,16 +137,16 @@ fn cells_are_those_of_the_refinement() {
 /// A wrong constant in any of the numbers shows.
 #[test]
 fn a_wrong_number_shows() {
-    let cells = crate::cells::Cells::random(crate::random_rods::USUAL, 40, 3, |_, _| ());
+    let cells = Cells::random(USUAL, 40, 3, |_, _| ());
     let text = shaders::cells(Precision::F32);
     for (good, bad) in [
-        ("cell.numbers[0] = f32(radius * end.x", "cell.numbers[0] = f32(1.0001 * radius * end.x"),
+        ("cell.numbers[0] = f32(radius * end.x", "cell.numbers[0] = f32(1.001 * radius * end.x"),
         ("f32(push - angle_of", "f32(push + 1e-5 - angle_of"),
         ("f32(end_force.y)", "f32(1.0001 * end_force.y)"),
         ("product(end_force, tangent.sin)", "product(end_force, -tangent.sin)"),
-        ("product(end_force, tangent.cos)", "product(force, tangent.cos)"),
+        ("product(end_force, tangent.cos)", "product(end_force, 1.0001 * tangent.cos)"),
         ("Both(position.x, shift.x)", "Both(position.x, shift.y)"),
-        ("- theta - here.numbers.z", "- theta - 0.9999 * here.numbers.z"),
+        ("- theta - here.numbers.z", "- theta - 0.99 * here.numbers.z"),
         ("2.0 * position + shift", "2.0 * position - shift"),
         ("0.5 * product(force, energy).y", "0.5001 * product(force, energy).y"),
     ] {
@@ -141,6 +155,6 @@ fn a_wrong_number_shows() {
             return;
         };
         let seen = compare(&cells, &mut gpu);
-        eprintln!("{bad}: {:.1e}", seen.worst());
+        assert!(seen.worst() > 3.0 * WORST, "{bad}: {:.1e}", seen.worst());
     }
 }
