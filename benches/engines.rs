@@ -16,7 +16,7 @@ use std::hint::black_box;
 use std::path::Path;
 use whiskmap::integrate::Engine;
 use whiskmap::integrate::gpu::{Gpu, Precision};
-use whiskmap::map::{self, Progress};
+use whiskmap::map;
 use whiskmap::numerics::Unit;
 use whiskmap::plan::Plan;
 use whiskmap::refine::{Shot, refine};
@@ -135,10 +135,8 @@ fn files(criterion: &mut Criterion) {
     let scene = scene();
     let plan = Plan::new(&scene).expect("the scene is small");
     let mut kept: Option<Panel> = None;
-    let Ok(_) = map::run(&scene, &plan, None, &mut |progress| {
-        if let Progress::Panels(panels) = progress {
-            kept = panels.first().cloned();
-        }
+    let Ok(_) = map::run(&scene, &plan, None, &mut |_| (), &mut |panels| {
+        kept = panels.into_iter().next();
         Ok::<(), Infallible>(())
     });
     let panel = kept.expect("the scene has a panel");

@@ -234,7 +234,9 @@ fn cell(pool: &ThreadPool) -> Value {
     plan.method.resolution = steps.resolution;
     let mut summary = None;
     let seconds = seconds(pool, || {
-        let Ok(done) = map::run(&scene, &plan, None, &mut |_| Ok::<(), Infallible>(()));
+        let Ok(done) = map::run(&scene, &plan, None, &mut |_| (), &mut |_| {
+            Ok::<(), Infallible>(())
+        });
         summary = Some(done);
     });
     let summary = summary.unwrap();

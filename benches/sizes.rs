@@ -79,8 +79,8 @@ impl Map {
         let repeats = CELLS.div_ceil(self.plan.cells);
         let mut seconds = [0.0; 5];
         for _ in 0..repeats {
-            let discard = &mut |_: map::Progress| Ok::<(), Infallible>(());
-            let Ok(summary) = map::run(&self.scene, &self.plan, None, discard);
+            let discard = &mut |_| Ok::<(), Infallible>(());
+            let Ok(summary) = map::run(&self.scene, &self.plan, None, &mut |_| (), discard);
             for (sum, (stage, _)) in seconds.iter_mut().zip(Stage::ALL) {
                 *sum += summary.seconds(stage);
             }

@@ -26,8 +26,13 @@ struct Reference {
     push: array<real, 2>,
     // the load over the way along the row, which goes with load tau^2
     per_way: real,
-    // Taylor's polynomials of the row by the way from here: ROW_NUMBERS for each power
-    row: array<real, ROW_TERMS>,
+    // coefficients of Taylor's polynomials of the row by the way from here: push angle, tau, and direction of the point at rest as far
+    // from the base, less their own
+    push_by_way: array<real, POWERS>,
+    tau_by_way: array<real, POWERS>,
+    resting_by_way: array<real, POWERS>,
+    // d(ln D, phi) by tau and by load, four numbers for each power
+    jacobian: array<real, JACOBIAN_TERMS>,
     // its rod, its first cell and the push angle of that, its steps and the first of them
     rod: u32,
     first_cell: u32,
@@ -51,37 +56,41 @@ struct Cell {
 @group(0) @binding(3) var<storage, read> pushes: array<array<real, 2>>;
 @group(0) @binding(4) var<storage, read_write> cells: array<Cell>;
 
-// Where the numbers of a row are.
-struct RowPoint {
-    // push angle, tau, and direction of the point at rest as far from the base
-    numbers: vec3<real>,
-    // d(ln D, phi) by tau and by load
-    jacobian: vec4<real>,
+fn jacobian_at(r: u32, way: real) -> vec4<real> {
+    var sum = vec4<real>();
+    for (var i = JACOBIAN_TERMS - 4; i >= 0; i -= 4) {
+        sum = sum * way + vec4<real>(
+            references[r].jacobian[i],
+            references[r].jacobian[i + 1],
+            references[r].jacobian[i + 2],
+            references[r].jacobian[i + 3],
+        );
+    }
+    return sum;
 }
 
-fn row_at(r: u32, way: real) -> RowPoint {
-    var point = RowPoint();
-    for (var i = ROW_TERMS - ROW_NUMBERS; i >= 0; i -= ROW_NUMBERS) {
-        point.numbers = point.numbers * way + vec3<real>(
-            references[r].row[i], references[r].row[i + 1], references[r].row[i + 2]);
-        point.jacobian = point.jacobian * way + vec4<real>(
-            references[r].row[i + 3], references[r].row[i + 4], references[r].row[i + 5], references[r].row[i + 6]);
+// A polynomial without a constant.
+fn at_way(terms: array<real, POWERS>, way: real) -> real {
+    var own = terms;
+    var sum = real(0.0);
+    for (var n = POWERS - 1; n >= 0; n--) {
+        sum = (sum + own[n]) * way;
     }
-    return point;
+    return sum;
 }
 
 // The way along the row to where the push angle has changed by `push`: from the root of a parabola on by Newton's method.
-fn way_to(r: u32, push: real) -> real {
-    let first = references[r].row[ROW_NUMBERS];
-    let second = references[r].row[2 * ROW_NUMBERS];
-    let root = sqrt(max(first * first + 4.0 * second * push, 0.0));
-    var way = 2.0 * push / (first + select(-root, root, first > 0.0));
+fn way_to(terms: array<real, POWERS>, push: real) -> real {
+    var own = terms;
+    let root = sqrt(max(own[0] * own[0] + 4.0 * own[1] * push, 0.0));
+    var way = 2.0 * push / (own[0] + select(-root, root, own[0] > 0.0));
     for (var round = 0; round < 4; round++) {
         var value = real(0.0);
         var slope = real(0.0);
-        for (var i = ROW_TERMS - ROW_NUMBERS; i >= 0; i -= ROW_NUMBERS) {
+        for (var n = POWERS - 1; n >= 0; n--) {
+            value += own[n];
             slope = slope * way + value;
-            value = value * way + references[r].row[i];
+            value = value * way;
         }
         way -= (value - push) / slope;
     }
@@ -117,11 +126,12 @@ fn solve(r: u32, rod: Rod, push: real) -> Cell {
     let steps = references[r].steps;
     let to_pole = vec2<real>(references[r].to_pole[0], references[r].to_pole[1]);
     let distance = length(to_pole);
-    let way = way_to(r, push);
-    let here = row_at(r, way);
-    let longer = here.numbers.y / tau;
+    let way = way_to(references[r].push_by_way, push);
+    let further = at_way(references[r].tau_by_way, way);
+    let jacobian = jacobian_at(r, way);
+    let longer = further / tau;
     let less = -longer * (2.0 + longer) / ((1.0 + longer) * (1.0 + longer));
-    let by = vec2<real>(here.numbers.y, references[r].per_way * way * (1.0 + less) + load * less);
+    let by = vec2<real>(further, references[r].per_way * way * (1.0 + less) + load * less);
 
     // The trajectory.
     let widening = -rod.taper * by.x;
@@ -149,8 +159,8 @@ fn solve(r: u32, rod: Rod, push: real) -> Cell {
     let seen = moved + times(vec2<real>(-back.y, back.x), vec2<real>(1.0 + moved.x, moved.y));
     let wanted = sine_and_versine(push);
     let missed = over(vec2<real>(-wanted.y, wanted.x) - seen, vec2<real>(1.0 + seen.x, seen.y));
-    let by_tau = here.jacobian.xy;
-    let by_load = here.jacobian.zw;
+    let by_tau = jacobian.xy;
+    let by_load = jacobian.zw;
     let det = cross2(by_tau, by_load);
     let step = vec2<real>(cross2(missed, by_load), cross2(by_tau, missed)) / det;
     let per_load = abs(load) + 1.0 / (s * s);
@@ -178,7 +188,7 @@ fn solve(r: u32, rod: Rod, push: real) -> Cell {
     cell.numbers[3] = f32(product(end_force, tangent.sin).y);
     cell.numbers[4] = f32(product(end_force, tangent.cos).y);
     cell.numbers[5] = f32(-product(end_force, Both(position.x, shift.x)).y);
-    cell.numbers[6] = f32(angle_of(moved_contact) - theta - here.numbers.z);
+    cell.numbers[6] = f32(angle_of(moved_contact) - theta - at_way(references[r].resting_by_way, way));
     cell.numbers[7] = f32(dot(shift, 2.0 * position + shift) / (length(position + shift) + length(position)));
     let energy = Both(references[r].energy, product(Both(position.x, apart.x), Both(references[r].bent, apart.bent)).y + apart.along);
     cell.numbers[8] = f32(0.5 * product(force, energy).y

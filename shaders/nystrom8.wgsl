@@ -63,7 +63,8 @@ struct Step {
     reach: Both,
     // h^2 m''/m
     potential: Both,
-    index: u32,
+    // see StepStart
+    rest_turn: array<real, REST_TERMS>,
 }
 
 // The rod of the cell less that of the reference.
@@ -101,11 +102,12 @@ fn rest_turn(way: Way, step: Step, stage: Stage) -> real {
         let along = -step.radius * stage.along;
         return along * (way.rod.spiral[0] + way.rod.spiral[1] * (step.arclength + 0.5 * along));
     }
-    var sum = starts[step.index].rest_turn[REST_TERMS - 1];
-    for (var n = REST_TERMS - 1; n > 0; n--) {
-        sum = sum * stage.along + starts[step.index].rest_turn[n - 1];
+    var terms = step.rest_turn;
+    var sum = real(0.0);
+    for (var n = REST_TERMS - 1; n >= 0; n--) {
+        sum = (sum + terms[n]) * stage.along;
     }
-    return sum * stage.along;
+    return sum;
 }
 
 // How much farther than the tangent `rest` at arclength `s` the whisker at rest has turned `ds` further on.
@@ -183,6 +185,11 @@ fn integrate(way: Way, first: u32, count: u32) -> Apart {
     for (var k = 0u; k < count; k++) {
         let index = first + k;
         let radius = starts[index].radius;
+        // Read once: every stage needs all of it.
+        var rest_turn: array<real, REST_TERMS>;
+        if CURVATURE {
+            rest_turn = starts[index].rest_turn;
+        }
         let left = 1.0 - real(k) / steps;
         let wider = expm1_small(way.widening * left);
         let softer = expm1_small(-3.0 * way.widening * left);
@@ -199,7 +206,7 @@ fn integrate(way: Way, first: u32, count: u32) -> Apart {
             w * product(Both(1.0, faster), way.force),
             reach * Both(1.0, slower + wider + slower * wider),
             potential * Both(1.0, slower * (2.0 + slower)),
-            index,
+            rest_turn,
         );
         let speed = Both(starts[index].position[0], apart.x);
         let p1 = pose_at(way, step, none, Both(0.0, 0.0));

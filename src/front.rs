@@ -7,7 +7,7 @@ use crate::fit::{self, Fit};
 use crate::integrate::EngineError;
 #[cfg(feature = "gpu")]
 use crate::integrate::gpu::{Gpu, Precision};
-use crate::map::{self as stages, Panel, Progress, STATE_CHANNELS, Summary};
+use crate::map::{self as stages, Panel, STATE_CHANNELS, Summary};
 #[cfg(feature = "fit")]
 use crate::measured::Points;
 use crate::plan::{Plan, PlanError};
@@ -121,13 +121,11 @@ pub fn map(scene: &Scene, options: Options) -> Result<Map, Error> {
     #[cfg(not(feature = "gpu"))]
     let engine = None;
     let mut panels = Vec::with_capacity(plan.whiskers);
-    let mut keep = |progress: Progress<'_>| {
-        if let Progress::Panels(finished) = progress {
-            panels.extend_from_slice(finished);
-        }
+    let mut keep = |finished| {
+        panels.extend::<Vec<Panel>>(finished);
         Ok::<(), Infallible>(())
     };
-    let Ok(summary) = stages::run(scene, &plan, engine, &mut keep);
+    let Ok(summary) = stages::run(scene, &plan, engine, &mut |_| (), &mut keep);
     Ok(Map {
         grid: scene.grid.clone(),
         panels,

@@ -5,7 +5,7 @@ use std::convert::Infallible;
 use whiskmap::integrate::{CellDifference, Description, Engine, EngineError, Outcome, Reference};
 use whiskmap::map::{self, EngineCells, STATE_CHANNELS};
 use whiskmap::plan::{Plan, effects};
-use whiskmap::rod::{Effects, Rod};
+use whiskmap::rod::Rod;
 use whiskmap::scene::Scene;
 use whiskmap::shooting::batch::Method;
 
@@ -15,10 +15,6 @@ struct Counting(usize);
 impl Engine for Counting {
     fn describe(&self) -> Description {
         Description::of(None)
-    }
-
-    fn can(&self, _: Effects) -> Result<(), &'static str> {
-        Ok(())
     }
 
     fn solve(
@@ -57,8 +53,8 @@ fn kept(push_angles: &str, distances: &str, more: &str) -> (usize, usize) {
     let scene = Scene::parse(&text, "scene").unwrap();
     let plan = Plan::new(&scene).unwrap();
     let mut engine = Counting(0);
-    let discard = &mut |_: map::Progress| Ok::<(), Infallible>(());
-    let Ok(summary) = map::run(&scene, &plan, Some(&mut engine), discard);
+    let discard = &mut |_| Ok::<(), Infallible>(());
+    let Ok(summary) = map::run(&scene, &plan, Some(&mut engine), &mut |_| (), discard);
     assert_eq!(engine.0, plan.engine_calls);
     assert_eq!(summary.cells(), plan.cells as u64);
     let EngineCells {
@@ -76,20 +72,26 @@ fn kept(push_angles: &str, distances: &str, more: &str) -> (usize, usize) {
     (groups, plan.engine_calls)
 }
 
-/// A panel is kept twice, with 4 bytes a channel: the state's, and `regime`, `status`, `residual`, `margin_deg`,
-/// `newton_steps`.
+/// A panel is kept twice, those of a sweep four times, with 4 bytes a channel: the state's, and `regime`, `status`,
+/// `residual`, `margin_deg`, `newton_steps`.
 #[test]
 fn memory_is_that_of_the_channels_there_are() {
-    let [small, large] = ["count = 100", "count = 300"].map(|count| {
+    let bytes = |count: usize, axis: &str| {
         let text = format!(
             "title = \"t\"\n[whisker]\nlength_mm = 20\nbase_radius_um = 30\ntip_radius_um = 3\n\
-             youngs_modulus_gpa = 3\n[grid]\npush_angle_deg = {{ from = 0, to = 9, {count} }}\ndistance_mm = [5, 9]"
+             youngs_modulus_gpa = 3\n[grid]\npush_angle_deg = {{ from = 0, to = 9, count = {count} }}\n\
+             distance_mm = [5, 9]\n{axis}"
         );
         let scene = Scene::parse(&text, "scene").unwrap();
         Plan::new(&scene).unwrap().bytes
-    });
+    };
     let channels = STATE_CHANNELS.len() as u64 + 5;
-    assert_eq!(large - small, 400 * 2 * 4 * channels);
+    assert_eq!(bytes(300, "") - bytes(100, ""), 400 * 2 * 4 * channels);
+    let sweep = "friction = [0, 0.1, 0.2]\n";
+    assert_eq!(
+        bytes(300, sweep) - bytes(100, sweep),
+        3 * 400 * 4 * 4 * channels
+    );
 }
 
 #[test]

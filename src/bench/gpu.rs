@@ -4,9 +4,9 @@ use super::task::{Task, faces, magnitudes};
 use super::watch::watch;
 use super::{Engine, Measurement, Report, Rung, Stages};
 use crate::integrate::gpu::{Gpu, Precision, adapters};
-use crate::integrate::{CellDifference, Engine as _, EngineError, Outcome, Reference};
+use crate::integrate::{Engine as _, EngineError, Outcome, Reference, on_gpu};
 use crate::refine::{RowOfCells, references};
-use crate::rod::{Rod, arclength};
+use crate::rod::Rod;
 use crate::scene::Scene;
 use crate::sheet::Sheet;
 use crate::shooting::batch::Method;
@@ -21,7 +21,8 @@ pub fn measure(
     said: &mut dyn FnMut(&str),
 ) {
     let all = adapters();
-    if all.is_empty() {
+    if let Err(why) = on_gpu(task.effects) {
+        report.failures.push(format!("GPU: {why}"));
         return;
     }
     let sides = Sides::of(scene, task);
@@ -79,9 +80,13 @@ impl Sides {
             let by_row = references(method, &[&sheet], &rows);
             let pushes: Vec<f64> = magnitudes.iter().map(|push| side.sign() * push).collect();
             let shots = by_row.iter().enumerate().flat_map(|(row, references)| {
-                let cells = references.iter().flat_map(|reference| reference.cells.clone());
+                let cells = references
+                    .iter()
+                    .flat_map(|reference| reference.cells.clone());
                 let pole = |cell: u32| sheet.rows[row].pole(pushes[cell as usize]);
-                cells.map(|cell| task.shot(index as u32, pole(cell))).collect::<Vec<_>>()
+                cells
+                    .map(|cell| task.shot(index as u32, pole(cell)))
+                    .collect::<Vec<_>>()
             });
             Side {
                 rods: [rod.clone()],
@@ -111,20 +116,12 @@ impl Sides {
             let each = references.flat_map(|own| own.cells.clone().map(move |_| own));
             for ((cell, reference), shot) in cells.iter().zip(each).zip(&side.shots) {
                 if let (Outcome::Solved, Some(shot)) = (cell.outcome, shot) {
-                    points.push((*shot, place(&side.rods[0], reference, cell)));
+                    points.push((*shot, cell.point(&side.rods[0], reference)));
                 }
             }
         }
         Ok((points, stages))
     }
-}
-
-/// `(tau, load)` of a cell.
-fn place(rod: &Rod, reference: &Reference, cell: &CellDifference) -> (f64, f64) {
-    let [arc, _, force, ..] = cell.numbers.map(f64::from);
-    let tau = rod.tau(arclength(rod, reference.tau) + arc);
-    let load = (reference.state.full.force + force) / rod.radius(tau).powi(2);
-    (tau, load)
 }
 
 fn engine(
@@ -137,10 +134,6 @@ fn engine(
 ) -> Result<(), EngineError> {
     let start = Instant::now();
     let mut gpu = Gpu::timed(index, precision)?;
-    if let Err(why) = gpu.can(task.effects) {
-        report.failures.push(format!("{name}: {why}"));
-        return Ok(());
-    }
     sides.solve(&mut gpu)?;
     let first_result_s = start.elapsed().as_secs_f64();
     let engine = Engine {

@@ -135,7 +135,9 @@ impl Task {
         Self {
             effects,
             exact: places(&exact),
-            by_pole: by_pole.map(|(i, shot)| (key(shot.rod, shot.pole), i)).collect(),
+            by_pole: by_pole
+                .map(|(i, shot)| (key(shot.rod, shot.pole), i))
+                .collect(),
             rods,
             shots,
         }

@@ -96,7 +96,9 @@ fn tables(report: &Report) -> io::Result<()> {
     )?;
     for row in &report.rows {
         let errors = &row.errors;
-        let of_peak = row.of_peak.map_or_else(|| "-".to_owned(), |part| format!("{:.0}%", 100.0 * part));
+        let of_peak = row
+            .of_peak
+            .map_or_else(|| "-".to_owned(), |part| format!("{:.0}%", 100.0 * part));
         writeln!(
             out,
             "{} {:15} {:16} {:5.2} {:4.0} {:6.0e} {:6.0e} {:6.0e} {:6.0e} {of_peak:>4}",

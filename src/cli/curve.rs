@@ -5,7 +5,7 @@ use super::data;
 use super::failure::{Failure, check_resolved, say};
 use super::outputs::{Opened, Outputs};
 use super::pole::check_single;
-use super::progress;
+use super::progress::Progress;
 use super::theory::{AXES, CHORD, own_curve, theory};
 use super::tolerance::Tolerance;
 use super::uncertainty::{self, Sampling};
@@ -92,8 +92,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     let (mut unresolved, mut all) = (0, 0);
     let distances = &scene.grid.distance_mm;
     let of_side = if options.corner { 1 } else { distances.len() };
-    let bar = progress::bar(whiskers * Side::BOTH.len() * of_side, "ends");
-    bar.tick();
+    let bar = Progress::over(whiskers * Side::BOTH.len() * of_side, "ends");
     let at_once = trace::whiskers_at_once(distances.len());
     for group in scene.whisker_groups(at_once) {
         if options.corner {
@@ -107,7 +106,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         }
         let curve = |own: &Swept, side| {
             let ends = trace::curve_at(resolution, &own.whisker, &own.pole, side, distances);
-            bar.inc(ends.len() as u64);
+            bar.inc(ends.len());
             ends
         };
         let rows = trace::sides(&group, curve);
@@ -120,7 +119,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
             drawn.extend(rows.into_iter().map(|(_, row)| row));
         }
     }
-    bar.finish_and_clear();
+    bar.finish();
     outputs.finish(scene.title.clone(), || theory(&drawn, AXES))?;
     check_resolved(unresolved, all, "ends", "the column `kind`")
 }

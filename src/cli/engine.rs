@@ -5,7 +5,7 @@ use super::failure::Failure;
 use clap::{Args, ValueEnum};
 use std::env;
 use whiskmap::integrate::gpu::{AdapterReport, Gpu, Precision, adapters, named, preferred};
-use whiskmap::integrate::{Description, Engine, EngineError};
+use whiskmap::integrate::{Description, Engine, EngineError, on_gpu};
 use whiskmap::plan::Plan;
 use whiskmap::scene::Scene;
 
@@ -34,7 +34,7 @@ pub struct EngineOptions {
     adapter: Option<String>,
 }
 
-/// What shoots before the refinement, nothing for the CPU alone, and in one line why it was taken.
+/// What solves cells, nothing for the CPU alone, and in one line why it was taken.
 pub type Opened = (Option<Box<dyn Engine>>, String);
 
 /// Seconds that samples may take to see whether a GPU is worth starting, and then those that compare it with the CPU.
@@ -45,8 +45,13 @@ const COMPARISON: f64 = 0.04;
 const OPENING: f64 = 0.1;
 
 impl EngineOptions {
-    /// Opens the engine for a map of `scene` as in `plan`.
-    pub fn open(&self, scene: &Scene, plan: &Plan) -> Result<Opened, Failure> {
+    /// Opens the engine for a map of `scene` as in `plan`, with push angles exact to `tolerance_deg`, if that was asked.
+    pub fn open(
+        &self,
+        scene: &Scene,
+        plan: &Plan,
+        tolerance_deg: Option<f64>,
+    ) -> Result<Opened, Failure> {
         let asked = || "asked for".to_owned();
         match (self.engine, self.precision, &self.adapter) {
             (Choice::Cpu, Some(Precision::F32), _) => Err(Failure::Input(
@@ -61,6 +66,9 @@ impl EngineOptions {
                 "--adapter {adapter}: the CPU engine has none; allowed with --engine gpu and --engine auto"
             ))),
             (Choice::Cpu, ..) => Ok((None, asked())),
+            (Choice::Gpu, ..) if let Some(why) = self.refusal(scene, plan, tolerance_deg) => {
+                Ok((None, format!("GPU asked for, but {why}")))
+            }
             (Choice::Gpu, ..) => match self.gpu(self.adapter()?.map(|(index, _)| index)) {
                 Ok(gpu) => Ok((Some(gpu), asked())),
                 Err(error @ EngineError::Unsupported { .. }) => Err(Failure::Input(format!(
@@ -69,8 +77,23 @@ impl EngineOptions {
                 ))),
                 Err(error) => Err(error.into()),
             },
-            (Choice::Auto, ..) => self.faster(scene, plan),
+            (Choice::Auto, ..) => match self.refusal(scene, plan, tolerance_deg) {
+                Some(why) => Ok((None, format!("auto: {why}"))),
+                None => self.faster(scene, plan),
+            },
         }
+    }
+
+    /// Why the CPU solves every cell whatever a GPU can.
+    fn refusal(&self, scene: &Scene, plan: &Plan, tolerance_deg: Option<f64>) -> Option<String> {
+        if let Err(why) = on_gpu(plan.method.effects) {
+            return Some(why.to_owned());
+        }
+        let precision = self.precision();
+        let bound_deg = bound_deg(scene, precision);
+        let is_coarser = tolerance_deg.is_some_and(|tolerance| bound_deg > tolerance);
+        is_coarser
+            .then(|| format!("gpu {precision} only bounds the push angle to {bound_deg:.1e} deg"))
     }
 
     fn precision(&self) -> Precision {
@@ -92,8 +115,7 @@ impl EngineOptions {
         gpu.map(|gpu| Box::new(gpu) as _)
     }
 
-    /// The engine that is expected to be done first with `plan`, by what samples of `scene` take. Every state is refined in `f64`
-    /// by the same method, so that all engines meet every tolerance.
+    /// The engine that is expected to be done first with `plan`, by what samples of `scene` take.
     fn faster(&self, scene: &Scene, plan: &Plan) -> Result<Opened, Failure> {
         // Who names an adapter is told that there is none, even where the CPU would not wait for it.
         if self.adapter.is_some() || env::var_os(NAME).is_some() {
@@ -120,6 +142,19 @@ impl EngineOptions {
             Err(failure) => Err(failure),
         }
     }
+}
+
+/// To how many degrees shaders bound push angles: their miss of the pole, as seen from the base at the nearest distance.
+fn bound_deg(scene: &Scene, precision: Precision) -> f64 {
+    let nearest = scene
+        .grid
+        .distance_mm
+        .iter()
+        .copied()
+        .fold(f64::INFINITY, f64::min);
+    let lengths = scene.corner_whiskers().map(|own| own.whisker.length_mm);
+    let longest = lengths.fold(0.0, f64::max);
+    (precision.goal() * longest / nearest).to_degrees()
 }
 
 /// The variable by which other programs that use wgpu choose an adapter, too.

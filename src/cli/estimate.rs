@@ -1,12 +1,14 @@
 //! What a map would take, measured: samples of it are computed and thrown away.
 
 use super::failure::Failure;
+use clap::ValueEnum;
 use std::convert::Infallible;
 use std::time::Instant;
 use whiskmap::integrate::Engine;
-use whiskmap::map::{self, Progress, Stage};
+use whiskmap::map::{self, Panel, Stage};
 use whiskmap::plan::{Plan, SAMPLE_LINES, SAMPLE_VALUES};
 use whiskmap::scene::Scene;
+use whiskmap::store::{self, MapWriter, Packed, ZarrStore};
 
 /// What a map would take.
 pub struct Estimate {
@@ -14,6 +16,79 @@ pub struct Estimate {
     pub seconds: f64,
     /// Newton steps per cell, each one trajectory.
     pub steps_per_cell: f64,
+}
+
+/// What the files of a map take.
+pub struct Files {
+    /// Their format.
+    pub format: Format,
+    /// Bytes on disk.
+    pub bytes: f64,
+    /// Seconds on the CPU's threads to pack them.
+    pub seconds: f64,
+}
+
+/// Formats of a map.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Format {
+    /// One OpenEXR file, and a picture of it
+    Exr,
+    /// A Zarr store, for any number of axes, runs and machines
+    Zarr,
+}
+
+impl Format {
+    /// Those that can hold a map of `scene`.
+    pub fn of(scene: &Scene) -> Vec<Self> {
+        let mut formats = vec![Self::Exr, Self::Zarr];
+        formats.retain(|format| *format == Self::Zarr || scene.grid.sweep.len() <= 2);
+        formats
+    }
+
+    /// Packs some panels of `scene`.
+    fn pack(self, scene: &Scene, plan: &Plan, panels: &[Panel]) -> Result<Packed, store::Error> {
+        match self {
+            Self::Exr => Ok(MapWriter::sample(&scene.grid, plan.channels, panels)),
+            Self::Zarr => ZarrStore::sample(scene, plan.channels, panels),
+        }
+    }
+}
+
+/// Cells of the sample that is packed, about: many lines, because the closer cells are, the better they pack.
+const PACKED_CELLS: usize = 1 << 18;
+
+/// What the files of `plan` would take in these `formats`, from a packed sample.
+pub fn files(scene: &Scene, plan: &Plan, formats: &[Format]) -> Result<Vec<Files>, Failure> {
+    let whiskers = scene.thinned(1, SAMPLE_VALUES).whisker_count();
+    let lines = (PACKED_CELLS / whiskers).isqrt().max(1);
+    let (small, small_plan) = thinned(scene, plan, [lines, lines])?;
+    let mut packed = vec![Packed::default(); formats.len()];
+    let mut keep = |panels: Vec<Panel>| {
+        for (format, sum) in formats.iter().zip(&mut packed) {
+            *sum += format.pack(&small, &small_plan, &panels)?;
+        }
+        Ok::<(), store::Error>(())
+    };
+    map::run(&small, &small_plan, None, &mut |_| (), &mut keep)?;
+    let by_cells = plan.cells as f64 / small_plan.cells as f64;
+    let threads = rayon::current_num_threads() as f64;
+    let files = formats.iter().zip(packed).map(|(&format, sample)| Files {
+        format,
+        bytes: sample.bytes as f64 * by_cells,
+        seconds: sample.time.as_secs_f64() * by_cells / threads,
+    });
+    Ok(files.collect())
+}
+
+/// A sample of at most so many push angles and distances, and its plan.
+fn thinned(scene: &Scene, plan: &Plan, lines: [usize; 2]) -> Result<(Scene, Plan), Failure> {
+    let small = scene.thinned_to(lines, SAMPLE_VALUES);
+    let small_plan = Plan {
+        method: plan.method,
+        channels: plan.channels,
+        ..Plan::new(&small)?
+    };
+    Ok((small, small_plan))
 }
 
 /// Lines of the first sample.
@@ -29,7 +104,7 @@ pub fn estimate(scene: &Scene, plan: &Plan, seconds: f64) -> Result<Estimate, Fa
     let (mut lines, mut left) = (FIRST_LINES, seconds);
     loop {
         let start = Instant::now();
-        let estimate = measured(scene, plan, &mut None, lines)?;
+        let estimate = measured(scene, plan, &mut None, [lines, lines])?;
         let last = start.elapsed().as_secs_f64();
         left -= last;
         match denser(lines, last, left) {
@@ -38,6 +113,9 @@ pub fn estimate(scene: &Scene, plan: &Plan, seconds: f64) -> Result<Estimate, Fa
         }
     }
 }
+
+/// Most push angles of a sample for an engine, whose references cost the same for a row of few cells as for one of many.
+const WIDE: usize = 2048;
 
 /// Rounds for which [`compare`] keeps time: one alone may have been held up.
 const ROUNDS: f64 = 3.0;
@@ -53,13 +131,13 @@ pub fn compare(
     engine: &mut Option<Box<dyn Engine>>,
     seconds: f64,
 ) -> Result<[f64; 2], Failure> {
-    measured(scene, plan, engine, FIRST_LINES)?;
+    measured(scene, plan, engine, [WIDE, FIRST_LINES])?;
     let (mut lines, mut left) = (FIRST_LINES, seconds);
     let mut fastest = [f64::INFINITY; 2];
     loop {
         let start = Instant::now();
-        let cpu = measured(scene, plan, &mut None, lines)?.seconds;
-        let with_engine = measured(scene, plan, engine, lines)?.seconds;
+        let cpu = measured(scene, plan, &mut None, [WIDE, lines])?.seconds;
+        let with_engine = measured(scene, plan, engine, [WIDE, lines])?.seconds;
         fastest = [fastest[0].min(cpu), fastest[1].min(with_engine)];
         let last = start.elapsed().as_secs_f64();
         left -= last;
@@ -77,21 +155,17 @@ fn denser(lines: usize, last: f64, left: f64) -> Option<usize> {
     (is_short && lines < SAMPLE_LINES).then_some(lines * DENSER)
 }
 
-/// Measures a sample of at most so many `lines` each way.
+/// Measures a sample of at most so many push angles and distances.
 fn measured(
     scene: &Scene,
     plan: &Plan,
     engine: &mut Option<Box<dyn Engine>>,
-    lines: usize,
+    lines: [usize; 2],
 ) -> Result<Estimate, Failure> {
-    let small = scene.thinned(lines, SAMPLE_VALUES);
-    let small_plan = Plan {
-        method: plan.method,
-        ..Plan::new(&small)?
-    };
+    let (small, small_plan) = thinned(scene, plan, lines)?;
     let engine = engine.as_mut().map(|engine| &mut **engine as _);
-    let discard = &mut |_: Progress| Ok::<(), Infallible>(());
-    let Ok(summary) = map::run(&small, &small_plan, engine, discard);
+    let discard = &mut |_| Ok::<(), Infallible>(());
+    let Ok(summary) = map::run(&small, &small_plan, engine, &mut |_| (), discard);
     if let Some(failure) = summary.engine_failure {
         return Err(failure.into());
     }

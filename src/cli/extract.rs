@@ -197,11 +197,12 @@ fn store(slice: &Slice, channels: &[&'static str], path: &Path) -> Result<(), Fa
     let (scene, origin) = (scene(slice)?, Origin::of(slice)?);
     let chosen = Channels::those(|name| channels.contains(&name));
     let about = origin.describe(&scene, chosen.with("regime"));
-    let store = ZarrStore::begin(path, &scene, &about, true)?;
+    let store = ZarrStore::join(path, &scene, &about, true)?;
+    store.begin()?;
     for block in 0..store.block_count() {
         let whiskers = store.whiskers(block);
-        let panels = whiskers.map(|whisker| slice.panel(about.channels, whisker));
-        store.write(block, &panels.collect::<Result<Vec<_>, _>>()?)?;
+        let packed = whiskers.map(|whisker| store.pack(&slice.panel(about.channels, whisker)?));
+        store.write(block, &packed.collect::<Result<Vec<_>, _>>()?)?;
     }
     Ok(())
 }

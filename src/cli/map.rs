@@ -1,24 +1,26 @@
 //! `whiskmap map`.
 
+use super::disk;
 use super::engine::EngineOptions;
+use super::estimate::Format;
 use super::failure::{Failure, check_resolved, say};
 use super::numbers::whole;
 use super::outputs;
 use super::picture::save;
-use super::progress;
+use super::progress::Progress;
 use super::sharded::{self, Shard};
 use super::summary::print;
 use super::tolerance::Tolerance;
-use clap::{Args, ValueEnum};
+use clap::Args;
 use std::path::PathBuf;
 use std::str::FromStr;
 use std::time::Instant;
 use whiskmap::accuracy::{Accuracy, BOUNDED};
-use whiskmap::map::{self, Progress};
+use whiskmap::map;
 use whiskmap::plan::{Channels, Plan};
 use whiskmap::refine::{GOAL, TOLERANCE};
 use whiskmap::render;
-use whiskmap::render::{Format, MapOptions};
+use whiskmap::render::MapOptions;
 use whiskmap::scene::Scene;
 use whiskmap::store::{Description, MapWriter, StoredMap};
 
@@ -55,7 +57,7 @@ pub struct Options {
     channels: Option<Channels>,
     /// What to write
     #[arg(long, value_enum, default_value = "exr")]
-    format: MapFormat,
+    format: Format,
     /// Go on with a store: compute only what it lacks
     #[arg(long)]
     resume: bool,
@@ -65,15 +67,9 @@ pub struct Options {
     /// Write no picture
     #[arg(long)]
     no_png: bool,
-}
-
-/// Formats of a map.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum MapFormat {
-    /// One OpenEXR file, and a picture of it
-    Exr,
-    /// A Zarr store, for any number of axes, runs and machines
-    Zarr,
+    /// Start although the disk seems to have too little room
+    #[arg(long)]
+    force: bool,
 }
 
 /// Runs `map`.
@@ -86,10 +82,12 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         plan.method.resolution = accuracy.resolution;
     }
     plan.channels = options.channels.unwrap_or(Channels::ALL);
-    let (mut engine, why) = options.engine.open(&scene, &plan)?;
+    let (mut engine, why) = options
+        .engine
+        .open(&scene, &plan, options.tolerance.degrees())?;
     let about = whiskmap::integrate::Description::of(engine.as_deref());
     outputs::folder("--output", &options.output)?;
-    if options.format == MapFormat::Zarr {
+    if options.format == Format::Zarr {
         let tolerances = tolerances(accuracy);
         let about = Description {
             scene: &scene,
@@ -101,6 +99,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         let run = sharded::Run {
             shard: options.shard,
             resume: options.resume,
+            force: options.force,
             engine: engine.as_mut().map(|engine| &mut **engine as _),
         };
         return run.fill(&path, &scene, plan, &about);
@@ -117,6 +116,9 @@ pub fn run(options: &Options) -> Result<(), Failure> {
             )));
         }
     }
+    if !options.force {
+        disk::check(&options.output, Format::Exr, &scene, &plan, plan.cells)?;
+    }
     say(&format!(
         "engine: {} on {} ({why})",
         about.engine, about.adapter
@@ -132,27 +134,30 @@ pub fn run(options: &Options) -> Result<(), Failure> {
             channels: plan.channels,
         },
     )?;
-    let bar = progress::bar(plan.cells, "cells");
+    let bar = Progress::over(plan.cells, "cells");
     let engine = engine.as_mut().map(|engine| &mut **engine as _);
-    let result = map::run(&scene, &plan, engine, &mut |progress| match progress {
-        Progress::Settled(cells) => {
-            bar.inc(cells as u64);
-            Ok(())
-        }
-        Progress::Panels(panels) => writer.write_panels(panels),
-    });
-    bar.finish_and_clear();
+    let mut settled = |cells| bar.inc(cells);
+    let mut keep = |panels: Vec<_>| writer.write_panels(&panels);
+    let result = map::run(&scene, &plan, engine, &mut settled, &mut keep);
+    bar.finish();
     let summary = result?;
+    let packing = writer.packing();
     writer.finish(summary.engine_cells, summary.audit)?;
     if let Some(failure) = &summary.engine_failure {
         say(&format!("warning: {failure}; the CPU went on in its stead"));
     }
     if let Some(picture) = &picture {
         let regimes = render::map(&StoredMap::open(&file)?.into(), &MapOptions::default())?;
-        save(&regimes, picture, Format::Png)?;
+        save(&regimes, picture, render::Format::Png)?;
     }
     let written: Vec<PathBuf> = [Some(file), picture].into_iter().flatten().collect();
-    print(&scene, &summary, start.elapsed().as_secs_f64(), &written)?;
+    print(
+        &scene,
+        &summary,
+        start.elapsed().as_secs_f64(),
+        packing,
+        &written,
+    )?;
     let see = "the channel `status`";
     check_resolved(summary.unresolved(), summary.cells(), "cells", see)
 }
@@ -160,7 +165,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
 impl Options {
     /// Finds out whether the format can do what is asked of it.
     fn check(&self, scene: &Scene) -> Result<(), Failure> {
-        if self.format == MapFormat::Zarr {
+        if self.format == Format::Zarr {
             return Ok(());
         }
         let refuse = |why: String| Err(Failure::Input(format!("{why}; give --format zarr")));

@@ -1,10 +1,12 @@
 //! `whiskmap plan`.
 
-use super::estimate::{Estimate, estimate};
+use super::estimate::{Estimate, Files, Format, estimate, files};
 use super::failure::Failure;
 use clap::Args;
+use indicatif::DecimalBytes;
 use std::io::Write;
 use std::path::PathBuf;
+use whiskmap::integrate::on_gpu;
 use whiskmap::plan::{Cost, Plan, ROD_STATES, effects};
 use whiskmap::scene::Scene;
 
@@ -18,9 +20,11 @@ Examples:
 Sets of effects with kernels of their own cost work at every step of the integration. The others are free: pole \
 radius and friction only change where a trajectory starts, and projection is a faster taper and a steeper modulus gradient. The pole touches the \
 whisker's centre line: the whisker's own thickness does not add to the pole's radius. A GPU divides an engine \
-call into dispatches, as many as its speed asks for. Trajectories are those of the cells. They and the seconds are \
-scaled up from a sample of at most 128 x 128 cells and two values per sweep axis, fewer where these would take more than \
-some seconds, computed on this machine's CPU and thrown away; nothing is written and no GPU is opened.")]
+call into dispatches, as many as its speed asks for. Trajectories are those of the cells. They, the seconds and the bytes are \
+scaled up from samples of at most 128 x 128 cells (for the bytes, some 2^18 in all) and two values per sweep axis, fewer where these \
+would take more than some seconds, computed and packed on this machine's CPU and thrown away; nothing is written and no GPU is \
+opened. Files come with the seconds that packing them adds; the picture of an EXR file and the disk's own speed are not in them. \
+A store keeps the packed panels of the block that it is at, too: at most 2 million cells.")]
 pub struct Options {
     /// Scene file; - reads it from standard input
     scene: PathBuf,
@@ -34,11 +38,12 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     let scene = Scene::read(&options.scene)?;
     let plan = Plan::new(&scene)?;
     let estimate = estimate(&scene, &plan, SAMPLE_SECONDS)?;
-    print(&scene, &plan, &estimate)?;
+    let files = files(&scene, &plan, &Format::of(&scene))?;
+    print(&scene, &plan, &estimate, &files)?;
     Ok(())
 }
 
-fn print(scene: &Scene, plan: &Plan, estimate: &Estimate) -> std::io::Result<()> {
+fn print(scene: &Scene, plan: &Plan, estimate: &Estimate, files: &[Files]) -> std::io::Result<()> {
     let mut out = std::io::stdout().lock();
     writeln!(out, "{}\n", scene.title)?;
     writeln!(out, "{:16}  {:3}  {:12}  why", "effect", "", "cost when on")?;
@@ -76,15 +81,18 @@ fn print(scene: &Scene, plan: &Plan, estimate: &Estimate) -> std::io::Result<()>
         "trajectories  about {:.0} at most: {steps:.2} Newton steps a cell and 1 to confirm",
         (steps + 1.0) * plan.cells as f64
     )?;
-    writeln!(
-        out,
-        "GPU calls     {}: groups of {}, {} of {}, {} a call",
-        plan.engine_calls,
-        counted(plan.panels_at_once, "whisker"),
-        counted(plan.sides.len(), "side"),
-        counted(distances, "row"),
-        counted(plan.rows_at_once, "row")
-    )?;
+    match on_gpu(plan.method.effects) {
+        Ok(()) => writeln!(
+            out,
+            "GPU calls     {}: groups of {}, {} of {}, {} a call",
+            plan.engine_calls,
+            counted(plan.panels_at_once, "whisker"),
+            counted(plan.sides.len(), "side"),
+            counted(distances, "row"),
+            counted(plan.rows_at_once, "row")
+        )?,
+        Err(why) => writeln!(out, "GPU calls     none: {why}")?,
+    }
     writeln!(
         out,
         "memory        at most {} MiB for panels and cells in flight",
@@ -95,7 +103,16 @@ fn print(scene: &Scene, plan: &Plan, estimate: &Estimate) -> std::io::Result<()>
         "time          about {} s on {} of the CPU engine, without the files",
         two_digits(estimate.seconds),
         counted(rayon::current_num_threads(), "thread")
-    )
+    )?;
+    for own in files {
+        let name = match own.format {
+            Format::Exr => "EXR file",
+            Format::Zarr => "Zarr store",
+        };
+        let (bytes, seconds) = (DecimalBytes(own.bytes as u64), two_digits(own.seconds));
+        writeln!(out, "{name:12}  about {bytes}, {seconds} s more")?;
+    }
+    Ok(())
 }
 
 fn counted(count: usize, what: &str) -> String {

@@ -1,18 +1,112 @@
-//! Progress on standard error, on a terminal only.
+//! Progress on standard error: a bar on a terminal, elsewhere a line now and then.
 
-use indicatif::{ProgressBar, ProgressState, ProgressStyle};
+use super::failure::say;
+use indicatif::{HumanDuration, ProgressBar, ProgressState, ProgressStyle};
 use std::fmt::Write;
+use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, Instant};
 
-/// A bar over so many `things`, such as cells, with rate and time left; hidden when standard error is not a terminal.
-pub fn bar(count: usize, things: &str) -> ProgressBar {
+/// Progress over some things, such as cells, by any number of threads.
+pub struct Progress {
+    bar: ProgressBar,
+    lines: Mutex<Lines>,
+    start: Instant,
+}
+
+impl Progress {
+    /// Over so many `things`.
+    pub fn over(count: usize, things: &'static str) -> Self {
+        Self {
+            bar: bar(count, things),
+            lines: Mutex::new(Lines::over(count as u64, things)),
+            start: Instant::now(),
+        }
+    }
+
+    /// So many more are done.
+    pub fn inc(&self, more: usize) {
+        self.bar.inc(more as u64);
+        if self.bar.is_hidden() {
+            let mut lines = self.lines.lock().unwrap_or_else(PoisonError::into_inner);
+            let line = lines.due(self.bar.position(), self.start.elapsed());
+            line.iter().for_each(|line| say(line));
+        }
+    }
+
+    /// Removes the bar.
+    pub fn finish(&self) {
+        self.bar.finish_and_clear();
+    }
+}
+
+/// A bar with rate and time left; hidden when standard error is not a terminal.
+fn bar(count: usize, things: &str) -> ProgressBar {
     let rate = |state: &ProgressState, out: &mut dyn Write| {
         let _ = write!(out, "{:.0}", state.per_sec());
     };
     let template = format!("{{wide_bar}} {{percent:>3}} %, {{rate}} {things}/s, {{eta}} left");
     let style = ProgressStyle::with_template(&template);
     let bar = ProgressBar::new(count as u64);
-    match style {
+    let bar = match style {
         Ok(style) => bar.with_style(style.with_key("rate", rate)),
         Err(_) => bar,
+    };
+    bar.tick();
+    bar
+}
+
+/// From one line to the next.
+const INTERVAL: Duration = Duration::from_secs(30);
+
+/// Where there is no terminal: what to tell, and when.
+struct Lines {
+    count: u64,
+    things: &'static str,
+    /// When the next line is due, since the start.
+    next: Duration,
+}
+
+impl Lines {
+    const fn over(count: u64, things: &'static str) -> Self {
+        Self {
+            count,
+            things,
+            next: INTERVAL,
+        }
+    }
+
+    /// The line, if one is due, when so many are done at `time` since the start.
+    fn due(&mut self, done: u64, time: Duration) -> Option<String> {
+        if time < self.next || done == 0 {
+            return None;
+        }
+        self.next = time + INTERVAL;
+        let rate = done as f64 / time.as_secs_f64();
+        let left = Duration::try_from_secs_f64((self.count - done) as f64 / rate);
+        Some(format!(
+            "{:.0} % of {} {things}, {rate:.0} {things}/s, {} left",
+            100.0 * done as f64 / self.count as f64,
+            self.count,
+            HumanDuration(left.unwrap_or(Duration::MAX)),
+            things = self.things,
+        ))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_every_half_a_minute() {
+        let mut lines = Lines::over(1000, "cells");
+        let mut due = |done, seconds| lines.due(done, Duration::from_secs(seconds));
+        assert_eq!(due(10, 29), None);
+        assert_eq!(due(0, 30), None);
+        let line = "10 % of 1000 cells, 2 cells/s, 7 minutes left";
+        assert_eq!(due(100, 45).as_deref(), Some(line));
+        assert_eq!(due(200, 74), None);
+        let line = "75 % of 1000 cells, 10 cells/s, 25 seconds left";
+        assert_eq!(due(750, 75).as_deref(), Some(line));
     }
 }

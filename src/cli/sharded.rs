@@ -1,16 +1,19 @@
 //! `whiskmap map --format zarr`: a run fills some blocks of a store.
 
+use super::estimate::Format;
 use super::failure::{Failure, check_resolved, say};
+use super::progress::Progress;
 use super::summary::print;
-use super::{progress, signals};
+use super::{disk, signals};
+use rayon::prelude::*;
 use std::path::Path;
 use std::str::FromStr;
 use std::time::Instant;
 use whiskmap::integrate::Engine;
-use whiskmap::map::{self, Panel, Progress};
+use whiskmap::map::{self, Panel};
 use whiskmap::plan::Plan;
 use whiskmap::scene::Scene;
-use whiskmap::store::{Description, ZarrStore};
+use whiskmap::store::{self, Description, PackedPanel, ZarrStore};
 
 /// The blocks that one of `count` processes computes: every `count`-th.
 #[derive(Clone, Copy, Debug)]
@@ -46,6 +49,8 @@ pub struct Run<'a> {
     pub shard: Option<Shard>,
     /// Whether blocks that are there are left as they are.
     pub resume: bool,
+    /// Whether it starts although the disk seems to have too little room.
+    pub force: bool,
     /// What shoots before the refinement.
     pub engine: Option<&'a mut dyn Engine>,
 }
@@ -61,7 +66,7 @@ impl Run<'_> {
     ) -> Result<(), Failure> {
         let start = Instant::now();
         let may_exist = self.resume || self.shard.is_some();
-        let store = ZarrStore::begin(path, scene, about, may_exist)?;
+        let store = ZarrStore::join(path, scene, about, may_exist)?;
         let is_due = |block: &usize| {
             let is_ours = self.shard.is_none_or(|shard| shard.has(*block));
             is_ours && !(self.resume && store.is_done(*block))
@@ -70,6 +75,11 @@ impl Run<'_> {
         plan.parts = blocks.iter().map(|block| store.whiskers(*block)).collect();
         let panel = scene.grid.push_angle_deg.len() * scene.grid.distance_mm.len();
         let whiskers: usize = plan.parts.iter().map(ExactSizeIterator::len).sum();
+        if !self.force {
+            let folder = path.parent().unwrap_or(path);
+            disk::check(folder, Format::Zarr, scene, &plan, panel * whiskers)?;
+        }
+        store.begin()?;
         say(&format!(
             "engine: {}; blocks: {} of {}",
             about.engine.engine,
@@ -78,30 +88,27 @@ impl Run<'_> {
         ));
         signals::advise("finished blocks stay: go on by the same command with --resume");
 
-        let bar = progress::bar(panel * whiskers, "cells");
+        let bar = Progress::over(panel * whiskers, "cells");
         let mut due = blocks
             .iter()
             .map(|block| (*block, store.whiskers(*block).len()));
         let mut next = due.next();
-        let mut panels: Vec<Panel> = Vec::new();
-        let result = map::run(scene, &plan, self.engine, &mut |progress| match progress {
-            Progress::Settled(cells) => {
-                bar.inc(cells as u64);
-                Ok(())
+        let mut packed: Vec<PackedPanel> = Vec::new();
+        let mut keep = |panels: Vec<Panel>| {
+            let panels = panels.par_iter().map(|panel| store.pack(panel));
+            packed.extend(panels.collect::<Result<Vec<_>, _>>()?);
+            if let Some((block, whiskers)) = next
+                && packed.len() == whiskers
+            {
+                store.write(block, &packed)?;
+                packed.clear();
+                next = due.next();
             }
-            Progress::Panels(finished) => {
-                panels.extend_from_slice(finished);
-                if let Some((block, whiskers)) = next
-                    && panels.len() == whiskers
-                {
-                    store.write(block, &panels)?;
-                    panels.clear();
-                    next = due.next();
-                }
-                Ok::<(), whiskmap::store::Error>(())
-            }
-        });
-        bar.finish_and_clear();
+            Ok::<(), store::Error>(())
+        };
+        let mut settled = |cells| bar.inc(cells);
+        let result = map::run(scene, &plan, self.engine, &mut settled, &mut keep);
+        bar.finish();
         let summary = result?;
         if let Some(failure) = &summary.engine_failure {
             say(&format!("warning: {failure}; the CPU went on in its stead"));
@@ -110,6 +117,7 @@ impl Run<'_> {
             scene,
             &summary,
             start.elapsed().as_secs_f64(),
+            store.packing(),
             &[path.to_owned()],
         )?;
         let see = "the channel `status`";

@@ -2,15 +2,17 @@
 
 use std::io::Write;
 use std::path::PathBuf;
+use std::time::Duration;
 use whiskmap::classify::Regime;
 use whiskmap::map::{Stage, Summary};
 use whiskmap::scene::Scene;
 
-/// Prints the `summary` of a map that took so many `seconds`, and the `files` written.
+/// Prints the `summary` of a map that took so many `seconds`, what `packing` it took of the CPU, and the `files` written.
 pub fn print(
     scene: &Scene,
     summary: &Summary,
     seconds: f64,
+    packing: Duration,
     files: &[PathBuf],
 ) -> std::io::Result<()> {
     let mut out = std::io::stdout().lock();
@@ -39,7 +41,10 @@ pub fn print(
             "refined in f64 after the engine had failed",
         ),
         (summary.audit.cells, "of the engine's cells audited in f64"),
-        (summary.audit.differing, "of them differed by more than they may"),
+        (
+            summary.audit.differing,
+            "of them differed by more than they may",
+        ),
         (
             summary.toward_base,
             "slide toward the base, against the friction assumed: force and moment are off",
@@ -60,8 +65,27 @@ pub fn print(
         write!(out, " {name} {:.2}", summary.seconds(stage))?;
     }
     writeln!(out)?;
+    if let Some(time) = cpu_time() {
+        let [all, packing] = [time, packing].map(|time| time.as_secs_f64());
+        writeln!(
+            out,
+            "{all:>12.2}  s of all threads, {packing:.2} of them packing"
+        )?;
+    }
     for file in files {
         writeln!(out, "{}", file.display())?;
     }
     Ok(())
+}
+
+/// CPU time of the process, where the system tells.
+#[cfg(unix)]
+fn cpu_time() -> Option<Duration> {
+    let time = rustix::time::clock_gettime(rustix::time::ClockId::ProcessCPUTime);
+    Some(Duration::new(time.tv_sec as u64, time.tv_nsec as u32))
+}
+
+#[cfg(not(unix))]
+const fn cpu_time() -> Option<Duration> {
+    None
 }

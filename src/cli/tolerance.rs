@@ -35,6 +35,11 @@ fn degrees(text: &str) -> Result<f64, String> {
 }
 
 impl Tolerance {
+    /// The largest error, if one was given.
+    pub const fn degrees(&self) -> Option<f64> {
+        self.tolerance
+    }
+
     /// What is enough for `sides` of the scene, if that was asked; said on standard error.
     pub fn choose(&self, scene: &Scene, sides: &[Side]) -> Result<Option<Accuracy>, Failure> {
         let Some(tolerance_deg) = self.tolerance else {

@@ -3,7 +3,7 @@
 use super::failure::{Failure, check_resolved, say};
 use super::numbers::whole;
 use super::outputs::Opened;
-use super::progress;
+use super::progress::Progress;
 use super::theory::{AXES, own_curve};
 use clap::Args;
 use whiskmap::render::{Plot, bands};
@@ -46,11 +46,10 @@ pub fn run(
     resolution: Resolution,
     mut outputs: Opened,
 ) -> Result<(), Failure> {
-    let bar = progress::bar(Side::BOTH.len() * draws.len(), "curves");
-    bar.tick();
+    let bar = Progress::over(Side::BOTH.len() * draws.len(), "curves");
     let spread = |side| draws.spread(resolution, side, || bar.inc(1));
     let rows: Vec<Spread> = Side::BOTH.into_iter().flat_map(spread).collect();
-    bar.finish_and_clear();
+    bar.finish();
     if draws.refused > 0 {
         let (refused, kept) = (draws.refused, draws.len());
         say(&format!(

@@ -23,7 +23,11 @@ impl Fallback<'_> {
         pushes: &[f64],
         references: &[Reference],
     ) -> Option<Vec<CellDifference>> {
-        match self.engine.as_mut()?.solve(method, rods, pushes, references) {
+        match self
+            .engine
+            .as_mut()?
+            .solve(method, rods, pushes, references)
+        {
             Ok(cells) => Some(cells),
             Err(failure) => {
                 self.engine = None;

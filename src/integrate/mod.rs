@@ -13,7 +13,7 @@ pub use fallback::Fallback;
 
 use crate::numerics::Unit;
 use crate::plan::STATE_CHANNELS;
-use crate::rod::{Effects, Rod};
+use crate::rod::{Effects, Rod, arclength};
 use crate::shooting::FirstVariation;
 use crate::shooting::batch::Method;
 use std::ops::Range;
@@ -40,7 +40,7 @@ pub struct Reference {
     pub state: FirstVariation,
     /// The signed load over the way along the row, which is counted in parts of the whole: it goes with `load tau^2`.
     pub per_way: f64,
-    /// Taylor's polynomials of the row by the way from here; the numbers that [`Reference`] has itself begin with the first power.
+    /// Taylor's polynomials of the row by the way from here.
     pub row: [RowNumbers; POWERS],
     /// The cells next to it: those at these of the call's push angles.
     pub cells: Range<u32>,
@@ -55,6 +55,31 @@ pub struct CellDifference {
     pub residual: f32,
     /// Whether the engine vouches for it.
     pub outcome: Outcome,
+}
+
+impl CellDifference {
+    /// `(tau, load)` of a cell of `reference`, whose rod is `rod`.
+    #[must_use]
+    pub fn point(&self, rod: &Rod, reference: &Reference) -> (f64, f64) {
+        let [arc, _, force, ..] = self.numbers.map(f64::from);
+        let tau = rod.tau(arclength(rod, reference.tau) + arc);
+        let load = (reference.state.full.force + force) / rod.radius(tau).powi(2);
+        (tau, load)
+    }
+}
+
+/// Whether shaders integrate these effects; if not, why the CPU does.
+///
+/// # Errors
+/// The reason.
+pub const fn on_gpu(effects: Effects) -> Result<(), &'static str> {
+    if effects.profile {
+        Err("measured radii are integrated on the CPU")
+    } else if effects.gradient {
+        Err("a modulus gradient is integrated on the CPU")
+    } else {
+        Ok(())
+    }
 }
 
 /// What became of a cell. A failed one is data, not an error.
@@ -75,9 +100,9 @@ pub enum Outcome {
 }
 
 impl Outcome {
-    /// Whether the engine has solved the cell.
+    /// Whether the engine answers for it.
     #[must_use]
-    pub const fn is_solved(self) -> bool {
+    pub const fn is_vouched_for(self) -> bool {
         matches!(self, Self::Solved | Self::BeyondTip)
     }
 }
@@ -108,13 +133,8 @@ pub trait Engine {
     /// Which engine this is.
     fn describe(&self) -> Description;
 
-    /// Whether its kernels have these effects, and why not.
-    ///
-    /// # Errors
-    /// What the kernels lack.
-    fn can(&self, effects: Effects) -> Result<(), &'static str>;
-
-    /// Solves the cells of the `references`, in order, each on one of `rods`, at some of the signed `pushes` (radians).
+    /// Solves the cells of the `references`, in order, each on one of `rods`, at some of the signed `pushes` (radians). The effects of
+    /// `method` are some that are [`on_gpu`].
     ///
     /// # Errors
     /// When the device fails; a cell that is handed over is no error.

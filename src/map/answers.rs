@@ -80,11 +80,15 @@ impl<'a> Readings<'a> {
         match cell.state {
             State::Unknown => None,
             State::Refined(state) => {
-                let reading = self.reader.read(state.tau, &state.full, self.touch, cell.push.angle);
+                let reading = self
+                    .reader
+                    .read(state.tau, &state.full, self.touch, cell.push.angle);
                 Some(channels(&reading))
             }
             State::Different(reference, difference) => {
-                let known = self.reference.filter(|(known, _)| std::ptr::eq(*known, reference));
+                let known = self
+                    .reference
+                    .filter(|(known, _)| std::ptr::eq(*known, reference));
                 let (_, numbers) = known.unwrap_or_else(|| {
                     (reference, of_reference(&self.reader, reference, self.touch))
                 });
@@ -192,7 +196,13 @@ fn answer<'a>(
             answer.point = Some(DVec2::new(state.tau, state.load));
             state.residual as f32
         }
-        State::Different(_, difference) => difference.residual,
+        State::Different(reference, difference) => {
+            let rod = &sheet.rod;
+            let point = || DVec2::from(difference.point(rod, reference));
+            // Only friction asks for it.
+            answer.point = (rod.friction != 0.0).then(point);
+            difference.residual
+        }
     };
     if matches!(regime, Regime::Contact | Regime::Unreachable) {
         if let Some(numbers) = readings.and_then(|readings| readings.read(cell)) {

@@ -6,7 +6,7 @@ use super::pushes::{Push, Pushes};
 use super::summary::{Audit, EngineCells};
 use super::{Face, Stage, Summary};
 use crate::classify::{RowBoundary, Status, TIE};
-use crate::integrate::{CellDifference, Fallback, Outcome, Reference};
+use crate::integrate::{CellDifference, Fallback, Outcome, Reference, on_gpu};
 use crate::refine::{self, ContactState, End, Refined, RowOfCells, Shot};
 use crate::rod::Rod;
 use crate::sheet::{Guess, Sheet};
@@ -78,19 +78,23 @@ impl Cell<'_> {
 }
 
 impl Settled {
-    /// Adds to `counts` what became of the cells of an engine, which `has_failed` or not, and has so many cells `audited`.
-    fn count(&self, has_failed: bool, audited: u64, counts: &mut EngineCells) {
+    /// Adds to `counts` what became of the cells of an engine, which `has_failed` or not.
+    fn count(&self, has_failed: bool, counts: &mut EngineCells) {
         for cell in &self.differences {
             counts.count(cell.outcome);
         }
-        let is_left = |cell: &&CellDifference| !cell.outcome.is_solved();
-        let handed_over = self.differences.iter().filter(is_left).count() as u64;
-        let others = (self.refined.len() as u64).saturating_sub(audited + handed_over);
-        if has_failed {
-            counts.on_cpu_instead += others;
-        } else {
-            counts.without_reference += others;
-        }
+        // Refined were those handed over, a sample of the others, and those without a reference.
+        let sources = self.rows.iter().flat_map(|row| &row.sources);
+        let refined = sources.filter(|source| matches!(source, Source::Refined(_)));
+        let handed_over = self
+            .differences
+            .iter()
+            .filter(|cell| !cell.outcome.is_vouched_for());
+        let others = (refined.count() - handed_over.count()) as u64;
+        *match has_failed {
+            true => &mut counts.on_cpu_instead,
+            false => &mut counts.without_reference,
+        } += others;
     }
 
     /// The cells of `row`, which is one of `face`.
@@ -162,7 +166,7 @@ pub fn settle(
     let solved = summary.time(Stage::Shooting, || strip.solve(angles, engine));
     let (settled, audit) = strip.finish(solved.unwrap_or_default(), summary);
     if had_engine {
-        settled.count(engine.failure.is_some(), audit.cells, &mut summary.engine_cells);
+        settled.count(engine.failure.is_some(), &mut summary.engine_cells);
     }
     summary.audit += audit;
     if audit.differing == 0 {
@@ -217,7 +221,8 @@ struct Chosen {
 impl Strip<'_> {
     /// What an engine, if there is one that can, makes of the rows.
     fn solve(&self, angles: &[f64], engine: &mut Fallback<'_>) -> Option<Solved> {
-        engine.engine.as_ref()?.can(self.method.effects).ok()?;
+        engine.engine.as_ref()?;
+        on_gpu(self.method.effects).ok()?;
         let rows = self.places.iter().map(|place| RowOfCells {
             sheet: place.rod,
             row: place.row,
@@ -264,8 +269,13 @@ impl Strip<'_> {
                     &solved.differences[chosen.cell as usize],
                 );
                 audit.cells += 1;
-                audit.differing +=
-                    u64::from(!audit::holds(&place.face.sheet, place.row, push, cell, refined));
+                audit.differing += u64::from(!audit::holds(
+                    &place.face.sheet,
+                    place.row,
+                    push,
+                    cell,
+                    refined,
+                ));
             }
             for source in &mut work.sources {
                 if let Source::Refined(index) = source {
@@ -307,7 +317,7 @@ impl Place<'_> {
                 let cells = &solved.references[reference].cells;
                 for column in cells.clone().map(|index| (index - pushes.first) as usize) {
                     let outcome = solved.differences[cell].outcome;
-                    if outcome.is_solved() {
+                    if outcome.is_vouched_for() {
                         sources[column] = Source::Engine(reference as u32, cell as u32);
                         if audit.has(column) {
                             chosen.push((column, reference as u32, cell as u32));

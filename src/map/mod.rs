@@ -19,20 +19,13 @@ use cells::SettledRow;
 pub use panel::Panel;
 use pushes::Pushes;
 use rayon::prelude::*;
+use std::ops::Range;
+use std::time::Instant;
 pub use summary::{Audit, EngineCells, Stage, Summary};
 
 /// Cells in flight for each thread where no engine shoots: so many that nearly all blocks of the refinement are full, and
 /// hardly a page of memory is new for them.
 const CELLS_OF_A_THREAD: usize = 8192;
-
-/// What a run reports while it goes on.
-#[derive(Clone, Copy, Debug)]
-pub enum Progress<'a> {
-    /// So many more cells are settled.
-    Settled(usize),
-    /// The next finished panels, in atlas order.
-    Panels(&'a [Panel]),
-}
 
 /// One side of one whisker.
 struct Face<'a> {
@@ -42,60 +35,115 @@ struct Face<'a> {
 
 /// Computes the panels of `scene` as `plan` says, on the threads of the current pool, best from within it
 /// (`rayon::ThreadPool::install`): from outside, every stage of every strip of rows wakes it up. `engine` solves
-/// cells in place of the refinement; without one, or where it fails, the CPU does it all.
+/// cells in place of the refinement; without one, or where it fails, the CPU does it all. `settled` hears how many more cells are settled; `keep` gets the
+/// finished panels, in the order of the sweep, while the next ones are computed: it holds at most one group of them.
 ///
 /// # Errors
-/// What `observe` refuses panels with, which ends the run; a cell without an answer is no error.
-pub fn run<E>(
+/// What `keep` refuses panels with, which ends the run; a cell without an answer is no error.
+pub fn run<E: Send>(
     scene: &Scene,
     plan: &Plan,
     engine: Option<&mut dyn Engine>,
-    observe: &mut dyn FnMut(Progress<'_>) -> Result<(), E>,
+    settled: &mut dyn FnMut(usize),
+    keep: &mut (dyn FnMut(Vec<Panel>) -> Result<(), E> + Send),
 ) -> Result<Summary, E> {
-    let width = scene.grid.push_angle_deg.len();
-    let height = scene.grid.distance_mm.len();
-    let rows_at_once = match engine {
-        Some(_) => plan.rows_at_once,
-        None => {
-            let rows = CELLS_OF_A_THREAD * rayon::current_num_threads() / width;
-            rows.clamp(1, plan.rows_at_once)
-        }
-    };
-    let failure = None;
-    let mut engine = Fallback { engine, failure };
-    let mut summary = Summary::default();
-    let mut sides: Vec<Pushes> = Vec::new();
-    let mut angles: Vec<f64> = Vec::new();
-    for side in &plan.sides {
-        // A row has fewer columns than `u32` can count.
-        let side = Pushes::new(&scene.grid.push_angle_deg, *side, angles.len() as u32);
-        angles.extend(side.columns.iter().map(|push| push.angle));
-        sides.push(side);
+    let mut run = Run::new(scene, plan, engine);
+    let mut finished: Option<Vec<Panel>> = None;
+    for group in plan.groups() {
+        let (before, mut kept) = (finished.take(), Ok(()));
+        let computed = rayon::in_place_scope(|scope| {
+            scope.spawn(|_| kept = before.map_or(Ok(()), &mut *keep));
+            finished = Some(run.compute(group, settled));
+            Instant::now()
+        });
+        run.summary.add(Stage::Files, computed.elapsed());
+        kept?;
     }
-    let groups = plan.parts.iter().flat_map(|part| {
-        let firsts = part.clone().step_by(plan.panels_at_once);
-        firsts.map(|first| first..(first + plan.panels_at_once).min(part.end))
-    });
-    for group in groups {
+    let last = || finished.map_or(Ok(()), keep);
+    run.summary.time(Stage::Files, last)?;
+    let mut summary = run.summary;
+    summary.engine_failure = run.engine.failure;
+    Ok(summary)
+}
+
+/// A run under way.
+struct Run<'a, 'e> {
+    scene: &'a Scene,
+    plan: &'a Plan,
+    engine: Fallback<'e>,
+    rows_at_once: usize,
+    sides: Vec<Pushes>,
+    /// Signed push angles of the columns of all sides.
+    angles: Vec<f64>,
+    summary: Summary,
+}
+
+impl<'a, 'e> Run<'a, 'e> {
+    fn new(scene: &'a Scene, plan: &'a Plan, engine: Option<&'e mut dyn Engine>) -> Self {
+        let rows_at_once = match engine {
+            Some(_) => plan.rows_at_once,
+            None => {
+                let cells = CELLS_OF_A_THREAD * rayon::current_num_threads();
+                let rows = cells / scene.grid.push_angle_deg.len();
+                rows.clamp(1, plan.rows_at_once)
+            }
+        };
+        let mut sides: Vec<Pushes> = Vec::new();
+        let mut angles: Vec<f64> = Vec::new();
+        for side in &plan.sides {
+            // A row has fewer columns than `u32` can count.
+            let side = Pushes::new(&scene.grid.push_angle_deg, *side, angles.len() as u32);
+            angles.extend(side.columns.iter().map(|push| push.angle));
+            sides.push(side);
+        }
+        let failure = None;
+        Self {
+            scene,
+            plan,
+            engine: Fallback { engine, failure },
+            rows_at_once,
+            sides,
+            angles,
+            summary: Summary::default(),
+        }
+    }
+
+    /// The panels of some whiskers.
+    fn compute(&mut self, group: Range<usize>, settled: &mut dyn FnMut(usize)) -> Vec<Panel> {
+        let Self {
+            scene,
+            plan,
+            sides,
+            angles,
+            summary,
+            ..
+        } = self;
+        let width = scene.grid.push_angle_deg.len();
+        let height = scene.grid.distance_mm.len();
         let group: Vec<Swept> = group.map(|index| scene.whisker(index)).collect();
-        let faces = summary.time(Stage::Sheets, || faces(scene, plan.method, &group, &sides));
+        let faces = summary.time(Stage::Sheets, || faces(scene, plan.method, &group, sides));
         let mut panels = vec![Panel::unresolved(width * height, plan.channels); group.len()];
         let rows = (0..faces.len()).flat_map(|face| (0..height).map(move |row| (face, row)));
-        for strip in rows.collect::<Vec<_>>().chunks(rows_at_once) {
-            let settled = cells::settle(plan.method, &faces, &angles, strip, &mut engine, &mut summary);
+        for strip in rows.collect::<Vec<_>>().chunks(self.rows_at_once) {
+            let cells = cells::settle(
+                plan.method,
+                &faces,
+                angles,
+                strip,
+                &mut self.engine,
+                summary,
+            );
             summary.time(Stage::Regimes, || {
-                answers::fill(width, &group, &faces, sides.len(), &settled, &mut panels);
+                answers::fill(width, &group, &faces, sides.len(), &cells, &mut panels);
             });
             let columns = |row: &SettledRow| faces[row.face].pushes.columns.len();
-            observe(Progress::Settled(settled.rows.iter().map(columns).sum()))?;
+            settled(cells.rows.iter().map(columns).sum());
         }
         for panel in &panels {
             summary.count(panel);
         }
-        summary.time(Stage::Files, || observe(Progress::Panels(&panels)))?;
+        panels
     }
-    summary.engine_failure = engine.failure;
-    Ok(summary)
 }
 
 /// Every side of every whisker, in order.

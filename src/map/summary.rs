@@ -19,7 +19,7 @@ pub enum Stage {
     Refinement,
     /// Regimes and units.
     Regimes,
-    /// Packing and writing.
+    /// Waiting for what keeps the panels: it packs and writes them while the next ones are computed.
     Files,
 }
 
@@ -115,8 +115,13 @@ impl Summary {
     pub(super) fn time<R>(&mut self, stage: Stage, work: impl FnOnce() -> R) -> R {
         let start = Instant::now();
         let result = work();
-        self.times[stage as usize] += start.elapsed();
+        self.add(stage, start.elapsed());
         result
+    }
+
+    /// Adds to the time of `stage`.
+    pub(super) fn add(&mut self, stage: Stage, time: Duration) {
+        self.times[stage as usize] += time;
     }
 
     /// Adds a finished panel.

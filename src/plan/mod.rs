@@ -14,8 +14,8 @@ use std::ops::Range;
 /// Bytes that a run may take for its panels.
 pub const MEMORY_LIMIT: u64 = 4 << 30;
 
-/// Bytes per cell of a panel: 14 channels of 4 bytes, once as computed and once more while they are packed.
-const BYTES_PER_CELL: u64 = 2 * 14 * 4;
+/// Bytes per cell of a panel: 14 channels of 4 bytes.
+const BYTES_PER_CELL: u64 = 14 * 4;
 
 /// Bytes per cell in flight: shots, answers and states of the refinement.
 const BYTES_IN_FLIGHT: u64 = 1024;
@@ -93,7 +93,10 @@ impl Plan {
             .clamp(1, MOST_PANELS)
             .min(whiskers);
         let in_flight = CELLS_IN_FLIGHT.max(push_angles) as u64;
-        let bytes = (cells * panels_at_once) as u64 * BYTES_PER_CELL + in_flight * BYTES_IN_FLIGHT;
+        // As computed and as packed; in a sweep, where a panel is one block, also rearranged, and some are computed meanwhile.
+        let copies = if whiskers > 1 { 4 } else { 2 };
+        let panels = (copies * cells * panels_at_once) as u64;
+        let bytes = panels * BYTES_PER_CELL + in_flight * BYTES_IN_FLIGHT;
         if bytes > MEMORY_LIMIT {
             return Err(PlanError {
                 push_angles,
@@ -129,6 +132,14 @@ impl Plan {
         let pushes = &scene.grid.push_angle_deg;
         let asked = |side: &Side| pushes.iter().any(|push| Side::of_push(*push) == *side);
         Side::BOTH.into_iter().filter(asked).collect()
+    }
+
+    /// The whiskers that are computed together, one group after the other.
+    pub fn groups(&self) -> impl Iterator<Item = Range<usize>> + '_ {
+        self.parts.iter().flat_map(|part| {
+            let firsts = part.clone().step_by(self.panels_at_once);
+            firsts.map(|first| first..(first + self.panels_at_once).min(part.end))
+        })
     }
 
     /// States of a trajectory for the derivatives of the rod: those by the force, and where they do not follow, two by the contact.

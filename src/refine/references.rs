@@ -45,9 +45,17 @@ pub fn references(method: Method, sheets: &[&Sheet], rows: &[RowOfCells]) -> Vec
         tau: refined.state.tau,
         load: refined.state.load,
     };
-    let conditions: Vec<_> = flat.iter().zip(&refined).map(condition).collect();
+    let mut conditions: Vec<_> = flat.iter().zip(&refined).map(condition).collect();
     let is_solved: Vec<bool> = refined.iter().map(|cell| cell.end == End::Solved).collect();
-    let states = Batch::new(method).shoot::<FirstVariation>(&conditions);
+    let mut states = Batch::new(method).shoot::<FirstVariation>(&conditions);
+    // All cells of a reference inherit its miss, which one more step takes away; it is too short to need a trajectory.
+    for ((condition, state), shot) in conditions.iter_mut().zip(&mut states).zip(&flat) {
+        let map = &state.full.map;
+        let step = map.solve(map.residual(shot.pole));
+        condition.tau += step.x;
+        condition.load += step.y;
+        state.full = state.extrapolated(step);
+    }
     let mut after = 0;
     let nodes: Vec<Range<usize>> = shots
         .iter()
@@ -64,8 +72,7 @@ pub fn references(method: Method, sheets: &[&Sheet], rows: &[RowOfCells]) -> Vec
                 return Vec::new();
             }
             let sheet = sheets[row.sheet as usize];
-            expand(sheet, row, &conditions[nodes.clone()], &states[nodes])
-                .unwrap_or_default()
+            expand(sheet, row, &conditions[nodes.clone()], &states[nodes]).unwrap_or_default()
         })
         .collect()
 }
@@ -138,7 +145,13 @@ fn expand(
         before = (push, resting);
         let (by_tau, by_load) = (full.map.by_tau, full.map.by_load);
         numbers[m] = [
-            push, condition.tau, resting, by_tau.x, by_tau.y, by_load.x, by_load.y,
+            push,
+            condition.tau,
+            resting,
+            by_tau.x,
+            by_tau.y,
+            by_load.x,
+            by_load.y,
         ];
     }
     if !ways.windows(2).all(|pair| pair[0] < pair[1]) {
@@ -153,17 +166,16 @@ fn expand(
         let until = match ways.get(m + 1) {
             Some(next) => {
                 let half = 0.5 * (next - ways[m]);
-                let ahead = row_here.iter().rev().fold(0.0, |sum, term| sum * half + term[0]);
+                let ahead = row_here
+                    .iter()
+                    .rev()
+                    .fold(0.0, |sum, term| sum * half + term[0]);
                 (sign * (ahead)).min(last)
             }
             None => last,
         };
         let to = from + row.pushes[from..].partition_point(|push| *push < until);
         if to > from {
-            let mut along = row_here;
-            for number in &mut along[0][..3] {
-                *number = 0.0;
-            }
             references.push(Reference {
                 rod: row.sheet,
                 tau: conditions[m].tau,
@@ -171,7 +183,7 @@ fn expand(
                 push,
                 state: states[m],
                 per_way: whole / (conditions[m].tau * conditions[m].tau),
-                row: along,
+                row: row_here,
                 cells: row.first + from as u32..row.first + to as u32,
             });
         }
@@ -181,7 +193,10 @@ fn expand(
 }
 
 /// Newton's divided differences.
-fn divided_differences(nodes: &[f64; NODES], mut values: [RowNumbers; NODES]) -> [RowNumbers; NODES] {
+fn divided_differences(
+    nodes: &[f64; NODES],
+    mut values: [RowNumbers; NODES],
+) -> [RowNumbers; NODES] {
     for level in 1..NODES {
         for i in (level..NODES).rev() {
             let inverse = 1.0 / (nodes[i] - nodes[i - level]);
@@ -195,12 +210,20 @@ fn divided_differences(nodes: &[f64; NODES], mut values: [RowNumbers; NODES]) ->
 }
 
 /// The Taylor polynomials around `at` of those with these divided differences.
-fn expanded(nodes: &[f64; NODES], differences: &[RowNumbers; NODES], at: f64) -> [RowNumbers; POWERS] {
+fn expanded(
+    nodes: &[f64; NODES],
+    differences: &[RowNumbers; NODES],
+    at: f64,
+) -> [RowNumbers; POWERS] {
     let mut series = [RowNumbers::default(); POWERS];
     for (node, difference) in nodes.iter().zip(differences).rev() {
         let shift = at - node;
         for power in (0..POWERS).rev() {
-            let lower = if power > 0 { series[power - 1] } else { *difference };
+            let lower = if power > 0 {
+                series[power - 1]
+            } else {
+                *difference
+            };
             for (term, lower) in series[power].iter_mut().zip(lower) {
                 *term = *term * shift + lower;
             }

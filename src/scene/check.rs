@@ -18,8 +18,8 @@ use super::shape;
 use super::sweep;
 use super::whisker::{Curvature, Pole, Whisker};
 
-/// As many as 16,384 x 16,384; a stored cell takes about 60 bytes.
-const MOST_CELLS: u128 = 1 << 28;
+/// More than any disk holds: a stored cell takes about 20 bytes.
+const MOST_CELLS: u128 = 1 << 44;
 
 /// File systems allow 255 bytes; the output adds its own endings.
 const LONGEST_NAME: usize = 200;

@@ -112,10 +112,16 @@ impl Scene {
     /// the axis. Its text stays that of the whole.
     #[must_use]
     pub fn thinned(&self, lines: usize, values: usize) -> Self {
+        self.thinned_to([lines, lines], values)
+    }
+
+    /// The same with at most so many push angles, and distances.
+    #[must_use]
+    pub fn thinned_to(&self, [push_angles, distances]: [usize; 2], values: usize) -> Self {
         let mut thinned = self.clone();
         let grid = &mut thinned.0.grid;
-        thin(&mut grid.push_angle_deg, lines);
-        thin(&mut grid.distance_mm, lines);
+        thin(&mut grid.push_angle_deg, push_angles);
+        thin(&mut grid.distance_mm, distances);
         for axis in &mut grid.sweep {
             thin(&mut axis.values, values);
         }

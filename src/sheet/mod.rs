@@ -212,7 +212,9 @@ impl Sheet {
         let Some(samples) = self.samples() else {
             return Vec::new();
         };
-        let curve = samples.lattice.row_curve(&samples.contacts, &self.rows[row]);
+        let curve = samples
+            .lattice
+            .row_curve(&samples.contacts, &self.rows[row]);
         let point = |i: usize| {
             let [tau, load] = [curve.tau[i], curve.load[i]];
             (curve.push[i], Guess { tau, load })

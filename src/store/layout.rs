@@ -77,21 +77,45 @@ impl Layout {
         self.distances.div_ceil(self.block_height())
     }
 
-    /// Block `block` of panel `panel` in part `part`, and the panel's first row that lies in it.
-    pub(super) fn block(&self, part: usize, panel: usize, block: usize) -> (BlockIndex, usize) {
-        let first_row = block * self.block_height();
+    /// The tile of a panel, or none where there is only one panel.
+    pub(super) fn tile(&self, panel: usize) -> Option<Vec2<usize>> {
+        (self.panels() > 1).then_some(Vec2(panel % self.columns, panel / self.columns))
+    }
+
+    /// The first row of a panel that lies in `block`.
+    pub(super) fn first_row(&self, block: usize) -> usize {
+        block * self.block_height()
+    }
+
+    /// The samples of a block of a panel, line by line, in the order of the file.
+    pub(super) fn lines<'a>(
+        &self,
+        block: usize,
+        channels: &'a [Channel<'_>],
+    ) -> impl Iterator<Item = &'a [u8]> + Clone {
+        let line = self.push_angles * SAMPLE_BYTES;
+        let first = self.first_row(block);
+        let rows = first..(first + self.block_height()).min(self.distances);
+        rows.flat_map(move |row| {
+            let channels = channels.iter();
+            channels.map(move |channel| &channel.bytes[row * line..][..line])
+        })
+    }
+
+    /// Block `block` of panel `panel` in part `part`.
+    pub(super) fn block(&self, part: usize, panel: usize, block: usize) -> BlockIndex {
+        let first_row = self.first_row(block);
         let rows = self.block_height().min(self.distances - first_row);
         let corner = Vec2(
             panel % self.columns * self.push_angles,
             panel / self.columns * self.distances + first_row,
         );
-        let index = BlockIndex {
+        BlockIndex {
             layer: part,
             pixel_position: corner,
             pixel_size: Vec2(self.push_angles, rows),
             level: Vec2(0, 0),
-        };
-        (index, first_row)
+        }
     }
 
     /// One header per part, all with the same attributes, so that each part stands alone.

@@ -11,6 +11,7 @@
 //! Invariant: a file that bears its final name is complete.
 
 mod attributes;
+mod effort;
 mod error;
 mod header;
 mod layout;
@@ -24,8 +25,10 @@ mod unfinished;
 mod writer;
 #[cfg(feature = "zarr")]
 mod zarr;
+mod zip;
 
 pub use attributes::Description;
+pub use effort::Packed;
 pub use error::Error;
 pub use layout::Layout;
 pub use output::Output;
@@ -37,7 +40,7 @@ pub use tally::Counts;
 pub use unfinished::abandon;
 pub use writer::MapWriter;
 #[cfg(feature = "zarr")]
-pub use zarr::ZarrStore;
+pub use zarr::{PackedPanel, ZarrStore};
 
 /// What a file holds of one whisker, and of the whole run.
 pub use crate::map::{Audit, Channels, EngineCells, Panel, STATE_CHANNELS};

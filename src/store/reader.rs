@@ -214,7 +214,7 @@ impl StoredMap {
         file.seek(SeekFrom::Start(self.offsets[part][place]))?;
         let chunk = Chunk::read(file, &self.meta)?;
         let read = UncompressedBlock::decompress_chunk(chunk, &self.meta, false)?;
-        if read.index != self.layout.block(part, panel, block).0 {
+        if read.index != self.layout.block(part, panel, block) {
             return Err(io::Error::other("another block is in its place").into());
         }
         let line = self.layout.push_angles * SAMPLE_BYTES;

@@ -1,17 +1,23 @@
 //! Writes a map, some panels at a time.
 
 use super::attributes::{self, Description, attribute};
+use super::effort::Effort;
 use super::layout::{self, Channel, Layout, Part, SAMPLE_BYTES};
 use super::tally::{self, Counts};
-use super::{Channels, Error, Output, Panel, header};
+use super::{Channels, Error, Output, Packed, Panel, header, zip};
 use crate::classify::Regime;
 use crate::map::{Audit, EngineCells};
-use exr::block::UncompressedBlock;
+use crate::scene::Grid;
+use exr::block::chunk::{
+    Chunk, CompressedBlock, CompressedScanLineBlock, CompressedTileBlock, TileCoordinates,
+};
+use exr::math::Vec2;
 use exr::meta::Headers;
 use exr::meta::header::Header;
 use rayon::prelude::*;
 use std::io::{BufWriter, IntoInnerError, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 /// Bytes of a place in the file.
 const OFFSET_BYTES: u64 = 8;
@@ -32,6 +38,7 @@ pub struct MapWriter {
     /// Panels written so far.
     written: usize,
     counts: Counts,
+    effort: Effort,
 }
 
 impl MapWriter {
@@ -73,6 +80,7 @@ impl MapWriter {
             tables,
             written: 0,
             counts: Counts::default(),
+            effort: Effort::default(),
         };
         writer.write_at(0, &[preamble])?;
         Ok(writer)
@@ -109,7 +117,8 @@ impl MapWriter {
             .map(|task| {
                 let (panel, part) = (task / of_panel, part(task));
                 let channels = &parts[panel][part].channels;
-                self.chunk(first + panel, part, task % blocks, channels)
+                let chunk = || self.chunk(first + panel, part, task % blocks, channels);
+                self.effort.of(chunk)
             })
             .collect::<exr::error::Result<_>>()
             .map_err(Error::at(&self.path, Error::Encode))?;
@@ -125,6 +134,30 @@ impl MapWriter {
         }
         self.written += panels.len();
         Ok(())
+    }
+
+    /// Packs `panels` of a map with this `grid`, and tells what that takes.
+    #[must_use]
+    pub fn sample(grid: &Grid, channels: Channels, panels: &[Panel]) -> Packed {
+        let (layout, effort) = (Layout::of(grid), Effort::default());
+        let packed = panels.par_iter().flat_map_iter(|panel| {
+            let parts = layout::parts(panel, channels).into_iter();
+            parts.map(|part| {
+                let blocks = 0..layout.blocks_per_panel();
+                let pack = |block| zip::pack(layout.lines(block, &part.channels)).len() as u64;
+                effort.of(|| blocks.map(pack).sum::<u64>())
+            })
+        });
+        Packed {
+            bytes: packed.sum(),
+            time: effort.time(),
+        }
+    }
+
+    /// CPU time spent on packing so far.
+    #[must_use]
+    pub fn packing(&self) -> Duration {
+        self.effort.time()
     }
 
     /// Writes the counts into the header and gives the map its name. Returns the counts.
@@ -223,20 +256,28 @@ impl MapWriter {
         block: usize,
         channels: &[Channel<'_>],
     ) -> exr::error::Result<Vec<u8>> {
-        let (index, first_row) = self.layout.block(part, panel, block);
-        let line = self.layout.push_angles * SAMPLE_BYTES;
-        let rows = first_row..first_row + index.pixel_size.height();
-        let mut data = Vec::with_capacity(rows.len() * line * channels.len());
-        for row in rows {
-            for channel in channels {
-                data.extend_from_slice(&channel.bytes[row * line..][..line]);
-            }
-        }
-        let block = UncompressedBlock { index, data };
+        let layout = &self.layout;
+        let compressed_pixels_le = zip::pack(layout.lines(block, channels));
+        let compressed_block = match layout.tile(panel) {
+            Some(tile) => CompressedBlock::Tile(CompressedTileBlock {
+                coordinates: TileCoordinates {
+                    tile_index: tile,
+                    level_index: Vec2(0, 0),
+                },
+                compressed_pixels_le,
+            }),
+            None => CompressedBlock::ScanLine(CompressedScanLineBlock {
+                // At most 2^30, which the header has been checked for.
+                y_coordinate: layout.first_row(block) as i32,
+                compressed_pixels_le,
+            }),
+        };
+        let chunk = Chunk {
+            layer_index: part,
+            compressed_block,
+        };
         let mut bytes = Vec::new();
-        block
-            .compress_to_chunk(&self.headers)?
-            .write(&mut bytes, self.headers.len())?;
+        chunk.write(&mut bytes, self.headers.len())?;
         Ok(bytes)
     }
 }

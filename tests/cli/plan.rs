@@ -100,6 +100,48 @@ fn the_cone_scene() {
     );
 }
 
+/// Bytes of a file of this `format`, as `plan` says.
+fn bytes(run: &Run, format: &str) -> f64 {
+    let said: Vec<&str> = fact(run, format).split([' ', ',']).collect();
+    let unit = ["B", "kB", "MB", "GB"];
+    let unit = unit.iter().position(|unit| *unit == said[2]).unwrap();
+    said[1].parse::<f64>().unwrap() * 1000_f64.powi(unit as i32)
+}
+
+/// Bytes of all files below a folder.
+fn size(path: &std::path::Path) -> u64 {
+    let files = || path.read_dir().unwrap().map(|entry| entry.unwrap().path());
+    if path.is_dir() {
+        files().map(|path| size(&path)).sum()
+    } else {
+        path.metadata().unwrap().len()
+    }
+}
+
+/// Of 9 whiskers 4 are packed, and of these all lines. What is missing are headers: 4 KB, and 15 files of metadata.
+#[test]
+fn the_size_of_files_is_foretold() {
+    let sweep = STRAIGHT.replace("tip_radius_um = 30\n", "");
+    let sweep = sweep.replace("count = 8", "count = 200");
+    let sweep = sweep.replace("[5.0, 10.0]", "{ from = 2, to = 20, count = 200 }");
+    let axes = "taper = [0, 0.4, 0.8]\nfriction = [0, 0.2, 0.4]\n";
+    let place = Place::with(&format!("{sweep}{axes}"));
+    let run = plan(&place, "scene.toml");
+    place.map(&["scene.toml", "--no-png"]);
+    place.map(&["scene.toml", "--format", "zarr"]);
+    for (format, name) in [("EXR file", "scene.exr"), ("Zarr store", "scene.zarr")] {
+        let (foretold, found) = (bytes(&run, format), size(&place.path("outputs").join(name)));
+        let ratio = foretold / found as f64;
+        assert!((0.9..1.1).contains(&ratio), "{format}: {foretold}, {found}");
+    }
+    place.write(
+        "scene.toml",
+        &format!("{sweep}{axes}pole_radius_mm = [0.1, 0.2]\n"),
+    );
+    let run = plan(&place, "scene.toml");
+    assert!(!run.out.contains("EXR file"), "{run:?}");
+}
+
 #[test]
 fn everything_on() {
     let more = "[whisker.modulus_gradient]\ntip_to_base = 1.4\n[whisker.projection]\narc_stretch = 1.03\n\

@@ -2,6 +2,8 @@
 
 use crate::{Place, SCENE, names};
 use std::fs;
+use std::io::{BufRead, BufReader};
+use std::process::Stdio;
 
 /// Runs `map` on [`SCENE`] with `line` in place of the line that begins like it; the message has all of `parts`.
 fn refused(line: &str, parts: &[&str]) {
@@ -93,10 +95,45 @@ fn maps_too_large_to_compute() {
         "{run:?}"
     );
 
-    place.write("scene.toml", &SCENE.replace("count = 24", "count = 65536"));
+    let many = SCENE.replace("count = 24", "count = 65536");
+    let friction = "friction = { from = 0, to = 1, count = 65536 }\n";
+    place.write("scene.toml", &format!("{many}{friction}"));
     let run = place.run(&["map", "scene.toml", "--engine", "cpu"]);
-    run.assert_refused(&["must have at most 268435456 cells", "has 4294967296"]);
+    run.assert_refused(&[
+        "must have at most 17592186044416 cells",
+        "has 281474976710656",
+    ]);
     assert_eq!(names(&place.path("")), ["scene.toml"]);
+}
+
+/// A map of more bytes than any disk of a machine that runs tests has.
+#[test]
+fn maps_too_large_for_the_disk() {
+    let axes = "friction = { from = 0, to = 0.5, count = 1000 }\n\
+                curvature_per_mm = { from = 0, to = 0.04, count = 1000 }\n";
+    let large = SCENE.replace("count = 24", "count = 2048");
+    let place = Place::with(&format!("{large}{axes}"));
+    for format in ["exr", "zarr"] {
+        let run = place.run(&["map", "scene.toml", "--engine=cpu", "--format", format]);
+        run.assert_refused(&[
+            "--output outputs: the map needs about ",
+            " are free; give a folder with more room, or --force",
+        ]);
+        assert_eq!(names(&place.path("outputs")), [""; 0]);
+    }
+    let forced = ["map", "scene.toml", "--engine=cpu", "--force"];
+    let mut child = place
+        .plain_command(&forced)
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut line = String::new();
+    BufReader::new(child.stderr.take().unwrap())
+        .read_line(&mut line)
+        .unwrap();
+    child.kill().unwrap();
+    child.wait().unwrap();
+    assert!(line.starts_with("engine: "), "{line}");
 }
 
 #[test]

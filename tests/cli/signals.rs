@@ -56,8 +56,8 @@ fn an_interrupted_run_cleans_up() {
         send(signal, &child);
         let run = Run::of(&child.wait_with_output().unwrap());
         assert_eq!((run.code, &*run.out), (Some(code), ""), "{run:?}");
-        let said = format!("\nerror: interrupted by SIG{signal}; unfinished files are removed\n");
-        assert!(run.err.ends_with(&said), "{run:?}");
+        let said = format!("error: interrupted by SIG{signal}; unfinished files are removed");
+        assert_eq!(run.err.lines().last(), Some(&*said), "{run:?}");
         assert_eq!(names(&place.path("outputs")), [""; 0]);
     }
 }

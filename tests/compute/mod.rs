@@ -8,9 +8,9 @@
 use std::convert::Infallible;
 use whiskmap::integrate::gpu::{Gpu, Precision};
 use whiskmap::integrate::{CellDifference, Description, Engine, EngineError, Reference};
-use whiskmap::map::{self, EngineCells, Panel, Progress, STATE_CHANNELS, Summary};
+use whiskmap::map::{self, EngineCells, Panel, STATE_CHANNELS, Summary};
 use whiskmap::plan::Plan;
-use whiskmap::rod::{Effects, Rod};
+use whiskmap::rod::Rod;
 use whiskmap::scene::Scene;
 use whiskmap::shooting::batch::Method;
 
@@ -25,10 +25,8 @@ pub fn compute_as(
     engine: Option<&mut dyn Engine>,
 ) -> (Summary, Vec<Panel>) {
     let mut all = Vec::new();
-    let Ok(summary) = map::run(scene, plan, engine, &mut |progress| {
-        if let Progress::Panels(panels) = progress {
-            all.extend_from_slice(panels);
-        }
+    let Ok(summary) = map::run(scene, plan, engine, &mut |_| (), &mut |panels| {
+        all.extend(panels);
         Ok::<(), Infallible>(())
     });
     (summary, all)
@@ -110,10 +108,6 @@ impl<F> Watched<F> {
 impl<F: FnMut(&wgpu::Device)> Engine for Watched<F> {
     fn describe(&self) -> Description {
         self.gpu.describe()
-    }
-
-    fn can(&self, effects: Effects) -> Result<(), &'static str> {
-        self.gpu.can(effects)
     }
 
     fn solve(

@@ -15,15 +15,7 @@ type Place = fn(&Rod, &Reference, &CellDifference) -> (f64, f64);
 
 /// From arclength and force.
 fn from_numbers(rod: &Rod, reference: &Reference, cell: &CellDifference) -> (f64, f64) {
-    let radius = rod.radius(reference.tau);
-    let longer = f64::from(cell.numbers[0]) / radius;
-    let by = match rod.taper {
-        0.0 => longer,
-        taper => -(-taper * longer).ln_1p() / taper,
-    };
-    let tau = reference.tau + by;
-    let force = reference.load * radius * radius + f64::from(cell.numbers[2]);
-    (tau, force / rod.radius(tau).powi(2))
+    cell.point(rod, reference)
 }
 
 /// The shader, made to tell `tau` and load in two parts each: the file's `f32` would hide what `f64` has found.
@@ -61,7 +53,7 @@ impl Seen {
         let answers = cells.solve(gpu);
         let (mut found, mut before, mut wanted) = (Vec::new(), Vec::new(), Vec::new());
         for ((cell, (reference, _)), shot) in answers.iter().zip(cells.places()).zip(&cells.shots) {
-            if cell.outcome.is_solved() {
+            if cell.outcome.is_vouched_for() {
                 let rod = &cells.rods[shot.rod as usize];
                 let reference = &cells.references[reference];
                 let (tau, load) = place(rod, reference, cell);

@@ -96,9 +96,10 @@ fn values_at_odds_with_each_other_are_refused() {
 
     let many = BASE
         .replace("count = 5", "count = 65536")
-        .replace("[0, 0.04]", "{ from = 0, to = 0.04, count = 4096 }");
+        .replace("[0, 0.04]", "{ from = 0, to = 0.04, count = 65536 }")
+        .replace("[2.0, 7.5, 20.0]", "{ from = 2, to = 20, count = 65536 }");
     let why = parse(&many).unwrap_err();
-    let cells = "grid: must have at most 268435456 cells over all axes, has 805306368";
+    let cells = "grid: must have at most 17592186044416 cells over all axes, has 281474976710656";
     assert!(why.contains(cells) && why.contains(":12:1"), "{why}");
 }
 

@@ -1,7 +1,7 @@
 //! Rods, push angles, references and cells as bytes: the structs of `shaders/nystrom8.wgsl` and `shaders/cells.wgsl`.
 
 use super::Precision;
-use crate::integrate::{CellDifference, Outcome, POWERS, Reference, RowNumbers};
+use crate::integrate::{CellDifference, Outcome, POWERS, Reference};
 use crate::numerics::Real;
 use crate::plan::STATE_CHANNELS;
 use crate::rod::{Rest, Rod, arclength};
@@ -67,8 +67,11 @@ impl BufferLayout {
     }
 }
 
-/// Numbers of a row.
-const ROW_NUMBERS: usize = size_of::<RowNumbers>() / size_of::<f64>();
+/// Terms of a row's polynomials in the shaders: without a constant, which the reference has itself.
+pub const ROW_POWERS: usize = POWERS - 1;
+
+/// Terms of the Jacobian's polynomials there: Newton's last step needs four digits.
+pub const JACOBIAN_TERMS: usize = 4 * 6;
 
 /// A scalar of the shaders.
 trait Scalar: Real + Pod + Into<f64> {}
@@ -211,7 +214,10 @@ struct GpuReference<T> {
     energy: T,
     push: [T; 2],
     per_way: T,
-    row: [[T; ROW_NUMBERS]; POWERS],
+    push_by_way: [T; ROW_POWERS],
+    tau_by_way: [T; ROW_POWERS],
+    resting_by_way: [T; ROW_POWERS],
+    jacobian: [T; JACOBIAN_TERMS],
     rod: u32,
     first_cell: u32,
     first_push: u32,
@@ -237,10 +243,9 @@ impl<T: Scalar> GpuReference<T> {
         } = reference;
         let s = arclength(rod, *tau);
         let full = &state.full;
-        let numbers = |by: &StateDerivative| {
-            [by.angle, by.position.x, by.position.y, by.energy].map(T::of)
-        };
-        let row = |numbers: &RowNumbers| numbers.map(T::of);
+        let numbers =
+            |by: &StateDerivative| [by.angle, by.position.x, by.position.y, by.energy].map(T::of);
+        let along = |i: usize| std::array::from_fn(|power| T::of(reference.row[power + 1][i]));
         Self {
             tau: T::of(*tau),
             load: T::of(*load),
@@ -255,10 +260,17 @@ impl<T: Scalar> GpuReference<T> {
             by_tau: numbers(&state.by_tau),
             by_load: numbers(&state.by_load),
             bent: T::of(trip.bent),
-            energy: T::of(if full.force == 0.0 { 0.0 } else { 2.0 * full.energy / full.force }),
+            energy: T::of(if full.force == 0.0 {
+                0.0
+            } else {
+                2.0 * full.energy / full.force
+            }),
             push: halves(*push),
             per_way: T::of(reference.per_way),
-            row: std::array::from_fn(|power| row(&reference.row[power])),
+            push_by_way: along(0),
+            tau_by_way: along(1),
+            resting_by_way: along(2),
+            jacobian: std::array::from_fn(|i| T::of(reference.row[i / 4][3 + i % 4])),
             rod: reference.rod,
             // A call has fewer cells than `u32` can count.
             first_cell: first_cell as u32,
@@ -334,7 +346,7 @@ mod tests {
             in_rust!(GpuRod<T>, "Rod", taper bend spiral),
             in_rust!(GpuStart<T>, "StepStart", radius arclength tangent position bent rest rest_turn),
             in_rust!(GpuReference<T>, "Reference", tau load radius arclength force rest to_tip to_pole position tangent
-                by_tau by_load bent energy push per_way row rod first_cell first_push steps first_step unused),
+                by_tau by_load bent energy push per_way push_by_way tau_by_way resting_by_way jacobian rod first_cell first_push steps first_step unused),
             in_rust!(GpuCell, "Cell", numbers residual outcome),
         ] {
             assert_eq!(shader.iter().find(|s| s.0 == rust.0), Some(&rust));

@@ -133,16 +133,6 @@ impl Engine for Gpu {
         }
     }
 
-    fn can(&self, effects: Effects) -> Result<(), &'static str> {
-        if effects.profile {
-            Err("measured radii are integrated on the CPU")
-        } else if effects.gradient {
-            Err("a modulus gradient is integrated on the CPU")
-        } else {
-            Ok(())
-        }
-    }
-
     fn solve(
         &mut self,
         method: Method,

@@ -50,7 +50,7 @@ impl Precision {
     #[must_use]
     pub const fn limits(self) -> [(&'static str, f64); 8] {
         let [clear_of_fold, clear_of_tip, longest, of_way, rounding] = match self {
-            Self::F32 => [0.02, 1e-6, 1e-5, 6e-7, 0.0],
+            Self::F32 => [0.05, 1e-6, 1e-5, 6e-7, 0.0],
             Self::F64 => [1e-3, 1e-9, 1.5e-7, 2e-15, 6e-14],
         };
         [

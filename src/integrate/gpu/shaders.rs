@@ -1,8 +1,7 @@
 //! The shaders' text: whole pieces in order, after one that Rust writes.
 
 use super::Precision;
-use super::layout::OUTCOMES;
-use crate::integrate::{POWERS, RowNumbers};
+use super::layout::{JACOBIAN_TERMS, OUTCOMES, ROW_POWERS};
 use crate::plan::STATE_CHANNELS;
 use crate::rod::Effects;
 use crate::shooting::REST_TERMS;
@@ -20,15 +19,13 @@ const CELLS: [&str; 4] = [
 
 /// The numbers and names that the pieces share with Rust.
 fn constants(precision: Precision) -> String {
-    let numbers = RowNumbers::default().len();
-    let row = POWERS * numbers;
     let channels = STATE_CHANNELS.len();
     let mut text = format!(
         "alias real = {precision};\n\
          const WORKGROUP = {WORKGROUP}u;\n\
          const REST_TERMS = {REST_TERMS};\n\
-         const ROW_NUMBERS = {numbers};\n\
-         const ROW_TERMS = {row};\n\
+         const POWERS = {ROW_POWERS};\n\
+         const JACOBIAN_TERMS = {JACOBIAN_TERMS};\n\
          const CHANNELS = {channels};\n"
     );
     for (name, value) in precision.limits() {

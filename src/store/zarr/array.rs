@@ -1,6 +1,7 @@
 //! One array of a store: its metadata as Zarr has them, and its blocks from values to bytes and back.
 
 use super::blocks::Blocks;
+use super::chunk::{self, Chunk};
 use serde_json::{Map, Value, json};
 use std::num::NonZeroU64;
 use std::sync::Arc;
@@ -24,7 +25,7 @@ pub(super) enum Kind {
 pub(super) const NOT_COMPUTED: u8 = 254;
 
 impl Kind {
-    const fn name(self) -> &'static str {
+    pub(super) const fn name(self) -> &'static str {
         match self {
             Self::Code => "uint8",
             Self::Count => "uint32",
@@ -42,7 +43,7 @@ impl Kind {
         }
     }
 
-    fn fill(self) -> Value {
+    pub(super) fn fill(self) -> Value {
         match self {
             Self::Code => json!(NOT_COMPUTED),
             Self::Count => json!(0),
@@ -71,6 +72,8 @@ pub(super) struct Array {
     array: zarrs::array::Array<()>,
     /// The shape of a block's file.
     shape: Vec<NonZeroU64>,
+    /// How a chunk of a block's file is packed.
+    chunk: Chunk,
 }
 
 impl Array {
@@ -85,7 +88,8 @@ impl Array {
         let [chunk, filled] = blocks.distances();
         let [distances, push_angles] = blocks.panel();
         let sizes = [[distances, filled, chunk], [push_angles; 3]];
-        Self::in_blocks(name, kind, blocks, &sizes, dimensions, about)
+        let width = chunk::is_turned(name, kind).then_some(push_angles);
+        Self::in_blocks(name, kind, blocks, (&sizes, width), dimensions, about)
     }
 
     /// `count` values for each whisker, in blocks.
@@ -97,15 +101,17 @@ impl Array {
         dimensions: &[&str],
         about: Value,
     ) -> Result<Self, String> {
-        Self::in_blocks(name, kind, blocks, &[[count; 3]], dimensions, about)
+        let sizes = (&[[count; 3]][..], None);
+        Self::in_blocks(name, kind, blocks, sizes, dimensions, about)
     }
 
-    /// An array whose last dimensions have these `sizes`: in all, in a block's file, in a chunk.
+    /// An array whose last dimensions have these `sizes`: in all, in a block's file, in a chunk, whose lines are turned into columns
+    /// where they have a `width`.
     fn in_blocks(
         name: &str,
         kind: Kind,
         blocks: &Blocks,
-        sizes: &[[usize; 3]],
+        (sizes, width): (&[[usize; 3]], Option<usize>),
         dimensions: &[&str],
         about: Value,
     ) -> Result<Self, String> {
@@ -114,26 +120,24 @@ impl Array {
         let sizes: Vec<[usize; 3]> = sweep.chain(sizes.iter().copied()).collect();
         let [all, file, chunk] =
             [0, 1, 2].map(|which| -> Vec<usize> { sizes.iter().map(|size| size[which]).collect() });
-        let packed = json!([
-            { "name": "bytes", "configuration": { "endian": "little" } },
-            { "name": "blosc", "configuration": {
-                "cname": "zstd",
-                "clevel": 1,
-                "shuffle": if kind.size() > 1 { "shuffle" } else { "noshuffle" },
-                "typesize": kind.size(),
-                "blocksize": 0,
-            } },
-        ]);
+        let packed = Chunk::new(kind, chunk.iter().product(), width)?;
         let codecs = json!([{ "name": "sharding_indexed", "configuration": {
             "chunk_shape": chunk,
-            "codecs": packed,
+            "codecs": packed.codecs(chunk.len()),
             "index_codecs": [
                 { "name": "bytes", "configuration": { "endian": "little" } },
                 { "name": "crc32c" },
             ],
             "index_location": "end",
         } }]);
-        Self::new(name, kind, [&all, &file], dimensions, about, codecs)
+        Self::new(
+            name,
+            kind,
+            [&all, &file],
+            dimensions,
+            (about, codecs),
+            packed,
+        )
     }
 
     /// The values along an axis.
@@ -144,7 +148,8 @@ impl Array {
         about: Value,
     ) -> Result<Self, String> {
         let plain = json!([{ "name": "bytes", "configuration": { "endian": "little" } }]);
-        Self::new(name, kind, [&[count]; 2], &[name], about, plain)
+        let chunk = Chunk::new(kind, count, None)?;
+        Self::new(name, kind, [&[count]; 2], &[name], (about, plain), chunk)
     }
 
     fn new(
@@ -152,8 +157,8 @@ impl Array {
         kind: Kind,
         [all, file]: [&[usize]; 2],
         dimensions: &[&str],
-        about: Value,
-        codecs: Value,
+        (about, codecs): (Value, Value),
+        chunk: Chunk,
     ) -> Result<Self, String> {
         let metadata = json!({
             "zarr_format": 3,
@@ -179,6 +184,7 @@ impl Array {
             shape: shape.collect(),
             metadata,
             array,
+            chunk,
         })
     }
 
@@ -203,7 +209,17 @@ impl Array {
         sizes.product()
     }
 
-    /// The file of a block with these values, as bytes.
+    /// The chunks of a whisker with these values, as bytes.
+    pub(super) fn chunks(&self, values: &[u8]) -> Result<Vec<Vec<u8>>, String> {
+        self.chunk.pack_all(values)
+    }
+
+    /// The chunks of a whisker that there is not, with room for `values` of them.
+    pub(super) fn empty(&self, values: usize) -> Result<Vec<Vec<u8>>, String> {
+        self.chunk.pack_all(&self.kind.fill_bytes().repeat(values))
+    }
+
+    /// The file with these values, as bytes.
     pub(super) fn encode(&self, values: Vec<u8>) -> Result<Vec<u8>, String> {
         let array = &self.array;
         let (kind, fill) = (array.data_type(), array.fill_value());
@@ -231,7 +247,7 @@ impl Array {
 
 /// Chunks of nothing but fill values are stored, too: what is there has been computed. One thread packs a file, because
 /// several would put its chunks in any order.
-fn options() -> CodecOptions {
+pub(super) fn options() -> CodecOptions {
     CodecOptions::default()
         .with_store_empty_chunks(true)
         .with_concurrent_target(1)

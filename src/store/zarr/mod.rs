@@ -7,20 +7,24 @@
 
 mod array;
 mod blocks;
+mod chunk;
 mod metadata;
 
 use self::array::Array;
 use self::blocks::Blocks;
 use self::metadata::{AGREED, CELLS};
-use super::{Channels, Description, Error, Output, Panel, STATE_CHANNELS, Samples};
+use super::effort::Effort;
+use super::{Channels, Description, Error, Output, Packed, Panel, STATE_CHANNELS, Samples};
 use crate::classify::Regime;
 use crate::scene::{Grid, Scene};
 use rayon::prelude::*;
 use serde_json::{Map, Value};
+use std::borrow::Cow;
 use std::fs;
 use std::io::{self, Write};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 /// A store on disk.
 #[derive(Debug)]
@@ -31,19 +35,24 @@ pub struct ZarrStore {
     channels: Channels,
     blocks: Blocks,
     arrays: Vec<Array>,
+    effort: Effort,
 }
+
+/// A panel on its way to a store: its chunks, array by array.
+#[derive(Debug)]
+pub struct PackedPanel(Vec<Vec<Vec<u8>>>);
 
 /// The name of every file of metadata.
 const METADATA: &str = "zarr.json";
 
 impl ZarrStore {
-    /// Begins the store at `path`, or joins the one that is there if it `may_exist`. The regimes are always stored.
+    /// The store at `path`, there already if it `may_exist`, or yet to [begin](Self::begin). The regimes are always stored.
     ///
     /// # Errors
     ///
-    /// The store was begun with another scene, version, engine, accuracy or choice of channels; it is there although it
-    /// must not be; or one of its folders cannot be written.
-    pub fn begin(
+    /// The store was begun with another scene, version, engine, accuracy or choice of channels, or it is there although it
+    /// must not be.
+    pub fn join(
         path: &Path,
         scene: &Scene,
         about: &Description<'_>,
@@ -60,15 +69,25 @@ impl ZarrStore {
                 return Err(Error::Exists(path.to_owned()));
             }
             own.agree_with(&Self::open(path)?)?;
-        } else {
-            own.write_metadata()?;
         }
-        let folders = own.arrays.iter().map(|array| path.join(&array.name));
-        for folder in folders.chain([path.to_owned()]) {
+        Ok(own)
+    }
+
+    /// Writes what there is before any block, unless it is there, and removes what killed runs have left.
+    ///
+    /// # Errors
+    ///
+    /// The store, or one of its folders, cannot be written.
+    pub fn begin(&self) -> Result<(), Error> {
+        if !self.path.join(METADATA).exists() {
+            self.write_metadata()?;
+        }
+        let folders = self.arrays.iter().map(|array| self.path.join(&array.name));
+        for folder in folders.chain([self.path.clone()]) {
             // Whoever begins a file removes what killed runs have left beside it.
             Output::create(&folder.join(METADATA)).map_err(Error::at(&folder, Error::Write))?;
         }
-        Ok(own)
+        Ok(())
     }
 
     /// Opens a store to read it.
@@ -111,6 +130,7 @@ impl ZarrStore {
             scene,
             channels,
             blocks,
+            effort: Effort::default(),
         })
     }
 
@@ -143,21 +163,21 @@ impl ZarrStore {
         let json = |value: &Value| value.to_string().into_bytes();
         for (array, values) in coordinates {
             let folder = self.path.join(&array.name);
-            write(&folder.join(METADATA), &json(&array.metadata))?;
+            write(&folder.join(METADATA), &[json(&array.metadata)])?;
             let file = array
                 .encode(values)
                 .map_err(Error::at(&folder, Error::Pack))?;
-            write(&folder.join(Array::file(&[], 1)), &file)?;
+            write(&folder.join(Array::file(&[], 1)), &[file])?;
         }
         for array in &self.arrays {
             let file = self.path.join(&array.name).join(METADATA);
-            write(&file, &json(&array.metadata))?;
+            write(&file, &[json(&array.metadata)])?;
         }
         let coordinates = metadata::coordinates(&self.scene.grid);
         let coordinates = coordinates.map_err(Error::at(&self.path, Error::Pack))?;
         let axes = coordinates.iter().map(|(array, _)| array);
         let root = metadata::group(&self.attributes, axes.chain(&self.arrays));
-        write(&self.path.join(METADATA), &json(&root))
+        write(&self.path.join(METADATA), &[json(&root)])
     }
 
     /// One line for people.
@@ -215,24 +235,70 @@ impl ZarrStore {
         files.all(|file| file.is_file())
     }
 
+    /// Packs a panel.
+    ///
+    /// # Errors
+    ///
+    /// The codecs refuse.
+    pub fn pack(&self, panel: &Panel) -> Result<PackedPanel, Error> {
+        let chunks = |array: &Array| {
+            let chunks = || array.chunks(&values(&array.name, panel));
+            let packed = self.effort.of(chunks);
+            packed.map_err(Error::at(&self.path.join(&array.name), Error::Pack))
+        };
+        let arrays = self.arrays.par_iter().map(chunks);
+        arrays.collect::<Result<_, _>>().map(PackedPanel)
+    }
+
+    /// Packs `panels` of `scene`, and tells what that takes.
+    ///
+    /// # Errors
+    ///
+    /// The codecs refuse.
+    pub fn sample(scene: &Scene, channels: Channels, panels: &[Panel]) -> Result<Packed, Error> {
+        let (nowhere, channels) = (Path::new(""), channels.with("regime"));
+        let store = Self::new(nowhere, Map::new(), scene.clone(), channels)?;
+        let packed = panels.iter().map(|panel| store.pack(panel));
+        let packed: Vec<PackedPanel> = packed.collect::<Result<_, _>>()?;
+        let chunks = packed.iter().flat_map(|panel| &panel.0).flatten();
+        Ok(Packed {
+            bytes: chunks.map(|chunk| chunk.len() as u64).sum(),
+            time: store.packing(),
+        })
+    }
+
+    /// CPU time spent on packing so far.
+    #[must_use]
+    pub fn packing(&self) -> Duration {
+        self.effort.time()
+    }
+
     /// Writes the panels of a block.
     ///
     /// # Errors
     ///
     /// The disk is full, or the folder is not writable.
-    pub fn write(&self, block: usize, panels: &[Panel]) -> Result<(), Error> {
-        let (last, others) = self.arrays.split_last().unzip();
-        let others = others.unwrap_or_default();
-        let put = |array: &Array| {
+    pub fn write(&self, block: usize, panels: &[PackedPanel]) -> Result<(), Error> {
+        let put = |(index, array): (usize, &Array)| {
             let file = self.file(array, block);
-            let values = self.gathered(array, block, panels);
-            let bytes = array
-                .encode(values)
-                .map_err(Error::at(&file, Error::Pack))?;
-            write(&file, &bytes)
+            let room = self.blocks.slots();
+            let missing = if panels.len() < room {
+                array.empty(array.values() / room)
+            } else {
+                Ok(Vec::new())
+            };
+            let missing = missing.map_err(Error::at(&file, Error::Pack))?;
+            let mut slots = vec![&missing; room];
+            for (place, panel) in panels.iter().enumerate() {
+                slots[self.blocks.slot(block, place)] = &panel.0[index];
+            }
+            let chunks = slots.into_iter().flatten().map(Vec::as_slice);
+            write(&file, &chunk::file(chunks))
         };
-        others.par_iter().try_for_each(put)?;
-        last.map_or(Ok(()), put)
+        let last = self.arrays.len() - 1;
+        let others = self.arrays[..last].par_iter().enumerate();
+        others.try_for_each(put)?;
+        put((last, &self.arrays[last]))
     }
 
     /// How many cells of a block there are of each regime.
@@ -320,48 +386,37 @@ impl ZarrStore {
         };
         (values * array.kind.size(), room * array.kind.size())
     }
-
-    /// The values of a block's file, from the panels of its whiskers.
-    fn gathered(&self, array: &Array, block: usize, panels: &[Panel]) -> Vec<u8> {
-        let mut bytes = array.kind.fill_bytes().repeat(array.values());
-        let (_, room) = self.sizes(array);
-        for (index, panel) in panels.iter().enumerate() {
-            let first = self.blocks.slot(block, index) * room;
-            let values = values(&array.name, panel);
-            bytes[first..first + values.len()].copy_from_slice(&values);
-        }
-        bytes
-    }
 }
 
 /// What a panel holds for an array, as bytes.
-fn values(name: &str, panel: &Panel) -> Vec<u8> {
+fn values<'a>(name: &str, panel: &'a Panel) -> Cow<'a, [u8]> {
     let codes = |codes: &[u32]| codes.iter().map(|code| *code as u8).collect();
     let state = STATE_CHANNELS.iter().position(|own| *own == name);
     match (name, state) {
-        (_, Some(place)) => bytemuck::cast_slice(&panel.state[place]).to_vec(),
+        (_, Some(place)) => bytemuck::cast_slice(&panel.state[place]).into(),
         ("regime", _) => codes(&panel.regime),
         ("status", _) => codes(&panel.status),
-        ("newton_steps", _) => bytemuck::cast_slice(&panel.newton_steps).to_vec(),
-        ("residual", _) => bytemuck::cast_slice(&panel.residual).to_vec(),
-        ("margin_deg", _) => bytemuck::cast_slice(&panel.margin_deg).to_vec(),
+        ("newton_steps", _) => bytemuck::cast_slice(&panel.newton_steps).into(),
+        ("residual", _) => bytemuck::cast_slice(&panel.residual).into(),
+        ("margin_deg", _) => bytemuck::cast_slice(&panel.margin_deg).into(),
         _ => {
             let count = |regime: Regime| {
                 let codes = panel.regime.iter();
                 codes.filter(|code| **code == regime.code()).count() as u32
             };
-            bytemuck::cast_slice(&Regime::ALL.map(count)).to_vec()
+            bytemuck::pod_collect_to_vec(&Regime::ALL.map(count)).into()
         }
     }
 }
 
-/// Writes a file as a whole, into a folder that is made if need be. It is on the disk before others follow: after a crash, what
-/// is there counts as done.
-fn write(path: &Path, bytes: &[u8]) -> Result<(), Error> {
+/// Writes a file as a whole, piece by piece, into a folder that is made if need be. It is on the disk before others follow: after
+/// a crash, what is there counts as done.
+fn write(path: &Path, pieces: &[impl AsRef<[u8]>]) -> Result<(), Error> {
     let done = || -> io::Result<()> {
         path.parent().map_or(Ok(()), fs::create_dir_all)?;
         let mut output = Output::create(path)?;
-        output.write_all(bytes)?;
+        let mut pieces = pieces.iter();
+        pieces.try_for_each(|piece| output.write_all(piece.as_ref()))?;
         output.finish_durably()
     };
     done().map_err(Error::at(path, Error::Write))

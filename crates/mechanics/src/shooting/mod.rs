@@ -5,8 +5,8 @@
 //! explicit and no boundary-value problem is left. A trajectory yields the position of the pole in the frame
 //! of the base together with its derivatives; everything else in the crate is built from those.
 //!
-//! All code here is generic over the scalar ([`Real`](crate::numerics::Real)): one text serves `f64`, the SIMD lanes of [`batch`],
-//! and `f32`, in which it is the twin of `shaders/`.
+//! All code here is generic over the scalar ([`Real`](crate::numerics::Real)): one text serves `f64` and the SIMD lanes of [`batch`].
+//! `shaders/nystrom8.wgsl` is its twin, for two trajectories side by side.
 
 pub mod batch;
 pub mod contact;

@@ -30,13 +30,7 @@ pub struct StepStart {
 
 /// Appends to `starts` where each of the `steps` starts that the trajectory of a uniform cone takes from the contact at `tau` under
 /// `load` to the base; how far bending has turned the rod there.
-pub fn step_starts(
-    rod: &Rod,
-    tau: f64,
-    load: f64,
-    steps: u32,
-    starts: &mut Vec<StepStart>,
-) -> f64 {
+pub fn step_starts(rod: &Rod, tau: f64, load: f64, steps: u32, starts: &mut Vec<StepStart>) -> f64 {
     let straight = (DVec2::X, [0.0; TERMS]);
     match rod.spiral {
         Some([at_base, slope]) => {

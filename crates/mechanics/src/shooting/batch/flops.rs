@@ -3,7 +3,7 @@
 use crate::numerics::{Lanes, Real, WIDTH};
 use crate::rod::Effects;
 use crate::shooting::batch::{InitialCondition, kernel::by_effects};
-use crate::shooting::{Integrator, Nystrom8, Rk4, ShootingMap};
+use crate::shooting::{Nystrom8, ShootingMap};
 use std::cell::Cell;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -73,20 +73,10 @@ impl Lanes for Counted {
 /// needs are counted too; a compiler leaves them out.
 #[must_use]
 pub fn flops_of_nystrom8(effects: Effects, steps: u32, condition: &InitialCondition) -> u64 {
-    flops::<Nystrom8>(effects, steps, condition)
-}
-
-/// The same for [`Rk4`], the shaders' method.
-#[must_use]
-pub fn flops_of_rk4(effects: Effects, steps: u32, condition: &InitialCondition) -> u64 {
-    flops::<Rk4>(effects, steps, condition)
-}
-
-fn flops<M: Integrator>(effects: Effects, steps: u32, condition: &InitialCondition) -> u64 {
     let effects = effects
         .and(condition.rod)
         .reaching(condition.rod.taper * condition.tau);
     COUNT.set(0);
-    let _ = by_effects::<M, ShootingMap, Counted>(effects, steps, &[condition; WIDTH]);
+    let _ = by_effects::<Nystrom8, ShootingMap, Counted>(effects, steps, &[condition; WIDTH]);
     COUNT.get()
 }

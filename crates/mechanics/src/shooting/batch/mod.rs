@@ -13,7 +13,7 @@ mod padded;
 mod pole;
 mod stream;
 
-pub use flops::{flops_of_nystrom8, flops_of_rk4};
+pub use flops::flops_of_nystrom8;
 pub use output_set::OutputSet;
 
 use super::Resolution;

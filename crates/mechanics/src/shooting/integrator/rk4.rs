@@ -1,4 +1,5 @@
-//! The classical Runge-Kutta method of order 4; the twin of `shaders/rk4.wgsl`.
+//! The classical Runge-Kutta method of order 4, straight from the right-hand sides: what tests hold [`Nystrom8`](super::Nystrom8)
+//! against.
 
 use crate::numerics::{Real, Vector};
 use crate::shooting::integrator::{Integrator, STAGES, Scales};

@@ -1,0 +1,95 @@
+//! Blocks as EXR's ZIP has them, packed straight from the samples of a panel.
+//!
+//! OpenEXR (`ImfZip.cpp`): of all bytes of a block those at even places come first, then those at odd ones; each is replaced by its
+//! difference from the one before it, plus 128; and all that is deflated (zlib, RFC 1950). A block that does not get smaller
+//! is stored as it was.
+
+use miniz_oxide::deflate::compress_to_vec_zlib;
+
+/// Of the levels of `miniz_oxide` the fastest, at nearly the same size: see `benches/NOTES.md`.
+const LEVEL: u8 = 1;
+
+/// The block of these `lines` of samples, in the order of the file.
+pub(super) fn pack<'a>(lines: impl Iterator<Item = &'a [u8]> + Clone) -> Vec<u8> {
+    let mut bytes = separated(lines.clone());
+    take_differences(&mut bytes);
+    let packed = compress_to_vec_zlib(&bytes, LEVEL);
+    if packed.len() < bytes.len() {
+        return packed;
+    }
+    bytes.clear();
+    lines.for_each(|line| bytes.extend_from_slice(line));
+    bytes
+}
+
+/// The bytes at even places, then those at odd ones; every line has as many of both.
+fn separated<'a>(lines: impl Iterator<Item = &'a [u8]> + Clone) -> Vec<u8> {
+    let size = lines.clone().map(<[u8]>::len).sum();
+    let mut separated = vec![0; size];
+    let (mut evens, mut odds) = separated.split_at_mut(size / 2);
+    for line in lines {
+        let (pairs, _) = line.as_chunks::<2>();
+        let (even, odd);
+        (even, evens) = evens.split_at_mut(pairs.len());
+        (odd, odds) = odds.split_at_mut(pairs.len());
+        for ((even, odd), pair) in even.iter_mut().zip(odd).zip(pairs) {
+            [*even, *odd] = *pair;
+        }
+    }
+    separated
+}
+
+/// Bytes whose differences are taken together, by vectors.
+const TOGETHER: usize = 64;
+
+/// Puts the difference from the byte before, plus 128, in the place of every byte but the first.
+fn take_differences(bytes: &mut [u8]) {
+    let mut last = 128;
+    for part in bytes.chunks_mut(TOGETHER) {
+        let mut before = [last; TOGETHER];
+        before[1..part.len()].copy_from_slice(&part[..part.len() - 1]);
+        last = part[part.len() - 1];
+        for (byte, before) in part.iter_mut().zip(before) {
+            *byte = byte.wrapping_sub(before).wrapping_add(128);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use miniz_oxide::inflate::decompress_to_vec_zlib;
+
+    /// Lines of samples as a rule makes them.
+    fn lines(samples: usize, sample: impl Fn(u32) -> u32) -> Vec<Vec<u8>> {
+        let line = |y: u32| {
+            let samples = (0..samples as u32).map(|x| sample(x + 200 * y));
+            samples.flat_map(u32::to_le_bytes).collect()
+        };
+        (0..3).map(line).collect()
+    }
+
+    #[test]
+    fn the_filter_is_that_of_openexr() {
+        for samples in [9, 16, 123] {
+            let lines = lines(samples, |x| ((x / 8) as f32).sqrt().to_bits());
+            let bytes = lines.concat();
+            let halves = [0, 1].map(|first| bytes.iter().skip(first).step_by(2));
+            let mut expected: Vec<u8> = halves.into_iter().flatten().copied().collect();
+            for i in (1..expected.len()).rev() {
+                let difference = i32::from(expected[i]) - i32::from(expected[i - 1]) + 128;
+                expected[i] = difference as u8;
+            }
+            let packed = pack(lines.iter().map(Vec::as_slice));
+            assert!(packed.len() < bytes.len());
+            assert_eq!(decompress_to_vec_zlib(&packed).ok(), Some(expected));
+        }
+    }
+
+    #[test]
+    fn noise_is_stored_as_it_is() {
+        let mixed = |x: u32| (x ^ x >> 16).wrapping_mul(0x85eb_ca6b);
+        let lines = lines(50, |x| mixed(mixed(mixed(x + 1))));
+        assert_eq!(pack(lines.iter().map(Vec::as_slice)), lines.concat());
+    }
+}
