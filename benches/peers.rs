@@ -11,9 +11,9 @@
 #[path = "../tests/random_rods/mod.rs"]
 mod random_rods;
 
+use random_rods::Random;
 use rayon::ThreadPool;
 use serde_json::{Value, json};
-use random_rods::Random;
 use std::convert::Infallible;
 use std::fmt::Write;
 use std::time::Instant;

@@ -10,8 +10,8 @@ mod compute;
 
 use compute::{assert_close, assert_identical, compute, open, works};
 use std::path::Path;
-use whiskmap::integrate::{Engine, on_gpu};
 use whiskmap::integrate::gpu::{Gpu, Precision};
+use whiskmap::integrate::{Engine, on_gpu};
 use whiskmap::map::{EngineCells, Panel, STATE_CHANNELS};
 use whiskmap::plan::Plan;
 use whiskmap::refine::TOLERANCE;
@@ -92,7 +92,9 @@ fn engines_agree_on_every_cell() {
 #[test]
 fn what_an_engine_cannot_is_done_by_the_cpu() {
     let cone = Scene::read("scenes/cone.toml").unwrap().thinned(48, 1);
-    let graded = cone.with("whisker.modulus_gradient.tip_to_base", 1.5).unwrap();
+    let graded = cone
+        .with("whisker.modulus_gradient.tip_to_base", 1.5)
+        .unwrap();
     let measured = Scene::read("scenes/measured.toml").unwrap().thinned(48, 1);
     for (scene, why) in [(graded, "a modulus gradient"), (measured, "measured radii")] {
         let effects = Plan::new(&scene).unwrap().method.effects;

@@ -1,6 +1,6 @@
 //! Looking over an engine's shoulder: a sample of its cells, computed once more in `f64`.
 
-use super::channels::{channels, of_cell, of_reference};
+use super::channels::{Numbers, channels, of_cell, of_reference};
 use crate::integrate::{CellDifference, Outcome, Reference};
 use crate::refine::{End, Refined};
 use crate::rod::Units;
@@ -70,10 +70,13 @@ pub fn holds(
             let reference = of_reference(&reader, reference, touch);
             let ours = channels(&reader.read(refined.state.tau, &refined.state.full, touch, push));
             let theirs = of_cell(&reference, &of_one, difference);
-            let [arc, angle, force, .., chord, distance, _] = ours.map(f64::abs);
+            let larger: Numbers = std::array::from_fn(|i| ours[i].abs().max(reference[i].abs()));
+            let [arc, angle, force, .., chord, distance, _] = larger;
             // Components of the force, moment and energy go with the force, near the base in front of a small arm.
             let moment = force * arc;
-            let sizes = [arc, angle, force, force, force, moment, chord, distance, moment];
+            let sizes = [
+                arc, angle, force, force, force, moment, chord, distance, moment,
+            ];
             let differences = ours.iter().zip(theirs).map(|(ours, theirs)| ours - theirs);
             let allowed = sizes.iter().zip(of_one).map(|(size, one)| one.abs() + size);
             let mut pairs = differences.zip(allowed);

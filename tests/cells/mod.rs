@@ -50,7 +50,9 @@ impl Cells {
         let faces: Vec<(Rod, [f64; ROWS])> = faces.collect();
         let method = Method::fine().with_effects(effects);
         let sheets = faces.par_iter().map(|(rod, distances)| {
-            let side = Side::BOTH.into_iter().find(|side| side.sign() == rod.pole.signum());
+            let side = Side::BOTH
+                .into_iter()
+                .find(|side| side.sign() == rod.pole.signum());
             Sheet::new(method, rod, side.unwrap(), distances)
         });
         Self::new(method, sheets.collect())
@@ -58,10 +60,18 @@ impl Cells {
 
     fn new(method: Method, sheets: Vec<Sheet>) -> Self {
         let part = |i: usize| i as f64 / (COLUMNS - 1) as f64;
-        let magnitudes: Vec<f64> = (0..COLUMNS).map(|i| LARGEST_PUSH * part(i).powi(2)).collect();
+        let magnitudes: Vec<f64> = (0..COLUMNS)
+            .map(|i| LARGEST_PUSH * part(i).powi(2))
+            .collect();
         let both = [Side::Cb, Side::Cf].map(|side| magnitudes.iter().map(move |m| side.sign() * m));
         let pushes: Vec<f64> = both.into_iter().flatten().collect();
-        let first = |sheet: &Sheet| if sheet.side == Side::Cb { 0 } else { COLUMNS as u32 };
+        let first = |sheet: &Sheet| {
+            if sheet.side == Side::Cb {
+                0
+            } else {
+                COLUMNS as u32
+            }
+        };
         let rows = sheets.iter().enumerate().flat_map(|(index, sheet)| {
             let magnitudes = &magnitudes;
             (0..sheet.rows.len()).map(move |row| RowOfCells {
@@ -112,7 +122,11 @@ impl Cells {
     /// What the refinement makes of them.
     pub fn refined(&self) -> Vec<Refined> {
         let sheets: Vec<&Sheet> = self.sheets.iter().collect();
-        let starts: Vec<_> = self.shots.iter().map(|shot| (shot.tau, shot.load)).collect();
+        let starts: Vec<_> = self
+            .shots
+            .iter()
+            .map(|shot| (shot.tau, shot.load))
+            .collect();
         refine(self.method, &sheets, &self.shots, &starts)
     }
 
@@ -120,8 +134,15 @@ impl Cells {
     pub fn places(&self) -> Vec<(usize, f64)> {
         let of_one = |(index, reference): (usize, &Reference)| {
             let pushes = &self.pushes[reference.cells.start as usize..reference.cells.end as usize];
-            pushes.iter().map(move |push| (index, *push)).collect::<Vec<_>>()
+            pushes
+                .iter()
+                .map(move |push| (index, *push))
+                .collect::<Vec<_>>()
         };
-        self.references.iter().enumerate().flat_map(of_one).collect()
+        self.references
+            .iter()
+            .enumerate()
+            .flat_map(of_one)
+            .collect()
     }
 }

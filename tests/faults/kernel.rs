@@ -49,14 +49,20 @@ fn numbers_that_are_none_are_refined_in_f64_and_counted() {
         for (none, part) in [
             ("cell.numbers[8] = nan;", 1.0),
             ("cell.residual = infinite;", 1.0),
-            ("if id.x % 7u == 0u { cell.numbers[0] = infinite; }", 1.0 / 7.0),
+            (
+                "if id.x % 7u == 0u { cell.numbers[0] = infinite; }",
+                1.0 / 7.0,
+            ),
         ] {
             let mut gpu = spoilt(precision, &format!("{none} cells[id.x] = cell;")).unwrap();
             let (summary, panels) = compute(&scene, Some(&mut gpu));
             assert!(summary.engine_failure.is_none(), "{summary:?}");
             let cells = summary.engine_cells;
             let expected = part * asked as f64;
-            assert!((cells.not_finite as f64 - expected).abs() <= 1.0, "{none}: {cells:?}");
+            assert!(
+                (cells.not_finite as f64 - expected).abs() <= 1.0,
+                "{none}: {cells:?}"
+            );
             assert_eq!(all_cells(&cells), all_cells(&sound));
             assert_same(&cpu, &panels);
             if part == 1.0 {
@@ -71,7 +77,10 @@ fn numbers_that_are_none_are_refined_in_f64_and_counted() {
 fn a_kernel_that_does_nothing_is_noticed() {
     let scene = cone(64);
     let (_, cpu) = compute(&scene, None);
-    for writes in ["if id.x == 0xffffffffu { cells[id.x] = cell; }", "cell = Cell(); cells[id.x] = cell;"] {
+    for writes in [
+        "if id.x == 0xffffffffu { cells[id.x] = cell; }",
+        "cell = Cell(); cells[id.x] = cell;",
+    ] {
         let Some(mut gpu) = spoilt(Precision::F32, writes) else {
             return;
         };
@@ -165,7 +174,10 @@ fn a_kernel_that_the_driver_refuses_leaves_all_to_the_cpu() {
     if open(Precision::F32).is_none() {
         return;
     }
-    for (shader, why) in [("fn solve_cells() {", "expected"), ("fn other() {}", "solve_cells")] {
+    for (shader, why) in [
+        ("fn solve_cells() {", "expected"),
+        ("fn other() {}", "solve_cells"),
+    ] {
         let mut gpu = open_with(Precision::F32, shader.to_owned()).unwrap();
         let (summary, panels) = compute(&scene, Some(&mut gpu));
         let failure = summary.engine_failure.unwrap().to_string();

@@ -2,8 +2,8 @@
 
 use crate::cells::Cells;
 use crate::compute::{open, open_with};
-use crate::random_rods::USUAL;
 use crate::every_kind;
+use crate::random_rods::USUAL;
 use whiskmap::integrate::gpu::{Gpu, Precision, shaders};
 use whiskmap::integrate::{CellDifference, Reference};
 use whiskmap::rod::Rod;
@@ -88,9 +88,12 @@ fn truncation(method: Method, conditions: &[InitialCondition]) -> Vec<f64> {
         resolution: method.resolution.doubled(),
         ..method
     };
-    let [maps, finer] = [method, finer].map(|method| Batch::new(method).shoot::<ShootingMap>(conditions));
+    let [maps, finer] =
+        [method, finer].map(|method| Batch::new(method).shoot::<ShootingMap>(conditions));
     let pairs = maps.iter().zip(&finer);
-    pairs.map(|(map, finer)| map.pole.distance(finer.pole)).collect()
+    pairs
+        .map(|(map, finer)| map.pole.distance(finer.pole))
+        .collect()
 }
 
 #[test]
@@ -98,7 +101,12 @@ fn residuals_are_bounds() {
     for (name, cells) in every_kind(100) {
         let gpus = [
             (open(Precision::F32), from_numbers as Place, 2e-9, 1e-7),
-            (open_with(Precision::F64, telling_all()), from_parts, 1e-14, 1e-11),
+            (
+                open_with(Precision::F64, telling_all()),
+                from_parts,
+                1e-14,
+                1e-11,
+            ),
         ];
         for (gpu, place, median, worst) in gpus {
             let Some(mut gpu) = gpu else { continue };
@@ -118,12 +126,24 @@ fn a_wrong_shader_breaks_its_bounds() {
     for (good, bad) in [
         ("(1175.0 / 8064.0) * k3", "(1176.0 / 8064.0) * k3"),
         ("forcing * (3.0 + forcing", "forcing * (3.001 + forcing"),
-        ("let faster = slower + softer", "let faster = slower - softer"),
+        (
+            "let faster = slower + softer",
+            "let faster = slower - softer",
+        ),
         ("slower * (2.0 + slower)", "slower * (2.001 + slower)"),
         ("- way.rest_at_contact;", "- 0.999 * way.rest_at_contact;"),
-        ("1.5 * way.rod.taper * way.h;", "1.501 * way.rod.taper * way.h;"),
-        ("let angle = apart.bent - rest_at_contact;", "let angle = apart.bent;"),
-        ("let back = sine_and_versine(-angle);", "let back = sine_and_versine(-1.0001 * angle);"),
+        (
+            "1.5 * way.rod.taper * way.h;",
+            "1.501 * way.rod.taper * way.h;",
+        ),
+        (
+            "let angle = apart.bent - rest_at_contact;",
+            "let angle = apart.bent;",
+        ),
+        (
+            "let back = sine_and_versine(-angle);",
+            "let back = sine_and_versine(-1.0001 * angle);",
+        ),
     ] {
         assert_eq!(text.matches(good).count(), 1, "{good}");
         let Some(mut gpu) = open_with(Precision::F32, text.replace(good, bad)) else {

@@ -1,9 +1,9 @@
 //! What holds for every call.
 
+use crate::PRECISIONS;
 use crate::cells::Cells;
 use crate::compute::open;
 use crate::random_rods::USUAL;
-use crate::PRECISIONS;
 use whiskmap::integrate::gpu::{Gpu, Precision, adapters, preferred};
 use whiskmap::integrate::{CellDifference, Engine, Outcome, Reference};
 use whiskmap::plan::STATE_CHANNELS;
@@ -36,10 +36,16 @@ fn answers_do_not_depend_on_the_calls_that_they_come_from() {
 }
 
 /// The answers if number `spoilt` of the references is spoilt.
-fn spoilt(cells: &Cells, gpu: &mut Gpu, spoilt: usize, spoil: fn(&mut Reference)) -> Vec<CellDifference> {
+fn spoilt(
+    cells: &Cells,
+    gpu: &mut Gpu,
+    spoilt: usize,
+    spoil: fn(&mut Reference),
+) -> Vec<CellDifference> {
     let mut references = cells.references.clone();
     spoil(&mut references[spoilt]);
-    gpu.solve(cells.method, &cells.rods, &cells.pushes, &references).unwrap()
+    gpu.solve(cells.method, &cells.rods, &cells.pushes, &references)
+        .unwrap()
 }
 
 #[test]

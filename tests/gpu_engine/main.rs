@@ -51,11 +51,19 @@ fn kinds() -> Vec<Kind> {
         ("almost a cylinder", bent, |rod, random| {
             rod.taper = 10_f64.powf(random.between(-12.0, -3.0));
         }),
-        ("point pole", bent, |rod, _| rod.pole = 0.0_f64.copysign(rod.pole)),
-        ("thick pole", bent, |rod, _| rod.pole = 0.1_f64.copysign(rod.pole)),
-        ("friction 1", bent, |rod, _| rod.friction = rod.pole.signum()),
+        ("point pole", bent, |rod, _| {
+            rod.pole = 0.0_f64.copysign(rod.pole)
+        }),
+        ("thick pole", bent, |rod, _| {
+            rod.pole = 0.1_f64.copysign(rod.pole)
+        }),
+        ("friction 1", bent, |rod, _| {
+            rod.friction = rod.pole.signum()
+        }),
         ("no friction", bent, |rod, _| rod.friction = 0.0),
-        ("strongly curved", bent, |rod, random| rod.bend = random.between(0.8, 1.5)),
+        ("strongly curved", bent, |rod, random| {
+            rod.bend = random.between(0.8, 1.5)
+        }),
     ]);
     kinds
 }
@@ -68,15 +76,17 @@ fn slender(rod: &mut Rod, random: &mut Random) {
 /// Cells of `count` whiskers of every kind.
 fn every_kind(count: usize) -> impl Iterator<Item = (String, Cells)> {
     let count = std::env::var("N").map_or(count, |n| n.parse().unwrap());
-    (1..).zip(kinds()).map(move |(seed, (name, effects, changed))| {
-        let cells = Cells::random(effects, count, seed, changed);
-        let Effects {
-            taper,
-            curvature,
-            spiral,
-            ..
-        } = effects;
-        let name = format!("{name}: taper {taper}, parabola {curvature}, spiral {spiral}");
-        (name, cells)
-    })
+    (1..)
+        .zip(kinds())
+        .map(move |(seed, (name, effects, changed))| {
+            let cells = Cells::random(effects, count, seed, changed);
+            let Effects {
+                taper,
+                curvature,
+                spiral,
+                ..
+            } = effects;
+            let name = format!("{name}: taper {taper}, parabola {curvature}, spiral {spiral}");
+            (name, cells)
+        })
 }

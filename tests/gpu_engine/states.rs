@@ -64,8 +64,11 @@ fn compare(cells: &Cells, gpu: &mut Gpu) -> Seen {
     let mut largest = vec![Numbers::default(); cells.rods.len()];
     let mut differences: Vec<(usize, Numbers)> = Vec::new();
     let (mut solved, mut contradicted) = (0, 0);
-    for (((cell, refined), (index, push)), shot) in
-        answers.iter().zip(&refined).zip(cells.places()).zip(&cells.shots)
+    for (((cell, refined), (index, push)), shot) in answers
+        .iter()
+        .zip(&refined)
+        .zip(cells.places())
+        .zip(&cells.shots)
     {
         if !cell.outcome.is_vouched_for() {
             continue;
@@ -98,7 +101,9 @@ fn compare(cells: &Cells, gpu: &mut Gpu) -> Seen {
         differences.push((rod, apart));
     }
     let apart = |i: usize| {
-        let parts = differences.iter().map(|(rod, apart)| apart[i] / largest[*rod][i]);
+        let parts = differences
+            .iter()
+            .map(|(rod, apart)| apart[i] / largest[*rod][i]);
         let mut parts: Vec<f64> = parts.filter(|part| !part.is_nan()).collect();
         parts.sort_by(f64::total_cmp);
         (parts[parts.len() / 2], parts[parts.len() - 1])
@@ -119,7 +124,8 @@ fn cells_are_those_of_the_refinement() {
                 continue;
             };
             let seen = compare(&cells, &mut gpu);
-            let most = |pick: fn(&(f64, f64)) -> f64| seen.apart.iter().map(pick).fold(0.0, f64::max);
+            let most =
+                |pick: fn(&(f64, f64)) -> f64| seen.apart.iter().map(pick).fold(0.0, f64::max);
             let (median, worst) = (most(|apart| apart.0), most(|apart| apart.1));
             let Seen {
                 asked,
@@ -127,9 +133,15 @@ fn cells_are_those_of_the_refinement() {
                 contradicted,
                 ..
             } = seen;
-            eprintln!("{precision} {name}: {solved} of {asked} solved, median {median:.1e}, worst {worst:.1e} {:?}", seen.apart.map(|a| a.1));
+            eprintln!(
+                "{precision} {name}: {solved} of {asked} solved, median {median:.1e}, worst {worst:.1e} {:?}",
+                seen.apart.map(|a| a.1)
+            );
             assert!(solved as f64 > SOLVED * asked as f64, "{name}: {seen:?}");
-            assert!(contradicted == 0 && median < MEDIAN && worst < WORST, "{name}: {seen:?}");
+            assert!(
+                contradicted == 0 && median < MEDIAN && worst < WORST,
+                "{name}: {seen:?}"
+            );
         }
     }
 }
@@ -140,15 +152,30 @@ fn a_wrong_number_shows() {
     let cells = Cells::random(USUAL, 40, 3, |_, _| ());
     let text = shaders::cells(Precision::F32);
     for (good, bad) in [
-        ("cell.numbers[0] = f32(radius * end.x", "cell.numbers[0] = f32(1.001 * radius * end.x"),
+        (
+            "cell.numbers[0] = f32(radius * end.x",
+            "cell.numbers[0] = f32(1.001 * radius * end.x",
+        ),
         ("f32(push - angle_of", "f32(push + 1e-5 - angle_of"),
         ("f32(end_force.y)", "f32(1.0001 * end_force.y)"),
-        ("product(end_force, tangent.sin)", "product(end_force, -tangent.sin)"),
-        ("product(end_force, tangent.cos)", "product(end_force, 1.0001 * tangent.cos)"),
+        (
+            "product(end_force, tangent.sin)",
+            "product(end_force, -tangent.sin)",
+        ),
+        (
+            "product(end_force, tangent.cos)",
+            "product(end_force, 1.0001 * tangent.cos)",
+        ),
         ("Both(position.x, shift.x)", "Both(position.x, shift.y)"),
-        ("- theta - here.numbers.z", "- theta - 0.99 * here.numbers.z"),
+        (
+            "angle_of(moved_contact) - theta",
+            "angle_of(moved_contact) - 1.001 * theta",
+        ),
         ("2.0 * position + shift", "2.0 * position - shift"),
-        ("0.5 * product(force, energy).y", "0.5001 * product(force, energy).y"),
+        (
+            "0.5 * product(force, energy).y",
+            "0.5001 * product(force, energy).y",
+        ),
     ] {
         assert_eq!(text.matches(good).count(), 1, "{good}");
         let Some(mut gpu) = open_with(Precision::F32, text.replace(good, bad)) else {

@@ -109,12 +109,17 @@ fn named_cases_are_solved_or_handed_over() {
         for (name, case) in named() {
             let case = case.dense();
             let cpu = compute(&case.scene(), None);
-            let seen = Seen::of(&cpu, &case, &mut gpu).unwrap_or_else(|why| panic!("{name}: {why}"));
+            let seen =
+                Seen::of(&cpu, &case, &mut gpu).unwrap_or_else(|why| panic!("{name}: {why}"));
             table += &seen.line(name);
             all.add(seen);
         }
         table += &all.line("all");
-        let _ = writeln!(table, "\n{:36}                                                        median   worst", "channel");
+        let _ = writeln!(
+            table,
+            "\n{:36}                                                        median   worst",
+            "channel"
+        );
         for (channel, apart) in STATE_CHANNELS.iter().zip(&all.apart) {
             let (median, worst) = median_and_worst(apart);
             let _ = writeln!(table, "{channel:36} {:54} {median:7.1e} {worst:7.1e}", "");
@@ -151,7 +156,9 @@ fn engines_agree_on_random_whiskers() {
         }
         Ok(())
     };
-    always_the_same(std::env::var("N").map_or(RANDOM, |n| n.parse().unwrap())).run(&whiskers, holds).unwrap();
+    always_the_same(std::env::var("N").map_or(RANDOM, |n| n.parse().unwrap()))
+        .run(&whiskers, holds)
+        .unwrap();
     for seen in seen {
         eprintln!("{}", seen.into_inner().line("random whiskers"));
     }

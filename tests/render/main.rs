@@ -56,7 +56,9 @@ fn picture(
     let tolerances = serde_json::json!(null);
     let mut writer = MapWriter::create(&file, &map::describe(scene, &tolerances)).unwrap();
     writer.write_panels(panels).unwrap();
-    writer.finish(EngineCells::default(), Audit::default()).unwrap();
+    writer
+        .finish(EngineCells::default(), Audit::default())
+        .unwrap();
     render::map(&StoredMap::open(&file).unwrap().into(), options)
 }
 

@@ -31,7 +31,10 @@ fn a_map_appears_only_when_it_is_finished() {
 
     let mut short = MapWriter::create(&path, &about).unwrap();
     short.write_panels(&[panel(&scene, 0)]).unwrap();
-    let error = short.finish(EngineCells::default(), Audit::default()).unwrap_err().to_string();
+    let error = short
+        .finish(EngineCells::default(), Audit::default())
+        .unwrap_err()
+        .to_string();
     assert_eq!(error, "the map was finished after 1 of 2 panels");
     assert!(listing(folder.path()).is_empty());
 
@@ -86,7 +89,9 @@ fn a_panel_that_does_not_fit_is_refused() {
     // None of them was counted.
     assert!(refusal(&[good.clone(), strange]).starts_with("panel 1: "));
     writer.write_panels(&[good.clone(), good]).unwrap();
-    let counts = writer.finish(EngineCells::default(), Audit::default()).unwrap();
+    let counts = writer
+        .finish(EngineCells::default(), Audit::default())
+        .unwrap();
     assert_eq!(counts.regimes.values().sum::<u64>(), 40);
 }
 
