@@ -1,6 +1,6 @@
 //! What each effect costs: `cargo bench --bench effects -- [trajectories]`.
 //!
-//! Per set of effects the instructions of one trajectory's shader (naga's expressions and statements that are reached,
+//! Per set of effects the instructions of one cell's shader (naga's expressions and statements that are reached,
 //! each loop counted once), and the time per trajectory with first derivatives on one thread of the CPU, at the
 //! resolution of the maps; medians of seven runs, in turn.
 #![allow(
@@ -20,11 +20,10 @@ use whiskmap::shooting::batch::{Batch, InitialCondition, Method};
 
 #[path = "../tests/effect_sets/mod.rs"]
 mod effect_sets;
-#[allow(dead_code, reason = "the tests use the rest")]
-#[path = "../tests/gpu_engine/shots.rs"]
-mod shots;
+#[path = "../tests/random_rods/mod.rs"]
+mod random_rods;
 
-use shots::{Random, condition, rod};
+use random_rods::{Random, condition, rod};
 
 const RUNS: usize = 7;
 
@@ -61,9 +60,11 @@ fn main() {
         .collect();
     println!("instructions  us/trajectory  ratio  spread  effects");
     for (i, (effects, _)) in sets.iter().enumerate() {
+        let on_gpu = effect_sets::on_gpu().any(|own| own == *effects);
+        let instructions = on_gpu.then(|| instructions(*effects).to_string());
         println!(
-            "{:12}  {:13.3}  {:5.2}  {:5.0} %  {}",
-            instructions(*effects),
+            "{:>12}  {:13.3}  {:5.2}  {:5.0} %  {}",
+            instructions.unwrap_or_default(),
             medians[i],
             medians[i] / medians[0],
             100.0 * (times[i][RUNS - 1] / times[i][0] - 1.0),
@@ -101,9 +102,9 @@ fn name(effects: Effects) -> String {
     }
 }
 
-/// Instructions that `shoot` reaches with these effects.
+/// Instructions that `solve_cells` reaches with these effects.
 fn instructions(effects: Effects) -> usize {
-    let text = shaders::shoot(Precision::F32, effects);
+    let text = shaders::cells(Precision::F32);
     let module = naga::front::wgsl::parse_str(&text).expect("the tests hold the text valid");
     let mut validator = Validator::new(ValidationFlags::all(), Capabilities::empty());
     let info = validator.validate(&module).expect("it is valid");

@@ -3,34 +3,35 @@
 #![allow(missing_docs, reason = "criterion's macros make public functions")]
 #![allow(clippy::expect_used, reason = "a bench that cannot start should stop")]
 
-#[allow(dead_code, reason = "the tests use the rest")]
-#[path = "../tests/gpu_engine/shots.rs"]
-mod shots;
+#[path = "../tests/cells/mod.rs"]
+mod cells;
+#[path = "../tests/random_rods/mod.rs"]
+mod random_rods;
 
+use cells::Cells;
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
-use shots::{Range, USUAL};
+use random_rods::{USUAL, conditions};
 use std::convert::Infallible;
 use std::hint::black_box;
 use std::path::Path;
-use whiskmap::bench::Solver;
 use whiskmap::integrate::Engine;
 use whiskmap::integrate::gpu::{Gpu, Precision};
 use whiskmap::map;
 use whiskmap::numerics::Unit;
 use whiskmap::plan::Plan;
-use whiskmap::refine::refine;
+use whiskmap::refine::{Shot, refine};
 use whiskmap::rod::Side;
 use whiskmap::scene::Scene;
 use whiskmap::sheet::Sheet;
 use whiskmap::shooting::batch::{Batch, InitialCondition, Method};
 use whiskmap::shooting::{FirstVariation, Resolution, SecondVariation, ShootingMap};
-use whiskmap::store::{Description, Error, MapWriter, Panel, Shots};
+use whiskmap::store::{Audit, Description, EngineCells, Error, MapWriter, Panel};
 
 const TRAJECTORIES: usize = 16_384;
 
 /// Trajectories by number of steps, and by the derivatives that they carry; one at a time and in vectors.
 fn integrators(criterion: &mut Criterion) {
-    let conditions: Vec<InitialCondition> = Range::new(USUAL, TRAJECTORIES, 6.5, 1).truth;
+    let conditions: Vec<InitialCondition> = conditions(USUAL, TRAJECTORIES, 6.5, 1);
     let mut group = criterion.benchmark_group("integrators");
     group.throughput(Throughput::Elements(TRAJECTORIES as u64));
     for resolution in Resolution::LADDER {
@@ -60,32 +61,25 @@ fn integrators(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// Every engine by the number of shots in a call.
+/// Every engine by the number of whiskers in a call; the CPU starts from the sheets' guesses, a GPU from references.
 fn engines(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("engines");
-    let solver = Solver {
-        unit: Unit::detect(),
-        resolution: Resolution::COARSE,
-        tolerance: 1e-6,
-    };
     let mut engines: Vec<Box<dyn Engine>> = Vec::new();
     for precision in [Precision::F32, Precision::F64] {
         // Without a driver the CPU is measured alone.
         engines.extend(Gpu::new(precision).map(|gpu| Box::new(gpu) as Box<dyn Engine>));
     }
-    for size in [64, 1024, 16_384, 131_072] {
-        let range = Range::new(USUAL, size, 6.5, 2);
+    for whiskers in [1, 32, 512] {
+        let cells = Cells::random(USUAL, whiskers, 2, |_, _| ());
+        let size = cells.shots.len();
         group.throughput(Throughput::Elements(size as u64));
         group.bench_function(BenchmarkId::new("cpu f64", size), |b| {
-            b.iter(|| solver.solve(USUAL, &range.rods, black_box(&range.shots)));
+            b.iter(|| black_box(&cells).refined());
         });
         for engine in &mut engines {
             let name = engine.describe().engine;
             group.bench_function(BenchmarkId::new(name, size), |b| {
-                b.iter(|| {
-                    let hits = engine.shoot(USUAL, &range.rods, black_box(&range.shots));
-                    hits.expect("the device does not fail")
-                });
+                b.iter(|| black_box(&cells).solve(engine.as_mut()));
             });
         }
     }
@@ -120,7 +114,7 @@ fn sheets(criterion: &mut Criterion) {
     for (row, place) in sheet.rows.iter().enumerate() {
         let guesses = sheet.guesses(row, pushes.iter().copied());
         for (guess, push) in guesses.iter().zip(&pushes) {
-            shots.extend(guess.map(|guess| whiskmap::integrate::Shot {
+            shots.extend(guess.map(|guess| Shot {
                 rod: 0,
                 tau: guess.tau,
                 load: guess.load,
@@ -156,7 +150,7 @@ fn files(criterion: &mut Criterion) {
     let write = |path: &Path| -> Result<(), Error> {
         let mut writer = MapWriter::create(path, &about)?;
         writer.write_panels(std::slice::from_ref(&panel))?;
-        writer.finish(Shots::default())?;
+        writer.finish(EngineCells::default(), Audit::default())?;
         Ok(())
     };
     let mut group = criterion.benchmark_group("files");

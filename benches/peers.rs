@@ -8,13 +8,12 @@
     reason = "a bench that cannot go on should stop, and a line on the screen is what it is for"
 )]
 
-#[allow(dead_code, reason = "the tests use the rest")]
-#[path = "../tests/gpu_engine/shots.rs"]
-mod shots;
+#[path = "../tests/random_rods/mod.rs"]
+mod random_rods;
 
+use random_rods::Random;
 use rayon::ThreadPool;
 use serde_json::{Value, json};
-use shots::Random;
 use std::convert::Infallible;
 use std::fmt::Write;
 use std::time::Instant;

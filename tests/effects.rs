@@ -9,11 +9,9 @@ use whiskmap::shooting::batch::{Batch, InitialCondition, Method};
 use whiskmap::shooting::{FirstVariation, Resolution, SecondVariation, ShootingMap};
 
 mod effect_sets;
-#[allow(dead_code, reason = "the engines' tests use the rest")]
-#[path = "gpu_engine/shots.rs"]
-mod shots;
+mod random_rods;
 
-use shots::{ROWS, Random, condition, rod};
+use random_rods::{ROWS, Random, condition, rod};
 
 fn with(effects: Effects, resolution: Resolution) -> Method {
     Method::new(resolution).with_effects(effects)

@@ -2,13 +2,14 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use std::convert::Infallible;
-use whiskmap::integrate::{Description, Engine, EngineError, Hit, Shot};
-use whiskmap::map::{self, STATE_CHANNELS};
+use whiskmap::integrate::{CellDifference, Description, Engine, EngineError, Outcome, Reference};
+use whiskmap::map::{self, EngineCells, STATE_CHANNELS};
 use whiskmap::plan::{Plan, effects};
-use whiskmap::rod::{Effects, Rod};
+use whiskmap::rod::Rod;
 use whiskmap::scene::Scene;
+use whiskmap::shooting::batch::Method;
 
-/// Counts its calls, and leaves all shots to the refinement.
+/// Counts its calls, and hands all cells over.
 struct Counting(usize);
 
 impl Engine for Counting {
@@ -16,9 +17,21 @@ impl Engine for Counting {
         Description::of(None)
     }
 
-    fn shoot(&mut self, _: Effects, _: &[Rod], shots: &[Shot]) -> Result<Vec<Hit>, EngineError> {
+    fn solve(
+        &mut self,
+        _: Method,
+        _: &[Rod],
+        _: &[f64],
+        references: &[Reference],
+    ) -> Result<Vec<CellDifference>, EngineError> {
         self.0 += 1;
-        Ok(shots.iter().map(Hit::untouched).collect())
+        let far = CellDifference {
+            numbers: [f32::NAN; STATE_CHANNELS.len()],
+            residual: f32::NAN,
+            outcome: Outcome::Far,
+        };
+        let cells = references.iter().map(|reference| reference.cells.len());
+        Ok(vec![far; cells.sum()])
     }
 }
 
@@ -44,6 +57,17 @@ fn kept(push_angles: &str, distances: &str, more: &str) -> (usize, usize) {
     let Ok(summary) = map::run(&scene, &plan, Some(&mut engine), &mut |_| (), discard);
     assert_eq!(engine.0, plan.engine_calls);
     assert_eq!(summary.cells(), plan.cells as u64);
+    let EngineCells {
+        far,
+        without_reference,
+        ..
+    } = summary.engine_cells;
+    let of_cpu = EngineCells {
+        far,
+        without_reference,
+        ..EngineCells::default()
+    };
+    assert_eq!(summary.engine_cells, of_cpu);
     let groups = plan.whiskers.div_ceil(plan.panels_at_once);
     (groups, plan.engine_calls)
 }

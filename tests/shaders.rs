@@ -1,4 +1,4 @@
-//! The shaders without a device: every text that the engine can build is valid.
+//! The shaders without a device: every text that the engine can build is valid, with every set of effects that it has.
 #![allow(
     clippy::unwrap_used,
     clippy::panic,
@@ -14,7 +14,6 @@ use whiskmap::integrate::gpu::{Precision, shaders};
 use whiskmap::rod::Effects;
 
 const PRECISIONS: [Precision; 2] = [Precision::F32, Precision::F64];
-const PROBE: &str = include_str!("../shaders/probe.wgsl");
 
 /// Parses and validates `text`, for every entry point and with the values of its constants put in.
 fn validate(text: &str, precision: Precision, effects: &[Effects]) -> Result<(), String> {
@@ -46,30 +45,28 @@ fn validate(text: &str, precision: Precision, effects: &[Effects]) -> Result<(),
 #[test]
 fn every_text_is_valid() {
     for precision in PRECISIONS {
-        let (measured, linear): (Vec<Effects>, Vec<Effects>) =
-            effect_sets::all().partition(|effects| effects.profile);
-        for effects in [measured, linear.clone()] {
-            let text = shaders::shoot(precision, effects[0]);
-            validate(&text, precision, &effects).unwrap_or_else(|e| panic!("{e}"));
+        let sets: Vec<Effects> = effect_sets::on_gpu().collect();
+        for (text, sets) in [
+            (shaders::cells(precision), &sets[..]),
+            (shaders::peak(precision), &[]),
+        ] {
+            validate(&text, precision, sets).unwrap_or_else(|e| panic!("{e}"));
         }
-        validate(&shaders::peak(precision), precision, &[]).unwrap_or_else(|e| panic!("{e}"));
-        let probe = shaders::model(precision, linear[0]) + PROBE;
-        validate(&probe, precision, &linear).unwrap_or_else(|e| panic!("{e}"));
     }
 }
 
 #[test]
 fn a_broken_text_is_refused() {
     let none = [Effects::default()];
-    let text = shaders::shoot(Precision::F32, none[0]);
+    let text = shaders::cells(Precision::F32);
     for (good, bad) in [
-        ("rods[shot.rod]", "rods[shot.tau]"),
+        ("rods[references[r].rod]", "rods[references[r].tau]"),
         ("override TAPER: bool;", ""),
     ] {
         assert!(text.contains(good));
         assert!(validate(&text.replace(good, bad), Precision::F32, &none).is_err());
     }
     // Double precision is a capability.
-    let text = shaders::shoot(Precision::F64, none[0]);
+    let text = shaders::cells(Precision::F64);
     assert!(validate(&text, Precision::F32, &none).is_err());
 }

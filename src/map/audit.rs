@@ -1,6 +1,6 @@
 //! Looking over an engine's shoulder: a sample of its cells, computed once more in `f64`.
 
-use super::channels::{channels, of_cell, of_reference};
+use super::channels::{Numbers, channels, of_cell, of_reference};
 use crate::integrate::{CellDifference, Outcome, Reference};
 use crate::refine::{End, Refined};
 use crate::rod::Units;
@@ -13,7 +13,7 @@ const ONE_IN: u64 = 256;
 /// The fewest cells of a whisker's side in it, as far as there are any.
 const AT_LEAST: u64 = 64;
 
-/// By how much a number without units may differ, in parts of itself, of that of the reference, or of one.
+/// By how much a number may differ, in parts of its size and of one: a whisker's length, a radian, a force of `E I_base/L_w^2`.
 const TOLERANCE: f64 = 3e-6;
 
 /// Which cells of a row are in the sample: the same ones in every run.
@@ -70,10 +70,17 @@ pub fn holds(
             let reference = of_reference(&reader, reference, touch);
             let ours = channels(&reader.read(refined.state.tau, &refined.state.full, touch, push));
             let theirs = of_cell(&reference, &of_one, difference);
-            let pairs = ours.iter().zip(theirs).zip(reference);
-            pairs.into_iter().all(|((ours, theirs), reference)| {
-                (ours - theirs).abs() <= TOLERANCE * (1.0 + ours.abs().max(reference.abs()))
-            })
+            let larger: Numbers = std::array::from_fn(|i| ours[i].abs().max(reference[i].abs()));
+            let [arc, angle, force, .., chord, distance, _] = larger;
+            // Components of the force, moment and energy go with the force, near the base in front of a small arm.
+            let moment = force * arc;
+            let sizes = [
+                arc, angle, force, force, force, moment, chord, distance, moment,
+            ];
+            let differences = ours.iter().zip(theirs).map(|(ours, theirs)| ours - theirs);
+            let allowed = sizes.iter().zip(of_one).map(|(size, one)| one.abs() + size);
+            let mut pairs = differences.zip(allowed);
+            pairs.all(|(difference, allowed)| difference.abs() <= TOLERANCE * allowed)
         }
         _ => false,
     }

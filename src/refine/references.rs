@@ -45,9 +45,17 @@ pub fn references(method: Method, sheets: &[&Sheet], rows: &[RowOfCells]) -> Vec
         tau: refined.state.tau,
         load: refined.state.load,
     };
-    let conditions: Vec<_> = flat.iter().zip(&refined).map(condition).collect();
+    let mut conditions: Vec<_> = flat.iter().zip(&refined).map(condition).collect();
     let is_solved: Vec<bool> = refined.iter().map(|cell| cell.end == End::Solved).collect();
-    let states = Batch::new(method).shoot::<FirstVariation>(&conditions);
+    let mut states = Batch::new(method).shoot::<FirstVariation>(&conditions);
+    // All cells of a reference inherit its miss, which one more step takes away; it is too short to need a trajectory.
+    for ((condition, state), shot) in conditions.iter_mut().zip(&mut states).zip(&flat) {
+        let map = &state.full.map;
+        let step = map.solve(map.residual(shot.pole));
+        condition.tau += step.x;
+        condition.load += step.y;
+        state.full = state.extrapolated(step);
+    }
     let mut after = 0;
     let nodes: Vec<Range<usize>> = shots
         .iter()

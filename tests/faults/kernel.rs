@@ -1,84 +1,75 @@
 //! Kernels that are spoilt.
 
-use crate::compute::{Watched, compute, open_with};
-use crate::{assert_identical, assert_same, cone, sound};
-use whiskmap::integrate::Outcome;
-use whiskmap::integrate::gpu::{Precision, shaders};
-use whiskmap::map::Shots;
-use whiskmap::rod::Effects;
+use crate::compute::{
+    all_cells, assert_identical, compute, compute_as, handed_over, open, open_with, works,
+};
+use crate::{assert_same, cone};
+use whiskmap::integrate::gpu::{Gpu, Precision, shaders};
+use whiskmap::map::{EngineCells, Panel, Summary};
+use whiskmap::plan::Plan;
+use whiskmap::scene::Scene;
 
-/// The shader of the engine with the last line of its entry point replaced.
-fn spoilt(precision: Precision, with: &str) -> String {
-    let text = shaders::shoot(precision, Effects::default());
-    let last = "hits[id.x] = solve(rods[shot.rod], shot);";
-    assert_eq!(text.matches(last).count(), 1);
-    let numbers = "let nan = real(bitcast<f32>(0x7fc00000u | (id.x >> 31u)));
-        let infinite = real(bitcast<f32>(0x7f800000u | (id.x >> 31u)));";
-    text.replace(last, &format!("{numbers}\n{with}"))
+/// The last line of the entry point.
+const LAST: &str = "cells[id.x] = solve(r, rods[references[r].rod], push);";
+
+/// The GPU engine with `LAST` replaced; `cell` is the sound answer.
+fn spoilt(precision: Precision, with: &str) -> Option<Gpu> {
+    let text = shaders::cells(precision);
+    assert_eq!(text.matches(LAST).count(), 1);
+    let numbers = "let nan = bitcast<f32>(0x7fc00000u | (id.x >> 31u));
+        let infinite = bitcast<f32>(0x7f800000u | (id.x >> 31u));
+        var cell = solve(r, rods[references[r].rod], push);";
+    open_with(precision, text.replace(LAST, &format!("{numbers}\n{with}")))
 }
 
-/// Claims of having converged on a number that is none, and trajectories that start from one.
-const SPOILT: [&str; 2] = [
-    "var hit = solve(rods[shot.rod], shot);
-     if id.x % 7u == 0u { hit.tau = nan; }
-     if id.x % 11u == 0u { hit.load = infinite; }
-     hits[id.x] = hit;",
-    "var start = shot;
-     if id.x % 7u == 0u { start.tau = nan; }
-     if id.x % 11u == 0u { start.load = infinite; }
-     hits[id.x] = solve(rods[shot.rod], start);",
-];
+/// The map of `scene` in one strip of rows, as by `gpu`.
+fn at_once(scene: &Scene, gpu: &mut Gpu) -> (Summary, Vec<Panel>) {
+    let mut plan = Plan::new(scene).unwrap();
+    plan.rows_at_once = 2 * scene.grid.distance_mm.len();
+    compute_as(scene, &plan, Some(gpu))
+}
 
-/// The part of the shots that a sound kernel finishes at least: of 128 x 128 cells at most 2 of 9,151 shots were restarted.
-const FINISHED: f64 = 0.998;
+/// The part of the cells that a sound kernel solves at least.
+const SOLVED: f64 = 0.9;
 
-/// 64 x 64 cells go out in a single dispatch, so that the shader's index is the index of the shot. Next to the tip and
-/// the fold a few shots stall without any fault.
+/// Claims of having solved a cell with a number that is none. All of those cells are refined, and counted.
 #[test]
-fn numbers_that_are_none_are_restarted_in_f64_and_counted() {
+fn numbers_that_are_none_are_refined_in_f64_and_counted() {
     let scene = cone(64);
     let (_, cpu) = compute(&scene, None);
     for precision in [Precision::F32, Precision::F64] {
-        let Some(gpu) = sound(precision) else {
+        let Some(mut sound) = open(precision) else {
             continue;
         };
-        let mut gpu = Watched::new(gpu);
-        let (summary, _) = compute(&scene, Some(&mut gpu));
-        gpu.works(summary.shots.restarted, FINISHED).unwrap();
-        assert!((1000..=4096).contains(&gpu.hits.len()));
-        let spoilt_or_stalled = |(i, outcome): (usize, Outcome)| {
-            i % 7 == 0 || i % 11 == 0 || outcome != Outcome::Converged
-        };
-        let outcomes = gpu.hits.iter().map(|hit| hit.outcome).enumerate();
-        let wanted = Shots {
-            all: gpu.hits.len() as u64,
-            restarted: outcomes.filter(|&shot| spoilt_or_stalled(shot)).count() as u64,
-            on_cpu_instead: 0,
-        };
-        for with in SPOILT {
-            let mut gpu = open_with(precision, spoilt(precision, with)).unwrap();
+        let (sound, _) = compute(&scene, Some(&mut sound));
+        works(&sound, SOLVED).unwrap();
+        let sound = sound.engine_cells;
+        assert_eq!(sound.not_finite, 0);
+        let asked = sound.solved + handed_over(&sound);
+        for (none, part) in [
+            ("cell.numbers[8] = nan;", 1.0),
+            ("cell.residual = infinite;", 1.0),
+            (
+                "if id.x % 7u == 0u { cell.numbers[0] = infinite; }",
+                1.0 / 7.0,
+            ),
+        ] {
+            let mut gpu = spoilt(precision, &format!("{none} cells[id.x] = cell;")).unwrap();
             let (summary, panels) = compute(&scene, Some(&mut gpu));
             assert!(summary.engine_failure.is_none(), "{summary:?}");
-            assert_eq!(summary.shots, wanted, "{with}");
+            let cells = summary.engine_cells;
+            let expected = part * asked as f64;
+            assert!(
+                (cells.not_finite as f64 - expected).abs() <= 1.0,
+                "{none}: {cells:?}"
+            );
+            assert_eq!(all_cells(&cells), all_cells(&sound));
             assert_same(&cpu, &panels);
+            if part == 1.0 {
+                assert_identical(&cpu, &panels);
+            }
         }
     }
-}
-
-#[test]
-fn a_kernel_that_answers_nothing_but_nan_costs_time_only() {
-    let scene = cone(64);
-    let shader = spoilt(
-        Precision::F32,
-        "var hit = solve(rods[shot.rod], shot); hit.tau = nan; hits[id.x] = hit;",
-    );
-    let Some(mut gpu) = open_with(Precision::F32, shader) else {
-        return;
-    };
-    let (summary, panels) = compute(&scene, Some(&mut gpu));
-    assert!(summary.engine_failure.is_none(), "{summary:?}");
-    assert_eq!(summary.shots.restarted, summary.shots.all);
-    assert_same(&compute(&scene, None).1, &panels);
 }
 
 /// The map is right, so only what the engine did for it tells.
@@ -86,41 +77,113 @@ fn a_kernel_that_answers_nothing_but_nan_costs_time_only() {
 fn a_kernel_that_does_nothing_is_noticed() {
     let scene = cone(64);
     let (_, cpu) = compute(&scene, None);
-    for (does, restarted) in [
-        ("", true),
-        (
-            "hits[id.x] = Hit(shot.tau, shot.load, 0.0, 1u, CONVERGED);",
-            false,
-        ),
+    for writes in [
+        "if id.x == 0xffffffffu { cells[id.x] = cell; }",
+        "cell = Cell(); cells[id.x] = cell;",
     ] {
-        let keeps_bindings = format!(
-            "if shot.rod > 999u {{ hits[id.x] = solve(rods[shot.rod], shot); }} else {{ {does} }}"
-        );
-        let shader = spoilt(Precision::F32, &keeps_bindings);
-        let Some(gpu) = open_with(Precision::F32, shader) else {
+        let Some(mut gpu) = spoilt(Precision::F32, writes) else {
             return;
         };
-        let mut gpu = Watched::new(gpu);
         let (summary, panels) = compute(&scene, Some(&mut gpu));
-        assert_same(&cpu, &panels);
-        let shots = summary.shots;
-        assert_eq!(shots.restarted, if restarted { shots.all } else { 0 });
-        assert!(gpu.works(shots.restarted, FINISHED).is_err());
+        let EngineCells {
+            not_finite,
+            without_reference,
+            ..
+        } = summary.engine_cells;
+        let only = EngineCells {
+            not_finite,
+            without_reference,
+            ..EngineCells::default()
+        };
+        assert!(not_finite > 1000);
+        assert_eq!(summary.engine_cells, only);
+        assert!(works(&summary, SOLVED).is_err());
+        assert_identical(&cpu, &panels);
     }
+}
+
+/// Asserts that the audit has caught `gpu`, and that the map is the CPU's.
+fn assert_caught(scene: &Scene, gpu: &mut Gpu) {
+    let (summary, panels) = at_once(scene, gpu);
+    let audit = summary.audit;
+    eprintln!("{audit:?}, {:?}", summary.engine_cells);
+    assert!(summary.engine_failure.is_none());
+    assert!(audit.differing > 0, "{audit:?}");
+    let asked = summary.engine_cells.solved + handed_over(&summary.engine_cells);
+    assert_eq!(audit.turned_over, asked);
+    assert_identical(&compute(scene, None).1, &panels);
+}
+
+/// Contacts that are wrong by 1e-5 of themselves, loads of one sign, and whole answers.
+const WRONG: [&str; 3] = [
+    "cell.numbers[0] += 1e-5 * f32(references[r].arclength);",
+    "cell.numbers[5] += 1e-5 * f32(references[r].force * references[r].position[0]);",
+    "cell = solve(r, rods[references[r].rod], push + 1e-4);",
+];
+
+#[test]
+fn a_kernel_that_is_wrong_everywhere_is_caught() {
+    let scene = cone(64);
+    for precision in [Precision::F32, Precision::F64] {
+        for wrong in WRONG {
+            let Some(mut gpu) = spoilt(precision, &format!("{wrong} cells[id.x] = cell;")) else {
+                continue;
+            };
+            assert_caught(&scene, &mut gpu);
+        }
+    }
+}
+
+/// A sound kernel is not.
+#[test]
+fn a_sound_kernel_passes_its_audit() {
+    let scene = cone(128);
+    let (_, cpu) = compute(&scene, None);
+    for gpu in [Precision::F32, Precision::F64].map(open) {
+        let Some(mut gpu) = gpu else { continue };
+        let (summary, panels) = at_once(&scene, &mut gpu);
+        works(&summary, SOLVED).unwrap();
+        assert!(summary.audit.cells > 32 && summary.audit.turned_over == 0);
+        assert_same(&cpu, &panels);
+    }
+}
+
+/// Which one of a thousand cells is wrong, whatever dispatch it is in. Of the first 60 choices the audit catches 6: it looks at 142 of
+/// 36,669 cells, so that it has one of 37 with a probability of 13 %. It has one of those in a map of a million cells with 98 %.
+const CHOSEN: u32 = 5;
+
+/// The sample of the audit is the same in every run, and so are the cells that are wrong.
+#[test]
+fn a_kernel_that_is_wrong_in_one_cell_of_a_thousand_is_caught() {
+    let scene = cone(256);
+    let wrong = format!(
+        "let mixed = (bitcast<u32>(f32(here[0])) ^ bitcast<u32>(f32(references[r].tau))) * 2654435761u;
+         if (mixed >> 8u) % 1000u == {CHOSEN}u {{ {} }}
+         cells[id.x] = cell;",
+        WRONG[0]
+    );
+    let Some(mut gpu) = spoilt(Precision::F32, &wrong) else {
+        return;
+    };
+    assert_caught(&scene, &mut gpu);
 }
 
 #[test]
 fn a_kernel_that_the_driver_refuses_leaves_all_to_the_cpu() {
     let scene = cone(64);
-    if sound(Precision::F32).is_none() {
+    if open(Precision::F32).is_none() {
         return;
     }
-    for (shader, why) in [("fn shoot() {", "expected"), ("fn other() {}", "shoot")] {
+    for (shader, why) in [
+        ("fn solve_cells() {", "expected"),
+        ("fn other() {}", "solve_cells"),
+    ] {
         let mut gpu = open_with(Precision::F32, shader.to_owned()).unwrap();
         let (summary, panels) = compute(&scene, Some(&mut gpu));
         let failure = summary.engine_failure.unwrap().to_string();
         assert!(failure.contains(why), "{failure}");
-        assert_eq!(summary.shots.on_cpu_instead, summary.shots.all);
+        let on_cpu_instead = summary.engine_cells.on_cpu_instead;
+        assert_eq!(all_cells(&summary.engine_cells), on_cpu_instead);
         assert_identical(&compute(&scene, None).1, &panels);
     }
 }

@@ -1,82 +1,49 @@
 //! Devices that are lost: before, between and within the calls of a run.
 
-use crate::compute::{compute, compute_as};
-use crate::{assert_identical, assert_same, cone, sound};
-use whiskmap::integrate::gpu::{Gpu, Precision};
-use whiskmap::integrate::{Description, Engine, EngineError, Hit, Shot};
+use crate::compute::{Watched, all_cells, assert_identical, compute, compute_as, open};
+use crate::{assert_same, cone};
+use whiskmap::integrate::EngineError;
+use whiskmap::integrate::gpu::Precision;
+use whiskmap::map::EngineCells;
 use whiskmap::plan::Plan;
-use whiskmap::rod::{Effects, Rod};
-
-/// A GPU to which something is done before one of its calls.
-struct Sabotaged<F> {
-    gpu: Gpu,
-    call: usize,
-    sabotage: F,
-    calls: usize,
-    /// Shots that the GPU has solved.
-    solved: u64,
-}
-
-impl<F> Sabotaged<F> {
-    fn new(gpu: Gpu, call: usize, sabotage: F) -> Self {
-        Self {
-            gpu,
-            call,
-            sabotage,
-            calls: 0,
-            solved: 0,
-        }
-    }
-}
-
-impl<F: FnMut(&wgpu::Device)> Engine for Sabotaged<F> {
-    fn describe(&self) -> Description {
-        self.gpu.describe()
-    }
-
-    fn shoot(
-        &mut self,
-        effects: Effects,
-        rods: &[Rod],
-        shots: &[Shot],
-    ) -> Result<Vec<Hit>, EngineError> {
-        if self.calls == self.call {
-            (self.sabotage)(self.gpu.device());
-        }
-        self.calls += 1;
-        let hits = self.gpu.shoot(effects, rods, shots)?;
-        self.solved += hits.len() as u64;
-        Ok(hits)
-    }
-}
+use whiskmap::scene::Scene;
 
 /// 16 calls of 8 rows each.
-fn in_strips(scene: &whiskmap::scene::Scene) -> Plan {
+fn in_strips(scene: &Scene) -> Plan {
     let mut plan = Plan::new(scene).unwrap();
     plan.rows_at_once = 8;
     plan
+}
+
+/// So many cells a sound run counts.
+fn sound_cells(scene: &Scene, plan: &Plan) -> Option<u64> {
+    let mut gpu = open(Precision::F32)?;
+    let (summary, _) = compute_as(scene, plan, Some(&mut gpu));
+    assert_eq!(summary.engine_cells.on_cpu_instead, 0);
+    Some(all_cells(&summary.engine_cells))
 }
 
 #[test]
 fn lost_between_two_calls() {
     let scene = cone(64);
     let plan = in_strips(&scene);
+    let Some(all) = sound_cells(&scene, &plan) else {
+        return;
+    };
     let (_, cpu) = compute_as(&scene, &plan, None);
     for call in [0, 1, 7, 12] {
-        let Some(gpu) = sound(Precision::F32) else {
-            return;
-        };
-        let mut engine = Sabotaged::new(gpu, call, wgpu::Device::destroy);
+        let gpu = open(Precision::F32).unwrap();
+        let mut engine = Watched::new(gpu, call, wgpu::Device::destroy);
         let (summary, panels) = compute_as(&scene, &plan, Some(&mut engine));
         assert_eq!(engine.calls, call + 1, "a lost device is not asked again");
         assert!(matches!(
             summary.engine_failure,
             Some(EngineError::Device(_))
         ));
-        assert_eq!(engine.solved == 0, call == 0);
-        let left = summary.shots.all - engine.solved;
-        assert_eq!(summary.shots.on_cpu_instead, left);
-        assert!(left > 0);
+        let cells = summary.engine_cells;
+        assert_eq!(cells.solved == 0, call == 0);
+        assert!(cells.on_cpu_instead > 0);
+        assert_eq!(all_cells(&cells), all);
         assert_same(&cpu, &panels);
         if call == 0 {
             assert_identical(&cpu, &panels);
@@ -108,45 +75,50 @@ fn again(device: wgpu::Device, buffer: wgpu::Buffer, looks: usize) {
     });
 }
 
-/// 128 x 128 cells are one call of several dispatches. All of its shots are left to the refinement, so the map is that of the CPU.
+/// 128 x 128 cells are one call of several dispatches. All of its cells are left to the refinement, so the map is that of the CPU.
 #[test]
 fn lost_within_a_call() {
     let scene = cone(128);
+    let Some(all) = sound_cells(&scene, &Plan::new(&scene).unwrap()) else {
+        return;
+    };
+    assert!(all > 8192, "{all}");
+    let failed = EngineCells {
+        on_cpu_instead: all,
+        ..EngineCells::default()
+    };
     let (_, cpu) = compute(&scene, None);
     for looks in 0..4 {
-        let Some(gpu) = sound(Precision::F32) else {
-            return;
-        };
-        let mut engine = Sabotaged::new(gpu, 0, |device: &wgpu::Device| {
+        let gpu = open(Precision::F32).unwrap();
+        let mut engine = Watched::new(gpu, 0, |device: &wgpu::Device| {
             destroy_within(device, looks);
         });
         let (summary, panels) = compute(&scene, Some(&mut engine));
         let failure = summary.engine_failure.unwrap();
         assert!(matches!(failure, EngineError::Device(_)), "{failure}");
-        assert!(summary.shots.all > 8192, "{:?}", summary.shots);
-        assert_eq!(summary.shots.on_cpu_instead, summary.shots.all);
+        assert_eq!(summary.engine_cells, failed);
         assert_identical(&cpu, &panels);
     }
 }
 
-/// Whenever the other thread comes, all shots are counted once, as the engine's or not.
+/// Whenever the other thread comes, all cells are counted once, as the engine's or not.
 #[test]
 fn lost_to_another_thread() {
     let scene = cone(64);
     let plan = in_strips(&scene);
+    let Some(all) = sound_cells(&scene, &plan) else {
+        return;
+    };
     let (_, cpu) = compute_as(&scene, &plan, None);
     for _ in 0..10 {
-        let Some(gpu) = sound(Precision::F32) else {
-            return;
-        };
+        let gpu = open(Precision::F32).unwrap();
         let mut thread = None;
-        let mut engine = Sabotaged::new(gpu, 2, |device: &wgpu::Device| {
+        let mut engine = Watched::new(gpu, 2, |device: &wgpu::Device| {
             let device = device.clone();
             thread = Some(std::thread::spawn(move || device.destroy()));
         });
         let (summary, panels) = compute_as(&scene, &plan, Some(&mut engine));
-        let left = summary.shots.all - engine.solved;
-        assert_eq!(summary.shots.on_cpu_instead, left);
+        assert_eq!(all_cells(&summary.engine_cells), all);
         thread.unwrap().join().unwrap();
         assert_same(&cpu, &panels);
     }

@@ -72,6 +72,16 @@ impl Case {
         text
     }
 
+    /// With so many cells in a row that an engine is asked for them.
+    pub fn dense(mut self) -> Self {
+        const COUNT: i32 = 40;
+        let more = (1..=COUNT).map(|i| 70.0 * (f64::from(i) / f64::from(COUNT)).powi(2));
+        self.pushes_deg.extend(more.flat_map(|push| [-push, push]));
+        self.pushes_deg.sort_by(f64::total_cmp);
+        self.pushes_deg.dedup();
+        self
+    }
+
     pub fn scene(&self) -> Scene {
         let text = self.text();
         Scene::parse(&text, "hard").unwrap_or_else(|error| panic!("{text}\n{error}"))

@@ -12,9 +12,9 @@ mod cases;
 #[path = "../compute/mod.rs"]
 mod compute;
 mod ends;
+mod engines;
 mod limits;
 mod named;
 mod random;
-mod single;
 mod states;
 mod units;

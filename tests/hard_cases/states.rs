@@ -1,9 +1,7 @@
 //! The states of a map in `f64`, and how far they are from those of twice as many steps.
 
-use glam::DVec2;
 use rayon::prelude::*;
-use whiskmap::integrate::{Engine, Hit, Outcome, Shot};
-use whiskmap::refine::{self, End, Refined};
+use whiskmap::refine::{self, End, Refined, Shot};
 use whiskmap::rod::{Effects, Rod, Side};
 use whiskmap::scene::Scene;
 use whiskmap::sheet::Sheet;
@@ -41,37 +39,13 @@ impl Shots {
         }
     }
 
-    pub fn rods(&self) -> Vec<Rod> {
-        self.sheets.iter().map(|sheet| sheet.rod.clone()).collect()
-    }
-
-    /// What the refinement starts from without an engine.
-    pub fn guesses(&self) -> Vec<Hit> {
-        self.shots.iter().map(Hit::untouched).collect()
-    }
-
-    pub fn shoot(&self, engine: &mut dyn Engine) -> Vec<Hit> {
-        let rods = self.rods();
-        engine.shoot(self.effects, &rods, &self.shots).unwrap()
-    }
-
-    /// What the refinement makes of `hits`.
-    pub fn refined(&self, hits: &[Hit]) -> Vec<Refined> {
-        let starts = hits.iter().zip(&self.shots).map(|(hit, shot)| {
-            if hit.outcome == Outcome::Converged {
-                (hit.tau, hit.load)
-            } else {
-                (shot.tau, shot.load)
-            }
-        });
+    /// What the refinement makes of them.
+    pub fn refined(&self) -> Vec<Refined> {
+        let starts = self.shots.iter().map(|shot| (shot.tau, shot.load));
         let starts: Vec<(f64, f64)> = starts.collect();
         let sheets: Vec<&Sheet> = self.sheets.iter().collect();
-        refine::refine(
-            Method::fine().with_effects(self.effects),
-            &sheets,
-            &self.shots,
-            &starts,
-        )
+        let method = Method::fine().with_effects(self.effects);
+        refine::refine(method, &sheets, &self.shots, &starts)
     }
 
     /// The trajectories that end at these states.
@@ -85,24 +59,6 @@ impl Shots {
                 load: cell.state.load,
             })
             .collect()
-    }
-
-    /// The converged `hits`, and how far from the wanted place, in whisker lengths, their poles really are.
-    pub fn misses(&self, hits: &[Hit]) -> Vec<(InitialCondition<'_>, f64)> {
-        let found = hits.iter().zip(&self.shots);
-        let found = found.filter(|(hit, _)| hit.outcome == Outcome::Converged);
-        let (wanted, conditions): (Vec<DVec2>, Vec<InitialCondition>) = found
-            .map(|(hit, shot)| {
-                let rod = &self.sheets[shot.rod as usize].rod;
-                let (tau, load) = (hit.tau, hit.load);
-                (shot.pole, InitialCondition { rod, tau, load })
-            })
-            .unzip();
-        let method = Method::fine().with_effects(self.effects);
-        let shot = Batch::new(method).shoot::<ShootingMap>(&conditions);
-        let missed = shot.iter().zip(wanted);
-        let missed = missed.map(|(map, pole)| map.pole.distance(pole));
-        conditions.iter().copied().zip(missed).collect()
     }
 }
 

@@ -6,7 +6,7 @@ use std::path::Path;
 use std::sync::LazyLock;
 use whiskmap::classify::Regime;
 use whiskmap::integrate;
-use whiskmap::map::{Channels, Panel, STATE_CHANNELS, Shots};
+use whiskmap::map::{Audit, Channels, EngineCells, Panel, STATE_CHANNELS};
 use whiskmap::scene::{Grid, Parameter, Pole, Setup, SweepAxis, Whisker};
 use whiskmap::store::{Counts, Description, MapWriter};
 
@@ -137,5 +137,7 @@ pub fn write(path: &Path, scene: &Setup) -> Counts {
     let (some, others) = panels.split_at(panels.len() / 3);
     writer.write_panels(some).unwrap();
     writer.write_panels(others).unwrap();
-    writer.finish(Shots::default()).unwrap()
+    writer
+        .finish(EngineCells::default(), Audit::default())
+        .unwrap()
 }

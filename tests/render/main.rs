@@ -21,7 +21,7 @@ use map::panel;
 use std::collections::BTreeMap;
 use whiskmap::render::{self, MapOptions, Picture};
 use whiskmap::scene::Setup;
-use whiskmap::store::{MapWriter, Panel, Shots, StoredMap};
+use whiskmap::store::{Audit, EngineCells, MapWriter, Panel, StoredMap};
 
 const CONTACT: [u8; 3] = [0x83, 0xc4, 0xa4];
 const SLIP_OFF: [u8; 3] = [0xc8, 0x60, 0x2a];
@@ -56,7 +56,9 @@ fn picture(
     let tolerances = serde_json::json!(null);
     let mut writer = MapWriter::create(&file, &map::describe(scene, &tolerances)).unwrap();
     writer.write_panels(panels).unwrap();
-    writer.finish(Shots::default()).unwrap();
+    writer
+        .finish(EngineCells::default(), Audit::default())
+        .unwrap();
     render::map(&StoredMap::open(&file).unwrap().into(), options)
 }
 

@@ -5,7 +5,7 @@ use super::sweeps;
 use serde_json::json;
 use std::fs;
 use std::path::Path;
-use whiskmap::store::{Error, MapWriter, Panel, Shots, StoredMap};
+use whiskmap::store::{Audit, EngineCells, Error, MapWriter, Panel, StoredMap};
 
 fn listing(folder: &Path) -> Vec<String> {
     let entries = fs::read_dir(folder).unwrap();
@@ -31,7 +31,10 @@ fn a_map_appears_only_when_it_is_finished() {
 
     let mut short = MapWriter::create(&path, &about).unwrap();
     short.write_panels(&[panel(&scene, 0)]).unwrap();
-    let error = short.finish(Shots::default()).unwrap_err().to_string();
+    let error = short
+        .finish(EngineCells::default(), Audit::default())
+        .unwrap_err()
+        .to_string();
     assert_eq!(error, "the map was finished after 1 of 2 panels");
     assert!(listing(folder.path()).is_empty());
 
@@ -86,7 +89,9 @@ fn a_panel_that_does_not_fit_is_refused() {
     // None of them was counted.
     assert!(refusal(&[good.clone(), strange]).starts_with("panel 1: "));
     writer.write_panels(&[good.clone(), good]).unwrap();
-    let counts = writer.finish(Shots::default()).unwrap();
+    let counts = writer
+        .finish(EngineCells::default(), Audit::default())
+        .unwrap();
     assert_eq!(counts.regimes.values().sum::<u64>(), 40);
 }
 

@@ -46,12 +46,13 @@ impl Precision {
     /// Limits of what the shaders vouch for, by their names there.
     ///
     /// `LEFT_BY_STEP` is that of the refinement. `ROUNDING_OF_WAY` bounds the pole's miss over how far base and pole move from the
-    /// reference to the cell: measured on the shipped scenes at most 5.1e-7 in `f32`, in the median 5e-8.
+    /// reference to the cell: measured on random whiskers at most 5.8e-7 in `f32`, in the median 5e-8. `FARTHEST_REST` keeps what the
+    /// series of the resting parabola leaves out, 100 times its 7th power, below rounding.
     #[must_use]
     pub const fn limits(self) -> [(&'static str, f64); 8] {
-        let [clear_of_fold, clear_of_tip, longest, of_way, rounding] = match self {
-            Self::F32 => [0.05, 1e-6, 1e-5, 6e-7, 0.0],
-            Self::F64 => [1e-3, 1e-9, 1.5e-7, 2e-15, 6e-14],
+        let [clear_of_fold, clear_of_tip, longest, of_way, rounding, rest] = match self {
+            Self::F32 => [0.05, 1e-6, 1e-5, 8e-7, 0.0, 0.02],
+            Self::F64 => [1e-3, 1e-9, 1.5e-7, 2e-15, 6e-14, 0.008],
         };
         [
             ("GOAL", self.goal()),
@@ -61,7 +62,7 @@ impl Precision {
             ("LONGEST_STEP", longest),
             ("CLEAR_OF_FOLD", clear_of_fold),
             ("CLEAR_OF_TIP", clear_of_tip),
-            ("FARTHEST_REST", 0.02),
+            ("FARTHEST_REST", rest),
         ]
     }
 }

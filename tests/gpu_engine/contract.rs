@@ -1,0 +1,99 @@
+//! What holds for every call.
+
+use crate::PRECISIONS;
+use crate::cells::Cells;
+use crate::compute::open;
+use crate::random_rods::USUAL;
+use whiskmap::integrate::gpu::{Gpu, Precision, adapters, preferred};
+use whiskmap::integrate::{CellDifference, Engine, Outcome, Reference};
+use whiskmap::plan::STATE_CHANNELS;
+
+fn some() -> Cells {
+    Cells::random(USUAL, 40, 9, |_, _| ())
+}
+
+/// A cell to the bit.
+fn bits(cell: &CellDifference) -> ([u32; STATE_CHANNELS.len()], u32, Outcome) {
+    let numbers = cell.numbers.map(f32::to_bits);
+    (numbers, cell.residual.to_bits(), cell.outcome)
+}
+
+#[test]
+fn answers_do_not_depend_on_the_calls_that_they_come_from() {
+    let cells = some();
+    for mut gpu in PRECISIONS.into_iter().filter_map(open) {
+        let at_once: Vec<_> = cells.solve(&mut gpu).iter().map(bits).collect();
+        assert!(at_once.len() > 1000);
+        for size in [1, 7, 64, 1001] {
+            let mut in_groups = Vec::new();
+            for references in cells.references.chunks(size) {
+                let solved = gpu.solve(cells.method, &cells.rods, &cells.pushes, references);
+                in_groups.extend(solved.unwrap().iter().map(bits));
+            }
+            assert!(in_groups == at_once, "{size} references at once");
+        }
+    }
+}
+
+/// The answers if number `spoilt` of the references is spoilt.
+fn spoilt(
+    cells: &Cells,
+    gpu: &mut Gpu,
+    spoilt: usize,
+    spoil: fn(&mut Reference),
+) -> Vec<CellDifference> {
+    let mut references = cells.references.clone();
+    spoil(&mut references[spoilt]);
+    gpu.solve(cells.method, &cells.rods, &cells.pushes, &references)
+        .unwrap()
+}
+
+#[test]
+fn no_number_hurts_only_its_own_cells() {
+    let cells = some();
+    let number = cells.references.len() / 2;
+    for mut gpu in PRECISIONS.into_iter().filter_map(open) {
+        let sound = cells.solve(&mut gpu);
+        let spoils: [(&str, fn(&mut Reference)); 8] = [
+            ("tau", |r| r.tau = f64::NAN),
+            ("load", |r| r.load = f64::INFINITY),
+            ("push angle", |r| r.push = f64::NAN),
+            ("way", |r| r.per_way = f64::NAN),
+            ("row", |r| r.row[3][1] = f64::NAN),
+            ("position", |r| r.state.full.position.y = f64::NAN),
+            ("derivative", |r| r.state.by_tau.position.x = f64::INFINITY),
+            ("energy", |r| r.state.full.energy = f64::NAN),
+        ];
+        for (what, spoil) in spoils {
+            let answers = spoilt(&cells, &mut gpu, number, spoil);
+            let places = cells.places();
+            for ((cell, sound), (reference, _)) in answers.iter().zip(&sound).zip(places) {
+                if reference == number {
+                    assert_eq!(cell.outcome, Outcome::NotFinite, "{what}: {cell:?}");
+                } else {
+                    assert_eq!(bits(cell), bits(sound), "{what}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn nothing_in_nothing_out() {
+    let cells = some();
+    for mut gpu in PRECISIONS.into_iter().filter_map(open) {
+        let nothing = gpu.solve(cells.method, &cells.rods, &cells.pushes, &[]);
+        assert_eq!(nothing.unwrap(), []);
+    }
+}
+
+#[test]
+fn the_engine_runs_on_the_preferred_adapter() {
+    let Some(gpu) = open(Precision::F32) else {
+        return;
+    };
+    let reports = adapters();
+    let chosen = &reports[preferred(&reports, Precision::F32).unwrap()];
+    assert!(gpu.describe().adapter.starts_with(&chosen.info.name));
+    assert_eq!(gpu.describe().engine, "gpu f32");
+}

@@ -1,0 +1,165 @@
+//! What the GPU makes of hard cases, in rows of many cells: the map is the CPU's, and most cells are the GPU's.
+
+use crate::case::{Case, compute};
+use crate::compute::{WORST, differences, median_and_worst, open};
+use crate::named::named;
+use crate::random::{always_the_same, cases};
+use proptest::prelude::*;
+use std::cell::RefCell;
+use std::fmt::Write;
+use whiskmap::integrate::Engine;
+use whiskmap::integrate::gpu::{Gpu, Precision};
+use whiskmap::map::{EngineCells, Panel, STATE_CHANNELS, Summary};
+
+/// What was seen of maps: what became of their cells, and how far those that the engine solved are from those of the CPU, sorted.
+#[derive(Debug, Default)]
+struct Seen {
+    cells: EngineCells,
+    apart: [Vec<f32>; STATE_CHANNELS.len()],
+}
+
+impl Seen {
+    /// Of the map of `case` by `gpu`; why it is not that of the CPU.
+    fn of(cpu: &(Summary, Panel), case: &Case, gpu: &mut Gpu) -> Result<Self, String> {
+        let (summary, panel) = compute(&case.scene(), Some(gpu));
+        if panel.regime != cpu.1.regime || summary.disagreements != cpu.0.disagreements {
+            return Err(format!("other regimes: {summary:?}"));
+        }
+        if summary.audit.differing > 0 {
+            return Err(format!("a false alarm: {:?}", summary.audit));
+        }
+        let apart = differences(&cpu.1, &panel);
+        for (channel, apart) in STATE_CHANNELS.iter().zip(&apart) {
+            let (_, worst) = median_and_worst(apart);
+            if worst > WORST {
+                return Err(format!("{channel}: {worst:.1e}"));
+            }
+        }
+        Ok(Self {
+            cells: summary.engine_cells,
+            apart,
+        })
+    }
+
+    fn add(&mut self, more: Self) {
+        let EngineCells {
+            solved,
+            near_edge,
+            far,
+            missed,
+            not_finite,
+            without_reference,
+            on_cpu_instead,
+        } = more.cells;
+        let sum = &mut self.cells;
+        sum.solved += solved;
+        sum.near_edge += near_edge;
+        sum.far += far;
+        sum.missed += missed;
+        sum.not_finite += not_finite;
+        sum.without_reference += without_reference;
+        sum.on_cpu_instead += on_cpu_instead;
+        for (sum, more) in self.apart.iter_mut().zip(more.apart) {
+            sum.extend(more);
+            sum.sort_by(f32::total_cmp);
+        }
+    }
+
+    /// The largest median of a channel, and the worst of all.
+    fn medians_and_worst(&self) -> (f32, f32) {
+        let each = self.apart.each_ref().map(|apart| median_and_worst(apart));
+        let largest = |part: fn(&(f32, f32)) -> f32| each.iter().map(part).fold(0.0, f32::max);
+        (largest(|each| each.0), largest(|each| each.1))
+    }
+
+    /// A line of the table.
+    fn line(&self, name: &str) -> String {
+        let cells = &self.cells;
+        let (median, worst) = self.medians_and_worst();
+        format!(
+            "{name:36} {:6} {:9} {:5} {:6} {:10} {:12}  {median:7.1e} {worst:7.1e}\n",
+            cells.solved,
+            cells.near_edge,
+            cells.far,
+            cells.missed,
+            cells.not_finite,
+            cells.without_reference,
+        )
+    }
+}
+
+#[test]
+fn named_cases_are_solved_or_handed_over() {
+    for precision in [Precision::F32, Precision::F64] {
+        let Some(mut gpu) = open(precision) else {
+            continue;
+        };
+        let mut table = format!(
+            "What {} makes of hard cases in {precision}, against f64 on the CPU.\n\
+             WHISKMAP_WRITE_TABLES=1 cargo test --profile checked --test hard_cases named_cases_are_solved -- --nocapture\n\n\
+             solved: by the GPU; handed over to the CPU: next to the fold or to the tip, too far from a reference, for too large a\n\
+             bound, for numbers that are not finite; not asked for: cells of rows without references\n\
+             apart: how far the states that the GPU solved are from those of the CPU, in parts of a channel's largest value along\n\
+             the whisker; the largest median of a channel, and the worst of all\n\n\
+             {:36} solved near edge   far missed not finite no reference   median   worst\n",
+            gpu.describe().adapter,
+            "case",
+        );
+        let mut all = Seen::default();
+        for (name, case) in named() {
+            let case = case.dense();
+            let cpu = compute(&case.scene(), None);
+            let seen =
+                Seen::of(&cpu, &case, &mut gpu).unwrap_or_else(|why| panic!("{name}: {why}"));
+            table += &seen.line(name);
+            all.add(seen);
+        }
+        table += &all.line("all");
+        let _ = writeln!(
+            table,
+            "\n{:36}                                                        median   worst",
+            "channel"
+        );
+        for (channel, apart) in STATE_CHANNELS.iter().zip(&all.apart) {
+            let (median, worst) = median_and_worst(apart);
+            let _ = writeln!(table, "{channel:36} {:54} {median:7.1e} {worst:7.1e}", "");
+        }
+        eprintln!("{table}");
+        let to_write = std::env::var_os("WHISKMAP_WRITE_TABLES").is_some_and(|x| x == "1");
+        if to_write && precision == Precision::F32 {
+            std::fs::write("outputs/f32_stability.txt", &table).unwrap();
+        }
+    }
+}
+
+/// Whiskers that the GPU has kernels for, drawn by the generator of the two thousand.
+const RANDOM: u32 = 300;
+
+#[test]
+fn engines_agree_on_random_whiskers() {
+    let gpus = [Precision::F32, Precision::F64].map(|precision| RefCell::new(open(precision)));
+    let seen = [Seen::default(), Seen::default()].map(RefCell::new);
+    let whiskers = cases().prop_map(|case| {
+        Case {
+            tip_to_base: 1.0,
+            ..case
+        }
+        .dense()
+    });
+    let holds = |case: Case| {
+        let cpu = compute(&case.scene(), None);
+        for (gpu, all) in gpus.iter().zip(&seen) {
+            if let Some(gpu) = gpu.borrow_mut().as_mut() {
+                let seen = Seen::of(&cpu, &case, gpu).map_err(TestCaseError::fail)?;
+                all.borrow_mut().add(seen);
+            }
+        }
+        Ok(())
+    };
+    always_the_same(std::env::var("N").map_or(RANDOM, |n| n.parse().unwrap()))
+        .run(&whiskers, holds)
+        .unwrap();
+    for seen in seen {
+        eprintln!("{}", seen.into_inner().line("random whiskers"));
+    }
+}

@@ -1,0 +1,92 @@
+//! Random whiskers of every set of effects, and states of them.
+#![allow(dead_code, reason = "each test program uses its own share")]
+
+use std::sync::Arc;
+use whiskmap::rod::{Effects, RadiusProfile, Rod, arclength};
+use whiskmap::shooting::batch::InitialCondition;
+
+/// A reproducible stream of numbers in `[0, 1)` (splitmix64).
+pub struct Random(pub u64);
+
+impl Random {
+    pub fn unit(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        (z >> 40) as f64 / 16_777_216.0
+    }
+
+    pub fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.unit()
+    }
+}
+
+/// Taper and a parabola: what most whiskers have.
+pub const USUAL: Effects = Effects {
+    taper: true,
+    curvature: true,
+    spiral: false,
+    gradient: false,
+    profile: false,
+};
+
+/// Measured radii with a bulb at the base and a straight stretch in the middle.
+pub const ROWS: [[f64; 2]; 7] = [
+    [0.0, 1.0],
+    [0.05, 1.06],
+    [0.2, 0.85],
+    [0.45, 0.6],
+    [0.6, 0.6],
+    [0.85, 0.25],
+    [1.0, 0.08],
+];
+
+/// A whisker of taper up to 0.99 and `A*` up to 0.8, or a spiral that bends as much, or of measured radii, on either
+/// side of a pole of radius up to 0.03 with friction up to 0.5, up to twice as stiff at the tip as at the base.
+pub fn rod(effects: Effects, random: &mut Random) -> Rod {
+    let bend = f64::from(effects.curvature) * random.between(0.0, 0.8);
+    let side = if random.unit() < 0.5 { 1.0 } else { -1.0 };
+    let rod = Rod {
+        taper: f64::from(effects.taper) * random.between(0.0, 0.99),
+        bend,
+        slope: -2.0 * bend * random.between(-0.3, 0.3),
+        pole: side * random.between(0.0, 0.03),
+        gradient: f64::from(effects.gradient) * random.between(0.0, 1.0),
+        friction: side * random.between(0.0, 0.5),
+        spiral: effects
+            .spiral
+            .then(|| [random.between(-0.8, 0.8), random.between(-0.8, 0.8)]),
+        profile: None,
+    };
+    if effects.profile {
+        return Rod {
+            taper: 1.0 - ROWS[ROWS.len() - 1][1],
+            profile: Some(Arc::new(RadiusProfile::new(&ROWS, 1.0))),
+            ..rod
+        };
+    }
+    rod
+}
+
+/// A contact on `rod` under `q = |load| s^2` up to `most_q`, on the side of its pole.
+pub fn condition<'a>(rod: &'a Rod, most_q: f64, random: &mut Random) -> InitialCondition<'a> {
+    let tau = rod.tau_tip() * random.between(0.1, 1.0);
+    let s = arclength(rod, tau);
+    let load = rod.pole.signum() * random.between(0.0, most_q) / (s * s);
+    InitialCondition { rod, tau, load }
+}
+
+/// `count` such states of random whiskers, eight of each. A test ends soon: its rods may stay until then.
+pub fn conditions(
+    effects: Effects,
+    count: usize,
+    most_q: f64,
+    seed: u64,
+) -> Vec<InitialCondition<'static>> {
+    let mut random = Random(seed);
+    let rods = (0..count.div_ceil(8)).map(|_| rod(effects, &mut random));
+    let rods: &'static [Rod] = rods.collect::<Vec<_>>().leak();
+    let state = |i: usize| condition(&rods[i / 8], most_q, &mut random);
+    (0..count).map(state).collect()
+}
