@@ -1,28 +1,21 @@
-//! The cells of a few rows: from an engine if there is one, beside references along each row; all others from the sheet's guesses by
-//! refinement.
+//! Settled cells: where the answer of each comes from.
 
-use super::audit::{self, Sample};
-use super::pushes::{Push, Pushes};
-use super::summary::{Audit, EngineCells};
-use super::{Face, Stage, Summary};
+use super::Face;
+use super::pushes::Push;
+use super::summary::EngineCells;
 use crate::classify::{RowBoundary, Status, TIE};
-use crate::integrate::{CellDifference, Fallback, Outcome, Reference, on_gpu};
-use crate::refine::{self, ContactState, End, Refined, RowOfCells, Shot};
-use crate::rod::Rod;
-use crate::sheet::{Guess, Sheet};
-use crate::shooting::batch::Method;
-use rayon::prelude::*;
-use std::ops::Range;
+use crate::integrate::{CellDifference, Outcome, Reference};
+use crate::refine::{ContactState, End, Refined};
 
 /// Some rows, settled.
 pub struct Settled {
     /// The rows.
     pub rows: Vec<SettledRow>,
     /// The references of all rows, and what the engine made of their cells.
-    references: Vec<Reference>,
-    differences: Vec<CellDifference>,
+    pub references: Vec<Reference>,
+    pub differences: Vec<CellDifference>,
     /// What the refinement made of the other cells.
-    refined: Vec<Refined>,
+    pub refined: Vec<Refined>,
 }
 
 /// A settled row of a face.
@@ -32,12 +25,12 @@ pub struct SettledRow {
     /// Row of the panel.
     pub row: usize,
     /// Where the answers of its cells come from, by growing push angle.
-    sources: Vec<Source>,
+    pub sources: Vec<Source>,
 }
 
 /// Where the answer of a cell comes from.
 #[derive(Clone, Copy, Debug)]
-enum Source {
+pub enum Source {
     /// Nowhere: the sheet has nothing there.
     Outside,
     /// A refined cell.
@@ -79,7 +72,7 @@ impl Cell<'_> {
 
 impl Settled {
     /// Adds to `counts` what became of the cells of an engine, which `has_failed` or not.
-    fn count(&self, has_failed: bool, counts: &mut EngineCells) {
+    pub fn count(&self, has_failed: bool, counts: &mut EngineCells) {
         for cell in &self.differences {
             counts.count(cell.outcome);
         }
@@ -134,248 +127,5 @@ impl Settled {
                 steps,
             }
         })
-    }
-}
-
-/// Settles the cells of `rows`, pairs of a face and a row of its panel, with an engine as long as it works and its answers hold. `angles`
-/// are the signed push angles of the columns of all faces.
-pub fn settle(
-    method: Method,
-    faces: &[Face],
-    angles: &[f64],
-    rows: &[(usize, usize)],
-    engine: &mut Fallback<'_>,
-    summary: &mut Summary,
-) -> Settled {
-    let taking_part = |&i: &usize| rows.iter().any(|row| row.0 == i);
-    let used: Vec<usize> = (0..faces.len()).filter(taking_part).collect();
-    let place = |&(index, row): &(usize, usize)| Place {
-        face: &faces[index],
-        index,
-        row,
-        // Panels at once are few.
-        rod: used.binary_search(&index).unwrap_or_default() as u32,
-    };
-    let strip = Strip {
-        method,
-        // `sheets[shot.rod]` is the sheet of a shot.
-        sheets: used.iter().map(|&i| &faces[i].sheet).collect(),
-        places: rows.iter().map(place).collect(),
-    };
-    let had_engine = engine.engine.is_some() || engine.failure.is_some();
-    let solved = summary.time(Stage::Shooting, || strip.solve(angles, engine));
-    let (settled, audit) = strip.finish(solved.unwrap_or_default(), summary);
-    if had_engine {
-        settled.count(engine.failure.is_some(), &mut summary.engine_cells);
-    }
-    summary.audit += audit;
-    if audit.differing == 0 {
-        return settled;
-    }
-    summary.audit.turned_over += settled.differences.len() as u64;
-    strip.finish(Solved::default(), summary).0
-}
-
-/// Some rows that are settled together.
-struct Strip<'a> {
-    method: Method,
-    sheets: Vec<&'a Sheet>,
-    places: Vec<Place<'a>>,
-}
-
-/// A row of a face.
-struct Place<'a> {
-    face: &'a Face<'a>,
-    /// Of the face.
-    index: usize,
-    row: usize,
-    /// Of the face's among those of the strip.
-    rod: u32,
-}
-
-/// What an engine made of the rows of a strip.
-#[derive(Default)]
-struct Solved {
-    references: Vec<Reference>,
-    differences: Vec<CellDifference>,
-    /// The references of each row, and the first of their cells.
-    rows: Vec<(Range<usize>, usize)>,
-}
-
-/// What is to be done for a row.
-struct Work {
-    sources: Vec<Source>,
-    shots: Vec<Shot>,
-    audits: Vec<Chosen>,
-}
-
-/// A cell of an engine that is computed once more.
-struct Chosen {
-    column: usize,
-    reference: u32,
-    cell: u32,
-    /// Among the shots of its row.
-    shot: usize,
-}
-
-impl Strip<'_> {
-    /// What an engine, if there is one that can, makes of the rows.
-    fn solve(&self, angles: &[f64], engine: &mut Fallback<'_>) -> Option<Solved> {
-        engine.engine.as_ref()?;
-        on_gpu(self.method.effects).ok()?;
-        let rows = self.places.iter().map(|place| RowOfCells {
-            sheet: place.rod,
-            row: place.row,
-            pushes: &place.face.pushes.magnitudes,
-            first: place.face.pushes.first,
-        });
-        let rows: Vec<RowOfCells> = rows.collect();
-        let mut solved = Solved::default();
-        let mut cells = 0;
-        for row in refine::references(self.method, &self.sheets, &rows) {
-            let from = solved.references.len();
-            let of_row = row.iter().map(|reference| reference.cells.len());
-            let of_row: usize = of_row.sum();
-            solved.references.extend(row);
-            solved.rows.push((from..solved.references.len(), cells));
-            cells += of_row;
-        }
-        let rods: Vec<Rod> = self.sheets.iter().map(|sheet| sheet.rod.clone()).collect();
-        solved.differences = engine.solve(self.method, &rods, angles, &solved.references)?;
-        Some(solved)
-    }
-
-    /// Refines what an engine has left, and a sample of what it has not.
-    fn finish(&self, solved: Solved, summary: &mut Summary) -> (Settled, Audit) {
-        let work = summary.time(Stage::Guesses, || {
-            let rows = self.places.par_iter().enumerate();
-            let work: Vec<Work> = rows.map(|(i, place)| place.work(i, &solved)).collect();
-            work
-        });
-        let refined = summary.time(Stage::Refinement, || {
-            let shots: Vec<Shot> = work.iter().flat_map(|row| &row.shots).copied().collect();
-            let starts: Vec<_> = shots.iter().map(|shot| (shot.tau, shot.load)).collect();
-            refine::refine(self.method, &self.sheets, &shots, &starts)
-        });
-        let mut audit = Audit::default();
-        let mut rows = Vec::with_capacity(self.places.len());
-        let mut before = 0;
-        for (place, mut work) in self.places.iter().zip(work) {
-            for chosen in &work.audits {
-                let refined = &refined[before + chosen.shot];
-                let push = place.face.pushes.columns[chosen.column].angle;
-                let cell = (
-                    &solved.references[chosen.reference as usize],
-                    &solved.differences[chosen.cell as usize],
-                );
-                audit.cells += 1;
-                audit.differing += u64::from(!audit::holds(
-                    &place.face.sheet,
-                    place.row,
-                    push,
-                    cell,
-                    refined,
-                ));
-            }
-            for source in &mut work.sources {
-                if let Source::Refined(index) = source {
-                    *index += before as u32;
-                }
-            }
-            before += work.shots.len();
-            rows.push(SettledRow {
-                face: place.index,
-                row: place.row,
-                sources: work.sources,
-            });
-        }
-        let Solved {
-            references,
-            differences,
-            ..
-        } = solved;
-        let settled = Settled {
-            rows,
-            references,
-            differences,
-            refined,
-        };
-        (settled, audit)
-    }
-}
-
-impl Place<'_> {
-    /// What is left to do for this row, the number `i` of its strip.
-    fn work(&self, i: usize, solved: &Solved) -> Work {
-        let pushes = self.face.pushes;
-        let mut sources = vec![Source::Outside; pushes.columns.len()];
-        let mut chosen = Vec::new();
-        if let Some((references, first)) = solved.rows.get(i) {
-            let mut cell = *first;
-            let audit = Sample::new(&self.face.sheet, self.row, pushes.columns.len());
-            for reference in references.clone() {
-                let cells = &solved.references[reference].cells;
-                for column in cells.clone().map(|index| (index - pushes.first) as usize) {
-                    let outcome = solved.differences[cell].outcome;
-                    if outcome.is_vouched_for() {
-                        sources[column] = Source::Engine(reference as u32, cell as u32);
-                        if audit.has(column) {
-                            chosen.push((column, reference as u32, cell as u32));
-                        }
-                    }
-                    cell += 1;
-                }
-            }
-        }
-        let is_left = |column: &usize| matches!(sources[*column], Source::Outside);
-        let mut columns: Vec<usize> = (0..sources.len()).filter(is_left).collect();
-        let left = columns.len();
-        columns.extend(chosen.iter().map(|(column, ..)| *column));
-        // Guesses are made by growing push angle.
-        columns.sort_unstable();
-        let guesses = self.shots(&columns);
-        let mut shots = Vec::with_capacity(left);
-        let mut audits = Vec::new();
-        let mut chosen = chosen.into_iter().peekable();
-        for (column, shot) in columns.into_iter().zip(guesses) {
-            let audited = chosen.next_if(|(own, ..)| *own == column);
-            let Some(shot) = shot else { continue };
-            match audited {
-                Some((column, reference, cell)) => audits.push(Chosen {
-                    column,
-                    reference,
-                    cell,
-                    shot: shots.len(),
-                }),
-                None => sources[column] = Source::Refined(shots.len() as u32),
-            }
-            shots.push(shot);
-        }
-        Work {
-            sources,
-            shots,
-            audits,
-        }
-    }
-
-    /// The shots of the cells at `columns`, which grow.
-    fn shots(&self, columns: &[usize]) -> Vec<Option<Shot>> {
-        let Pushes {
-            columns: pushes,
-            magnitudes,
-            ..
-        } = self.face.pushes;
-        let sheet = &self.face.sheet;
-        let at_touch = sheet.rows[self.row].pole(0.0);
-        let guesses = sheet.guesses(self.row, columns.iter().map(|column| magnitudes[*column]));
-        let shot = |(guess, column): (Option<Guess>, &usize)| {
-            guess.map(|Guess { tau, load }| Shot {
-                rod: self.rod,
-                tau,
-                load,
-                pole: pushes[*column].turn.rotate(at_touch),
-            })
-        };
-        guesses.into_iter().zip(columns).map(shot).collect()
     }
 }

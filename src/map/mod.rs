@@ -7,6 +7,7 @@ mod channels;
 mod doubt;
 mod panel;
 mod pushes;
+mod strip;
 mod summary;
 
 use crate::integrate::{Engine, Fallback};
@@ -125,7 +126,7 @@ impl<'a, 'e> Run<'a, 'e> {
         let mut panels = vec![Panel::unresolved(width * height, plan.channels); group.len()];
         let rows = (0..faces.len()).flat_map(|face| (0..height).map(move |row| (face, row)));
         for strip in rows.collect::<Vec<_>>().chunks(self.rows_at_once) {
-            let cells = cells::settle(
+            let cells = strip::settle(
                 plan.method,
                 &faces,
                 angles,

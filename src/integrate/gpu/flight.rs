@@ -2,7 +2,8 @@
 
 use super::EngineError;
 use super::device::{Device, answer};
-use super::layout::{BufferLayout, Packed};
+use super::layout::BufferLayout;
+use super::reference::Packed;
 use super::shaders::WORKGROUP;
 use super::stamps::Stamps;
 use crate::integrate::CellDifference;

@@ -15,6 +15,7 @@ mod pace;
 mod peak;
 mod pipeline;
 mod precision;
+mod reference;
 pub mod shaders;
 mod stamps;
 

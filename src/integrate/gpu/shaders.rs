@@ -1,7 +1,8 @@
 //! The shaders' text: whole pieces in order, after one that Rust writes.
 
 use super::Precision;
-use super::layout::{JACOBIAN_TERMS, OUTCOMES, ROW_POWERS};
+use super::layout::OUTCOMES;
+use super::reference::{JACOBIAN_TERMS, ROW_POWERS};
 use crate::plan::STATE_CHANNELS;
 use crate::rod::Effects;
 use crate::shooting::REST_TERMS;

@@ -9,22 +9,22 @@ mod array;
 mod blocks;
 mod chunk;
 mod metadata;
+mod pack;
+mod read;
+
+pub use self::pack::PackedPanel;
 
 use self::array::Array;
 use self::blocks::Blocks;
-use self::metadata::{AGREED, CELLS};
+use self::metadata::AGREED;
 use super::effort::Effort;
-use super::{Channels, Description, Error, Output, Packed, Panel, STATE_CHANNELS, Samples};
-use crate::classify::Regime;
+use super::{Channels, Description, Error, Output};
 use crate::scene::{Grid, Scene};
-use rayon::prelude::*;
 use serde_json::{Map, Value};
-use std::borrow::Cow;
 use std::fs;
 use std::io::{self, Write};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
-use std::time::Duration;
 
 /// A store on disk.
 #[derive(Debug)]
@@ -37,10 +37,6 @@ pub struct ZarrStore {
     arrays: Vec<Array>,
     effort: Effort,
 }
-
-/// A panel on its way to a store: its chunks, array by array.
-#[derive(Debug)]
-pub struct PackedPanel(Vec<Vec<Vec<u8>>>);
 
 /// The name of every file of metadata.
 const METADATA: &str = "zarr.json";
@@ -235,177 +231,10 @@ impl ZarrStore {
         files.all(|file| file.is_file())
     }
 
-    /// Packs a panel.
-    ///
-    /// # Errors
-    ///
-    /// The codecs refuse.
-    pub fn pack(&self, panel: &Panel) -> Result<PackedPanel, Error> {
-        let chunks = |array: &Array| {
-            let chunks = || array.chunks(&values(&array.name, panel));
-            let packed = self.effort.of(chunks);
-            packed.map_err(Error::at(&self.path.join(&array.name), Error::Pack))
-        };
-        let arrays = self.arrays.par_iter().map(chunks);
-        arrays.collect::<Result<_, _>>().map(PackedPanel)
-    }
-
-    /// Packs `panels` of `scene`, and tells what that takes.
-    ///
-    /// # Errors
-    ///
-    /// The codecs refuse.
-    pub fn sample(scene: &Scene, channels: Channels, panels: &[Panel]) -> Result<Packed, Error> {
-        let (nowhere, channels) = (Path::new(""), channels.with("regime"));
-        let store = Self::new(nowhere, Map::new(), scene.clone(), channels)?;
-        let packed = panels.iter().map(|panel| store.pack(panel));
-        let packed: Vec<PackedPanel> = packed.collect::<Result<_, _>>()?;
-        let chunks = packed.iter().flat_map(|panel| &panel.0).flatten();
-        Ok(Packed {
-            bytes: chunks.map(|chunk| chunk.len() as u64).sum(),
-            time: store.packing(),
-        })
-    }
-
-    /// CPU time spent on packing so far.
-    #[must_use]
-    pub fn packing(&self) -> Duration {
-        self.effort.time()
-    }
-
-    /// Writes the panels of a block.
-    ///
-    /// # Errors
-    ///
-    /// The disk is full, or the folder is not writable.
-    pub fn write(&self, block: usize, panels: &[PackedPanel]) -> Result<(), Error> {
-        let put = |(index, array): (usize, &Array)| {
-            let file = self.file(array, block);
-            let room = self.blocks.slots();
-            let missing = if panels.len() < room {
-                array.empty(array.values() / room)
-            } else {
-                Ok(Vec::new())
-            };
-            let missing = missing.map_err(Error::at(&file, Error::Pack))?;
-            let mut slots = vec![&missing; room];
-            for (place, panel) in panels.iter().enumerate() {
-                slots[self.blocks.slot(block, place)] = &panel.0[index];
-            }
-            let chunks = slots.into_iter().flatten().map(Vec::as_slice);
-            write(&file, &chunk::file(chunks))
-        };
-        let last = self.arrays.len() - 1;
-        let others = self.arrays[..last].par_iter().enumerate();
-        others.try_for_each(put)?;
-        put((last, &self.arrays[last]))
-    }
-
-    /// How many cells of a block there are of each regime.
-    ///
-    /// # Errors
-    ///
-    /// The block is not there, or damaged.
-    pub fn regimes(&self, block: usize) -> Result<[u64; Regime::ALL.len()], Error> {
-        let mut regimes = [0; Regime::ALL.len()];
-        for array in self.arrays.iter().filter(|array| array.name == CELLS) {
-            let values: Vec<u32> = bytemuck::pod_collect_to_vec(&self.read(array, block)?);
-            for of_whisker in values.chunks(regimes.len()) {
-                for (sum, cells) in regimes.iter_mut().zip(of_whisker) {
-                    *sum += u64::from(*cells);
-                }
-            }
-        }
-        Ok(regimes)
-    }
-
-    /// Reads all of a block, and tells what is wrong with it.
-    #[must_use]
-    pub fn verify(&self, block: usize) -> Vec<Error> {
-        let read = self.arrays.par_iter().map(|array| self.read(array, block));
-        read.filter_map(Result::err).collect()
-    }
-
-    /// A channel of one whisker: `[distance][push angle]`.
-    ///
-    /// # Errors
-    ///
-    /// There is no such channel, or the whisker's block is missing or damaged.
-    pub fn read_panel(&self, name: &str, whisker: usize) -> Result<Samples, Error> {
-        let array = self
-            .arrays
-            .iter()
-            .find(|array| array.name == name && name != CELLS);
-        let array = array.ok_or_else(|| Error::UnknownChannel {
-            path: self.path.clone(),
-            name: name.to_owned(),
-            known: self.channels.to_string(),
-        })?;
-        let (block, index) = self.blocks.find(whisker);
-        let bytes = self.read(array, block)?;
-        let (panel, room) = self.sizes(array);
-        let first = self.blocks.slot(block, index) * room;
-        let bytes = &bytes[first..first + panel];
-        Ok(match array.kind {
-            array::Kind::Code => Samples::U32(bytes.iter().map(|code| u32::from(*code)).collect()),
-            array::Kind::Count => Samples::U32(bytemuck::pod_collect_to_vec(bytes)),
-            _ => Samples::F32(bytemuck::pod_collect_to_vec(bytes)),
-        })
-    }
-
     fn file(&self, array: &Array, block: usize) -> PathBuf {
         let place = self.blocks.place(block);
         let name = Array::file(&place, array.dimensions() - place.len());
         self.path.join(&array.name).join(name)
-    }
-
-    fn read(&self, array: &Array, block: usize) -> Result<Vec<u8>, Error> {
-        let file = self.file(array, block);
-        let bytes = fs::read(&file).map_err(|why| match why.kind() {
-            io::ErrorKind::NotFound => Error::NotComputed(file.clone()),
-            _ => Error::Read(file.clone(), why),
-        })?;
-        let values = array
-            .decode(bytes)
-            .map_err(Error::at(&file, Error::Damaged))?;
-        if values.len() == array.values() * array.kind.size() {
-            Ok(values)
-        } else {
-            Err(Error::Damaged(file, "it has the wrong length".to_owned()))
-        }
-    }
-
-    /// Bytes of a whisker's values in a block, and of the room there.
-    fn sizes(&self, array: &Array) -> (usize, usize) {
-        let room = array.values() / self.blocks.slots();
-        let [distances, push_angles] = self.blocks.panel();
-        let values = if array.name == CELLS {
-            room
-        } else {
-            distances * push_angles
-        };
-        (values * array.kind.size(), room * array.kind.size())
-    }
-}
-
-/// What a panel holds for an array, as bytes.
-fn values<'a>(name: &str, panel: &'a Panel) -> Cow<'a, [u8]> {
-    let codes = |codes: &[u32]| codes.iter().map(|code| *code as u8).collect();
-    let state = STATE_CHANNELS.iter().position(|own| *own == name);
-    match (name, state) {
-        (_, Some(place)) => bytemuck::cast_slice(&panel.state[place]).into(),
-        ("regime", _) => codes(&panel.regime),
-        ("status", _) => codes(&panel.status),
-        ("newton_steps", _) => bytemuck::cast_slice(&panel.newton_steps).into(),
-        ("residual", _) => bytemuck::cast_slice(&panel.residual).into(),
-        ("margin_deg", _) => bytemuck::cast_slice(&panel.margin_deg).into(),
-        _ => {
-            let count = |regime: Regime| {
-                let codes = panel.regime.iter();
-                codes.filter(|code| **code == regime.code()).count() as u32
-            };
-            bytemuck::pod_collect_to_vec(&Regime::ALL.map(count)).into()
-        }
     }
 }
 

@@ -1,0 +1,105 @@
+//! From panels to the files of a block.
+
+use super::array::Array;
+use super::{ZarrStore, chunk, write};
+use crate::classify::Regime;
+use crate::scene::Scene;
+use crate::store::{Channels, Error, Packed, Panel, STATE_CHANNELS};
+use rayon::prelude::*;
+use serde_json::Map;
+use std::borrow::Cow;
+use std::path::Path;
+use std::time::Duration;
+
+/// A panel on its way to a store: its chunks, array by array.
+#[derive(Debug)]
+pub struct PackedPanel(Vec<Vec<Vec<u8>>>);
+
+impl ZarrStore {
+    /// Packs a panel.
+    ///
+    /// # Errors
+    ///
+    /// The codecs refuse.
+    pub fn pack(&self, panel: &Panel) -> Result<PackedPanel, Error> {
+        let chunks = |array: &Array| {
+            let chunks = || array.chunks(&values(&array.name, panel));
+            let packed = self.effort.of(chunks);
+            packed.map_err(Error::at(&self.path.join(&array.name), Error::Pack))
+        };
+        let arrays = self.arrays.par_iter().map(chunks);
+        arrays.collect::<Result<_, _>>().map(PackedPanel)
+    }
+
+    /// Packs `panels` of `scene`, and tells what that takes.
+    ///
+    /// # Errors
+    ///
+    /// The codecs refuse.
+    pub fn sample(scene: &Scene, channels: Channels, panels: &[Panel]) -> Result<Packed, Error> {
+        let (nowhere, channels) = (Path::new(""), channels.with("regime"));
+        let store = Self::new(nowhere, Map::new(), scene.clone(), channels)?;
+        let packed = panels.iter().map(|panel| store.pack(panel));
+        let packed: Vec<PackedPanel> = packed.collect::<Result<_, _>>()?;
+        let chunks = packed.iter().flat_map(|panel| &panel.0).flatten();
+        Ok(Packed {
+            bytes: chunks.map(|chunk| chunk.len() as u64).sum(),
+            time: store.packing(),
+        })
+    }
+
+    /// CPU time spent on packing so far.
+    #[must_use]
+    pub fn packing(&self) -> Duration {
+        self.effort.time()
+    }
+
+    /// Writes the panels of a block.
+    ///
+    /// # Errors
+    ///
+    /// The disk is full, or the folder is not writable.
+    pub fn write(&self, block: usize, panels: &[PackedPanel]) -> Result<(), Error> {
+        let put = |(index, array): (usize, &Array)| {
+            let file = self.file(array, block);
+            let room = self.blocks.slots();
+            let missing = if panels.len() < room {
+                array.empty(array.values() / room)
+            } else {
+                Ok(Vec::new())
+            };
+            let missing = missing.map_err(Error::at(&file, Error::Pack))?;
+            let mut slots = vec![&missing; room];
+            for (place, panel) in panels.iter().enumerate() {
+                slots[self.blocks.slot(block, place)] = &panel.0[index];
+            }
+            let chunks = slots.into_iter().flatten().map(Vec::as_slice);
+            write(&file, &chunk::file(chunks))
+        };
+        let last = self.arrays.len() - 1;
+        let others = self.arrays[..last].par_iter().enumerate();
+        others.try_for_each(put)?;
+        put((last, &self.arrays[last]))
+    }
+}
+
+/// What a panel holds for an array, as bytes.
+fn values<'a>(name: &str, panel: &'a Panel) -> Cow<'a, [u8]> {
+    let codes = |codes: &[u32]| codes.iter().map(|code| *code as u8).collect();
+    let state = STATE_CHANNELS.iter().position(|own| *own == name);
+    match (name, state) {
+        (_, Some(place)) => bytemuck::cast_slice(&panel.state[place]).into(),
+        ("regime", _) => codes(&panel.regime),
+        ("status", _) => codes(&panel.status),
+        ("newton_steps", _) => bytemuck::cast_slice(&panel.newton_steps).into(),
+        ("residual", _) => bytemuck::cast_slice(&panel.residual).into(),
+        ("margin_deg", _) => bytemuck::cast_slice(&panel.margin_deg).into(),
+        _ => {
+            let count = |regime: Regime| {
+                let codes = panel.regime.iter();
+                codes.filter(|code| **code == regime.code()).count() as u32
+            };
+            bytemuck::pod_collect_to_vec(&Regime::ALL.map(count)).into()
+        }
+    }
+}
