@@ -6,12 +6,9 @@
 )]
 
 mod effect_sets;
-#[allow(dead_code, reason = "other tests use the rest")]
-#[path = "gpu_engine/shots.rs"]
-mod shots;
+mod random_rods;
 
 use glam::DVec2;
-use shots::Range;
 use whiskmap::refine::{TOLERANCE, states};
 use whiskmap::rod::{Effects, Rod, Side, arclength};
 use whiskmap::scene::Scene;
@@ -23,7 +20,7 @@ use whiskmap::shooting::{
 
 /// Random states on random rods with these effects, those of the engines' tests.
 fn conditions(effects: Effects) -> Vec<InitialCondition<'static>> {
-    Range::new(effects, 40, 6.0, 7).truth
+    random_rods::conditions(effects, 40, 6.0, 7)
 }
 
 /// `(tau, load)` over which a state changes by about as much as it is.
