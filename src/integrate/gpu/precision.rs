@@ -34,7 +34,8 @@ impl Precision {
         }
     }
 
-    /// The largest bound on a pole's miss, in whisker lengths, that the shaders vouch for.
+    /// The largest bound on a pole's miss that the shaders vouch for, in whisker lengths; nearer to the base it goes with the
+    /// contact's arclength, since forces do.
     #[must_use]
     pub const fn goal(self) -> f64 {
         match self {
@@ -52,7 +53,7 @@ impl Precision {
     pub const fn limits(self) -> [(&'static str, f64); 8] {
         let [clear_of_fold, clear_of_tip, longest, of_way, rounding, rest] = match self {
             Self::F32 => [0.05, 1e-6, 1e-5, 8e-7, 0.0, 0.02],
-            Self::F64 => [1e-3, 1e-9, 1.5e-7, 2e-15, 6e-14, 0.008],
+            Self::F64 => [1e-3, 1e-9, 1.5e-7, 2e-15, 6e-14, 0.006],
         };
         [
             ("GOAL", self.goal()),
