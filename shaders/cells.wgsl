@@ -200,7 +200,7 @@ fn solve(r: u32, rod: Rod, push: real) -> Cell {
     if largest > 0.4 || abs(rest_at_contact) > FARTHEST_REST {
         cell.outcome = FAR;
     }
-    if residual > max(GOAL * s, 2.0 * ROUNDING) || step_length > LONGEST_STEP {
+    if residual > GOAL * min(1.0, 4.0 * s) || step_length > LONGEST_STEP {
         cell.outcome = MISSED;
     }
     if !is_finite(residual + theta + shift.x + shift.y + end.x + end.y) {

@@ -163,9 +163,9 @@ pub fn differences(a: &Panel, b: &Panel) -> [Vec<f32>; STATE_CHANNELS.len()] {
         .collect();
     std::array::from_fn(|channel| {
         let apart = relative(&a.state[channel], &b.state[channel]);
-        let (theirs, same): (Vec<_>, Vec<_>) = apart.zip(&other).partition(|(_, other)| **other);
-        assert!(same.iter().all(|(apart, _)| *apart == 0.0));
-        let mut theirs: Vec<f32> = theirs.into_iter().map(|(apart, _)| apart).collect();
+        let theirs = apart.zip(&other);
+        let theirs = theirs.filter(|(apart, other)| **other || *apart > 0.0);
+        let mut theirs: Vec<f32> = theirs.map(|(apart, _)| apart).collect();
         theirs.sort_by(f32::total_cmp);
         theirs
     })

@@ -75,7 +75,6 @@ fn slender(rod: &mut Rod, random: &mut Random) {
 
 /// Cells of `count` whiskers of every kind.
 fn every_kind(count: usize) -> impl Iterator<Item = (String, Cells)> {
-    let count = std::env::var("N").map_or(count, |n| n.parse().unwrap());
     (1..)
         .zip(kinds())
         .map(move |(seed, (name, effects, changed))| {
