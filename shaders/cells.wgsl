@@ -7,7 +7,6 @@ struct Reference {
     load: real,
     radius: real,
     arclength: real,
-    force: real,
     // cos and sin of the tangent at rest
     rest: array<real, 2>,
     // from the contact to the tip, in tau
@@ -135,7 +134,7 @@ fn solve(r: u32, rod: Rod, push: real) -> Cell {
     if CURVATURE || SPIRAL {
         rest_at_contact = rest_apart(rod, vec2<real>(references[r].rest[0], references[r].rest[1]), s, ds);
     }
-    let trip = Way(
+    let trip = Path(
         rod,
         Both(tau, by.x),
         Both(tau, by.x) / real(steps),
@@ -146,7 +145,8 @@ fn solve(r: u32, rod: Rod, push: real) -> Cell {
     let apart = integrate(trip, references[r].first_step, steps);
     let angle = apart.bent - rest_at_contact;
 
-    // Newton's step.
+    // Newton's step toward ln of what the pole's place must be multiplied by; for ratios near 1 that is the ratio less 1, but for its
+    // square, which is in the bound.
     let moved = over(-vec2<real>(apart.x, apart.y), to_pole);
     let back = sine_and_versine(-angle);
     let seen = moved + times(vec2<real>(-back.y, back.x), vec2<real>(1.0 + moved.x, moved.y));
@@ -159,7 +159,8 @@ fn solve(r: u32, rod: Rod, push: real) -> Cell {
     let per_load = abs(load) + 1.0 / (s * s);
     let step_length = max(abs(step.x) / s, abs(step.y) / per_load);
     let moves = max(abs(angle), abs(apart.bent)) * distance + length(vec2<real>(apart.x, apart.y));
-    let residual = LEFT_BY_STEP * step_length * step_length * (s + distance) + ROUNDING_OF_WAY * moves + ROUNDING;
+    let left = (LEFT_BY_STEP * step_length + JACOBIAN_ERROR) * step_length;
+    let residual = left * (s + distance) + ROUNDING_OF_WAY * moves + ROUNDING;
     cell.residual = f32(residual);
 
     // What people want to know.
@@ -190,14 +191,17 @@ fn solve(r: u32, rod: Rod, push: real) -> Cell {
     // Whether all of this holds.
     cell.outcome = SOLVED;
     let to_tip = references[r].to_tip - end.x;
-    if to_tip < 0.0 {
-        cell.outcome = BEYOND_TIP;
-    }
-    if det < CLEAR_OF_FOLD * length(by_tau) * length(by_load) || abs(to_tip) < CLEAR_OF_TIP * tau {
+    if det < CLEAR_OF_FOLD * length(by_tau) * length(by_load) || to_tip < CLEAR_OF_TIP * tau {
         cell.outcome = NEAR_EDGE;
     }
-    let largest = max(max(abs(angle), abs(apart.bent)), max(abs(3.0 * widening), 2.0 * length(moved_contact)));
-    if largest > 0.4 || abs(rest_at_contact) > FARTHEST_REST {
+    let turned = max(max(abs(angle), abs(apart.bent)), abs(push));
+    let largest = max(max(turned, abs(3.0 * widening)), 2.0 * max(length(moved_contact), length(moved)));
+    // How far the whisker at rest bends between any two points of the reference and the cell: rho l is at most 1 or 1/(e beta tau).
+    var bends = real(0.0);
+    if CURVATURE {
+        bends = abs(2.0 * rod.bend * by.x) * min(1.0, 0.37 / (rod.taper * tau + 1e-9));
+    }
+    if largest > 0.4 || bends > FARTHEST_REST || abs(load) * s * s > LARGEST_Q {
         cell.outcome = FAR;
     }
     if residual > GOAL * min(1.0, 4.0 * s) || step_length > LONGEST_STEP {

@@ -35,7 +35,7 @@ struct Stage {
 }
 
 // What is the same in all steps: the way from the contact to the base, of the reference and the cell.
-struct Way {
+struct Path {
     rod: Rod,
     // of the contact
     tau: Both,
@@ -76,19 +76,19 @@ struct Apart {
     along: real,
 }
 
-fn stage_at(way: Way, steps: real, node: real) -> Stage {
-    let half = 0.5 * node * way.rod.taper * way.h.x;
+fn stage_at(path: Path, steps: real, node: real) -> Stage {
+    let half = 0.5 * node * path.rod.taper * path.h.x;
     let shrinks = expm1_small(-half);
     let shrunk = 1.0 + shrinks;
     let grown = 1.0 / (shrunk * shrunk);
     // of the cell's over the reference's
-    let forcing = expm1_small(0.5 * node * way.widening / steps);
+    let forcing = expm1_small(0.5 * node * path.widening / steps);
     let inverse_scale = forcing * (3.0 + forcing * (3.0 + forcing));
     let growth = -forcing * (2.0 + forcing) / ((1.0 + forcing) * (1.0 + forcing));
     let cube = shrunk * shrunk * shrunk;
     let x = 2.0 * half;
     return Stage(
-        node * way.h.x * expm1_over_small(x),
+        node * path.h.x * expm1_over_small(x),
         node / steps,
         Both(cube, cube * inverse_scale),
         Both(shrunk, shrunk * forcing),
@@ -97,10 +97,10 @@ fn stage_at(way: Way, steps: real, node: real) -> Stage {
 }
 
 // How far the whisker at rest turns from the start of a step to a stage.
-fn rest_turn(way: Way, step: Step, stage: Stage) -> real {
+fn rest_turn(path: Path, step: Step, stage: Stage) -> real {
     if SPIRAL {
         let along = -step.radius * stage.along;
-        return along * (way.rod.spiral[0] + way.rod.spiral[1] * (step.arclength + 0.5 * along));
+        return along * (path.rod.spiral[0] + path.rod.spiral[1] * (step.arclength + 0.5 * along));
     }
     // A loop would keep the terms in memory.
     let t = step.rest_turn;
@@ -129,21 +129,21 @@ struct Pose {
 }
 
 // The poses at a stage where `chi` has come so far.
-fn pose_at(way: Way, step: Step, stage: Stage, chi: Both) -> Pose {
+fn pose_at(path: Path, step: Step, stage: Stage, chi: Both) -> Pose {
     let bend = product(product(step.turning, stage.inverse_scale), chi);
     let bent = step.bent + bend;
     var turn = bend.x;
     var apart = bent.y;
     if CURVATURE || SPIRAL {
-        let at_rest = rest_turn(way, step, stage);
+        let at_rest = rest_turn(path, step, stage);
         let left = step.left - stage.part;
-        let further = way.tau.y * left;
-        let widening = way.widening * left;
+        let further = path.tau.y * left;
+        let widening = path.widening * left;
         let radius = step.radius * stage.grown.x;
         let ds = radius * further * expm1_over_small(widening);
         let s = step.arclength - step.radius * stage.along;
         turn += at_rest;
-        apart += rest_apart(way.rod, rotated(step.rest, at_rest), s, ds) - way.rest_at_contact;
+        apart += rest_apart(path.rod, rotated(step.rest, at_rest), s, ds) - path.rest_at_contact;
     }
     return Pose(bent, tangents(rotated(step.tangent, turn), apart));
 }
@@ -164,20 +164,20 @@ fn climb(step: Step, stage: Stage, pose: Pose) -> vec4<real> {
 }
 
 // From the contact to the base, along the reference's steps from `first` on.
-fn integrate(way: Way, first: u32, count: u32) -> Apart {
+fn integrate(path: Path, first: u32, count: u32) -> Apart {
     let steps = real(count);
     let none = Stage(0.0, 0.0, Both(1.0, 0.0), Both(1.0, 0.0), Both(1.0, 0.0));
-    let s2 = stage_at(way, steps, 0.05);
-    let s3 = stage_at(way, steps, 0.1);
-    let s4 = stage_at(way, steps, 0.3);
-    let s5 = stage_at(way, steps, 0.5);
-    let s6 = stage_at(way, steps, 0.7);
-    let s7 = stage_at(way, steps, 0.9);
-    let s8 = stage_at(way, steps, 1.0);
-    let slower = way.tau.y / way.tau.x;
-    let potential = 2.25 * way.rod.taper * way.rod.taper * way.h.x * way.h.x;
+    let s2 = stage_at(path, steps, 0.05);
+    let s3 = stage_at(path, steps, 0.1);
+    let s4 = stage_at(path, steps, 0.3);
+    let s5 = stage_at(path, steps, 0.5);
+    let s6 = stage_at(path, steps, 0.7);
+    let s7 = stage_at(path, steps, 0.9);
+    let s8 = stage_at(path, steps, 1.0);
+    let slower = path.tau.y / path.tau.x;
+    let potential = 2.25 * path.rod.taper * path.rod.taper * path.h.x * path.h.x;
     // X = m (chi' - (m'/m) chi).
-    let growth = 1.5 * way.rod.taper * way.h;
+    let growth = 1.5 * path.rod.taper * path.h;
     let scale = expm1_small(0.5 * growth.x);
     let at_end = (1.0 + scale) * (1.0 + scale);
     let end_scale = Both(at_end, at_end * expm1_small(growth.y));
@@ -191,11 +191,11 @@ fn integrate(way: Way, first: u32, count: u32) -> Apart {
             rest_turn = starts[index].rest_turn;
         }
         let left = 1.0 - real(k) / steps;
-        let wider = expm1_small(way.widening * left);
-        let softer = expm1_small(-3.0 * way.widening * left);
-        let w = way.h.x / (radius * radius * radius);
+        let wider = expm1_small(path.widening * left);
+        let softer = expm1_small(-3.0 * path.widening * left);
+        let w = path.h.x / (radius * radius * radius);
         let faster = slower + softer + slower * softer;
-        let reach = way.h.x * radius;
+        let reach = path.h.x * radius;
         let step = Step(
             left,
             radius,
@@ -203,45 +203,45 @@ fn integrate(way: Way, first: u32, count: u32) -> Apart {
             vec2<real>(starts[index].tangent[0], starts[index].tangent[1]),
             vec2<real>(starts[index].rest[0], starts[index].rest[1]),
             Both(starts[index].bent, apart.bent),
-            w * product(Both(1.0, faster), way.force),
+            w * product(Both(1.0, faster), path.force),
             reach * Both(1.0, slower + wider + slower * wider),
             potential * Both(1.0, slower * (2.0 + slower)),
             rest_turn,
         );
         let speed = Both(starts[index].position[0], apart.x);
-        let p1 = pose_at(way, step, none, Both(0.0, 0.0));
+        let p1 = pose_at(path, step, none, Both(0.0, 0.0));
         let k1 = -product(step.reach, p1.tangent.cos);
         var rise = (223.0 / 7938.0) * climb(step, none, p1);
         var chi = 0.05 * speed + (1.0 / 800.0) * k1;
-        let k2 = pull(step, s2, pose_at(way, step, s2, chi), chi);
+        let k2 = pull(step, s2, pose_at(path, step, s2, chi), chi);
         chi = 0.1 * speed + (1.0 / 600.0) * k1 + (1.0 / 300.0) * k2;
-        let p3 = pose_at(way, step, s3, chi);
+        let p3 = pose_at(path, step, s3, chi);
         let k3 = pull(step, s3, p3, chi);
         rise += (5875.0 / 36288.0) * climb(step, s3, p3);
         chi = 0.3 * speed + (9.0 / 200.0) * k1 + (-9.0 / 100.0) * k2 + (9.0 / 100.0) * k3;
-        let p4 = pose_at(way, step, s4, chi);
+        let p4 = pose_at(path, step, s4, chi);
         let k4 = pull(step, s4, p4, chi);
         rise += (4625.0 / 21168.0) * climb(step, s4, p4);
         chi = 0.5 * speed + (-66701.0 / 197352.0) * k1 + (28325.0 / 32892.0) * k2 + (-2665.0 / 5482.0) * k3
             + (2170.0 / 24669.0) * k4;
-        let p5 = pose_at(way, step, s5, chi);
+        let p5 = pose_at(path, step, s5, chi);
         let k5 = pull(step, s5, p5, chi);
         rise += (41.0 / 224.0) * climb(step, s5, p5);
         chi = 0.7 * speed + (227015747.0 / 304251000.0) * k1 + (-54897451.0 / 30425100.0) * k2
             + (12942349.0 / 10141700.0) * k3 + (-9499.0 / 304251.0) * k4 + (539.0 / 9250.0) * k5;
-        let p6 = pose_at(way, step, s6, chi);
+        let p6 = pose_at(path, step, s6, chi);
         let k6 = pull(step, s6, p6, chi);
         rise += (4625.0 / 21168.0) * climb(step, s6, p6);
         chi = 0.9 * speed + (-1131891597.0 / 901789000.0) * k1 + (41964921.0 / 12882700.0) * k2
             + (-6663147.0 / 3220675.0) * k3 + (270954.0 / 644135.0) * k4 + (-108.0 / 5875.0) * k5
             + (114.0 / 1645.0) * k6;
-        let p7 = pose_at(way, step, s7, chi);
+        let p7 = pose_at(path, step, s7, chi);
         let k7 = pull(step, s7, p7, chi);
         rise += (5875.0 / 36288.0) * climb(step, s7, p7);
         chi = speed + (13836959.0 / 3667458.0) * k1 + (-17731450.0 / 1833729.0) * k2
             + (1063919505.0 / 156478208.0) * k3 + (-33213845.0 / 39119552.0) * k4 + (13335.0 / 28544.0) * k5
             + (-705.0 / 14272.0) * k6 + (1645.0 / 57088.0) * k7;
-        let p8 = pose_at(way, step, s8, chi);
+        let p8 = pose_at(path, step, s8, chi);
         let k8 = pull(step, s8, p8, chi);
         rise += (223.0 / 7938.0) * climb(step, s8, p8);
         let end = speed + (223.0 / 7938.0) * k1 + (1175.0 / 8064.0) * k3 + (925.0 / 6048.0) * k4

@@ -157,6 +157,11 @@ fn engine(
         steps: precision.resolution(sides.method.resolution).least,
     };
     let (shots, points): (Vec<usize>, Vec<(f64, f64)>) = points.into_iter().unzip();
+    if points.is_empty() {
+        let failure = format!("{}: no state beside a reference", engine.name);
+        report.failures.push(failure);
+        return Ok(());
+    }
     let errors = task.only(&shots).errors(&points);
     let row = Measurement::new(&engine, rung, seconds, stages, None, errors);
     report.rows.push(row);

@@ -1,6 +1,7 @@
 //! What accuracy costs in time: every engine of this machine, from coarse to exact, on the states of a scene.
 //!
-//! The CPU is given shots, which start from the guesses of the lattice, a GPU the same cells with references of their rows. Errors are those of the engine's
+//! The CPU is given shots, which start from the guesses of the lattice, a GPU those of the same cells whose rows have references, which
+//! are found before. Errors are those of the engine's
 //! answers as far finer steps see them; times are medians, without the first run, which warms up.
 
 mod cpu;

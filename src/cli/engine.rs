@@ -37,8 +37,10 @@ pub struct EngineOptions {
 /// What solves cells, nothing for the CPU alone, and in one line why it was taken.
 pub type Opened = (Option<Box<dyn Engine>>, String);
 
-/// Seconds that samples may take to see whether a GPU is worth starting, and then those that compare it with the CPU.
+/// Seconds that samples may take to see whether a GPU is worth starting.
 const FIRST_LOOK: f64 = 0.01;
+
+/// Seconds that samples may take to compare it with the CPU, unless the smallest ones take longer.
 const COMPARISON: f64 = 0.04;
 
 /// Seconds from nothing to the first answer of a GPU, measured on lavapipe: a map that takes the CPU less does not wait for one.
@@ -66,22 +68,31 @@ impl EngineOptions {
                 "--adapter {adapter}: the CPU engine has none; allowed with --engine gpu and --engine auto"
             ))),
             (Choice::Cpu, ..) => Ok((None, asked())),
-            (Choice::Gpu, ..) if let Some(why) = self.refusal(scene, plan, tolerance_deg) => {
-                Ok((None, format!("GPU asked for, but {why}")))
+            (Choice::Gpu | Choice::Auto, ..) => {
+                // Who names an adapter is told that there is none, even where it would not be used.
+                if self.adapter.is_some() || env::var_os(NAME).is_some() {
+                    self.adapter()?;
+                }
+                match (self.engine, self.refusal(scene, plan, tolerance_deg)) {
+                    (Choice::Auto, Some(why)) => Ok((None, format!("auto: {why}"))),
+                    (Choice::Auto, None) => self.faster(scene, plan),
+                    (_, Some(why)) => Ok((None, format!("a GPU was asked for, but {why}"))),
+                    (_, None) => self.asked_for().map(|gpu| (Some(gpu), asked())),
+                }
             }
-            (Choice::Gpu, ..) => match self.gpu(self.adapter()?.map(|(index, _)| index)) {
-                Ok(gpu) => Ok((Some(gpu), asked())),
-                Err(error @ EngineError::Unsupported { .. }) => Err(Failure::Input(format!(
-                    "--engine gpu --precision {}: {error}; --precision f32 works on every adapter",
-                    self.precision()
-                ))),
-                Err(error) => Err(error.into()),
-            },
-            (Choice::Auto, ..) => match self.refusal(scene, plan, tolerance_deg) {
-                Some(why) => Ok((None, format!("auto: {why}"))),
-                None => self.faster(scene, plan),
-            },
         }
+    }
+
+    /// The GPU that was asked for.
+    fn asked_for(&self) -> Result<Box<dyn Engine>, Failure> {
+        let adapter = self.adapter()?.map(|(index, _)| index);
+        self.gpu(adapter).map_err(|error| match error {
+            EngineError::Unsupported { .. } => Failure::Input(format!(
+                "--engine gpu --precision {}: {error}; --precision f32 works on every adapter",
+                self.precision()
+            )),
+            error => error.into(),
+        })
     }
 
     /// Why the CPU solves every cell whatever a GPU can.
@@ -117,10 +128,6 @@ impl EngineOptions {
 
     /// The engine that is expected to be done first with `plan`, by what samples of `scene` take.
     fn faster(&self, scene: &Scene, plan: &Plan) -> Result<Opened, Failure> {
-        // Who names an adapter is told that there is none, even where the CPU would not wait for it.
-        if self.adapter.is_some() || env::var_os(NAME).is_some() {
-            self.adapter()?;
-        }
         if estimate(scene, plan, FIRST_LOOK)?.seconds < OPENING {
             return Ok((None, "auto: done before a GPU has started".to_owned()));
         }

@@ -81,10 +81,11 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     if let Some(accuracy) = &accuracy {
         plan.method.resolution = accuracy.resolution;
     }
+    // What the steps leave of the tolerance.
+    let left_deg = options.tolerance.degrees().zip(accuracy.as_ref());
+    let left_deg = left_deg.map(|(tolerance, accuracy)| tolerance - accuracy.error_deg);
     plan.channels = options.channels.unwrap_or(Channels::ALL);
-    let (mut engine, why) = options
-        .engine
-        .open(&scene, &plan, options.tolerance.degrees())?;
+    let (mut engine, why) = options.engine.open(&scene, &plan, left_deg)?;
     let about = whiskmap::integrate::Description::of(engine.as_deref());
     outputs::folder("--output", &options.output)?;
     if options.format == Format::Zarr {
@@ -101,6 +102,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
             resume: options.resume,
             force: options.force,
             engine: engine.as_mut().map(|engine| &mut **engine as _),
+            why,
         };
         return run.fill(&path, &scene, plan, &about);
     }

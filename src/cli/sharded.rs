@@ -53,6 +53,8 @@ pub struct Run<'a> {
     pub force: bool,
     /// What shoots before the refinement.
     pub engine: Option<&'a mut dyn Engine>,
+    /// Why it was taken.
+    pub why: String,
 }
 
 impl Run<'_> {
@@ -81,8 +83,9 @@ impl Run<'_> {
         }
         store.begin()?;
         say(&format!(
-            "engine: {}; blocks: {} of {}",
+            "engine: {} ({}); blocks: {} of {}",
             about.engine.engine,
+            self.why,
             blocks.len(),
             store.block_count()
         ));

@@ -15,6 +15,12 @@ pub struct Fallback<'a> {
 }
 
 impl Fallback<'_> {
+    /// Does without the engine from now on: so many of some `cells` of it were wrong.
+    pub fn distrust(&mut self, differing: u64, cells: u64) {
+        self.engine = None;
+        self.failure = Some(EngineError::Distrusted { differing, cells });
+    }
+
     /// [`Engine::solve`]; `None` without an engine.
     pub fn solve(
         &mut self,

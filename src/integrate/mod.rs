@@ -89,8 +89,6 @@ pub enum Outcome {
     NotFinite,
     /// A stable state.
     Solved,
-    /// A stable state of a longer whisker: the contact lies beyond the tip.
-    BeyondTip,
     /// Handed over: next to the fold or to the tip.
     NearEdge,
     /// Handed over: too different from its reference.
@@ -103,7 +101,7 @@ impl Outcome {
     /// Whether the engine answers for it.
     #[must_use]
     pub const fn is_vouched_for(self) -> bool {
-        matches!(self, Self::Solved | Self::BeyondTip)
+        matches!(self, Self::Solved)
     }
 }
 
@@ -164,4 +162,14 @@ pub enum EngineError {
     /// A call failed.
     #[error("GPU: {0}")]
     Device(String),
+    /// Its answers are not what they should be.
+    #[error(
+        "GPU: {differing} of {cells} cells that were computed once more differed by more than they may"
+    )]
+    Distrusted {
+        /// Cells that differed.
+        differing: u64,
+        /// Cells computed once more together with them.
+        cells: u64,
+    },
 }

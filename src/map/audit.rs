@@ -1,7 +1,7 @@
 //! Looking over an engine's shoulder: a sample of its cells, computed once more in `f64`.
 
 use super::channels::{Numbers, channels, of_cell, of_reference};
-use crate::integrate::{CellDifference, Outcome, Reference};
+use crate::integrate::{CellDifference, Reference};
 use crate::refine::{End, Refined};
 use crate::rod::Units;
 use crate::sheet::Sheet;
@@ -10,10 +10,10 @@ use crate::shooting::Reader;
 /// One cell in so many is in the sample.
 const ONE_IN: u64 = 256;
 
-/// The fewest cells of a whisker's side in it, as far as there are any.
+/// About the fewest cells of a whisker's side in it, as far as there are any.
 const AT_LEAST: u64 = 64;
 
-/// By how much a number may differ, in parts of its size and of one: a whisker's length, a radian, a force of `E I_base/L_w^2`.
+/// By how much a number may differ, in parts of the largest along the row, or of a radian.
 const TOLERANCE: f64 = 3e-6;
 
 /// Which cells of a row are in the sample: the same ones in every run.
@@ -27,61 +27,81 @@ impl Sample {
     pub fn new(sheet: &Sheet, row: usize, columns: usize) -> Self {
         let cells = (sheet.rows.len() * columns) as u64;
         let one_in = (cells / AT_LEAST).clamp(1, ONE_IN);
+        let distance = sheet.rows[row].pole_distance;
+        let of_whisker = [
+            sheet.rod.taper,
+            sheet.rod.bend,
+            sheet.rod.pole,
+            sheet.side.sign(),
+        ];
+        let numbers = of_whisker
+            .map(f64::to_bits)
+            .into_iter()
+            .chain([distance.to_bits(), row as u64]);
         Self {
-            seed: sheet.rows[row].touch.to_bits() ^ sheet.rod.taper.to_bits().rotate_left(32),
+            seed: numbers.fold(0, |seed, number| mixed(seed ^ mixed(number))),
             threshold: u64::MAX / one_in,
         }
     }
 
     /// Whether the cell in `column` is in it.
     pub fn has(&self, column: usize) -> bool {
-        mixed(self.seed ^ (column as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15)) <= self.threshold
+        mixed(self.seed ^ mixed(column as u64)) <= self.threshold
     }
 }
 
-/// A random-looking number for each number: the last steps of the generator splitmix64 (G. L. Steele, D. Lea, C. H. Flood, OOPSLA 2014).
+/// A random-looking number for each number: the generator splitmix64 (G. L. Steele, D. Lea, C. H. Flood, OOPSLA 2014).
 fn mixed(z: u64) -> u64 {
+    let z = z.wrapping_add(0x9e37_79b9_7f4a_7c15);
     let z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
     z ^ (z >> 31)
 }
 
-/// Whether what an engine says of a cell of `row` at the signed `push` is what the refinement says; where that has no answer, nothing
-/// is known against it.
-pub fn holds(
-    sheet: &Sheet,
-    row: usize,
-    push: f64,
-    (reference, difference): (&Reference, &CellDifference),
-    refined: &Refined,
-) -> bool {
-    match (difference.outcome, refined.end) {
-        (_, End::NotConverged) => true,
-        (Outcome::BeyondTip, end) => end == End::BeyondTip,
-        (_, End::Solved) => {
-            let units = Units {
-                length_mm: 1.0,
-                force_un: 1.0,
-                moment_nnm: 1.0,
-            };
-            let reader = Reader::new(units, &sheet.rod);
-            let touch = sheet.rows[row].touch;
-            let of_one = channels(&reader.of_one(sheet.side.sign()));
-            let reference = of_reference(&reader, reference, touch);
-            let ours = channels(&reader.read(refined.state.tau, &refined.state.full, touch, push));
-            let theirs = of_cell(&reference, &of_one, difference);
-            let larger: Numbers = std::array::from_fn(|i| ours[i].abs().max(reference[i].abs()));
-            let [arc, angle, force, .., chord, distance, _] = larger;
-            // Components of the force, moment and energy go with the force, near the base in front of a small arm.
-            let moment = force * arc;
-            let sizes = [
-                arc, angle, force, force, force, moment, chord, distance, moment,
-            ];
-            let differences = ours.iter().zip(theirs).map(|(ours, theirs)| ours - theirs);
-            let allowed = sizes.iter().zip(of_one).map(|(size, one)| one.abs() + size);
-            let mut pairs = differences.zip(allowed);
-            pairs.all(|(difference, allowed)| difference.abs() <= TOLERANCE * allowed)
-        }
-        _ => false,
+/// What an engine says of a cell: a difference from one of the references of its row.
+pub struct Said<'a> {
+    /// The references of the row.
+    pub row: &'a [Reference],
+    /// That of the cell.
+    pub reference: &'a Reference,
+    /// The difference.
+    pub difference: &'a CellDifference,
+}
+
+/// Whether what is `said` of a solved cell of `row` at the signed `push` is what the refinement says; where that has no answer, nothing is
+/// known against it.
+pub fn holds(sheet: &Sheet, row: usize, push: f64, said: &Said, refined: &Refined) -> bool {
+    match refined.end {
+        End::NotConverged => return true,
+        End::Solved => {}
+        End::BeyondTip | End::BeyondFold => return false,
     }
+    let units = Units {
+        length_mm: 1.0,
+        force_un: 1.0,
+        moment_nnm: 1.0,
+    };
+    let reader = Reader::new(units, &sheet.rod);
+    let touch = sheet.rows[row].touch;
+    let of_one = channels(&reader.of_one(sheet.side.sign()));
+    let ours = channels(&reader.read(refined.state.tau, &refined.state.full, touch, push));
+    let reference = of_reference(&reader, said.reference, touch);
+    let theirs = of_cell(&reference, &of_one, said.difference);
+    let row = said.row.iter().map(|own| of_reference(&reader, own, touch));
+    let allowed = sizes(row.chain([ours]), &of_one);
+    let mut differences = ours.iter().zip(theirs).zip(allowed);
+    differences.all(|((ours, theirs), size)| (ours - theirs).abs() <= TOLERANCE * size)
+}
+
+/// How large the numbers of a row are: components of the force go with the whole, moment and energy with the force and its lever, angles
+/// with a radian.
+fn sizes(row: impl Iterator<Item = Numbers>, of_one: &Numbers) -> Numbers {
+    let of_state = |[arc, _, force, .., distance, _]: Numbers| [arc, force, distance, force * arc];
+    let [arc, force, distance, moment] = row.map(of_state).fold([0.0; 4], |largest, own| {
+        std::array::from_fn(|i| f64::max(largest[i], own[i].abs()))
+    });
+    let [_, radian, ..] = *of_one;
+    [
+        arc, radian, force, force, force, moment, radian, distance, moment,
+    ]
 }

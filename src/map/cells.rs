@@ -4,7 +4,7 @@ use super::Face;
 use super::pushes::Push;
 use super::summary::EngineCells;
 use crate::classify::{RowBoundary, Status, TIE};
-use crate::integrate::{CellDifference, Outcome, Reference};
+use crate::integrate::{CellDifference, Reference};
 use crate::refine::{ContactState, End, Refined};
 
 /// Some rows, settled.
@@ -16,6 +16,8 @@ pub struct Settled {
     pub differences: Vec<CellDifference>,
     /// What the refinement made of the other cells.
     pub refined: Vec<Refined>,
+    /// Those of them that no engine was asked for.
+    pub unasked: u64,
 }
 
 /// A settled row of a face.
@@ -71,23 +73,21 @@ impl Cell<'_> {
 }
 
 impl Settled {
-    /// Adds to `counts` what became of the cells of an engine, which `has_failed` or not.
+    /// Cells that an engine solved.
+    pub fn solved(&self) -> u64 {
+        let cells = self.differences.iter();
+        cells.filter(|cell| cell.outcome.is_vouched_for()).count() as u64
+    }
+
+    /// Adds to `counts` what became of the cells, with an engine that `has_failed` or not.
     pub fn count(&self, has_failed: bool, counts: &mut EngineCells) {
         for cell in &self.differences {
             counts.count(cell.outcome);
         }
-        // Refined were those handed over, a sample of the others, and those without a reference.
-        let sources = self.rows.iter().flat_map(|row| &row.sources);
-        let refined = sources.filter(|source| matches!(source, Source::Refined(_)));
-        let handed_over = self
-            .differences
-            .iter()
-            .filter(|cell| !cell.outcome.is_vouched_for());
-        let others = (refined.count() - handed_over.count()) as u64;
         *match has_failed {
             true => &mut counts.on_cpu_instead,
             false => &mut counts.without_reference,
-        } += others;
+        } += self.unasked;
     }
 
     /// The cells of `row`, which is one of `face`.
@@ -112,12 +112,8 @@ impl Settled {
                 }
                 Source::Engine(reference, cell) => {
                     let cell = &self.differences[cell as usize];
-                    let status = match cell.outcome {
-                        Outcome::BeyondTip => Status::BeyondTip,
-                        _ => Status::Solved,
-                    };
                     let reference = &self.references[reference as usize];
-                    (status, State::Different(reference, cell), 1)
+                    (Status::Solved, State::Different(reference, cell), 1)
                 }
             };
             Cell {

@@ -36,5 +36,7 @@ pub fn of_cell(channels: &Numbers, of_one: &Numbers, difference: &CellDifference
     for ((number, of_one), difference) in cell.iter_mut().zip(of_one).zip(difference.numbers) {
         *number += of_one * f64::from(difference);
     }
+    // Rounding at first touch.
+    cell[2] = cell[2].max(0.0);
     cell
 }

@@ -28,7 +28,7 @@ pub struct Pushes {
 }
 
 impl Pushes {
-    /// Those of `push_angle_deg`, which grow, that are on `side`; so many columns are on the sides `first`.
+    /// Those of `push_angle_deg`, which grow, that are on `side`; `first` is the number of columns on the sides before.
     pub fn new(push_angle_deg: &[f64], side: Side, first: u32) -> Self {
         let all = push_angle_deg.iter().enumerate();
         let ours = all.filter(|(_, push)| Side::of_push(**push) == side);

@@ -1,6 +1,6 @@
 //! Some rows, from an engine if there is one, beside references along each row; all other cells from the sheet's guesses by refinement.
 
-use super::audit::{self, Sample};
+use super::audit::{self, Said, Sample};
 use super::cells::{Settled, SettledRow, Source};
 use super::pushes::Pushes;
 use super::summary::Audit;
@@ -30,7 +30,7 @@ pub fn settle(
         index,
         row,
         // Panels at once are few.
-        rod: used.binary_search(&index).unwrap_or_default() as u32,
+        sheet: used.binary_search(&index).unwrap_or_default() as u32,
     };
     let strip = Strip {
         method,
@@ -40,16 +40,18 @@ pub fn settle(
     };
     let had_engine = engine.engine.is_some() || engine.failure.is_some();
     let solved = summary.time(Stage::Shooting, || strip.solve(angles, engine));
-    let (settled, audit) = strip.finish(solved.unwrap_or_default(), summary);
+    let (mut settled, mut audit) = strip.finish(solved.unwrap_or_default(), summary);
+    if audit.differing > 0 {
+        // Who has been wrong once is not asked again.
+        engine.distrust(audit.differing, audit.cells);
+        audit.turned_over = settled.solved();
+        settled = strip.finish(Solved::default(), summary).0;
+    }
+    summary.audit += audit;
     if had_engine {
         settled.count(engine.failure.is_some(), &mut summary.engine_cells);
     }
-    summary.audit += audit;
-    if audit.differing == 0 {
-        return settled;
-    }
-    summary.audit.turned_over += settled.differences.len() as u64;
-    strip.finish(Solved::default(), summary).0
+    settled
 }
 
 /// Some rows that are settled together.
@@ -65,8 +67,8 @@ struct Place<'a> {
     /// Of the face.
     index: usize,
     row: usize,
-    /// Of the face's among those of the strip.
-    rod: u32,
+    /// Of the face's sheet among those of the strip.
+    sheet: u32,
 }
 
 /// What an engine made of the rows of a strip.
@@ -83,6 +85,8 @@ struct Work {
     sources: Vec<Source>,
     shots: Vec<Shot>,
     audits: Vec<Chosen>,
+    /// Shots of cells that no engine was asked for.
+    unasked: u64,
 }
 
 /// A cell of an engine that is computed once more.
@@ -100,7 +104,7 @@ impl Strip<'_> {
         engine.engine.as_ref()?;
         on_gpu(self.method.effects).ok()?;
         let rows = self.places.iter().map(|place| RowOfCells {
-            sheet: place.rod,
+            sheet: place.sheet,
             row: place.row,
             pushes: &place.face.pushes.magnitudes,
             first: place.face.pushes.first,
@@ -115,6 +119,9 @@ impl Strip<'_> {
             solved.references.extend(row);
             solved.rows.push((from..solved.references.len(), cells));
             cells += of_row;
+        }
+        if solved.references.is_empty() {
+            return Some(solved);
         }
         let rods: Vec<Rod> = self.sheets.iter().map(|sheet| sheet.rod.clone()).collect();
         solved.differences = engine.solve(self.method, &rods, angles, &solved.references)?;
@@ -135,23 +142,19 @@ impl Strip<'_> {
         });
         let mut audit = Audit::default();
         let mut rows = Vec::with_capacity(self.places.len());
-        let mut before = 0;
-        for (place, mut work) in self.places.iter().zip(work) {
+        let (mut before, mut unasked) = (0, 0);
+        for (i, (place, mut work)) in self.places.iter().zip(work).enumerate() {
             for chosen in &work.audits {
                 let refined = &refined[before + chosen.shot];
                 let push = place.face.pushes.columns[chosen.column].angle;
-                let cell = (
-                    &solved.references[chosen.reference as usize],
-                    &solved.differences[chosen.cell as usize],
-                );
+                let said = Said {
+                    row: &solved.references[solved.rows[i].0.clone()],
+                    reference: &solved.references[chosen.reference as usize],
+                    difference: &solved.differences[chosen.cell as usize],
+                };
+                let holds = audit::holds(&place.face.sheet, place.row, push, &said, refined);
                 audit.cells += 1;
-                audit.differing += u64::from(!audit::holds(
-                    &place.face.sheet,
-                    place.row,
-                    push,
-                    cell,
-                    refined,
-                ));
+                audit.differing += u64::from(!holds);
             }
             for source in &mut work.sources {
                 if let Source::Refined(index) = source {
@@ -159,6 +162,7 @@ impl Strip<'_> {
                 }
             }
             before += work.shots.len();
+            unasked += work.unasked;
             rows.push(SettledRow {
                 face: place.index,
                 row: place.row,
@@ -175,6 +179,7 @@ impl Strip<'_> {
             references,
             differences,
             refined,
+            unasked,
         };
         (settled, audit)
     }
@@ -185,6 +190,7 @@ impl Place<'_> {
     fn work(&self, i: usize, solved: &Solved) -> Work {
         let pushes = self.face.pushes;
         let mut sources = vec![Source::Outside; pushes.columns.len()];
+        let mut was_asked = vec![false; sources.len()];
         let mut chosen = Vec::new();
         if let Some((references, first)) = solved.rows.get(i) {
             let mut cell = *first;
@@ -193,6 +199,7 @@ impl Place<'_> {
                 let cells = &solved.references[reference].cells;
                 for column in cells.clone().map(|index| (index - pushes.first) as usize) {
                     let outcome = solved.differences[cell].outcome;
+                    was_asked[column] = true;
                     if outcome.is_vouched_for() {
                         sources[column] = Source::Engine(reference as u32, cell as u32);
                         if audit.has(column) {
@@ -211,7 +218,7 @@ impl Place<'_> {
         columns.sort_unstable();
         let guesses = self.shots(&columns);
         let mut shots = Vec::with_capacity(left);
-        let mut audits = Vec::new();
+        let (mut audits, mut unasked) = (Vec::new(), 0);
         let mut chosen = chosen.into_iter().peekable();
         for (column, shot) in columns.into_iter().zip(guesses) {
             let audited = chosen.next_if(|(own, ..)| *own == column);
@@ -223,7 +230,10 @@ impl Place<'_> {
                     cell,
                     shot: shots.len(),
                 }),
-                None => sources[column] = Source::Refined(shots.len() as u32),
+                None => {
+                    sources[column] = Source::Refined(shots.len() as u32);
+                    unasked += u64::from(!was_asked[column]);
+                }
             }
             shots.push(shot);
         }
@@ -231,6 +241,7 @@ impl Place<'_> {
             sources,
             shots,
             audits,
+            unasked,
         }
     }
 
@@ -246,7 +257,7 @@ impl Place<'_> {
         let guesses = sheet.guesses(self.row, columns.iter().map(|column| magnitudes[*column]));
         let shot = |(guess, column): (Option<Guess>, &usize)| {
             guess.map(|Guess { tau, load }| Shot {
-                rod: self.rod,
+                rod: self.sheet,
                 tau,
                 load,
                 pole: pushes[*column].turn.rotate(at_touch),

@@ -58,7 +58,7 @@ impl EngineCells {
     /// Counts a cell.
     pub(super) fn count(&mut self, outcome: Outcome) {
         *match outcome {
-            Outcome::Solved | Outcome::BeyondTip => &mut self.solved,
+            Outcome::Solved => &mut self.solved,
             Outcome::NearEdge => &mut self.near_edge,
             Outcome::Far => &mut self.far,
             Outcome::Missed => &mut self.missed,
@@ -91,7 +91,7 @@ impl std::ops::AddAssign for Audit {
 pub struct Summary {
     /// Cells per regime, in the order of [`Regime::ALL`].
     pub regimes: [u64; Regime::ALL.len()],
-    /// Cells with a state, refined in `f64`.
+    /// Cells with a state.
     pub refined: u64,
     /// Newton steps over all cells.
     pub steps: u64,

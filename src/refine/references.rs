@@ -170,7 +170,7 @@ fn expand(
                     .iter()
                     .rev()
                     .fold(0.0, |sum, term| sum * half + term[0]);
-                (sign * (ahead)).min(last)
+                (sign * ahead).min(last)
             }
             None => last,
         };

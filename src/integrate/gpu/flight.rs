@@ -120,7 +120,7 @@ impl Flight {
             });
             pass.set_pipeline(call.pipeline);
             pass.set_bind_group(0, &bindings, &[]);
-            // The pace keeps the cells below what `u32` can count.
+            // The pace, and the columns of a scene, keep the cells below what `u32` can count.
             pass.dispatch_workgroups((packed.cells as u32).div_ceil(WORKGROUP), 1, 1);
         }
         answer(&mut commands, &buffers.cells, &buffers.readback, bytes);

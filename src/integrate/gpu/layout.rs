@@ -80,10 +80,9 @@ pub fn pair<T: Scalar>(of: DVec2) -> [T; 2] {
 }
 
 /// The codes that the shaders write, from 0. A kernel that writes nothing leaves zeros, which are no solution.
-pub const OUTCOMES: [(&str, Outcome); 6] = [
+pub const OUTCOMES: [(&str, Outcome); 5] = [
     ("NOT_FINITE", Outcome::NotFinite),
     ("SOLVED", Outcome::Solved),
-    ("BEYOND_TIP", Outcome::BeyondTip),
     ("NEAR_EDGE", Outcome::NearEdge),
     ("FAR", Outcome::Far),
     ("MISSED", Outcome::Missed),
@@ -171,7 +170,7 @@ mod tests {
         for rust in [
             in_rust!(GpuRod<T>, "Rod", taper bend spiral),
             in_rust!(GpuStart<T>, "StepStart", radius arclength tangent position bent rest rest_turn),
-            in_rust!(GpuReference<T>, "Reference", tau load radius arclength force rest to_tip to_pole position tangent
+            in_rust!(GpuReference<T>, "Reference", tau load radius arclength rest to_tip to_pole position tangent
                 by_tau by_load bent energy push per_way push_by_way tau_by_way resting_by_way jacobian rod first_cell first_push steps first_step unused),
             in_rust!(GpuCell, "Cell", numbers residual outcome),
         ] {

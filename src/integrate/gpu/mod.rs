@@ -167,7 +167,7 @@ impl Engine for Gpu {
         let mut times = Times::default();
         let mut cells = Vec::new();
         let mut waiting = references;
-        let mut flights: VecDeque<Flight> = VecDeque::new();
+        let mut flights: VecDeque<(Flight, bool)> = VecDeque::new();
         let mut idle_since = Instant::now();
         loop {
             if flights.len() < IN_FLIGHT && !waiting.is_empty() {
@@ -175,14 +175,15 @@ impl Engine for Gpu {
                 waiting = later;
                 let begun = Instant::now();
                 let packed = (layout.references)(rods, resolution, now);
-                flights.push_back(Flight::dispatch(&call, self.buffers.pop(), &packed)?);
+                let flight = Flight::dispatch(&call, self.buffers.pop(), &packed)?;
+                flights.push_back((flight, waiting.is_empty()));
                 times.upload += begun.elapsed();
-            } else if let Some(flight) = flights.pop_front() {
+            } else if let Some((flight, is_last)) = flights.pop_front() {
                 let (count, started) = (flight.cells, flight.submitted.max(idle_since));
                 self.buffers
                     .push(flight.finish(&call, &mut cells, &mut times)?);
                 idle_since = Instant::now();
-                pace.learn(count, idle_since - started);
+                pace.learn(count, is_last, idle_since - started);
             } else {
                 self.times = self.times.map(|_| times);
                 return Ok(cells);
@@ -191,10 +192,14 @@ impl Engine for Gpu {
     }
 }
 
+/// Most references of a dispatch: 20 MiB in `f64`, with 30 steps each, a fraction of what any device binds.
+const MOST_REFERENCES: usize = 4096;
+
 /// How many of the first of the `references`, at least one, have together at most so many `cells`.
 fn together(references: &[Reference], cells: usize) -> usize {
     let mut sum = 0;
-    let fits = references.iter().take_while(|reference| {
+    let few = references.iter().take(MOST_REFERENCES);
+    let fits = few.take_while(|reference| {
         sum += reference.cells.len();
         sum <= cells
     });

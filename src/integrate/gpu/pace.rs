@@ -6,10 +6,10 @@ use std::time::Duration;
 /// which some systems reset a GPU.
 const GOAL: Duration = Duration::from_millis(75);
 
-/// Cells of the first dispatch, when nothing is known yet: 10 ms on two cores of a CPU.
+/// Cells of the first dispatch, when nothing is known yet: some 10 ms on two cores of a CPU.
 const FIRST: usize = 4096;
 
-/// Most cells per dispatch: 64 MiB of buffers per dispatch in flight; larger dispatches are no faster.
+/// Most cells per dispatch: 88 MiB for the answers of one; larger dispatches are no faster.
 const MOST: usize = 1 << 20;
 
 /// Cells per dispatch, learnt from the dispatches before.
@@ -36,10 +36,9 @@ impl Pace {
     }
 
     /// Learns that `cells` took at most `time`. The first dispatch of a pipeline compiles it and tells
-    /// nothing; a dispatch that was not full tells only that full ones take too long.
-    pub fn learn(&mut self, cells: usize, time: Duration) {
-        let full = cells >= self.cells;
-        if std::mem::replace(&mut self.warm, true) && (full || time > GOAL) {
+    /// nothing; one of the last cells of a call tells only that larger ones take too long.
+    pub fn learn(&mut self, cells: usize, is_last: bool, time: Duration) {
+        if std::mem::replace(&mut self.warm, true) && (!is_last || time > GOAL) {
             let fitting = cells as f64 * GOAL.as_secs_f64() / time.as_secs_f64().max(1e-6);
             self.cells = (fitting as usize).clamp(1, 4 * self.cells).min(self.most);
         }
@@ -52,7 +51,7 @@ mod tests {
 
     fn warm() -> Pace {
         let mut pace = Pace::new(128 << 20, 40, 65_535, 64);
-        pace.learn(FIRST, Duration::from_secs(1));
+        pace.learn(FIRST, false, Duration::from_secs(1));
         pace
     }
 
@@ -70,10 +69,10 @@ mod tests {
         ] {
             let mut pace = Pace::new(bytes, 40, groups, 64);
             for _ in 0..20 {
-                pace.learn(pace.cells, Duration::ZERO);
+                pace.learn(pace.cells, false, Duration::ZERO);
             }
             assert_eq!(pace.cells, most);
-            pace.learn(pace.cells, Duration::from_secs(3600));
+            pace.learn(pace.cells, false, Duration::from_secs(3600));
             assert_eq!(pace.cells, (most / 48_000).max(1));
         }
     }
@@ -82,7 +81,7 @@ mod tests {
     fn full_dispatches_settle_at_the_goal() {
         let mut pace = warm();
         for _ in 0..10 {
-            pace.learn(pace.cells, Duration::from_micros(pace.cells as u64));
+            pace.learn(pace.cells, false, Duration::from_micros(pace.cells as u64));
         }
         assert_eq!(pace.cells, 75_000);
     }
@@ -90,9 +89,9 @@ mod tests {
     #[test]
     fn a_part_can_only_slow_down() {
         let mut pace = warm();
-        pace.learn(1, Duration::from_micros(1));
+        pace.learn(1, true, Duration::from_micros(1));
         assert_eq!(pace.cells, FIRST);
-        pace.learn(1000, Duration::from_millis(150));
+        pace.learn(1000, true, Duration::from_millis(150));
         assert_eq!(pace.cells, 500);
     }
 }

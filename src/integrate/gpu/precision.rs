@@ -27,9 +27,11 @@ impl Precision {
     /// rounding, since a difference has only a small part of the integrator's error.
     #[must_use]
     pub fn resolution(self, resolution: Resolution) -> Resolution {
-        let enough = Resolution::of(10);
+        let [enough, least] = [Resolution::of(10), Resolution::COARSE];
         match self {
             Self::F32 if resolution.least > enough.least => enough,
+            // Derivatives are good enough for a step from then on.
+            _ if resolution.least < least.least => least,
             _ => resolution,
         }
     }
@@ -46,18 +48,21 @@ impl Precision {
 
     /// Limits of what the shaders vouch for, by their names there.
     ///
-    /// `LEFT_BY_STEP` is that of the refinement. `ROUNDING_OF_WAY` bounds the pole's miss over how far base and pole move from the
+    /// `LEFT_BY_STEP` and `LARGEST_Q` are those of the refinement; of a step the Jacobian, a polynomial along the row, leaves at most
+    /// `JACOBIAN_ERROR`. `ROUNDING_OF_WAY` bounds the pole's miss over how far base and pole move from the
     /// reference to the cell: measured on random whiskers at most 5.8e-7 in `f32`, in the median 5e-8. `FARTHEST_REST` keeps what the
     /// series of the resting parabola leaves out, 100 times its 7th power, below rounding.
     #[must_use]
-    pub const fn limits(self) -> [(&'static str, f64); 8] {
+    pub const fn limits(self) -> [(&'static str, f64); 10] {
         let [clear_of_fold, clear_of_tip, longest, of_way, rounding, rest] = match self {
-            Self::F32 => [0.05, 1e-6, 1e-5, 8e-7, 0.0, 0.02],
+            Self::F32 => [0.05, 1e-6, 1e-5, 8e-7, 6e-14, 0.02],
             Self::F64 => [1e-3, 1e-9, 1.5e-7, 2e-15, 6e-14, 0.006],
         };
         [
             ("GOAL", self.goal()),
             ("LEFT_BY_STEP", 20.0),
+            ("LARGEST_Q", 12.0),
+            ("JACOBIAN_ERROR", 1e-5),
             ("ROUNDING_OF_WAY", of_way),
             ("ROUNDING", rounding),
             ("LONGEST_STEP", longest),

@@ -10,8 +10,8 @@ use rayon::prelude::*;
 /// Terms of a row's polynomials in the shaders: without a constant, which the reference has itself.
 pub const ROW_POWERS: usize = POWERS - 1;
 
-/// Terms of the Jacobian's polynomials there: Newton's last step needs four digits.
-pub const JACOBIAN_TERMS: usize = 4 * 6;
+/// Terms of the Jacobian's polynomials there: Newton's last step needs five digits.
+pub const JACOBIAN_TERMS: usize = 4 * 8;
 
 /// References, ready for a dispatch.
 #[derive(Debug)]
@@ -103,7 +103,6 @@ pub struct GpuReference<T> {
     pub load: T,
     pub radius: T,
     pub arclength: T,
-    pub force: T,
     pub rest: [T; 2],
     pub to_tip: T,
     pub to_pole: [T; 2],
@@ -152,7 +151,6 @@ impl<T: Scalar> GpuReference<T> {
             load: T::of(*load),
             radius: T::of(rod.radius(*tau)),
             arclength: T::of(s),
-            force: T::of(full.force),
             rest: pair(Rest::parabola_tangent(rod, s)),
             to_tip: T::of(rod.tau_tip() - tau),
             to_pole: pair(rod.to_pole() - full.position),
