@@ -204,7 +204,7 @@ fn solve(r: u32, rod: Rod, push: real) -> Cell {
     if largest > 0.4 || bends > FARTHEST_REST || abs(load) * s * s > LARGEST_Q {
         cell.outcome = FAR;
     }
-    if residual > GOAL * min(1.0, 4.0 * s) || step_length > LONGEST_STEP {
+    if residual > GOAL * min(1.0, 2.0 * s) || step_length > LONGEST_STEP {
         cell.outcome = MISSED;
     }
     if !is_finite(residual + theta + shift.x + shift.y + end.x + end.y) {

@@ -117,9 +117,12 @@ fn rest_apart(rod: Rod, rest: vec2<real>, s: real, ds: real) -> real {
     let x = 2.0 * rod.bend * rest.x * rest.x * ds;
     let sin = rest.y;
     let y = sin * sin;
-    return rest.x * x * (1.0 + x * (-1.5 * sin + x * ((3.0 * y - 0.5) + x * (sin * (57.0 - 162.0 * y) * (1.0 / 24.0)
-        + x * ((57.0 - y * (1056.0 - 1944.0 * y)) * (1.0 / 120.0)
-        - x * sin * (2739.0 - y * (21504.0 - 29160.0 * y)) * (1.0 / 720.0))))));
+    let odd = sin * (-1.5 + x * x * ((57.0 - 162.0 * y) * (1.0 / 24.0)
+        + x * x * ((-2739.0 + y * (21504.0 - 29160.0 * y)) * (1.0 / 720.0)
+        + x * x * (82267.0 / 13440.0 + y * (-618007.0 / 6720.0 + y * (74147.0 / 240.0 - y * (2187.0 / 8.0)))))));
+    let even = (3.0 * y - 0.5) + x * x * ((57.0 - y * (1056.0 - 1944.0 * y)) * (1.0 / 120.0)
+        + x * x * (-913.0 / 1680.0 + y * (2449.0 / 120.0 + y * (-20411.0 / 210.0 + y * (729.0 / 7.0)))));
+    return rest.x * x * (1.0 + x * (odd + x * even));
 }
 
 // The rods at a stage: how far bending has turned them, and their tangents.
