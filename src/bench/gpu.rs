@@ -52,6 +52,9 @@ struct Sides {
     all: Vec<Side>,
 }
 
+/// Its shot, and `(tau, load)`, of a state.
+type Point = (usize, (f64, f64));
+
 /// A whisker on one side.
 struct Side {
     rods: [Rod; 1],
@@ -101,8 +104,8 @@ impl Sides {
         }
     }
 
-    /// The states that `gpu` vouches for, `(tau, load)` by shot, and what its stages took.
-    fn solve(&self, gpu: &mut Gpu) -> Result<(Vec<(usize, (f64, f64))>, Stages), EngineError> {
+    /// The states that `gpu` vouches for, and what its stages took.
+    fn solve(&self, gpu: &mut Gpu) -> Result<(Vec<Point>, Stages), EngineError> {
         let (mut points, mut stages) = (Vec::new(), Stages::default());
         for side in &self.all {
             let cells = gpu.solve(self.method, &side.rods, &side.pushes, &side.references)?;

@@ -134,10 +134,10 @@ fn a_wrong_shader_breaks_its_bounds() {
             "let faster = slower - softer",
         ),
         ("slower * (2.0 + slower)", "slower * (2.001 + slower)"),
-        ("- way.rest_at_contact;", "- 0.999 * way.rest_at_contact;"),
+        ("- path.rest_at_contact;", "- 0.999 * path.rest_at_contact;"),
         (
-            "1.5 * way.rod.taper * way.h;",
-            "1.501 * way.rod.taper * way.h;",
+            "1.5 * path.rod.taper * path.h;",
+            "1.501 * path.rod.taper * path.h;",
         ),
         (
             "let angle = apart.bent - rest_at_contact;",

@@ -62,7 +62,7 @@ impl Precision {
             ("GOAL", self.goal()),
             ("LEFT_BY_STEP", 20.0),
             ("LARGEST_Q", 12.0),
-            ("JACOBIAN_ERROR", 1e-5),
+            ("JACOBIAN_ERROR", 1e-6),
             ("ROUNDING_OF_WAY", of_way),
             ("ROUNDING", rounding),
             ("LONGEST_STEP", longest),
