@@ -54,7 +54,8 @@ fn no_number_hurts_only_its_own_cells() {
     let number = cells.references.len() / 2;
     for mut gpu in PRECISIONS.into_iter().filter_map(open) {
         let sound = cells.solve(&mut gpu);
-        let spoils: [(&str, fn(&mut Reference)); 8] = [
+        type Spoil = fn(&mut Reference);
+        let spoils: [(&str, Spoil); 8] = [
             ("tau", |r| r.tau = f64::NAN),
             ("load", |r| r.load = f64::INFINITY),
             ("push angle", |r| r.push = f64::NAN),
