@@ -54,7 +54,11 @@ impl Buffers {
             stamps: Stamps::new(device, call.timed)?,
             references: None,
             starts: None,
-            cells: device.buffer("cells", bytes, Usage::STORAGE | Usage::COPY_SRC)?,
+            cells: device.buffer(
+                "cells",
+                bytes,
+                Usage::STORAGE | Usage::COPY_SRC | Usage::COPY_DST,
+            )?,
             readback: device.buffer("readback", bytes, Usage::MAP_READ | Usage::COPY_DST)?,
         })
     }
@@ -113,6 +117,8 @@ impl Flight {
             entries: &entries,
         });
         let mut commands = device.handle.create_command_encoder(&Default::default());
+        // A cell that the shader does not write must not have the answer of another dispatch.
+        commands.clear_buffer(&buffers.cells, 0, Some(bytes));
         {
             let mut pass = commands.begin_compute_pass(&wgpu::ComputePassDescriptor {
                 label: Some("cells"),
