@@ -146,7 +146,6 @@ fn engine(
         peak_gflops: 1e-9 * gpu.peak(runs)?,
         first_result_s,
     };
-    report.engines.push(engine.clone());
     let mut stages = Vec::new();
     let (seconds, points) = watch(runs, || {
         let (points, of_run) = sides.solve(&mut gpu)?;
@@ -165,6 +164,7 @@ fn engine(
         report.failures.push(failure);
         return Ok(());
     }
+    report.engines.push(engine.clone());
     let errors = task.only(&shots).errors(&points);
     let row = Measurement::new(&engine, rung, seconds, stages, None, errors);
     report.rows.push(row);

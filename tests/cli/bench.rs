@@ -11,7 +11,8 @@ fn numbers(rows: &[Value], key: &str) -> Vec<f64> {
 
 #[test]
 fn errors_fall_from_rung_to_rung() {
-    let place = Place::with(SCENE);
+    // Rows of few cells have no references, so that a GPU would have none to solve.
+    let place = Place::with(&SCENE.replace("to = 70, count = 24", "to = 70, count = 48"));
     let run = good(&place, &["bench", "scene.toml", "--quick", "--json", "-"]);
     let report: Value = serde_json::from_str(&run.out).unwrap();
     assert!(report["states"].as_u64().unwrap() > 200);
