@@ -55,7 +55,9 @@ fn kept(push_angles: &str, distances: &str, more: &str) -> (usize, usize) {
     let mut engine = Counting(0);
     let discard = &mut |_| Ok::<(), Infallible>(());
     let Ok(summary) = map::run(&scene, &plan, Some(&mut engine), &mut |_| (), discard);
-    assert_eq!(engine.0, plan.engine_calls);
+    // Rows of few cells have no references, of which an engine could solve any.
+    let is_asked = scene.grid.push_angle_deg.len() > 100;
+    assert_eq!(engine.0, if is_asked { plan.engine_calls } else { 0 });
     assert_eq!(summary.cells(), plan.cells as u64);
     let EngineCells {
         far,

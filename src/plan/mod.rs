@@ -59,7 +59,7 @@ pub struct Plan {
     pub panels_at_once: usize,
     /// Most rows of a panel handed to an engine at once.
     pub rows_at_once: usize,
-    /// Calls of an engine that takes so many, each with the rows of some whiskers and sides.
+    /// Calls of an engine at most, each with the rows of some whiskers and sides; rows of few cells need none.
     pub engine_calls: usize,
     /// Most bytes that panels and cells in flight take.
     pub bytes: u64,
