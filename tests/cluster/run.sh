@@ -42,7 +42,7 @@ clean_up() {
     if [ "$status" != 0 ]; then
         echo "FAILED; what was said:"
         squeue || true
-        tail -n 20 "$scratch"/*.log "$scratch"/work/*.out || true
+        tail -n 20 "$scratch"/*.log "$scratch"/jobs/*.out || true
     fi
     # shellcheck disable=SC2046 # one word for each process
     kill -KILL $(of_sweep) 2>/dev/null || true
@@ -66,7 +66,7 @@ wait_until() {
 #    machine is late to answer. A task is requeued when its credential has expired.
 host="$(hostname -s)"
 port=$((20000 + $$ % 3000 * 3))
-mkdir "$scratch/state" "$scratch/work"
+mkdir "$scratch/state" "$scratch/jobs"
 cat >"$SLURM_CONF" <<END
 ClusterName=whiskmap
 SlurmctldHost=$host(127.0.0.1)
@@ -108,10 +108,10 @@ is_up() { [ "$(sinfo -h -t idle -o %D 2>/dev/null)" = 2 ]; }
 wait_until is_up
 
 # 2. The sweep, from a folder whose name needs quotes.
-cd "$scratch/work"
+cd "$scratch/jobs"
 mkdir "a cluster's"
 cp "$here/sweep.toml" "a cluster's/"
-shared="$scratch/work/a cluster's"
+shared="$scratch/jobs/a cluster's"
 (cd "$shared" && "$whiskmap" submit sweep.toml -o . --shards 8 --partition all --cpus-per-task 2 -- --channels regime,force_un) >sweep.sbatch
 job="$(sbatch --parsable sweep.sbatch)"
 

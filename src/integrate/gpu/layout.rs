@@ -1,14 +1,13 @@
 //! Rods, push angles, references and cells as bytes: the structs of `shaders/nystrom8.wgsl` and `shaders/cells.wgsl`.
 
 use super::Precision;
+use super::bytes::{Scalar, bytes, halves};
 use super::reference::{Packed, packed};
 use crate::integrate::{CellDifference, Outcome, Reference};
-use crate::numerics::Real;
 use crate::plan::STATE_CHANNELS;
 use crate::rod::Rod;
 use crate::shooting::Resolution;
 use bytemuck::{Pod, Zeroable};
-use glam::DVec2;
 
 /// What buffers hold, for shaders of one precision.
 #[derive(Debug)]
@@ -54,29 +53,6 @@ impl BufferLayout {
             },
         }
     }
-}
-
-/// A scalar of the shaders.
-pub trait Scalar: Real + Pod + Into<f64> {}
-
-impl<T: Real + Pod + Into<f64>> Scalar for T {}
-
-pub fn bytes<P: Pod>(things: impl ExactSizeIterator<Item = P>) -> Vec<u8> {
-    let mut bytes = Vec::with_capacity(things.len() * size_of::<P>());
-    for thing in things {
-        bytes.extend_from_slice(bytemuck::bytes_of(&thing));
-    }
-    bytes
-}
-
-/// A number, and what the shaders' scalar leaves of it.
-pub fn halves<T: Scalar>(number: f64) -> [T; 2] {
-    let high = T::of(number);
-    [high, T::of(number - high.into())]
-}
-
-pub fn pair<T: Scalar>(of: DVec2) -> [T; 2] {
-    [T::of(of.x), T::of(of.y)]
 }
 
 /// The codes that the shaders write, from 0. A kernel that writes nothing leaves zeros, which are no solution.

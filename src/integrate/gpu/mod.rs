@@ -7,6 +7,7 @@
 //! Absent on purpose: a second try on a lost device. [`Fallback`](super::Fallback) does without it.
 
 mod adapters;
+mod bytes;
 mod device;
 mod flight;
 mod guard;

@@ -1,6 +1,6 @@
 //! References as bytes, with the steps of their trajectories: structs of `shaders/nystrom8.wgsl` and `shaders/cells.wgsl`.
 
-use super::layout::{Scalar, bytes, halves, pair};
+use super::bytes::{Scalar, bytes, halves, pair};
 use crate::integrate::{POWERS, Reference};
 use crate::rod::{Rest, Rod, arclength};
 use crate::shooting::{REST_TERMS, Resolution, StateDerivative, StepStart, step_starts};

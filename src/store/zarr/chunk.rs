@@ -1,6 +1,6 @@
 //! A chunk of a block's file: what is packed as a whole.
 
-use super::array::{Kind, options};
+use super::kind::{Kind, options};
 use serde_json::{Value, json};
 use std::borrow::Cow;
 use std::num::NonZeroU64;

@@ -1,7 +1,8 @@
 //! What a store says of itself: its arrays, and the attributes of the whole.
 
-use super::array::{Array, Kind, NOT_COMPUTED, about};
+use super::array::{Array, about};
 use super::blocks::Blocks;
+use super::kind::{Kind, NOT_COMPUTED};
 use crate::classify::{Regime, Status};
 use crate::scene::{Grid, Setup};
 use crate::store::{Channels, Description};

@@ -8,6 +8,7 @@
 mod array;
 mod blocks;
 mod chunk;
+mod kind;
 mod metadata;
 mod pack;
 mod read;

@@ -1,7 +1,8 @@
 //! What is in the files of a block.
 
 use super::ZarrStore;
-use super::array::{Array, Kind};
+use super::array::Array;
+use super::kind::Kind;
 use super::metadata::CELLS;
 use crate::classify::Regime;
 use crate::store::{Error, Samples};
