@@ -11,20 +11,13 @@ use crate::rod::rod::{arclength_at, pointed, tau_at};
 pub struct Piece {
     /// Arclength where it begins, in whisker lengths.
     pub from: f64,
+    /// `tau` there, on the cone from the first row to the last.
+    pub tau: f64,
     /// `radius = c0 + x (c1 + x (c2 + x c3))` with `x = s - from`, over the base radius.
     pub cubic: [f64; 4],
 }
 
 impl Piece {
-    /// A cone.
-    #[must_use]
-    pub fn cone(taper: f64) -> Self {
-        Self {
-            from: 0.0,
-            cubic: [1.0, -taper, 0.0, 0.0],
-        }
-    }
-
     /// Radius at arclength `s` over that at the base.
     #[must_use]
     pub fn radius(&self, s: f64) -> f64 {
@@ -47,9 +40,10 @@ impl Piece {
 pub struct RadiusProfile {
     /// From the base on; the last one continues beyond the last row, as the cone from the first row to the last does.
     pub pieces: Vec<Piece>,
-    /// Per piece: the largest change of `ln radius` over it, and its length, both along `tau` and up to the tip, or those
-    /// of a piece nearer to the base if they are larger.
-    pub changes: Vec<[f64; 2]>,
+    /// Per piece: how much `ln radius` changes over it at most, were it as steep along `tau` as where it is steepest.
+    pub changes: Vec<f64>,
+    /// Per piece: the length of the longest one from the base up to it, in whisker lengths.
+    pub longest: Vec<f64>,
     /// Of the cone from the first row to the last, continued.
     taper: f64,
     /// Per piece: into how many parts its quadrature divides it, along `tau`.
@@ -83,6 +77,8 @@ impl RadiusProfile {
             .map(|(w, width)| (w[1][1] - w[0][1]) / width)
             .collect();
         let slopes = slopes(&widths, &secants);
+        let [end, last] = rows[rows.len() - 1];
+        let taper = (1.0 - last) / end;
         let mut pieces: Vec<Piece> = (0..widths.len())
             .map(|i| {
                 let (h, secant, [d0, d1]) = (widths[i], secants[i], [slopes[i], slopes[i + 1]]);
@@ -90,33 +86,34 @@ impl RadiusProfile {
                 let c3 = (d0 + d1 - 2.0 * secant) / (h * h);
                 Piece {
                     from: rows[i][0],
+                    tau: tau_at(taper, rows[i][0]),
                     cubic: [rows[i][1], d0, c2, c3],
                 }
             })
             .collect();
-        let [end, last] = rows[rows.len() - 1];
-        let taper = (1.0 - last) / end;
         let whole = pointed(taper);
         pieces.push(Piece {
             from: end,
+            tau: tau_at(taper, end),
             cubic: [last, -taper, 0.0, 0.0],
         });
         widths.push((whole - end).max(0.0));
-        let mut largest = [0.0_f64; 2];
+        let mut longest = Vec::new();
         let (mut changes, mut parts) = (Vec::new(), Vec::new());
         for (piece, width) in pieces.iter().zip(&widths) {
-            let length = tau_at(taper, piece.from + width) - tau_at(taper, piece.from);
+            let length = tau_at(taper, piece.from + width) - piece.tau;
             let steepest = (0..=LOOKS)
                 .map(|i| piece.from + width * f64::from(i) / f64::from(LOOKS))
                 .map(|s| (1.0 - taper * s) * (piece.slope(s) / piece.radius(s)).abs())
                 .fold(0.0, f64::max);
-            largest = [largest[0].max(length * steepest), largest[1].max(length)];
-            changes.push(largest);
+            changes.push(length * steepest);
+            longest.push(width.max(longest.last().copied().unwrap_or_default()));
             parts.push((length * steepest).ceil().max(1.0) as u32);
         }
         let mut profile = Self {
             pieces,
             changes,
+            longest,
             taper,
             parts,
             compliances: vec![[0.0; 2]],
@@ -155,7 +152,7 @@ impl RadiusProfile {
     /// The integrals from the base to `s`, which lies on piece `k`: by `tau`, along which the radius changes evenly.
     fn up_to(&self, k: usize, s: f64) -> [f64; 2] {
         let piece = &self.pieces[k];
-        let from = tau_at(self.taper, piece.from);
+        let from = piece.tau;
         let width = (tau_at(self.taper, s) - from) / f64::from(self.parts[k]);
         let nodes = (0..self.parts[k]).flat_map(|part| {
             GAUSS.map(|[node, weight]| (width.mul_add(f64::from(part) + node, from), weight))

@@ -136,7 +136,8 @@ impl<T: Real> Material<T> for Graded<T> {
     }
 }
 
-/// Measured radii, and a modulus that is linear in the arclength: `S = r(s)^4 (1 + g s)` on one cubic piece of `r`.
+/// Measured radii, and a modulus that is linear in the arclength: `S = r(s)^4 (1 + g s)` on one cubic piece of `r`. Too rough
+/// for Liouville's transformation: see [`collocate`](crate::shooting::collocate).
 #[derive(Clone, Copy, Debug)]
 pub struct Measured<T> {
     /// Arclength where the piece begins.
@@ -148,72 +149,13 @@ pub struct Measured<T> {
 }
 
 impl<T: Real> Measured<T> {
+    /// `1/S` at the arclength `s`: what turns a moment into a curvature.
     #[inline(always)]
-    fn graded(self) -> Graded<T> {
-        let gradient = self.gradient;
-        Graded { gradient }
-    }
-
-    /// The radius, and its first and second derivative by the arclength.
-    #[inline(always)]
-    fn radius(self, section: &Section<T>) -> [T; 3] {
-        let x = section.arclength - self.from;
+    pub fn compliance(&self, s: T) -> T {
+        let x = s - self.from;
         let [c0, c1, c2, c3] = self.cubic;
-        let (two, three) = (T::of(2.0), T::of(3.0));
-        [
-            x.mul_add(x.mul_add(x.mul_add(c3, c2), c1), c0),
-            x.mul_add(x.mul_add(three * c3, two * c2), c1),
-            two * x.mul_add(three * c3, c2),
-        ]
-    }
-}
-
-impl<T: Real> Material<T> for Measured<T> {
-    #[inline(always)]
-    fn compliance(self, section: &Section<T>) -> T {
-        let [radius, _, _] = self.radius(section);
+        let radius = x.mul_add(x.mul_add(x.mul_add(c3, c2), c1), c0);
         let square = radius * radius;
-        section.rho / (square * square * self.graded().modulus(section))
-    }
-
-    #[inline(always)]
-    fn liouville(self, taper: Option<T>, from: &Section<T>, stage: &Stage<T>) -> Liouville<T> {
-        let here = from.at(stage);
-        let [inverse, fall] = self.graded().fall(&here);
-        let [start, _, _] = self.radius(from);
-        let [radius, slope, bend] = self.radius(&here);
-        let thinner = start / radius;
-        let inverse_scale =
-            thinner * thinner * (stage.grown * self.graded().modulus(from) * inverse).sqrt();
-        let taper = taper.unwrap_or(T::of(0.0));
-        let (half, two) = (T::of(0.5), T::of(2.0));
-        let per_length = here.rho / radius;
-        let narrowing = per_length * slope;
-        let growth = -(two * narrowing + half * (fall + taper));
-        // `-(m'/m)'`, to be taken from the square of `m'/m`.
-        let change = two * (narrowing * (narrowing + taper) - here.rho * per_length * bend)
-            + half * fall * (taper + fall);
-        Liouville {
-            inverse_scale,
-            forcing: inverse_scale * stage.grown,
-            potential: Some(growth * growth - change),
-        }
-    }
-
-    #[inline(always)]
-    fn liouville_scale(
-        self,
-        taper: Option<T>,
-        from: &Section<T>,
-        stage: &Stage<T>,
-        inverse_scale: T,
-    ) -> Option<[T; 2]> {
-        let here = from.at(stage);
-        let [_, fall] = self.graded().fall(&here);
-        let [radius, slope, _] = self.radius(&here);
-        let taper = taper.unwrap_or(T::of(0.0));
-        let narrowing = here.rho / radius * slope;
-        let growth = -(narrowing + narrowing + T::of(0.5) * (fall + taper));
-        Some([growth, T::of(1.0) / inverse_scale])
+        T::of(1.0) / (square * square * self.gradient.mul_add(s, T::of(1.0)))
     }
 }

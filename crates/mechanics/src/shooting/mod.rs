@@ -21,7 +21,7 @@ pub mod sensitivity;
 pub mod shape;
 mod steps;
 
-pub use integrator::{Integrator, Nystrom8, Rk4, STAGES, Scales, Stage, integrate};
+pub use integrator::{Integrator, Nystrom8, Rk4, STAGES, Scales, Stage, collocate, integrate};
 pub use intrinsic::{Bent, Intrinsic, Spiral, Straight, TERMS as REST_TERMS};
 pub use map::{
     FirstVariation, FullState, LONGEST_STEP, SecondVariation, ShootingMap, StateDerivative, limited,

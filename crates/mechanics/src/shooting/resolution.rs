@@ -68,26 +68,27 @@ impl Resolution {
         if rod.is_uniform_cone() {
             return self.steps_on_uniform(rod.taper, bend, [tau, load, s]);
         }
+        let modulus = rod.gradient.abs() / (1.0 + rod.gradient).min(1.0);
         let mut bending = load.abs() * s * s;
-        if rod.profile.is_some() {
-            bending *= rod.softness(tau);
-        }
         if rod.gradient < 0.0 {
             bending /= rod.modulus(s);
         }
-        let modulus = rod.gradient.abs() / (1.0 + rod.gradient).min(1.0);
+        if let Some(profile) = &rod.profile {
+            bending *= rod.softness(tau);
+            let weight = weight(bending, bend * s) + 0.17;
+            let share = CONCENTRATED * profile.largest_share(s);
+            let fastest = (1.6 * bend).max(0.5 * modulus);
+            return self.rounded(share * weight, fastest * profile.longest[profile.piece(s)]);
+        }
         let fastest = fastest(rod.taper, bend).max(0.5 * modulus);
-        let weight = weight(bending, bend * s);
-        let (weight, needed) = match &rod.profile {
-            Some(profile) => {
-                let [change, length] = profile.changes[profile.piece(s)];
-                let share = CONCENTRATED * profile.largest_share(s);
-                let weight = (share * (weight + 0.17)).max(FEWEST);
-                (weight, change.max(fastest * length))
-            }
-            None => (weight + weight_of_taper(rod.taper * tau), fastest * tau),
-        };
-        self.rounded(weight, needed)
+        let weight = weight(bending, bend * s) + weight_of_taper(rod.taper * tau);
+        self.rounded(weight, fastest * tau)
+    }
+
+    /// How many steps a piece of a profile takes along which `ln radius` changes by `change`, whatever bends it.
+    #[must_use]
+    pub(super) fn steps_of_piece(&self, change: f64) -> u32 {
+        ((ROUGH * f64::from(self.least) * change).ceil() as u32).max(1)
     }
 
     /// Those on a rod of one modulus without a profile, from `tau`, load and arclength: without a branch, so that a compiler
@@ -140,9 +141,8 @@ fn fastest(taper: f64, bend: f64) -> f64 {
 /// Under more than a small load the bend gathers in the softest piece.
 const CONCENTRATED: f64 = 2.0;
 
-/// A piece of a profile may be much shorter than what the rod needs as a step; it takes this part of `least`, so that twice as
-/// many steps are twice as many.
-const FEWEST: f64 = 0.15;
+/// Steps that a change of `ln radius` by 1 takes, in parts of `least`.
+const ROUGH: f64 = 0.25;
 
 /// Bounds the work on a trajectory that a lost Newton step has sent far away.
 const MOST: f64 = 8192.0;

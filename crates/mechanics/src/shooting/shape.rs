@@ -2,8 +2,8 @@
 
 use crate::rod::{Rest, Rod, arclength};
 use crate::shooting::{
-    Bent, Graded, Intrinsic, Material, Measured, Nystrom8, Resolution, RodSystem, Scales, Section,
-    Shape, Spiral, State, integrate,
+    Bent, Graded, Intrinsic, Measured, Nystrom8, Resolution, RodSystem, Scales, Section, Shape,
+    Spiral, State, collocate, integrate,
 };
 use glam::DVec2;
 
@@ -41,6 +41,7 @@ pub fn profile(
         force: load * radius * radius,
         tangent: rod.contact_tangent(),
         steps: resolution.steps(rod, tau, load),
+        resolution,
     };
     match rod.spiral {
         Some([at_base, slope]) => way.points(Spiral { at_base, slope }, (), at),
@@ -50,6 +51,12 @@ pub fn profile(
             way.points(Bent { twice_bend }, rest, at)
         }
     }
+}
+
+/// How many of the `steps` over `whole` a part of it takes, and how long they are.
+fn share(steps: u32, whole: f64, part: f64) -> (u32, f64) {
+    let steps = ((f64::from(steps) * part / whole).ceil() as u32).max(1);
+    (steps, part / f64::from(steps))
 }
 
 /// The way from a contact to the base.
@@ -63,8 +70,9 @@ struct Way<'a> {
     force: f64,
     /// The whisker's tangent at the contact.
     tangent: DVec2,
-    /// Steps that the whole way would take, or a piece of a profile.
+    /// Steps that the whole way would take, or a piece of a profile at least.
     steps: u32,
+    resolution: Resolution,
 }
 
 impl Way<'_> {
@@ -101,52 +109,53 @@ impl Way<'_> {
     ) -> State<f64, I, Shape> {
         let gradient = self.rod.gradient;
         let Some(profile) = &self.rod.profile else {
-            return self.integrate(intrinsic, Graded { gradient }, self.tau, (from, to), state);
+            let (steps, h) = share(self.steps, self.tau, from - to);
+            let system = self.system(intrinsic, Graded { gradient });
+            let scales = Scales::tapered::<Nystrom8>(self.rod.taper, h);
+            let section = self.section(from);
+            return integrate::<Nystrom8, f64, _, _, Shape>(
+                &system, &scales, section, steps, state,
+            );
         };
         let mut ahead = self.tau;
-        let pieces = &profile.pieces[..=self.rod.piece(self.contact)];
-        for piece in pieces.iter().rev() {
-            let begin = self.rod.tau(piece.from);
-            let (whole, end) = (ahead - begin, begin.max(to));
-            ahead = begin;
+        let last = self.rod.piece(self.contact);
+        let pieces = profile.pieces[..=last].iter().zip(&profile.changes);
+        for (piece, change) in pieces.rev() {
+            let (whole, end) = (ahead - piece.tau, piece.tau.max(to));
+            ahead = piece.tau;
             if end < from {
+                let steps = self.resolution.steps_of_piece(*change).max(self.steps);
+                let (steps, h) = share(steps, whole, from - end);
                 let material = Measured {
                     from: piece.from,
                     cubic: piece.cubic,
                     gradient,
                 };
-                state = self.integrate(intrinsic, material, whole, (from, end), state);
+                let system = self.system(intrinsic, material);
+                let scales = Scales::tapered::<Nystrom8>(self.rod.taper, h);
+                let section = self.section(from);
+                state = collocate::<f64, _, Shape>(&system, scales.end(), section, steps, state);
                 from = end;
             }
         }
         state
     }
 
-    /// Takes the share of the steps over `whole` that the part from `from` to `to` has.
-    fn integrate<I: Intrinsic<f64>, C: Material<f64>>(
-        &self,
-        intrinsic: I,
-        material: C,
-        whole: f64,
-        (from, to): (f64, f64),
-        state: State<f64, I, Shape>,
-    ) -> State<f64, I, Shape> {
-        let share = f64::from(self.steps) * (from - to) / whole;
-        let steps = (share.ceil() as u32).max(1);
-        let h = (from - to) / f64::from(steps);
-        let rho = self.rod.radius(from);
-        let section = Section {
-            rho,
-            inverse_cube: 1.0 / (rho * rho * rho),
-            arclength: arclength(self.rod, from),
-        };
-        let system = RodSystem {
+    fn system<I, C>(&self, intrinsic: I, material: C) -> RodSystem<f64, I, C> {
+        RodSystem {
             force: self.force,
             intrinsic,
             material,
-        };
-        let scales = Scales::tapered::<Nystrom8>(self.rod.taper, h);
-        integrate::<Nystrom8, f64, _, _, Shape>(&system, &scales, section, steps, state)
+        }
+    }
+
+    fn section(&self, tau: f64) -> Section<f64> {
+        let rho = self.rod.radius(tau);
+        Section {
+            rho,
+            inverse_cube: 1.0 / (rho * rho * rho),
+            arclength: arclength(self.rod, tau),
+        }
     }
 
     fn loaded(&self, s: f64, [c, sin, x, y, _]: [f64; 5]) -> RodPoint {

@@ -42,20 +42,22 @@ fn a_linear_table_is_the_cone() {
 #[test]
 fn the_way_from_the_last_row_to_the_tip_counts() {
     let rows = [0.0, 0.5, 1.0].map(|s| [s, 1.0 - 0.6 * s]);
-    let ends = |stretch: f64| {
+    let beyond = |stretch: f64| {
         let taper = 0.6 * stretch;
         let tau = |s: f64| -(-taper * s).ln_1p() / taper;
-        (
-            tau(1.0) - tau(1.0 / stretch),
-            tau(1.0 / stretch) - tau(0.5 / stretch),
-        )
+        tau(1.0) - tau(1.0 / stretch)
     };
     for stretch in [1.0, 1.2, 1.6] {
         let profile = RadiusProfile::new(&rows, stretch);
-        let (beyond, before) = ends(stretch);
-        let [change, length] = profile.changes[2];
-        assert!((length - beyond.max(before)).abs() < 1e-12, "{stretch}");
-        assert!((change - 0.6 * stretch * length).abs() < 1e-12, "{stretch}");
+        let beyond = beyond(stretch);
+        let change = 0.6 * stretch * beyond;
+        assert!((profile.changes[2] - change).abs() < 1e-12, "{stretch}");
+        let longest = 0.5 / stretch;
+        let tail = 1.0 - 1.0 / stretch;
+        assert!(
+            (profile.longest[2] - longest.max(tail)).abs() < 1e-12,
+            "{stretch}"
+        );
     }
 }
 

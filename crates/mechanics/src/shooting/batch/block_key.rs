@@ -7,36 +7,40 @@ use std::sync::Arc;
 /// What the trajectories of a block have in common: lanes step together.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct BlockKey {
-    /// Those of the kernel: the method's, and all of the rod's own.
+    /// Those of the kernel: the method's, and all of the rod's own; a profile only if it is the rod's own.
     pub effects: Effects,
     /// The address of the profile; 0 without one.
     profile: usize,
-    /// The piece of the profile with the contact.
-    piece: usize,
-    /// Steps of a trajectory, or per piece of the profile.
+    /// Steps of a trajectory, or the fewest per piece of the profile.
     pub steps: u32,
+    /// That of the resolution, which tells how many more the pieces take.
+    pub least: u32,
 }
 
 impl BlockKey {
-    /// That of a condition with its contact at arclength `s` that takes so many `steps`.
+    /// That of a condition that takes so many `steps`.
     #[inline]
     pub fn new(
         method: Method,
         InitialCondition { rod, tau, .. }: &InitialCondition,
-        (s, steps): (f64, u32),
+        steps: u32,
     ) -> Self {
         let profile = rod.profile.as_ref();
         Self {
-            effects: method.effects.and(rod).reaching(rod.taper * tau),
+            effects: Effects {
+                // Pieces are integrated in a way of their own.
+                profile: profile.is_some(),
+                ..method.effects.and(rod).reaching(rod.taper * tau)
+            },
             profile: profile.map_or(0, |profile| Arc::as_ptr(profile).addr()),
-            piece: rod.piece(s),
             steps,
+            least: method.resolution.least,
         }
     }
 
     /// Whether the two can share a padded block, which takes the steps of the one that needs more.
     pub fn may_pad(&self, other: &Self) -> bool {
-        let but_steps = |key: &Self| (key.effects, key.profile, key.piece);
+        let but_steps = |key: &Self| (key.effects, key.profile, key.least);
         but_steps(self) == but_steps(other)
     }
 }
@@ -45,7 +49,7 @@ impl BlockKey {
 pub struct BlockKeys {
     /// Each of them once.
     pub all: Vec<BlockKey>,
-    /// The index of the last one with as many steps on such a piece, give or take multiples of 64.
+    /// The index of the last one with as many steps, give or take multiples of 64.
     likely: [usize; 64],
 }
 
@@ -62,7 +66,7 @@ impl BlockKeys {
     /// The index of `key` among all; it is the last one if it is new.
     #[inline]
     pub fn index(&mut self, key: BlockKey) -> usize {
-        let likely = &mut self.likely[(key.steps as usize + 7 * key.piece) % 64];
+        let likely = &mut self.likely[key.steps as usize % 64];
         if self.all.get(*likely) != Some(&key) {
             let index = self.all.iter().position(|other| *other == key);
             *likely = index.unwrap_or_else(|| {

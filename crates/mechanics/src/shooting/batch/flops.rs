@@ -2,8 +2,8 @@
 
 use crate::numerics::{Lanes, Real, WIDTH};
 use crate::rod::Effects;
-use crate::shooting::batch::{InitialCondition, kernel::by_effects};
-use crate::shooting::{Nystrom8, ShootingMap};
+use crate::shooting::batch::{InitialCondition, Method, block_key::BlockKey, kernel::by_effects};
+use crate::shooting::{Nystrom8, Resolution, ShootingMap};
 use std::cell::Cell;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -73,10 +73,9 @@ impl Lanes for Counted {
 /// needs are counted too; a compiler leaves them out.
 #[must_use]
 pub fn flops_of_nystrom8(effects: Effects, steps: u32, condition: &InitialCondition) -> u64 {
-    let effects = effects
-        .and(condition.rod)
-        .reaching(condition.rod.taper * condition.tau);
+    let method = Method::new(Resolution::of(steps)).with_effects(effects);
+    let key = BlockKey::new(method, condition, steps);
     COUNT.set(0);
-    let _ = by_effects::<Nystrom8, ShootingMap, Counted>(effects, steps, &[condition; WIDTH]);
+    let _ = by_effects::<Nystrom8, ShootingMap, Counted>(&key, &[condition; WIDTH]);
     COUNT.get()
 }

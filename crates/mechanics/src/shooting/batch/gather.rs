@@ -1,10 +1,13 @@
 //! Rest shapes and materials of the rods of a block, side by side in lanes.
 
 use crate::numerics::{Lanes, WIDTH};
-use crate::rod::{Piece, Rod};
 use crate::shooting::batch::InitialCondition;
+use crate::shooting::batch::block_key::BlockKey;
 use crate::shooting::contact::{arc, parabola_tangent};
-use crate::shooting::{Bent, Graded, Intrinsic, Material, Measured, Spiral, Straight, Uniform};
+use crate::shooting::{
+    Bent, Graded, Integrator, Intrinsic, Material, RodSystem, Scales, Section, Sensitivity, Spiral,
+    State, Straight, Uniform, integrate,
+};
 
 /// One condition for every lane.
 pub type Conditions<'a> = [&'a InitialCondition<'a>; WIDTH];
@@ -25,105 +28,103 @@ pub fn lanes<T: Lanes>(conditions: &Conditions, number: impl Fn(&InitialConditio
     T::pack(numbers(conditions, number))
 }
 
-/// A place along each rod of a block.
-pub struct ArcPosition<T> {
-    /// `tau` there.
+/// The contacts of a block.
+pub struct Contacts<'a, T> {
+    /// Where the trajectories start.
+    pub conditions: &'a Conditions<'a>,
+    /// How many steps they take.
+    pub key: &'a BlockKey,
+    /// `beta` of the rods.
+    pub taper: T,
+    /// `tau`.
     pub tau: T,
     /// Scale of the coordinates.
     pub radius: T,
     /// Arclength from the base.
     pub s: T,
+    /// The whole forces, signed.
+    pub force: T,
 }
 
 /// A material that can be gathered from the rods of a block, and the way along it.
-pub trait GatherMaterial<T: Lanes>: Material<T> {
-    /// The material on piece `piece` of a profile.
-    fn gather(conditions: &Conditions, piece: usize) -> Self;
-
+pub trait GatherMaterial<T: Lanes> {
     /// Stiffness at the contacts, over that at the base; `radius` and `s` are those there.
     fn stiffness(conditions: &Conditions, radius: T, s: T) -> T;
 
-    /// Where piece `piece` begins; the base for the first one.
-    #[inline(always)]
-    fn begin(_conditions: &Conditions, _piece: usize) -> ArcPosition<T> {
-        ArcPosition {
-            tau: T::of(0.0),
-            radius: T::of(1.0),
-            s: T::of(0.0),
-        }
-    }
+    /// Takes `state` from the `contacts` to the base, on rods that change along their length if it `ADVANCES`.
+    fn to_base<M: Integrator, I: Intrinsic<T>, S: Sensitivity<T>, const ADVANCES: bool>(
+        contacts: &Contacts<T>,
+        intrinsic: I,
+        state: State<T, I, S>,
+    ) -> State<T, I, S>;
+}
 
-    /// How many pieces the way from the contacts at the arclengths `s` to the base has.
-    #[inline(always)]
-    fn pieces(_conditions: &Conditions, _s: T) -> usize {
-        1
-    }
+/// Steps of one length from the contacts to the base.
+#[inline(always)]
+fn evenly<
+    M: Integrator,
+    T: Lanes,
+    I: Intrinsic<T>,
+    C: Material<T>,
+    S: Sensitivity<T>,
+    const ADVANCES: bool,
+>(
+    contacts: &Contacts<T>,
+    intrinsic: I,
+    material: C,
+    state: State<T, I, S>,
+) -> State<T, I, S> {
+    let one = T::of(1.0);
+    let h = contacts.tau / T::of(f64::from(contacts.key.steps));
+    let (scales, rho) = if ADVANCES {
+        (Scales::tapered::<M>(contacts.taper, h), contacts.radius)
+    } else {
+        (Scales::cylinder::<M>(h), one)
+    };
+    let section = Section {
+        rho,
+        inverse_cube: one / (rho * rho * rho),
+        arclength: contacts.s,
+    };
+    let system = RodSystem {
+        force: contacts.force,
+        intrinsic,
+        material,
+    };
+    integrate::<M, _, I, C, S>(&system, &scales, section, contacts.key.steps, state)
 }
 
 impl<T: Lanes> GatherMaterial<T> for Uniform {
     #[inline(always)]
-    fn gather(_: &Conditions, _: usize) -> Self {
-        Self
+    fn stiffness(_: &Conditions, radius: T, _: T) -> T {
+        radius * radius * (radius * radius)
     }
 
     #[inline(always)]
-    fn stiffness(_: &Conditions, radius: T, _: T) -> T {
-        radius * radius * (radius * radius)
+    fn to_base<M: Integrator, I: Intrinsic<T>, S: Sensitivity<T>, const ADVANCES: bool>(
+        contacts: &Contacts<T>,
+        intrinsic: I,
+        state: State<T, I, S>,
+    ) -> State<T, I, S> {
+        evenly::<M, T, I, Self, S, ADVANCES>(contacts, intrinsic, Self, state)
     }
 }
 
 impl<T: Lanes> GatherMaterial<T> for Graded<T> {
     #[inline(always)]
-    fn gather(conditions: &Conditions, _: usize) -> Self {
-        let gradient: T = lanes(conditions, |condition| condition.rod.gradient);
-        Self { gradient }
-    }
-
-    #[inline(always)]
     fn stiffness(conditions: &Conditions, radius: T, s: T) -> T {
         let gradient: T = lanes(conditions, |condition| condition.rod.gradient);
         radius * radius * (radius * radius) * gradient.mul_add(s, T::of(1.0))
     }
-}
-
-impl<T: Lanes> GatherMaterial<T> for Measured<T> {
-    #[inline(always)]
-    fn gather(conditions: &Conditions, piece: usize) -> Self {
-        // A rod without a profile comes here only where the method has the effect; its piece is its own cone.
-        let pieces = conditions.map(|condition| match &condition.rod.profile {
-            Some(profile) => profile.pieces[piece],
-            None => Piece::cone(condition.rod.taper),
-        });
-        Self {
-            from: T::pack(pieces.map(|piece| piece.from)),
-            cubic: std::array::from_fn(|i| T::pack(pieces.map(|piece| piece.cubic[i]))),
-            gradient: lanes(conditions, |condition| condition.rod.gradient),
-        }
-    }
 
     #[inline(always)]
-    fn stiffness(conditions: &Conditions, _: T, s: T) -> T {
-        let s = s.unpack();
-        T::pack(std::array::from_fn(|i| conditions[i].rod.stiffness(s[i])))
-    }
-
-    #[inline(always)]
-    fn begin(conditions: &Conditions, piece: usize) -> ArcPosition<T> {
-        let begin = |rod: &Rod| {
-            rod.profile
-                .as_ref()
-                .map_or(0.0, |profile| profile.pieces[piece].from)
-        };
-        ArcPosition {
-            tau: lanes(conditions, |at| at.rod.tau(begin(at.rod))),
-            radius: lanes(conditions, |at| 1.0 - at.rod.taper * begin(at.rod)),
-            s: lanes(conditions, |at| begin(at.rod)),
-        }
-    }
-
-    #[inline(always)]
-    fn pieces(conditions: &Conditions, s: T) -> usize {
-        conditions[0].rod.piece(s.unpack()[0]) + 1
+    fn to_base<M: Integrator, I: Intrinsic<T>, S: Sensitivity<T>, const ADVANCES: bool>(
+        contacts: &Contacts<T>,
+        intrinsic: I,
+        state: State<T, I, S>,
+    ) -> State<T, I, S> {
+        let gradient = lanes(contacts.conditions, |condition| condition.rod.gradient);
+        evenly::<M, T, I, Self, S, ADVANCES>(contacts, intrinsic, Self { gradient }, state)
     }
 }
 

@@ -1,16 +1,13 @@
 //! One specialised kernel per set of effects: no branch on an effect is left inside.
 
 use super::block_key::BlockKey;
-use super::gather::{ArcPosition, Conditions, Gather, GatherMaterial, lanes, numbers};
+use super::gather::{Conditions, Contacts, Gather, GatherMaterial, lanes, numbers};
 use super::{InitialCondition, Method, OutputSet};
 use crate::numerics::{Lanes, LanesTask, SimdTask, WIDTH};
 use crate::rod::Effects;
 use crate::shooting::contact::{Contact, radius_and_arclength};
 use crate::shooting::sensitivity::{Arrival, SensitivitySet};
-use crate::shooting::{
-    Bent, Graded, Integrator, Measured, Nystrom8, RodSystem, Scales, Section, Spiral, Straight,
-    Uniform, integrate,
-};
+use crate::shooting::{Bent, Graded, Integrator, Measured, Nystrom8, Spiral, Straight, Uniform};
 use std::marker::PhantomData;
 
 /// Up to as many conditions as there are lanes.
@@ -75,13 +72,12 @@ impl<O: OutputSet> SimdTask for Trajectories<'_, O> {
 
     #[inline(always)]
     fn run<T: Lanes>(self) -> Self::Output {
-        let BlockKey { effects, steps, .. } = self.key;
         self.block
-            .in_parts::<T, _>(|conditions| by_effects::<Nystrom8, O, T>(effects, steps, conditions))
+            .in_parts::<T, _>(|conditions| by_effects::<Nystrom8, O, T>(&self.key, conditions))
     }
 }
 
-/// Arclengths of the contacts of a block, and the steps that its trajectories take.
+/// The steps that the trajectories of a block take.
 pub struct Steps<'a> {
     /// How they are integrated.
     pub method: Method,
@@ -90,7 +86,7 @@ pub struct Steps<'a> {
 }
 
 impl SimdTask for Steps<'_> {
-    type Output = [(f64, u32); WIDTH];
+    type Output = [u32; WIDTH];
 
     #[inline(always)]
     fn run<T: Lanes>(self) -> Self::Output {
@@ -100,7 +96,7 @@ impl SimdTask for Steps<'_> {
 }
 
 #[inline(always)]
-fn steps<T: Lanes>(method: Method, conditions: &Conditions) -> [(f64, u32); WIDTH] {
+fn steps<T: Lanes>(method: Method, conditions: &Conditions) -> [u32; WIDTH] {
     let resolution = method.resolution;
     let taper = numbers(conditions, |condition| condition.rod.taper);
     let tau = numbers(conditions, |condition| condition.tau);
@@ -120,25 +116,20 @@ fn steps<T: Lanes>(method: Method, conditions: &Conditions) -> [(f64, u32); WIDT
             steps[lane] = resolution.steps_on_uniform(taper[lane], bend[lane], at);
         }
     }
-    let mut pairs = [(0.0, 0); WIDTH];
-    for (lane, pair) in pairs.iter_mut().enumerate() {
-        *pair = (s[lane], steps[lane]);
-    }
-    pairs
+    steps
 }
 
 /// Integrates with the kernel for `effects`. A profile has one kernel with a gradient or without: it costs one multiplication.
 #[inline(always)]
 pub fn by_effects<M: Integrator, O: OutputSet, T: Lanes>(
-    effects: Effects,
-    steps: u32,
+    key: &BlockKey,
     conditions: &Conditions,
 ) -> [O; WIDTH] {
     /// The kernel for a rest shape and a material, with these sensitivities, on a rod that changes along its length or not.
     macro_rules! kernel {
         ($rest:ty, $material:ty, $set:ident, $advances:literal) => {
             T::outlined(Kernel::<M, O, O::$set<T>, $rest, $material, $advances> {
-                steps,
+                key,
                 conditions,
                 of: PhantomData,
             })
@@ -150,25 +141,29 @@ pub fn by_effects<M: Integrator, O: OutputSet, T: Lanes>(
         gradient,
         profile,
         ..
-    } = effects;
+    } = key.effects;
     match (spiral, curvature, profile, gradient) {
         (true, _, true, _) => kernel!(Spiral<T>, Measured<T>, General, true),
         (true, _, false, true) => kernel!(Spiral<T>, Graded<T>, General, true),
         (true, _, false, false) => kernel!(Spiral<T>, Uniform, General, true),
         (false, true, true, _) => kernel!(Bent<T>, Measured<T>, General, true),
         (false, true, false, true) => kernel!(Bent<T>, Graded<T>, General, true),
-        (false, true, false, false) if effects.taper => kernel!(Bent<T>, Uniform, General, true),
+        (false, true, false, false) if key.effects.taper => {
+            kernel!(Bent<T>, Uniform, General, true)
+        }
         (false, true, false, false) => kernel!(Bent<T>, Uniform, General, false),
         (false, false, true, _) => kernel!(Straight, Measured<T>, General, true),
         (false, false, false, true) => kernel!(Straight, Graded<T>, General, true),
-        (false, false, false, false) if effects.taper => kernel!(Straight, Uniform, Similar, true),
+        (false, false, false, false) if key.effects.taper => {
+            kernel!(Straight, Uniform, Similar, true)
+        }
         (false, false, false, false) => kernel!(Straight, Uniform, Similar, false),
     }
 }
 
 /// Integrates as many trajectories in step as there are lanes.
 struct Kernel<'a, M, O, S, I, C, const ADVANCES: bool> {
-    steps: u32,
+    key: &'a BlockKey,
     conditions: &'a Conditions<'a>,
     of: PhantomData<(M, O, S, I, C)>,
 }
@@ -187,7 +182,7 @@ where
     #[inline(always)]
     fn run(self) -> [O; WIDTH] {
         let Self {
-            steps, conditions, ..
+            key, conditions, ..
         } = self;
         let tau: T = lanes(conditions, |condition| condition.tau);
         let load: T = lanes(conditions, |condition| condition.load);
@@ -208,30 +203,17 @@ where
         };
         let [c, sin] = contact.tangent;
         let rod = [c, sin, zero, zero, zero];
-        let mut state = (at_rest, (rod, S::start(&contact)));
-        let mut here = ArcPosition { tau, radius, s };
-        for piece in (0..C::pieces(conditions, s)).rev() {
-            let there = C::begin(conditions, piece);
-            let h = (here.tau - there.tau) / T::of(f64::from(steps));
-            let system = RodSystem {
-                force: contact.force,
-                intrinsic,
-                material: C::gather(conditions, piece),
-            };
-            let (scales, rho) = if ADVANCES {
-                (Scales::tapered::<M>(taper, h), here.radius)
-            } else {
-                (Scales::cylinder::<M>(h), one)
-            };
-            let section = Section {
-                rho,
-                inverse_cube: one / (rho * rho * rho),
-                arclength: here.s,
-            };
-            state = integrate::<M, _, I, C, S>(&system, &scales, section, steps, state);
-            here = there;
-        }
-        let (_, (rod, carried)) = state;
+        let contacts = Contacts {
+            conditions,
+            key,
+            taper,
+            tau,
+            radius,
+            s,
+            force: contact.force,
+        };
+        let start = (at_rest, (rod, S::start(&contact)));
+        let (_, (rod, carried)) = C::to_base::<M, I, S, ADVANCES>(&contacts, intrinsic, start);
         let arrival = Arrival {
             contact,
             taper,

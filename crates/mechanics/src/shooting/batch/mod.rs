@@ -8,6 +8,7 @@ mod block_key;
 mod flops;
 mod gather;
 mod kernel;
+mod measured;
 mod output_set;
 mod padded;
 mod pole;

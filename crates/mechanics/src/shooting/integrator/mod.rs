@@ -1,8 +1,10 @@
 //! Fixed-step integration along the rod: what the methods share.
 
+mod collocation;
 mod nystrom8;
 mod rk4;
 
+pub use collocation::collocate;
 pub use nystrom8::Nystrom8;
 pub use rk4::Rk4;
 
