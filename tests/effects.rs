@@ -233,7 +233,8 @@ fn a_faint_parabola_is_a_circular_arc_to_third_order() {
     assert!((2.8..3.2).contains(&order), "{order}");
 }
 
-/// Errors fall with the steps to the 8th power though the profile has jumps in its second derivative.
+/// Errors fall with the steps to the 7th power, as those of two iterations from levers off by the third, though the profile has jumps
+/// in its second derivative. Measured 6.4 to 7.
 #[test]
 fn rows_do_not_cost_the_order() {
     for effects in effect_sets::all().filter(|effects| effects.profile) {
@@ -241,22 +242,20 @@ fn rows_do_not_cost_the_order() {
         // On the last piece, with all rows behind.
         conditions
             .retain(|condition| arclength(condition.rod, condition.tau) > ROWS[ROWS.len() - 2][0]);
-        let at = |longest: f64| Resolution { least: 0, longest };
-        let poles =
-            |longest: f64| Batch::new(with(effects, at(longest))).shoot::<ShootingMap>(&conditions);
-        let [rough, half, exact] = [0.4, 0.2, 0.01].map(poles);
-        let error = |found: &[ShootingMap], i: usize| found[i].pole.distance(exact[i].pole);
-        let worst = (0..conditions.len())
-            .max_by(|&i, &j| error(&rough, i).total_cmp(&error(&rough, j)))
-            .unwrap();
-        let InitialCondition { rod, tau, load } = &conditions[worst];
-        let steps = |longest| f64::from(at(longest).steps(rod, *tau, *load));
-        let order =
-            (error(&rough, worst) / error(&half, worst)).ln() / (steps(0.2) / steps(0.4)).ln();
+        let poles = |least| {
+            let method = with(effects, Resolution::of(least));
+            Batch::new(method).shoot::<ShootingMap>(&conditions)
+        };
+        let [rough, half, exact] = [6, 12, 60].map(poles);
+        let worst = |found: &[ShootingMap]| {
+            let errors = found.iter().zip(&exact);
+            errors.fold(0.0, |worst: f64, (a, b)| worst.max(a.pole.distance(b.pole)))
+        };
+        let order = (worst(&rough) / worst(&half)).log2();
         assert!(
-            (6.5..10.0).contains(&order),
+            (6.0..9.0).contains(&order),
             "{effects:?}: {order}, {:e}",
-            error(&half, worst)
+            worst(&half)
         );
     }
 }

@@ -196,6 +196,22 @@ fn contradictions_are_unresolved() {
     );
 }
 
+/// What is known of a row holds; beyond it nobody knows whether another piece has a state.
+#[test]
+fn beyond_a_row_that_lost_a_piece_nothing_is_claimed() {
+    let row = RowBoundary::new(true, &[crossing(Edge::Fold, 0.5), Crossing::unknown()]);
+    assert_eq!(row.judge(0.3, Status::Solved).0, Regime::Contact);
+    assert_eq!(row.detachment().map(|span| span.to), Some(0.5));
+    for status in [Status::Outside, Status::BeyondFold] {
+        assert_eq!(
+            row.judge(0.6, status),
+            (Regime::Unresolved, Status::NoBoundary)
+        );
+    }
+    let lost = RowBoundary::new(false, &[Crossing::unknown()]);
+    assert_eq!(lost.judge(0.1, Status::Outside).0, Regime::Unresolved);
+}
+
 #[test]
 fn both_verdicts_are_right_on_the_edge() {
     let row = RowBoundary::new(true, &[crossing(Edge::Fold, 0.5)]);

@@ -73,7 +73,7 @@ named! {
         NotConverged = 101, "unresolved: Newton's method did not converge";
         /// The cell and the boundary of its row contradict each other.
         Disagreement = 102, "unresolved: cell and boundary disagree";
-        /// The boundary of the row was not found.
+        /// The boundary of the row was not found, or not all of it.
         NoBoundary = 103, "unresolved: boundary not found";
     }
 }

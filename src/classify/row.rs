@@ -32,12 +32,19 @@ pub struct RowBoundary {
     touches: bool,
     /// Spans in the order of growing push angle; `None` when the crossings do not make sense.
     spans: Option<Vec<Span>>,
+    /// Whether there are no others.
+    is_complete: bool,
 }
 
 impl RowBoundary {
-    /// The boundary made of a row's `crossings`: the end of a push from first touch, then the others by push angle.
+    /// The boundary made of a row's `crossings`: the end of a push from first touch, then the others by push angle; at last the
+    /// [unknown](Crossing::unknown) one, if there may be more.
     #[must_use]
     pub fn new(touches: bool, crossings: &[Crossing]) -> Self {
+        let (crossings, is_complete) = match crossings {
+            [known @ .., last] if last.is_unknown() => (known, false),
+            all => (all, true),
+        };
         let sound = crossings.iter().all(Crossing::is_sound);
         let even = (crossings.len() + usize::from(touches)).is_multiple_of(2);
         let mut ends = crossings.iter();
@@ -54,6 +61,7 @@ impl RowBoundary {
         Self {
             touches,
             spans: (sound && even).then_some(spans),
+            is_complete,
         }
     }
 
@@ -106,6 +114,9 @@ impl RowBoundary {
             (Status::Outside | Status::BeyondFold | Status::BeyondTip, span)
                 if span.is_none_or(|span| self.is_on_edge(span, push)) =>
             {
+                if !self.is_complete && span.is_none() {
+                    return (Regime::Unresolved, Status::NoBoundary);
+                }
                 let regime = match self.detachment().map(|span| span.edge) {
                     None => Regime::OutOfReach,
                     Some(Edge::Fold) => Regime::SlipOff,

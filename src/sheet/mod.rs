@@ -26,7 +26,7 @@ pub use row::{Crossing, Edge, Row};
 use crate::rod::{Rest, Rod, Side};
 use crate::shooting::ShootingMap;
 use crate::shooting::batch::Method;
-use continuation::pieces::{StablePiece, stable_pieces};
+use continuation::pieces::{StablePiece, WalkedRow, stable_pieces};
 use continuation::walked::WalkedPiece;
 use edges::Edges;
 use edges::crossings::crossings;
@@ -38,8 +38,8 @@ use rayon::prelude::*;
 /// strongly curved cone the rounding of first touch (1e-13 of the length) is a load of 1e-8.
 const UNLOADED: f64 = 1e-6;
 
-/// Rows that a thread looks at together: walking takes milliseconds a row, anything else much less than a microsecond.
-const TOGETHER: usize = 8;
+/// Rows that are walked together: some walks end before others, and lanes should be full.
+const TOGETHER: usize = 32;
 
 /// The sheet of one whisker on one side, with the rows of a map.
 #[derive(Clone, Debug)]
@@ -53,7 +53,8 @@ pub struct Sheet {
     /// The rows.
     pub rows: Vec<Row>,
     /// Per row: where it leaves and enters the sheet. The end of a push from first touch comes first, if there is one;
-    /// then the ends of each other piece of the row, in the direction of growing push angles.
+    /// then the ends of each other piece of the row, in the direction of growing push angles; at last the unknown one, if a piece was
+    /// lost.
     pub crossings: Vec<Vec<Crossing>>,
     method: Method,
     guesses: Guesses,
@@ -116,27 +117,45 @@ impl Sheet {
         let fold_grows = samples
             .as_ref()
             .is_some_and(|samples| samples.edges.fold_grows);
-        let walk = |(row, crossings): (&Row, &mut Vec<Crossing>)| {
+        let needs_walk = |row: &Row, crossings: &[Crossing]| {
             let touches = row.is_reached();
             let is_pair = usize::from(touches) + crossings.len() == 2;
             let is_simple = crossings.is_empty() && !touches
                 || fold_grows && is_pair && crossings.iter().all(Crossing::is_sound);
-            if is_certified && is_simple {
-                return Vec::new();
-            }
-            let level = LevelCurve::new(method, rod, side, row);
-            let pieces = stable_pieces(&level, touches, crossings);
-            let ends = |piece: &StablePiece| [piece.begin, Some(piece.end)];
-            *crossings = pieces.iter().flat_map(ends).flatten().collect();
-            if samples.is_none() && !touches {
-                crossings.push(Crossing::unknown());
-            }
-            let walked = |piece: &StablePiece| WalkedPiece::new(&piece.nodes, side);
-            pieces.iter().map(walked).collect()
+            !(is_certified && is_simple)
         };
-        let rows_with_crossings = rows.par_iter().zip(&mut crossings);
-        let walked = rows_with_crossings.with_min_len(TOGETHER).map(walk);
-        let walked: Vec<Vec<WalkedPiece>> = walked.collect();
+        let walk = |(rows, crossings): (&[Row], &mut [Vec<Crossing>])| {
+            let walked: Vec<usize> = (0..rows.len())
+                .filter(|i| needs_walk(&rows[*i], &crossings[*i]))
+                .collect();
+            let levels: Vec<LevelCurve> = walked
+                .iter()
+                .map(|i| LevelCurve::new(method, rod, side, &rows[*i]))
+                .collect();
+            let row = |(i, level): (&usize, _)| WalkedRow {
+                level,
+                touches: rows[*i].is_reached(),
+                crossings: &crossings[*i],
+            };
+            let found = stable_pieces(&walked.iter().zip(&levels).map(row).collect::<Vec<_>>());
+            let mut guesses = vec![Vec::new(); rows.len()];
+            for (i, found) in walked.into_iter().zip(found) {
+                let ends = |piece: &StablePiece| [piece.begin, Some(piece.end)];
+                crossings[i] = found.pieces.iter().flat_map(ends).flatten().collect();
+                let is_lost = !found.are_complete && !found.pieces.is_empty();
+                if is_lost || samples.is_none() && !rows[i].is_reached() {
+                    crossings[i].push(Crossing::unknown());
+                }
+                let walked = |piece: &StablePiece| WalkedPiece::new(&piece.nodes, side);
+                guesses[i] = found.pieces.iter().map(walked).collect();
+            }
+            guesses
+        };
+        let walked: Vec<Vec<WalkedPiece>> = rows
+            .par_chunks(TOGETHER)
+            .zip(crossings.par_chunks_mut(TOGETHER))
+            .flat_map_iter(walk)
+            .collect();
         let tip = rod.tau_tip();
         Self {
             rod: rod.clone(),

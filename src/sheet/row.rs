@@ -106,7 +106,7 @@ impl Crossing {
         self.load == 0.0
     }
 
-    /// In place of crossings of a row that nobody can tell.
+    /// In place of the crossings of a row that could not be found, after those that were.
     #[must_use]
     pub fn unknown() -> Self {
         Self {
@@ -116,5 +116,11 @@ impl Crossing {
             push: f64::NAN,
             residual: f64::INFINITY,
         }
+    }
+
+    /// Whether it stands for those.
+    #[must_use]
+    pub fn is_unknown(&self) -> bool {
+        self.tau.is_nan()
     }
 }

@@ -72,7 +72,7 @@ impl LevelCurve {
     #[must_use]
     pub fn touch(&self) -> Option<Node> {
         let at_touch = DVec2::new(self.rod.tau(self.row.contact).min(self.rod.tau_tip()), 0.0);
-        let full = *self.shoot(&[at_touch]).first()?;
+        let full = *shoot(&[(self, at_touch)]).first()?;
         Some(Node {
             push: 0.0,
             ..self.node(at_touch, &full, 0.0, 0.0)
@@ -132,17 +132,24 @@ impl LevelCurve {
         }
     }
 
-    /// The next node, about `step` further on, where the corrector finds the curve again.
-    #[must_use]
-    pub fn step(&self, from: &Node, step: f64) -> Option<Node> {
+    /// The predictor of the next node, about `step` further on, and the direction there, in parts of the scale.
+    pub(super) fn predicted(&self, from: &Node, step: f64) -> (DVec2, DVec2) {
         let scale = self.scale(from.point);
         let gradient = scale * gradient(from);
         // Along the curve the push angle changes by minus `det` times its direction (by_load, -by_tau).
         let heading = if self.forward { 1.0 } else { -1.0 };
         let along = -heading * self.side.sign() * DVec2::new(gradient.y, -gradient.x).normalize();
-        let predicted = from.point + step * scale * along;
-        let (point, full) = self.correct(&[predicted], ON_CURVE).pop()??;
-        let turned = (point - from.point) / scale;
+        (from.point + step * scale * along, along)
+    }
+
+    /// The next node, where the corrector has found the curve again; `None` if that is not the way `along`.
+    pub(super) fn next(
+        &self,
+        from: &Node,
+        along: DVec2,
+        (point, full): (DVec2, FullState),
+    ) -> Option<Node> {
+        let turned = (point - from.point) / self.scale(from.point);
         let node = self.node(point, &full, from.push, from.angle);
         (turned.dot(along) > 0.5 * turned.length()).then_some(node)
     }
@@ -150,44 +157,8 @@ impl LevelCurve {
     /// The corrector: brings every point onto the curve, to `tolerance` in `ln D` or to rounding; `None` where that fails.
     #[must_use]
     pub fn correct(&self, points: &[DVec2], tolerance: f64) -> Vec<Option<(DVec2, FullState)>> {
-        let mut points = points.to_vec();
-        let mut corrected = vec![None; points.len()];
-        let mut misses = vec![f64::INFINITY; points.len()];
-        let mut open: Vec<usize> = (0..points.len()).collect();
-        for _ in 0..CORRECTOR_ITERATIONS {
-            let at: Vec<DVec2> = open.iter().map(|&i| points[i]).collect();
-            let mut fulls = self.shoot(&at).into_iter();
-            open.retain(|&i| {
-                let Some(full) = fulls.next() else {
-                    return false;
-                };
-                let miss = (self.row.pole_distance / full.map.pole.length()).ln();
-                let stuck = miss.abs() < 1e3 * tolerance && miss.abs() > 0.5 * misses[i];
-                if miss.abs() <= tolerance || stuck {
-                    corrected[i] = Some((points[i], full));
-                    return false;
-                }
-                misses[i] = miss.abs();
-                let scale = self.scale(points[i]);
-                let gradient = scale * DVec2::new(full.map.by_tau.x, full.map.by_load.x);
-                points[i] += scale * gradient * (miss / gradient.length_squared());
-                points[i].is_finite() && points[i].x > 0.0
-            });
-        }
-        corrected
-    }
-
-    fn shoot(&self, points: &[DVec2]) -> Vec<FullState> {
-        let conditions: Vec<InitialCondition> = points
-            .iter()
-            .map(|point| InitialCondition {
-                rod: &self.rod,
-                tau: point.x,
-                load: point.y,
-            })
-            .collect();
-        let shot = Batch::new(self.method).shoot::<FirstVariation>(&conditions);
-        shot.iter().map(|variation| variation.full).collect()
+        let points: Vec<(&Self, DVec2)> = points.iter().map(|point| (self, *point)).collect();
+        correct(&points, |_| tolerance)
     }
 
     /// How much `tau` and load can change before the state changes by about as much as it is.
@@ -208,6 +179,56 @@ impl LevelCurve {
     pub fn length(&self, from: &Node, to: &Node) -> f64 {
         self.place(from).distance(self.place(to))
     }
+}
+
+/// The corrector for several curves at once: each point is brought onto its own, to its `tolerance`. No answer depends on the others.
+pub(super) fn correct(
+    points: &[(&LevelCurve, DVec2)],
+    tolerance: impl Fn(usize) -> f64,
+) -> Vec<Option<(DVec2, FullState)>> {
+    let mut iterates = points.to_vec();
+    let mut corrected = vec![None; points.len()];
+    let mut misses = vec![f64::INFINITY; points.len()];
+    let mut open: Vec<usize> = (0..points.len()).collect();
+    for _ in 0..CORRECTOR_ITERATIONS {
+        let at: Vec<(&LevelCurve, DVec2)> = open.iter().map(|&i| iterates[i]).collect();
+        let mut fulls = shoot(&at).into_iter();
+        open.retain(|&i| {
+            let Some(full) = fulls.next() else {
+                return false;
+            };
+            let (level, point) = &mut iterates[i];
+            let miss = (level.row.pole_distance / full.map.pole.length()).ln();
+            let stuck = miss.abs() < 1e3 * tolerance(i) && miss.abs() > 0.5 * misses[i];
+            if miss.abs() <= tolerance(i) || stuck {
+                corrected[i] = Some((*point, full));
+                return false;
+            }
+            misses[i] = miss.abs();
+            let scale = level.scale(*point);
+            let gradient = scale * DVec2::new(full.map.by_tau.x, full.map.by_load.x);
+            *point += scale * gradient * (miss / gradient.length_squared());
+            point.is_finite() && point.x > 0.0
+        });
+    }
+    corrected
+}
+
+/// The states at `points`, all integrated as those of the first curve are.
+fn shoot(points: &[(&LevelCurve, DVec2)]) -> Vec<FullState> {
+    let Some((first, _)) = points.first() else {
+        return Vec::new();
+    };
+    let conditions: Vec<InitialCondition> = points
+        .iter()
+        .map(|(level, point)| InitialCondition {
+            rod: &level.rod,
+            tau: point.x,
+            load: point.y,
+        })
+        .collect();
+    let shot = Batch::new(first.method).shoot::<FirstVariation>(&conditions);
+    shot.iter().map(|variation| variation.full).collect()
 }
 
 /// `d ln D/d(tau, load)`.

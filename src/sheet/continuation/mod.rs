@@ -1,11 +1,12 @@
 //! Continuation along `D = const`: the states in front of one pole, from first touch through the fold to the end of the branch.
 
 pub mod level_curve;
+mod meeting;
 pub mod pieces;
 pub mod walked;
 
-use crate::sheet::continuation::level_curve::{LevelCurve, Node, ON_CURVE};
-use crate::sheet::edges::edge_newton::{EdgeProblem, edge_newton_fine};
+use crate::sheet::continuation::level_curve::{LevelCurve, Node, ON_CURVE, correct};
+use crate::sheet::continuation::meeting::{Chord, Meeting, meet};
 use crate::sheet::row::Edge;
 use glam::DVec2;
 
@@ -38,128 +39,132 @@ pub struct Continuation {
     pub end: Edge,
 }
 
-/// What `ln D` may miss at the tip, where moving the contact would do more harm.
-const TIP_MISS: f64 = 1e-11;
-
 impl LevelCurve {
     /// The curve from `start` on to the tip or the fold, or past the fold to the tip or the second one; `None` where the continuation
     /// gets lost.
     #[must_use]
     pub fn continuation(&self, start: Node, past_fold: bool) -> Option<Continuation> {
-        let mut nodes = vec![start];
-        let mut fold = None;
-        let mut step = FIRST_ARC_STEP;
-        while nodes.len() < MOST_NODES && step > SHORTEST_ARC_STEP {
-            let last = *nodes.last()?;
-            let next = self.step(&last, step);
-            let fits = |next: &Node| {
-                let chord = self.place(next) - self.place(&last);
-                let before = nodes.iter().rev().nth(1);
-                let turn = before.map_or(0.0, |before| {
-                    chord.angle_between(self.place(&last) - self.place(before))
-                });
-                chord.length() < 2.0 * NODE_DISTANCE
-                    && (turn < SHARPEST_TURN || chord.length() < SHORT)
-            };
-            let Some(next) = next.filter(fits) else {
-                step *= 0.5;
-                continue;
-            };
-            let (edge, node) = match meet(self, &last, &next, fold.is_none()) {
-                Meeting::None => {
-                    step *= (NODE_DISTANCE / self.length(&last, &next)).clamp(0.5, 2.0);
-                    nodes.push(next);
-                    continue;
+        continuations(vec![(self, start)], past_fold).pop()?
+    }
+}
+
+/// The same for several curves at once, whose trajectories share batches. No answer depends on the others.
+#[must_use]
+pub fn continuations<'a>(
+    starts: Vec<(&'a LevelCurve, Node)>,
+    past_fold: bool,
+) -> Vec<Option<Continuation>> {
+    let mut ended = vec![None; starts.len()];
+    let walk = |(index, (level, start)): (usize, (_, Node))| Walk {
+        index,
+        level,
+        nodes: vec![start],
+        fold: None,
+        step: FIRST_ARC_STEP,
+    };
+    let mut walks: Vec<Walk> = starts.into_iter().enumerate().map(walk).collect();
+    while !walks.is_empty() {
+        let nexts = next_nodes(&walks);
+        let chord = |(walk, next): (&Walk<'a>, &Option<Node>)| Some(walk.chord((*next)?));
+        let chords: Vec<Option<Chord>> = walks.iter().zip(&nexts).map(chord).collect();
+        let mut meetings = meet(&chords).into_iter();
+        let mut nexts = nexts.into_iter();
+        walks.retain_mut(|walk| {
+            let next = nexts.next().flatten();
+            match (next, meetings.next()) {
+                (Some(next), Some(Meeting::None)) => walk.go_on(next),
+                (Some(_), Some(Meeting::Edge(edge, node))) => {
+                    let is_first_fold = walk.end_at(edge, node);
+                    if !(is_first_fold && past_fold) {
+                        ended[walk.index] = Some(Continuation {
+                            nodes: std::mem::take(&mut walk.nodes),
+                            fold: walk.fold,
+                            end: edge,
+                        });
+                        return false;
+                    }
                 }
-                Meeting::Unclear => {
-                    step *= 0.5;
-                    continue;
-                }
-                Meeting::Edge(edge, node) => (edge, node),
-            };
-            // Two nodes next to each other are a poor base for interpolation.
-            if let [.., before, _] = nodes[..]
-                && fold != Some(nodes.len() - 1)
-                && self.length(&last, &node) < 0.2 * self.length(&before, &last)
-            {
-                nodes.pop();
+                _ => walk.step *= 0.5,
             }
-            nodes.push(node);
-            let first_fold = edge == Edge::Fold && fold.is_none();
-            if first_fold {
-                fold = Some(nodes.len() - 1);
-            }
-            if !(first_fold && past_fold) {
-                return Some(Continuation {
-                    nodes,
-                    fold,
-                    end: edge,
-                });
-            }
+            walk.nodes.len() < MOST_NODES && walk.step > SHORTEST_ARC_STEP
+        });
+    }
+    ended
+}
+
+/// A continuation on its way.
+struct Walk<'a> {
+    /// Which one.
+    index: usize,
+    level: &'a LevelCurve,
+    nodes: Vec<Node>,
+    fold: Option<usize>,
+    step: f64,
+}
+
+/// The next node of each of the `walks`, where it was found and fits.
+fn next_nodes(walks: &[Walk]) -> Vec<Option<Node>> {
+    let predictions: Vec<(DVec2, DVec2)> = walks
+        .iter()
+        .map(|walk| walk.level.predicted(walk.last(), walk.step))
+        .collect();
+    let points: Vec<(&LevelCurve, DVec2)> = walks
+        .iter()
+        .zip(&predictions)
+        .map(|(walk, (point, _))| (walk.level, *point))
+        .collect();
+    correct(&points, |_| ON_CURVE)
+        .into_iter()
+        .zip(walks.iter().zip(&predictions))
+        .map(|(corrected, (walk, (_, along)))| {
+            let next = walk.level.next(walk.last(), *along, corrected?)?;
+            walk.fits(&next).then_some(next)
+        })
+        .collect()
+}
+
+impl<'a> Walk<'a> {
+    fn last(&self) -> &Node {
+        &self.nodes[self.nodes.len() - 1]
+    }
+
+    fn chord(&self, next: Node) -> Chord<'a> {
+        Chord::new(self.level, *self.last(), next, self.fold.is_none())
+    }
+
+    /// Whether the chord to `next` is about as long as the curve.
+    fn fits(&self, next: &Node) -> bool {
+        let (level, last) = (self.level, self.last());
+        let chord = level.place(next) - level.place(last);
+        let before = self.nodes.iter().rev().nth(1);
+        let turn = before.map_or(0.0, |before| {
+            chord.angle_between(level.place(last) - level.place(before))
+        });
+        chord.length() < 2.0 * NODE_DISTANCE && (turn < SHARPEST_TURN || chord.length() < SHORT)
+    }
+
+    fn go_on(&mut self, next: Node) {
+        let length = self.level.length(self.last(), &next);
+        self.step *= (NODE_DISTANCE / length).clamp(0.5, 2.0);
+        self.nodes.push(next);
+    }
+
+    /// Ends at an edge; whether that is the first fold.
+    fn end_at(&mut self, edge: Edge, node: Node) -> bool {
+        // Two nodes next to each other are a poor base for interpolation.
+        if let [.., before, last] = &self.nodes[..]
+            && self.fold != Some(self.nodes.len() - 1)
+            && self.level.length(last, &node) < 0.2 * self.level.length(before, last)
+        {
+            self.nodes.pop();
         }
-        None
-    }
-}
-
-/// What lies between two nodes.
-enum Meeting {
-    None,
-    Edge(Edge, Node),
-    /// An edge, but Newton's method did not find it from here.
-    Unclear,
-}
-
-/// The first edge between two nodes of the stable or the unstable part.
-fn meet(level: &LevelCurve, from: &Node, to: &Node, stable: bool) -> Meeting {
-    let mut met = Meeting::None;
-    if to.point.x > level.rod.tau_tip() {
-        let Some(tip) = edge(level, Edge::Tip, from, to) else {
-            return Meeting::Unclear;
-        };
-        met = Meeting::Edge(Edge::Tip, tip);
-    }
-    if (to.full.map.det() < 0.0) == stable {
-        match edge(level, Edge::Fold, from, to) {
-            None => return Meeting::Unclear,
-            Some(fold) if fold.point.x <= level.rod.tau_tip() => {
-                met = Meeting::Edge(Edge::Fold, fold);
-            }
-            Some(_) => {}
+        self.nodes.push(node);
+        let is_first_fold = edge == Edge::Fold && self.fold.is_none();
+        if is_first_fold {
+            self.fold = Some(self.nodes.len() - 1);
         }
+        is_first_fold
     }
-    met
-}
-
-/// The point of an edge between two nodes; `None` if Newton's method found none, or one somewhere else.
-fn edge(level: &LevelCurve, edge: Edge, from: &Node, to: &Node) -> Option<Node> {
-    let height = |node: &Node| match edge {
-        Edge::Fold => node.full.map.det(),
-        Edge::Tip => node.point.x - level.rod.tau_tip(),
-    };
-    let part = height(from) / (height(from) - height(to));
-    let start = from.point.lerp(to.point, part.clamp(0.0, 1.0));
-    let start = match edge {
-        Edge::Fold => start,
-        Edge::Tip => DVec2::new(level.rod.tau_tip(), start.y),
-    };
-    let problem = EdgeProblem {
-        rod: &level.rod,
-        edge,
-        pole_distance: level.row.pole_distance,
-        start,
-        second: None,
-    };
-    let iterate = *edge_newton_fine(level.method, &[problem]).first()?;
-    // At a fold rounding can leave Newton's method a little beside the curve; at the tip it is on it.
-    let tolerance = match edge {
-        Edge::Fold => ON_CURVE,
-        Edge::Tip => TIP_MISS,
-    };
-    let (point, full) = level.correct(&[iterate.point], tolerance).pop()??;
-    let node = level.node(point, &full, from.push, from.angle);
-    let reach = 2.0 * level.length(from, to) + f64::EPSILON;
-    let near = level.length(from, &node).max(level.length(to, &node)) <= reach;
-    (iterate.has_converged && near).then_some(node)
 }
 
 #[cfg(test)]

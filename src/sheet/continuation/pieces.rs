@@ -2,6 +2,7 @@
 //! level curve of a row is then in several pieces, whose push angles may overlap.
 
 use crate::sheet::continuation::level_curve::{LevelCurve, Node};
+use crate::sheet::continuation::{Continuation, continuations};
 use crate::sheet::row::Crossing;
 
 /// How far apart, relative to contact and load, two crossings are at most if they are the same.
@@ -18,71 +19,189 @@ pub struct StablePiece {
     pub nodes: Vec<Node>,
 }
 
-/// The pieces of a row with these `crossings`, which tell where to look; that from first touch comes first if the row `touches`.
-/// A piece on which the continuation gets lost is left out; none are left if it is the one from first touch.
-pub fn stable_pieces(
-    level: &LevelCurve,
-    touches: bool,
-    crossings: &[Crossing],
-) -> Vec<StablePiece> {
-    let mut pieces: Vec<StablePiece> = Vec::new();
-    if touches {
-        let at_touch = crossings.iter().copied().find(Crossing::is_at_touch);
-        let at_touch = at_touch.map(|end| (end, Vec::new()));
-        let Some((end, nodes)) = at_touch.or_else(|| end_of_piece(level, level.touch()?)) else {
-            return Vec::new();
-        };
-        pieces.push(StablePiece {
-            begin: None,
-            end,
-            nodes,
-        });
+/// A row to be walked.
+#[derive(Clone, Copy, Debug)]
+pub struct WalkedRow<'a> {
+    /// Its level curve.
+    pub level: &'a LevelCurve,
+    /// Whether it has a first touch.
+    pub touches: bool,
+    /// Its crossings as far as they are known, which tell where to look.
+    pub crossings: &'a [Crossing],
+}
+
+/// The pieces of a row; that from first touch comes first.
+#[derive(Clone, Debug, Default)]
+pub struct StablePieces {
+    /// Those that were followed; none where it was not possible from first touch.
+    pub pieces: Vec<StablePiece>,
+    /// Whether these are all: no continuation was lost.
+    pub are_complete: bool,
+}
+
+impl StablePieces {
+    /// Whether one of them begins or ends at `crossing`.
+    fn know(&self, crossing: &Crossing) -> bool {
+        let ends = |piece: &StablePiece| [piece.begin, Some(piece.end)];
+        let mut known = self.pieces.iter().flat_map(ends).flatten();
+        known.any(|other| same(crossing, &other))
     }
-    for from in crossings {
-        let is_known = |crossing: &Crossing| {
-            let ends = |piece: &StablePiece| [piece.begin, Some(piece.end)];
-            let mut known = pieces.iter().flat_map(ends).flatten();
-            known.any(|other| same(crossing, &other))
-        };
-        let Some(from) = entry(level, from).filter(|from| !is_known(from)) else {
-            continue;
-        };
-        let Some(start) = level.at_crossing(&from) else {
-            continue;
-        };
-        // From where a piece ends, the way on leads nowhere, and the way back to where it begins.
-        let leads = |(end, _): &(Crossing, Vec<Node>)| !same(&from, end);
-        if let Some((end, nodes)) = end_of_piece(level, start).filter(leads) {
-            pieces.push(StablePiece {
-                begin: Some(from),
+}
+
+/// The pieces of all `rows`, whose trajectories share batches. No answer depends on the other rows.
+pub fn stable_pieces(rows: &[WalkedRow]) -> Vec<StablePieces> {
+    let mut found: Vec<StablePieces> = from_touch(rows);
+    let most = rows.iter().map(|row| row.crossings.len()).max();
+    for index in 0..most.unwrap_or_default() {
+        let crossings: Vec<Option<Crossing>> = rows
+            .iter()
+            .zip(&found)
+            .map(|(row, found)| {
+                let is_walked = found.are_complete || !found.pieces.is_empty();
+                row.crossings.get(index).copied().filter(|_| is_walked)
+            })
+            .collect();
+        through_crossings(rows, &crossings, &mut found);
+    }
+    found
+}
+
+/// Where a piece ends, and its nodes.
+type PieceEnd = (Crossing, Vec<Node>);
+
+fn from_touch(rows: &[WalkedRow]) -> Vec<StablePieces> {
+    let at_touch = |row: &WalkedRow| row.crossings.iter().copied().find(Crossing::is_at_touch);
+    let starts: Vec<Option<Node>> = rows
+        .iter()
+        .map(|row| {
+            let walks = row.touches && at_touch(row).is_none();
+            walks.then(|| row.level.touch()).flatten()
+        })
+        .collect();
+    let ends = ends_of_pieces(rows, &starts, false);
+    rows.iter()
+        .zip(ends)
+        .map(|(row, end)| {
+            if !row.touches {
+                return StablePieces {
+                    pieces: Vec::new(),
+                    are_complete: true,
+                };
+            }
+            let end = at_touch(row).map(|end| (end, Vec::new())).or(end);
+            let piece = end.map(|(end, nodes)| StablePiece {
+                begin: None,
                 end,
                 nodes,
             });
-        } else if let Some((begin, nodes)) = end_of_piece(&level.backward(), start).filter(leads)
-            && !is_known(&begin)
-        {
-            pieces.push(StablePiece {
-                begin: Some(begin),
-                end: from,
-                nodes,
-            });
-        }
-    }
-    pieces
+            StablePieces {
+                are_complete: piece.is_some(),
+                pieces: piece.into_iter().collect(),
+            }
+        })
+        .collect()
 }
 
-/// `crossing` itself, or, if it is only near the level curve, where the piece begins that it is near to.
-fn entry(level: &LevelCurve, crossing: &Crossing) -> Option<Crossing> {
-    if crossing.is_sound() {
-        return Some(*crossing);
+/// Adds to what was `found` the piece of each row that begins or ends at its crossing, if there is one that is not known.
+fn through_crossings(
+    rows: &[WalkedRow],
+    crossings: &[Option<Crossing>],
+    found: &mut [StablePieces],
+) {
+    // A crossing that is only near the level curve stands for where the piece begins that it is near to.
+    let is_sound = |crossing: &Option<Crossing>| crossing.is_some_and(|c| c.is_sound());
+    let unsound = |crossing: &Option<Crossing>| crossing.filter(|c| !c.is_sound());
+    let near = at_crossings(rows, &crossings.iter().map(unsound).collect::<Vec<_>>());
+    let begins = ends_of_pieces(rows, &near, true);
+    let entries: Vec<Option<Crossing>> = crossings
+        .iter()
+        .zip(near.iter().zip(begins))
+        .zip(found.iter_mut())
+        .map(|((crossing, (near, begin)), found)| {
+            // On the unstable side there is no piece to lose.
+            let is_lost = near.is_some_and(|near| near.full.map.det() > 0.0) && begin.is_none();
+            found.are_complete &= !is_lost;
+            let entry = crossing.filter(|_| is_sound(crossing));
+            let entry = entry.or(begin.map(|(begin, _)| begin));
+            entry.filter(|entry| !found.know(entry))
+        })
+        .collect();
+    let starts = at_crossings(rows, &entries);
+    let ahead = ends_of_pieces(rows, &starts, false);
+    // From where a piece ends, the way on leads nowhere, and the way back to where it begins.
+    let leads = |entry: &Crossing, end: Option<PieceEnd>| end.filter(|(end, _)| !same(entry, end));
+    let ahead: Vec<Option<PieceEnd>> = entries
+        .iter()
+        .zip(ahead)
+        .map(|(entry, end)| leads(entry.as_ref()?, end))
+        .collect();
+    let back: Vec<Option<Node>> = starts
+        .iter()
+        .zip(&ahead)
+        .map(|(start, ahead)| start.filter(|_| ahead.is_none()))
+        .collect();
+    let behind = ends_of_pieces(rows, &back, true);
+    for (i, found) in found.iter_mut().enumerate() {
+        let Some(entry) = entries[i] else { continue };
+        let piece = match (&ahead[i], &behind[i]) {
+            (Some((end, nodes)), _) => Some((Some(entry), *end, nodes)),
+            (None, Some((begin, nodes))) if !same(&entry, begin) => {
+                let is_new = !found.know(begin);
+                is_new.then_some((Some(*begin), entry, nodes))
+            }
+            (None, Some(_)) => None,
+            (None, None) => {
+                found.are_complete = false;
+                None
+            }
+        };
+        found
+            .pieces
+            .extend(piece.map(|(begin, end, nodes)| StablePiece {
+                begin,
+                end,
+                nodes: nodes.clone(),
+            }));
     }
-    let (begin, _) = end_of_piece(&level.backward(), level.at_crossing(crossing)?)?;
-    Some(begin)
 }
 
-/// Where the piece of the level curve that begins at `start` ends, and its nodes.
-fn end_of_piece(level: &LevelCurve, start: Node) -> Option<(Crossing, Vec<Node>)> {
-    let piece = level.continuation(start, false)?;
+/// The states at the crossings that are there.
+fn at_crossings(rows: &[WalkedRow], crossings: &[Option<Crossing>]) -> Vec<Option<Node>> {
+    rows.iter()
+        .zip(crossings)
+        .map(|(row, crossing)| row.level.at_crossing(crossing.as_ref()?))
+        .collect()
+}
+
+/// Where the pieces end that begin at `starts`, or begin that end there; `None` without a start, or where the continuation is lost.
+fn ends_of_pieces(
+    rows: &[WalkedRow],
+    starts: &[Option<Node>],
+    backward: bool,
+) -> Vec<Option<PieceEnd>> {
+    let started: Vec<(usize, Node)> = starts
+        .iter()
+        .enumerate()
+        .filter_map(|(i, start)| Some((i, (*start)?)))
+        .collect();
+    let levels: Vec<LevelCurve> = started
+        .iter()
+        .map(|(i, _)| match backward {
+            true => rows[*i].level.backward(),
+            false => rows[*i].level.clone(),
+        })
+        .collect();
+    let walks = levels.iter().zip(started.iter().map(|(_, start)| *start));
+    let mut ends = vec![None; starts.len()];
+    let walked = continuations(walks.collect(), false);
+    for ((level, (i, _)), piece) in levels.iter().zip(&started).zip(walked) {
+        ends[*i] = piece.and_then(|piece| end_of_piece(level, piece));
+    }
+    ends
+}
+
+/// Where `piece` ends, and its nodes.
+fn end_of_piece(level: &LevelCurve, piece: Continuation) -> Option<PieceEnd> {
     let end = piece.nodes.last()?;
     let distance = end.full.map.pole.length();
     let crossing = Crossing {

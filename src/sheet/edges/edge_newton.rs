@@ -65,6 +65,12 @@ pub fn edge_newton_fine(method: Method, problems: &[EdgeProblem]) -> Vec<EdgeIte
     iterate(method, problems, 0, |method| Batch::new(method).padded())
 }
 
+/// The same, and each answer is as if it were computed alone.
+#[must_use]
+pub fn edge_newton_unpadded(method: Method, problems: &[EdgeProblem]) -> Vec<EdgeIterate> {
+    iterate(method, problems, 0, Batch::new)
+}
+
 /// The same from predictions. With their second derivatives most need a single trajectory, with first derivatives; toward the tip
 /// those by the load are enough.
 #[must_use]

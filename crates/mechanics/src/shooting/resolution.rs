@@ -139,7 +139,7 @@ fn fastest(taper: f64, bend: f64) -> f64 {
 }
 
 /// Under more than a small load the bend gathers in the softest piece.
-const CONCENTRATED: f64 = 2.0;
+const CONCENTRATED: f64 = 2.25;
 
 /// Steps that a change of `ln radius` by 1 takes, in parts of `least`.
 const ROUGH: f64 = 0.25;

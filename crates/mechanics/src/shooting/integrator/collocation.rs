@@ -156,7 +156,15 @@ fn step<T: Real, I: Intrinsic<T>, S: Sensitivity<T>>(
     for (levers, at) in at_nodes.iter_mut().zip(AT) {
         *levers = levers.plus(length * T::of(at), pull);
     }
-    let mut moments = at_nodes;
+    let mut moments = [start; NODES];
+    macro_rules! find_moments {
+        () => {
+            for i in 0..NODES {
+                let ([x], levers) = at_nodes[i];
+                moments[i] = ([force * x], S::moments(force, x, levers));
+            }
+        };
+    }
     let mut pulls = at_nodes;
     let mut climbs = [([-s], sums); NODES];
     // Tangent, bend and angles where the weights of the moments are these.
@@ -175,6 +183,15 @@ fn step<T: Real, I: Intrinsic<T>, S: Sensitivity<T>>(
             (rotated_by_small([c, s], turn), bent + bend, angles)
         }};
     }
+    // As if the pull changed evenly from the start to the end of the step.
+    find_moments!();
+    let ([c_end, s_end], bent_end, angles_end) = turned!(1.0, weights[NODES]);
+    let (pull_end, _) = S::pull(c_end, s_end, bent_end, angles_end);
+    let change: Levers<T, S> = ([-c_end], pull_end);
+    let change = change.plus(T::of(-1.0), pull);
+    for (levers, at) in at_nodes.iter_mut().zip(AT) {
+        *levers = levers.plus(length * T::of(0.5 * at * at), change);
+    }
     for iteration in 0..=ITERATIONS {
         if iteration > 0 {
             for i in 0..NODES {
@@ -184,10 +201,7 @@ fn step<T: Real, I: Intrinsic<T>, S: Sensitivity<T>>(
                 }
             }
         }
-        for i in 0..NODES {
-            let ([x], levers) = at_nodes[i];
-            moments[i] = ([force * x], S::moments(force, x, levers));
-        }
+        find_moments!();
         for i in 0..NODES {
             let ([c, s], bent, angles) = turned!(AT[i], weights[i]);
             let (pull, climb) = S::pull(c, s, bent, angles);

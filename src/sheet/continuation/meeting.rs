@@ -1,0 +1,140 @@
+//! Where level curves meet the edges of the sheet, between two of their nodes.
+
+use crate::sheet::continuation::level_curve::{LevelCurve, Node, ON_CURVE, correct};
+use crate::sheet::edges::edge_newton::{EdgeProblem, edge_newton_unpadded};
+use crate::sheet::row::Edge;
+use glam::DVec2;
+
+/// What `ln D` may miss at the tip, where moving the contact would do more harm.
+const TIP_MISS: f64 = 1e-11;
+
+/// From one node of a level curve to the next.
+pub struct Chord<'a> {
+    level: &'a LevelCurve,
+    from: Node,
+    to: Node,
+    is_stable: bool,
+}
+
+/// What lies between two nodes.
+pub enum Meeting {
+    /// No edge.
+    None,
+    /// The first edge, and where.
+    Edge(Edge, Node),
+    /// An edge, but Newton's method did not find it from here.
+    Unclear,
+}
+
+impl<'a> Chord<'a> {
+    /// The chord between two nodes of the stable or the unstable part.
+    pub const fn new(level: &'a LevelCurve, from: Node, to: Node, is_stable: bool) -> Self {
+        Self {
+            level,
+            from,
+            to,
+            is_stable,
+        }
+    }
+
+    /// The edges of which it has crossed the line.
+    fn crossed(&self) -> [Option<(&Self, Edge)>; 2] {
+        let is_beyond = self.to.point.x > self.level.rod.tau_tip();
+        let turns_over = (self.to.full.map.det() < 0.0) == self.is_stable;
+        [
+            is_beyond.then_some((self, Edge::Tip)),
+            turns_over.then_some((self, Edge::Fold)),
+        ]
+    }
+
+    /// Where an edge is about.
+    fn problem(&self, edge: Edge) -> EdgeProblem<'_> {
+        let Self {
+            level, from, to, ..
+        } = self;
+        let tip = level.rod.tau_tip();
+        let height = |node: &Node| match edge {
+            Edge::Fold => node.full.map.det(),
+            Edge::Tip => node.point.x - tip,
+        };
+        let part = height(from) / (height(from) - height(to));
+        let start = from.point.lerp(to.point, part.clamp(0.0, 1.0));
+        EdgeProblem {
+            rod: &level.rod,
+            edge,
+            pole_distance: level.row.pole_distance,
+            start: match edge {
+                Edge::Fold => start,
+                Edge::Tip => DVec2::new(tip, start.y),
+            },
+            second: None,
+        }
+    }
+
+    /// Whether `node` is where the chord is.
+    fn has_near(&self, node: &Node) -> bool {
+        let length = |from, to| self.level.length(from, to);
+        let reach = 2.0 * length(&self.from, &self.to) + f64::EPSILON;
+        length(&self.from, node).max(length(&self.to, node)) <= reach
+    }
+}
+
+/// What each of the `chords` meets first.
+pub fn meet(chords: &[Option<Chord>]) -> Vec<Meeting> {
+    let crossed: Vec<_> = chords
+        .iter()
+        .map(|chord| chord.as_ref().map_or([None; 2], Chord::crossed))
+        .collect();
+    let looked_for: Vec<(&Chord, Edge)> = crossed.iter().flatten().flatten().copied().collect();
+    let mut found = edges(&looked_for).into_iter();
+    crossed
+        .iter()
+        .map(|edges| {
+            let [tip, fold] = edges.map(|edge| edge.and_then(|edge| Some((edge, found.next()?))));
+            let tip = match tip {
+                Some((_, None)) => return Meeting::Unclear,
+                Some((_, Some(tip))) => Meeting::Edge(Edge::Tip, tip),
+                None => Meeting::None,
+            };
+            match fold {
+                Some((_, None)) => Meeting::Unclear,
+                Some(((chord, _), Some(fold))) if fold.point.x <= chord.level.rod.tau_tip() => {
+                    Meeting::Edge(Edge::Fold, fold)
+                }
+                _ => tip,
+            }
+        })
+        .collect()
+}
+
+/// The points of edges on `chords`; `None` if Newton's method found none, or one somewhere else.
+fn edges(chords: &[(&Chord, Edge)]) -> Vec<Option<Node>> {
+    let Some((first, _)) = chords.first() else {
+        return Vec::new();
+    };
+    let problems: Vec<EdgeProblem> = chords
+        .iter()
+        .map(|(chord, edge)| chord.problem(*edge))
+        .collect();
+    let iterates = edge_newton_unpadded(first.level.method, &problems);
+    let points: Vec<(&LevelCurve, DVec2)> = chords
+        .iter()
+        .zip(&iterates)
+        .map(|((chord, _), iterate)| (chord.level, iterate.point))
+        .collect();
+    // At a fold rounding can leave Newton's method a little beside the curve; at the tip it is on it.
+    let corrected = correct(&points, |i| match chords[i].1 {
+        Edge::Fold => ON_CURVE,
+        Edge::Tip => TIP_MISS,
+    });
+    chords
+        .iter()
+        .zip(iterates.iter().zip(corrected))
+        .map(|((chord, _), (iterate, corrected))| {
+            let (point, full) = corrected?;
+            let Chord { level, from, .. } = chord;
+            let node = level.node(point, &full, from.push, from.angle);
+            (iterate.has_converged && chord.has_near(&node)).then_some(node)
+        })
+        .collect()
+}
