@@ -267,14 +267,20 @@ mod tests {
             map("fast", &[0.9, 1.0, 1.1]),
             map("slow", &[4.0]),
         ];
-        assert!(Verdict::of(&[]).is_none() && Verdict::of(std::slice::from_ref(&cpu)).is_none());
-        let one = Verdict::of(&[cpu.clone(), slow.clone(), fast]).unwrap();
-        assert_eq!((one.faster.as_str(), one.slower.as_str()), ("fast", "cpu"));
-        assert!(one.times == 2.0 && !one.within_spread);
-        let other = Verdict::of(&[cpu.clone(), slow]).unwrap();
-        assert_eq!(other.faster, "cpu");
-        assert!(other.times == 2.0 && !other.within_spread);
-        let near = Verdict::of(&[cpu, map("near", &[2.05, 2.2, 3.0])]).unwrap();
-        assert!(near.faster == "cpu" && near.within_spread);
+        let verdict = |maps: &[&WholeMap]| {
+            let maps: Vec<WholeMap> = maps.iter().copied().cloned().collect();
+            let of = |one: Verdict| (one.faster, one.slower, one.times, one.within_spread);
+            Verdict::of(&maps).map(of)
+        };
+        let says = |faster: &str, slower: &str, times, within_spread| {
+            Some((faster.to_owned(), slower.to_owned(), times, within_spread))
+        };
+        assert_eq!(verdict(&[]), None);
+        assert_eq!(verdict(&[&cpu]), None);
+        let all = verdict(&[&cpu, &slow, &fast]);
+        assert_eq!(all, says("fast", "cpu", 2.0, false));
+        assert_eq!(verdict(&[&cpu, &slow]), says("cpu", "slow", 2.0, false));
+        let near = map("near", &[2.05, 2.5, 3.0]);
+        assert_eq!(verdict(&[&cpu, &near]), says("cpu", "near", 1.25, true));
     }
 }
