@@ -17,6 +17,10 @@ impl Engine for Counting {
         Description::of(None)
     }
 
+    fn goal(&self) -> f64 {
+        1.0
+    }
+
     fn solve(
         &mut self,
         _: Method,

@@ -1,11 +1,12 @@
 //! The CPU: scalar, vectors on one thread, vectors on all.
 
+use super::peak::peak;
 use super::solver::{Hit, Solver};
 use super::task::{Task, places};
 use super::watch::watch;
 use super::{Engine, Measurement, Report, Rung, Stages};
 use crate::integrate::EngineError;
-use crate::numerics::{MultiplyAndAdd, Unit};
+use crate::numerics::Unit;
 use crate::shooting::Resolution;
 use crate::shooting::batch::flops_of_nystrom8;
 use std::convert::Infallible;
@@ -13,9 +14,6 @@ use std::time::Instant;
 
 /// After a residual below this, in whisker lengths, one more Newton step reaches the rounding.
 const TOLERANCE: f64 = 1e-7;
-
-/// Rounds of the peak's kernel: milliseconds.
-const ROUNDS: u32 = 1 << 20;
 
 /// Adds the rows of the CPU engine to `report`.
 pub fn measure(
@@ -45,18 +43,24 @@ pub fn measure(
         let start = Instant::now();
         pool.install(|| solver(Resolution::FINE).solve(task.effects, &task.rods, &task.shots[..1]));
         let first_result_s = start.elapsed().as_secs_f64();
-        let peak_gflops = pool.install(|| peak(unit, runs));
-        let engine = Engine {
+        let mut engine = Engine {
             name,
             threads: Some(threads),
             adapter: unit.to_string(),
-            peak_gflops,
+            peak_gflops: 0.0,
             first_result_s,
         };
-        let row = |resolution| row(task, runs, &engine, solver(resolution));
-        report
-            .rows
-            .extend(pool.install(|| Resolution::LADDER.map(row)));
+        let mut rows = Resolution::LADDER.map(|resolution| {
+            pool.install(|| {
+                // Before each row: a machine with other work is slower at times.
+                engine.peak_gflops = engine.peak_gflops.max(peak(unit));
+                row(task, runs, &engine, solver(resolution))
+            })
+        });
+        for row in &mut rows {
+            row.of_peak = row.gflops.map(|gflops| gflops / engine.peak_gflops);
+        }
+        report.rows.extend(rows);
         report.engines.push(engine);
     }
     Ok(())
@@ -83,14 +87,4 @@ fn row(task: &Task, runs: usize, engine: &Engine, solver: Solver) -> Measurement
     };
     let errors = task.errors(&places(&hits));
     Measurement::new(engine, rung, seconds, stages, Some(work), errors)
-}
-
-/// Billions of operations per second of all threads of the pool at once.
-fn peak(unit: Unit, runs: usize) -> f64 {
-    let work = || {
-        let each = rayon::broadcast(|_| unit.run(MultiplyAndAdd { rounds: ROUNDS }));
-        Ok::<u64, Infallible>(each.iter().sum())
-    };
-    let Ok((seconds, operations)) = watch(runs, work);
-    1e-9 * operations as f64 / seconds.median
 }

@@ -12,6 +12,36 @@ use crate::sheet::Sheet;
 use crate::shooting::batch::Method;
 use std::time::{Duration, Instant};
 
+/// A GPU engine that may be measured.
+pub struct Candidate {
+    /// In the rows.
+    pub name: String,
+    /// Index among the [`adapters`].
+    pub adapter: usize,
+    pub precision: Precision,
+}
+
+/// Every adapter in `f32` and, where it can, in `f64`.
+pub fn candidates() -> impl Iterator<Item = Candidate> {
+    let all = adapters();
+    let is_alone = all.len() == 1;
+    all.into_iter()
+        .enumerate()
+        .flat_map(move |(adapter, report)| {
+            let precisions = [Precision::F32, Precision::F64].into_iter();
+            let has =
+                move |precision: &Precision| *precision == Precision::F32 || report.shader_f64;
+            precisions.filter(has).map(move |precision| Candidate {
+                name: match is_alone {
+                    true => format!("gpu {precision}"),
+                    false => format!("gpu {adapter} {precision}"),
+                },
+                adapter,
+                precision,
+            })
+        })
+}
+
 /// Adds the rows of every adapter to `report`; one that fails is named with its reason.
 pub fn measure(
     scene: &Scene,
@@ -20,28 +50,21 @@ pub fn measure(
     report: &mut Report,
     said: &mut dyn FnMut(&str),
 ) {
-    let all = adapters();
     if let Err(why) = on_gpu(task.effects) {
         report.failures.push(format!("GPU: {why}"));
         return;
     }
     let sides = Sides::of(scene, task);
-    for (index, adapter) in all.iter().enumerate() {
-        for precision in [Precision::F32, Precision::F64] {
-            if precision == Precision::F64 && !adapter.shader_f64 {
-                let failure = format!("{}: no f64 in shaders", adapter.info.name);
-                report.failures.push(failure);
-                continue;
-            }
-            said(&format!("gpu {precision}, {}", adapter.info.name));
-            let name = match all.len() {
-                1 => format!("gpu {precision}"),
-                _ => format!("gpu {index} {precision}"),
-            };
-            if let Err(why) = engine(&sides, task, runs, report, name, (index, precision)) {
-                let failure = format!("{}, {precision}: {why}", adapter.info.name);
-                report.failures.push(failure);
-            }
+    let all = adapters();
+    let without = all.iter().filter(|adapter| !adapter.shader_f64);
+    let without = without.map(|adapter| format!("{}: no f64 in shaders", adapter.info.name));
+    report.failures.extend(without);
+    for one in candidates() {
+        let adapter = &all[one.adapter].info.name;
+        said(&format!("gpu {}, {adapter}", one.precision));
+        if let Err(why) = engine(&sides, task, runs, report, &one) {
+            let failure = format!("{adapter}, {}: {why}", one.precision);
+            report.failures.push(failure);
         }
     }
 }
@@ -132,15 +155,14 @@ fn engine(
     task: &Task,
     runs: usize,
     report: &mut Report,
-    name: String,
-    (index, precision): (usize, Precision),
+    one: &Candidate,
 ) -> Result<(), EngineError> {
     let start = Instant::now();
-    let mut gpu = Gpu::timed(index, precision)?;
+    let mut gpu = Gpu::timed(one.adapter, one.precision)?;
     sides.solve(&mut gpu)?;
     let first_result_s = start.elapsed().as_secs_f64();
     let engine = Engine {
-        name,
+        name: one.name.clone(),
         threads: None,
         adapter: gpu.describe().adapter,
         peak_gflops: 1e-9 * gpu.peak(runs)?,
@@ -156,7 +178,7 @@ fn engine(
     let stages = Stages::medians(&stages[1..]);
     let rung = Rung {
         integrator: "differences",
-        steps: precision.resolution(sides.method.resolution).least,
+        steps: one.precision.resolution(sides.method.resolution).least,
     };
     let (shots, points): (Vec<usize>, Vec<(f64, f64)>) = points.into_iter().unzip();
     if points.is_empty() {

@@ -1,4 +1,4 @@
-//! What accuracy costs in time: every engine of this machine, from coarse to exact, on the states of a scene.
+//! What accuracy costs in time: every engine of this machine, from coarse to exact, on the states of a scene; and what whole maps take.
 //!
 //! The CPU is given shots, which start from the guesses of the lattice, a GPU those of the same cells whose rows have references, which
 //! are found before. Errors are those of the engine's
@@ -8,14 +8,17 @@ mod cpu;
 mod detachment;
 mod gpu;
 mod pareto;
+mod peak;
 mod solver;
 mod task;
 mod watch;
+mod whole;
 
 pub use detachment::Detachments;
 pub use solver::Solver;
 pub use task::{Errors, Spread};
-pub use watch::Timing;
+pub use watch::{NOISY, Timing};
+pub use whole::{MapStages, Verdict, WholeMap};
 
 use crate::integrate::EngineError;
 use crate::plan::SAMPLE_VALUES;
@@ -45,7 +48,7 @@ pub struct Measurement {
     pub trajectories_per_s: f64,
     /// Billions of floating-point operations per second in the integration, where they are counted: on the CPU.
     pub gflops: Option<f64>,
-    /// The same as a part of the device's measured peak.
+    /// The same as a part of the engine's peak.
     pub of_peak: Option<f64>,
     /// How far off the answers are.
     pub errors: Errors,
@@ -75,7 +78,7 @@ impl Measurement {
             states_per_s: states / seconds.median,
             trajectories_per_s: trajectories / seconds.median,
             gflops,
-            of_peak: gflops.map(|gflops| gflops / engine.peak_gflops),
+            of_peak: None,
             errors,
             pareto: false,
         }
@@ -132,7 +135,7 @@ pub struct Engine {
     pub threads: Option<usize>,
     /// Processor or adapter, with driver.
     pub adapter: String,
-    /// Billions of multiplications and additions per second, measured.
+    /// Billions of multiplications and additions per second: the most that was measured.
     pub peak_gflops: f64,
     /// Seconds from nothing to the first answer: opening, compiling, one shot.
     pub first_result_s: f64,
@@ -153,6 +156,12 @@ pub struct Report {
     pub rows: Vec<Measurement>,
     /// The curve of detachment, from coarse to exact.
     pub detachments: Vec<Detachments>,
+    /// Cells of each whole map.
+    pub map_cells: usize,
+    /// Whole maps: that of the CPU engine on all threads, then one of each GPU engine.
+    pub maps: Vec<WholeMap>,
+    /// Which of them is done first, where there is a GPU engine.
+    pub verdict: Option<Verdict>,
     /// Engines that could not be measured, and why.
     pub failures: Vec<String>,
 }
@@ -162,6 +171,8 @@ pub struct Report {
 pub struct Effort {
     /// Push angles, and distances, of the sample.
     pub lines: usize,
+    /// Push angles, and distances, of whole maps at most.
+    pub map_lines: usize,
     /// Timed runs of each row.
     pub runs: usize,
 }
@@ -170,11 +181,16 @@ impl Effort {
     /// For numbers to be quoted.
     pub const FULL: Self = Self {
         lines: 128,
+        map_lines: 1024,
         runs: 7,
     };
 
     /// For a first look.
-    pub const QUICK: Self = Self { lines: 48, runs: 5 };
+    pub const QUICK: Self = Self {
+        lines: 48,
+        map_lines: 256,
+        runs: 5,
+    };
 }
 
 /// Measures every engine on a sample of `scene`; `said` is told what comes next. `None` if no cell of the sample has a state.
@@ -186,6 +202,7 @@ pub fn run(
     effort: Effort,
     said: &mut dyn FnMut(&str),
 ) -> Result<Option<Report>, EngineError> {
+    let of_maps = scene.thinned(effort.map_lines, SAMPLE_VALUES);
     let scene = scene.thinned(effort.lines, SAMPLE_VALUES);
     said("the exact answers");
     let task = Task::new(&scene);
@@ -203,5 +220,15 @@ pub fn run(
     said("detachments");
     report.detachments = detachment::measure(&scene, effort.runs);
     pareto::mark(&mut report.rows);
+    whole::measure(&of_maps, effort.runs, &mut report, said)?;
     Ok(Some(report))
+}
+
+/// An engine with its threads.
+#[must_use]
+pub fn named(engine: &str, threads: Option<usize>) -> String {
+    match threads {
+        Some(threads) => format!("{engine} x {threads}"),
+        None => engine.to_owned(),
+    }
 }

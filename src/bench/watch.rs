@@ -3,13 +3,39 @@
 use serde::Serialize;
 use std::time::Instant;
 
-/// What several runs took.
+/// A larger spread makes a timing noisy.
+pub const NOISY: f64 = 0.2;
+
+/// What several runs took, in seconds.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Timing {
     /// The median of the runs.
     pub median: f64,
+    /// The fastest run.
+    pub fastest: f64,
+    /// The slowest run.
+    pub slowest: f64,
     /// The slowest less the fastest, over the median.
     pub spread: f64,
+    /// Whether the spread is above [`NOISY`].
+    pub is_noisy: bool,
+}
+
+impl Timing {
+    /// Of the `seconds` of some runs.
+    pub fn of(seconds: impl Iterator<Item = f64> + Clone) -> Self {
+        let [fastest, slowest] =
+            [f64::min, f64::max].map(|pick| seconds.clone().fold(f64::NAN, pick));
+        let median = median(seconds);
+        let spread = (slowest - fastest) / median;
+        Self {
+            median,
+            fastest,
+            slowest,
+            spread,
+            is_noisy: spread > NOISY,
+        }
+    }
 }
 
 /// Times `work` in `runs` runs, after one that does not count, and returns what the last one found.
@@ -21,11 +47,7 @@ pub fn watch<T, E>(runs: usize, mut work: impl FnMut() -> Result<T, E>) -> Resul
         found = work()?;
         seconds.push(start.elapsed().as_secs_f64());
     }
-    let [fastest, slowest] =
-        [f64::min, f64::max].map(|f| seconds.iter().copied().fold(f64::NAN, f));
-    let median = median(seconds);
-    let spread = (slowest - fastest) / median;
-    Ok((Timing { median, spread }, found))
+    Ok((Timing::of(seconds.into_iter()), found))
 }
 
 /// The median; of an even number, the larger one of the two in the middle.

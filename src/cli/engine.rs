@@ -101,7 +101,7 @@ impl EngineOptions {
             return Some(why.to_owned());
         }
         let precision = self.precision();
-        let bound_deg = bound_deg(scene, precision);
+        let bound_deg = bound_deg(scene, precision.goal());
         let is_coarser = tolerance_deg.is_some_and(|tolerance| bound_deg > tolerance);
         is_coarser
             .then(|| format!("gpu {precision} only bounds the push angle to {bound_deg:.1e} deg"))
@@ -151,8 +151,8 @@ impl EngineOptions {
     }
 }
 
-/// To how many degrees shaders bound push angles: their miss of the pole, as seen from the base at the nearest distance.
-fn bound_deg(scene: &Scene, precision: Precision) -> f64 {
+/// To how many degrees an engine bounds push angles: its `goal`, as seen from the base at the nearest distance.
+pub fn bound_deg(scene: &Scene, goal: f64) -> f64 {
     let nearest = scene
         .grid
         .distance_mm
@@ -161,7 +161,7 @@ fn bound_deg(scene: &Scene, precision: Precision) -> f64 {
         .fold(f64::INFINITY, f64::min);
     let lengths = scene.corner_whiskers().map(|own| own.whisker.length_mm);
     let longest = lengths.fold(0.0, f64::max);
-    (precision.goal() * longest / nearest).to_degrees()
+    (goal * longest / nearest).to_degrees()
 }
 
 /// The variable by which other programs that use wgpu choose an adapter, too.

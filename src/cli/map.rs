@@ -1,7 +1,7 @@
 //! `whiskmap map`.
 
 use super::disk;
-use super::engine::EngineOptions;
+use super::engine::{EngineOptions, bound_deg};
 use super::estimate::Format;
 use super::failure::{Failure, check_resolved, say};
 use super::numbers::whole;
@@ -16,6 +16,7 @@ use std::path::PathBuf;
 use std::str::FromStr;
 use std::time::Instant;
 use whiskmap::accuracy::{Accuracy, BOUNDED};
+use whiskmap::integrate::Engine;
 use whiskmap::map;
 use whiskmap::plan::{Channels, Plan};
 use whiskmap::refine::{GOAL, TOLERANCE};
@@ -87,9 +88,9 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     plan.channels = options.channels.unwrap_or(Channels::ALL);
     let (mut engine, why) = options.engine.open(&scene, &plan, left_deg)?;
     let about = whiskmap::integrate::Description::of(engine.as_deref());
+    let tolerances = tolerances(&scene, accuracy, engine.as_deref());
     outputs::folder("--output", &options.output)?;
     if options.format == Format::Zarr {
-        let tolerances = tolerances(accuracy);
         let about = Description {
             scene: &scene,
             engine: &about,
@@ -132,7 +133,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         &Description {
             scene: &scene,
             engine: &about,
-            tolerances: &tolerances(accuracy),
+            tolerances: &tolerances,
             channels: plan.channels,
         },
     )?;
@@ -196,14 +197,20 @@ impl Options {
     }
 }
 
-/// What the file says of its accuracy.
-fn tolerances(accuracy: Option<Accuracy>) -> serde_json::Value {
+/// What the file says of its accuracy: what the CPU leaves, or an engine, and with a tolerance what both leave of the push angle.
+fn tolerances(
+    scene: &Scene,
+    accuracy: Option<Accuracy>,
+    engine: Option<&dyn Engine>,
+) -> serde_json::Value {
+    let of_engine = engine.map_or(0.0, Engine::goal);
     let mut tolerances = serde_json::json!({
-        "residual_goal_whisker_lengths": GOAL,
-        "residual_accepted_whisker_lengths": TOLERANCE,
+        "residual_goal_whisker_lengths": GOAL.max(of_engine),
+        "residual_accepted_whisker_lengths": TOLERANCE.max(of_engine),
     });
     if let Some(accuracy) = accuracy {
-        tolerances["push_angle_error_estimated_deg"] = accuracy.error_deg.into();
+        let error_deg = accuracy.error_deg + bound_deg(scene, of_engine);
+        tolerances["push_angle_error_estimated_deg"] = error_deg.into();
         tolerances["bounded"] = BOUNDED.into();
     }
     tolerances

@@ -18,7 +18,7 @@ use crate::shooting::FirstVariation;
 use crate::shooting::batch::Method;
 use std::ops::Range;
 
-/// Powers of the way along a row in its Taylor polynomials.
+/// Coefficients of a Taylor polynomial along a row.
 pub const POWERS: usize = 12;
 
 /// What is known along a row: push angle, `tau`, the direction of the point of the resting whisker that is as far from the base as the
@@ -38,9 +38,9 @@ pub struct Reference {
     pub push: f64,
     /// The state, seen from the contact.
     pub state: FirstVariation,
-    /// The signed load over the way along the row, which is counted in parts of the whole: it goes with `load tau^2`.
+    /// The signed load over the row parameter, which is `load tau^2` over that at the end of the row.
     pub per_way: f64,
-    /// Taylor's polynomials of the row by the way from here.
+    /// Taylor polynomials of the row in the row parameter, less its value here.
     pub row: [RowNumbers; POWERS],
     /// The cells next to it: those at these of the call's push angles.
     pub cells: Range<u32>,
@@ -130,6 +130,9 @@ impl Description {
 pub trait Engine {
     /// Which engine this is.
     fn describe(&self) -> Description;
+
+    /// The largest bound on the miss of a cell that it vouches for, in whisker lengths.
+    fn goal(&self) -> f64;
 
     /// Solves the cells of the `references`, in order, each on one of `rods`, at some of the signed `pushes` (radians). The effects of
     /// `method` are some that are [`on_gpu`].

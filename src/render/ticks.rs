@@ -21,6 +21,11 @@ impl Tick {
         let width = font::width(&label, TICK);
         Self { at, label, width }
     }
+
+    /// On a logarithmic axis, where numbers are labelled one by one: together they would all have the decimals of the smallest.
+    pub(super) fn of_power(at: f64, value: f64) -> Self {
+        Self::new(at, labels(&[value]).concat())
+    }
 }
 
 /// How far along a range a value lies.
@@ -36,11 +41,29 @@ pub(super) fn at(values: &[f64], range: [f64; 2]) -> Vec<Tick> {
         .collect()
 }
 
-/// Ticks of an axis of this length that runs across, as many as fit beside each other.
-pub(super) fn across(range: [f64; 2], length: f64) -> Vec<Tick> {
+/// About `wanted` ticks of a range of numbers.
+pub(super) fn of_numbers(range: [f64; 2], wanted: f64) -> Vec<Tick> {
+    at(&round(range, wanted), range)
+}
+
+/// About `wanted` ticks of a range of decimal logarithms, at the numbers that they are of.
+pub(super) fn of_logarithms(range: [f64; 2], wanted: f64) -> Vec<Tick> {
+    // The ends of an axis may be powers that no number reaches.
+    let ends = range.map(|end| 10_f64.powf(end.clamp(-300.0, 300.0)));
+    let values = logarithmic(ends, wanted);
+    let tick = |value: &f64| Tick::of_power(fraction(range, value.log10()), *value);
+    values.iter().map(tick).collect()
+}
+
+/// Ticks of an axis of this length that runs across, as many as fit beside each other, chosen by `of`.
+pub(super) fn across(
+    range: [f64; 2],
+    length: f64,
+    of: fn([f64; 2], f64) -> Vec<Tick>,
+) -> Vec<Tick> {
     let mut wanted = (length / 90.0).clamp(1.0, 10.0);
     loop {
-        let ticks = at(&round(range, wanted), range);
+        let ticks = of(range, wanted);
         let free = |pair: &[Tick]| {
             let middles = length * (pair[1].at - pair[0].at);
             middles >= 0.5 * (pair[0].width + pair[1].width) + APART
@@ -52,9 +75,13 @@ pub(super) fn across(range: [f64; 2], length: f64) -> Vec<Tick> {
     }
 }
 
-/// Ticks of an axis of this length that runs upwards.
-pub(super) fn upwards(range: [f64; 2], length: f64) -> Vec<Tick> {
-    at(&round(range, (length / 80.0).clamp(1.0, 10.0)), range)
+/// Ticks of an axis of this length that runs upwards, chosen by `of`.
+pub(super) fn upwards(
+    range: [f64; 2],
+    length: f64,
+    of: fn([f64; 2], f64) -> Vec<Tick>,
+) -> Vec<Tick> {
+    of(range, (length / 80.0).clamp(1.0, 10.0))
 }
 
 /// About `wanted` multiples of 1, 2 or 5 times a power of ten within a range.
@@ -165,7 +192,7 @@ mod tests {
             [-1e-7, 3e-9],
         ] {
             for length in [760.0, 1280.0] {
-                let ticks = across(range, length);
+                let ticks = across(range, length, of_numbers);
                 assert!(ticks.len() >= 2, "{ticks:?}");
                 assert!(ticks.iter().all(|tick| (0.0..=1.0).contains(&tick.at)));
                 for pair in ticks.windows(2) {

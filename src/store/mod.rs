@@ -29,6 +29,8 @@ mod zip;
 
 pub use attributes::Description;
 pub use effort::Packed;
+#[cfg(feature = "gpu")]
+pub(crate) use effort::thread_time;
 pub use error::Error;
 pub use layout::Layout;
 pub use output::Output;

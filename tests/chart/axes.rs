@@ -22,7 +22,8 @@ fn degenerate_data_give_pictures_without_nan() {
         -1e300,
     ];
     let mut plots = vec![Plot::default()];
-    for equal_axes in [false, true] {
+    let kinds = [(false, false), (true, false), (false, true), (true, true)];
+    for (equal_axes, logarithmic) in kinds {
         for (one, other) in values
             .iter()
             .flat_map(|one| values.map(|other| (*one, other)))
@@ -53,6 +54,7 @@ fn degenerate_data_give_pictures_without_nan() {
                     ..Note::default()
                 }],
                 equal_axes,
+                logarithmic,
                 ..Plot::default()
             });
         }
@@ -134,5 +136,64 @@ fn a_large_disc_widens_both_axes() {
         let svg = svg(&chart(radius).picture());
         let points = &polylines(&svg)[0].0;
         assert!((points[1][0] - points[0][0] - 100.0 * unit).abs() < 0.02);
+    }
+}
+
+#[test]
+fn logarithmic_axes_tell_the_numbers_themselves() {
+    let points = [[0.1, 1e-8], [1.0, 1e-5], [10.0, 1e-2]];
+    let plot = |points: &[[f64; 2]]| Plot {
+        x_label: "time (mm)".to_owned(),
+        lines: vec![line(points, Ink::Black, Stroke::Solid)],
+        logarithmic: true,
+        ..Plot::default()
+    };
+    let document = svg(&single(plot(&points)).picture());
+    for text in ["0.1", "1", "10", "1e\u{2212}8", "1e\u{2212}5", "0.01"] {
+        assert!(document.contains(&format!(">{text}<")), "{text}");
+    }
+    // The unit of numbers that span many is left alone.
+    assert!(document.contains(">time (mm)<"));
+    let places = |svg: &str| polylines(svg)[0].0.clone();
+    let [left, middle, right] = places(&document)[..] else {
+        panic!("{document}");
+    };
+    for axis in [0, 1] {
+        // Places have two decimals.
+        let off = left[axis] + right[axis] - 2.0 * middle[axis];
+        assert!(off.abs() < 0.03, "{off}");
+    }
+    // Numbers without a logarithm, and what has a size, are not there.
+    let mut more = plot(&[points[0], points[1], points[2], [0.0, 1.0], [-1.0, 1e300]]);
+    more.discs = vec![Disc {
+        centre: [1e9, 1.0],
+        radius: 1e8,
+        dark: true,
+    }];
+    more.dots = vec![Dot {
+        at: [1.0, -1.0],
+        ..Dot::default()
+    }];
+    assert_eq!(svg(&single(more).picture()), document);
+}
+
+/// Powers of ten where there are some, and never two labels on each other.
+#[test]
+fn logarithmic_axes_have_ticks_whatever_they_span() {
+    for (from, to) in [
+        (1.0, 1.0),
+        (0.15, 5.4),
+        (6.1, 6.9),
+        (3e-12, 2e-5),
+        (1e-280, 1e280),
+    ] {
+        let svg = svg(&single(Plot {
+            lines: vec![line(&[[from, from], [to, to]], Ink::Black, Stroke::Solid)],
+            logarithmic: true,
+            ..Plot::default()
+        })
+        .picture());
+        let labels = svg.matches("<text").count();
+        assert!((6..=30).contains(&labels), "{from} {to}: {labels}");
     }
 }

@@ -62,6 +62,9 @@ fn errors_fall_from_rung_to_rung() {
             .any(|(t, e, _)| t <= time && e <= error && (t, e) != (time, error));
         assert_eq!(*pareto, !is_beaten);
     }
+    for part in rows.iter().filter_map(|row| row["of_peak"].as_f64()) {
+        assert!(part <= 1.0, "{part} of the peak");
+    }
     let ends = report["detachments"].as_array().unwrap();
     let errors = numbers(ends, "/angle_deg/worst");
     // A sheet's few trajectories share blocks, so that two coarse rungs can take the same steps.
@@ -71,6 +74,40 @@ fn errors_fall_from_rung_to_rung() {
         "{errors:?}"
     );
     assert!(errors[0] > 1e4 * errors[5], "{errors:?}");
+    let maps = report["maps"].as_array().unwrap();
+    for timed in rows.iter().chain(ends).chain(maps) {
+        let seconds = &timed["seconds"];
+        let is_noisy = seconds["spread"].as_f64().unwrap() > 0.2;
+        assert_eq!(seconds["is_noisy"], is_noisy, "{seconds}");
+    }
+    let gpus = engines.iter().filter(|engine| engine["threads"].is_null());
+    assert_eq!(maps.len(), 1 + gpus.count());
+    maps_hang_together(maps, &report["verdict"]);
+}
+
+/// What is said of whole maps, that of the CPU engine first, and of which engine is faster.
+fn maps_hang_together(maps: &[Value], verdict: &Value) {
+    for part in numbers(maps, "/device_can_take") {
+        assert!(part > 0.0 && part < 1.0, "{maps:?}");
+    }
+    let host = numbers(maps, "/host_us_per_cell");
+    assert!(host.iter().all(|us| *us > 0.0), "{host:?}");
+    let is_cpu = |map: &Value| map["engine"].as_str().unwrap().starts_with("cpu");
+    for map in maps {
+        let device = map.pointer("/stages_ms/device").and_then(Value::as_f64);
+        assert_eq!(device == Some(0.0), is_cpu(map), "{map}");
+    }
+    let medians = numbers(maps, "/seconds/median");
+    let (cpu, fastest) = match &medians[..] {
+        [_] => return assert!(verdict.is_null()),
+        [cpu, gpus @ ..] => (*cpu, gpus.iter().copied().fold(f64::INFINITY, f64::min)),
+        [] => panic!("no map"),
+    };
+    assert!(is_cpu(&maps[0]));
+    let faster = verdict["faster"].as_str().unwrap();
+    assert_eq!(faster.starts_with("cpu"), cpu <= fastest, "{verdict}");
+    let times = f64::max(cpu / fastest, fastest / cpu);
+    assert!((verdict["times"].as_f64().unwrap() - times).abs() < 1e-9);
 }
 
 #[test]
@@ -96,11 +133,16 @@ fn tables_fit_a_terminal_and_pictures_are_drawn() {
     let widest = rows.map(|line| line.chars().count()).max();
     assert!(widest <= Some(80), "{}", run.out);
     assert!(run.out.contains("\n* "), "{}", run.out);
+    assert_eq!(run.out.matches("verdict: ").count(), 1, "{}", run.out);
     assert_eq!(place.path("b.json").is_symlink(), cfg!(unix));
     let json: Value = serde_json::from_slice(&place.bytes("b.json")).unwrap();
     assert_eq!(json["scene"], "A small map");
     let picture = String::from_utf8(place.bytes("b.svg")).unwrap();
     assert!(picture.contains("What accuracy costs"));
+    // Numbers, no logarithms.
+    for text in ["time per state (\u{b5}s)", "1e\u{2212}8"] {
+        assert!(picture.contains(&format!(">{text}<")), "{text}");
+    }
 }
 
 #[test]

@@ -2,6 +2,8 @@
 #![allow(clippy::print_stderr, reason = "a skipped test says so")]
 
 use crate::{Place, Run, SCENE};
+use serde_json::Value;
+use whiskmap::store::StoredMap;
 
 /// So many cells that every processor takes longer for them than a GPU takes to start.
 fn large() -> String {
@@ -115,4 +117,39 @@ fn the_cpu_engine_has_no_adapter_and_no_other_precision() {
     map(&["--engine", "cpu", "--adapter", "0"]).assert_refused(&adapter);
     said(&map(&["--precision", "f64", "--no-png"]));
     assert!(!place.path("outputs/scene.png").exists());
+}
+
+/// The file says what the engine that solved leaves, and no cell leaves more.
+#[test]
+fn a_file_states_the_tolerances_of_its_engine() {
+    let place = Place::with(&SCENE.replace("count = 24", "count = 64"));
+    if adapter(&place).is_none() {
+        return;
+    }
+    let tolerances = |arguments: &[&str]| {
+        let run = place.run(&[&["map", "scene.toml", "--no-png"], arguments].concat());
+        assert_eq!(run.code, Some(0), "{run:?}");
+        let map = StoredMap::open(&place.path("outputs/scene.exr")).unwrap();
+        let tolerances = map.attribute("tolerances").unwrap();
+        let accepted = tolerances["residual_accepted_whisker_lengths"]
+            .as_f64()
+            .unwrap();
+        let residuals = map.read_channel("residual").unwrap();
+        let worst = residuals.values().fold(0.0, f64::max);
+        assert!(worst > 0.0 && worst <= accepted, "{worst:e}: {tolerances}");
+        tolerances
+    };
+    let goal = |tolerances: &Value| tolerances["residual_goal_whisker_lengths"].as_f64();
+    let estimate = |tolerances: &Value| tolerances["push_angle_error_estimated_deg"].as_f64();
+    let tolerance = ["--tolerance", "1e-3deg"];
+    let on = |engine: &str| tolerances(&[&tolerance[..], &["--engine", engine]].concat());
+    let (cpu, gpu) = (on("cpu"), on("gpu"));
+    assert_eq!((goal(&cpu), goal(&gpu)), (Some(1e-12), Some(1e-7)));
+    // The nearest pole is at 2 of 20 mm.
+    let more = estimate(&gpu).unwrap() - estimate(&cpu).unwrap();
+    assert!((more - 1e-6_f64.to_degrees()).abs() < 1e-12, "{more:e}");
+    assert!(estimate(&gpu).unwrap() <= 1e-3);
+    // A tolerance that shaders do not meet is met by the CPU.
+    let handed = tolerances(&["--tolerance", "1e-6deg", "--engine", "gpu"]);
+    assert_eq!(goal(&handed), Some(1e-12));
 }

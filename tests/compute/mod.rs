@@ -110,6 +110,10 @@ impl<F: FnMut(&wgpu::Device)> Engine for Watched<F> {
         self.gpu.describe()
     }
 
+    fn goal(&self) -> f64 {
+        self.gpu.goal()
+    }
+
     fn solve(
         &mut self,
         method: Method,

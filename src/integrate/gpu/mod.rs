@@ -135,6 +135,10 @@ impl Engine for Gpu {
         }
     }
 
+    fn goal(&self) -> f64 {
+        self.precision.goal()
+    }
+
     fn solve(
         &mut self,
         method: Method,

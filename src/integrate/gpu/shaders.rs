@@ -47,7 +47,7 @@ pub fn cells(precision: Precision) -> String {
     constants(precision) + &CELLS.concat()
 }
 
-/// A kernel that only multiplies and adds; its entry point is `peak`.
+/// Kernels that only multiply and add; their entry points are `peak_of_8` and `peak_of_16`, by accumulators.
 #[must_use]
 pub fn peak(precision: Precision) -> String {
     format!("alias real = {precision};\nconst WORKGROUP = {WORKGROUP}u;\n")

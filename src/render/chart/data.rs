@@ -149,8 +149,41 @@ pub struct Plot {
     pub inset: Option<Inset>,
     /// A unit has the same length across and upwards.
     pub equal_axes: bool,
+    /// Both axes are logarithmic. What is not positive is not drawn, nor are discs and insets, which have a size.
+    pub logarithmic: bool,
     /// Without frame, ticks and labels: a drawing.
     pub bare: bool,
+}
+
+impl Plot {
+    /// The decimal logarithms of everything, NaN where there is none.
+    pub(super) fn logarithms(&self) -> Self {
+        let logarithm = |x: f64| if x > 0.0 { x.log10() } else { f64::NAN };
+        let mut plot = Self {
+            discs: Vec::new(),
+            inset: None,
+            equal_axes: false,
+            ..self.clone()
+        };
+        for band in &mut plot.bands {
+            for point in &mut band.points {
+                *point = point.map(logarithm);
+            }
+        }
+        for line in &mut plot.lines {
+            for point in &mut line.points {
+                *point = point.map(logarithm);
+            }
+        }
+        for dot in &mut plot.dots {
+            dot.at = dot.at.map(logarithm);
+        }
+        for note in &mut plot.notes {
+            note.at = note.at.map(logarithm);
+            note.to = note.to.map(|to| to.map(logarithm));
+        }
+        plot
+    }
 }
 
 /// Plots in rows.

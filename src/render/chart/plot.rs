@@ -9,6 +9,7 @@ use crate::render::heading::{DOT, Heading, Sample};
 use crate::render::palette::{Fill, Rgb, SHADE_DARK, SHADE_LIGHT, WHITE};
 use crate::render::picture::{Area, Pen, Picture};
 use crate::render::{ticks, units};
+use std::borrow::Cow;
 
 /// Width of the white ring that sets a dot off.
 const RING: f64 = 2.0;
@@ -23,7 +24,8 @@ const fn ground(shade: Shade) -> Rgb {
 
 /// A plot laid out for a body of a size.
 pub(super) struct Layout<'a> {
-    plot: &'a Plot,
+    /// With logarithms in place of everything on logarithmic axes.
+    plot: Cow<'a, Plot>,
     window: Window,
     pub(super) axes: Axes,
 }
@@ -31,14 +33,28 @@ pub(super) struct Layout<'a> {
 impl<'a> Layout<'a> {
     /// Decides what the axes show.
     pub(super) fn plan(plot: &'a Plot, size: [f64; 2]) -> Self {
+        if plot.logarithmic {
+            let plot = plot.logarithms();
+            let window = Window::of(&plot, size);
+            let x_ticks = ticks::across(window.x, size[0], ticks::of_logarithms);
+            let y_ticks = ticks::upwards(window.y, size[1], ticks::of_logarithms);
+            let axes = Axes::new([(x_ticks, &plot.x_label), (y_ticks, &plot.y_label)], size);
+            return Self {
+                plot: Cow::Owned(plot),
+                window,
+                axes,
+            };
+        }
         let window = Window::of(plot, size);
         let [across, upwards] = window.largest;
         let (x_label, x_unit) = units::readable(&plot.x_label, across);
         let (y_label, y_unit) = units::readable(&plot.y_label, upwards);
-        let x_ticks = ticks::across(window.x.map(|end| end / x_unit), size[0]);
-        let y_ticks = ticks::upwards(window.y.map(|end| end / y_unit), size[1]);
+        let x = window.x.map(|end| end / x_unit);
+        let y = window.y.map(|end| end / y_unit);
+        let x_ticks = ticks::across(x, size[0], ticks::of_numbers);
+        let y_ticks = ticks::upwards(y, size[1], ticks::of_numbers);
         Self {
-            plot,
+            plot: Cow::Borrowed(plot),
             window,
             axes: Axes::new([(x_ticks, &x_label), (y_ticks, &y_label)], size),
         }
@@ -71,7 +87,7 @@ impl<'a> Layout<'a> {
             }
         }
         if let Some(inset) = &self.plot.inset {
-            inset::draw(picture, body, &self.window, self.plot, inset);
+            inset::draw(picture, body, &self.window, &self.plot, inset);
         }
         notes::draw(picture, body, &self.window, &self.plot.notes);
         if !self.plot.bare {

@@ -28,6 +28,8 @@ impl Window {
         let extents = [0, 1].map(|axis| extent(plot, axis));
         let [x, y] = if plot.equal_axes {
             alike(extents, pixels)
+        } else if plot.logarithmic {
+            extents.map(widened_logarithms)
         } else {
             extents.map(widened)
         };
@@ -175,6 +177,16 @@ fn widened([low, high]: [f64; 2]) -> [f64; 2] {
     let size = size([low, high]);
     if size < TINY || high - low < EQUAL * size {
         [low - room(size), high + room(size)]
+    } else {
+        let margin = MARGIN * (high - low);
+        [low - margin, high + margin]
+    }
+}
+
+/// The same of logarithms, of which only differences count: a power of ten beside equal ones.
+fn widened_logarithms([low, high]: [f64; 2]) -> [f64; 2] {
+    if high - low < EQUAL {
+        [low - 1.0, high + 1.0]
     } else {
         let margin = MARGIN * (high - low);
         [low - margin, high + margin]

@@ -101,15 +101,9 @@ impl Scale {
         let wanted = (height / 60.0).clamp(4.0, 8.0);
         let shown = range.map(|end| end / unit);
         if self.log {
-            // Powers of ten are labelled one by one: together they would all have the decimals of the smallest.
             let values = ticks::logarithmic(shown, wanted);
-            return values
-                .iter()
-                .map(|value| {
-                    let at = self.fraction(shown, *value);
-                    Tick::new(at, ticks::labels(&[*value]).concat())
-                })
-                .collect();
+            let tick = |value: &f64| Tick::of_power(self.fraction(shown, *value), *value);
+            return values.iter().map(tick).collect();
         }
         let mut values = ticks::round(shown, wanted);
         values.retain(|value| !self.whole || value.fract() == 0.0);

@@ -5,7 +5,6 @@ mod complex;
 pub mod lobatto;
 pub mod newton_form;
 pub mod newton_form_simd;
-mod peak;
 mod real;
 mod simd;
 mod turn;
@@ -13,7 +12,6 @@ mod vector;
 
 pub use bracket::{Bracket, Root, illinois};
 pub use complex::Complex;
-pub use peak::MultiplyAndAdd;
 pub use real::{Real, expm1_over_small, hyperbolic_small, rotated_by_small};
 pub use simd::{Lanes, LanesTask, SimdTask, Unit, WIDTH};
 pub use turn::nearest_turn;

@@ -1,0 +1,286 @@
+//! Whole maps, engine by engine: what the stages take, what is left for the CPU, and which engine is done first.
+
+use super::gpu::{Candidate, candidates};
+use super::watch::{Timing, median};
+use super::{Report, named};
+use crate::integrate::gpu::Gpu;
+use crate::integrate::{CellDifference, Description, Engine, EngineError, Reference, on_gpu};
+use crate::map::{self, Panel, Stage};
+use crate::numerics::Unit;
+use crate::plan::Plan;
+use crate::rod::Rod;
+use crate::scene::Scene;
+use crate::shooting::batch::Method;
+use crate::store::{MapWriter, Packed, thread_time};
+use serde::Serialize;
+use std::convert::Infallible;
+use std::time::{Duration, Instant};
+
+/// A whole map by one engine, packed but not written.
+#[derive(Clone, Debug, Serialize)]
+pub struct WholeMap {
+    /// Which engine, with its threads if it is the CPU's.
+    pub engine: String,
+    /// Seconds from the plan to the last panel packed.
+    pub seconds: Timing,
+    /// What they were spent on.
+    pub stages_ms: MapStages,
+    /// CPU time of the host's threads over all cells, in microseconds. Threads of a device in software are not the host's.
+    pub host_us_per_cell: f64,
+    /// The part of the host's time, packing included, that a device could still take: guesses and refinement.
+    pub device_can_take: f64,
+    /// Cells that the CPU refined after the engine had handed them over.
+    pub handed_over: u64,
+}
+
+/// Milliseconds of the stages of a map, medians of the runs.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub struct MapStages {
+    /// Folds, lattices and boundaries.
+    pub sheets: f64,
+    /// Guesses from the lattice, of cells that no device solves.
+    pub guesses: f64,
+    /// References of rows.
+    pub references: f64,
+    /// The engine, from its call to its answers.
+    pub device: f64,
+    /// Newton's method.
+    pub refinement: f64,
+    /// Regimes and units.
+    pub judging: f64,
+    /// CPU time of packing, over the threads: it is done beside the other stages.
+    pub packing: f64,
+    /// What the host's threads were not at work, each.
+    pub idle: f64,
+}
+
+/// Which engine is done first with whole maps.
+#[derive(Clone, Debug, Serialize)]
+pub struct Verdict {
+    /// The faster one of the CPU engine and the fastest GPU engine.
+    pub faster: String,
+    /// The other one.
+    pub slower: String,
+    /// The medians' ratio, at least 1.
+    pub times: f64,
+    /// Whether runs of the slower one were as fast as runs of the faster one.
+    pub within_spread: bool,
+}
+
+impl Verdict {
+    /// Of one CPU engine, and any number of others.
+    pub fn of(maps: &[WholeMap]) -> Option<Self> {
+        let (cpu, gpus) = maps.split_first()?;
+        let by_time = |a: &&WholeMap, b: &&WholeMap| a.seconds.median.total_cmp(&b.seconds.median);
+        let gpu = gpus.iter().min_by(by_time)?;
+        let (faster, slower) = match by_time(&cpu, &gpu).is_le() {
+            true => (cpu, gpu),
+            false => (gpu, cpu),
+        };
+        Some(Self {
+            faster: faster.engine.clone(),
+            slower: slower.engine.clone(),
+            times: slower.seconds.median / faster.seconds.median,
+            within_spread: slower.seconds.fastest <= faster.seconds.slowest,
+        })
+    }
+}
+
+/// What one run has taken, in seconds.
+struct Sample {
+    seconds: f64,
+    host: f64,
+    stages: MapStages,
+    handed_over: u64,
+}
+
+/// Adds maps of `scene` by every engine of the report, on all threads. The engines take turns, so that a busy machine is one for all.
+pub fn measure(
+    scene: &Scene,
+    runs: usize,
+    report: &mut Report,
+    said: &mut dyn FnMut(&str),
+) -> Result<(), EngineError> {
+    let plan = match Plan::new(scene) {
+        Ok(plan) => plan,
+        Err(error) => {
+            report.failures.push(format!("whole maps: {error}"));
+            return Ok(());
+        }
+    };
+    let threads = rayon::current_num_threads();
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .build()
+        .map_err(|error| EngineError::Device(error.to_string()))?;
+    report.map_cells = plan.cells;
+    let cpu = named(&format!("cpu {}", Unit::detect()), Some(threads));
+    let mut engines: Vec<(String, Option<Gpu>, Vec<Sample>)> = vec![(cpu, None, Vec::new())];
+    if on_gpu(plan.method.effects).is_ok() {
+        let measured = |one: &Candidate| report.engines.iter().any(|own| own.name == one.name);
+        let found: Vec<Candidate> = candidates().filter(measured).collect();
+        for one in found {
+            match Gpu::at(one.adapter, one.precision) {
+                Ok(gpu) => engines.push((one.name, Some(gpu), Vec::new())),
+                Err(why) => report.failures.push(format!("map by {}: {why}", one.name)),
+            }
+        }
+    }
+    // The first round warms up.
+    for round in 0..=runs {
+        let mut working = Vec::new();
+        for (name, mut gpu, mut samples) in engines {
+            said(&format!("map {round} of {runs} by {name}"));
+            let sample = pool.install(|| run(scene, &plan, gpu.as_mut()));
+            match sample {
+                Ok(sample) => {
+                    samples.extend((round > 0).then_some(sample));
+                    working.push((name, gpu, samples));
+                }
+                Err(why) => report.failures.push(format!("map by {name}: {why}")),
+            }
+        }
+        engines = working;
+    }
+    let maps = engines.into_iter();
+    let maps = maps.map(|(name, _, samples)| summed_up(name, plan.cells, &samples));
+    report.maps = maps.collect();
+    report.verdict = Verdict::of(&report.maps);
+    Ok(())
+}
+
+/// One map.
+fn run(scene: &Scene, plan: &Plan, gpu: Option<&mut Gpu>) -> Result<Sample, EngineError> {
+    let device = Duration::ZERO;
+    let mut watched = gpu.map(|gpu| Watched { gpu, device });
+    let engine = watched.as_mut().map(|watched| watched as &mut dyn Engine);
+    let mut packed = Packed::default();
+    let mut keep = |panels: Vec<Panel>| {
+        packed += MapWriter::sample(&scene.grid, plan.channels, &panels);
+        Ok::<(), Infallible>(())
+    };
+    let (start, before) = (Instant::now(), host_time());
+    let Ok(summary) = map::run(scene, plan, engine, &mut |_| (), &mut keep);
+    let (seconds, host) = (start.elapsed().as_secs_f64(), host_time() - before);
+    if let Some(failure) = summary.engine_failure {
+        return Err(failure);
+    }
+    let ms = |stage| 1e3 * summary.seconds(stage);
+    let device = watched.map_or(0.0, |watched| 1e3 * watched.device.as_secs_f64());
+    let threads = rayon::current_num_threads() as f64;
+    let cells = summary.engine_cells;
+    Ok(Sample {
+        seconds,
+        host,
+        stages: MapStages {
+            sheets: ms(Stage::Sheets),
+            guesses: ms(Stage::Guesses),
+            references: f64::max(ms(Stage::Shooting) - device, 0.0),
+            device,
+            refinement: ms(Stage::Refinement),
+            judging: ms(Stage::Regimes),
+            packing: 1e3 * packed.time.as_secs_f64() / threads,
+            idle: 1e3 * f64::max(seconds - host / threads, 0.0),
+        },
+        handed_over: cells.near_edge + cells.far + cells.missed + cells.not_finite,
+    })
+}
+
+/// CPU seconds that the threads of the current pool have had.
+fn host_time() -> f64 {
+    let times = rayon::broadcast(|_| thread_time());
+    times.iter().map(Duration::as_secs_f64).sum()
+}
+
+fn summed_up(engine: String, cells: usize, samples: &[Sample]) -> WholeMap {
+    let of = |what: fn(&Sample) -> f64| median(samples.iter().map(what));
+    let stages = MapStages {
+        sheets: of(|run| run.stages.sheets),
+        guesses: of(|run| run.stages.guesses),
+        references: of(|run| run.stages.references),
+        device: of(|run| run.stages.device),
+        refinement: of(|run| run.stages.refinement),
+        judging: of(|run| run.stages.judging),
+        packing: of(|run| run.stages.packing),
+        idle: of(|run| run.stages.idle),
+    };
+    let for_devices = stages.guesses + stages.refinement;
+    let for_cpus = stages.sheets + stages.references + stages.judging + stages.packing;
+    WholeMap {
+        engine,
+        seconds: Timing::of(samples.iter().map(|run| run.seconds)),
+        stages_ms: stages,
+        host_us_per_cell: 1e6 * of(|run| run.host) / cells as f64,
+        device_can_take: for_devices / (for_devices + for_cpus),
+        handed_over: samples.last().map_or(0, |run| run.handed_over),
+    }
+}
+
+/// A GPU whose time is taken.
+struct Watched<'a> {
+    gpu: &'a mut Gpu,
+    device: Duration,
+}
+
+impl Engine for Watched<'_> {
+    fn describe(&self) -> Description {
+        self.gpu.describe()
+    }
+
+    fn goal(&self) -> f64 {
+        self.gpu.goal()
+    }
+
+    fn solve(
+        &mut self,
+        method: Method,
+        rods: &[Rod],
+        pushes: &[f64],
+        references: &[Reference],
+    ) -> Result<Vec<CellDifference>, EngineError> {
+        let start = Instant::now();
+        let cells = self.gpu.solve(method, rods, pushes, references);
+        self.device += start.elapsed();
+        cells
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn map(engine: &str, seconds: &[f64]) -> WholeMap {
+        WholeMap {
+            engine: engine.to_owned(),
+            seconds: Timing::of(seconds.iter().copied()),
+            stages_ms: MapStages::default(),
+            host_us_per_cell: 0.0,
+            device_can_take: 0.0,
+            handed_over: 0,
+        }
+    }
+
+    #[test]
+    fn the_verdict_is_on_the_cpu_and_the_fastest_gpu() {
+        let [cpu, fast, slow] = [
+            map("cpu", &[1.9, 2.0, 2.1]),
+            map("fast", &[0.9, 1.0, 1.1]),
+            map("slow", &[4.0]),
+        ];
+        let verdict = |maps: &[&WholeMap]| {
+            let maps: Vec<WholeMap> = maps.iter().copied().cloned().collect();
+            let of = |one: Verdict| (one.faster, one.slower, one.times, one.within_spread);
+            Verdict::of(&maps).map(of)
+        };
+        let says = |faster: &str, slower: &str, times, within_spread| {
+            Some((faster.to_owned(), slower.to_owned(), times, within_spread))
+        };
+        assert_eq!(verdict(&[]), None);
+        assert_eq!(verdict(&[&cpu]), None);
+        let all = verdict(&[&cpu, &slow, &fast]);
+        assert_eq!(all, says("fast", "cpu", 2.0, false));
+        assert_eq!(verdict(&[&cpu, &slow]), says("cpu", "slow", 2.0, false));
+        let near = map("near", &[2.05, 2.5, 3.0]);
+        assert_eq!(verdict(&[&cpu, &near]), says("cpu", "near", 1.25, true));
+    }
+}

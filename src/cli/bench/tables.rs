@@ -1,0 +1,154 @@
+//! Tables of `whiskmap bench`.
+
+use std::io::{self, Write};
+use whiskmap::bench::{NOISY, Report, Timing, named};
+
+/// Prints what was measured: at most 80 columns, but for the adapters' names.
+pub fn tables(report: &Report) -> io::Result<()> {
+    let mut out = io::stdout().lock();
+    writeln!(out, "{}: {} states\n", report.scene, report.states)?;
+    for engine in &report.engines {
+        let name = named(&engine.name, engine.threads);
+        writeln!(
+            out,
+            "{name:20} peak {:.1} GFLOP/s, first result after {:.1e} s",
+            engine.peak_gflops, engine.first_result_s
+        )?;
+        if engine.threads.is_none() {
+            writeln!(out, "{:20} {}", "", engine.adapter)?;
+        }
+    }
+    writeln!(
+        out,
+        "\n{:46}angle, deg     arc  force   of\n  \
+         engine          steps               us  +-%  worst   99 %  worst  worst peak",
+        ""
+    )?;
+    for row in &report.rows {
+        let errors = &row.errors;
+        let of_peak = row
+            .of_peak
+            .map_or_else(|| "-".to_owned(), |part| format!("{:.0}%", 100.0 * part));
+        writeln!(
+            out,
+            "{} {:15} {:16} {:5.2} {} {:5.0e} {:6.0e} {:6.0e} {:6.0e} {of_peak:>4}",
+            if row.pareto { "*" } else { " " },
+            named(&row.engine, row.threads),
+            row.rung.to_string(),
+            row.us_per_state,
+            spread(&row.seconds),
+            errors.angle_deg.worst,
+            errors.angle_deg.p99,
+            errors.arc_length.worst,
+            errors.force.worst,
+        )?;
+    }
+    for failure in &report.failures {
+        writeln!(out, "not measured: {failure}")?;
+    }
+    let staged = || report.rows.iter().filter(|row| row.threads.is_none());
+    if staged().next().is_some() {
+        writeln!(
+            out,
+            "\nms              steps              upload dispatch  waiting readback"
+        )?;
+    }
+    for row in staged() {
+        let stages = &row.stages_ms;
+        writeln!(
+            out,
+            "{:15} {:16}  {:8.2} {:8.2} {:8.2} {:8.2}",
+            row.engine,
+            row.rung.to_string(),
+            stages.upload,
+            stages.dispatch,
+            stages.waiting,
+            stages.readback
+        )?;
+    }
+    writeln!(
+        out,
+        "\ndetachments, all threads    us a point  +-%    angle, deg: worst    99 %"
+    )?;
+    for row in &report.detachments {
+        writeln!(
+            out,
+            "nystrom8 x{:<3} {:23.1} {:>6} {:19.0e} {:7.0e}",
+            row.steps,
+            row.us_per_point,
+            spread(&row.seconds),
+            row.angle_deg.worst,
+            row.angle_deg.p99
+        )?;
+    }
+    maps(&mut out, report)?;
+    let rows = report.rows.iter().map(|row| &row.seconds);
+    let ends = report.detachments.iter().map(|row| &row.seconds);
+    let maps = report.maps.iter().map(|map| &map.seconds);
+    if rows.chain(ends).chain(maps).any(|timing| timing.is_noisy) {
+        let most = 100.0 * NOISY;
+        writeln!(
+            out,
+            "\n! noisy: the slowest and the fastest run are more than {most:.0} % apart"
+        )?;
+    }
+    Ok(())
+}
+
+/// Whole maps, and the verdict on them.
+fn maps(out: &mut impl Write, report: &Report) -> io::Result<()> {
+    writeln!(
+        out,
+        "\nwhole maps of {} cells, all threads\n{:20}      ms  +-%  host us/cell  for devices  handed over",
+        report.map_cells, ""
+    )?;
+    for map in &report.maps {
+        writeln!(
+            out,
+            "{:20} {:7.1} {} {:13.3} {:11.0}% {:12}",
+            map.engine,
+            1e3 * map.seconds.median,
+            spread(&map.seconds),
+            map.host_us_per_cell,
+            100.0 * map.device_can_take,
+            map.handed_over
+        )?;
+    }
+    writeln!(
+        out,
+        "\nms               sheets guesses   refs  device refining judging packing    idle"
+    )?;
+    for map in &report.maps {
+        let stages = &map.stages_ms;
+        writeln!(
+            out,
+            "{:16} {:6.1} {:7.1} {:6.1} {:7.1} {:8.1} {:7.1} {:7.1} {:7.1}",
+            map.engine,
+            stages.sheets,
+            stages.guesses,
+            stages.references,
+            stages.device,
+            stages.refinement,
+            stages.judging,
+            stages.packing,
+            stages.idle
+        )?;
+    }
+    let verdict = match &report.verdict {
+        None => "no GPU engine was measured".to_owned(),
+        Some(verdict) => {
+            let (faster, slower, times) = (&verdict.faster, &verdict.slower, verdict.times);
+            match verdict.within_spread {
+                true => format!("{faster} and {slower} are equally fast, within their spread"),
+                false => format!("{faster} is {times:.1} times as fast as {slower}"),
+            }
+        }
+    };
+    writeln!(out, "verdict: {verdict}")
+}
+
+/// The spread of a timing in percent, marked where it is noisy.
+fn spread(timing: &Timing) -> String {
+    let mark = if timing.is_noisy { "!" } else { " " };
+    format!("{:4.0}{mark}", 100.0 * timing.spread)
+}
