@@ -83,7 +83,8 @@ fn angle_of(z: vec2<real>) -> real {
     return t * (1.0 - y * (1.0 / 3.0 - y * (1.0 / 5.0 - y * (1.0 / 7.0 - y * (1.0 / 9.0 - y * (1.0 / 11.0 - y * (1.0 / 13.0)))))));
 }
 
-fn solve(push: real) -> Cell {
+// The cell at a push angle that is larger by `push` than the reference's, along so many of its steps.
+fn solve(push: real, steps: u32) -> Cell {
     var cell = Cell();
     let tau = reference[CONTACT].x;
     let load = reference[CONTACT].y;
@@ -92,7 +93,6 @@ fn solve(push: real) -> Cell {
     let rod = Rod(reference[ROD].x, reference[ROD].y, reference[ROD].zw);
     let to_pole = reference[PLACES].xy;
     let position = reference[PLACES].zw;
-    let steps = reference[PUSH].z;
     let distance = length(to_pole);
     let way = way_to(push);
     let further = at_way(of_row(TAU_BY_WAY), way);
@@ -113,12 +113,12 @@ fn solve(push: real) -> Cell {
     let trip = Path(
         rod,
         Both(tau, by.x),
-        Both(tau, by.x) / steps,
+        Both(tau, by.x) / real(steps),
         force,
         widening,
         rest_at_contact,
     );
-    let apart = integrate(trip, u32(reference[PUSH].w), u32(steps));
+    let apart = integrate(trip, u32(reference[PUSH].w), steps);
     let angle = apart.bent - rest_at_contact;
 
     // Newton's step toward ln of what the pole's place must be multiplied by; for ratios near 1 that is the ratio less 1, but for its
@@ -206,9 +206,13 @@ fn solve_cells(@builtin(workgroup_id) of_group: vec3<u32>, @builtin(local_invoca
     }
     workgroupBarrier();
     let here = pushes[group.y + min(own, group.w - 1u)];
-    let cell = solve((here.x - reference[PUSH].x) + (here.y - reference[PUSH].y));
+    let push = (here.x - reference[PUSH].x) + (here.y - reference[PUSH].y);
+    // Those beyond the last cell have nothing to do.
+    let is_asked = own < group.w;
+    let steps = select(0u, u32(reference[PUSH].z), is_asked);
+    let cell = solve(push, steps);
     let id = group.z + own;
-    if own < group.w {
+    if is_asked {
         answer(id, cell);
     }
 }

@@ -127,7 +127,7 @@ fn assert_caught(scene: &Scene, gpu: &mut Gpu) {
 const WRONG: [&str; 3] = [
     "wrong.numbers[0] += 1e-5 * f32(reference[CONTACT].w);",
     "wrong.numbers[5] += 1e-5 * f32(reference[CONTACT].z * reference[CONTACT].z * reference[CONTACT].y * reference[PLACES].z);",
-    "wrong = solve((here.x - reference[PUSH].x) + (here.y - reference[PUSH].y) + 1e-4);",
+    "wrong = solve(push + 1e-4, steps);",
 ];
 
 #[test]
@@ -166,7 +166,7 @@ const CHOSEN: u32 = 7;
 fn a_kernel_that_is_wrong_in_one_cell_of_a_thousand_is_caught() {
     let scene = cone(256);
     let wrong = format!(
-        "let mixed = (bitcast<u32>(f32(here[0])) ^ bitcast<u32>(f32(references[r].tau))) * 2654435761u;
+        "let mixed = (bitcast<u32>(f32(here.x)) ^ bitcast<u32>(f32(reference[CONTACT].x))) * 2654435761u;
          if (mixed >> 8u) % 1000u == {CHOSEN}u {{ {} }}
          answer(id, wrong);",
         WRONG[0]

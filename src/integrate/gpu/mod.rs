@@ -160,7 +160,8 @@ impl Engine for Gpu {
             timed: self.times.is_some(),
         };
         let mut times = Times::default();
-        let mut cells = Vec::new();
+        let all = references.iter().map(|reference| reference.cells.len());
+        let mut cells = Vec::with_capacity(all.sum());
         let most_steps = precision.most_steps();
         let steps = references.iter().map(|reference| {
             let Reference { tau, load, .. } = *reference;

@@ -8,7 +8,7 @@ use crate::rod::Effects;
 use crate::shooting::{REST_TANGENT, REST_TERMS};
 
 /// Invocations per workgroup; every device allows this many.
-pub const WORKGROUP: u32 = 64;
+pub const WORKGROUP: u32 = 32;
 
 /// Cells of rows as differences from references.
 const CELLS: [&str; 4] = [
