@@ -4,14 +4,13 @@
 //! of it, from first touch to where the row leaves the sheet. Every number that is smooth along the row is known between them by
 //! the polynomial through all of them, expanded around the nearest one.
 
-use super::newton::verdict;
-use super::{ContactState, End, Shot};
+use super::Shot;
+use super::exact::{Exact, exact};
 use crate::integrate::{POWERS, Reference, RowNumbers};
 use crate::numerics::nearest_turn;
-use crate::rod::{Rest, arclength};
+use crate::rod::Rest;
 use crate::sheet::{Guess, Sheet};
-use crate::shooting::batch::{Batch, InitialCondition, Method};
-use crate::shooting::{FirstVariation, limited};
+use crate::shooting::batch::Method;
 use rayon::prelude::*;
 use std::f64::consts::PI;
 use std::ops::Range;
@@ -39,7 +38,7 @@ pub fn references(method: Method, sheets: &[&Sheet], rows: &[RowOfCells]) -> Vec
     let shots = |row: &RowOfCells| node_shots(sheets[row.sheet as usize], row);
     let shots: Vec<Option<Vec<Shot>>> = rows.par_iter().map(shots).collect();
     let flat: Vec<Shot> = shots.iter().flatten().flatten().copied().collect();
-    let found = found(method, sheets, &flat);
+    let found = exact(method, sheets, &flat);
     let mut after = 0;
     let nodes: Vec<Range<usize>> = shots
         .iter()
@@ -52,69 +51,12 @@ pub fn references(method: Method, sheets: &[&Sheet], rows: &[RowOfCells]) -> Vec
     rows.par_iter()
         .zip(nodes)
         .map(|(row, nodes)| {
-            let found: Option<Vec<Found>> = found[nodes].iter().copied().collect();
+            let found: Option<Vec<Exact>> = found[nodes].iter().copied().collect();
             let found = found.filter(|found| !found.is_empty());
             let expanded = found.and_then(|found| expand(sheets[row.sheet as usize], row, &found));
             expanded.unwrap_or_default()
         })
         .collect()
-}
-
-/// An exact state of a row.
-#[derive(Clone, Copy)]
-struct Found {
-    tau: f64,
-    load: f64,
-    state: FirstVariation,
-}
-
-/// The longest Newton step without a trajectory at its end. All cells of a reference inherit its miss, which is then
-/// below rounding.
-const EXTRAPOLATED_STEP: f64 = 3e-8;
-
-/// Newton steps to it at most.
-const ROUNDS: u32 = 4;
-
-/// The states of `shots` by Newton's method, each with the derivatives of its last trajectory; `None` where there is none on the sheet.
-fn found(method: Method, sheets: &[&Sheet], shots: &[Shot]) -> Vec<Option<Found>> {
-    let mut found = vec![None; shots.len()];
-    let mut open: Vec<(usize, f64, f64)> = shots
-        .iter()
-        .enumerate()
-        .map(|(i, shot)| (i, shot.tau, shot.load))
-        .collect();
-    for _ in 0..ROUNDS {
-        let condition = |&(i, tau, load): &(usize, f64, f64)| InitialCondition {
-            rod: &sheets[shots[i].rod as usize].rod,
-            tau,
-            load,
-        };
-        let conditions: Vec<InitialCondition> = open.iter().map(condition).collect();
-        let states = Batch::new(method).shoot::<FirstVariation>(&conditions);
-        let mut left = Vec::new();
-        for ((i, tau, load), mut state) in open.into_iter().zip(states) {
-            let (shot, map) = (&shots[i], state.full.map);
-            let sheet = sheets[shot.rod as usize];
-            let s = arclength(&sheet.rod, tau);
-            let (step, length) = limited(map.solve(map.residual(shot.pole)), s, load);
-            let (tau, load) = (tau + step.x, load + step.y);
-            if length > EXTRAPOLATED_STEP {
-                left.push((i, tau, load));
-                continue;
-            }
-            state.full = state.extrapolated(step);
-            let reached = ContactState {
-                tau,
-                load,
-                full: state.full,
-                residual: 0.0,
-            };
-            let is_solved = verdict(sheet, shot, &reached) == End::Solved;
-            found[i] = is_solved.then_some(Found { tau, load, state });
-        }
-        open = left;
-    }
-    found
 }
 
 /// The push angle at which a row that begins at first touch leaves the sheet, and the signed way there.
@@ -163,7 +105,7 @@ fn node_shots(sheet: &Sheet, row: &RowOfCells) -> Option<Vec<Shot>> {
 }
 
 /// References at the states of a row, and the cells of each; `None` where the way does not grow with the push angle.
-fn expand(sheet: &Sheet, row: &RowOfCells, found: &[Found]) -> Option<Vec<Reference>> {
+fn expand(sheet: &Sheet, row: &RowOfCells, found: &[Exact]) -> Option<Vec<Reference>> {
     let (last, whole) = end(sheet, row.row)?;
     let sign = sheet.side.sign();
     let touch = sheet.rows[row.row].touch;
@@ -171,7 +113,7 @@ fn expand(sheet: &Sheet, row: &RowOfCells, found: &[Found]) -> Option<Vec<Refere
     let mut ways = [0.0; NODES];
     let mut numbers = [RowNumbers::default(); NODES];
     let mut before = (0.0, 0.0);
-    for (m, Found { tau, load, state }) in found.iter().enumerate() {
+    for (m, Exact { tau, load, state }) in found.iter().enumerate() {
         ways[m] = way(*tau, *load) / whole;
         let full = &state.full;
         let push = nearest_turn(full.map.pole.to_angle() - touch, before.0);
@@ -205,7 +147,7 @@ fn expand(sheet: &Sheet, row: &RowOfCells, found: &[Found]) -> Option<Vec<Refere
         };
         let to = from + row.pushes[from..].partition_point(|push| *push < until);
         if to > from {
-            let Found { tau, load, state } = found[m];
+            let Exact { tau, load, state } = found[m];
             references.push(Reference {
                 rod: row.sheet,
                 tau,
