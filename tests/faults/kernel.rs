@@ -59,9 +59,10 @@ fn numbers_that_are_none_are_refined_in_f64_and_counted() {
             let (summary, panels) = compute(&scene, Some(&mut gpu));
             assert!(summary.engine_failure.is_none(), "{summary:?}");
             let cells = summary.engine_cells;
+            // Each of a few dispatches counts its cells from 0.
             let expected = part * asked as f64;
             assert!(
-                (cells.not_finite as f64 - expected).abs() <= 1.0,
+                (cells.not_finite as f64 - expected).abs() <= 4.0,
                 "{none}: {cells:?}"
             );
             assert_eq!(all_cells(&cells), all_cells(&sound));
