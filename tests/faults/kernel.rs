@@ -59,12 +59,9 @@ fn numbers_that_are_none_are_refined_in_f64_and_counted() {
             let (summary, panels) = compute(&scene, Some(&mut gpu));
             assert!(summary.engine_failure.is_none(), "{summary:?}");
             let cells = summary.engine_cells;
-            // Each of a few dispatches counts its cells from 0.
-            let expected = part * asked as f64;
-            assert!(
-                (cells.not_finite as f64 - expected).abs() <= 4.0,
-                "{none}: {cells:?}"
-            );
+            // Each dispatch, of a hundred cells and more, counts its cells from 0.
+            let missing = cells.not_finite as f64 - part * asked as f64;
+            assert!(missing.abs() <= 0.01 * asked as f64, "{none}: {cells:?}");
             assert_eq!(all_cells(&cells), all_cells(&sound));
             assert_same(&cpu, &panels);
             if part == 1.0 {
