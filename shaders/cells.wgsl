@@ -1,46 +1,19 @@
 // Cells of rows, one per invocation: guess, trajectory, Newton's step and what people want to know of the state, all as differences
 // from the nearest reference of the row.
 
-// A state of the row, exact, and its neighbourhood on the row.
-struct Reference {
-    tau: real,
-    load: real,
-    radius: real,
-    arclength: real,
-    // cos and sin of the tangent at rest
-    rest: array<real, 2>,
-    // from the contact to the tip, in tau
-    to_tip: real,
-    // of the pole's centre from the base, and of the base from the contact
-    to_pole: array<real, 2>,
-    position: array<real, 2>,
-    tangent: array<real, 2>,
-    // d(theta, X, Y) at the base, and of the energy, by tau and by load
-    by_tau: array<real, 4>,
-    by_load: array<real, 4>,
-    // how far bending has turned the base, and twice the energy over the force
-    bent: real,
-    energy: real,
-    // the push angle, and what is left of it
-    push: array<real, 2>,
-    // the load over the way along the row, which goes with load tau^2
-    per_way: real,
-    // coefficients of Taylor's polynomials of the row by the way from here: push angle, tau, and direction of the point at rest as far
-    // from the base, less their own
-    push_by_way: array<real, POWERS>,
-    tau_by_way: array<real, POWERS>,
-    resting_by_way: array<real, POWERS>,
-    // d(ln D, phi) by tau and by load, four numbers for each power
-    jacobian: array<real, JACOBIAN_TERMS>,
-    // its rod, its first cell and the push angle of that, its steps and the first of them
-    rod: u32,
-    first_cell: u32,
-    first_push: u32,
-    steps: u32,
-    first_step: u32,
-    // so that references of f64 follow each other
-    unused: u32,
-}
+// Some cells of one reference: its index, the first of their push angles, the first of their answers, and how many they are.
+alias Group = vec4<u32>;
+
+@group(0) @binding(0) var<storage, read> groups: array<Group>;
+@group(0) @binding(1) var<storage, read> references: array<vec4<real>>;
+// Invocations of a group read the same: a software adapter takes uniforms faster.
+@group(0) @binding(2) var<uniform> starts: array<StepStart, MOST_STEPS>;
+@group(0) @binding(3) var<storage, read> pushes: array<vec2<real>>;
+@group(0) @binding(4) var<storage, read_write> cells: array<array<vec4<u32>, 3>>;
+
+// That of the workgroup, a state of the row, exact, and its neighbourhood on the row: `GpuReference` in Rust says what is where. Outside
+// of loops a software adapter reads a known place of it once for all invocations.
+var<workgroup> reference: array<vec4<real>, REFERENCE_QUADS>;
 
 // The state of a cell less that of its reference.
 struct Cell {
@@ -49,42 +22,43 @@ struct Cell {
     outcome: u32,
 }
 
-@group(0) @binding(0) var<storage, read> rods: array<Rod>;
-@group(0) @binding(1) var<storage, read> references: array<Reference>;
-@group(0) @binding(2) var<storage, read> starts: array<StepStart>;
-@group(0) @binding(3) var<storage, read> pushes: array<array<real, 2>>;
-@group(0) @binding(4) var<storage, read_write> cells: array<Cell>;
-
-fn jacobian_at(r: u32, way: real) -> vec4<real> {
-    var sum = vec4<real>();
-    for (var i = JACOBIAN_TERMS - 4; i >= 0; i -= 4) {
-        sum = sum * way + vec4<real>(
-            references[r].jacobian[i],
-            references[r].jacobian[i + 1],
-            references[r].jacobian[i + 2],
-            references[r].jacobian[i + 3],
-        );
-    }
-    return sum;
+// d(ln D, phi) by tau and by load.
+fn jacobian_at(way: real) -> vec4<real> {
+    return reference[JACOBIAN] + way * (reference[JACOBIAN + 1u] + way * (reference[JACOBIAN + 2u] + way * (reference[JACOBIAN + 3u]
+        + way * (reference[JACOBIAN + 4u] + way * (reference[JACOBIAN + 5u] + way * (reference[JACOBIAN + 6u]
+        + way * reference[JACOBIAN + 7u]))))));
 }
 
-// A polynomial without a constant, and its slope; loops would keep the terms in memory.
-fn at_way(t: array<real, POWERS>, x: real) -> real {
-    return x * (t[0] + x * (t[1] + x * (t[2] + x * (t[3] + x * (t[4] + x * (t[5] + x * (t[6] + x * (t[7] + x * (t[8] + x * (t[9]
-        + x * t[10]))))))))));
+// Coefficients of a polynomial without a constant.
+struct Polynomial {
+    first: vec4<real>,
+    middle: vec4<real>,
+    last: vec4<real>,
 }
 
-fn slope_at(t: array<real, POWERS>, x: real) -> real {
-    return t[0] + x * (2.0 * t[1] + x * (3.0 * t[2] + x * (4.0 * t[3] + x * (5.0 * t[4] + x * (6.0 * t[5] + x * (7.0 * t[6]
-        + x * (8.0 * t[7] + x * (9.0 * t[8] + x * (10.0 * t[9] + x * 11.0 * t[10])))))))));
+// That of the reference's row from the place `first` on.
+fn of_row(first: u32) -> Polynomial {
+    return Polynomial(reference[first], reference[first + 1u], reference[first + 2u]);
+}
+
+fn at_way(p: Polynomial, x: real) -> real {
+    return x * (p.first.x + x * (p.first.y + x * (p.first.z + x * (p.first.w + x * (p.middle.x + x * (p.middle.y + x * (p.middle.z
+        + x * (p.middle.w + x * (p.last.x + x * (p.last.y + x * p.last.z))))))))));
+}
+
+fn slope_at(p: Polynomial, x: real) -> real {
+    return p.first.x + x * (2.0 * p.first.y + x * (3.0 * p.first.z + x * (4.0 * p.first.w + x * (5.0 * p.middle.x
+        + x * (6.0 * p.middle.y + x * (7.0 * p.middle.z + x * (8.0 * p.middle.w + x * (9.0 * p.last.x + x * (10.0 * p.last.y
+        + x * 11.0 * p.last.z)))))))));
 }
 
 // The way along the row to where the push angle has changed by `push`: from the root of a parabola on by Newton's method.
-fn way_to(t: array<real, POWERS>, push: real) -> real {
-    let root = sqrt(max(t[0] * t[0] + 4.0 * t[1] * push, 0.0));
-    var way = 2.0 * push / (t[0] + select(-root, root, t[0] > 0.0));
+fn way_to(push: real) -> real {
+    let p = of_row(PUSH_BY_WAY);
+    let root = sqrt(max(p.first.x * p.first.x + 4.0 * p.first.y * push, 0.0));
+    var way = 2.0 * push / (p.first.x + select(-root, root, p.first.x > 0.0));
     for (var round = 0; round < 4; round++) {
-        way -= (at_way(t, way) - push) / slope_at(t, way);
+        way -= (at_way(p, way) - push) / slope_at(p, way);
     }
     return way;
 }
@@ -109,21 +83,23 @@ fn angle_of(z: vec2<real>) -> real {
     return t * (1.0 - y * (1.0 / 3.0 - y * (1.0 / 5.0 - y * (1.0 / 7.0 - y * (1.0 / 9.0 - y * (1.0 / 11.0 - y * (1.0 / 13.0)))))));
 }
 
-fn solve(r: u32, rod: Rod, push: real) -> Cell {
+// The cell at a push angle that is larger by `push` than the reference's, along so many of its steps.
+fn solve(push: real, steps: u32) -> Cell {
     var cell = Cell();
-    let tau = references[r].tau;
-    let load = references[r].load;
-    let radius = references[r].radius;
-    let s = references[r].arclength;
-    let steps = references[r].steps;
-    let to_pole = vec2<real>(references[r].to_pole[0], references[r].to_pole[1]);
+    let tau = reference[CONTACT].x;
+    let load = reference[CONTACT].y;
+    let radius = reference[CONTACT].z;
+    let s = reference[CONTACT].w;
+    let rod = Rod(reference[ROD].x, reference[ROD].y, reference[ROD].zw);
+    let to_pole = reference[PLACES].xy;
+    let position = reference[PLACES].zw;
     let distance = length(to_pole);
-    let way = way_to(references[r].push_by_way, push);
-    let further = at_way(references[r].tau_by_way, way);
-    let jacobian = jacobian_at(r, way);
+    let way = way_to(push);
+    let further = at_way(of_row(TAU_BY_WAY), way);
+    let jacobian = jacobian_at(way);
     let longer = further / tau;
     let less = -longer * (2.0 + longer) / ((1.0 + longer) * (1.0 + longer));
-    let by = vec2<real>(further, references[r].per_way * way * (1.0 + less) + load * less);
+    let by = vec2<real>(further, reference[REST].w * way * (1.0 + less) + load * less);
 
     // The trajectory.
     let widening = -rod.taper * by.x;
@@ -132,7 +108,7 @@ fn solve(r: u32, rod: Rod, push: real) -> Cell {
     let ds = radius * by.x * expm1_over_small(widening);
     var rest_at_contact = real(0.0);
     if CURVATURE || SPIRAL {
-        rest_at_contact = rest_apart(rod, vec2<real>(references[r].rest[0], references[r].rest[1]), s, ds);
+        rest_at_contact = rest_apart(rod, reference[REST].xy, s, ds);
     }
     let trip = Path(
         rod,
@@ -142,7 +118,7 @@ fn solve(r: u32, rod: Rod, push: real) -> Cell {
         widening,
         rest_at_contact,
     );
-    let apart = integrate(trip, references[r].first_step, steps);
+    let apart = integrate(trip, u32(reference[PUSH].w), steps);
     let angle = apart.bent - rest_at_contact;
 
     // Newton's step toward ln of what the pole's place must be multiplied by; for ratios near 1 that is the ratio less 1, but for its
@@ -165,13 +141,12 @@ fn solve(r: u32, rod: Rod, push: real) -> Cell {
 
     // What people want to know.
     let end = by + step;
-    let theta = angle + references[r].by_tau[0] * step.x + references[r].by_load[0] * step.y;
+    let theta = angle + reference[BY_TAU].x * step.x + reference[BY_LOAD].x * step.y;
     let shift = vec2<real>(
-        apart.x + references[r].by_tau[1] * step.x + references[r].by_load[1] * step.y,
-        apart.y + references[r].by_tau[2] * step.x + references[r].by_load[2] * step.y,
+        apart.x + reference[BY_TAU].y * step.x + reference[BY_LOAD].y * step.y,
+        apart.y + reference[BY_TAU].z * step.x + reference[BY_LOAD].z * step.y,
     );
-    let position = vec2<real>(references[r].position[0], references[r].position[1]);
-    let tangent = tangents(vec2<real>(references[r].tangent[0], references[r].tangent[1]), theta);
+    let tangent = tangents(reference[BASE].xy, theta);
     let end_widening = -rod.taper * end.x;
     let end_squared = expm1_small(2.0 * end_widening);
     let end_force = radius * radius * Both(load, end.y * (1.0 + end_squared) + load * end_squared);
@@ -182,15 +157,15 @@ fn solve(r: u32, rod: Rod, push: real) -> Cell {
     cell.numbers[3] = f32(product(end_force, tangent.sin).y);
     cell.numbers[4] = f32(product(end_force, tangent.cos).y);
     cell.numbers[5] = f32(-product(end_force, Both(position.x, shift.x)).y);
-    cell.numbers[6] = f32(angle_of(moved_contact) - theta - at_way(references[r].resting_by_way, way));
+    cell.numbers[6] = f32(angle_of(moved_contact) - theta - at_way(of_row(RESTING_BY_WAY), way));
     cell.numbers[7] = f32(dot(shift, 2.0 * position + shift) / (length(position + shift) + length(position)));
-    let energy = Both(references[r].energy, product(Both(position.x, apart.x), Both(references[r].bent, apart.bent)).y + apart.along);
+    let energy = Both(reference[BASE].w, product(Both(position.x, apart.x), Both(reference[BASE].z, apart.bent)).y + apart.along);
     cell.numbers[8] = f32(0.5 * product(force, energy).y
-        + references[r].by_tau[3] * step.x + references[r].by_load[3] * step.y);
+        + reference[BY_TAU].w * step.x + reference[BY_LOAD].w * step.y);
 
     // Whether all of this holds.
     cell.outcome = SOLVED;
-    let to_tip = references[r].to_tip - end.x;
+    let to_tip = reference[REST].z - end.x;
     if det < CLEAR_OF_FOLD * length(by_tau) * length(by_load) || to_tip < CLEAR_OF_TIP * tau {
         cell.outcome = NEAR_EDGE;
     }
@@ -213,23 +188,31 @@ fn solve(r: u32, rod: Rod, push: real) -> Cell {
     return cell;
 }
 
+// Four numbers at a time: a software adapter takes as long for one.
+fn answer(id: u32, cell: Cell) {
+    let n = cell.numbers;
+    cells[id] = array<vec4<u32>, 3>(
+        bitcast<vec4<u32>>(vec4<f32>(n[0], n[1], n[2], n[3])),
+        bitcast<vec4<u32>>(vec4<f32>(n[4], n[5], n[6], n[7])),
+        vec4<u32>(bitcast<u32>(n[8]), bitcast<u32>(cell.residual), cell.outcome, 0u),
+    );
+}
+
 @compute @workgroup_size(WORKGROUP)
-fn solve_cells(@builtin(global_invocation_id) id: vec3<u32>) {
-    if id.x >= arrayLength(&cells) {
-        return;
+fn solve_cells(@builtin(workgroup_id) of_group: vec3<u32>, @builtin(local_invocation_index) own: u32) {
+    let group = groups[of_group.x];
+    for (var i = own; i < REFERENCE_QUADS; i += WORKGROUP) {
+        reference[i] = references[group.x * REFERENCE_QUADS + i];
     }
-    // The last reference whose cells begin here or before.
-    var r = 0u;
-    var beyond = arrayLength(&references);
-    while beyond - r > 1u {
-        let middle = (r + beyond) / 2u;
-        if references[middle].first_cell <= id.x {
-            r = middle;
-        } else {
-            beyond = middle;
-        }
+    workgroupBarrier();
+    let here = pushes[group.y + min(own, group.w - 1u)];
+    let push = (here.x - reference[PUSH].x) + (here.y - reference[PUSH].y);
+    // Those beyond the last cell have nothing to do.
+    let is_asked = own < group.w;
+    let steps = select(0u, u32(reference[PUSH].z), is_asked);
+    let cell = solve(push, steps);
+    let id = group.z + own;
+    if is_asked {
+        answer(id, cell);
     }
-    let here = pushes[references[r].first_push + id.x - references[r].first_cell];
-    let push = (here[0] - references[r].push[0]) + (here[1] - references[r].push[1]);
-    cells[id.x] = solve(r, rods[references[r].rod], push);
 }

@@ -5,21 +5,15 @@ struct Rod {
     taper: real,
     bend: real,
     // [k0, k1] of an Euler spiral
-    spiral: array<real, 2>,
+    spiral: vec2<real>,
 }
 
 // Where a step of the reference starts.
 struct StepStart {
-    radius: real,
-    arclength: real,
-    tangent: array<real, 2>,
-    position: array<real, 2>,
-    // how far bending has turned the rod since the contact
-    bent: real,
-    // of the whisker at rest
-    rest: array<real, 2>,
-    // how far that turns along the step, by powers of the way
-    rest_turn: array<real, REST_TERMS>,
+    // radius, arclength, how far bending has turned the rod since the contact, and position across the force
+    place: vec4<real>,
+    // cos and sin: of the rod, and of the whisker at rest
+    tangents: vec4<real>,
 }
 
 // What changes from the start of a step to one of its stages.
@@ -32,6 +26,8 @@ struct Stage {
     inverse_scale: Both,
     forcing: Both,
     grown: Both,
+    // of the cell's radius over the reference's
+    growth: real,
 }
 
 // What is the same in all steps: the way from the contact to the base, of the reference and the cell.
@@ -56,6 +52,8 @@ struct Step {
     arclength: real,
     tangent: vec2<real>,
     rest: vec2<real>,
+    // how much wider the cell's rod is, over the radius
+    wider: real,
     // how far bending has turned the rod since the contact
     bent: Both,
     // h F/rho^3 and h rho
@@ -63,8 +61,9 @@ struct Step {
     reach: Both,
     // h^2 m''/m
     potential: Both,
-    // see StepStart
-    rest_turn: array<real, REST_TERMS>,
+    // of the resting whisker's tangent along the step: see `Bent` in Rust
+    rest_rate: real,
+    rest_terms: array<real, REST_TERMS>,
 }
 
 // The rod of the cell less that of the reference.
@@ -93,6 +92,7 @@ fn stage_at(path: Path, steps: real, node: real) -> Stage {
         Both(cube, cube * inverse_scale),
         Both(shrunk, shrunk * forcing),
         Both(grown, grown * growth),
+        growth,
     );
 }
 
@@ -103,10 +103,10 @@ fn rest_turn(path: Path, step: Step, stage: Stage) -> real {
         return along * (path.rod.spiral[0] + path.rod.spiral[1] * (step.arclength + 0.5 * along));
     }
     // A loop would keep the terms in memory.
-    let t = step.rest_turn;
-    let x = stage.along;
-    return x * (t[0] + x * (t[1] + x * (t[2] + x * (t[3] + x * (t[4] + x * (t[5] + x * (t[6] + x * (t[7] + x * (t[8] + x * (t[9]
-        + x * (t[10] + x * t[11])))))))))));
+    let t = step.rest_terms;
+    let x = step.rest_rate * stage.along;
+    return step.rest.x * x * (t[0] + x * (t[1] + x * (t[2] + x * (t[3] + x * (t[4] + x * (t[5] + x * (t[6] + x * (t[7] + x * (t[8]
+        + x * (t[9] + x * (t[10] + x * t[11])))))))))));
 }
 
 // How much farther than the tangent `rest` at arclength `s` the whisker at rest has turned `ds` further on.
@@ -140,10 +140,11 @@ fn pose_at(path: Path, step: Step, stage: Stage, chi: Both) -> Pose {
     if CURVATURE || SPIRAL {
         let at_rest = rest_turn(path, step, stage);
         let left = step.left - stage.part;
-        let further = path.tau.y * left;
-        let widening = path.widening * left;
         let radius = step.radius * stage.grown.x;
-        let ds = radius * further * expm1_over_small(widening);
+        var ds = radius * path.tau.y * left;
+        if TAPER {
+            ds = -radius * (step.wider + stage.growth + step.wider * stage.growth) / path.rod.taper;
+        }
         let s = step.arclength - step.radius * stage.along;
         turn += at_rest;
         apart += rest_apart(path.rod, rotated(step.rest, at_rest), s, ds) - path.rest_at_contact;
@@ -169,7 +170,7 @@ fn climb(step: Step, stage: Stage, pose: Pose) -> vec4<real> {
 // From the contact to the base, along the reference's steps from `first` on.
 fn integrate(path: Path, first: u32, count: u32) -> Apart {
     let steps = real(count);
-    let none = Stage(0.0, 0.0, Both(1.0, 0.0), Both(1.0, 0.0), Both(1.0, 0.0));
+    let none = Stage(0.0, 0.0, Both(1.0, 0.0), Both(1.0, 0.0), Both(1.0, 0.0), 0.0);
     let s2 = stage_at(path, steps, 0.05);
     let s3 = stage_at(path, steps, 0.1);
     let s4 = stage_at(path, steps, 0.3);
@@ -186,12 +187,12 @@ fn integrate(path: Path, first: u32, count: u32) -> Apart {
     let end_scale = Both(at_end, at_end * expm1_small(growth.y));
     var apart = Apart(0.0, 0.0, 0.0, 0.0);
     for (var k = 0u; k < count; k++) {
-        let index = first + k;
-        let radius = starts[index].radius;
-        // Read once: every stage needs all of it.
-        var rest_turn: array<real, REST_TERMS>;
+        let start = starts[first + k];
+        let radius = start.place.x;
+        let rest = start.tangents.zw;
+        var rest_terms: array<real, REST_TERMS>;
         if CURVATURE {
-            rest_turn = starts[index].rest_turn;
+            rest_terms = rest_terms_at(rest.y);
         }
         let left = 1.0 - real(k) / steps;
         let wider = expm1_small(path.widening * left);
@@ -202,16 +203,18 @@ fn integrate(path: Path, first: u32, count: u32) -> Apart {
         let step = Step(
             left,
             radius,
-            starts[index].arclength,
-            vec2<real>(starts[index].tangent[0], starts[index].tangent[1]),
-            vec2<real>(starts[index].rest[0], starts[index].rest[1]),
-            Both(starts[index].bent, apart.bent),
+            start.place.y,
+            start.tangents.xy,
+            rest,
+            wider,
+            Both(start.place.z, apart.bent),
             w * product(Both(1.0, faster), path.force),
             reach * Both(1.0, slower + wider + slower * wider),
             potential * Both(1.0, slower * (2.0 + slower)),
-            rest_turn,
+            -2.0 * path.rod.bend * radius * rest.x * rest.x,
+            rest_terms,
         );
-        let speed = Both(starts[index].position[0], apart.x);
+        let speed = Both(start.place.w, apart.x);
         let p1 = pose_at(path, step, none, Both(0.0, 0.0));
         let k1 = -product(step.reach, p1.tangent.cos);
         var rise = (223.0 / 7938.0) * climb(step, none, p1);

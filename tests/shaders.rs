@@ -60,7 +60,7 @@ fn a_broken_text_is_refused() {
     let none = [Effects::default()];
     let text = shaders::cells(Precision::F32);
     for (good, bad) in [
-        ("rods[references[r].rod]", "rods[references[r].tau]"),
+        ("= reference[PLACES].xy", "= reference[PLACES].xyz"),
         ("override TAPER: bool;", ""),
     ] {
         assert!(text.contains(good));

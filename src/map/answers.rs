@@ -2,6 +2,7 @@
 
 use super::cells::{Cell, Settled, State};
 use super::channels::{Numbers, channels, of_cell, of_reference};
+use super::panel::RowMut;
 use super::{Face, Panel, STATE_CHANNELS, doubt};
 use crate::classify::{Regime, RowBoundary, Sliding, Status};
 use crate::integrate::Reference;
@@ -23,36 +24,32 @@ pub fn fill(
     let has_state = panels
         .iter()
         .any(|panel| panel.state.iter().any(|channel| !channel.is_empty()));
-    let answers: Vec<Vec<Answer>> = settled
-        .rows
-        .par_iter()
-        .map(|row| {
-            let face = &faces[row.face];
-            let units = whiskers[row.face / faces_per_panel].whisker.units();
-            let reader = Reader::new(units, &face.sheet.rod);
-            let mut readings = has_state.then(|| Readings::new(reader, face, row.row));
-            let cells = || settled.cells(face, row);
-            let mut answers = answers(readings.as_mut(), face, row.row, cells);
-            mark_toward_base(face, row.row, &mut answers);
-            answers
-        })
-        .collect();
-    for (row, answers) in settled.rows.iter().zip(&answers) {
-        let panel = &mut panels[row.face / faces_per_panel];
-        for (push, answer) in faces[row.face].pushes.columns.iter().zip(answers) {
-            let at = row.row * width + push.column;
-            panel.regime[at] = answer.regime.code();
-            panel.status[at] = answer.status.code();
-            panel.newton_steps[at] = answer.steps;
-            panel.residual[at] = answer.residual;
-            panel.margin_deg[at] = answer.margin_deg;
-            for (channel, value) in panel.state.iter_mut().zip(answer.state) {
-                if let Some(cell) = channel.get_mut(at) {
-                    *cell = value;
-                }
+    panels
+        .par_iter_mut()
+        .enumerate()
+        .for_each(|(index, panel)| {
+            let units = whiskers[index].whisker.units();
+            let faces_here = index * faces_per_panel..(index + 1) * faces_per_panel;
+            // The columns of two faces may be in one row of a panel.
+            for number in faces_here {
+                let [from, to] = [number, number + 1]
+                    .map(|face| settled.rows.partition_point(|row| row.face < face));
+                let rows = &settled.rows[from..to];
+                let Some(first) = rows.first() else { continue };
+                let face = &faces[number];
+                let into = panel.rows_mut(width, first.row..first.row + rows.len());
+                into.into_par_iter().zip(rows).for_each(|(mut into, row)| {
+                    let reader = Reader::new(units, &face.sheet.rod);
+                    let mut readings = has_state.then(|| Readings::new(reader, face, row.row));
+                    let cells = || settled.cells(face, row);
+                    let mut answers = answers(readings.as_mut(), face, row.row, cells);
+                    mark_toward_base(face, row.row, &mut answers);
+                    for (push, answer) in face.pushes.columns.iter().zip(&answers) {
+                        answer.write(&mut into, push.column);
+                    }
+                });
             }
-        }
-    }
+        });
 }
 
 /// What turns the states of a row into numbers of the map.
@@ -157,6 +154,20 @@ struct Answer {
 }
 
 impl Answer {
+    /// Into a column of a row of a panel.
+    fn write(&self, row: &mut RowMut, column: usize) {
+        row.regime[column] = self.regime.code();
+        row.status[column] = self.status.code();
+        row.newton_steps[column] = self.steps;
+        row.residual[column] = self.residual;
+        row.margin_deg[column] = self.margin_deg;
+        for (channel, value) in row.state.iter_mut().zip(self.state) {
+            if let Some(cell) = channel.get_mut(column) {
+                *cell = value;
+            }
+        }
+    }
+
     /// Without a state.
     const fn new(regime: Regime, status: Status, steps: u32) -> Self {
         Self {

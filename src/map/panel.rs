@@ -2,6 +2,7 @@
 
 use crate::classify::{Regime, Status};
 use crate::plan::{Channels, STATE_CHANNELS};
+use std::ops::Range;
 
 /// One whisker's map. Every vector has `distances * push_angles` cells; cell `(row, column)` is at
 /// `row * push_angles + column`; row 0 is the first distance, column 0 the first push angle.
@@ -39,4 +40,48 @@ impl Panel {
             newton_steps: vec![0; cells],
         }
     }
+
+    /// Some rows of so many columns, to be filled side by side.
+    pub(super) fn rows_mut(&mut self, width: usize, rows: Range<usize>) -> Vec<RowMut<'_>> {
+        let cells = rows.start * width..rows.end * width;
+        let mut state = self.state.each_mut().map(|channel| {
+            let cells = if channel.is_empty() {
+                0..0
+            } else {
+                cells.clone()
+            };
+            channel[cells].chunks_mut(width)
+        });
+        let [regime, status, newton_steps] =
+            [&mut self.regime, &mut self.status, &mut self.newton_steps]
+                .map(|codes| codes[cells.clone()].chunks_mut(width));
+        let [residual, margin_deg] = [&mut self.residual, &mut self.margin_deg]
+            .map(|numbers| numbers[cells.clone()].chunks_mut(width));
+        let codes = regime.zip(status).zip(newton_steps);
+        let rows = codes.zip(residual.zip(margin_deg));
+        rows.map(
+            |(((regime, status), newton_steps), (residual, margin_deg))| RowMut {
+                regime,
+                status,
+                state: state
+                    .each_mut()
+                    .map(|channel| channel.next().unwrap_or_default()),
+                residual,
+                margin_deg,
+                newton_steps,
+            },
+        )
+        .collect()
+    }
+}
+
+/// A row of a panel.
+pub(super) struct RowMut<'a> {
+    pub regime: &'a mut [u32],
+    pub status: &'a mut [u32],
+    /// Empty where it is not wanted.
+    pub state: [&'a mut [f32]; STATE_CHANNELS.len()],
+    pub residual: &'a mut [f32],
+    pub margin_deg: &'a mut [f32],
+    pub newton_steps: &'a mut [u32],
 }

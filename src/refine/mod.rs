@@ -4,6 +4,7 @@
 //! method fails, the fold at the same distance decides: either the wanted direction lies beyond it, or the
 //! fold's normal form gives the start that Newton's method needs.
 
+mod exact;
 mod near_fold;
 mod newton;
 mod references;

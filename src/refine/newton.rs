@@ -106,7 +106,7 @@ fn is_near(shot: &Shot, state: &ContactState, s: f64) -> bool {
 }
 
 /// Whether a converged state counts.
-fn verdict(sheet: &Sheet, shot: &Shot, state: &ContactState) -> End {
+pub fn verdict(sheet: &Sheet, shot: &Shot, state: &ContactState) -> End {
     let s = arclength(&sheet.rod, state.tau);
     let is_astray = sheet.is_walked() && !is_near(shot, state, s);
     if is_astray || !sheet.is_stable(state.tau, state.load, &state.full.map) {

@@ -4,13 +4,13 @@
 //! of it, from first touch to where the row leaves the sheet. Every number that is smooth along the row is known between them by
 //! the polynomial through all of them, expanded around the nearest one.
 
-use super::{End, Shot, refine};
+use super::Shot;
+use super::exact::{Exact, exact};
 use crate::integrate::{POWERS, Reference, RowNumbers};
 use crate::numerics::nearest_turn;
 use crate::rod::Rest;
 use crate::sheet::{Guess, Sheet};
-use crate::shooting::FirstVariation;
-use crate::shooting::batch::{Batch, InitialCondition, Method};
+use crate::shooting::batch::Method;
 use rayon::prelude::*;
 use std::f64::consts::PI;
 use std::ops::Range;
@@ -38,24 +38,7 @@ pub fn references(method: Method, sheets: &[&Sheet], rows: &[RowOfCells]) -> Vec
     let shots = |row: &RowOfCells| node_shots(sheets[row.sheet as usize], row);
     let shots: Vec<Option<Vec<Shot>>> = rows.par_iter().map(shots).collect();
     let flat: Vec<Shot> = shots.iter().flatten().flatten().copied().collect();
-    let starts: Vec<(f64, f64)> = flat.iter().map(|shot| (shot.tau, shot.load)).collect();
-    let refined = refine(method, sheets, &flat, &starts);
-    let condition = |(shot, refined): (&Shot, &super::Refined)| InitialCondition {
-        rod: &sheets[shot.rod as usize].rod,
-        tau: refined.state.tau,
-        load: refined.state.load,
-    };
-    let mut conditions: Vec<_> = flat.iter().zip(&refined).map(condition).collect();
-    let is_solved: Vec<bool> = refined.iter().map(|cell| cell.end == End::Solved).collect();
-    let mut states = Batch::new(method).shoot::<FirstVariation>(&conditions);
-    // All cells of a reference inherit its miss, which one more step takes away; it is too short to need a trajectory.
-    for ((condition, state), shot) in conditions.iter_mut().zip(&mut states).zip(&flat) {
-        let map = &state.full.map;
-        let step = map.solve(map.residual(shot.pole));
-        condition.tau += step.x;
-        condition.load += step.y;
-        state.full = state.extrapolated(step);
-    }
+    let found = exact(method, sheets, &flat);
     let mut after = 0;
     let nodes: Vec<Range<usize>> = shots
         .iter()
@@ -68,11 +51,10 @@ pub fn references(method: Method, sheets: &[&Sheet], rows: &[RowOfCells]) -> Vec
     rows.par_iter()
         .zip(nodes)
         .map(|(row, nodes)| {
-            if nodes.is_empty() || !is_solved[nodes.clone()].iter().all(|solved| *solved) {
-                return Vec::new();
-            }
-            let sheet = sheets[row.sheet as usize];
-            expand(sheet, row, &conditions[nodes.clone()], &states[nodes]).unwrap_or_default()
+            let found: Option<Vec<Exact>> = found[nodes].iter().copied().collect();
+            let found = found.filter(|found| !found.is_empty());
+            let expanded = found.and_then(|found| expand(sheets[row.sheet as usize], row, &found));
+            expanded.unwrap_or_default()
         })
         .collect()
 }
@@ -123,12 +105,7 @@ fn node_shots(sheet: &Sheet, row: &RowOfCells) -> Option<Vec<Shot>> {
 }
 
 /// References at the states of a row, and the cells of each; `None` where the way does not grow with the push angle.
-fn expand(
-    sheet: &Sheet,
-    row: &RowOfCells,
-    conditions: &[InitialCondition],
-    states: &[FirstVariation],
-) -> Option<Vec<Reference>> {
+fn expand(sheet: &Sheet, row: &RowOfCells, found: &[Exact]) -> Option<Vec<Reference>> {
     let (last, whole) = end(sheet, row.row)?;
     let sign = sheet.side.sign();
     let touch = sheet.rows[row.row].touch;
@@ -136,8 +113,8 @@ fn expand(
     let mut ways = [0.0; NODES];
     let mut numbers = [RowNumbers::default(); NODES];
     let mut before = (0.0, 0.0);
-    for (m, (condition, state)) in conditions.iter().zip(states).enumerate() {
-        ways[m] = way(condition.tau, condition.load) / whole;
+    for (m, Exact { tau, load, state }) in found.iter().enumerate() {
+        ways[m] = way(*tau, *load) / whole;
         let full = &state.full;
         let push = nearest_turn(full.map.pole.to_angle() - touch, before.0);
         let resting = rest.point_at_distance(full.position.length()).to_angle();
@@ -145,13 +122,7 @@ fn expand(
         before = (push, resting);
         let (by_tau, by_load) = (full.map.by_tau, full.map.by_load);
         numbers[m] = [
-            push,
-            condition.tau,
-            resting,
-            by_tau.x,
-            by_tau.y,
-            by_load.x,
-            by_load.y,
+            push, *tau, resting, by_tau.x, by_tau.y, by_load.x, by_load.y,
         ];
     }
     if !ways.windows(2).all(|pair| pair[0] < pair[1]) {
@@ -176,13 +147,14 @@ fn expand(
         };
         let to = from + row.pushes[from..].partition_point(|push| *push < until);
         if to > from {
+            let Exact { tau, load, state } = found[m];
             references.push(Reference {
                 rod: row.sheet,
-                tau: conditions[m].tau,
-                load: conditions[m].load,
+                tau,
+                load,
                 push,
-                state: states[m],
-                per_way: whole / (conditions[m].tau * conditions[m].tau),
+                state,
+                per_way: whole / (tau * tau),
                 row: row_here,
                 cells: row.first + from as u32..row.first + to as u32,
             });

@@ -11,15 +11,15 @@ use whiskmap::plan::Plan;
 use whiskmap::scene::Scene;
 
 /// The last line of the entry point.
-const LAST: &str = "cells[id.x] = solve(r, rods[references[r].rod], push);";
+const LAST: &str = "answer(id, cell);";
 
-/// The GPU engine with `LAST` replaced; `cell` is the sound answer.
+/// The GPU engine with `LAST` replaced; `cell` is the sound answer, `wrong` a copy of it.
 fn spoilt(precision: Precision, with: &str) -> Option<Gpu> {
     let text = shaders::cells(precision);
     assert_eq!(text.matches(LAST).count(), 1);
-    let numbers = "let nan = bitcast<f32>(0x7fc00000u | (id.x >> 31u));
-        let infinite = bitcast<f32>(0x7f800000u | (id.x >> 31u));
-        var cell = solve(r, rods[references[r].rod], push);";
+    let numbers = "let nan = bitcast<f32>(0x7fc00000u | (id >> 31u));
+        let infinite = bitcast<f32>(0x7f800000u | (id >> 31u));
+        var wrong = cell;";
     open_with(precision, text.replace(LAST, &format!("{numbers}\n{with}")))
 }
 
@@ -48,22 +48,20 @@ fn numbers_that_are_none_are_refined_in_f64_and_counted() {
         assert_eq!(sound.not_finite, 0);
         let asked = sound.solved + handed_over(&sound);
         for (none, part) in [
-            ("cell.numbers[8] = nan;", 1.0),
-            ("cell.residual = infinite;", 1.0),
+            ("wrong.numbers[8] = nan;", 1.0),
+            ("wrong.residual = infinite;", 1.0),
             (
-                "if id.x % 7u == 0u { cell.numbers[0] = infinite; }",
+                "if id % 7u == 0u { wrong.numbers[0] = infinite; }",
                 1.0 / 7.0,
             ),
         ] {
-            let mut gpu = spoilt(precision, &format!("{none} cells[id.x] = cell;")).unwrap();
+            let mut gpu = spoilt(precision, &format!("{none} answer(id, wrong);")).unwrap();
             let (summary, panels) = compute(&scene, Some(&mut gpu));
             assert!(summary.engine_failure.is_none(), "{summary:?}");
             let cells = summary.engine_cells;
-            let expected = part * asked as f64;
-            assert!(
-                (cells.not_finite as f64 - expected).abs() <= 1.0,
-                "{none}: {cells:?}"
-            );
+            // Each dispatch, of a hundred cells and more, counts its cells from 0.
+            let missing = cells.not_finite as f64 - part * asked as f64;
+            assert!(missing.abs() <= 0.01 * asked as f64, "{none}: {cells:?}");
             assert_eq!(all_cells(&cells), all_cells(&sound));
             assert_same(&cpu, &panels);
             if part == 1.0 {
@@ -79,8 +77,8 @@ fn a_kernel_that_does_nothing_is_noticed() {
     let scene = cone(64);
     let (_, cpu) = compute(&scene, None);
     for writes in [
-        "if id.x == 0xffffffffu { cells[id.x] = cell; }",
-        "cell = Cell(); cells[id.x] = cell;",
+        "if id == 0xffffffffu { answer(id, wrong); }",
+        "wrong = Cell(); answer(id, wrong);",
     ] {
         let Some(mut gpu) = spoilt(Precision::F32, writes) else {
             return;
@@ -125,9 +123,9 @@ fn assert_caught(scene: &Scene, gpu: &mut Gpu) {
 
 /// Contacts that are wrong by 1e-5 of themselves, loads of one sign, and whole answers.
 const WRONG: [&str; 3] = [
-    "cell.numbers[0] += 1e-5 * f32(references[r].arclength);",
-    "cell.numbers[5] += 1e-5 * f32(references[r].radius * references[r].radius * references[r].load * references[r].position[0]);",
-    "cell = solve(r, rods[references[r].rod], push + 1e-4);",
+    "wrong.numbers[0] += 1e-5 * f32(reference[CONTACT].w);",
+    "wrong.numbers[5] += 1e-5 * f32(reference[CONTACT].z * reference[CONTACT].z * reference[CONTACT].y * reference[PLACES].z);",
+    "wrong = solve(push + 1e-4, steps);",
 ];
 
 #[test]
@@ -135,7 +133,7 @@ fn a_kernel_that_is_wrong_everywhere_is_caught() {
     let scene = cone(64);
     for precision in [Precision::F32, Precision::F64] {
         for wrong in WRONG {
-            let Some(mut gpu) = spoilt(precision, &format!("{wrong} cells[id.x] = cell;")) else {
+            let Some(mut gpu) = spoilt(precision, &format!("{wrong} answer(id, wrong);")) else {
                 continue;
             };
             assert_caught(&scene, &mut gpu);
@@ -166,9 +164,9 @@ const CHOSEN: u32 = 7;
 fn a_kernel_that_is_wrong_in_one_cell_of_a_thousand_is_caught() {
     let scene = cone(256);
     let wrong = format!(
-        "let mixed = (bitcast<u32>(f32(here[0])) ^ bitcast<u32>(f32(references[r].tau))) * 2654435761u;
+        "let mixed = (bitcast<u32>(f32(here.x)) ^ bitcast<u32>(f32(reference[CONTACT].x))) * 2654435761u;
          if (mixed >> 8u) % 1000u == {CHOSEN}u {{ {} }}
-         cells[id.x] = cell;",
+         answer(id, wrong);",
         WRONG[0]
     );
     let Some(mut gpu) = spoilt(Precision::F32, &wrong) else {

@@ -134,6 +134,10 @@ fn a_wrong_shader_breaks_its_bounds() {
             "let faster = slower - softer",
         ),
         ("slower * (2.0 + slower)", "slower * (2.001 + slower)"),
+        (
+            "(step.wider + stage.growth +",
+            "(step.wider + 1.1 * stage.growth +",
+        ),
         ("- path.rest_at_contact;", "- 0.999 * path.rest_at_contact;"),
         (
             "1.5 * path.rod.taper * path.h;",

@@ -2,7 +2,6 @@
 
 use crate::numerics::Real;
 use bytemuck::Pod;
-use glam::DVec2;
 
 /// A scalar of the shaders.
 pub trait Scalar: Real + Pod + Into<f64> {}
@@ -21,8 +20,4 @@ pub fn bytes<P: Pod>(things: impl ExactSizeIterator<Item = P>) -> Vec<u8> {
 pub fn halves<T: Scalar>(number: f64) -> [T; 2] {
     let high = T::of(number);
     [high, T::of(number - high.into())]
-}
-
-pub fn pair<T: Scalar>(of: DVec2) -> [T; 2] {
-    [T::of(of.x), T::of(of.y)]
 }

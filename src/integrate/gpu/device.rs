@@ -5,6 +5,7 @@ use super::guard::guarded;
 use super::{EngineError, Precision};
 use std::sync::{Arc, mpsc};
 use std::time::Duration;
+use wgpu::BufferUsages as Usage;
 
 /// How long a device may take for a dispatch: hundreds of times what the pace aims at.
 const PATIENCE: Duration = Duration::from_secs(60);
@@ -111,7 +112,7 @@ impl Device {
         &self,
         label: &str,
         size: u64,
-        usage: wgpu::BufferUsages,
+        usage: Usage,
     ) -> Result<wgpu::Buffer, EngineError> {
         let buffer = self.handle.create_buffer(&wgpu::BufferDescriptor {
             label: Some(label),
@@ -155,7 +156,7 @@ impl Device {
         let buffer = match kept.take() {
             Some(buffer) if buffer.size() >= size => buffer,
             _ => {
-                let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST;
+                let usage = Usage::STORAGE | Usage::UNIFORM | Usage::COPY_DST;
                 self.buffer(what, size, usage)?
             }
         };

@@ -4,7 +4,6 @@ use super::EngineError;
 use super::device::{Device, answer};
 use super::layout::BufferLayout;
 use super::reference::Packed;
-use super::shaders::WORKGROUP;
 use super::stamps::Stamps;
 use crate::integrate::CellDifference;
 use std::time::{Duration, Instant};
@@ -16,8 +15,6 @@ pub struct Call<'a> {
     pub device: &'a Device,
     pub layout: &'a BufferLayout,
     pub pipeline: &'a wgpu::ComputePipeline,
-    /// The rods, and how many there are.
-    pub rods: (&'a wgpu::Buffer, usize),
     /// The push angles.
     pub pushes: (&'a wgpu::Buffer, usize),
     /// Whether dispatches are timed by the device.
@@ -41,6 +38,7 @@ pub struct Times {
 #[derive(Debug)]
 pub struct Buffers {
     stamps: Option<Stamps>,
+    groups: Option<wgpu::Buffer>,
     references: Option<wgpu::Buffer>,
     starts: Option<wgpu::Buffer>,
     cells: wgpu::Buffer,
@@ -52,6 +50,7 @@ impl Buffers {
         let device = call.device;
         Ok(Self {
             stamps: Stamps::new(device, call.timed)?,
+            groups: None,
             references: None,
             starts: None,
             cells: device.buffer(
@@ -100,12 +99,15 @@ impl Flight {
             Some(buffers) if buffers.cells.size() >= bytes => buffers,
             _ => Buffers::new(call, bytes)?,
         };
-        let references = &packed.references;
-        let (references_size, starts_size) = (references.len() as u64, packed.starts.len() as u64);
-        let references = device.upload("references", &mut buffers.references, references)?;
+        let groups = bytemuck::cast_slice(&packed.groups);
+        let [groups_size, references_size, starts_size] =
+            [groups, &packed.references, &packed.starts].map(|bytes| bytes.len() as u64);
+        let groups = device.upload("groups", &mut buffers.groups, groups)?;
+        let references =
+            device.upload("references", &mut buffers.references, &packed.references)?;
         let starts = device.upload("steps", &mut buffers.starts, &packed.starts)?;
         let entries = [
-            part(0, call.rods.0, (call.rods.1 * layout.rod) as u64),
+            part(0, groups, groups_size),
             part(1, references, references_size),
             part(2, starts, starts_size),
             part(3, call.pushes.0, (call.pushes.1 * layout.push) as u64),
@@ -126,8 +128,8 @@ impl Flight {
             });
             pass.set_pipeline(call.pipeline);
             pass.set_bind_group(0, &bindings, &[]);
-            // The pace, and the columns of a scene, keep the cells below what `u32` can count.
-            pass.dispatch_workgroups((packed.cells as u32).div_ceil(WORKGROUP), 1, 1);
+            // The pace keeps them below what `u32` can count.
+            pass.dispatch_workgroups(packed.groups.len() as u32, 1, 1);
         }
         answer(&mut commands, &buffers.cells, &buffers.readback, bytes);
         if let Some(stamps) = &buffers.stamps {

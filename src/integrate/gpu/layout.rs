@@ -1,4 +1,4 @@
-//! Rods, push angles, references and cells as bytes: the structs of `shaders/nystrom8.wgsl` and `shaders/cells.wgsl`.
+//! Push angles, references and cells as bytes, as `shaders/nystrom8.wgsl` and `shaders/cells.wgsl` have them.
 
 use super::Precision;
 use super::bytes::{Scalar, bytes, halves};
@@ -6,24 +6,19 @@ use super::reference::{Packed, packed};
 use crate::integrate::{CellDifference, Outcome, Reference};
 use crate::plan::STATE_CHANNELS;
 use crate::rod::Rod;
-use crate::shooting::Resolution;
 use bytemuck::{Pod, Zeroable};
 
 /// What buffers hold, for shaders of one precision.
 #[derive(Debug)]
 pub struct BufferLayout {
-    /// Bytes of a rod.
-    pub rod: usize,
     /// Bytes of a push angle.
     pub push: usize,
     /// Bytes of a cell.
     pub cell: usize,
-    /// Rods to bytes.
-    pub rods: fn(&[Rod]) -> Vec<u8>,
     /// Push angles to bytes.
     pub pushes: fn(&[f64]) -> Vec<u8>,
-    /// References on rods to bytes, with the steps that a resolution takes.
-    pub references: fn(&[Rod], Resolution, &[Reference]) -> Packed,
+    /// References on rods to bytes, with their steps: [`packed`].
+    pub references: fn(&[Rod], &[Reference], &[u32], usize) -> Packed,
     /// Cells from bytes, appended.
     pub cells: fn(&[u8], &mut Vec<CellDifference>),
 }
@@ -39,10 +34,8 @@ impl BufferLayout {
 
     const fn with<T: Scalar>() -> Self {
         Self {
-            rod: size_of::<GpuRod<T>>(),
             push: size_of::<[T; 2]>(),
             cell: size_of::<GpuCell>(),
-            rods: |rods| bytes(rods.iter().map(GpuRod::<T>::from)),
             pushes: |pushes| bytes(pushes.iter().map(|push| halves::<T>(*push))),
             references: packed::<T>,
             cells: |bytes, cells| {
@@ -65,29 +58,13 @@ pub const OUTCOMES: [(&str, Outcome); 5] = [
 ];
 
 #[derive(Clone, Copy, Pod, Zeroable)]
-#[repr(C, packed)]
-struct GpuRod<T> {
-    taper: T,
-    bend: T,
-    spiral: [T; 2],
-}
-
-impl<T: Scalar> From<&Rod> for GpuRod<T> {
-    fn from(rod: &Rod) -> Self {
-        Self {
-            taper: T::of(rod.taper),
-            bend: T::of(rod.bend),
-            spiral: rod.spiral.unwrap_or_default().map(T::of),
-        }
-    }
-}
-
-#[derive(Clone, Copy, Pod, Zeroable)]
 #[repr(C)]
 struct GpuCell {
     numbers: [f32; STATE_CHANNELS.len()],
     residual: f32,
     outcome: u32,
+    /// Shaders write four numbers at a time.
+    unused: u32,
 }
 
 impl From<GpuCell> for CellDifference {
@@ -110,7 +87,7 @@ impl From<GpuCell> for CellDifference {
 #[allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 mod tests {
     use super::*;
-    use crate::integrate::gpu::reference::{GpuReference, GpuStart};
+    use crate::integrate::gpu::reference::GpuStart;
     use crate::integrate::gpu::shaders;
     use naga::TypeInner;
     use std::mem::offset_of;
@@ -143,15 +120,8 @@ mod tests {
 
     fn agrees<T: Scalar>(precision: Precision) {
         let shader = in_shader(precision);
-        for rust in [
-            in_rust!(GpuRod<T>, "Rod", taper bend spiral),
-            in_rust!(GpuStart<T>, "StepStart", radius arclength tangent position bent rest rest_turn),
-            in_rust!(GpuReference<T>, "Reference", tau load radius arclength rest to_tip to_pole position tangent
-                by_tau by_load bent energy push per_way push_by_way tau_by_way resting_by_way jacobian rod first_cell first_push steps first_step unused),
-            in_rust!(GpuCell, "Cell", numbers residual outcome),
-        ] {
-            assert_eq!(shader.iter().find(|s| s.0 == rust.0), Some(&rust));
-        }
+        let rust = in_rust!(GpuStart<T>, "StepStart", place tangents);
+        assert_eq!(shader.iter().find(|s| s.0 == rust.0), Some(&rust));
     }
 
     #[test]
@@ -172,6 +142,7 @@ mod tests {
                 numbers: [first; STATE_CHANNELS.len()],
                 residual: 0.0,
                 outcome: code,
+                unused: 0,
             };
             let mut cells = Vec::new();
             (BufferLayout::of(Precision::F32).cells)(bytemuck::bytes_of(&cell), &mut cells);

@@ -44,7 +44,6 @@ pub struct Gpu {
     shader: Option<String>,
     layout: BufferLayout,
     device: Device,
-    rods: Option<wgpu::Buffer>,
     pushes: Option<wgpu::Buffer>,
     /// Those of no flight.
     buffers: Vec<Buffers>,
@@ -91,7 +90,6 @@ impl Gpu {
             shader: None,
             layout: BufferLayout::of(precision),
             device,
-            rods: None,
             pushes: None,
             buffers: Vec::new(),
             pipelines: HashMap::new(),
@@ -149,39 +147,46 @@ impl Engine for Gpu {
         let effects = method.effects;
         let (device, layout, precision) = (&self.device, &self.layout, self.precision);
         let resolution = precision.resolution(method.resolution);
-        let uploads = [
-            device.upload("rods", &mut self.rods, &(layout.rods)(rods))?,
-            device.upload("push angles", &mut self.pushes, &(layout.pushes)(pushes))?,
-        ];
+        let uploaded = device.upload("push angles", &mut self.pushes, &(layout.pushes)(pushes))?;
         let Pipeline { handle, pace } = match self.pipelines.entry(effects) {
             Entry::Occupied(known) => known.into_mut(),
             Entry::Vacant(new) => {
                 let text = self.shader.clone();
                 let text = text.unwrap_or_else(|| shaders::cells(precision));
-                new.insert(Pipeline::new(device, &text, layout, effects)?)
+                new.insert(Pipeline::new(device, &text, layout, precision, effects)?)
             }
         };
         let call = Call {
             device,
             layout,
             pipeline: handle,
-            rods: (uploads[0], rods.len()),
-            pushes: (uploads[1], pushes.len()),
+            pushes: (uploaded, pushes.len()),
             timed: self.times.is_some(),
         };
         let mut times = Times::default();
-        let mut cells = Vec::new();
-        let mut waiting = references;
+        let all = references.iter().map(|reference| reference.cells.len());
+        let mut cells = Vec::with_capacity(all.sum());
+        let most_steps = precision.most_steps();
+        let steps = references.iter().map(|reference| {
+            let Reference { tau, load, .. } = *reference;
+            let steps = resolution.steps(&rods[reference.rod as usize], tau, load);
+            // Exact states take dozens; only numbers that are none ask for thousands.
+            steps.min(most_steps as u32)
+        });
+        let steps: Vec<u32> = steps.collect();
+        let mut waiting = (references, &steps[..]);
         let mut flights: VecDeque<(Flight, bool)> = VecDeque::new();
         let mut idle_since = Instant::now();
         loop {
-            if flights.len() < IN_FLIGHT && !waiting.is_empty() {
-                let (now, later) = waiting.split_at(together(waiting, pace.cells));
-                waiting = later;
+            if flights.len() < IN_FLIGHT && !waiting.0.is_empty() {
                 let begun = Instant::now();
-                let packed = (layout.references)(rods, resolution, now);
+                let count = together(waiting.0, pace.cells, waiting.1, most_steps);
+                let (now, later) = waiting.0.split_at(count);
+                let (now_steps, later_steps) = waiting.1.split_at(count);
+                waiting = (later, later_steps);
+                let packed = (layout.references)(rods, now, now_steps, most_steps);
                 let flight = Flight::dispatch(&call, self.buffers.pop(), &packed)?;
-                flights.push_back((flight, waiting.is_empty()));
+                flights.push_back((flight, waiting.0.is_empty()));
                 times.upload += begun.elapsed();
             } else if let Some((flight, is_last)) = flights.pop_front() {
                 let (count, started) = (flight.cells, flight.submitted.max(idle_since));
@@ -197,16 +202,15 @@ impl Engine for Gpu {
     }
 }
 
-/// Most references of a dispatch: 20 MiB in `f64`, with 30 steps each, a fraction of what any device binds.
-const MOST_REFERENCES: usize = 4096;
-
-/// How many of the first of the `references`, at least one, have together at most so many `cells`.
-fn together(references: &[Reference], cells: usize) -> usize {
-    let mut sum = 0;
-    let few = references.iter().take(MOST_REFERENCES);
-    let fits = few.take_while(|reference| {
-        sum += reference.cells.len();
-        sum <= cells
-    });
+/// How many of the first of the `references`, at least one, have together at most so many `cells`, and at most `most` of the `steps`.
+fn together(references: &[Reference], cells: usize, steps: &[u32], most: usize) -> usize {
+    let mut sums = (0, 0);
+    let fits = references
+        .iter()
+        .zip(steps)
+        .take_while(|(reference, steps)| {
+            sums = (sums.0 + reference.cells.len(), sums.1 + **steps as usize);
+            sums.0 <= cells && sums.1 <= most
+        });
     fits.count().max(1)
 }

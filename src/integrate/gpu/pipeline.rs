@@ -1,10 +1,10 @@
 //! Shaders, compiled.
 
-use super::EngineError;
 use super::device::Device;
 use super::layout::BufferLayout;
 use super::pace::Pace;
 use super::shaders::{WORKGROUP, overrides};
+use super::{EngineError, Precision};
 use crate::rod::Effects;
 
 /// The engine's shader for a set of effects, and what has been learnt about its speed.
@@ -19,9 +19,12 @@ impl Pipeline {
         device: &Device,
         shader: &str,
         layout: &BufferLayout,
+        precision: Precision,
         effects: Effects,
     ) -> Result<Self, EngineError> {
+        // The last group of each reference may have one cell, and each has a step at least.
         let groups = device.handle.limits().max_compute_workgroups_per_dimension;
+        let groups = groups.saturating_sub(precision.most_steps() as u32).max(1);
         Ok(Self {
             handle: compile(device, "solve_cells", shader, &overrides(effects))?,
             pace: Pace::new(device.most_bytes(), layout.cell, groups, WORKGROUP),

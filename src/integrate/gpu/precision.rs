@@ -1,7 +1,11 @@
 //! `f32` or `f64` in the shaders, and what follows from it.
 
+use super::reference::GpuStart;
 use crate::shooting::Resolution;
 use std::fmt;
+
+/// The largest uniform buffer of every device.
+const UNIFORM_BYTES: usize = 1 << 16;
 
 /// The shaders' scalar.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -23,17 +27,24 @@ impl fmt::Display for Precision {
 }
 
 impl Precision {
-    /// How finely differences are integrated where the CPU takes `resolution`: in `f32` more steps than these find nothing but
-    /// rounding, since a difference has only a small part of the integrator's error.
+    /// How finely differences are integrated where the CPU takes `resolution`. In `f32` more steps than these only add rounding, since a
+    /// difference has a small part of the integrator's error; with fewer, derivatives are not good enough for a step.
     #[must_use]
     pub fn resolution(self, resolution: Resolution) -> Resolution {
-        let [enough, least] = [Resolution::of(10), Resolution::COARSE];
         match self {
-            Self::F32 if resolution.least > enough.least => enough,
-            // Derivatives are good enough for a step from then on.
-            _ if resolution.least < least.least => least,
-            _ => resolution,
+            Self::F64 if resolution.least > Resolution::COARSE.least => resolution,
+            _ => Resolution::COARSE,
         }
+    }
+
+    /// Steps of all references of a dispatch: as many as every device takes as uniforms.
+    #[must_use]
+    pub(super) const fn most_steps(self) -> usize {
+        UNIFORM_BYTES
+            / match self {
+                Self::F32 => size_of::<GpuStart<f32>>(),
+                Self::F64 => size_of::<GpuStart<f64>>(),
+            }
     }
 
     /// The largest bound on a pole's miss that the shaders vouch for, in whisker lengths; nearer to the base it goes with the

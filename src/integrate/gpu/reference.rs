@@ -1,23 +1,27 @@
 //! References as bytes, with the steps of their trajectories: structs of `shaders/nystrom8.wgsl` and `shaders/cells.wgsl`.
 
-use super::bytes::{Scalar, bytes, halves, pair};
+use super::bytes::{Scalar, bytes, halves};
+use super::shaders::WORKGROUP;
 use crate::integrate::{POWERS, Reference};
 use crate::rod::{Rest, Rod, arclength};
-use crate::shooting::{REST_TERMS, Resolution, StateDerivative, StepStart, step_starts};
+use crate::shooting::{StateDerivative, StepStart, step_starts};
 use bytemuck::{Pod, Zeroable};
 use rayon::prelude::*;
+use std::mem::offset_of;
 
-/// Terms of a row's polynomials in the shaders: without a constant, which the reference has itself.
-pub const ROW_POWERS: usize = POWERS - 1;
+/// Powers of a row's polynomials in the shaders, from the first on, in whole quads.
+const ROW_POWERS: usize = POWERS.next_multiple_of(4);
 
-/// Terms of the Jacobian's polynomials there: Newton's last step needs five digits.
-pub const JACOBIAN_TERMS: usize = 4 * 8;
+/// Powers of the Jacobian's polynomials there: Newton's last step needs five digits.
+const JACOBIAN_POWERS: usize = 8;
 
 /// References, ready for a dispatch.
 #[derive(Debug)]
 pub struct Packed {
     /// Cells of all of them.
     pub cells: usize,
+    /// Their groups, each of one reference.
+    pub groups: Vec<[u32; 4]>,
     /// The references.
     pub references: Vec<u8>,
     /// The steps of their trajectories.
@@ -34,14 +38,21 @@ struct Trip {
 /// The references of one thread at a time.
 const TOGETHER: usize = 64;
 
-/// The `references` on `rods`, in steps of this `resolution`.
-pub fn packed<T: Scalar>(rods: &[Rod], resolution: Resolution, references: &[Reference]) -> Packed {
-    let parts = references.par_chunks(TOGETHER).map(|references| {
+/// The `references` on `rods`, each in so many `steps`, and room for `most_steps` of all of them.
+pub fn packed<T: Scalar>(
+    rods: &[Rod],
+    references: &[Reference],
+    steps: &[u32],
+    most_steps: usize,
+) -> Packed {
+    let parts = references
+        .par_chunks(TOGETHER)
+        .zip(steps.par_chunks(TOGETHER));
+    let parts = parts.map(|(references, steps)| {
         let mut starts = Vec::new();
-        let trips = references.iter().map(|reference| {
+        let trips = references.iter().zip(steps).map(|(reference, &steps)| {
             let rod = &rods[reference.rod as usize];
             let Reference { tau, load, .. } = *reference;
-            let steps = resolution.steps(rod, tau, load);
             let bent = step_starts(rod, tau, load, steps, &mut starts);
             Trip { steps, bent }
         });
@@ -51,132 +62,137 @@ pub fn packed<T: Scalar>(rods: &[Rod], resolution: Resolution, references: &[Ref
     let parts: Vec<(Vec<Trip>, Vec<u8>)> = parts.collect();
     let mut packed = Packed {
         cells: 0,
+        groups: Vec::new(),
         references: Vec::with_capacity(references.len() * size_of::<GpuReference<T>>()),
-        starts: Vec::with_capacity(parts.iter().map(|(_, starts)| starts.len()).sum()),
+        starts: Vec::with_capacity(most_steps * size_of::<GpuStart<T>>()),
     };
     let mut first_step = 0;
     let trips = parts.iter().flat_map(|(trips, _)| trips);
-    for (reference, trip) in references.iter().zip(trips) {
+    for (index, (reference, trip)) in (0..).zip(references.iter().zip(trips)) {
         let rod = &rods[reference.rod as usize];
-        let packed_one = GpuReference::<T>::new(rod, reference, packed.cells, first_step, trip);
-        let bytes = bytemuck::bytes_of(&packed_one);
-        packed.references.extend_from_slice(bytes);
-        packed.cells += reference.cells.len();
+        let packed_one = GpuReference::<T>::new(rod, reference, first_step, trip);
+        packed
+            .references
+            .extend_from_slice(bytemuck::bytes_of(&packed_one));
+        for push in reference.cells.clone().step_by(WORKGROUP as usize) {
+            let cells = WORKGROUP.min(reference.cells.end - push);
+            // A call has fewer cells than `u32` can count.
+            packed
+                .groups
+                .push([index, push, packed.cells as u32, cells]);
+            packed.cells += cells as usize;
+        }
         first_step += trip.steps;
     }
     for (_, starts) in &parts {
         packed.starts.extend_from_slice(starts);
     }
+    packed.starts.resize(packed.starts.capacity(), 0);
     packed
 }
 
 #[derive(Clone, Copy, Pod, Zeroable)]
 #[repr(C, packed)]
 pub struct GpuStart<T> {
-    pub radius: T,
-    pub arclength: T,
-    pub tangent: [T; 2],
-    pub position: [T; 2],
-    pub bent: T,
-    pub rest: [T; 2],
-    pub rest_turn: [T; REST_TERMS],
+    pub place: [T; 4],
+    pub tangents: [T; 4],
 }
 
 impl<T: Scalar> From<&StepStart> for GpuStart<T> {
     fn from(start: &StepStart) -> Self {
+        let StepStart { tangent, rest, .. } = start;
         Self {
-            radius: T::of(start.radius),
-            arclength: T::of(start.arclength),
-            tangent: pair(start.tangent),
-            position: pair(start.position),
-            bent: T::of(start.bent),
-            rest: pair(start.rest),
-            rest_turn: start.rest_turn.map(T::of),
+            place: [start.radius, start.arclength, start.bent, start.across].map(T::of),
+            tangents: [tangent.x, tangent.y, rest.x, rest.y].map(T::of),
         }
     }
 }
 
+/// Quads of numbers, in the order in which shaders read them.
 #[derive(Clone, Copy, Pod, Zeroable)]
 #[repr(C, packed)]
 pub struct GpuReference<T> {
-    pub tau: T,
-    pub load: T,
-    pub radius: T,
-    pub arclength: T,
-    pub rest: [T; 2],
-    pub to_tip: T,
-    pub to_pole: [T; 2],
-    pub position: [T; 2],
-    pub tangent: [T; 2],
-    pub by_tau: [T; 4],
-    pub by_load: [T; 4],
-    pub bent: T,
-    pub energy: T,
-    pub push: [T; 2],
-    pub per_way: T,
-    pub push_by_way: [T; ROW_POWERS],
-    pub tau_by_way: [T; ROW_POWERS],
-    pub resting_by_way: [T; ROW_POWERS],
-    pub jacobian: [T; JACOBIAN_TERMS],
-    pub rod: u32,
-    pub first_cell: u32,
-    pub first_push: u32,
-    pub steps: u32,
-    pub first_step: u32,
-    pub unused: u32,
+    /// `tau`, load, radius, arclength.
+    contact: [T; 4],
+    /// Taper, bend, and an Euler spiral's numbers.
+    rod: [T; 4],
+    /// The pole's centre from the base, and the base from the contact.
+    places: [T; 4],
+    /// The tangent, how far bending has turned it, and twice the energy over the force.
+    base: [T; 4],
+    /// cos and sin of the contact's tangent at rest, from the contact to the tip in `tau`, and the load over the way along the row, which
+    /// goes with `load tau^2`.
+    rest: [T; 4],
+    /// d(theta, X, Y) at the base, and of the energy, by `tau`.
+    by_tau: [T; 4],
+    /// The same by load.
+    by_load: [T; 4],
+    /// The push angle, what is left of it, the steps, and the first of them.
+    push: [T; 4],
+    /// Taylor's polynomials of the row by the way from here: push angle, `tau`, and direction of the point at rest as far from the base, less
+    /// their own.
+    push_by_way: [T; ROW_POWERS],
+    tau_by_way: [T; ROW_POWERS],
+    resting_by_way: [T; ROW_POWERS],
+    /// d(ln D, phi) by `tau` and by load, four numbers for each power.
+    jacobian: [[T; 4]; JACOBIAN_POWERS],
 }
 
+/// Where the shaders find what they read of a reference, in quads, and how many quads it has.
+pub const PLACES: [(&str, usize); 13] = {
+    macro_rules! places {
+        ($($name:literal $member:ident)+) => {
+            [
+                $(($name, offset_of!(GpuReference<f32>, $member) / size_of::<[f32; 4]>()),)+
+                ("REFERENCE_QUADS", size_of::<GpuReference<f32>>() / size_of::<[f32; 4]>()),
+            ]
+        };
+    }
+    places!(
+        "CONTACT" contact "ROD" rod "PLACES" places "BASE" base "REST" rest "BY_TAU" by_tau "BY_LOAD" by_load "PUSH" push
+        "PUSH_BY_WAY" push_by_way "TAU_BY_WAY" tau_by_way "RESTING_BY_WAY" resting_by_way "JACOBIAN" jacobian
+    )
+};
+
 impl<T: Scalar> GpuReference<T> {
-    fn new(
-        rod: &Rod,
-        reference: &Reference,
-        first_cell: usize,
-        first_step: u32,
-        trip: &Trip,
-    ) -> Self {
+    fn new(rod: &Rod, reference: &Reference, first_step: u32, trip: &Trip) -> Self {
         let Reference {
-            tau,
-            load,
-            push,
-            state,
-            ..
+            tau, load, state, ..
         } = reference;
         let s = arclength(rod, *tau);
         let full = &state.full;
         let numbers =
             |by: &StateDerivative| [by.angle, by.position.x, by.position.y, by.energy].map(T::of);
-        let along = |i: usize| std::array::from_fn(|power| T::of(reference.row[power + 1][i]));
+        let powers = |i: usize| {
+            std::array::from_fn(|power| {
+                let term = reference.row.get(power + 1);
+                term.map_or(T::of(0.0), |term| T::of(term[i]))
+            })
+        };
+        let to_pole = rod.to_pole() - full.position;
+        let energy = match full.force {
+            0.0 => 0.0,
+            force => 2.0 * full.energy / force,
+        };
+        let rest = Rest::parabola_tangent(rod, s);
+        let [k0, k1] = rod.spiral.unwrap_or_default();
+        let [high, low] = halves(reference.push);
+        let steps = [trip.steps, first_step].map(|count| T::of(count.into()));
         Self {
-            tau: T::of(*tau),
-            load: T::of(*load),
-            radius: T::of(rod.radius(*tau)),
-            arclength: T::of(s),
-            rest: pair(Rest::parabola_tangent(rod, s)),
-            to_tip: T::of(rod.tau_tip() - tau),
-            to_pole: pair(rod.to_pole() - full.position),
-            position: pair(full.position),
-            tangent: pair(full.tangent),
+            contact: [*tau, *load, rod.radius(*tau), s].map(T::of),
+            rod: [rod.taper, rod.bend, k0, k1].map(T::of),
+            places: [to_pole.x, to_pole.y, full.position.x, full.position.y].map(T::of),
+            base: [full.tangent.x, full.tangent.y, trip.bent, energy].map(T::of),
+            rest: [rest.x, rest.y, rod.tau_tip() - tau, reference.per_way].map(T::of),
             by_tau: numbers(&state.by_tau),
             by_load: numbers(&state.by_load),
-            bent: T::of(trip.bent),
-            energy: T::of(if full.force == 0.0 {
-                0.0
-            } else {
-                2.0 * full.energy / full.force
+            push: [high, low, steps[0], steps[1]],
+            push_by_way: powers(0),
+            tau_by_way: powers(1),
+            resting_by_way: powers(2),
+            jacobian: std::array::from_fn(|power| {
+                std::array::from_fn(|i| T::of(reference.row[power][3 + i]))
             }),
-            push: halves(*push),
-            per_way: T::of(reference.per_way),
-            push_by_way: along(0),
-            tau_by_way: along(1),
-            resting_by_way: along(2),
-            jacobian: std::array::from_fn(|i| T::of(reference.row[i / 4][3 + i % 4])),
-            rod: reference.rod,
-            // A call has fewer cells than `u32` can count.
-            first_cell: first_cell as u32,
-            first_push: reference.cells.start,
-            steps: trip.steps,
-            first_step,
-            unused: 0,
         }
     }
 }

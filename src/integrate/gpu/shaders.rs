@@ -2,13 +2,13 @@
 
 use super::Precision;
 use super::layout::OUTCOMES;
-use super::reference::{JACOBIAN_TERMS, ROW_POWERS};
+use super::reference::PLACES;
 use crate::plan::STATE_CHANNELS;
 use crate::rod::Effects;
-use crate::shooting::REST_TERMS;
+use crate::shooting::{REST_TANGENT, REST_TERMS};
 
 /// Invocations per workgroup; every device allows this many.
-pub const WORKGROUP: u32 = 64;
+pub const WORKGROUP: u32 = 32;
 
 /// Cells of rows as differences from references.
 const CELLS: [&str; 4] = [
@@ -21,14 +21,19 @@ const CELLS: [&str; 4] = [
 /// The numbers and names that the pieces share with Rust.
 fn constants(precision: Precision) -> String {
     let channels = STATE_CHANNELS.len();
+    let most_steps = precision.most_steps();
     let mut text = format!(
         "alias real = {precision};\n\
+         const DOUBLE = {};\n\
          const WORKGROUP = {WORKGROUP}u;\n\
+         const MOST_STEPS = {most_steps};\n\
          const REST_TERMS = {REST_TERMS};\n\
-         const POWERS = {ROW_POWERS};\n\
-         const JACOBIAN_TERMS = {JACOBIAN_TERMS};\n\
-         const CHANNELS = {channels};\n"
+         const CHANNELS = {channels};\n",
+        precision == Precision::F64,
     );
+    for (name, quad) in PLACES {
+        text += &format!("const {name} = {quad}u;\n");
+    }
     for (name, value) in precision.limits() {
         text += &format!("const {name} = real({value:e});\n");
     }
@@ -38,7 +43,26 @@ fn constants(precision: Precision) -> String {
     for (code, (name, _)) in OUTCOMES.iter().enumerate() {
         text += &format!("const {name} = {code}u;\n");
     }
-    text
+    text + &rest_terms()
+}
+
+/// A function for the terms of the tangent's Taylor series along a parabola.
+fn rest_terms() -> String {
+    // In the square of the sine; every other coefficient is 0.
+    let term = |(n, row): (usize, &[f64; REST_TERMS])| {
+        let powers = row[..=n].iter().skip(n % 2).step_by(2).rev();
+        let sum = powers.map(|term| format!("real({term:e})"));
+        let sum = sum.reduce(|sum, term| format!("({sum} * y + {term})"));
+        let odd = if n % 2 == 1 { "sin * " } else { "" };
+        format!("{odd}{}", sum.unwrap_or_default())
+    };
+    let terms: Vec<String> = REST_TANGENT.iter().enumerate().map(term).collect();
+    format!(
+        "fn rest_terms_at(sin: real) -> array<real, REST_TERMS> {{\n\
+         let y = sin * sin;\n\
+         return array<real, REST_TERMS>({});\n}}\n",
+        terms.join(",\n")
+    )
 }
 
 /// The engine's shader; its entry point is `solve_cells`.

@@ -62,7 +62,7 @@ pub const TERMS: usize = 12;
 
 /// With `k = 2 A cos^2(alpha)`, the tangent's derivatives along a parabola are `cos(alpha) k^n P_n(sin alpha)`, where
 /// `P_1 = 1` and `P_(n+1)(x) = (1 - x^2) P_n'(x) - (2n + 1) x P_n(x)`. These are the coefficients of `P_n/n!`.
-const TANGENT: [[f64; TERMS]; TERMS] = {
+pub const TANGENT: [[f64; TERMS]; TERMS] = {
     let mut rows = [[0.0; TERMS]; TERMS];
     rows[0][0] = 1.0;
     let mut n = 1;
@@ -102,18 +102,6 @@ pub struct Series<T> {
     rate: T,
     /// `P_n/n!`.
     terms: [T; TERMS],
-}
-
-impl<T: Real> Series<T> {
-    /// The coefficients of [`Intrinsic::turn`] by the powers of `along`, from the first on.
-    #[must_use]
-    pub fn coefficients(&self) -> [T; TERMS] {
-        let mut power = self.tangent[0];
-        self.terms.map(|term| {
-            power = power * self.rate;
-            power * term
-        })
-    }
 }
 
 impl<T: Real> Intrinsic<T> for Bent<T> {

@@ -22,7 +22,9 @@ pub mod shape;
 mod steps;
 
 pub use integrator::{Integrator, Nystrom8, Rk4, STAGES, Scales, Stage, collocate, integrate};
-pub use intrinsic::{Bent, Intrinsic, Spiral, Straight, TERMS as REST_TERMS};
+pub use intrinsic::{
+    Bent, Intrinsic, Spiral, Straight, TANGENT as REST_TANGENT, TERMS as REST_TERMS,
+};
 pub use map::{
     FirstVariation, FullState, LONGEST_STEP, SecondVariation, ShootingMap, StateDerivative, limited,
 };

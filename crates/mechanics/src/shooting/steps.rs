@@ -1,7 +1,6 @@
 //! Where the steps of a trajectory start: what a shader needs of it to integrate others beside it.
 
 use crate::rod::{Rest, Rod, arclength};
-use crate::shooting::intrinsic::TERMS;
 use crate::shooting::{
     Bent, Intrinsic, Nystrom8, RodSystem, Scales, Section, Shape, Spiral, State, Straight, Uniform,
     integrate,
@@ -17,43 +16,39 @@ pub struct StepStart {
     pub arclength: f64,
     /// Unit tangent.
     pub tangent: DVec2,
-    /// Position, in whisker lengths.
-    pub position: DVec2,
+    /// Position across the force, in whisker lengths.
+    pub across: f64,
     /// How far bending has turned the rod since the contact.
     pub bent: f64,
-    /// cos and sin of the tangent of a parabola at rest, in its own frame.
+    /// cos and sin of the tangent of a parabola at rest, in its own frame; of the first axis where the whisker is none.
     pub rest: DVec2,
-    /// How far that tangent turns along the step: coefficients of the powers, from the first on, of the arclength toward the base
-    /// over the radius at the start. 0 where the whisker is no parabola at rest.
-    pub rest_turn: [f64; TERMS],
 }
 
 /// Appends to `starts` where each of the `steps` starts that the trajectory of a uniform cone takes from the contact at `tau` under
 /// `load` to the base; how far bending has turned the rod there.
 pub fn step_starts(rod: &Rod, tau: f64, load: f64, steps: u32, starts: &mut Vec<StepStart>) -> f64 {
-    let straight = (DVec2::X, [0.0; TERMS]);
     match rod.spiral {
         Some([at_base, slope]) => {
             let spiral = Spiral { at_base, slope };
-            follow(rod, (tau, load), steps, spiral, (), starts, |_, ()| {
-                straight
-            })
+            follow(rod, (tau, load), steps, spiral, (), starts, |()| DVec2::X)
         }
         None if rod.bend == 0.0 => {
-            follow(rod, (tau, load), steps, Straight, (), starts, |_, ()| {
-                straight
-            })
+            follow(rod, (tau, load), steps, Straight, (), starts, |()| DVec2::X)
         }
         None => {
             let bent = Bent {
                 twice_bend: 2.0 * rod.bend,
             };
             let at_contact = Rest::parabola_tangent(rod, arclength(rod, tau)).to_array();
-            let at_rest = |section: &Section<f64>, tangent| {
-                let course = bent.course(section, tangent);
-                (DVec2::from_array(tangent), course.coefficients())
-            };
-            follow(rod, (tau, load), steps, bent, at_contact, starts, at_rest)
+            follow(
+                rod,
+                (tau, load),
+                steps,
+                bent,
+                at_contact,
+                starts,
+                DVec2::from_array,
+            )
         }
     }
 }
@@ -65,7 +60,7 @@ fn follow<I: Intrinsic<f64>>(
     intrinsic: I,
     rest: I::State,
     starts: &mut Vec<StepStart>,
-    at_rest: impl Fn(&Section<f64>, I::State) -> (DVec2, [f64; TERMS]),
+    tangent_of: impl Fn(I::State) -> DVec2,
 ) -> f64 {
     let radius = rod.radius(tau);
     let system = RodSystem {
@@ -83,16 +78,14 @@ fn follow<I: Intrinsic<f64>>(
     let at_contact = [tangent.x, tangent.y, 0.0, 0.0, 0.0];
     let mut state: State<f64, I, Shape> = (rest, (at_contact, ((), ((), ()))));
     for _ in 0..steps {
-        let (rest, ([cos, sin, x, y, bent], _)) = state;
-        let (rest, rest_turn) = at_rest(&section, rest);
+        let (rest, ([cos, sin, across, _, bent], _)) = state;
         starts.push(StepStart {
             radius: section.rho,
             arclength: section.arclength,
             tangent: DVec2::new(cos, sin),
-            position: DVec2::new(x, y),
+            across,
             bent,
-            rest,
-            rest_turn,
+            rest: tangent_of(rest),
         });
         state = integrate::<Nystrom8, f64, _, _, Shape>(&system, &scales, section, 1, state);
         section = section.at(scales.end());
