@@ -123,8 +123,14 @@ impl Resolution {
 /// Of the load and of the rest shape, which turns by `bend` between base and contact.
 #[inline(always)]
 fn weight(bending: f64, bend: f64) -> f64 {
-    0.28 + 0.195 * bending.sqrt() + 0.18 * bend * bend.min(2.0)
+    let root = bending.sqrt();
+    let coiling = 0.25 * (root - COILING).max(0.0);
+    0.28 + 0.195 * root + coiling + 0.18 * bend * bend.min(2.0)
 }
+
+/// The root of a load from which on a whisker coils up by more than a turn, so that the same error counts for more of the distance
+/// between base and pole. Only friction holds it.
+const COILING: f64 = 6.3;
 
 /// Of the fall of the radius.
 #[inline(always)]
