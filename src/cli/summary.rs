@@ -65,6 +65,14 @@ pub fn print(
         write!(out, " {name} {:.2}", summary.seconds(stage))?;
     }
     writeln!(out)?;
+    if summary.device_seconds() > 0.0 {
+        writeln!(
+            out,
+            "{:>12.2}  s of the engine beside them, {:.2} of these waited for",
+            summary.device_seconds(),
+            summary.waiting_seconds()
+        )?;
+    }
     if let Some(time) = cpu_time() {
         let [all, packing] = [time, packing].map(|time| time.as_secs_f64());
         writeln!(

@@ -126,8 +126,8 @@ impl Description {
     }
 }
 
-/// Something that solves cells.
-pub trait Engine {
+/// Something that solves cells, on any thread.
+pub trait Engine: Send {
     /// Which engine this is.
     fn describe(&self) -> Description;
 

@@ -5,7 +5,7 @@ use super::cells::{Settled, SettledRow, Source};
 use super::pushes::Pushes;
 use super::summary::Audit;
 use super::{Face, Stage, Summary};
-use crate::integrate::{CellDifference, Fallback, Reference, on_gpu};
+use crate::integrate::{CellDifference, Reference, on_gpu};
 use crate::refine::{self, RowOfCells, Shot};
 use crate::rod::Rod;
 use crate::sheet::{Guess, Sheet};
@@ -13,49 +13,55 @@ use crate::shooting::batch::Method;
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// Settles the cells of `rows`, pairs of a face and a row of its panel, with an engine as long as it works and its answers hold. `angles`
-/// are the signed push angles of the columns of all faces.
+/// What an engine is asked about some rows.
+#[derive(Default)]
+pub struct Asked {
+    /// The rods of the references.
+    pub rods: Vec<Rod>,
+    /// The references of all rows.
+    pub references: Vec<Reference>,
+    /// The references of each row, and the first of their cells.
+    rows: Vec<(Range<usize>, usize)>,
+}
+
+impl Asked {
+    /// About `rows`, pairs of a face and a row of its panel.
+    pub fn new(method: Method, faces: &[Face], rows: &[(usize, usize)]) -> Self {
+        match on_gpu(method.effects) {
+            Ok(()) => Rows::new(method, faces, rows).ask(),
+            Err(_) => Self::default(),
+        }
+    }
+}
+
+/// What an engine made of some rows.
+#[derive(Default)]
+pub struct Solved {
+    /// What it was asked.
+    pub asked: Asked,
+    /// Its answers.
+    pub differences: Vec<CellDifference>,
+}
+
+/// Settles the cells of `rows`, pairs of a face and a row of its panel, with what an engine made of them as long as that holds.
 pub fn settle(
     method: Method,
     faces: &[Face],
-    angles: &[f64],
     rows: &[(usize, usize)],
-    engine: &mut Fallback<'_>,
+    solved: Solved,
     summary: &mut Summary,
-) -> Settled {
-    let taking_part = |&i: &usize| rows.iter().any(|row| row.0 == i);
-    let used: Vec<usize> = (0..faces.len()).filter(taking_part).collect();
-    let place = |&(index, row): &(usize, usize)| Place {
-        face: &faces[index],
-        index,
-        row,
-        // Panels at once are few.
-        sheet: used.binary_search(&index).unwrap_or_default() as u32,
-    };
-    let strip = Strip {
-        method,
-        // `sheets[shot.rod]` is the sheet of a shot.
-        sheets: used.iter().map(|&i| &faces[i].sheet).collect(),
-        places: rows.iter().map(place).collect(),
-    };
-    let had_engine = engine.engine.is_some() || engine.failure.is_some();
-    let solved = summary.time(Stage::Shooting, || strip.solve(angles, engine));
-    let (mut settled, mut audit) = strip.finish(solved.unwrap_or_default(), summary);
+) -> (Settled, Audit) {
+    let rows = Rows::new(method, faces, rows);
+    let (mut settled, mut audit) = rows.finish(solved, summary);
     if audit.differing > 0 {
-        // Who has been wrong once is not asked again.
-        engine.distrust(audit.differing, audit.cells);
         audit.turned_over = settled.solved();
-        settled = strip.finish(Solved::default(), summary).0;
+        settled = rows.finish(Solved::default(), summary).0;
     }
-    summary.audit += audit;
-    if had_engine {
-        settled.count(engine.failure.is_some(), &mut summary.engine_cells);
-    }
-    settled
+    (settled, audit)
 }
 
 /// Some rows that are settled together.
-struct Strip<'a> {
+struct Rows<'a> {
     method: Method,
     sheets: Vec<&'a Sheet>,
     places: Vec<Place<'a>>,
@@ -69,15 +75,6 @@ struct Place<'a> {
     row: usize,
     /// Of the face's sheet among those of the strip.
     sheet: u32,
-}
-
-/// What an engine made of the rows of a strip.
-#[derive(Default)]
-struct Solved {
-    references: Vec<Reference>,
-    differences: Vec<CellDifference>,
-    /// The references of each row, and the first of their cells.
-    rows: Vec<(Range<usize>, usize)>,
 }
 
 /// What is to be done for a row.
@@ -98,11 +95,27 @@ struct Chosen {
     shot: usize,
 }
 
-impl Strip<'_> {
-    /// What an engine, if there is one that can, makes of the rows.
-    fn solve(&self, angles: &[f64], engine: &mut Fallback<'_>) -> Option<Solved> {
-        engine.engine.as_ref()?;
-        on_gpu(self.method.effects).ok()?;
+impl<'a> Rows<'a> {
+    fn new(method: Method, faces: &'a [Face<'a>], rows: &[(usize, usize)]) -> Self {
+        let taking_part = |&i: &usize| rows.iter().any(|row| row.0 == i);
+        let used: Vec<usize> = (0..faces.len()).filter(taking_part).collect();
+        let place = |&(index, row): &(usize, usize)| Place {
+            face: &faces[index],
+            index,
+            row,
+            // Panels at once are few.
+            sheet: used.binary_search(&index).unwrap_or_default() as u32,
+        };
+        Self {
+            method,
+            // `sheets[shot.rod]` is the sheet of a shot.
+            sheets: used.iter().map(|&i| &faces[i].sheet).collect(),
+            places: rows.iter().map(place).collect(),
+        }
+    }
+
+    /// What there is to ask an engine.
+    fn ask(&self) -> Asked {
         let rows = self.places.iter().map(|place| RowOfCells {
             sheet: place.sheet,
             row: place.row,
@@ -110,22 +123,20 @@ impl Strip<'_> {
             first: place.face.pushes.first,
         });
         let rows: Vec<RowOfCells> = rows.collect();
-        let mut solved = Solved::default();
+        let mut asked = Asked {
+            rods: self.sheets.iter().map(|sheet| sheet.rod.clone()).collect(),
+            ..Asked::default()
+        };
         let mut cells = 0;
         for row in refine::references(self.method, &self.sheets, &rows) {
-            let from = solved.references.len();
+            let from = asked.references.len();
             let of_row = row.iter().map(|reference| reference.cells.len());
             let of_row: usize = of_row.sum();
-            solved.references.extend(row);
-            solved.rows.push((from..solved.references.len(), cells));
+            asked.references.extend(row);
+            asked.rows.push((from..asked.references.len(), cells));
             cells += of_row;
         }
-        if solved.references.is_empty() {
-            return Some(solved);
-        }
-        let rods: Vec<Rod> = self.sheets.iter().map(|sheet| sheet.rod.clone()).collect();
-        solved.differences = engine.solve(self.method, &rods, angles, &solved.references)?;
-        Some(solved)
+        asked
     }
 
     /// Refines what an engine has left, and a sample of what it has not.
@@ -140,6 +151,7 @@ impl Strip<'_> {
             let starts: Vec<_> = shots.iter().map(|shot| (shot.tau, shot.load)).collect();
             refine::refine(self.method, &self.sheets, &shots, &starts)
         });
+        let Solved { asked, differences } = solved;
         let mut audit = Audit::default();
         let mut rows = Vec::with_capacity(self.places.len());
         let (mut before, mut unasked) = (0, 0);
@@ -148,9 +160,9 @@ impl Strip<'_> {
                 let refined = &refined[before + chosen.shot];
                 let push = place.face.pushes.columns[chosen.column].angle;
                 let said = Said {
-                    row: &solved.references[solved.rows[i].0.clone()],
-                    reference: &solved.references[chosen.reference as usize],
-                    difference: &solved.differences[chosen.cell as usize],
+                    row: &asked.references[asked.rows[i].0.clone()],
+                    reference: &asked.references[chosen.reference as usize],
+                    difference: &differences[chosen.cell as usize],
                 };
                 let holds = audit::holds(&place.face.sheet, place.row, push, &said, refined);
                 audit.cells += 1;
@@ -169,14 +181,9 @@ impl Strip<'_> {
                 sources: work.sources,
             });
         }
-        let Solved {
-            references,
-            differences,
-            ..
-        } = solved;
         let settled = Settled {
             rows,
-            references,
+            references: asked.references,
             differences,
             refined,
             unasked,
@@ -192,11 +199,11 @@ impl Place<'_> {
         let mut sources = vec![Source::Outside; pushes.columns.len()];
         let mut was_asked = vec![false; sources.len()];
         let mut chosen = Vec::new();
-        if let Some((references, first)) = solved.rows.get(i) {
+        if let Some((references, first)) = solved.asked.rows.get(i) {
             let mut cell = *first;
             let audit = Sample::new(&self.face.sheet, self.row, pushes.columns.len());
             for reference in references.clone() {
-                let cells = &solved.references[reference].cells;
+                let cells = &solved.asked.references[reference].cells;
                 for column in cells.clone().map(|index| (index - pushes.first) as usize) {
                     let outcome = solved.differences[cell].outcome;
                     was_asked[column] = true;

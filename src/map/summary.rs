@@ -13,7 +13,7 @@ pub enum Stage {
     Sheets,
     /// Guesses from the lattice.
     Guesses,
-    /// References of rows, and the engine.
+    /// References of rows, and waiting for the engine.
     Shooting,
     /// Newton's method in `f64`.
     Refinement,
@@ -108,6 +108,8 @@ pub struct Summary {
     /// Why the CPU went on in the engine's stead, if it did.
     pub engine_failure: Option<EngineError>,
     times: [Duration; Stage::ALL.len()],
+    device: Duration,
+    waiting: Duration,
 }
 
 impl Summary {
@@ -122,6 +124,13 @@ impl Summary {
     /// Adds to the time of `stage`.
     pub(super) fn add(&mut self, stage: Stage, time: Duration) {
         self.times[stage as usize] += time;
+    }
+
+    /// Adds to the engine's time, and to that for which the threads waited for it, on the clock of [`Stage::Shooting`], too.
+    pub(super) fn wait(&mut self, device: Duration, waiting: Duration) {
+        self.device += device;
+        self.waiting += waiting;
+        self.add(Stage::Shooting, waiting);
     }
 
     /// Adds a finished panel.
@@ -159,5 +168,17 @@ impl Summary {
     #[must_use]
     pub fn seconds(&self, stage: Stage) -> f64 {
         self.times[stage as usize].as_secs_f64()
+    }
+
+    /// Seconds for which the engine worked on what it was asked, beside other stages.
+    #[must_use]
+    pub const fn device_seconds(&self) -> f64 {
+        self.device.as_secs_f64()
+    }
+
+    /// Seconds, a part of [`Stage::Shooting`], for which nothing but the engine and the packing of panels went on.
+    #[must_use]
+    pub const fn waiting_seconds(&self) -> f64 {
+        self.waiting.as_secs_f64()
     }
 }

@@ -105,7 +105,7 @@ impl<F> Watched<F> {
     }
 }
 
-impl<F: FnMut(&wgpu::Device)> Engine for Watched<F> {
+impl<F: FnMut(&wgpu::Device) + Send> Engine for Watched<F> {
     fn describe(&self) -> Description {
         self.gpu.describe()
     }

@@ -1,0 +1,133 @@
+//! The strips of a map on their way: the engine solves one while the one before is settled, and no race decides about a cell.
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+mod compute;
+
+use compute::{assert_identical, compute_as, open};
+use std::convert::Infallible;
+use std::sync::mpsc;
+use std::time::Duration;
+use whiskmap::integrate::gpu::{Gpu, Precision};
+use whiskmap::integrate::{CellDifference, Description, Engine, EngineError, Reference};
+use whiskmap::map::{self, Panel, Summary};
+use whiskmap::plan::Plan;
+use whiskmap::rod::Rod;
+use whiskmap::scene::Scene;
+use whiskmap::shooting::batch::Method;
+
+type Answer = Result<Vec<CellDifference>, EngineError>;
+
+/// A GPU of whose answers something is made, call by call.
+struct Changed<F> {
+    gpu: Gpu,
+    calls: usize,
+    change: F,
+}
+
+impl<F: FnMut(usize, Vec<CellDifference>) -> Answer + Send> Engine for Changed<F> {
+    fn describe(&self) -> Description {
+        self.gpu.describe()
+    }
+
+    fn solve(
+        &mut self,
+        method: Method,
+        rods: &[Rod],
+        pushes: &[f64],
+        references: &[Reference],
+    ) -> Answer {
+        let cells = self.gpu.solve(method, rods, pushes, references)?;
+        self.calls += 1;
+        (self.change)(self.calls, cells)
+    }
+}
+
+/// The paper's cone, and a plan that takes its rows by eights.
+fn in_strips() -> (Scene, Plan) {
+    let scene = Scene::read("scenes/cone.toml").unwrap().thinned(64, 1);
+    let mut plan = Plan::new(&scene).unwrap();
+    plan.rows_at_once = 8;
+    (scene, plan)
+}
+
+fn on_threads<R: Send>(count: usize, work: impl FnOnce() -> R + Send) -> R {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(count).build();
+    pool.unwrap().install(work)
+}
+
+/// Strips of which both are known to be under way at some moment; the last ones are out of reach, and nothing is asked about them.
+const AT_ONCE: usize = 8;
+
+/// The answer to a call waits until the strip before is settled, and that one for the call: in turn, one of them would wait in vain.
+#[test]
+fn a_strip_is_solved_while_the_one_before_is_settled() {
+    let (scene, plan) = in_strips();
+    let Some(gpu) = open(Precision::F32) else {
+        return;
+    };
+    let wait = |other: &mpsc::Receiver<usize>, until: usize| {
+        while other.recv_timeout(Duration::from_secs(60)).unwrap() < until {}
+    };
+    let ((call_begins, calls), (strip_ends, ends)) = (mpsc::channel(), mpsc::channel());
+    let change = move |call: usize, cells| {
+        call_begins.send(call).unwrap();
+        if (2..=AT_ONCE).contains(&call) {
+            wait(&ends, call - 1);
+        }
+        Ok(cells)
+    };
+    let mut engine = Changed {
+        gpu,
+        calls: 0,
+        change,
+    };
+    on_threads(3, move || {
+        let mut settled = 0;
+        let mut one_more = |_| {
+            settled += 1;
+            strip_ends.send(settled).unwrap();
+            if settled < AT_ONCE {
+                wait(&calls, settled + 1);
+            }
+        };
+        let discard = &mut |_| Ok::<(), Infallible>(());
+        let Ok(_) = map::run(&scene, &plan, Some(&mut engine), &mut one_more, discard);
+        assert_eq!(settled, 16);
+    });
+}
+
+/// The fifth call fails, or its answers are wrong, which an audit finds while the sixth is under way: no cell of either is the engine's.
+#[test]
+fn what_becomes_of_a_cell_does_not_depend_on_threads() {
+    let (scene, plan) = in_strips();
+    let run = |threads: usize, is_wrong: bool| -> Option<(Summary, Vec<Panel>)> {
+        let gpu = open(Precision::F32)?;
+        let change = |call, mut cells: Vec<CellDifference>| {
+            if call == 5 && !is_wrong {
+                return Err(EngineError::Device("lost".to_owned()));
+            }
+            if call == 5 {
+                cells.iter_mut().for_each(|cell| cell.numbers[2] += 0.1);
+            }
+            Ok(cells)
+        };
+        let mut engine = Changed {
+            gpu,
+            calls: 0,
+            change,
+        };
+        let work = || compute_as(&scene, &plan, Some(&mut engine));
+        Some(on_threads(threads, work))
+    };
+    let Some((wanted, panels)) = run(1, false) else {
+        return;
+    };
+    assert!(wanted.engine_cells.solved > 0 && wanted.engine_cells.on_cpu_instead > 0);
+    for (threads, is_wrong) in [(4, false), (1, true), (4, true)] {
+        let (summary, found) = run(threads, is_wrong).unwrap();
+        assert_eq!(summary.engine_cells, wanted.engine_cells);
+        assert_eq!(summary.audit.differing > 0, is_wrong);
+        assert!(summary.engine_failure.is_some());
+        assert_identical(&panels, &found);
+    }
+}
