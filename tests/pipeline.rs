@@ -29,6 +29,10 @@ impl<F: FnMut(usize, Vec<CellDifference>) -> Answer + Send> Engine for Changed<F
         self.gpu.describe()
     }
 
+    fn goal(&self) -> f64 {
+        self.gpu.goal()
+    }
+
     fn solve(
         &mut self,
         method: Method,

@@ -4,13 +4,11 @@ use super::gpu::{Candidate, candidates};
 use super::watch::{Timing, median};
 use super::{Report, named};
 use crate::integrate::gpu::Gpu;
-use crate::integrate::{CellDifference, Description, Engine, EngineError, Reference, on_gpu};
+use crate::integrate::{Engine, EngineError, on_gpu};
 use crate::map::{self, Panel, Stage};
 use crate::numerics::Unit;
 use crate::plan::Plan;
-use crate::rod::Rod;
 use crate::scene::Scene;
-use crate::shooting::batch::Method;
 use crate::store::{MapWriter, Packed, thread_time};
 use serde::Serialize;
 use std::convert::Infallible;
@@ -151,9 +149,7 @@ pub fn measure(
 
 /// One map.
 fn run(scene: &Scene, plan: &Plan, gpu: Option<&mut Gpu>) -> Result<Sample, EngineError> {
-    let device = Duration::ZERO;
-    let mut watched = gpu.map(|gpu| Watched { gpu, device });
-    let engine = watched.as_mut().map(|watched| watched as &mut dyn Engine);
+    let engine = gpu.map(|gpu| gpu as &mut dyn Engine);
     let mut packed = Packed::default();
     let mut keep = |panels: Vec<Panel>| {
         packed += MapWriter::sample(&scene.grid, plan.channels, &panels);
@@ -166,7 +162,6 @@ fn run(scene: &Scene, plan: &Plan, gpu: Option<&mut Gpu>) -> Result<Sample, Engi
         return Err(failure);
     }
     let ms = |stage| 1e3 * summary.seconds(stage);
-    let device = watched.map_or(0.0, |watched| 1e3 * watched.device.as_secs_f64());
     let threads = rayon::current_num_threads() as f64;
     let cells = summary.engine_cells;
     Ok(Sample {
@@ -175,8 +170,8 @@ fn run(scene: &Scene, plan: &Plan, gpu: Option<&mut Gpu>) -> Result<Sample, Engi
         stages: MapStages {
             sheets: ms(Stage::Sheets),
             guesses: ms(Stage::Guesses),
-            references: f64::max(ms(Stage::Shooting) - device, 0.0),
-            device,
+            references: f64::max(ms(Stage::Shooting) - 1e3 * summary.waiting_seconds(), 0.0),
+            device: 1e3 * summary.device_seconds(),
             refinement: ms(Stage::Refinement),
             judging: ms(Stage::Regimes),
             packing: 1e3 * packed.time.as_secs_f64() / threads,
@@ -213,35 +208,6 @@ fn summed_up(engine: String, cells: usize, samples: &[Sample]) -> WholeMap {
         host_us_per_cell: 1e6 * of(|run| run.host) / cells as f64,
         device_can_take: for_devices / (for_devices + for_cpus),
         handed_over: samples.last().map_or(0, |run| run.handed_over),
-    }
-}
-
-/// A GPU whose time is taken.
-struct Watched<'a> {
-    gpu: &'a mut Gpu,
-    device: Duration,
-}
-
-impl Engine for Watched<'_> {
-    fn describe(&self) -> Description {
-        self.gpu.describe()
-    }
-
-    fn goal(&self) -> f64 {
-        self.gpu.goal()
-    }
-
-    fn solve(
-        &mut self,
-        method: Method,
-        rods: &[Rod],
-        pushes: &[f64],
-        references: &[Reference],
-    ) -> Result<Vec<CellDifference>, EngineError> {
-        let start = Instant::now();
-        let cells = self.gpu.solve(method, rods, pushes, references);
-        self.device += start.elapsed();
-        cells
     }
 }
 
