@@ -3,7 +3,8 @@
 use super::device::Device;
 use super::layout::BufferLayout;
 use super::pace::Pace;
-use super::shaders::{WORKGROUP, overrides};
+use super::reference::WORKGROUP;
+use super::shaders::overrides;
 use super::{EngineError, Precision};
 use crate::rod::Effects;
 

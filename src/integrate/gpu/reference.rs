@@ -1,13 +1,15 @@
 //! References as bytes, with the steps of their trajectories: structs of `shaders/nystrom8.wgsl` and `shaders/cells.wgsl`.
 
 use super::bytes::{Scalar, bytes, halves};
-use super::shaders::WORKGROUP;
 use crate::integrate::{POWERS, Reference};
 use crate::rod::{Rest, Rod, arclength};
 use crate::shooting::{StateDerivative, StepStart, step_starts};
 use bytemuck::{Pod, Zeroable};
 use rayon::prelude::*;
 use std::mem::offset_of;
+
+/// Invocations per workgroup; every device allows this many.
+pub const WORKGROUP: u32 = 32;
 
 /// Powers of a row's polynomials in the shaders, from the first on, in whole quads.
 const ROW_POWERS: usize = POWERS.next_multiple_of(4);

@@ -2,13 +2,10 @@
 
 use super::Precision;
 use super::layout::OUTCOMES;
-use super::reference::PLACES;
+use super::reference::{PLACES, WORKGROUP};
 use crate::plan::STATE_CHANNELS;
 use crate::rod::Effects;
 use crate::shooting::{REST_TANGENT, REST_TERMS};
-
-/// Invocations per workgroup; every device allows this many.
-pub const WORKGROUP: u32 = 32;
 
 /// Cells of rows as differences from references.
 const CELLS: [&str; 4] = [
