@@ -1,5 +1,5 @@
-//! Which way the contact slides: friction is computed as of one that slides toward the tip, and states where it does not
-//! are told.
+//! Which way the contact slides: friction is computed as of one that slides toward the tip, and states where it does not, or where it
+//! sticks, are told.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod compute;
@@ -7,8 +7,10 @@ mod compute;
 use compute::compute;
 use whiskmap::classify::{Regime, Sliding, Status};
 use whiskmap::map::{Panel, Summary};
-use whiskmap::rod::Side;
+use whiskmap::rod::{Rest, Rod, Side, arclength};
 use whiskmap::scene::Scene;
+use whiskmap::sheet::{LevelCurve, Node, Row};
+use whiskmap::shooting::batch::Method;
 use whiskmap::trace::{Branch, Shape};
 
 /// The cone of the first figure, bent by `a_per_mm`, in front of a pole of this radius and friction.
@@ -63,6 +65,9 @@ fn friction_takes_energy_only_toward_the_tip() {
                     let case = format!(
                         "{a_per_mm} {radius_mm} {side:?} {distance}: {taken:e} of {put_in:e}"
                     );
+                    if point.sliding == Some(Sliding::Sticks) {
+                        continue;
+                    }
                     assert_eq!(point.sliding, Some(sliding), "{case}: {point:?}");
                     told[usize::from(sliding == Sliding::Base)] += 1;
                     let state = branch.state(push, true).unwrap();
@@ -94,7 +99,8 @@ fn sliding_is_what_is_not_rolled() {
                         point.arc_length_mm + side.sign() * radius_mm * turned
                     });
                     // Between two that differ the contact turns back.
-                    if pair[0].sliding == pair[1].sliding {
+                    let sticks = pair[0].sliding == Some(Sliding::Sticks);
+                    if pair[0].sliding == pair[1].sliding && !sticks {
                         let is_base = next < slid;
                         let case = format!("{radius_mm} {side:?} {distance}: {pair:?}");
                         let sliding = if is_base { Sliding::Base } else { Sliding::Tip };
@@ -113,7 +119,99 @@ fn map(friction: f64) -> (Summary, Panel) {
     (summary, panels.remove(0))
 }
 
-/// On CF the first part of a push slides toward the base, on CB none does.
+/// The place of the contact: arclength less what it has rolled around the pole.
+fn place(rod: &Rod, node: &Node) -> f64 {
+    arclength(rod, node.point.x) + rod.pole * (node.angle - node.push)
+}
+
+/// The row of a branch at any coefficient of friction, at growing pushes.
+struct Frictions {
+    rod: Rod,
+    side: Side,
+    row: Row,
+}
+
+impl Frictions {
+    fn new(scene: &Scene, side: Side, distance: f64) -> Self {
+        let rod = scene.whisker.rod(&scene.pole, side);
+        let row = Row::new(&Rest::new(&rod), distance / scene.whisker.length_mm);
+        Self { rod, side, row }
+    }
+
+    /// Where the contact is at each of the `pushes` (magnitudes) where friction is this coefficient and points toward the tip.
+    fn places(&self, friction: f64, pushes: &[f64]) -> Vec<Option<f64>> {
+        let friction = friction * self.side.sign();
+        let rod = Rod {
+            friction,
+            ..self.rod.clone()
+        };
+        let level = LevelCurve::new(Method::fine(), &rod, self.side, &self.row);
+        let walked = level.continuation(level.touch().unwrap(), false).unwrap();
+        let state = |push: &f64| level.state_at_push(&walked.nodes, self.side.sign() * push);
+        let place = |push| Some(place(&rod, &state(push)?));
+        pushes.iter().map(place).collect()
+    }
+}
+
+/// Where the contact sticks, some friction between the limits holds it at the place where sliding toward the base has ended; where it
+/// slides, none does.
+#[test]
+fn where_the_contact_sticks_less_friction_holds_it() {
+    const FRICTION: f64 = 0.3;
+    let mut told = [0; 3];
+    for (a_per_mm, radius_mm) in [(0.02, 0.0), (0.02, 0.25), (0.04, 1.0)] {
+        let scene = cone(a_per_mm, radius_mm, FRICTION);
+        for distance in [1.5, 4.0, 9.0, 15.0, 18.0] {
+            let branch = Branch::new(&scene.whisker, &scene.pole, Side::Cf, distance).unwrap();
+            let points = branch.points(120).unwrap();
+            let inside = points.iter().filter(|p| p.stable && p.mark.is_none());
+            let (pushes, slidings): (Vec<f64>, Vec<Sliding>) = inside
+                .map(|p| (p.push_angle_deg.to_radians().abs(), p.sliding.unwrap()))
+                .unzip();
+            let frictions = Frictions::new(&scene, Side::Cf, distance);
+            // The turn lies between two of the points, and is flat.
+            let last = pushes[pushes.len() - 1];
+            let fine: Vec<f64> = (0..2000).map(|i| last * f64::from(i) / 2000.0).collect();
+            let base_limit = frictions.places(-FRICTION, &fine);
+            let turn = base_limit
+                .iter()
+                .flatten()
+                .copied()
+                .fold(f64::INFINITY, f64::min);
+            let turn_at = base_limit
+                .iter()
+                .position(|place| *place == Some(turn))
+                .unwrap();
+            for (push, sliding) in pushes.iter().zip(slidings) {
+                let case = format!("{a_per_mm} {radius_mm} {distance}: {push} {sliding:?}");
+                let beyond = |friction| frictions.places(friction, &[*push])[0].unwrap() - turn;
+                match sliding {
+                    Sliding::Base => assert!(*push <= fine[turn_at + 1], "{case}"),
+                    Sliding::Tip => assert!(beyond(FRICTION) > -1e-7, "{case}"),
+                    Sliding::Sticks => {
+                        assert!(*push >= fine[turn_at.saturating_sub(1)], "{case}");
+                        let (mut low, mut high) = (-FRICTION, FRICTION);
+                        // The turn is known to the square of a 2000th of the way.
+                        assert!(beyond(low) > -1e-7 && beyond(high) < 0.0, "{case}");
+                        for _ in 0..12 {
+                            let middle = 0.5 * (low + high);
+                            *(if beyond(middle) < 0.0 {
+                                &mut high
+                            } else {
+                                &mut low
+                            }) = middle;
+                        }
+                        assert!(beyond(low).abs() < 1e-4, "{case}: {low} {}", beyond(low));
+                    }
+                }
+                told[sliding as usize] += 1;
+            }
+        }
+    }
+    assert!(told.iter().all(|count| *count > 10), "{told:?}");
+}
+
+/// On CF the first part of a push slides toward the base, then it sticks; on CB neither.
 #[test]
 fn cells_that_slide_toward_the_base_are_told() {
     let scene = cone(0.02, 0.25, 0.3);
@@ -121,14 +219,17 @@ fn cells_that_slide_toward_the_base_are_told() {
     let pushes = &scene.grid.push_angle_deg;
     let mut contacts = [0, 0];
     let mut toward_base = [0, 0];
+    let mut sticking = [0, 0];
     for (row, distance) in scene.grid.distance_mm.iter().enumerate() {
         for (column, push) in pushes.iter().enumerate() {
             let at = row * pushes.len() + column;
             let status = panel.status[at];
             let is_contact = panel.regime[at] == Regime::Contact.code();
             let slides = status == Status::TowardBase.code();
+            let sticks = status == Status::Sticking.code();
             if !is_contact {
                 assert!(!slides || panel.regime[at] == Regime::Unreachable.code());
+                assert!(!sticks);
                 continue;
             }
             let side = Side::of_push(*push);
@@ -136,18 +237,26 @@ fn cells_that_slide_toward_the_base_are_told() {
             let state = branch.state(push.to_radians(), true).unwrap();
             let sliding = Shape::new(&branch, &state, 2).sliding;
             assert_eq!(sliding == Some(Sliding::Base), slides, "{distance} {push}");
+            assert_eq!(
+                sliding == Some(Sliding::Sticks),
+                sticks,
+                "{distance} {push}"
+            );
             contacts[side as usize] += 1;
             toward_base[side as usize] += usize::from(slides);
+            sticking[side as usize] += usize::from(sticks);
         }
     }
     let [cb, cf] = [Side::Cb, Side::Cf].map(|side| side as usize);
     let share = toward_base[cf] as f64 / contacts[cf] as f64;
     assert!((0.1..0.3).contains(&share), "{toward_base:?} {contacts:?}");
-    assert_eq!(toward_base[cb], 0, "{contacts:?}");
+    assert_eq!([toward_base[cb], sticking[cb]], [0, 0], "{contacts:?}");
+    assert!(sticking[cf] > 0, "{contacts:?}");
     assert_eq!(summary.unresolved(), 0);
     let code = Status::TowardBase.code();
     let all = panel.status.iter().filter(|status| **status == code);
     assert_eq!(summary.toward_base, all.count() as u64);
+    assert_eq!(summary.sticking, sticking[cf] as u64);
 }
 
 #[test]

@@ -2,11 +2,13 @@
 //!
 //! [`RowBoundary::judge`] is total: every push angle and every status has a regime, `unresolved` included.
 
+mod dragged;
 mod row;
 mod sliding;
 
+pub use dragged::BaseLimit;
 pub use row::{RowBoundary, Span, TIE};
-pub use sliding::Sliding;
+pub use sliding::{Sliding, SlidingState};
 
 /// An enum whose variants each have a code, for files, and a name, for files and people.
 macro_rules! named {
@@ -69,6 +71,9 @@ named! {
         /// A state was found, but its contact slides toward the base, and friction was computed as of one that slides
         /// toward the tip: regime and margin hold, force and moment are off.
         TowardBase = 4, "state found, but it slides toward the base, against the friction assumed";
+        /// A state was found, but after sliding toward the base its contact sticks, with less friction than one that slides
+        /// has, and depends on what was before: regime and margin hold, contact, force and moment are off.
+        Sticking = 5, "state found, but it sticks where it was dragged before, with less friction than assumed";
         /// Newton's method failed, and the fold did not decide.
         NotConverged = 101, "unresolved: Newton's method did not converge";
         /// The cell and the boundary of its row contradict each other.

@@ -81,10 +81,15 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         .map_err(refused)?;
     let count = options.points as usize;
     let shape = Shape::new(&branch, &state, count);
-    if shape.sliding == Some(Sliding::Base) {
-        say(
-            "warning: the contact slides toward the base, and friction is computed as of one that slides toward the tip",
-        );
+    let how = match shape.sliding {
+        Some(Sliding::Base) => Some("slides toward the base"),
+        Some(Sliding::Sticks) => Some("sticks where it was dragged before"),
+        Some(Sliding::Tip) | None => None,
+    };
+    if let Some(how) = how {
+        say(&format!(
+            "warning: the contact {how}, and friction is computed as of one that slides toward the tip"
+        ));
     }
     outputs.rows(&shape.points)?;
     let (stroke, name) = if stable {

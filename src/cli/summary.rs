@@ -49,6 +49,10 @@ pub fn print(
             summary.toward_base,
             "slide toward the base, against the friction assumed: force and moment are off",
         ),
+        (
+            summary.sticking,
+            "stick where they were dragged before, with less friction than assumed: force and moment are off",
+        ),
     ] {
         if cells > 0 {
             writeln!(out, "{cells:>12}  {what}")?;

@@ -3,8 +3,9 @@
 use super::cells::{Cell, Settled, State};
 use super::channels::{Numbers, channels, of_cell, of_reference};
 use super::panel::RowMut;
+use super::sliding::{self, Dragged, FoundState};
 use super::{Face, Panel, STATE_CHANNELS, doubt};
-use crate::classify::{Regime, RowBoundary, Sliding, Status};
+use crate::classify::{Regime, RowBoundary, Status};
 use crate::integrate::Reference;
 use crate::scene::Swept;
 use crate::sheet::Sheet;
@@ -38,16 +39,18 @@ pub fn fill(
                 let Some(first) = rows.first() else { continue };
                 let face = &faces[number];
                 let into = panel.rows_mut(width, first.row..first.row + rows.len());
-                into.into_par_iter().zip(rows).for_each(|(mut into, row)| {
+                let answered = into.into_par_iter().zip(rows).map(|(mut into, row)| {
                     let reader = Reader::new(units, &face.sheet.rod);
                     let mut readings = has_state.then(|| Readings::new(reader, face, row.row));
                     let cells = || settled.cells(face, row);
-                    let mut answers = answers(readings.as_mut(), face, row.row, cells);
-                    mark_toward_base(face, row.row, &mut answers);
+                    let answers = answers(readings.as_mut(), face, row.row, cells);
                     for (push, answer) in face.pushes.columns.iter().zip(&answers) {
                         answer.write(&mut into, push.column);
                     }
+                    dragged(face, row.row, &answers)
                 });
+                let dragged: Vec<Dragged> = answered.flatten().collect();
+                sliding::mark(&dragged, width, &mut panel.status);
             }
         });
 }
@@ -121,24 +124,20 @@ fn answers<'a, C: Iterator<Item = Cell<'a>>>(
     again.iter().map(answer).collect()
 }
 
-/// Tells those of the states found for `row` whose contact slides toward the base, against the friction assumed.
-fn mark_toward_base(face: &Face, row: usize, answers: &mut [Answer]) {
-    let sheet = &face.sheet;
-    if sheet.rod.friction == 0.0 {
-        return;
+/// The states found for `row`, if friction drags some of their contacts where it was not computed for.
+fn dragged(face: &Face, row: usize, answers: &[Answer]) -> Option<Dragged> {
+    if face.sheet.rod.friction == 0.0 {
+        return None;
     }
-    let solved = answers
-        .iter_mut()
-        .filter(|answer| answer.status == Status::Solved);
-    let (mut solved, points): (Vec<_>, Vec<_>) = solved
-        .filter_map(|answer| answer.point.map(|point| (answer, point)))
-        .unzip();
-    let sliding = Sliding::at(sheet.level(row).method, &sheet.rod, &points);
-    for (answer, sliding) in solved.iter_mut().zip(sliding) {
-        if sliding == Some(Sliding::Base) {
-            answer.status = Status::TowardBase;
-        }
-    }
+    let cells = face.pushes.columns.iter().zip(answers);
+    let found = cells.filter_map(|(push, answer)| {
+        let is_solved = answer.status == Status::Solved;
+        let point = answer.point.filter(|_| is_solved)?;
+        Some((push.column, answer.regime, point, push.angle))
+    });
+    let found: Vec<FoundState> = found.collect();
+    let is_any = !found.is_empty();
+    is_any.then(|| Dragged::new(face, row, &found)).flatten()
 }
 
 /// What a panel holds of one cell, and where on the sheet its state is.

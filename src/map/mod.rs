@@ -8,6 +8,7 @@ mod doubt;
 mod panel;
 mod pipeline;
 mod pushes;
+mod sliding;
 mod strip;
 mod summary;
 mod task;

@@ -101,6 +101,8 @@ pub struct Summary {
     pub disagreements: u64,
     /// Cells with a state whose contact slides toward the base, against the friction assumed.
     pub toward_base: u64,
+    /// Cells with a state whose contact sticks.
+    pub sticking: u64,
     /// What became of the engine's cells.
     pub engine_cells: EngineCells,
     /// What came of looking at some of them once more.
@@ -147,6 +149,7 @@ impl Summary {
             }
             self.disagreements += u64::from(*status == Status::Disagreement.code());
             self.toward_base += u64::from(*status == Status::TowardBase.code());
+            self.sticking += u64::from(*status == Status::Sticking.code());
         }
         let steps = panel.newton_steps.iter().copied();
         self.steps += steps.map(u64::from).sum::<u64>();

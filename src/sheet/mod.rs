@@ -16,8 +16,8 @@ mod fold;
 mod lattice;
 mod row;
 
-pub use continuation::Continuation;
 pub use continuation::level_curve::{LevelCurve, Node, ON_CURVE};
+pub use continuation::{Continuation, continuations};
 pub use edges::edge_newton::{EdgeIterate, EdgeProblem, edge_newton};
 pub use fold::FoldPoint;
 pub use lattice::guesses::Guess;

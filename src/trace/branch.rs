@@ -3,7 +3,7 @@
 use super::columns::row;
 use super::resample::{interpolate, targets};
 use super::{FINER, Mark, NoState};
-use crate::classify::Sliding;
+use crate::classify::{BaseLimit, Sliding, SlidingState};
 use crate::rod::{Rest, Side, Units};
 use crate::scene::{Pole, Whisker};
 use crate::sheet::{Continuation, Edge, LevelCurve, Node, ON_CURVE, Row};
@@ -47,7 +47,7 @@ row! {
         pub det: f64,
         /// first-touch; slip-off, pull-off (stable end); second-fold, tip (unstable end).
         pub mark: Option<Mark>,
-        /// With friction, which way the contact slides: tip, as assumed, or base.
+        /// With friction, which way the contact slides: tip, as assumed, or base; or that it sticks.
         pub sliding: Option<Sliding>,
     }
 }
@@ -135,15 +135,38 @@ impl Branch {
                 })
             })
             .collect::<Result<_, NoState>>()?;
-        let places: Vec<DVec2> = marked.iter().map(|(node, _)| node.point).collect();
-        let sliding = Sliding::at(self.level.method, &self.level.rod, &places);
-        let points = marked.iter().zip(sliding).enumerate();
+        let stable = fold_at.map_or(marked.len(), |fold| fold + 1);
+        let nodes: Vec<Node> = marked.iter().map(|(node, _)| *node).collect();
+        let points = marked.iter().zip(self.slidings(&nodes, stable)).enumerate();
         let points = points.map(|(i, ((node, mark), sliding))| BranchPoint {
             mark: *mark,
             sliding,
             ..self.point(node, fold_at.is_none_or(|fold| i <= fold))
         });
         Ok(points.collect())
+    }
+
+    /// Which way the contact slides, or that it sticks, at each of the `nodes`: the first so many are stable, by growing push.
+    pub(super) fn slidings(&self, nodes: &[Node], stable: usize) -> Vec<Option<Sliding>> {
+        if self.level.rod.friction == 0.0 {
+            return vec![None; nodes.len()];
+        }
+        let touch = [(self.level.touch_point(), 0.0)].into_iter();
+        let points = touch.chain(nodes.iter().map(|node| (node.point, node.push)));
+        let states = SlidingState::at(&self.level, &points.collect::<Vec<_>>());
+        let mut slidings: Vec<_> = states.iter().skip(1).map(|state| state.toward).collect();
+        let dragged = &states[..=stable];
+        if dragged
+            .iter()
+            .any(|state| state.toward == Some(Sliding::Base))
+            && let Some(limit) = BaseLimit::of(std::slice::from_ref(&self.level))
+                .pop()
+                .flatten()
+        {
+            let along = limit.slidings(dragged).into_iter().skip(1);
+            slidings.splice(..stable, along.map(Some));
+        }
+        slidings
     }
 
     /// The state with its contact at `tau`, in the units of people.

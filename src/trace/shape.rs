@@ -20,7 +20,7 @@ pub struct Shape {
     pub pole_radius_mm: f64,
     /// Distance of the computed pole from where it stands, in whisker lengths.
     pub residual: f64,
-    /// Which way the contact slides as the branch goes on; `None` without friction.
+    /// Which way the contact slides as the branch goes on, or that it sticks; `None` without friction.
     pub sliding: Option<Sliding>,
 }
 
@@ -66,7 +66,13 @@ impl Shape {
         let mut at: Vec<f64> = uniform(count).filter(|s| *s != contact).collect();
         let index = at.partition_point(|s| *s < contact);
         at.insert(index, contact);
-        let place = DVec2::new(found.tau, found.load);
+        let node = branch.level.node(
+            DVec2::new(found.tau, found.load),
+            &found.full,
+            found.push,
+            0.0,
+        );
+        let is_stable = found.full.map.det() > 0.0;
         let places = profile(rod, found.tau, found.load, FINER, &at);
         // From the axes of the contact to those of first touch: the base's tangent is at `-push` there.
         let base = &found.full;
@@ -100,7 +106,8 @@ impl Shape {
             pole_mm: (pole * length).to_array(),
             pole_radius_mm: rod.pole.abs() * length,
             residual: found.full.map.pole.distance(row.pole(found.push)),
-            sliding: Sliding::at(branch.level.method, rod, &[place])
+            sliding: branch
+                .slidings(&[node], usize::from(is_stable))
                 .pop()
                 .flatten(),
         }

@@ -68,10 +68,16 @@ impl LevelCurve {
         }
     }
 
+    /// `(tau, load)` at first touch.
+    #[must_use]
+    pub fn touch_point(&self) -> DVec2 {
+        DVec2::new(self.rod.tau(self.row.contact).min(self.rod.tau_tip()), 0.0)
+    }
+
     /// First touch, from where pushes are counted.
     #[must_use]
     pub fn touch(&self) -> Option<Node> {
-        let at_touch = DVec2::new(self.rod.tau(self.row.contact).min(self.rod.tau_tip()), 0.0);
+        let at_touch = self.touch_point();
         let full = *shoot(&[(self, at_touch)]).first()?;
         Some(Node {
             push: 0.0,
@@ -132,14 +138,12 @@ impl LevelCurve {
         }
     }
 
-    /// The predictor of the next node, about `step` further on, and the direction there, in parts of the scale.
-    pub(super) fn predicted(&self, from: &Node, step: f64) -> (DVec2, DVec2) {
-        let scale = self.scale(from.point);
-        let gradient = scale * gradient(from);
+    /// The direction of the curve at a node, in parts of the scale, of length 1.
+    pub(super) fn direction(&self, node: &Node) -> DVec2 {
+        let gradient = self.scale(node.point) * gradient(node);
         // Along the curve the push angle changes by minus `det` times its direction (by_load, -by_tau).
         let heading = if self.forward { 1.0 } else { -1.0 };
-        let along = -heading * self.side.sign() * DVec2::new(gradient.y, -gradient.x).normalize();
-        (from.point + step * scale * along, along)
+        -heading * self.side.sign() * DVec2::new(gradient.y, -gradient.x).normalize()
     }
 
     /// The next node, where the corrector has found the curve again; `None` if that is not the way `along`.
@@ -162,7 +166,7 @@ impl LevelCurve {
     }
 
     /// How much `tau` and load can change before the state changes by about as much as it is.
-    fn scale(&self, point: DVec2) -> DVec2 {
+    pub(super) fn scale(&self, point: DVec2) -> DVec2 {
         let s = arclength(&self.rod, point.x);
         DVec2::new(s, point.y.abs() + 1.0 / (s * s))
     }

@@ -5,7 +5,7 @@ mod meeting;
 pub mod pieces;
 pub mod walked;
 
-use crate::sheet::continuation::level_curve::{LevelCurve, Node, ON_CURVE, correct};
+use crate::sheet::continuation::level_curve::{LevelCurve, Node, correct};
 use crate::sheet::continuation::meeting::{Chord, Meeting, meet};
 use crate::sheet::row::Edge;
 use glam::DVec2;
@@ -24,6 +24,12 @@ const FIRST_ARC_STEP: f64 = 0.05;
 
 /// A step that has become this short leads nowhere.
 const SHORTEST_ARC_STEP: f64 = 1e-9;
+
+/// What `ln D` may miss at a node between the ends: it tells the way, and where to look for states.
+const NODE_MISS: f64 = 1e-8;
+
+/// A predictor bends where the direction has changed by less than this since the node before.
+const MOST_BEND: f64 = 0.25;
 
 /// Most nodes: no branch known has more than 300.
 const MOST_NODES: usize = 10_000;
@@ -61,6 +67,7 @@ pub fn continuations<'a>(
         nodes: vec![start],
         fold: None,
         step: FIRST_ARC_STEP,
+        last_step: None,
     };
     let mut walks: Vec<Walk> = starts.into_iter().enumerate().map(walk).collect();
     while !walks.is_empty() {
@@ -100,20 +107,19 @@ struct Walk<'a> {
     nodes: Vec<Node>,
     fold: Option<usize>,
     step: f64,
+    /// The step to the last node from the one before it; `None` where that is not the way on.
+    last_step: Option<f64>,
 }
 
 /// The next node of each of the `walks`, where it was found and fits.
 fn next_nodes(walks: &[Walk]) -> Vec<Option<Node>> {
-    let predictions: Vec<(DVec2, DVec2)> = walks
-        .iter()
-        .map(|walk| walk.level.predicted(walk.last(), walk.step))
-        .collect();
+    let predictions: Vec<(DVec2, DVec2)> = walks.iter().map(Walk::predicted).collect();
     let points: Vec<(&LevelCurve, DVec2)> = walks
         .iter()
         .zip(&predictions)
         .map(|(walk, (point, _))| (walk.level, *point))
         .collect();
-    correct(&points, |_| ON_CURVE)
+    correct(&points, |_| NODE_MISS)
         .into_iter()
         .zip(walks.iter().zip(&predictions))
         .map(|(corrected, (walk, (_, along)))| {
@@ -126,6 +132,23 @@ fn next_nodes(walks: &[Walk]) -> Vec<Option<Node>> {
 impl<'a> Walk<'a> {
     fn last(&self) -> &Node {
         &self.nodes[self.nodes.len() - 1]
+    }
+
+    /// The predictor of the next node, and the direction there in parts of the scale.
+    ///
+    /// It bends as the curve has bent since the node before.
+    fn predicted(&self) -> (DVec2, DVec2) {
+        let (level, last) = (self.level, self.last());
+        let scale = level.scale(last.point);
+        let along = level.direction(last);
+        let before = self.nodes.iter().rev().nth(1).zip(self.last_step);
+        let bend = before.map_or(DVec2::ZERO, |(before, last_step)| {
+            let turned = along - level.direction(before);
+            let bends = turned.length() < MOST_BEND;
+            f64::from(bends) * turned / last_step
+        });
+        let moved = self.step * along + 0.5 * self.step * self.step * bend;
+        (last.point + scale * moved, along)
     }
 
     fn chord(&self, next: Node) -> Chord<'a> {
@@ -145,6 +168,7 @@ impl<'a> Walk<'a> {
 
     fn go_on(&mut self, next: Node) {
         let length = self.level.length(self.last(), &next);
+        self.last_step = Some(self.step);
         self.step *= (NODE_DISTANCE / length).clamp(0.5, 2.0);
         self.nodes.push(next);
     }
@@ -159,6 +183,7 @@ impl<'a> Walk<'a> {
             self.nodes.pop();
         }
         self.nodes.push(node);
+        self.last_step = None;
         let is_first_fold = edge == Edge::Fold && self.fold.is_none();
         if is_first_fold {
             self.fold = Some(self.nodes.len() - 1);
