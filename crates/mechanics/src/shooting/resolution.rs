@@ -124,7 +124,7 @@ impl Resolution {
 #[inline(always)]
 fn weight(bending: f64, bend: f64) -> f64 {
     let root = bending.sqrt();
-    let coiling = 0.25 * (root - COILING).max(0.0);
+    let coiling = 0.5 * (root - COILING).max(0.0);
     0.28 + 0.195 * root + coiling + 0.18 * bend * bend.min(2.0)
 }
 
