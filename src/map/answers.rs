@@ -39,17 +39,12 @@ pub fn fill(
                 let Some(first) = rows.first() else { continue };
                 let face = &faces[number];
                 let into = panel.rows_mut(width, first.row..first.row + rows.len());
-                let answered = into.into_par_iter().zip(rows).map(|(mut into, row)| {
+                let dragged = into.into_par_iter().zip(rows).filter_map(|(into, row)| {
                     let reader = Reader::new(units, &face.sheet.rod);
-                    let mut readings = has_state.then(|| Readings::new(reader, face, row.row));
-                    let cells = || settled.cells(face, row);
-                    let answers = answers(readings.as_mut(), face, row.row, cells);
-                    for (push, answer) in face.pushes.columns.iter().zip(&answers) {
-                        answer.write(&mut into, push.column);
-                    }
-                    dragged(face, row.row, &answers)
+                    let readings = has_state.then(|| Readings::new(reader, face, row.row));
+                    write_row(readings, face, row.row, || settled.cells(face, row), into)
                 });
-                let dragged: Vec<Dragged> = answered.flatten().collect();
+                let dragged: Vec<Dragged> = dragged.collect();
                 sliding::mark(&dragged, width, &mut panel.status);
             }
         });
@@ -99,43 +94,49 @@ impl<'a> Readings<'a> {
     }
 }
 
-/// The answers for the `cells` of `row`, with states if there are `readings` of them, which are settled once more where they are in doubt.
-fn answers<'a, C: Iterator<Item = Cell<'a>>>(
-    mut readings: Option<&mut Readings<'a>>,
+/// Writes the answers for the `cells` of `row`, with states if there are `readings` of them; cells in doubt are settled once more. What
+/// friction has dragged elsewhere is left to be marked.
+fn write_row<'a, C: Iterator<Item = Cell<'a>>>(
+    mut readings: Option<Readings<'a>>,
     face: &Face,
     row: usize,
     cells: impl Fn() -> C,
-) -> Vec<Answer> {
+    mut into: RowMut,
+) -> Option<Dragged> {
     let sheet = &face.sheet;
     let boundary = RowBoundary::new(sheet.touches(row), &sheet.crossings[row]);
-    let mut answer = |cell: &Cell<'a>| answer(cell, sheet, &boundary, readings.as_deref_mut());
-    let answers: Vec<Answer> = cells().map(|cell| answer(&cell)).collect();
-    let in_doubt = |(cell, answer): (Cell, &Answer)| {
+    let mut write = |cell: &Cell<'a>| {
+        let answer = answer(cell, sheet, &boundary, readings.as_mut());
+        answer.write(&mut into, cell.push.column);
+        answer
+    };
+    let in_doubt = |cell: &Cell, answer: &Answer| {
         let is_touch = cell.is_first_touch(&boundary);
         answer.regime == Regime::Unresolved || is_touch && answer.regime != Regime::Contact
     };
-    if !cells().zip(&answers).any(in_doubt) {
-        return answers;
+    let has_friction = sheet.rod.friction != 0.0;
+    let state = |cell: &Cell, answer: &Answer| {
+        let is_found = has_friction && answer.status == Status::Solved;
+        let point = answer.point.filter(|_| is_found)?;
+        Some((cell.push.column, answer.regime, point, cell.push.angle))
+    };
+    let mut found: Vec<FoundState> = Vec::new();
+    let mut doubtful = Vec::new();
+    for (index, cell) in cells().enumerate() {
+        let answer = write(&cell);
+        found.extend(state(&cell, &answer));
+        if in_doubt(&cell, &answer) {
+            doubtful.push(index);
+        }
     }
-    let mut again: Vec<Cell> = cells().collect();
-    let doubtful = again.iter_mut().zip(&answers);
-    let doubtful = doubtful.filter(|(cell, answer)| in_doubt((**cell, answer)));
-    doubt::settle(sheet, row, &boundary, doubtful.map(|(cell, _)| cell));
-    again.iter().map(answer).collect()
-}
-
-/// The states found for `row`, if friction drags some of their contacts where it was not computed for.
-fn dragged(face: &Face, row: usize, answers: &[Answer]) -> Option<Dragged> {
-    if face.sheet.rod.friction == 0.0 {
-        return None;
+    if !doubtful.is_empty() {
+        let mut again: Vec<Cell> = cells().collect();
+        let cells = again.iter_mut().enumerate();
+        let cells = cells.filter(|(index, _)| doubtful.binary_search(index).is_ok());
+        doubt::settle(sheet, row, &boundary, cells.map(|(_, cell)| cell));
+        let states = again.iter().filter_map(|cell| state(cell, &write(cell)));
+        found = states.collect();
     }
-    let cells = face.pushes.columns.iter().zip(answers);
-    let found = cells.filter_map(|(push, answer)| {
-        let is_solved = answer.status == Status::Solved;
-        let point = answer.point.filter(|_| is_solved)?;
-        Some((push.column, answer.regime, point, push.angle))
-    });
-    let found: Vec<FoundState> = found.collect();
     let is_any = !found.is_empty();
     is_any.then(|| Dragged::new(face, row, &found)).flatten()
 }

@@ -180,7 +180,8 @@ impl Strip<'_> {
         let width = task.scene.grid.push_angle_deg.len();
         if panels.is_empty() {
             let cells = width * task.scene.grid.distance_mm.len();
-            *panels = vec![Panel::unresolved(cells, task.plan.channels); whiskers.len()];
+            let panel = |_| Panel::unwritten(cells, task.plan.channels);
+            *panels = whiskers.iter().map(panel).collect();
         }
         let asked = self.asked;
         let solved = self
