@@ -3,48 +3,15 @@
 
 mod compute;
 
-use compute::{assert_identical, compute_as, open};
+use compute::{Answer, Watched, assert_identical, compute_as, open};
 use std::convert::Infallible;
 use std::sync::mpsc;
 use std::time::Duration;
+use whiskmap::integrate::EngineError;
 use whiskmap::integrate::gpu::{Gpu, Precision};
-use whiskmap::integrate::{CellDifference, Description, Engine, EngineError, Reference};
 use whiskmap::map::{self, Panel, Summary};
 use whiskmap::plan::Plan;
-use whiskmap::rod::Rod;
 use whiskmap::scene::Scene;
-use whiskmap::shooting::batch::Method;
-
-type Answer = Result<Vec<CellDifference>, EngineError>;
-
-/// A GPU of whose answers something is made, call by call.
-struct Changed<F> {
-    gpu: Gpu,
-    calls: usize,
-    change: F,
-}
-
-impl<F: FnMut(usize, Vec<CellDifference>) -> Answer + Send> Engine for Changed<F> {
-    fn describe(&self) -> Description {
-        self.gpu.describe()
-    }
-
-    fn goal(&self) -> f64 {
-        self.gpu.goal()
-    }
-
-    fn solve(
-        &mut self,
-        method: Method,
-        rods: &[Rod],
-        pushes: &[f64],
-        references: &[Reference],
-    ) -> Answer {
-        let cells = self.gpu.solve(method, rods, pushes, references)?;
-        self.calls += 1;
-        (self.change)(self.calls, cells)
-    }
-}
 
 /// The paper's cone, and a plan that takes its rows by eights.
 fn in_strips() -> (Scene, Plan) {
@@ -73,18 +40,15 @@ fn a_strip_is_solved_while_the_one_before_is_settled() {
         while other.recv_timeout(Duration::from_secs(60)).unwrap() < until {}
     };
     let ((call_begins, calls), (strip_ends, ends)) = (mpsc::channel(), mpsc::channel());
-    let change = move |call: usize, cells| {
-        call_begins.send(call).unwrap();
-        if (2..=AT_ONCE).contains(&call) {
-            wait(&ends, call - 1);
+    let call = move |before: usize, gpu: &mut Gpu, solve: &dyn Fn(&mut Gpu) -> Answer| {
+        let cells = solve(gpu)?;
+        call_begins.send(before + 1).unwrap();
+        if (1..AT_ONCE).contains(&before) {
+            wait(&ends, before);
         }
         Ok(cells)
     };
-    let mut engine = Changed {
-        gpu,
-        calls: 0,
-        change,
-    };
+    let mut engine = Watched::new(gpu, call);
     on_threads(3, move || {
         let mut settled = 0;
         let mut one_more = |_| {
@@ -106,20 +70,17 @@ fn what_becomes_of_a_cell_does_not_depend_on_threads() {
     let (scene, plan) = in_strips();
     let run = |threads: usize, is_wrong: bool| -> Option<(Summary, Vec<Panel>)> {
         let gpu = open(Precision::F32)?;
-        let change = |call, mut cells: Vec<CellDifference>| {
-            if call == 5 && !is_wrong {
+        let call = |before, gpu: &mut Gpu, solve: &dyn Fn(&mut Gpu) -> Answer| {
+            let mut cells = solve(gpu)?;
+            if before == 4 && !is_wrong {
                 return Err(EngineError::Device("lost".to_owned()));
             }
-            if call == 5 {
+            if before == 4 {
                 cells.iter_mut().for_each(|cell| cell.numbers[2] += 0.1);
             }
             Ok(cells)
         };
-        let mut engine = Changed {
-            gpu,
-            calls: 0,
-            change,
-        };
+        let mut engine = Watched::new(gpu, call);
         let work = || compute_as(&scene, &plan, Some(&mut engine));
         Some(on_threads(threads, work))
     };

@@ -4,7 +4,7 @@ use super::peak::peak;
 use super::solver::{Hit, Solver};
 use super::task::{Task, places};
 use super::watch::watch;
-use super::{Engine, Measurement, Report, Rung, Stages};
+use super::{Engine, Measurement, Report, Rung, Stages, pool};
 use crate::integrate::EngineError;
 use crate::numerics::Unit;
 use crate::shooting::Resolution;
@@ -31,10 +31,7 @@ pub fn measure(
     for (unit, threads) in engines {
         let name = format!("cpu {unit}");
         said(&format!("{name}, {threads} threads"));
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .build()
-            .map_err(|error| EngineError::Device(error.to_string()))?;
+        let pool = pool(threads)?;
         let solver = |resolution| Solver {
             unit,
             resolution,

@@ -232,3 +232,9 @@ pub fn named(engine: &str, threads: Option<usize>) -> String {
         None => engine.to_owned(),
     }
 }
+
+/// So many threads.
+fn pool(threads: usize) -> Result<rayon::ThreadPool, EngineError> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    pool.map_err(|error| EngineError::Device(error.to_string()))
+}

@@ -2,7 +2,7 @@
 
 use super::gpu::{Candidate, candidates};
 use super::watch::{Timing, median};
-use super::{Report, named};
+use super::{Report, named, pool};
 use crate::integrate::gpu::Gpu;
 use crate::integrate::{Engine, EngineError, on_gpu};
 use crate::map::{self, Panel, Stage};
@@ -107,10 +107,7 @@ pub fn measure(
         }
     };
     let threads = rayon::current_num_threads();
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(threads)
-        .build()
-        .map_err(|error| EngineError::Device(error.to_string()))?;
+    let pool = pool(threads)?;
     report.map_cells = plan.cells;
     let cpu = named(&format!("cpu {}", Unit::detect()), Some(threads));
     let mut engines: Vec<(String, Option<Gpu>, Vec<Sample>)> = vec![(cpu, None, Vec::new())];

@@ -83,29 +83,29 @@ pub fn works(summary: &Summary, least: f64) -> Result<(), String> {
     }
 }
 
-/// A GPU to which something is done before one of its calls, and whose cells are counted.
+/// What an engine answers to a call.
+pub type Answer = Result<Vec<CellDifference>, EngineError>;
+
+/// A GPU whose calls are looked after: `call` is told the number of each, from 0 on, and how the GPU answers it.
 pub struct Watched<F> {
-    pub gpu: Gpu,
-    call: usize,
-    sabotage: F,
+    gpu: Gpu,
+    call: F,
     pub calls: usize,
-    /// Cells that it answered for.
-    pub cells: u64,
 }
 
-impl<F> Watched<F> {
-    pub fn new(gpu: Gpu, call: usize, sabotage: F) -> Self {
+impl<F: FnMut(usize, &mut Gpu, &dyn Fn(&mut Gpu) -> Answer) -> Answer> Watched<F> {
+    pub const fn new(gpu: Gpu, call: F) -> Self {
         Self {
             gpu,
             call,
-            sabotage,
             calls: 0,
-            cells: 0,
         }
     }
 }
 
-impl<F: FnMut(&wgpu::Device) + Send> Engine for Watched<F> {
+impl<F: FnMut(usize, &mut Gpu, &dyn Fn(&mut Gpu) -> Answer) -> Answer + Send> Engine
+    for Watched<F>
+{
     fn describe(&self) -> Description {
         self.gpu.describe()
     }
@@ -120,15 +120,28 @@ impl<F: FnMut(&wgpu::Device) + Send> Engine for Watched<F> {
         rods: &[Rod],
         pushes: &[f64],
         references: &[Reference],
-    ) -> Result<Vec<CellDifference>, EngineError> {
-        if self.calls == self.call {
-            (self.sabotage)(self.gpu.device());
-        }
+    ) -> Answer {
         self.calls += 1;
-        let cells = self.gpu.solve(method, rods, pushes, references)?;
-        self.cells += cells.len() as u64;
-        Ok(cells)
+        let solve = |gpu: &mut Gpu| gpu.solve(method, rods, pushes, references);
+        (self.call)(self.calls - 1, &mut self.gpu, &solve)
     }
+}
+
+/// The same, with something done to the device before the call number `at`.
+pub fn sabotaged(
+    gpu: Gpu,
+    at: usize,
+    mut sabotage: impl FnMut(&wgpu::Device) + Send,
+) -> Watched<impl FnMut(usize, &mut Gpu, &dyn Fn(&mut Gpu) -> Answer) -> Answer + Send> {
+    Watched::new(
+        gpu,
+        move |call, gpu: &mut Gpu, solve: &dyn Fn(&mut Gpu) -> Answer| {
+            if call == at {
+                sabotage(gpu.device());
+            }
+            solve(gpu)
+        },
+    )
 }
 
 /// How far the states of an engine may be from those of the CPU, in parts of a channel's largest value along a whisker: at worst, and

@@ -1,6 +1,6 @@
 //! Devices that are lost: before, between and within the calls of a run.
 
-use crate::compute::{Watched, all_cells, assert_identical, compute, compute_as, open};
+use crate::compute::{all_cells, assert_identical, compute, compute_as, open, sabotaged};
 use crate::{assert_same, cone};
 use whiskmap::integrate::EngineError;
 use whiskmap::integrate::gpu::Precision;
@@ -33,7 +33,7 @@ fn lost_between_two_calls() {
     let (_, cpu) = compute_as(&scene, &plan, None);
     for call in [0, 1, 7, 12] {
         let gpu = open(Precision::F32).unwrap();
-        let mut engine = Watched::new(gpu, call, wgpu::Device::destroy);
+        let mut engine = sabotaged(gpu, call, wgpu::Device::destroy);
         let (summary, panels) = compute_as(&scene, &plan, Some(&mut engine));
         assert_eq!(engine.calls, call + 1, "a lost device is not asked again");
         assert!(matches!(
@@ -90,7 +90,7 @@ fn lost_within_a_call() {
     let (_, cpu) = compute(&scene, None);
     for looks in 0..4 {
         let gpu = open(Precision::F32).unwrap();
-        let mut engine = Watched::new(gpu, 0, |device: &wgpu::Device| {
+        let mut engine = sabotaged(gpu, 0, |device: &wgpu::Device| {
             destroy_within(device, looks);
         });
         let (summary, panels) = compute(&scene, Some(&mut engine));
@@ -113,11 +113,13 @@ fn lost_to_another_thread() {
     for _ in 0..10 {
         let gpu = open(Precision::F32).unwrap();
         let mut thread = None;
-        let mut engine = Watched::new(gpu, 2, |device: &wgpu::Device| {
+        let destroy = |device: &wgpu::Device| {
             let device = device.clone();
             thread = Some(std::thread::spawn(move || device.destroy()));
-        });
+        };
+        let mut engine = sabotaged(gpu, 2, destroy);
         let (summary, panels) = compute_as(&scene, &plan, Some(&mut engine));
+        drop(engine);
         assert_eq!(all_cells(&summary.engine_cells), all);
         thread.unwrap().join().unwrap();
         assert_same(&cpu, &panels);

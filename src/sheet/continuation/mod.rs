@@ -200,6 +200,7 @@ impl<'a> Walk<'a> {
 mod tests {
     use super::*;
     use crate::rod::{Rest, Rod, Side};
+    use crate::sheet::ON_CURVE;
     use crate::sheet::row::Row;
     use crate::shooting::batch::Method;
 
