@@ -157,10 +157,14 @@ impl Frictions {
 /// slides, none does.
 #[test]
 fn where_the_contact_sticks_less_friction_holds_it() {
-    const FRICTION: f64 = 0.3;
     let mut told = [0; 3];
-    for (a_per_mm, radius_mm) in [(0.02, 0.0), (0.02, 0.25), (0.04, 1.0)] {
-        let scene = cone(a_per_mm, radius_mm, FRICTION);
+    for (a_per_mm, radius_mm, friction) in [
+        (0.02, 0.0, 0.3),
+        (0.02, 0.25, 0.05),
+        (0.02, 0.25, 0.9),
+        (0.04, 1.0, 0.3),
+    ] {
+        let scene = cone(a_per_mm, radius_mm, friction);
         for distance in [1.5, 4.0, 9.0, 15.0, 18.0] {
             let branch = Branch::new(&scene.whisker, &scene.pole, Side::Cf, distance).unwrap();
             let points = branch.points(120).unwrap();
@@ -172,7 +176,7 @@ fn where_the_contact_sticks_less_friction_holds_it() {
             // The turn lies between two of the points, and is flat.
             let last = pushes[pushes.len() - 1];
             let fine: Vec<f64> = (0..2000).map(|i| last * f64::from(i) / 2000.0).collect();
-            let base_limit = frictions.places(-FRICTION, &fine);
+            let base_limit = frictions.places(-friction, &fine);
             let turn = base_limit
                 .iter()
                 .flatten()
@@ -187,10 +191,10 @@ fn where_the_contact_sticks_less_friction_holds_it() {
                 let beyond = |friction| frictions.places(friction, &[*push])[0].unwrap() - turn;
                 match sliding {
                     Sliding::Base => assert!(*push <= fine[turn_at + 1], "{case}"),
-                    Sliding::Tip => assert!(beyond(FRICTION) > -1e-7, "{case}"),
+                    Sliding::Tip => assert!(beyond(friction) > -1e-7, "{case}"),
                     Sliding::Sticks => {
                         assert!(*push >= fine[turn_at.saturating_sub(1)], "{case}");
-                        let (mut low, mut high) = (-FRICTION, FRICTION);
+                        let (mut low, mut high) = (-friction, friction);
                         // The turn is known to the square of a 2000th of the way.
                         assert!(beyond(low) > -1e-7 && beyond(high) < 0.0, "{case}");
                         for _ in 0..12 {
@@ -257,6 +261,34 @@ fn cells_that_slide_toward_the_base_are_told() {
     let all = panel.status.iter().filter(|status| **status == code);
     assert_eq!(summary.toward_base, all.count() as u64);
     assert_eq!(summary.sticking, sticking[cf] as u64);
+}
+
+/// What a push makes of a contact does not depend on which other pushes are asked for.
+#[test]
+fn a_status_is_that_of_its_own_push() {
+    let dense = cone(0.02, 0.25, 0.3);
+    let few: Vec<f64> = dense
+        .grid
+        .push_angle_deg
+        .iter()
+        .copied()
+        .step_by(7)
+        .collect();
+    let sparse = dense.with("grid.push_angle_deg", few).unwrap();
+    let [dense, sparse] = [&dense, &sparse].map(|scene| {
+        let (_, panels) = compute(scene, None);
+        (scene.grid.push_angle_deg.len(), panels[0].status.clone())
+    });
+    let of_dense = dense
+        .1
+        .chunks(dense.0)
+        .flat_map(|row| row.iter().step_by(7));
+    let of_dense: Vec<u32> = of_dense.copied().collect();
+    let sticking = of_dense
+        .iter()
+        .filter(|code| **code == Status::Sticking.code());
+    assert!(sticking.count() > 2);
+    assert_eq!(of_dense, sparse.1);
 }
 
 #[test]

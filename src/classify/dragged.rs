@@ -4,131 +4,91 @@
 //! computed for, and the place where it would slide toward the base, with friction the other way. At first touch the two are one. A
 //! push moves the limits, and they drag the contact along: it is where the last of them has left it (Prandtl's play).
 
-use super::{Sliding, SlidingState};
+use super::Sliding;
+use super::limit::Limit;
 use crate::rod::Rod;
-use crate::sheet::{Continuation, LevelCurve, Node, continuations};
-use glam::DVec2;
+use crate::sheet::LevelCurve;
 
-/// Places closer together than this, in whisker lengths, are the same.
-const SAME_PLACE: f64 = 1e-11;
-
-/// The limit of one row toward the base, from first touch to where no contact that slides toward the base stays on the pole.
+/// What a push from first touch makes of the contact of one row.
 #[derive(Clone, Debug)]
-pub struct BaseLimit {
-    pole: f64,
-    knots: Vec<Knot>,
+pub struct Dragged {
+    tip: Limit,
+    /// The limit toward the base; `None` where the other one never leads there, so that it alone drags.
+    base: Option<Limit>,
+    /// Pushes between which neither limit turns, and where the contact is at each.
+    dragged: Vec<(f64, f64)>,
 }
 
-/// A state on the limit.
-#[derive(Clone, Copy, Debug)]
-struct Knot {
-    push: f64,
-    place: f64,
-    by_push: f64,
-    turned: f64,
-}
-
-impl BaseLimit {
-    /// The limits of rows that begin at first touch, whose trajectories share batches; `None` where continuation is lost.
+impl Dragged {
+    /// Of rows that begin at first touch, all of one method, whose trajectories share batches; `None` where continuation is lost.
     #[must_use]
     pub fn of(levels: &[LevelCurve]) -> Vec<Option<Self>> {
-        let opposed: Vec<LevelCurve> = levels.iter().map(opposed).collect();
-        let touches: Vec<Option<Node>> = opposed.iter().map(LevelCurve::touch).collect();
-        let starts = opposed.iter().zip(&touches);
-        let starts = starts.filter_map(|(level, touch)| Some((level, (*touch)?)));
-        let mut walked = continuations(starts.collect(), false).into_iter();
-        opposed
-            .iter()
-            .zip(&touches)
-            .map(|(level, touch)| {
-                touch.as_ref()?;
-                Some(Self::along(level, &walked.next()??))
-            })
-            .collect()
-    }
-
-    fn along(level: &LevelCurve, Continuation { nodes, fold, .. }: &Continuation) -> Self {
-        let points: Vec<(DVec2, f64)> = nodes.iter().map(|node| (node.point, node.push)).collect();
-        let pole = level.rod.pole;
-        let states = SlidingState::at(level, &points).into_iter().zip(nodes);
-        let knots = states.enumerate().map(|(i, (state, node))| {
-            let turned = node.angle - node.push;
-            Knot {
-                push: state.push,
-                place: state.place(pole, turned),
-                by_push: if Some(i) == *fold {
-                    f64::INFINITY
-                } else {
-                    state.by_push
-                },
-                turned,
-            }
-        });
-        Self {
-            pole,
-            knots: knots.collect(),
-        }
-    }
-
-    /// Where a push from first touch slides at each of its stable `states`, by growing push.
-    #[must_use]
-    pub fn slidings(&self, states: &[SlidingState]) -> Vec<Sliding> {
-        let Some(touch) = self.knots.first() else {
-            return Vec::new();
-        };
-        let (mut push, mut place) = (touch.push, touch.place);
-        let sliding = |state: &SlidingState| {
-            place = place.min(self.nearest_to_base(push, state.push));
-            push = state.push;
-            let tip_limit = state.place(self.pole, self.turned(push));
-            let sliding = if tip_limit > place - SAME_PLACE && state.toward == Some(Sliding::Tip) {
-                Sliding::Tip
-            } else if self.place(push) < place + SAME_PLACE {
-                Sliding::Base
+        let tips = Limit::of(levels);
+        let falls = |tip: &Option<Limit>| tip.as_ref().is_some_and(Limit::falls);
+        let falling = levels.iter().zip(&tips).filter(|(_, tip)| falls(tip));
+        let opposed: Vec<LevelCurve> = falling.map(|(level, _)| opposed(level)).collect();
+        let mut bases = Limit::of(&opposed).into_iter();
+        let with_base = |tip: Option<Limit>| {
+            let base = if falls(&tip) {
+                Some(bases.next()??)
             } else {
-                Sliding::Sticks
+                None
             };
-            place = place.max(tip_limit);
-            sliding
+            Some(Self::new(tip?, base))
         };
-        states.iter().map(sliding).collect()
+        tips.into_iter().map(with_base).collect()
     }
 
-    /// The knots before and after `push`, if it is not beyond the last one.
-    fn around(&self, push: f64) -> Option<[Knot; 2]> {
-        let after = self.knots.partition_point(|knot| knot.push <= push);
-        let after = after.clamp(1, self.knots.len() - 1);
-        let around = [self.knots[after - 1], self.knots[after]];
-        (push <= around[1].push).then_some(around)
-    }
-
-    /// The place at `push`; infinitely far beyond the end.
-    fn place(&self, push: f64) -> f64 {
-        let around = self.around(push);
-        around.map_or(f64::INFINITY, |around| Cubic::through(around).at(push))
-    }
-
-    /// `psi` about there.
-    fn turned(&self, push: f64) -> f64 {
-        let last = self.knots[self.knots.len() - 1].turned;
-        self.around(push).map_or(last, |[before, _]| before.turned)
-    }
-
-    /// The place nearest to the base between two pushes.
-    fn nearest_to_base(&self, from: f64, to: f64) -> f64 {
-        let mut nearest = self.place(from).min(self.place(to));
-        for pair in self.knots.windows(2) {
-            if pair[1].push < from || pair[0].push > to {
-                continue;
-            }
-            let cubic = Cubic::through([pair[0], pair[1]]);
-            let turns = cubic.turns();
-            let pushes = turns.into_iter().flatten().chain([pair[0].push]);
-            for push in pushes.filter(|push| (from..=to).contains(push)) {
-                nearest = nearest.min(cubic.at(push));
-            }
+    fn new(tip: Limit, base: Option<Limit>) -> Self {
+        let limits = [Some(&tip), base.as_ref()].into_iter().flatten();
+        let mut pushes: Vec<f64> = limits.flat_map(Limit::pushes).collect();
+        pushes.sort_by(f64::total_cmp);
+        let mut dragged = Self {
+            dragged: Vec::with_capacity(pushes.len()),
+            tip,
+            base,
+        };
+        let mut place = dragged.tip.place(0.0).unwrap_or_default();
+        for push in pushes {
+            (place, _) = dragged.along(place, push);
+            dragged.dragged.push((push, place));
         }
-        nearest
+        dragged
+    }
+
+    /// Where the contact is at `push`, to which no limit turns from where it was at `place`, and the limit that it is at.
+    fn along(&self, place: f64, push: f64) -> (f64, Option<Sliding>) {
+        let tip = self.tip.place(push).filter(|tip| *tip >= place);
+        let base = self.base.as_ref().and_then(|base| base.place(push));
+        match (tip, base.filter(|base| *base <= place)) {
+            (Some(tip), _) if tip > place => (tip, Some(Sliding::Tip)),
+            (_, Some(base)) if base < place => (base, Some(Sliding::Base)),
+            (Some(tip), _) => (tip, Some(Sliding::Tip)),
+            (_, base) => (place, base.map(|_| Sliding::Base)),
+        }
+    }
+
+    /// Which way the contact slides at `push`, a magnitude in radians, or that it sticks.
+    #[must_use]
+    pub fn sliding(&self, push: f64) -> Sliding {
+        let Some(base) = &self.base else {
+            return Sliding::Tip;
+        };
+        let after = self.dragged.partition_point(|(at, _)| *at < push);
+        let before = after.checked_sub(1).map(|before| self.dragged[before].1);
+        let place = before.or(self.tip.place(0.0)).unwrap_or_default();
+        // Next to first touch rounding hides which limit moves: ahead it does not.
+        let is_one = |limit: &Limit| {
+            limit
+                .place(push)
+                .is_some_and(|at| (at - place).abs() < f64::EPSILON)
+        };
+        let mut ahead = self.dragged[after..].iter().filter(|(at, _)| *at > push);
+        match ahead.next() {
+            Some((next, _)) if is_one(&self.tip) && is_one(base) => self.along(place, *next).1,
+            _ => self.along(place, push).1,
+        }
+        .unwrap_or(Sliding::Sticks)
     }
 }
 
@@ -139,80 +99,4 @@ fn opposed(level: &LevelCurve) -> LevelCurve {
         ..level.rod.clone()
     };
     LevelCurve::new(level.method, &rod, level.side, &level.row)
-}
-
-/// A cubic between two knots, by the part of the way.
-struct Cubic {
-    from: f64,
-    width: f64,
-    powers: [f64; 4],
-}
-
-impl Cubic {
-    /// With the slopes of the knots; a line where one of them, at a fold, has none.
-    fn through([from, to]: [Knot; 2]) -> Self {
-        let width = to.push - from.push;
-        let secant = to.place - from.place;
-        let [a, b] = [from, to].map(|knot| knot.by_push * width - secant);
-        let bent = if (a + b).is_finite() {
-            [a, -2.0 * a - b, a + b]
-        } else {
-            [0.0; 3]
-        };
-        Self {
-            from: from.push,
-            width,
-            powers: [from.place, secant + bent[0], bent[1], bent[2]],
-        }
-    }
-
-    fn at(&self, push: f64) -> f64 {
-        let part = (push - self.from) / self.width;
-        let [c0, c1, c2, c3] = self.powers;
-        part.mul_add(part.mul_add(part.mul_add(c3, c2), c1), c0)
-    }
-
-    /// The pushes at which it turns, between its knots.
-    fn turns(&self) -> [Option<f64>; 2] {
-        let [_, c1, c2, c3] = self.powers;
-        let root = c2.mul_add(c2, -3.0 * c1 * c3).sqrt();
-        // One of the two by division, so that neither cancels.
-        let q = -(c2 + root.copysign(c2));
-        [q / (3.0 * c3), c1 / q].map(|part| {
-            let is_within = (0.0..=1.0).contains(&part);
-            is_within.then_some(part.mul_add(self.width, self.from))
-        })
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_cubic_turns_where_its_slope_is_none() {
-        // (x - 1)^2 (x + 2) turns at 1 and -1.
-        let knot = |push: f64| Knot {
-            push,
-            place: (push - 1.0) * (push - 1.0) * (push + 2.0),
-            by_push: 3.0 * push * push - 3.0,
-            turned: 0.0,
-        };
-        let turns = |from, to| {
-            let mut turns: Vec<f64> = Cubic::through([knot(from), knot(to)])
-                .turns()
-                .into_iter()
-                .flatten()
-                .collect();
-            turns.sort_by(f64::total_cmp);
-            turns
-        };
-        let near = |found: Vec<f64>, wanted: &[f64]| {
-            found.len() == wanted.len()
-                && found.iter().zip(wanted).all(|(a, b)| (a - b).abs() < 1e-12)
-        };
-        assert!(near(turns(-2.0, 2.0), &[-1.0, 1.0]));
-        assert!(near(turns(0.0, 1.5), &[1.0]));
-        assert!(near(turns(-0.5, 0.5), &[]));
-    }
 }

@@ -3,12 +3,13 @@
 //! [`RowBoundary::judge`] is total: every push angle and every status has a regime, `unresolved` included.
 
 mod dragged;
+mod limit;
 mod row;
 mod sliding;
 
-pub use dragged::BaseLimit;
+pub use dragged::Dragged;
 pub use row::{RowBoundary, Span, TIE};
-pub use sliding::{Sliding, SlidingState};
+pub use sliding::Sliding;
 
 /// An enum whose variants each have a code, for files, and a name, for files and people.
 macro_rules! named {

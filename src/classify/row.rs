@@ -125,6 +125,7 @@ impl RowBoundary {
                 (regime, status)
             }
             (Status::NotConverged, _) => (Regime::Unresolved, status),
+            (Status::Solved, None) if !self.is_complete => (Regime::Unresolved, Status::NoBoundary),
             _ => (Regime::Unresolved, Status::Disagreement),
         }
     }

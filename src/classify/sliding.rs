@@ -3,9 +3,9 @@
 //! the state.
 
 use crate::rod::{Rod, arclength};
-use crate::sheet::LevelCurve;
+use crate::sheet::Node;
 use crate::shooting::FirstVariation;
-use crate::shooting::batch::{Batch, InitialCondition};
+use crate::shooting::batch::{Batch, InitialCondition, Method};
 use glam::DVec2;
 use serde::Serialize;
 
@@ -29,6 +29,24 @@ impl Sliding {
         let slid = slid(variation, rod, tau) * rod.friction;
         (rod.friction != 0.0).then_some(if slid < 0.0 { Self::Base } else { Self::Tip })
     }
+
+    /// The same at many points `(tau, load)` of `rod`, one trajectory each.
+    #[must_use]
+    pub fn at(method: Method, rod: &Rod, points: &[DVec2]) -> Vec<Option<Self>> {
+        if rod.friction == 0.0 {
+            return vec![None; points.len()];
+        }
+        let conditions = points.iter().map(|point| InitialCondition {
+            rod,
+            tau: point.x,
+            load: point.y,
+        });
+        let conditions: Vec<InitialCondition> = conditions.collect();
+        let shot = Batch::new(method).shoot::<FirstVariation>(&conditions);
+        let states = shot.iter().zip(points);
+        let states = states.map(|(variation, point)| Self::of(variation, rod, point.x));
+        states.collect()
+    }
 }
 
 /// How far the contact slides where the pole's direction `phi` changes by `det J`, which holds at the fold, too.
@@ -36,7 +54,7 @@ impl Sliding {
 /// The contact moves along the whisker by `ds`, and along the pole's rim by `-pole dpsi`, where `psi` is the whisker's
 /// tangent at the contact, seen by the pole. It slides by the difference, and rolls otherwise. Along `D = const`,
 /// with `J` the Jacobian of `(ln D, phi)`, `det J d(tau, load)/dphi = (-dlnD/dload, dlnD/dtau)`.
-fn slid(variation: &FirstVariation, rod: &Rod, tau: f64) -> f64 {
+pub(super) fn slid(variation: &FirstVariation, rod: &Rod, tau: f64) -> f64 {
     let map = &variation.full.map;
     let along = DVec2::new(-map.by_load.x, map.by_tau.x);
     // The base turns by -dphi in front of the pole, and the contact's tangent by minus the base's angle from the base.
@@ -45,52 +63,8 @@ fn slid(variation: &FirstVariation, rod: &Rod, tau: f64) -> f64 {
     rod.radius(tau) * along.x + rod.pole * turned
 }
 
-/// A state of a row, as far as sliding goes.
-#[derive(Clone, Copy, Debug)]
-pub struct SlidingState {
-    /// Push angle since first touch, a magnitude in radians.
-    pub push: f64,
-    /// Arclength of the contact, in whisker lengths.
-    arclength: f64,
-    /// `psi`, the tangent at the contact, seen by the pole: up to whole turns.
-    pub turned: f64,
-    /// How the place of the contact changes with the push; infinite at the fold.
-    pub by_push: f64,
-    /// Which way that is, also where states are unstable.
-    pub toward: Option<Sliding>,
-}
-
-impl SlidingState {
-    /// Those of `level` at some points `(tau, load)`, each with its signed push angle; one trajectory each.
-    #[must_use]
-    pub fn at(level: &LevelCurve, points: &[(DVec2, f64)]) -> Vec<Self> {
-        let rod = &level.rod;
-        let conditions = points.iter().map(|(point, _)| InitialCondition {
-            rod,
-            tau: point.x,
-            load: point.y,
-        });
-        let conditions: Vec<InitialCondition> = conditions.collect();
-        let shot = Batch::new(level.method).shoot::<FirstVariation>(&conditions);
-        let states = shot.iter().zip(points);
-        let state = |(variation, (point, push)): (&FirstVariation, &(DVec2, f64))| {
-            let node = level.node(*point, &variation.full, *push, 0.0);
-            let by_push = slid(variation, rod, point.x) / variation.full.map.det();
-            Self {
-                push: push.abs(),
-                arclength: arclength(rod, point.x),
-                turned: node.angle - push,
-                by_push: level.side.sign() * by_push,
-                toward: Sliding::of(variation, rod, point.x),
-            }
-        };
-        states.map(state).collect()
-    }
-
-    /// The place of the contact, in whisker lengths: arclength less what it has rolled around a `pole`, from `psi` near to `turned`.
-    #[must_use]
-    pub fn place(&self, pole: f64, turned: f64) -> f64 {
-        let turned = crate::numerics::nearest_turn(self.turned, turned);
-        pole.mul_add(turned, self.arclength)
-    }
+/// By how much it has slid: the arclength of the contact less what it has rolled, in whisker lengths.
+pub(super) fn place(rod: &Rod, node: &Node) -> f64 {
+    rod.pole
+        .mul_add(node.angle - node.push, arclength(rod, node.point.x))
 }

@@ -51,7 +51,7 @@ pub struct Run<'a> {
     pub resume: bool,
     /// Whether it starts although the disk seems to have too little room.
     pub force: bool,
-    /// What shoots before the refinement.
+    /// What solves cells in place of the refinement.
     pub engine: Option<&'a mut dyn Engine>,
     /// Why it was taken.
     pub why: String,

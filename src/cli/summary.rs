@@ -51,7 +51,7 @@ pub fn print(
         ),
         (
             summary.sticking,
-            "stick where they were dragged before, with less friction than assumed: force and moment are off",
+            "stick where they were dragged before, with less friction than assumed: contact, force and moment are off",
         ),
     ] {
         if cells > 0 {

@@ -29,17 +29,16 @@ impl Fallback<'_> {
         pushes: &[f64],
         references: &[Reference],
     ) -> Option<Vec<CellDifference>> {
-        match self
-            .engine
-            .as_mut()?
-            .solve(method, rods, pushes, references)
-        {
-            Ok(cells) => Some(cells),
-            Err(failure) => {
-                self.engine = None;
-                self.failure = Some(failure);
-                None
-            }
-        }
+        let engine = self.engine.as_mut()?;
+        let asked = references.iter().map(|reference| reference.cells.len());
+        let asked: usize = asked.sum();
+        let failure = match engine.solve(method, rods, pushes, references) {
+            Ok(cells) if cells.len() == asked => return Some(cells),
+            Ok(cells) => EngineError::Device(format!("{} answers for {asked} cells", cells.len())),
+            Err(failure) => failure,
+        };
+        self.engine = None;
+        self.failure = Some(failure);
+        None
     }
 }

@@ -3,7 +3,7 @@
 use super::cells::{Cell, Settled, State};
 use super::channels::{Numbers, channels, of_cell, of_reference};
 use super::panel::RowMut;
-use super::sliding::{self, Dragged, FoundState};
+use super::sliding::{self, FoundRow, FoundState};
 use super::{Face, Panel, STATE_CHANNELS, doubt};
 use crate::classify::{Regime, RowBoundary, Status};
 use crate::integrate::Reference;
@@ -39,13 +39,13 @@ pub fn fill(
                 let Some(first) = rows.first() else { continue };
                 let face = &faces[number];
                 let into = panel.rows_mut(width, first.row..first.row + rows.len());
-                let dragged = into.into_par_iter().zip(rows).filter_map(|(into, row)| {
+                let found = into.into_par_iter().zip(rows).filter_map(|(into, row)| {
                     let reader = Reader::new(units, &face.sheet.rod);
                     let readings = has_state.then(|| Readings::new(reader, face, row.row));
                     write_row(readings, face, row.row, || settled.cells(face, row), into)
                 });
-                let dragged: Vec<Dragged> = dragged.collect();
-                sliding::mark(&dragged, width, &mut panel.status);
+                let found: Vec<FoundRow> = found.collect();
+                sliding::mark(face, &found, width, &mut panel.status);
             }
         });
 }
@@ -94,15 +94,15 @@ impl<'a> Readings<'a> {
     }
 }
 
-/// Writes the answers for the `cells` of `row`, with states if there are `readings` of them; cells in doubt are settled once more. What
-/// friction has dragged elsewhere is left to be marked.
+/// Writes the answers for the `cells` of `row`, with states if there are `readings` of them; cells in doubt are settled once more. The
+/// states found are returned if there is friction, which may have dragged their contacts elsewhere.
 fn write_row<'a, C: Iterator<Item = Cell<'a>>>(
     mut readings: Option<Readings<'a>>,
     face: &Face,
     row: usize,
     cells: impl Fn() -> C,
     mut into: RowMut,
-) -> Option<Dragged> {
+) -> Option<FoundRow> {
     let sheet = &face.sheet;
     let boundary = RowBoundary::new(sheet.touches(row), &sheet.crossings[row]);
     let mut write = |cell: &Cell<'a>| {
@@ -118,13 +118,18 @@ fn write_row<'a, C: Iterator<Item = Cell<'a>>>(
     let state = |cell: &Cell, answer: &Answer| {
         let is_found = has_friction && answer.status == Status::Solved;
         let point = answer.point.filter(|_| is_found)?;
-        Some((cell.push.column, answer.regime, point, cell.push.angle))
+        Some(FoundState {
+            column: cell.push.column,
+            regime: answer.regime,
+            point,
+            push: cell.push.angle.abs(),
+        })
     };
-    let mut found: Vec<FoundState> = Vec::new();
+    let mut states: Vec<FoundState> = Vec::new();
     let mut doubtful = Vec::new();
     for (index, cell) in cells().enumerate() {
         let answer = write(&cell);
-        found.extend(state(&cell, &answer));
+        states.extend(state(&cell, &answer));
         if in_doubt(&cell, &answer) {
             doubtful.push(index);
         }
@@ -134,11 +139,11 @@ fn write_row<'a, C: Iterator<Item = Cell<'a>>>(
         let cells = again.iter_mut().enumerate();
         let cells = cells.filter(|(index, _)| doubtful.binary_search(index).is_ok());
         doubt::settle(sheet, row, &boundary, cells.map(|(_, cell)| cell));
-        let states = again.iter().filter_map(|cell| state(cell, &write(cell)));
-        found = states.collect();
+        let again = again.iter();
+        states = again.filter_map(|cell| state(cell, &write(cell))).collect();
     }
-    let is_any = !found.is_empty();
-    is_any.then(|| Dragged::new(face, row, &found)).flatten()
+    let found = FoundRow { row, states };
+    (!found.states.is_empty()).then_some(found)
 }
 
 /// What a panel holds of one cell, and where on the sheet its state is.

@@ -35,7 +35,8 @@ impl Panel {
         panel
     }
 
-    /// The same with numbers that are all 0: such memory costs nothing before it is written to, row by row on all threads.
+    /// The same, of which every cell must be written: numbers are 0 until then, since memory that is zero costs nothing before it is
+    /// written to, row by row on all threads.
     pub(super) fn unwritten(cells: usize, channels: Channels) -> Self {
         let of_state = STATE_CHANNELS.map(|name| {
             let cells = if channels.contains(name) { cells } else { 0 };

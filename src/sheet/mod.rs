@@ -17,7 +17,7 @@ mod lattice;
 mod row;
 
 pub use continuation::level_curve::{LevelCurve, Node, ON_CURVE};
-pub use continuation::{Continuation, continuations};
+pub use continuation::{Continuation, NODE_MISS, continuations};
 pub use edges::edge_newton::{EdgeIterate, EdgeProblem, edge_newton};
 pub use fold::FoldPoint;
 pub use lattice::guesses::Guess;
@@ -39,7 +39,7 @@ use rayon::prelude::*;
 const UNLOADED: f64 = 1e-6;
 
 /// Rows that are walked together: some walks end before others, and lanes should be full.
-const TOGETHER: usize = 32;
+pub const TOGETHER: usize = 32;
 
 /// The sheet of one whisker on one side, with the rows of a map.
 #[derive(Clone, Debug)]

@@ -3,7 +3,7 @@
 use super::columns::row;
 use super::resample::{interpolate, targets};
 use super::{FINER, Mark, NoState};
-use crate::classify::{BaseLimit, Sliding, SlidingState};
+use crate::classify::{Dragged, Sliding};
 use crate::rod::{Rest, Side, Units};
 use crate::scene::{Pole, Whisker};
 use crate::sheet::{Continuation, Edge, LevelCurve, Node, ON_CURVE, Row};
@@ -136,8 +136,12 @@ impl Branch {
             })
             .collect::<Result<_, NoState>>()?;
         let stable = fold_at.map_or(marked.len(), |fold| fold + 1);
-        let nodes: Vec<Node> = marked.iter().map(|(node, _)| *node).collect();
-        let points = marked.iter().zip(self.slidings(&nodes, stable)).enumerate();
+        let states = marked.iter().map(|(node, _)| (node.point, node.push));
+        let states: Vec<(DVec2, f64)> = states.collect();
+        let points = marked
+            .iter()
+            .zip(self.slidings(&states, stable))
+            .enumerate();
         let points = points.map(|(i, ((node, mark), sliding))| BranchPoint {
             mark: *mark,
             sliding,
@@ -146,27 +150,23 @@ impl Branch {
         Ok(points.collect())
     }
 
-    /// Which way the contact slides, or that it sticks, at each of the `nodes`: the first so many are stable, by growing push.
-    pub(super) fn slidings(&self, nodes: &[Node], stable: usize) -> Vec<Option<Sliding>> {
-        if self.level.rod.friction == 0.0 {
-            return vec![None; nodes.len()];
+    /// Which way the contact slides, or that it sticks, at each of the states `(tau, load)` with their pushes, of which the first so many
+    /// are `stable`.
+    pub(super) fn slidings(&self, states: &[(DVec2, f64)], stable: usize) -> Vec<Option<Sliding>> {
+        let level = &self.level;
+        if level.rod.friction == 0.0 {
+            return vec![None; states.len()];
         }
-        let touch = [(self.level.touch_point(), 0.0)].into_iter();
-        let points = touch.chain(nodes.iter().map(|node| (node.point, node.push)));
-        let states = SlidingState::at(&self.level, &points.collect::<Vec<_>>());
-        let mut slidings: Vec<_> = states.iter().skip(1).map(|state| state.toward).collect();
-        let dragged = &states[..=stable];
-        if dragged
-            .iter()
-            .any(|state| state.toward == Some(Sliding::Base))
-            && let Some(limit) = BaseLimit::of(std::slice::from_ref(&self.level))
-                .pop()
-                .flatten()
-        {
-            let along = limit.slidings(dragged).into_iter().skip(1);
-            slidings.splice(..stable, along.map(Some));
-        }
-        slidings
+        let (led_to, unstable) = states.split_at(stable);
+        let dragged = Dragged::of(std::slice::from_ref(level)).pop().flatten();
+        let sliding = |(_, push): &(DVec2, f64)| {
+            let sliding = dragged.as_ref().map(|dragged| dragged.sliding(push.abs()));
+            // Where that is not known, it does not count as sliding.
+            Some(sliding.unwrap_or(Sliding::Sticks))
+        };
+        let unstable: Vec<DVec2> = unstable.iter().map(|(point, _)| *point).collect();
+        let unstable = Sliding::at(level.method, &level.rod, &unstable);
+        led_to.iter().map(sliding).chain(unstable).collect()
     }
 
     /// The state with its contact at `tau`, in the units of people.

@@ -55,7 +55,7 @@ row! {
         pub contact_angle_deg: Option<f64>,
         /// Remaining error relative to the distance of the pole.
         pub residual: Option<f64>,
-        /// With friction, which way the contact slides: tip, as assumed, or base.
+        /// With friction, which way the contact would slide there: tip, or base.
         pub sliding: Option<Sliding>,
     }
 }

@@ -66,13 +66,7 @@ impl Shape {
         let mut at: Vec<f64> = uniform(count).filter(|s| *s != contact).collect();
         let index = at.partition_point(|s| *s < contact);
         at.insert(index, contact);
-        let node = branch.level.node(
-            DVec2::new(found.tau, found.load),
-            &found.full,
-            found.push,
-            0.0,
-        );
-        let is_stable = found.full.map.det() > 0.0;
+        let state = (DVec2::new(found.tau, found.load), found.push);
         let places = profile(rod, found.tau, found.load, FINER, &at);
         // From the axes of the contact to those of first touch: the base's tangent is at `-push` there.
         let base = &found.full;
@@ -107,7 +101,7 @@ impl Shape {
             pole_radius_mm: rod.pole.abs() * length,
             residual: found.full.map.pole.distance(row.pole(found.push)),
             sliding: branch
-                .slidings(&[node], usize::from(is_stable))
+                .slidings(&[state], usize::from(found.stable))
                 .pop()
                 .flatten(),
         }

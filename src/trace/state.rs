@@ -13,6 +13,8 @@ pub struct Found {
     pub load: f64,
     /// Push angle, signed, in radians: the one asked for but for the residual.
     pub push: f64,
+    /// Whether it is on the stable part.
+    pub stable: bool,
     /// Everything else.
     pub full: FullState,
 }
@@ -69,6 +71,7 @@ impl Branch {
             tau: node.point.x,
             load: node.point.y,
             push,
+            stable,
             full: node.full,
         })
     }

@@ -1,4 +1,4 @@
-//! Push angles, references and cells as bytes, as `shaders/nystrom8.wgsl` and `shaders/cells.wgsl` have them.
+//! Push angles and cells as bytes, as `shaders/nystrom8.wgsl` and `shaders/cells.wgsl` have them.
 
 use super::Precision;
 use super::bytes::{Scalar, bytes, halves};
@@ -122,6 +122,10 @@ mod tests {
         let shader = in_shader(precision);
         let rust = in_rust!(GpuStart<T>, "StepStart", place tangents);
         assert_eq!(shader.iter().find(|s| s.0 == rust.0), Some(&rust));
+        // Of the last numbers that the shader writes one is none.
+        let numbers = shader.iter().find(|s| s.0 == "Cell").unwrap().1;
+        assert_eq!(numbers + size_of::<u32>(), size_of::<GpuCell>());
+        assert_eq!(offset_of!(GpuCell, unused), numbers);
     }
 
     #[test]

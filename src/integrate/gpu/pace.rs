@@ -9,7 +9,7 @@ const GOAL: Duration = Duration::from_millis(75);
 /// Cells of the first dispatch, when nothing is known yet: some 10 ms on two cores of a CPU.
 const FIRST: usize = 4096;
 
-/// Most cells per dispatch: 88 MiB for the answers of one; larger dispatches are no faster.
+/// Most cells per dispatch: 48 MiB for the answers of one; larger dispatches are no faster.
 const MOST: usize = 1 << 20;
 
 /// Cells per dispatch, learnt from the dispatches before.

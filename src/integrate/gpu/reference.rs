@@ -17,6 +17,11 @@ const ROW_POWERS: usize = POWERS.next_multiple_of(4);
 /// Powers of the Jacobian's polynomials there: Newton's last step needs five digits.
 const JACOBIAN_POWERS: usize = 8;
 
+const _: () = assert!(
+    POWERS == 12 && JACOBIAN_POWERS == 8,
+    "shaders/cells.wgsl writes them out"
+);
+
 /// References, ready for a dispatch.
 #[derive(Debug)]
 pub struct Packed {
@@ -89,7 +94,9 @@ pub fn packed<T: Scalar>(
     for (_, starts) in &parts {
         packed.starts.extend_from_slice(starts);
     }
-    packed.starts.resize(packed.starts.capacity(), 0);
+    packed
+        .starts
+        .resize(most_steps * size_of::<GpuStart<T>>(), 0);
     packed
 }
 

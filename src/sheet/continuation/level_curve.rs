@@ -2,17 +2,18 @@
 //!
 //! Neither the load nor the push angle can be stepped: the load peaks, the push angle turns at the fold. In the plane of contact and
 //! load the curve is the level set of one smooth function, whose gradient every trajectory brings along. So a step of pseudo-arclength
-//! continuation has its predictor along the tangent, its corrector along the gradient. Lengths are measured where people look at the
+//! continuation has its predictor along the tangent, bent as the curve was before, its corrector along the gradient. Lengths are measured where people look at the
 //! curve: in push angle, contact angle (both in radians) and arclength of the contact (in whisker lengths).
 
 use crate::numerics::{Root, illinois, nearest_turn};
 use crate::rod::{Rod, Side, arclength};
+use crate::sheet::continuation::NODE_MISS;
 use crate::sheet::row::{Crossing, Row};
 use crate::shooting::batch::{Batch, InitialCondition, Method};
 use crate::shooting::{FirstVariation, FullState};
 use glam::{DVec2, DVec3};
 
-/// Iterations of the corrector; from a step's predictor 4 are the rule.
+/// Most iterations of the corrector.
 const CORRECTOR_ITERATIONS: usize = 12;
 
 /// `ln D` at which a point lies on the curve, to rounding.
@@ -203,7 +204,8 @@ pub(super) fn correct(
             };
             let (level, point) = &mut iterates[i];
             let miss = (level.row.pole_distance / full.map.pole.length()).ln();
-            let stuck = miss.abs() < 1e3 * tolerance(i) && miss.abs() > 0.5 * misses[i];
+            let stuck =
+                miss.abs() < (1e3 * tolerance(i)).min(NODE_MISS) && miss.abs() > 0.5 * misses[i];
             if miss.abs() <= tolerance(i) || stuck {
                 corrected[i] = Some((*point, full));
                 return false;
@@ -218,7 +220,7 @@ pub(super) fn correct(
     corrected
 }
 
-/// The states at `points`, all integrated as those of the first curve are.
+/// The states at `points`, of curves that all have the method of the first.
 fn shoot(points: &[(&LevelCurve, DVec2)]) -> Vec<FullState> {
     let Some((first, _)) = points.first() else {
         return Vec::new();

@@ -5,7 +5,7 @@ mod meeting;
 pub mod pieces;
 pub mod walked;
 
-use crate::sheet::continuation::level_curve::{LevelCurve, Node, correct};
+use crate::sheet::continuation::level_curve::{LevelCurve, Node, ON_CURVE, correct};
 use crate::sheet::continuation::meeting::{Chord, Meeting, meet};
 use crate::sheet::row::Edge;
 use glam::DVec2;
@@ -25,8 +25,8 @@ const FIRST_ARC_STEP: f64 = 0.05;
 /// A step that has become this short leads nowhere.
 const SHORTEST_ARC_STEP: f64 = 1e-9;
 
-/// What `ln D` may miss at a node between the ends: it tells the way, and where to look for states.
-const NODE_MISS: f64 = 1e-8;
+/// What `ln D` may miss at a node between the ends that only tells the way, and about where states are.
+pub const NODE_MISS: f64 = 1e-8;
 
 /// A predictor bends where the direction has changed by less than this since the node before.
 const MOST_BEND: f64 = 0.25;
@@ -50,15 +50,17 @@ impl LevelCurve {
     /// gets lost.
     #[must_use]
     pub fn continuation(&self, start: Node, past_fold: bool) -> Option<Continuation> {
-        continuations(vec![(self, start)], past_fold).pop()?
+        continuations(vec![(self, start)], past_fold, ON_CURVE).pop()?
     }
 }
 
-/// The same for several curves at once, whose trajectories share batches. No answer depends on the others.
+/// The same for several curves at once, whose trajectories share batches; nodes between the ends may `miss` the curve by so much in
+/// `ln D`. No answer depends on the other curves.
 #[must_use]
 pub fn continuations<'a>(
     starts: Vec<(&'a LevelCurve, Node)>,
     past_fold: bool,
+    miss: f64,
 ) -> Vec<Option<Continuation>> {
     let mut ended = vec![None; starts.len()];
     let walk = |(index, (level, start)): (usize, (_, Node))| Walk {
@@ -71,7 +73,7 @@ pub fn continuations<'a>(
     };
     let mut walks: Vec<Walk> = starts.into_iter().enumerate().map(walk).collect();
     while !walks.is_empty() {
-        let nexts = next_nodes(&walks);
+        let nexts = next_nodes(&walks, miss);
         let chord = |(walk, next): (&Walk<'a>, &Option<Node>)| Some(walk.chord((*next)?));
         let chords: Vec<Option<Chord>> = walks.iter().zip(&nexts).map(chord).collect();
         let mut meetings = meet(&chords).into_iter();
@@ -112,14 +114,14 @@ struct Walk<'a> {
 }
 
 /// The next node of each of the `walks`, where it was found and fits.
-fn next_nodes(walks: &[Walk]) -> Vec<Option<Node>> {
+fn next_nodes(walks: &[Walk], miss: f64) -> Vec<Option<Node>> {
     let predictions: Vec<(DVec2, DVec2)> = walks.iter().map(Walk::predicted).collect();
     let points: Vec<(&LevelCurve, DVec2)> = walks
         .iter()
         .zip(&predictions)
         .map(|(walk, (point, _))| (walk.level, *point))
         .collect();
-    correct(&points, |_| NODE_MISS)
+    correct(&points, |_| miss)
         .into_iter()
         .zip(walks.iter().zip(&predictions))
         .map(|(corrected, (walk, (_, along)))| {
@@ -134,7 +136,7 @@ impl<'a> Walk<'a> {
         &self.nodes[self.nodes.len() - 1]
     }
 
-    /// The predictor of the next node, and the direction there in parts of the scale.
+    /// The predictor of the next node, and the direction at the last one in parts of the scale.
     ///
     /// It bends as the curve has bent since the node before.
     fn predicted(&self) -> (DVec2, DVec2) {
@@ -200,7 +202,6 @@ impl<'a> Walk<'a> {
 mod tests {
     use super::*;
     use crate::rod::{Rest, Rod, Side};
-    use crate::sheet::ON_CURVE;
     use crate::sheet::row::Row;
     use crate::shooting::batch::Method;
 

@@ -2,7 +2,7 @@
 //! level curve of a row is then in several pieces, whose push angles may overlap.
 
 use crate::sheet::continuation::level_curve::{LevelCurve, Node};
-use crate::sheet::continuation::{Continuation, continuations};
+use crate::sheet::continuation::{Continuation, NODE_MISS, continuations};
 use crate::sheet::row::Crossing;
 
 /// How far apart, relative to contact and load, two crossings are at most if they are the same.
@@ -119,7 +119,8 @@ fn through_crossings(
         .zip(found.iter_mut())
         .map(|((crossing, (near, begin)), found)| {
             // On the unstable side there is no piece to lose.
-            let is_lost = near.is_some_and(|near| near.full.map.det() > 0.0) && begin.is_none();
+            let may_begin = near.is_none_or(|near| near.full.map.det() > 0.0);
+            let is_lost = unsound(crossing).is_some() && may_begin && begin.is_none();
             found.are_complete &= !is_lost;
             let entry = crossing.filter(|_| is_sound(crossing));
             let entry = entry.or(begin.map(|(begin, _)| begin));
@@ -193,7 +194,7 @@ fn ends_of_pieces(
         .collect();
     let walks = levels.iter().zip(started.iter().map(|(_, start)| *start));
     let mut ends = vec![None; starts.len()];
-    let walked = continuations(walks.collect(), false);
+    let walked = continuations(walks.collect(), false, NODE_MISS);
     for ((level, (i, _)), piece) in levels.iter().zip(&started).zip(walked) {
         ends[*i] = piece.and_then(|piece| end_of_piece(level, piece));
     }

@@ -106,7 +106,8 @@ impl RadiusProfile {
                 .map(|i| piece.from + width * f64::from(i) / f64::from(LOOKS))
                 .map(|s| (1.0 - taper * s) * (piece.slope(s) / piece.radius(s)).abs())
                 .fold(0.0, f64::max);
-            changes.push(length * steepest);
+            // A step is along the cone that the profile lies about, too.
+            changes.push(length * steepest.max(taper));
             longest.push(width.max(longest.last().copied().unwrap_or_default()));
             parts.push((length * steepest).ceil().max(1.0) as u32);
         }

@@ -3,14 +3,16 @@
 use crate::rod::{Rod, arclength};
 
 /// How finely trajectories are integrated: `least` steps under about the load of a cylinder's fold, and no step along which the
-/// radius changes by more than a factor `exp(longest)`, the modulus by more than `exp(2 longest)`, or the resting whisker turns
-/// by more than `0.6 longest`.
+/// radius of a cone changes by more than a factor `exp(longest)`, the modulus by more than `exp(2 longest)`, or the resting whisker
+/// turns by more than `0.6 longest`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Resolution {
     /// Steps of a straight whisker under `q = 8` with `beta tau = 1`.
     pub least: u32,
     /// Longest step in `beta tau`, in `3.2 A* tau` and in half the logarithm of the modulus; at most 0.4.
     pub longest: f64,
+    /// Fewest steps of a piece of a profile: 1, but where errors are to be seen by doubling.
+    pub fewest: u32,
 }
 
 impl Resolution {
@@ -40,6 +42,7 @@ impl Resolution {
         Self {
             least,
             longest: if longest < 0.4 { longest } else { 0.4 },
+            fewest: 1,
         }
     }
 
@@ -49,10 +52,12 @@ impl Resolution {
         Self {
             least: 2 * self.least,
             longest: 0.5 * self.longest,
+            fewest: 2 * self.fewest,
         }
     }
 
-    /// Steps for a trajectory from `tau` under `load` on `rod`; with a profile, steps for every piece of it.
+    /// Steps for a trajectory from `tau` under `load` on `rod`; with a profile, the fewest for each piece, of which some
+    /// [take more](Self::steps_of_piece).
     ///
     /// What is needed grows with the root of the load above all, so that a whisker that hardly bends takes a third of the steps.
     /// The weights are those of 20,000 random trajectories that had to reach 1e-8, 1e-10 and 3e-12 (`benches/NOTES.md`).
@@ -78,7 +83,8 @@ impl Resolution {
             let weight = weight(bending, bend * s) + 0.17;
             let share = CONCENTRATED * profile.largest_share(s);
             let fastest = (1.6 * bend).max(0.5 * modulus);
-            return self.rounded(share * weight, fastest * profile.longest[profile.piece(s)]);
+            let steps = self.rounded(share * weight, fastest * profile.longest[profile.piece(s)]);
+            return steps.max(self.fewest);
         }
         let fastest = fastest(rod.taper, bend).max(0.5 * modulus);
         let weight = weight(bending, bend * s) + weight_of_taper(rod.taper * tau);
@@ -129,7 +135,7 @@ fn weight(bending: f64, bend: f64) -> f64 {
 }
 
 /// The root of a load from which on a whisker coils up by more than a turn, so that the same error counts for more of the distance
-/// between base and pole. Only friction holds it.
+/// between base and pole. Only with friction are such states stable.
 const COILING: f64 = 6.3;
 
 /// Of the fall of the radius.

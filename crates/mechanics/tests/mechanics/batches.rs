@@ -151,3 +151,35 @@ fn no_number_hurts_only_itself() {
         assert!(is_spoilt || a.pole.distance(b.pole) < 1e-7, "{i}: {a:?}");
     }
 }
+
+/// So many rows that a step for each piece is enough: an estimate of the error must still see twice as many.
+#[test]
+fn doubling_shows_the_error_of_many_rows() {
+    let wave = |s: f64| (1.0 - 0.9 * s) * (1.0 + 0.1 * (150.0 * s).sin());
+    let rows: Vec<[f64; 2]> = (0..=200)
+        .map(|i| f64::from(i) / 200.0)
+        .map(|s| [s, wave(s) / wave(0.0)])
+        .collect();
+    let rod = kept(Rod {
+        taper: 1.0 - rows[200][1],
+        profile: Some(Arc::new(RadiusProfile::new(&rows, 1.0))),
+        ..Rod::default()
+    });
+    let at = |load| InitialCondition {
+        rod,
+        tau: rod.tau(0.7),
+        load,
+    };
+    let conditions = [0.5, 2.0, 4.0].map(at);
+    let coarse = Resolution::of(3);
+    let poles = |resolution| Batch::new(Method::new(resolution)).shoot::<ShootingMap>(&conditions);
+    let [once, twice, exact] = [coarse, coarse.doubled(), coarse.doubled().doubled()].map(poles);
+    for ((once, twice), exact) in once.iter().zip(&twice).zip(&exact) {
+        let error = once.pole.distance(exact.pole);
+        let estimate = once.pole.distance(twice.pole);
+        assert!(
+            error > 0.0 && estimate > 0.9 * error,
+            "{estimate:e} {error:e}"
+        );
+    }
+}

@@ -23,6 +23,7 @@ fn steps(least: u32) -> Method {
     Method::new(Resolution {
         least,
         longest: 0.4,
+        fewest: 1,
     })
     .with_effects(EFFECTS)
 }

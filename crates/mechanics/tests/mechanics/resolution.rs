@@ -10,6 +10,7 @@ fn steps_are_rounded_up_to_three_bits() {
     let resolution = Resolution {
         least: 0,
         longest: 1.0,
+        fewest: 1,
     };
     let cone = Rod {
         taper: 1.0,
@@ -35,6 +36,7 @@ fn steps_for_the_load_are_rounded_as_well() {
     let resolution = Resolution {
         least: 20,
         longest: f64::INFINITY,
+        fewest: 1,
     };
     for load in 0..2000 {
         let steps = resolution.steps(&Rod::default(), 1.0, 0.01 * f64::from(load));

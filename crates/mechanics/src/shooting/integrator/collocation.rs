@@ -32,7 +32,7 @@ const WITHIN: [[f64; 2]; 4] = [
     [0.930_568_155_797_026_3, 0.173_927_422_568_726_93],
 ];
 
-/// How often levers follow from angles before the last time.
+/// Rounds in which levers follow from angles, after the first prediction.
 const ITERATIONS: usize = 2;
 
 /// Where the quadrature looks between a node and the one before it (the start, before the first; the end, after the last), and
