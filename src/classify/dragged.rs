@@ -1,7 +1,7 @@
 //! Where a push drags the contact, and where it sticks.
 //!
-//! With friction the contact may be anywhere between two limits: the place where it would slide toward the tip, which states are
-//! computed for, and the place where it would slide toward the base, with friction the other way. At first touch the two are one. A
+//! With friction the contact may be anywhere between two limits: where it would slide toward the tip, which states are computed for,
+//! and where it would slide toward the base, with friction the other way. At first touch the two are one. A
 //! push moves the limits, and they drag the contact along: it is where the last of them has left it (Prandtl's play).
 
 use super::Sliding;
@@ -15,7 +15,7 @@ pub struct Dragged {
     tip: Limit,
     /// The limit toward the base; `None` where the other one never leads there, so that it alone drags.
     base: Option<Limit>,
-    /// Pushes between which neither limit turns, and where the contact is at each.
+    /// Pushes between which neither limit turns back, and how far the contact has slid at each.
     dragged: Vec<(f64, f64)>,
 }
 
@@ -48,23 +48,23 @@ impl Dragged {
             tip,
             base,
         };
-        let mut place = dragged.tip.place(0.0).unwrap_or_default();
+        let mut slid = dragged.tip.slid(0.0).unwrap_or_default();
         for push in pushes {
-            (place, _) = dragged.along(place, push);
-            dragged.dragged.push((push, place));
+            (slid, _) = dragged.along(slid, push);
+            dragged.dragged.push((push, slid));
         }
         dragged
     }
 
-    /// Where the contact is at `push`, to which no limit turns from where it was at `place`, and the limit that it is at.
-    fn along(&self, place: f64, push: f64) -> (f64, Option<Sliding>) {
-        let tip = self.tip.place(push).filter(|tip| *tip >= place);
-        let base = self.base.as_ref().and_then(|base| base.place(push));
-        match (tip, base.filter(|base| *base <= place)) {
-            (Some(tip), _) if tip > place => (tip, Some(Sliding::Tip)),
-            (_, Some(base)) if base < place => (base, Some(Sliding::Base)),
+    /// How far the contact has slid at `push`, to which no limit turns back from where it had `slid`, and the limit that it is at.
+    fn along(&self, slid: f64, push: f64) -> (f64, Option<Sliding>) {
+        let tip = self.tip.slid(push).filter(|tip| *tip >= slid);
+        let base = self.base.as_ref().and_then(|base| base.slid(push));
+        match (tip, base.filter(|base| *base <= slid)) {
+            (Some(tip), _) if tip > slid => (tip, Some(Sliding::Tip)),
+            (_, Some(base)) if base < slid => (base, Some(Sliding::Base)),
             (Some(tip), _) => (tip, Some(Sliding::Tip)),
-            (_, base) => (place, base.map(|_| Sliding::Base)),
+            (_, base) => (slid, base.map(|_| Sliding::Base)),
         }
     }
 
@@ -76,17 +76,17 @@ impl Dragged {
         };
         let after = self.dragged.partition_point(|(at, _)| *at < push);
         let before = after.checked_sub(1).map(|before| self.dragged[before].1);
-        let place = before.or(self.tip.place(0.0)).unwrap_or_default();
+        let slid = before.or(self.tip.slid(0.0)).unwrap_or_default();
         // Next to first touch rounding hides which limit moves: ahead it does not.
         let is_one = |limit: &Limit| {
             limit
-                .place(push)
-                .is_some_and(|at| (at - place).abs() < f64::EPSILON)
+                .slid(push)
+                .is_some_and(|at| (at - slid).abs() < f64::EPSILON)
         };
         let mut ahead = self.dragged[after..].iter().filter(|(at, _)| *at > push);
         match ahead.next() {
-            Some((next, _)) if is_one(&self.tip) && is_one(base) => self.along(place, *next).1,
-            _ => self.along(place, push).1,
+            Some((next, _)) if is_one(&self.tip) && is_one(base) => self.along(slid, *next).1,
+            _ => self.along(slid, push).1,
         }
         .unwrap_or(Sliding::Sticks)
     }

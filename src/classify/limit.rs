@@ -1,12 +1,12 @@
-//! Where the contact of a row can slide: its place along a push, with friction that points toward the tip or toward the base.
+//! How far the contact of a row slides along a push, with friction that points toward the tip or toward the base.
 
-use super::sliding::{place, slid};
+use super::sliding::{rate, slid};
 use crate::sheet::{Continuation, LevelCurve, NODE_MISS, continuations};
 use crate::shooting::FirstVariation;
 use crate::shooting::batch::{Batch, InitialCondition};
 
-/// The places of one row's contact from first touch to where its stable states end. A place is the arclength of the contact less what it
-/// has rolled around the pole, in whisker lengths.
+/// How far one row's contact has slid, from first touch to where its stable states end: its arclength less what it has rolled around the
+/// pole, in whisker lengths.
 #[derive(Clone, Debug)]
 pub struct Limit(Vec<Knot>);
 
@@ -15,7 +15,7 @@ pub struct Limit(Vec<Knot>);
 struct Knot {
     /// A magnitude, in radians.
     push: f64,
-    place: f64,
+    slid: f64,
     /// Infinite at the fold.
     by_push: f64,
 }
@@ -53,10 +53,10 @@ impl Limit {
                 let knots = nodes.iter().zip(&mut shot).enumerate();
                 let knots = knots.map(|(i, (node, variation))| {
                     let by_phi =
-                        slid(&variation, &level.rod, node.point.x) / variation.full.map.det();
+                        rate(&variation, &level.rod, node.point.x) / variation.full.map.det();
                     Knot {
                         push: node.push.abs(),
-                        place: place(&level.rod, node),
+                        slid: slid(&level.rod, node),
                         by_push: if Some(i) == fold {
                             f64::INFINITY
                         } else {
@@ -69,7 +69,7 @@ impl Limit {
             .collect()
     }
 
-    /// The pushes of the knots, and those between them at which the places turn.
+    /// The pushes of the knots, and those between them at which the contact turns back.
     pub fn pushes(&self) -> impl Iterator<Item = f64> {
         let turns = self
             .0
@@ -85,8 +85,8 @@ impl Limit {
             || pairs.any(|pair| pair.turns().iter().any(Option::is_some))
     }
 
-    /// The place at `push`; `None` beyond the end.
-    pub fn place(&self, push: f64) -> Option<f64> {
+    /// How far it has slid at `push`; `None` beyond the end.
+    pub fn slid(&self, push: f64) -> Option<f64> {
         let after = self.0.partition_point(|knot| knot.push <= push);
         let after = after.clamp(1, self.0.len() - 1);
         let [from, to] = [self.0.get(after - 1)?, self.0.get(after)?];
@@ -94,7 +94,7 @@ impl Limit {
     }
 }
 
-/// The places between two knots: powers of the part of the way, or, from a fold back, of its root.
+/// How far it slides between two knots: powers of the part of the way, or, from a fold back, of its root.
 struct Between {
     from: f64,
     width: f64,
@@ -107,15 +107,15 @@ impl Between {
     /// The cubic with the slopes of both; next to a fold the parabola in the root of the distance from there.
     fn new(from: Knot, to: Knot) -> Self {
         let width = to.push - from.push;
-        let secant = to.place - from.place;
+        let secant = to.slid - from.slid;
         let to_fold = to.by_push.is_infinite();
         let powers = if to_fold {
             // By the root, from the fold back: the slope at the other end is twice that by the part.
             let bend = secant - 2.0 * from.by_push * width;
-            [to.place, -secant - bend, bend, 0.0]
+            [to.slid, -secant - bend, bend, 0.0]
         } else {
             let [a, b] = [from, to].map(|knot| knot.by_push * width - secant);
-            [from.place, secant + a, -2.0 * a - b, a + b]
+            [from.slid, secant + a, -2.0 * a - b, a + b]
         };
         Self {
             from: from.push,
@@ -136,7 +136,7 @@ impl Between {
         x.mul_add(x.mul_add(x.mul_add(c3, c2), c1), c0)
     }
 
-    /// The pushes at which the places turn.
+    /// The pushes at which it turns back.
     fn turns(&self) -> [Option<f64>; 2] {
         let [_, c1, c2, c3] = self.powers;
         let root = c2.mul_add(c2, -3.0 * c1 * c3).sqrt();
@@ -154,10 +154,10 @@ impl Between {
 mod tests {
     use super::*;
 
-    fn knot(push: f64, place: f64, by_push: f64) -> Knot {
+    fn knot(push: f64, slid: f64, by_push: f64) -> Knot {
         Knot {
             push,
-            place,
+            slid,
             by_push,
         }
     }
@@ -176,12 +176,12 @@ mod tests {
     /// `(x - 1)^2 (x + 2)` turns at 1 and -1.
     #[test]
     fn a_cubic_is_found_again_and_turns_where_its_slope_is_none() {
-        let place = |x: f64| (x - 1.0) * (x - 1.0) * (x + 2.0);
+        let slid = |x: f64| (x - 1.0) * (x - 1.0) * (x + 2.0);
         let between = |from: f64, to: f64| {
-            let [from, to] = [from, to].map(|x| knot(x, place(x), 3.0 * x * x - 3.0));
+            let [from, to] = [from, to].map(|x| knot(x, slid(x), 3.0 * x * x - 3.0));
             Between::new(from, to)
         };
-        assert!((between(-2.0, 2.0).at(0.3) - place(0.3)).abs() < 1e-14);
+        assert!((between(-2.0, 2.0).at(0.3) - slid(0.3)).abs() < 1e-14);
         assert!(near(&sorted_turns(&between(-2.0, 2.0)), &[-1.0, 1.0]));
         assert!(near(&sorted_turns(&between(0.0, 1.5)), &[1.0]));
         assert!(near(&sorted_turns(&between(-0.5, 0.5)), &[]));
@@ -190,7 +190,7 @@ mod tests {
     /// With `r` the root of the distance from the fold at 2, `1 - r + 0.8 r^2` turns at `r = 0.625`.
     #[test]
     fn so_is_a_parabola_in_the_root_of_the_distance_from_a_fold() {
-        let place = |push: f64| {
+        let slid = |push: f64| {
             let root = (2.0 - push).sqrt();
             1.0 - root + 0.8 * root * root
         };
@@ -200,12 +200,9 @@ mod tests {
             (1.0 - 1.6 * root) / (2.0 * root)
         };
         let fold = knot(2.0, 1.0, f64::INFINITY);
-        let between = |from: f64| Between::new(knot(from, place(from), slope(from)), fold);
+        let between = |from: f64| Between::new(knot(from, slid(from), slope(from)), fold);
         for push in [1.1, 1.5, 1.99, 2.0] {
-            assert!(
-                (between(1.0).at(push) - place(push)).abs() < 1e-14,
-                "{push}"
-            );
+            assert!((between(1.0).at(push) - slid(push)).abs() < 1e-14, "{push}");
         }
         assert!(near(&sorted_turns(&between(1.0)), &[2.0 - 0.625 * 0.625]));
         assert!(near(&sorted_turns(&between(1.8)), &[]));

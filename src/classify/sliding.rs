@@ -17,7 +17,7 @@ pub enum Sliding {
     Tip,
     /// Toward the base: friction points the other way.
     Base,
-    /// Not at all: between the two it sticks, and friction is less than it can be.
+    /// Not at all: where the last of the two has left it, it sticks, and friction is less than it can be.
     Sticks,
 }
 
@@ -26,8 +26,8 @@ impl Sliding {
     #[must_use]
     pub fn of(variation: &FirstVariation, rod: &Rod, tau: f64) -> Option<Self> {
         // The coefficient has the sign of the side, and so has the growing direction of the pole.
-        let slid = slid(variation, rod, tau) * rod.friction;
-        (rod.friction != 0.0).then_some(if slid < 0.0 { Self::Base } else { Self::Tip })
+        let rate = rate(variation, rod, tau) * rod.friction;
+        (rod.friction != 0.0).then_some(if rate < 0.0 { Self::Base } else { Self::Tip })
     }
 
     /// The same at many points `(tau, load)` of `rod`, one trajectory each.
@@ -54,7 +54,7 @@ impl Sliding {
 /// The contact moves along the whisker by `ds`, and along the pole's rim by `-pole dpsi`, where `psi` is the whisker's
 /// tangent at the contact, seen by the pole. It slides by the difference, and rolls otherwise. Along `D = const`,
 /// with `J` the Jacobian of `(ln D, phi)`, `det J d(tau, load)/dphi = (-dlnD/dload, dlnD/dtau)`.
-pub(super) fn slid(variation: &FirstVariation, rod: &Rod, tau: f64) -> f64 {
+pub(super) fn rate(variation: &FirstVariation, rod: &Rod, tau: f64) -> f64 {
     let map = &variation.full.map;
     let along = DVec2::new(-map.by_load.x, map.by_tau.x);
     // The base turns by -dphi in front of the pole, and the contact's tangent by minus the base's angle from the base.
@@ -63,8 +63,8 @@ pub(super) fn slid(variation: &FirstVariation, rod: &Rod, tau: f64) -> f64 {
     rod.radius(tau) * along.x + rod.pole * turned
 }
 
-/// By how much it has slid: the arclength of the contact less what it has rolled, in whisker lengths.
-pub(super) fn place(rod: &Rod, node: &Node) -> f64 {
+/// How far along the whisker it has slid: the arclength of the contact less what it has rolled, in whisker lengths.
+pub(super) fn slid(rod: &Rod, node: &Node) -> f64 {
     rod.pole
         .mul_add(node.angle - node.push, arclength(rod, node.point.x))
 }
