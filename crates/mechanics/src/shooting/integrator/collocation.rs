@@ -156,6 +156,10 @@ fn step<T: Real, I: Intrinsic<T>, S: Sensitivity<T>>(
     for (levers, at) in at_nodes.iter_mut().zip(AT) {
         *levers = levers.plus(length * T::of(at), pull);
     }
+    let mut rest_turns = [I::turn(&course, end.along); NODES + 1];
+    for (turn, at) in rest_turns.iter_mut().zip(AT) {
+        *turn = I::turn(&course, end.along * T::of(at));
+    }
     let mut moments = [start; NODES];
     macro_rules! find_moments {
         () => {
@@ -167,15 +171,16 @@ fn step<T: Real, I: Intrinsic<T>, S: Sensitivity<T>>(
     }
     let mut pulls = at_nodes;
     let mut climbs = [([-s], sums); NODES];
-    // Tangent, bend and angles where the weights of the moments are these.
+    // Tangent, bend and angles at a node, or at the end.
     macro_rules! turned {
-        ($at:expr, $weights:expr) => {{
-            let mut turned: Levers<T, S> = moments[0].times($weights[0]);
+        ($i:expr) => {{
+            let weights = &weights[$i];
+            let mut turned: Levers<T, S> = moments[0].times(weights[0]);
             for j in 1..NODES {
-                turned = turned.plus($weights[j], moments[j]);
+                turned = turned.plus(weights[j], moments[j]);
             }
             let ([bend], changes) = turned;
-            let turn = match I::turn(&course, end.along * T::of($at)) {
+            let turn = match rest_turns[$i] {
                 Some(turn) => turn + bend,
                 None => bend,
             };
@@ -185,7 +190,7 @@ fn step<T: Real, I: Intrinsic<T>, S: Sensitivity<T>>(
     }
     // As if the pull changed evenly from the start to the end of the step.
     find_moments!();
-    let ([c_end, s_end], bent_end, angles_end) = turned!(1.0, weights[NODES]);
+    let ([c_end, s_end], bent_end, angles_end) = turned!(NODES);
     let (pull_end, _) = S::pull(c_end, s_end, bent_end, angles_end);
     let change: Levers<T, S> = ([-c_end], pull_end);
     let change = change.plus(T::of(-1.0), pull);
@@ -203,13 +208,13 @@ fn step<T: Real, I: Intrinsic<T>, S: Sensitivity<T>>(
         }
         find_moments!();
         for i in 0..NODES {
-            let ([c, s], bent, angles) = turned!(AT[i], weights[i]);
+            let ([c, s], bent, angles) = turned!(i);
             let (pull, climb) = S::pull(c, s, bent, angles);
             pulls[i] = ([-c], pull);
             climbs[i] = ([-s], climb);
         }
     }
-    let ([c, s], bent, angles) = turned!(1.0, weights[NODES]);
+    let ([c, s], bent, angles) = turned!(NODES);
     let mut levers = start;
     let mut sums = ([y], sums);
     for j in 0..NODES {
