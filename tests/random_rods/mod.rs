@@ -1,7 +1,7 @@
 //! Random whiskers of every set of effects, and states of them.
 #![allow(dead_code, reason = "each test program uses its own share")]
 
-use std::sync::Arc;
+use std::sync::{Arc, LazyLock};
 use whiskmap::rod::{Effects, RadiusProfile, Rod, arclength};
 use whiskmap::shooting::batch::InitialCondition;
 
@@ -42,6 +42,10 @@ pub const ROWS: [[f64; 2]; 7] = [
     [1.0, 0.08],
 ];
 
+/// Their profile, one for all: trajectories of one profile share blocks.
+static PROFILE: LazyLock<Arc<RadiusProfile>> =
+    LazyLock::new(|| Arc::new(RadiusProfile::new(&ROWS, 1.0)));
+
 /// A whisker of taper up to 0.99 and `A*` up to 0.8, or a spiral that bends as much, or of measured radii, on either
 /// side of a pole of radius up to 0.03 with friction up to 0.5, up to twice as stiff at the tip as at the base.
 pub fn rod(effects: Effects, random: &mut Random) -> Rod {
@@ -62,7 +66,7 @@ pub fn rod(effects: Effects, random: &mut Random) -> Rod {
     if effects.profile {
         return Rod {
             taper: 1.0 - ROWS[ROWS.len() - 1][1],
-            profile: Some(Arc::new(RadiusProfile::new(&ROWS, 1.0))),
+            profile: Some(Arc::clone(&PROFILE)),
             ..rod
         };
     }
