@@ -86,6 +86,11 @@ pub fn works(summary: &Summary, least: f64) -> Result<(), String> {
 /// What an engine answers to a call.
 pub type Answer = Result<Vec<CellDifference>, EngineError>;
 
+/// What is done with a call.
+pub trait Call: FnMut(usize, &mut Gpu, &dyn Fn(&mut Gpu) -> Answer) -> Answer + Send {}
+
+impl<F: FnMut(usize, &mut Gpu, &dyn Fn(&mut Gpu) -> Answer) -> Answer + Send> Call for F {}
+
 /// A GPU whose calls are looked after: `call` is told the number of each, from 0 on, and how the GPU answers it.
 pub struct Watched<F> {
     gpu: Gpu,
@@ -93,7 +98,7 @@ pub struct Watched<F> {
     pub calls: usize,
 }
 
-impl<F: FnMut(usize, &mut Gpu, &dyn Fn(&mut Gpu) -> Answer) -> Answer> Watched<F> {
+impl<F: Call> Watched<F> {
     pub const fn new(gpu: Gpu, call: F) -> Self {
         Self {
             gpu,
@@ -103,9 +108,7 @@ impl<F: FnMut(usize, &mut Gpu, &dyn Fn(&mut Gpu) -> Answer) -> Answer> Watched<F
     }
 }
 
-impl<F: FnMut(usize, &mut Gpu, &dyn Fn(&mut Gpu) -> Answer) -> Answer + Send> Engine
-    for Watched<F>
-{
+impl<F: Call> Engine for Watched<F> {
     fn describe(&self) -> Description {
         self.gpu.describe()
     }
@@ -132,7 +135,7 @@ pub fn sabotaged(
     gpu: Gpu,
     at: usize,
     mut sabotage: impl FnMut(&wgpu::Device) + Send,
-) -> Watched<impl FnMut(usize, &mut Gpu, &dyn Fn(&mut Gpu) -> Answer) -> Answer + Send> {
+) -> Watched<impl Call> {
     Watched::new(
         gpu,
         move |call, gpu: &mut Gpu, solve: &dyn Fn(&mut Gpu) -> Answer| {
