@@ -57,7 +57,7 @@ impl Resolution {
     }
 
     /// Steps for a trajectory from `tau` under `load` on `rod`; with a profile, the fewest for each piece, of which some
-    /// [take more](Self::steps_of_piece).
+    /// take more.
     ///
     /// What is needed grows with the root of the load above all, so that a whisker that hardly bends takes a third of the steps.
     /// The weights are those of 20,000 random trajectories that had to reach 1e-8, 1e-10 and 3e-12 (`benches/NOTES.md`).
