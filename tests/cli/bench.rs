@@ -28,8 +28,8 @@ fn errors_fall_from_rung_to_rung() {
             .collect();
         let is_cpu = engine["threads"].is_u64();
         let errors = numbers(&own, "/errors/angle_deg/worst");
-        // The last two rungs of the CPU's ladder are at the rounding; what a GPU makes of a cell has none.
-        let (rungs, falling, exact) = if is_cpu { (8, 6, 1e-9) } else { (1, 1, 1e-4) };
+        // The last two rungs of the CPU's ladder are at the rounding; what a GPU makes of a cell has none: measured 3e-6 in `f32`.
+        let (rungs, falling, exact) = if is_cpu { (8, 6, 1e-9) } else { (1, 1, 1e-5) };
         assert_eq!(errors.len(), rungs, "{engine}: {errors:?}");
         assert!(
             errors[..falling].is_sorted_by(|a, b| a > b),
