@@ -3,7 +3,8 @@
 use super::bytes::{Scalar, bytes, halves};
 use crate::integrate::{POWERS, Reference};
 use crate::rod::{Rest, Rod, arclength};
-use crate::shooting::{StateDerivative, StepStart, step_starts};
+use crate::shooting::StateDerivative;
+use crate::shooting::batch::{InitialCondition, StepStart, step_starts};
 use bytemuck::{Pod, Zeroable};
 use rayon::prelude::*;
 use std::mem::offset_of;
@@ -56,13 +57,14 @@ pub fn packed<T: Scalar>(
         .par_chunks(TOGETHER)
         .zip(steps.par_chunks(TOGETHER));
     let parts = parts.map(|(references, steps)| {
-        let mut starts = Vec::new();
-        let trips = references.iter().zip(steps).map(|(reference, &steps)| {
-            let rod = &rods[reference.rod as usize];
-            let Reference { tau, load, .. } = *reference;
-            let bent = step_starts(rod, tau, load, steps, &mut starts);
-            Trip { steps, bent }
+        let conditions = references.iter().map(|reference| InitialCondition {
+            rod: &rods[reference.rod as usize],
+            tau: reference.tau,
+            load: reference.load,
         });
+        let (starts, bent) = step_starts(&conditions.collect::<Vec<_>>(), steps);
+        let trips = steps.iter().zip(bent);
+        let trips = trips.map(|(&steps, bent)| Trip { steps, bent });
         let trips: Vec<Trip> = trips.collect();
         (trips, bytes(starts.iter().map(GpuStart::<T>::from)))
     });

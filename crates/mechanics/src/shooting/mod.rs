@@ -19,7 +19,6 @@ mod resolution;
 mod rhs;
 pub mod sensitivity;
 pub mod shape;
-mod steps;
 
 pub use integrator::{Integrator, Nystrom8, Rk4, STAGES, Scales, Stage, collocate, integrate};
 pub use intrinsic::{
@@ -32,4 +31,3 @@ pub use material::{Graded, Liouville, Material, Measured, Uniform};
 pub use reading::{Reader, Reading};
 pub use resolution::Resolution;
 pub use rhs::{Carried, Planar, RodSystem, Section, Sensitivity, Shape, State};
-pub use steps::{StepStart, step_starts};

@@ -12,10 +12,12 @@ mod measured;
 mod output_set;
 mod padded;
 mod pole;
+mod steps;
 mod stream;
 
 pub use flops::flops_of_nystrom8;
 pub use output_set::OutputSet;
+pub use steps::{StepStart, step_starts};
 
 use super::Resolution;
 use crate::numerics::Unit;
