@@ -96,3 +96,24 @@ fn what_becomes_of_a_cell_does_not_depend_on_threads() {
         assert_identical(&panels, &found);
     }
 }
+
+/// An engine that forgets a cell is not believed, and no cell is lost.
+#[test]
+fn answers_that_are_too_few_are_a_failure() {
+    let (scene, plan) = in_strips();
+    let Some(gpu) = open(Precision::F32) else {
+        return;
+    };
+    let forget = |_, gpu: &mut Gpu, solve: &dyn Fn(&mut Gpu) -> Answer| {
+        let mut cells = solve(gpu)?;
+        cells.pop();
+        Ok(cells)
+    };
+    let mut engine = Watched::new(gpu, forget);
+    let (summary, panels) = compute_as(&scene, &plan, Some(&mut engine));
+    let failure = summary.engine_failure.unwrap().to_string();
+    assert!(failure.contains("answers for"), "{failure}");
+    assert_eq!(engine.calls, 1);
+    assert_eq!(summary.engine_cells.solved, 0);
+    assert_identical(&compute_as(&scene, &plan, None).1, &panels);
+}

@@ -202,7 +202,7 @@ fn beyond_a_row_that_lost_a_piece_nothing_is_claimed() {
     let row = RowBoundary::new(true, &[crossing(Edge::Fold, 0.5), Crossing::unknown()]);
     assert_eq!(row.judge(0.3, Status::Solved).0, Regime::Contact);
     assert_eq!(row.detachment().map(|span| span.to), Some(0.5));
-    for status in [Status::Outside, Status::BeyondFold] {
+    for status in [Status::Outside, Status::BeyondFold, Status::Solved] {
         assert_eq!(
             row.judge(0.6, status),
             (Regime::Unresolved, Status::NoBoundary)

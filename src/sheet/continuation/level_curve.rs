@@ -2,8 +2,8 @@
 //!
 //! Neither the load nor the push angle can be stepped: the load peaks, the push angle turns at the fold. In the plane of contact and
 //! load the curve is the level set of one smooth function, whose gradient every trajectory brings along. So a step of pseudo-arclength
-//! continuation has its predictor along the tangent, bent as the curve was before, its corrector along the gradient. Lengths are measured where people look at the
-//! curve: in push angle, contact angle (both in radians) and arclength of the contact (in whisker lengths).
+//! continuation has its predictor along the tangent, bent as the curve was before, its corrector along the gradient. Lengths are measured
+//! where people look at the curve: in push angle, contact angle (both in radians) and arclength of the contact (in whisker lengths).
 
 use crate::numerics::{Root, illinois, nearest_turn};
 use crate::rod::{Rod, Side, arclength};
@@ -69,16 +69,10 @@ impl LevelCurve {
         }
     }
 
-    /// `(tau, load)` at first touch.
-    #[must_use]
-    pub fn touch_point(&self) -> DVec2 {
-        DVec2::new(self.rod.tau(self.row.contact).min(self.rod.tau_tip()), 0.0)
-    }
-
     /// First touch, from where pushes are counted.
     #[must_use]
     pub fn touch(&self) -> Option<Node> {
-        let at_touch = self.touch_point();
+        let at_touch = DVec2::new(self.rod.tau(self.row.contact).min(self.rod.tau_tip()), 0.0);
         let full = *shoot(&[(self, at_touch)]).first()?;
         Some(Node {
             push: 0.0,
