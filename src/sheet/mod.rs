@@ -39,7 +39,7 @@ use rayon::prelude::*;
 const UNLOADED: f64 = 1e-6;
 
 /// Rows that are walked together: some walks end before others, and lanes should be full.
-pub const TOGETHER: usize = 32;
+pub const TOGETHER: usize = 128;
 
 /// The sheet of one whisker on one side, with the rows of a map.
 #[derive(Clone, Debug)]

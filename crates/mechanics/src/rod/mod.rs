@@ -1,5 +1,6 @@
 //! What a whisker is: radius, shape at rest, stiffness, contact, effects, units. Plain `f64`, lengths in whisker lengths.
 
+mod demands;
 mod effects;
 mod radius;
 mod rest;
@@ -8,8 +9,10 @@ mod rest;
     reason = "the file of the type that the room is named after"
 )]
 mod rod;
+
 mod units;
 
+pub use demands::{Demand, Demands};
 pub use effects::Effects;
 pub use radius::{Piece, RadiusProfile};
 pub use rest::Rest;

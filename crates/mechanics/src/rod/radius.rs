@@ -4,6 +4,7 @@
 //! (1984): continuous with the first derivative. A trajectory is integrated piece by piece, so that no step crosses a
 //! row, where the second derivative jumps, and a Runge-Kutta method keeps its order.
 
+use crate::rod::Demands;
 use crate::rod::rod::{arclength_at, pointed, tau_at};
 
 /// A cubic piece of a profile.
@@ -42,8 +43,10 @@ pub struct RadiusProfile {
     pub pieces: Vec<Piece>,
     /// Per piece: how much `ln radius` changes over it at most, were it as steep along `tau` as where it is steepest.
     pub changes: Vec<f64>,
-    /// Per piece: the length of the longest one from the base up to it, in whisker lengths.
-    pub longest: Vec<f64>,
+    /// Per piece: its length, in whisker lengths.
+    pub widths: Vec<f64>,
+    /// What they ask of an integrator.
+    pub demands: Demands,
     /// Of the cone from the first row to the last, continued.
     taper: f64,
     /// Per piece: into how many parts its quadrature divides it, along `tau`.
@@ -98,7 +101,6 @@ impl RadiusProfile {
             cubic: [last, -taper, 0.0, 0.0],
         });
         widths.push((whole - end).max(0.0));
-        let mut longest = Vec::new();
         let (mut changes, mut parts) = (Vec::new(), Vec::new());
         for (piece, width) in pieces.iter().zip(&widths) {
             let length = tau_at(taper, piece.from + width) - piece.tau;
@@ -108,13 +110,13 @@ impl RadiusProfile {
                 .fold(0.0, f64::max);
             // A step is along the cone that the profile lies about, too.
             changes.push(length * steepest.max(taper));
-            longest.push(width.max(longest.last().copied().unwrap_or_default()));
             parts.push((length * steepest).ceil().max(1.0) as u32);
         }
         let mut profile = Self {
             pieces,
             changes,
-            longest,
+            widths,
+            demands: Demands::default(),
             taper,
             parts,
             compliances: vec![[0.0; 2]],
@@ -123,6 +125,7 @@ impl RadiusProfile {
             let next = profile.up_to(k - 1, profile.pieces[k].from);
             profile.compliances.push(next);
         }
+        profile.demands = Demands::new(&profile, taper.recip());
         profile
     }
 
@@ -135,19 +138,21 @@ impl RadiusProfile {
         s * flat - lever
     }
 
-    /// The largest part that a piece has in the compliance at `s`.
-    #[must_use]
-    pub fn largest_share(&self, s: f64) -> f64 {
-        let k = self.piece(s);
-        let turns = (0..=k).map(|j| {
-            let [flat, lever] = if j == k {
-                self.up_to(k, s)
+    /// The part that each piece from the base on has in the compliance at `s`.
+    pub(super) fn shares_at(&self, s: f64) -> impl Iterator<Item = f64> {
+        let last = self.piece(s);
+        let [flat, lever] = self.up_to(last, s);
+        let whole = s * flat - lever;
+        let turn = move |k: usize| {
+            let from = self.compliances[k];
+            let to = if k == last {
+                [flat, lever]
             } else {
-                self.compliances[j + 1]
+                self.compliances[k + 1]
             };
-            s * (flat - self.compliances[j][0]) - (lever - self.compliances[j][1])
-        });
-        turns.fold(0.0, f64::max) / self.compliance(s)
+            s * (to[0] - from[0]) - (to[1] - from[1])
+        };
+        (0..=last).map(move |k| turn(k) / whole)
     }
 
     /// The integrals from the base to `s`, which lies on piece `k`: by `tau`, along which the radius changes evenly.

@@ -29,5 +29,5 @@ pub use map::{
 };
 pub use material::{Graded, Liouville, Material, Measured, Uniform};
 pub use reading::{Reader, Reading};
-pub use resolution::Resolution;
+pub use resolution::{PieceSteps, Resolution};
 pub use rhs::{Carried, Planar, RodSystem, Section, Sensitivity, Shape, State};

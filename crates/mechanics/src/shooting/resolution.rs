@@ -1,6 +1,6 @@
 //! How many steps a trajectory takes.
 
-use crate::rod::{Rod, arclength};
+use crate::rod::{Demands, RadiusProfile, Rod, arclength};
 
 /// How finely trajectories are integrated: `least` steps under about the load of a cylinder's fold, and no step along which the
 /// radius of a cone changes by more than a factor `exp(longest)`, the modulus by more than `exp(2 longest)`, or the resting whisker
@@ -56,8 +56,8 @@ impl Resolution {
         }
     }
 
-    /// Steps for a trajectory from `tau` under `load` on `rod`; with a profile, the fewest for each piece, of which some
-    /// take more.
+    /// Steps for a trajectory from `tau` under `load` on `rod`; with a profile, those of a piece that did all the bending
+    /// ([`PieceSteps`]).
     ///
     /// What is needed grows with the root of the load above all, so that a whisker that hardly bends takes a third of the steps.
     /// The weights are those of 20,000 random trajectories that had to reach 1e-8, 1e-10 and 3e-12 (`benches/NOTES.md`).
@@ -73,28 +73,30 @@ impl Resolution {
         if rod.is_uniform_cone() {
             return self.steps_on_uniform(rod.taper, bend, [tau, load, s]);
         }
-        let modulus = rod.gradient.abs() / (1.0 + rod.gradient).min(1.0);
         let mut bending = load.abs() * s * s;
         if rod.gradient < 0.0 {
             bending /= rod.modulus(s);
         }
-        if let Some(profile) = &rod.profile {
+        if rod.profile.is_some() {
             bending *= rod.softness(tau);
             let weight = weight(bending, bend * s) + 0.17;
-            let share = CONCENTRATED * profile.largest_share(s);
-            let fastest = (1.6 * bend).max(0.5 * modulus);
-            let steps = self.rounded(share * weight, fastest * profile.longest[profile.piece(s)]);
-            return steps.max(self.fewest);
+            return self.rounded(CONCENTRATED * weight, 0.0);
         }
-        let fastest = fastest(rod.taper, bend).max(0.5 * modulus);
+        let fastest = fastest(rod.taper, bend).max(0.5 * change_of_modulus(rod));
         let weight = weight(bending, bend * s) + weight_of_taper(rod.taper * tau);
         self.rounded(weight, fastest * tau)
     }
 
-    /// How many steps a piece of a profile takes along which `ln radius` changes by `change`, whatever bends it.
+    /// What the pieces of the profile of `rod` need on the way from a contact at arclength `s`.
     #[must_use]
-    pub(super) fn steps_of_piece(&self, change: f64) -> u32 {
-        ((ROUGH * f64::from(self.least) * change).ceil() as u32).max(1)
+    pub(super) fn of_pieces(&self, rod: &Rod, s: f64) -> PieceSteps {
+        let fastest = (1.6 * rod.sharpest_bend()).max(0.5 * change_of_modulus(rod));
+        PieceSteps {
+            least: self.least,
+            fewest: self.fewest,
+            at_rest: (fastest / self.longest).ceil() as u32,
+            reach: Demands::reach(s),
+        }
     }
 
     /// Those on a rod of one modulus without a profile, from `tau`, load and arclength: without a branch, so that a compiler
@@ -126,6 +128,35 @@ impl Resolution {
     }
 }
 
+/// What the pieces of a profile need, whatever the load.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub struct PieceSteps {
+    /// See [`Resolution`].
+    least: u32,
+    fewest: u32,
+    /// Steps of a piece as long as the whisker, for its shape at rest and its modulus.
+    at_rest: u32,
+    /// Of the contact, see [`Demands`].
+    reach: u32,
+}
+
+impl PieceSteps {
+    /// How many steps the piece `k` of `profile` takes, where one that did all the bending would take so many `steps`: by its share
+    /// in the bending, its length, and how its radius changes.
+    pub(super) fn of(&self, profile: &RadiusProfile, k: usize, steps: u32) -> u32 {
+        let demand = profile.demands.of(self.reach, k);
+        let bent = f64::from(steps) * f64::from(demand.bending);
+        let at_rest = f64::from(self.at_rest) * profile.widths[k];
+        let rough = ROUGH * f64::from(self.least) * f64::from(demand.roughness);
+        (bent.max(at_rest).max(rough).ceil() as u32).max(self.fewest)
+    }
+}
+
+/// Of its logarithm, over the whisker.
+fn change_of_modulus(rod: &Rod) -> f64 {
+    rod.gradient.abs() / (1.0 + rod.gradient).min(1.0)
+}
+
 /// Of the load and of the rest shape, which turns by `bend` between base and contact.
 #[inline(always)]
 fn weight(bending: f64, bend: f64) -> f64 {
@@ -150,11 +181,12 @@ fn fastest(taper: f64, bend: f64) -> f64 {
     taper.max(1.6 * bend)
 }
 
-/// Under more than a small load the bend gathers in the softest piece.
-const CONCENTRATED: f64 = 2.25;
+/// How many times as many steps collocation takes along a piece that does all the bending as Nystrom's method along a cone: it is of a
+/// lower order (`benches/NOTES.md`).
+const CONCENTRATED: f64 = 2.0;
 
-/// Steps that a change of `ln radius` by 1 takes, in parts of `least`.
-const ROUGH: f64 = 0.25;
+/// Steps that a roughness of 1 takes, in parts of `least`.
+const ROUGH: f64 = 1.2;
 
 /// Bounds the work on a trajectory that a lost Newton step has sent far away.
 const MOST: f64 = 8192.0;

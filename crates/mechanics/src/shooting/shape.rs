@@ -70,7 +70,7 @@ struct Way<'a> {
     force: f64,
     /// The whisker's tangent at the contact.
     tangent: DVec2,
-    /// Steps that the whole way would take, or a piece of a profile at least.
+    /// Steps that the whole way would take, or a piece of a profile that did all the bending.
     steps: u32,
     resolution: Resolution,
 }
@@ -119,12 +119,12 @@ impl Way<'_> {
         };
         let mut ahead = self.tau;
         let last = self.rod.piece(self.contact);
-        let pieces = profile.pieces[..=last].iter().zip(&profile.changes);
-        for (piece, change) in pieces.rev() {
+        let needed = self.resolution.of_pieces(self.rod, self.contact);
+        for (k, piece) in profile.pieces[..=last].iter().enumerate().rev() {
             let (whole, end) = (ahead - piece.tau, piece.tau.max(to));
             ahead = piece.tau;
             if end < from {
-                let steps = self.resolution.steps_of_piece(*change).max(self.steps);
+                let steps = needed.of(profile, k, self.steps);
                 let (steps, h) = share(steps, whole, from - end);
                 let material = Measured {
                     from: piece.from,

@@ -1,6 +1,6 @@
 //! Measured radii.
 
-use whiskmap_mechanics::rod::RadiusProfile;
+use whiskmap_mechanics::rod::{Demands, RadiusProfile};
 
 const ROWS: [[f64; 2]; 6] = [
     [0.0, 1.0],
@@ -52,12 +52,8 @@ fn the_way_from_the_last_row_to_the_tip_counts() {
         let beyond = beyond(stretch);
         let change = 0.6 * stretch * beyond;
         assert!((profile.changes[2] - change).abs() < 1e-12, "{stretch}");
-        let longest = 0.5 / stretch;
         let tail = 1.0 - 1.0 / stretch;
-        assert!(
-            (profile.longest[2] - longest.max(tail)).abs() < 1e-12,
-            "{stretch}"
-        );
+        assert!((profile.widths[2] - tail).abs() < 1e-12, "{stretch}");
     }
 }
 
@@ -78,6 +74,30 @@ fn a_cone_is_as_compliant_as_by_integration() {
             profile.compliance(s) / exact
         );
     }
-    assert!((profile.largest_share(0.04) - 1.0).abs() < 1e-12);
-    assert!((0.1..0.2).contains(&profile.largest_share(0.5)));
+}
+
+/// A straight cylinder in four pieces of one length: what each adds to the deflection of a contact, by hand.
+#[test]
+fn pieces_share_the_bending() {
+    let rows = [0.0, 0.25, 0.5, 0.75, 1.0].map(|s| [s, 1.0]);
+    let profile = RadiusProfile::new(&rows, 1.0);
+    for s in [0.99_f64, 0.6, 0.3, 0.2, 1e-3, 1e-6] {
+        for k in 0..4 {
+            let from = 0.25 * k as f64;
+            let to = s.min(from + 0.25).max(from);
+            // Under a load the end of a lever turns by the square of its length.
+            let share = ((s - from).max(0.0).powi(2) - (s - to).powi(2)) / (s * s);
+            let exact = (share * (0.25 / s).min(1.0)).sqrt().max(0.5 * share);
+            let found = f64::from(profile.demands.of(Demands::reach(s), k).bending);
+            // Other contacts of the reach have larger ones.
+            assert!(
+                (exact - 1e-6..exact + 0.25).contains(&found),
+                "{s}, {k}: {exact}, {found}"
+            );
+        }
+    }
+    // All of it is bent, and nothing is rough.
+    let sum: f32 = (0..4).map(|k| profile.demands.of(0, k).bending).sum();
+    assert!((1.0..1.2).contains(&sum), "{sum}");
+    assert!((0..4).all(|k| profile.demands.of(0, k).roughness == 0.0));
 }

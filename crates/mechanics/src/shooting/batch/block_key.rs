@@ -1,7 +1,8 @@
 //! Which trajectories may share a block.
 
 use super::{InitialCondition, Method};
-use crate::rod::Effects;
+use crate::rod::{Effects, arclength};
+use crate::shooting::PieceSteps;
 use std::sync::Arc;
 
 /// What the trajectories of a block have in common: lanes step together.
@@ -11,10 +12,10 @@ pub struct BlockKey {
     pub effects: Effects,
     /// The address of the profile; 0 without one.
     profile: usize,
-    /// Steps of a trajectory, or the fewest per piece of the profile.
+    /// What the pieces of the profile need; nothing without one.
+    pub pieces: PieceSteps,
+    /// Steps of a trajectory, or those of a piece that did all the bending.
     pub steps: u32,
-    /// That of the resolution, which tells how many more the pieces take.
-    pub least: u32,
 }
 
 impl BlockKey {
@@ -26,6 +27,7 @@ impl BlockKey {
         steps: u32,
     ) -> Self {
         let profile = rod.profile.as_ref();
+        let of_pieces = |_| method.resolution.of_pieces(rod, arclength(rod, *tau));
         Self {
             effects: Effects {
                 // Pieces are integrated in a way of their own.
@@ -33,14 +35,14 @@ impl BlockKey {
                 ..method.effects.and(rod).reaching(rod.taper * tau)
             },
             profile: profile.map_or(0, |profile| Arc::as_ptr(profile).addr()),
+            pieces: profile.map(of_pieces).unwrap_or_default(),
             steps,
-            least: method.resolution.least,
         }
     }
 
     /// Whether the two can share a padded block, which takes the steps of the one that needs more.
     pub fn may_pad(&self, other: &Self) -> bool {
-        let but_steps = |key: &Self| (key.effects, key.profile, key.least);
+        let but_steps = |key: &Self| (key.effects, key.profile, key.pieces);
         but_steps(self) == but_steps(other)
     }
 }

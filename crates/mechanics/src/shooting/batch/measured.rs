@@ -7,8 +7,8 @@ use super::gather::{Conditions, Contacts, GatherMaterial, lanes};
 use crate::numerics::{Lanes, Vector, WIDTH};
 use crate::rod::Piece;
 use crate::shooting::{
-    Integrator, Intrinsic, Measured, Nystrom8, Resolution, RodSystem, Scales, Section, Sensitivity,
-    State, collocate,
+    Integrator, Intrinsic, Measured, Nystrom8, RodSystem, Scales, Section, Sensitivity, State,
+    collocate,
 };
 
 /// What is taken along a piece, lane by lane.
@@ -66,7 +66,6 @@ impl<T: Lanes> GatherMaterial<T> for Measured<T> {
             return start;
         };
         let gradient = lanes(contacts.conditions, |condition| condition.rod.gradient);
-        let resolution = Resolution::of(contacts.key.least);
         let mut last = 0;
         for s in &s[..T::LANES] {
             last = last.max(profile.piece(*s));
@@ -75,9 +74,7 @@ impl<T: Lanes> GatherMaterial<T> for Measured<T> {
         for k in (0..=last).rev() {
             let part = Part::new(&profile.pieces, k, &tau, &s);
             let piece = &profile.pieces[k];
-            let steps = resolution
-                .steps_of_piece(profile.changes[k])
-                .max(contacts.key.steps);
+            let steps = contacts.key.pieces.of(profile, k, contacts.key.steps);
             let from = T::pack(part.from);
             let h = (T::pack(part.tau) - T::of(piece.tau)) / T::of(f64::from(steps));
             let rho = one - contacts.taper * from;
