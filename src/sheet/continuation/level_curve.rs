@@ -7,14 +7,11 @@
 
 use crate::numerics::{Root, illinois, nearest_turn};
 use crate::rod::{Rod, Side, arclength};
-use crate::sheet::continuation::NODE_MISS;
+use crate::sheet::continuation::corrector::{Corrector, correct, shoot};
 use crate::sheet::row::{Crossing, Row};
-use crate::shooting::batch::{Batch, InitialCondition, Method};
-use crate::shooting::{FirstVariation, FullState};
+use crate::shooting::FullState;
+use crate::shooting::batch::Method;
 use glam::{DVec2, DVec3};
-
-/// Most iterations of the corrector.
-const CORRECTOR_ITERATIONS: usize = 12;
 
 /// `ln D` at which a point lies on the curve, to rounding.
 pub const ON_CURVE: f64 = 1e-14;
@@ -73,7 +70,9 @@ impl LevelCurve {
     #[must_use]
     pub fn touch(&self) -> Option<Node> {
         let at_touch = DVec2::new(self.rod.tau(self.row.contact).min(self.rod.tau_tip()), 0.0);
-        let full = *shoot(&[(self, at_touch)]).first()?;
+        let full = shoot(&[Corrector::new(self, at_touch, ON_CURVE)])
+            .first()?
+            .full;
         Some(Node {
             push: 0.0,
             ..self.node(at_touch, &full, 0.0, 0.0)
@@ -141,6 +140,11 @@ impl LevelCurve {
         -heading * self.side.sign() * DVec2::new(gradient.y, -gradient.x).normalize()
     }
 
+    /// How fast contact and load change there, a length of 1 in parts of the scale at a time.
+    pub(super) fn velocity(&self, node: &Node) -> DVec2 {
+        self.scale(node.point) * self.direction(node)
+    }
+
     /// The next node, where the corrector has found the curve again; `None` if that is not the way `along`.
     pub(super) fn next(
         &self,
@@ -153,11 +157,11 @@ impl LevelCurve {
         (turned.dot(along) > 0.5 * turned.length()).then_some(node)
     }
 
-    /// The corrector: brings every point onto the curve, to `tolerance` in `ln D` or to rounding; `None` where that fails.
+    /// Brings every point onto the curve, to `tolerance` in `ln D` or to rounding; `None` where that fails.
     #[must_use]
     pub fn correct(&self, points: &[DVec2], tolerance: f64) -> Vec<Option<(DVec2, FullState)>> {
-        let points: Vec<(&Self, DVec2)> = points.iter().map(|point| (self, *point)).collect();
-        correct(&points, |_| tolerance)
+        let corrector = |point: &DVec2| Corrector::new(self, *point, tolerance);
+        correct(points.iter().map(corrector).collect())
     }
 
     /// How much `tau` and load can change before the state changes by about as much as it is.
@@ -178,57 +182,6 @@ impl LevelCurve {
     pub fn length(&self, from: &Node, to: &Node) -> f64 {
         self.place(from).distance(self.place(to))
     }
-}
-
-/// The corrector for several curves at once: each point is brought onto its own, to its `tolerance`. No answer depends on the others.
-pub(super) fn correct(
-    points: &[(&LevelCurve, DVec2)],
-    tolerance: impl Fn(usize) -> f64,
-) -> Vec<Option<(DVec2, FullState)>> {
-    let mut iterates = points.to_vec();
-    let mut corrected = vec![None; points.len()];
-    let mut misses = vec![f64::INFINITY; points.len()];
-    let mut open: Vec<usize> = (0..points.len()).collect();
-    for _ in 0..CORRECTOR_ITERATIONS {
-        let at: Vec<(&LevelCurve, DVec2)> = open.iter().map(|&i| iterates[i]).collect();
-        let mut fulls = shoot(&at).into_iter();
-        open.retain(|&i| {
-            let Some(full) = fulls.next() else {
-                return false;
-            };
-            let (level, point) = &mut iterates[i];
-            let miss = (level.row.pole_distance / full.map.pole.length()).ln();
-            let stuck =
-                miss.abs() < (1e3 * tolerance(i)).min(NODE_MISS) && miss.abs() > 0.5 * misses[i];
-            if miss.abs() <= tolerance(i) || stuck {
-                corrected[i] = Some((*point, full));
-                return false;
-            }
-            misses[i] = miss.abs();
-            let scale = level.scale(*point);
-            let gradient = scale * DVec2::new(full.map.by_tau.x, full.map.by_load.x);
-            *point += scale * gradient * (miss / gradient.length_squared());
-            point.is_finite() && point.x > 0.0
-        });
-    }
-    corrected
-}
-
-/// The states at `points`, of curves that all have the method of the first.
-fn shoot(points: &[(&LevelCurve, DVec2)]) -> Vec<FullState> {
-    let Some((first, _)) = points.first() else {
-        return Vec::new();
-    };
-    let conditions: Vec<InitialCondition> = points
-        .iter()
-        .map(|(level, point)| InitialCondition {
-            rod: &level.rod,
-            tau: point.x,
-            load: point.y,
-        })
-        .collect();
-    let shot = Batch::new(first.method).shoot::<FirstVariation>(&conditions);
-    shot.iter().map(|variation| variation.full).collect()
 }
 
 /// `d ln D/d(tau, load)`.

@@ -1,6 +1,7 @@
 //! Where level curves meet the edges of the sheet, between two of their nodes.
 
-use crate::sheet::continuation::level_curve::{LevelCurve, Node, ON_CURVE, correct};
+use crate::sheet::continuation::corrector::{Corrector, correct};
+use crate::sheet::continuation::level_curve::{LevelCurve, Node, ON_CURVE};
 use crate::sheet::edges::edge_newton::{EdgeProblem, edge_newton_unpadded};
 use crate::sheet::row::Edge;
 use glam::DVec2;
@@ -35,6 +36,11 @@ impl<'a> Chord<'a> {
             to,
             is_stable,
         }
+    }
+
+    /// Whether there may be an edge.
+    pub fn may_meet(&self) -> bool {
+        self.crossed().iter().any(Option::is_some)
     }
 
     /// The edges of which it has crossed the line.
@@ -80,11 +86,8 @@ impl<'a> Chord<'a> {
 }
 
 /// What each of the `chords` meets first.
-pub fn meet(chords: &[Option<Chord>]) -> Vec<Meeting> {
-    let crossed: Vec<_> = chords
-        .iter()
-        .map(|chord| chord.as_ref().map_or([None; 2], Chord::crossed))
-        .collect();
+pub fn meet(chords: &[Chord]) -> Vec<Meeting> {
+    let crossed: Vec<_> = chords.iter().map(Chord::crossed).collect();
     let looked_for: Vec<(&Chord, Edge)> = crossed.iter().flatten().flatten().copied().collect();
     let mut found = edges(&looked_for).into_iter();
     crossed
@@ -117,16 +120,18 @@ fn edges(chords: &[(&Chord, Edge)]) -> Vec<Option<Node>> {
         .map(|(chord, edge)| chord.problem(*edge))
         .collect();
     let iterates = edge_newton_unpadded(first.level.method, &problems);
-    let points: Vec<(&LevelCurve, DVec2)> = chords
+    // At a fold rounding can leave Newton's method a little beside the curve; at the tip it is on it.
+    let correctors = chords
         .iter()
         .zip(&iterates)
-        .map(|((chord, _), iterate)| (chord.level, iterate.point))
-        .collect();
-    // At a fold rounding can leave Newton's method a little beside the curve; at the tip it is on it.
-    let corrected = correct(&points, |i| match chords[i].1 {
-        Edge::Fold => ON_CURVE,
-        Edge::Tip => TIP_MISS,
-    });
+        .map(|((chord, edge), iterate)| {
+            let tolerance = match edge {
+                Edge::Fold => ON_CURVE,
+                Edge::Tip => TIP_MISS,
+            };
+            Corrector::new(chord.level, iterate.point, tolerance)
+        });
+    let corrected = correct(correctors.collect());
     chords
         .iter()
         .zip(iterates.iter().zip(corrected))

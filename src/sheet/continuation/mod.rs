@@ -1,13 +1,16 @@
 //! Continuation along `D = const`: the states in front of one pole, from first touch through the fold to the end of the branch.
 
+mod corrector;
 pub mod level_curve;
 mod meeting;
 pub mod pieces;
 pub mod walked;
 
-use crate::sheet::continuation::level_curve::{LevelCurve, Node, ON_CURVE, correct};
+use crate::sheet::continuation::corrector::{Correction, Corrector, shoot};
+use crate::sheet::continuation::level_curve::{LevelCurve, Node, ON_CURVE};
 use crate::sheet::continuation::meeting::{Chord, Meeting, meet};
 use crate::sheet::row::Edge;
+use crate::shooting::FullState;
 use glam::DVec2;
 
 /// Nodes are about this far apart.
@@ -63,40 +66,51 @@ pub fn continuations<'a>(
     miss: f64,
 ) -> Vec<Option<Continuation>> {
     let mut ended = vec![None; starts.len()];
-    let walk = |(index, (level, start)): (usize, (_, Node))| Walk {
-        index,
-        level,
-        nodes: vec![start],
-        fold: None,
-        step: FIRST_ARC_STEP,
-        last_step: None,
-    };
-    let mut walks: Vec<Walk> = starts.into_iter().enumerate().map(walk).collect();
-    while !walks.is_empty() {
-        let nexts = next_nodes(&walks, miss);
-        let chord = |(walk, next): (&Walk<'a>, &Option<Node>)| Some(walk.chord((*next)?));
-        let chords: Vec<Option<Chord>> = walks.iter().zip(&nexts).map(chord).collect();
-        let mut meetings = meet(&chords).into_iter();
-        let mut nexts = nexts.into_iter();
-        walks.retain_mut(|walk| {
-            let next = nexts.next().flatten();
-            match (next, meetings.next()) {
-                (Some(next), Some(Meeting::None)) => walk.go_on(next),
-                (Some(_), Some(Meeting::Edge(edge, node))) => {
+    let walk = |(index, (level, start))| Walk::new(index, level, start, miss);
+    let mut open: Vec<Walk> = starts.into_iter().enumerate().map(walk).collect();
+    while !open.is_empty() {
+        // They wait for each other there, so that what finds the edges shares batches, too.
+        let mut at_edges: Vec<(Walk, Node)> = Vec::new();
+        while !open.is_empty() {
+            let shots = shoot(open.iter().map(|walk| &walk.corrector));
+            for (mut walk, shot) in std::mem::take(&mut open).into_iter().zip(shots) {
+                let next = match walk.corrector.advance(&shot) {
+                    Correction::Open => {
+                        open.push(walk);
+                        continue;
+                    }
+                    Correction::Done(point, full) => walk.next(point, full),
+                    Correction::Lost => None,
+                };
+                match next {
+                    Some(next) if walk.chord(next).may_meet() => at_edges.push((walk, next)),
+                    Some(next) => open.extend(walk.go_on(next)),
+                    None => open.extend(walk.shorten()),
+                }
+            }
+        }
+        let chords: Vec<Chord> = at_edges
+            .iter()
+            .map(|(walk, next)| walk.chord(*next))
+            .collect();
+        for ((mut walk, next), meeting) in at_edges.into_iter().zip(meet(&chords)) {
+            match meeting {
+                Meeting::None => open.extend(walk.go_on(next)),
+                Meeting::Unclear => open.extend(walk.shorten()),
+                Meeting::Edge(edge, node) => {
                     let is_first_fold = walk.end_at(edge, node);
-                    if !(is_first_fold && past_fold) {
+                    if is_first_fold && past_fold {
+                        open.extend(walk.predict());
+                    } else {
                         ended[walk.index] = Some(Continuation {
-                            nodes: std::mem::take(&mut walk.nodes),
+                            nodes: walk.nodes,
                             fold: walk.fold,
                             end: edge,
                         });
-                        return false;
                     }
                 }
-                _ => walk.step *= 0.5,
             }
-            walk.nodes.len() < MOST_NODES && walk.step > SHORTEST_ARC_STEP
-        });
+        }
     }
     ended
 }
@@ -109,26 +123,13 @@ struct Walk<'a> {
     nodes: Vec<Node>,
     fold: Option<usize>,
     step: f64,
-    /// The step to the last node from the one before it; `None` where that is not the way on.
-    last_step: Option<f64>,
-}
-
-/// The next node of each of the `walks`, where it was found and fits.
-fn next_nodes(walks: &[Walk], miss: f64) -> Vec<Option<Node>> {
-    let predictions: Vec<(DVec2, DVec2)> = walks.iter().map(Walk::predicted).collect();
-    let points: Vec<(&LevelCurve, DVec2)> = walks
-        .iter()
-        .zip(&predictions)
-        .map(|(walk, (point, _))| (walk.level, *point))
-        .collect();
-    correct(&points, |_| miss)
-        .into_iter()
-        .zip(walks.iter().zip(&predictions))
-        .map(|(corrected, (walk, (_, along)))| {
-            let next = walk.level.next(walk.last(), *along, corrected?)?;
-            walk.fits(&next).then_some(next)
-        })
-        .collect()
+    /// The steps from node to node, up to the last one; none across an edge.
+    steps: Vec<f64>,
+    /// What a node may miss.
+    miss: f64,
+    /// The direction at the last node in parts of the scale, and the next node on its way.
+    along: DVec2,
+    corrector: Corrector<'a>,
 }
 
 impl<'a> Walk<'a> {
@@ -136,21 +137,69 @@ impl<'a> Walk<'a> {
         &self.nodes[self.nodes.len() - 1]
     }
 
+    /// Begins at `start`.
+    fn new(index: usize, level: &'a LevelCurve, start: Node, miss: f64) -> Self {
+        let mut walk = Self {
+            index,
+            level,
+            nodes: vec![start],
+            fold: None,
+            step: FIRST_ARC_STEP,
+            steps: Vec::new(),
+            miss,
+            along: DVec2::ZERO,
+            corrector: Corrector::new(level, start.point, miss),
+        };
+        walk.set_out();
+        walk
+    }
+
+    /// Sets out for the next node, unless it is lost.
+    fn predict(mut self) -> Option<Self> {
+        self.set_out();
+        (self.nodes.len() < MOST_NODES && self.step > SHORTEST_ARC_STEP).then_some(self)
+    }
+
+    /// The same with a shorter step.
+    fn shorten(mut self) -> Option<Self> {
+        self.step *= 0.5;
+        self.predict()
+    }
+
+    fn set_out(&mut self) {
+        let (point, along) = self.predicted();
+        self.along = along;
+        self.corrector = Corrector::new(self.level, point, self.miss);
+    }
+
+    /// The next node at a point of the curve, where that is the way, and not too far.
+    fn next(&self, point: DVec2, full: FullState) -> Option<Node> {
+        let next = self.level.next(self.last(), self.along, (point, full))?;
+        self.fits(&next).then_some(next)
+    }
+
     /// The predictor of the next node, and the direction at the last one in parts of the scale.
     ///
-    /// It bends as the curve has bent since the node before.
+    /// It goes on as the curve has gone through up to three nodes.
     fn predicted(&self) -> (DVec2, DVec2) {
-        let (level, last) = (self.level, self.last());
-        let scale = level.scale(last.point);
-        let along = level.direction(last);
-        let before = self.nodes.iter().rev().nth(1).zip(self.last_step);
-        let bend = before.map_or(DVec2::ZERO, |(before, last_step)| {
-            let turned = along - level.direction(before);
-            let bends = turned.length() < MOST_BEND;
-            f64::from(bends) * turned / last_step
+        let (level, step) = (self.level, self.step);
+        let along = level.direction(self.last());
+        let mut moved = step * level.velocity(self.last());
+        let ways = self.nodes.windows(2).rev().zip(self.steps.iter().rev());
+        let mut bends = ways.map_while(|(nodes, length)| {
+            let [from, to] = [&nodes[0], &nodes[1]];
+            let turned = level.direction(to) - level.direction(from);
+            let bend = (level.velocity(to) - level.velocity(from)) / *length;
+            (turned.length() < MOST_BEND).then_some((bend, *length))
         });
-        let moved = self.step * along + 0.5 * self.step * self.step * bend;
-        (last.point + scale * moved, along)
+        if let Some((bend, length)) = bends.next() {
+            moved += 0.5 * step * step * bend;
+            if let Some((before, length_before)) = bends.next() {
+                let change = (bend - before) / (length + length_before);
+                moved += step * step * (step / 3.0 + 0.5 * length) * change;
+            }
+        }
+        (self.last().point + moved, along)
     }
 
     fn chord(&self, next: Node) -> Chord<'a> {
@@ -168,11 +217,12 @@ impl<'a> Walk<'a> {
         chord.length() < 2.0 * NODE_DISTANCE && (turn < SHARPEST_TURN || chord.length() < SHORT)
     }
 
-    fn go_on(&mut self, next: Node) {
+    fn go_on(mut self, next: Node) -> Option<Self> {
         let length = self.level.length(self.last(), &next);
-        self.last_step = Some(self.step);
+        self.steps.push(self.step);
         self.step *= (NODE_DISTANCE / length).clamp(0.5, 2.0);
         self.nodes.push(next);
+        self.predict()
     }
 
     /// Ends at an edge; whether that is the first fold.
@@ -185,7 +235,7 @@ impl<'a> Walk<'a> {
             self.nodes.pop();
         }
         self.nodes.push(node);
-        self.last_step = None;
+        self.steps.clear();
         let is_first_fold = edge == Edge::Fold && self.fold.is_none();
         if is_first_fold {
             self.fold = Some(self.nodes.len() - 1);
