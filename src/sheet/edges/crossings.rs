@@ -158,8 +158,14 @@ fn correct(
 /// Halvings: more than a mantissa has bits.
 const HALVINGS: usize = 64;
 
+/// After so many halvings it is told by how much the distance still changes, in parts of the whole, that it leaps: as the first fold does
+/// from contact to contact. A root would have fallen to a 64th.
+const TELLING: usize = 12;
+const LEAP: f64 = 0.25;
+
 /// The point `(tau, load)` of an edge at which `ln D` is `target`, where Newton's method loses it because the distance turns nearby.
-/// If both samples are on the same side of it, the one that is closer. `None` where a fold is missing.
+/// If both samples are on the same side of it, the one that is closer. `None` where a fold is missing, or the distance leaps
+/// over the target.
 fn bisect(
     method: Method,
     rod: &Rod,
@@ -185,10 +191,17 @@ fn bisect(
         return between(if is_from_closer { 0.0 } else { 1.0 });
     }
     let mut parts = Bracket::new([0.0, 1.0], misses);
-    for _ in 0..HALVINGS {
+    let mut ends = misses;
+    for halving in 0..HALVINGS {
+        let leap = (ends[1] - ends[0]) / (misses[1] - misses[0]);
+        if halving >= TELLING && leap > LEAP {
+            return None;
+        }
         let middle = parts.middle();
         let (_, here) = between(middle)?;
-        parts.shrink(middle, here.map.pole.length().ln() - target);
+        let miss = here.map.pole.length().ln() - target;
+        parts.shrink(middle, miss);
+        ends[usize::from((miss <= 0.0) != (ends[0] <= 0.0))] = miss;
     }
     between(parts.middle())
 }

@@ -50,7 +50,7 @@ const STEP_LEFT: f64 = 1e-5;
 const LAST_LOAD_STEP: f64 = 1e-6;
 
 /// Where the march is given up.
-const LARGEST_Q: f64 = 1e6;
+const LARGEST_Q: f64 = 1e4;
 
 /// Rounds of Newton's method; bisection alone would need 50.
 const POLISH_ROUNDS: usize = 60;
