@@ -248,6 +248,6 @@ fn cell(pool: &ThreadPool) -> Value {
         "steps": steps.resolution.least,
         "cells": summary.cells(),
         "states": summary.refined,
-        "seconds": Stage::ALL.map(|(stage, name)| json!({name: summary.seconds(stage)})),
+        "cpu_seconds": Stage::ALL.map(|(stage, name)| json!({name: summary.cpu_seconds(stage)})),
     })
 }

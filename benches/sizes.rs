@@ -2,7 +2,7 @@
 //! `cargo bench --bench sizes -- [runs]`.
 //!
 //! `scenes/cone.toml` on one thread, without a file: from 64 x 64 cells to 2048 x 2048, then 128 x 128 for each of 1 to 1024
-//! whiskers. Microseconds a cell, stage by stage, of the fastest of some runs in turn; a small map is repeated, so that each run
+//! whiskers. Microseconds of the CPU a cell, stage by stage, of the fastest of some runs in turn; a small map is repeated, so that each run
 //! takes long enough for the clock.
 #![allow(
     clippy::print_stdout,
@@ -36,11 +36,15 @@ fn main() {
             }
         }
     }
-    println!("      cells  us/cell  sheets  guesses  shooting  refinement  regimes");
+    print!("      cells  us/cell");
+    for (_, name) in Stage::ALL {
+        print!("  {name}");
+    }
+    println!();
     for (map, fastest) in maps.iter().zip(&fastest) {
         print!("{:>11}  {:7.3}", map.name, fastest.iter().sum::<f64>());
-        for (micros, width) in fastest.iter().zip([6, 7, 8, 10, 7]) {
-            print!("  {micros:width$.3}");
+        for (micros, (_, name)) in fastest.iter().zip(Stage::ALL) {
+            print!("  {micros:width$.3}", width = name.len());
         }
         println!();
     }
@@ -77,12 +81,12 @@ impl Map {
     /// Stage by stage.
     fn micros_per_cell(&self) -> Vec<f64> {
         let repeats = CELLS.div_ceil(self.plan.cells);
-        let mut seconds = [0.0; 5];
+        let mut seconds = [0.0; Stage::ALL.len()];
         for _ in 0..repeats {
             let discard = &mut |_| Ok::<(), Infallible>(());
             let Ok(summary) = map::run(&self.scene, &self.plan, None, &mut |_| (), discard);
             for (sum, (stage, _)) in seconds.iter_mut().zip(Stage::ALL) {
-                *sum += summary.seconds(stage);
+                *sum += summary.cpu_seconds(stage);
             }
         }
         let cells = (repeats * self.plan.cells) as f64;

@@ -45,7 +45,7 @@ pub mod uncertainty;
 #[cfg(feature = "fit")]
 pub use front::fit;
 pub use front::{Error, Map, Options, branch, curve, map, shape};
-pub use whiskmap_mechanics::{numerics, rod, shooting};
+pub use whiskmap_mechanics::{account, numerics, rod, shooting};
 
 /// README's code compiles.
 #[cfg(doctest)]

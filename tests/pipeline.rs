@@ -7,11 +7,13 @@ use compute::{Answer, Watched, assert_identical, compute_as, open};
 use std::convert::Infallible;
 use std::sync::mpsc;
 use std::time::Duration;
-use whiskmap::integrate::EngineError;
+use whiskmap::account::thread_time;
 use whiskmap::integrate::gpu::{Gpu, Precision};
-use whiskmap::map::{self, Panel, Summary};
+use whiskmap::integrate::{Engine, EngineError};
+use whiskmap::map::{self, Panel, Stage, Summary};
 use whiskmap::plan::Plan;
 use whiskmap::scene::Scene;
+use whiskmap::store::MapWriter;
 
 /// The paper's cone, and a plan that takes its rows by eights.
 fn in_strips() -> (Scene, Plan) {
@@ -116,4 +118,38 @@ fn answers_that_are_too_few_are_a_failure() {
     assert_eq!(engine.calls, 1);
     assert_eq!(summary.engine_cells.solved, 0);
     assert_identical(&compute_as(&scene, &plan, None).1, &panels);
+}
+
+/// Every stage that has worked has CPU time, and no second is counted twice, however the threads have helped each other out.
+#[test]
+fn stages_share_the_time_of_the_threads() {
+    let (scene, plan) = in_strips();
+    let run = |engine: Option<&mut dyn Engine>| -> (Summary, Duration) {
+        let host = || -> Duration { rayon::broadcast(|_| thread_time()).iter().sum() };
+        let mut keep = |panels: Vec<Panel>| {
+            assert!(MapWriter::sample(&scene.grid, plan.channels, &panels) > 0);
+            Ok::<(), Infallible>(())
+        };
+        let before = host();
+        let Ok(summary) = map::run(&scene, &plan, engine, &mut |_| (), &mut keep);
+        (summary, host() - before)
+    };
+    let check = |(summary, host): (Summary, Duration), has_engine: bool| {
+        let seconds = Stage::ALL.map(|(stage, _)| summary.cpu_seconds(stage));
+        for ((stage, name), seconds) in Stage::ALL.into_iter().zip(seconds) {
+            let has_worked = has_engine || stage != Stage::References;
+            assert_eq!(seconds > 0.0, has_worked, "{name}: {seconds}");
+        }
+        // Sums of rounded seconds.
+        let (sum, host) = (seconds.iter().sum::<f64>(), host.as_secs_f64());
+        assert!(sum <= host + 1e-9, "{seconds:?}: {sum} of {host}");
+        assert_eq!(summary.device_seconds() > 0.0, has_engine);
+        assert!(summary.waiting_seconds() <= summary.wall_seconds());
+    };
+    for threads in [1, 3] {
+        check(on_threads(threads, || run(None)), false);
+        if let Some(mut gpu) = open(Precision::F32) {
+            check(on_threads(threads, || run(Some(&mut gpu))), true);
+        }
+    }
 }

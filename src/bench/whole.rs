@@ -1,18 +1,20 @@
-//! Whole maps, engine by engine: what the stages take, what is left for the CPU, and which engine is done first.
+//! Whole maps, engine by engine: what the stages take of the CPU, what of it a device could still take, and which engine is done first.
 
 use super::gpu::{Candidate, candidates};
 use super::watch::{Timing, median};
 use super::{Report, named, pool};
+use crate::account::thread_time;
 use crate::integrate::gpu::Gpu;
 use crate::integrate::{Engine, EngineError, on_gpu};
 use crate::map::{self, Panel, Stage};
 use crate::numerics::Unit;
 use crate::plan::Plan;
 use crate::scene::Scene;
-use crate::store::{MapWriter, Packed, thread_time};
+use crate::store::MapWriter;
 use serde::Serialize;
 use std::convert::Infallible;
-use std::time::{Duration, Instant};
+use std::hint::black_box;
+use std::time::Duration;
 
 /// A whole map by one engine, packed but not written.
 #[derive(Clone, Debug, Serialize)]
@@ -31,24 +33,24 @@ pub struct WholeMap {
     pub handed_over: u64,
 }
 
-/// Milliseconds of the stages of a map, medians of the runs.
+/// Milliseconds of a map for each of the host's threads: their CPU time for the stages, over their number. Medians of the runs.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
 pub struct MapStages {
     /// Folds, lattices and boundaries.
     pub sheets: f64,
     /// Guesses from the lattice, of cells that no device solves.
     pub guesses: f64,
-    /// References of rows.
+    /// References of rows, and the CPU's part in asking a device about their cells.
     pub references: f64,
-    /// The engine, from its call to its answers.
+    /// The engine, from its calls to its answers, on the wall.
     pub device: f64,
     /// Newton's method.
     pub refinement: f64,
-    /// Regimes and units.
+    /// Regimes and units, and the audit's verdicts on a device's cells.
     pub judging: f64,
-    /// CPU time of packing, over the threads: it is done beside the other stages.
+    /// Packing.
     pub packing: f64,
-    /// What the host's threads were not at work, each.
+    /// What they were not at work.
     pub idle: f64,
 }
 
@@ -147,19 +149,18 @@ pub fn measure(
 /// One map.
 fn run(scene: &Scene, plan: &Plan, gpu: Option<&mut Gpu>) -> Result<Sample, EngineError> {
     let engine = gpu.map(|gpu| gpu as &mut dyn Engine);
-    let mut packed = Packed::default();
     let mut keep = |panels: Vec<Panel>| {
-        packed += MapWriter::sample(&scene.grid, plan.channels, &panels);
+        black_box(MapWriter::sample(&scene.grid, plan.channels, &panels));
         Ok::<(), Infallible>(())
     };
-    let (start, before) = (Instant::now(), host_time());
+    let before = host_time();
     let Ok(summary) = map::run(scene, plan, engine, &mut |_| (), &mut keep);
-    let (seconds, host) = (start.elapsed().as_secs_f64(), host_time() - before);
+    let (seconds, host) = (summary.wall_seconds(), host_time() - before);
     if let Some(failure) = summary.engine_failure {
         return Err(failure);
     }
-    let ms = |stage| 1e3 * summary.seconds(stage);
     let threads = rayon::current_num_threads() as f64;
+    let ms = |stage| 1e3 * summary.cpu_seconds(stage) / threads;
     let cells = summary.engine_cells;
     Ok(Sample {
         seconds,
@@ -167,11 +168,11 @@ fn run(scene: &Scene, plan: &Plan, gpu: Option<&mut Gpu>) -> Result<Sample, Engi
         stages: MapStages {
             sheets: ms(Stage::Sheets),
             guesses: ms(Stage::Guesses),
-            references: f64::max(ms(Stage::Shooting) - 1e3 * summary.waiting_seconds(), 0.0),
+            references: ms(Stage::References),
             device: 1e3 * summary.device_seconds(),
             refinement: ms(Stage::Refinement),
-            judging: ms(Stage::Regimes),
-            packing: 1e3 * packed.time.as_secs_f64() / threads,
+            judging: ms(Stage::Judging),
+            packing: ms(Stage::Packing),
             idle: 1e3 * f64::max(seconds - host / threads, 0.0),
         },
         handed_over: cells.near_edge + cells.far + cells.missed + cells.not_finite,

@@ -4,15 +4,16 @@ use super::failure::Failure;
 use clap::ValueEnum;
 use std::convert::Infallible;
 use std::time::Instant;
+use whiskmap::account::Account;
 use whiskmap::integrate::Engine;
-use whiskmap::map::{self, Panel, Stage};
+use whiskmap::map::{self, Panel, Stage, Summary};
 use whiskmap::plan::{Plan, SAMPLE_LINES, SAMPLE_VALUES};
 use whiskmap::scene::Scene;
-use whiskmap::store::{self, MapWriter, Packed, ZarrStore};
+use whiskmap::store::{self, MapWriter, ZarrStore};
 
 /// What a map would take.
 pub struct Estimate {
-    /// Seconds on the engine and the CPU's threads, without the files.
+    /// CPU seconds on each of the threads, without the files.
     pub seconds: f64,
     /// Newton steps per cell, each one trajectory.
     pub steps_per_cell: f64,
@@ -24,7 +25,7 @@ pub struct Files {
     pub format: Format,
     /// Bytes on disk.
     pub bytes: f64,
-    /// Seconds on the CPU's threads to pack them.
+    /// CPU seconds on each of the threads to pack them.
     pub seconds: f64,
 }
 
@@ -45,8 +46,8 @@ impl Format {
         formats
     }
 
-    /// Packs some panels of `scene`.
-    fn pack(self, scene: &Scene, plan: &Plan, panels: &[Panel]) -> Result<Packed, store::Error> {
+    /// Packs some panels of `scene`, and tells how many bytes they take.
+    fn pack(self, scene: &Scene, plan: &Plan, panels: &[Panel]) -> Result<u64, store::Error> {
         match self {
             Self::Exr => Ok(MapWriter::sample(&scene.grid, plan.channels, panels)),
             Self::Zarr => ZarrStore::sample(scene, plan.channels, panels),
@@ -62,20 +63,23 @@ pub fn files(scene: &Scene, plan: &Plan, formats: &[Format]) -> Result<Vec<Files
     let whiskers = scene.thinned(1, SAMPLE_VALUES).whisker_count();
     let lines = (PACKED_CELLS / whiskers).isqrt().max(1);
     let (small, small_plan) = thinned(scene, plan, [lines, lines])?;
-    let mut packed = vec![Packed::default(); formats.len()];
+    let packed = formats
+        .iter()
+        .map(|format| (*format, Account::default(), 0));
+    let mut packed: Vec<(Format, Account, u64)> = packed.collect();
     let mut keep = |panels: Vec<Panel>| {
-        for (format, sum) in formats.iter().zip(&mut packed) {
-            *sum += format.pack(&small, &small_plan, &panels)?;
+        for (format, packing, bytes) in &mut packed {
+            *bytes += packing.of(|| format.pack(&small, &small_plan, &panels))?;
         }
         Ok::<(), store::Error>(())
     };
     map::run(&small, &small_plan, None, &mut |_| (), &mut keep)?;
     let by_cells = plan.cells as f64 / small_plan.cells as f64;
     let threads = rayon::current_num_threads() as f64;
-    let files = formats.iter().zip(packed).map(|(&format, sample)| Files {
+    let files = packed.into_iter().map(|(format, packing, bytes)| Files {
         format,
-        bytes: sample.bytes as f64 * by_cells,
-        seconds: sample.time.as_secs_f64() * by_cells / threads,
+        bytes: bytes as f64 * by_cells,
+        seconds: packing.time().as_secs_f64() * by_cells / threads,
     });
     Ok(files.collect())
 }
@@ -97,19 +101,19 @@ const FIRST_LINES: usize = 8;
 /// From one sample to the next: so many times as many push angles, and distances.
 const DENSER: usize = 2;
 
-/// Measures samples of `scene` on the CPU alone, each [`DENSER`] than the one before, and scales the last one to `plan`: sheets by
-/// whiskers, sides and distances, the rest by cells. All samples, but for the first, take so many `seconds` together, as the ones
+/// Measures samples of `scene` on the CPU alone, each [`DENSER`] than the one before, and scales the last one's CPU time to `plan`: sheets
+/// by whiskers, sides and distances, the rest by cells. All samples, but for the first, take so many `seconds` together, as the ones
 /// before foretell.
 pub fn estimate(scene: &Scene, plan: &Plan, seconds: f64) -> Result<Estimate, Failure> {
     let (mut lines, mut left) = (FIRST_LINES, seconds);
     loop {
         let start = Instant::now();
-        let estimate = measured(scene, plan, &mut None, [lines, lines])?;
+        let sample = measured(scene, plan, &mut None, [lines, lines])?;
         let last = start.elapsed().as_secs_f64();
         left -= last;
         match denser(lines, last, left) {
             Some(denser) => lines = denser,
-            None => return Ok(estimate),
+            None => return Ok(sample.scaled_to(scene, plan)),
         }
     }
 }
@@ -120,8 +124,8 @@ const WIDE: usize = 2048;
 /// Rounds for which [`compare`] keeps time: one alone may have been held up.
 const ROUNDS: f64 = 3.0;
 
-/// Seconds that `plan` would take the CPU alone, and with `engine`: samples in turn, as dense as so many `seconds` in all allow, and of
-/// each the fastest. Before them `engine` has one that does not count, for which it compiles.
+/// Seconds that `plan` would take the CPU alone, and with `engine`, scaled by cells: samples in turn, as dense as so many `seconds` in all
+/// allow, and of each the fastest. Before them `engine` has one that does not count, for which it compiles.
 ///
 /// # Errors
 /// When the engine fails.
@@ -136,9 +140,10 @@ pub fn compare(
     let mut fastest = [f64::INFINITY; 2];
     loop {
         let start = Instant::now();
-        let cpu = measured(scene, plan, &mut None, [WIDE, lines])?.seconds;
-        let with_engine = measured(scene, plan, engine, [WIDE, lines])?.seconds;
-        fastest = [fastest[0].min(cpu), fastest[1].min(with_engine)];
+        let cpu = measured(scene, plan, &mut None, [WIDE, lines])?;
+        let with_engine = measured(scene, plan, engine, [WIDE, lines])?;
+        let seconds = [cpu, with_engine].map(|sample| sample.wall_seconds(plan));
+        fastest = [0, 1].map(|i| f64::min(fastest[i], seconds[i]));
         let last = start.elapsed().as_secs_f64();
         left -= last;
         if let Some(denser) = denser(lines, ROUNDS * last, left) {
@@ -155,33 +160,59 @@ fn denser(lines: usize, last: f64, left: f64) -> Option<usize> {
     (is_short && lines < SAMPLE_LINES).then_some(lines * DENSER)
 }
 
+/// A sample of a map.
+struct Sample {
+    scene: Scene,
+    plan: Plan,
+    summary: Summary,
+}
+
 /// Measures a sample of at most so many push angles and distances.
 fn measured(
     scene: &Scene,
     plan: &Plan,
     engine: &mut Option<Box<dyn Engine>>,
     lines: [usize; 2],
-) -> Result<Estimate, Failure> {
-    let (small, small_plan) = thinned(scene, plan, lines)?;
+) -> Result<Sample, Failure> {
+    let (scene, plan) = thinned(scene, plan, lines)?;
     let engine = engine.as_mut().map(|engine| &mut **engine as _);
     let discard = &mut |_| Ok::<(), Infallible>(());
-    let Ok(summary) = map::run(&small, &small_plan, engine, &mut |_| (), discard);
-    if let Some(failure) = summary.engine_failure {
-        return Err(failure.into());
+    let Ok(summary) = map::run(&scene, &plan, engine, &mut |_| (), discard);
+    match summary.engine_failure {
+        Some(failure) => Err(failure.into()),
+        None => Ok(Sample {
+            scene,
+            plan,
+            summary,
+        }),
     }
-    let rows = |scene: &Scene, plan: &Plan| {
-        (plan.whiskers * plan.sides.len() * scene.grid.distance_mm.len()) as f64
-    };
-    let by_rows = rows(scene, plan) / rows(&small, &small_plan);
-    let by_cells = plan.cells as f64 / small_plan.cells as f64;
-    let seconds = Stage::ALL.map(|(stage, _)| match stage {
-        Stage::Sheets => summary.seconds(stage) * by_rows,
-        _ => summary.seconds(stage) * by_cells,
-    });
-    Ok(Estimate {
-        seconds: seconds.iter().sum(),
-        steps_per_cell: summary.steps as f64 / summary.cells() as f64,
-    })
+}
+
+impl Sample {
+    /// What `plan` of `scene` would take.
+    fn scaled_to(&self, scene: &Scene, plan: &Plan) -> Estimate {
+        let rows = |scene: &Scene, plan: &Plan| {
+            (plan.whiskers * plan.sides.len() * scene.grid.distance_mm.len()) as f64
+        };
+        let by_rows = rows(scene, plan) / rows(&self.scene, &self.plan);
+        let seconds = Stage::ALL.map(|(stage, _)| match stage {
+            Stage::Sheets => self.summary.cpu_seconds(stage) * by_rows,
+            _ => self.summary.cpu_seconds(stage) * self.by_cells(plan),
+        });
+        Estimate {
+            seconds: seconds.iter().sum::<f64>() / rayon::current_num_threads() as f64,
+            steps_per_cell: self.summary.steps as f64 / self.summary.cells() as f64,
+        }
+    }
+
+    /// Seconds that `plan` would take where a row of it is like one of the sample.
+    fn wall_seconds(&self, plan: &Plan) -> f64 {
+        self.summary.wall_seconds() * self.by_cells(plan)
+    }
+
+    fn by_cells(&self, plan: &Plan) -> f64 {
+        plan.cells as f64 / self.plan.cells as f64
+    }
 }
 
 #[cfg(test)]

@@ -144,7 +144,6 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     let result = map::run(&scene, &plan, engine, &mut settled, &mut keep);
     bar.finish();
     let summary = result?;
-    let packing = writer.packing();
     writer.finish(summary.engine_cells, summary.audit)?;
     if let Some(failure) = &summary.engine_failure {
         say(&format!("warning: {failure}; the CPU went on in its stead"));
@@ -154,13 +153,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         save(&regimes, picture, render::Format::Png)?;
     }
     let written: Vec<PathBuf> = [Some(file), picture].into_iter().flatten().collect();
-    print(
-        &scene,
-        &summary,
-        start.elapsed().as_secs_f64(),
-        packing,
-        &written,
-    )?;
+    print(&scene, &summary, start.elapsed().as_secs_f64(), &written)?;
     let see = "the channel `status`";
     check_resolved(summary.unresolved(), summary.cells(), "cells", see)
 }

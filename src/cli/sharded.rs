@@ -9,6 +9,7 @@ use rayon::prelude::*;
 use std::path::Path;
 use std::str::FromStr;
 use std::time::Instant;
+use whiskmap::account::carried;
 use whiskmap::integrate::Engine;
 use whiskmap::map::{self, Panel};
 use whiskmap::plan::Plan;
@@ -98,7 +99,8 @@ impl Run<'_> {
         let mut next = due.next();
         let mut packed: Vec<PackedPanel> = Vec::new();
         let mut keep = |panels: Vec<Panel>| {
-            let panels = panels.par_iter().map(|panel| store.pack(panel));
+            let panels = panels.par_iter();
+            let panels = panels.map_init(carried(), |_, panel| store.pack(panel));
             packed.extend(panels.collect::<Result<Vec<_>, _>>()?);
             if let Some((block, whiskers)) = next
                 && packed.len() == whiskers
@@ -120,7 +122,6 @@ impl Run<'_> {
             scene,
             &summary,
             start.elapsed().as_secs_f64(),
-            store.packing(),
             &[path.to_owned()],
         )?;
         let see = "the channel `status`";

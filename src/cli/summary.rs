@@ -7,12 +7,11 @@ use whiskmap::classify::Regime;
 use whiskmap::map::{Stage, Summary};
 use whiskmap::scene::Scene;
 
-/// Prints the `summary` of a map that took so many `seconds`, what `packing` it took of the CPU, and the `files` written.
+/// Prints the `summary` of a map that took so many `seconds`, files included, and the `files` written.
 pub fn print(
     scene: &Scene,
     summary: &Summary,
     seconds: f64,
-    packing: Duration,
     files: &[PathBuf],
 ) -> std::io::Result<()> {
     let mut out = std::io::stdout().lock();
@@ -64,9 +63,14 @@ pub fn print(
         summary.disagreements
     )?;
     let rate = summary.cells() as f64 / seconds;
-    write!(out, "{rate:>12.0}  cells/s; {seconds:.2} s:")?;
-    for (stage, name) in Stage::ALL {
-        write!(out, " {name} {:.2}", summary.seconds(stage))?;
+    writeln!(out, "{rate:>12.0}  cells/s, in {seconds:.2} s")?;
+    let stages = Stage::ALL.map(|(stage, name)| (name, summary.cpu_seconds(stage)));
+    let of_stages: f64 = stages.iter().map(|(_, seconds)| seconds).sum();
+    let all = cpu_time().map_or(of_stages, |time| time.as_secs_f64());
+    let other = ("other", f64::max(all - of_stages, 0.0));
+    write!(out, "{all:>12.2}  s of all threads:")?;
+    for (name, seconds) in stages.into_iter().chain([other]) {
+        write!(out, " {name} {seconds:.2}")?;
     }
     writeln!(out)?;
     if summary.device_seconds() > 0.0 {
@@ -75,13 +79,6 @@ pub fn print(
             "{:>12.2}  s of the engine beside them, {:.2} of these waited for",
             summary.device_seconds(),
             summary.waiting_seconds()
-        )?;
-    }
-    if let Some(time) = cpu_time() {
-        let [all, packing] = [time, packing].map(|time| time.as_secs_f64());
-        writeln!(
-            out,
-            "{all:>12.2}  s of all threads, {packing:.2} of them packing"
         )?;
     }
     for file in files {

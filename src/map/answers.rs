@@ -5,6 +5,7 @@ use super::channels::{Numbers, channels, of_cell, of_reference};
 use super::panel::RowMut;
 use super::sliding::{self, FoundRow, FoundState};
 use super::{Face, Panel, STATE_CHANNELS, doubt};
+use crate::account::carried;
 use crate::classify::{Regime, RowBoundary, Status};
 use crate::integrate::Reference;
 use crate::scene::Swept;
@@ -28,7 +29,7 @@ pub fn fill(
     panels
         .par_iter_mut()
         .enumerate()
-        .for_each(|(index, panel)| {
+        .for_each_init(carried(), |_, (index, panel)| {
             let units = whiskers[index].whisker.units();
             let faces_here = index * faces_per_panel..(index + 1) * faces_per_panel;
             // The columns of two faces may be in one row of a panel.
@@ -39,12 +40,15 @@ pub fn fill(
                 let Some(first) = rows.first() else { continue };
                 let face = &faces[number];
                 let into = panel.rows_mut(width, first.row..first.row + rows.len());
-                let found = into.into_par_iter().zip(rows).filter_map(|(into, row)| {
-                    let reader = Reader::new(units, &face.sheet.rod);
-                    let readings = has_state.then(|| Readings::new(reader, face, row.row));
-                    write_row(readings, face, row.row, || settled.cells(face, row), into)
-                });
-                let found: Vec<FoundRow> = found.collect();
+                let found = into
+                    .into_par_iter()
+                    .zip(rows)
+                    .map_init(carried(), |_, (into, row)| {
+                        let reader = Reader::new(units, &face.sheet.rod);
+                        let readings = has_state.then(|| Readings::new(reader, face, row.row));
+                        write_row(readings, face, row.row, || settled.cells(face, row), into)
+                    });
+                let found: Vec<FoundRow> = found.flatten_iter().collect();
                 sliding::mark(face, &found, width, &mut panel.status);
             }
         });

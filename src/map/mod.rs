@@ -9,6 +9,7 @@ mod panel;
 mod pipeline;
 mod pushes;
 mod sliding;
+mod stages;
 mod strip;
 mod summary;
 mod task;
@@ -21,8 +22,9 @@ use crate::sheet::Sheet;
 pub use panel::Panel;
 use pipeline::Pipeline;
 use pushes::Pushes;
+pub use stages::Stage;
 use std::time::Instant;
-pub use summary::{Audit, EngineCells, Stage, Summary};
+pub use summary::{Audit, EngineCells, Summary};
 use task::Task;
 
 /// One side of one whisker.
@@ -46,21 +48,19 @@ pub fn run<E: Send>(
     settled: &mut dyn FnMut(usize),
     keep: &mut (dyn FnMut(Vec<Panel>) -> Result<(), E> + Send),
 ) -> Result<Summary, E> {
+    let start = Instant::now();
     let task = Task::new(scene, plan, engine.is_some());
     let mut pipeline = Pipeline::new(&task, engine);
+    let mut keep = |panels| task.stages.of(Stage::Packing, || keep(panels));
     let mut finished: Option<Vec<Panel>> = None;
     for _ in plan.groups() {
         let (before, mut kept) = (finished.take(), Ok(()));
-        let computed = rayon::in_place_scope(|scope| {
-            scope.spawn(|_| kept = before.map_or(Ok(()), &mut *keep));
+        rayon::in_place_scope(|scope| {
+            scope.spawn(|_| kept = before.map_or(Ok(()), &mut keep));
             finished = Some(pipeline.panels(settled));
-            Instant::now()
         });
-        pipeline.summary.add(Stage::Files, computed.elapsed());
         kept?;
     }
-    let mut summary = pipeline.finish();
-    let last = || finished.map_or(Ok(()), keep);
-    summary.time(Stage::Files, last)?;
-    Ok(summary)
+    finished.map_or(Ok(()), keep)?;
+    Ok(pipeline.finish(start.elapsed()))
 }

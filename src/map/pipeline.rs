@@ -4,9 +4,10 @@
 //! in a strip is known before the answers to the next one are looked at, so that no race decides what becomes of a cell.
 
 use super::panel::Panel;
+use super::stages::Stage;
 use super::strip::{self, Asked, Solved};
 use super::task::{Group, Task};
-use super::{Audit, Stage, Summary, answers};
+use super::{Audit, Summary, answers};
 use crate::integrate::{CellDifference, Engine, Fallback};
 use std::ops::Range;
 use std::sync::Arc;
@@ -34,13 +35,13 @@ struct Strips<'a> {
 
 impl<'a> Strips<'a> {
     /// The next one, with references if there is an engine to ask.
-    fn prepare(&mut self, has_engine: bool, summary: &mut Summary) -> Option<Strip<'a>> {
+    fn prepare(&mut self, has_engine: bool) -> Option<Strip<'a>> {
         let task = self.task;
         let (group, from) = match self.begun.take() {
             Some(begun) => begun,
             None => {
                 let whiskers = self.groups.next()?;
-                let group = summary.time(Stage::Sheets, || task.group(whiskers));
+                let group = task.stages.of(Stage::Sheets, || task.group(whiskers));
                 (Arc::new(group), 0)
             }
         };
@@ -51,7 +52,7 @@ impl<'a> Strips<'a> {
         let mut asked = Asked::default();
         if has_engine {
             let ask = || Asked::new(task.plan.method, &group.faces, &rows);
-            asked = summary.time(Stage::Shooting, ask);
+            asked = task.stages.of(Stage::References, ask);
         }
         self.begun = (to < all).then(|| (Arc::clone(&group), to));
         Some(Strip {
@@ -96,16 +97,18 @@ impl<'a, 'e> Pipeline<'a, 'e> {
     pub fn panels(&mut self, settled: &mut dyn FnMut(usize)) -> Vec<Panel> {
         let mut panels = Vec::new();
         while !self.advance(&mut panels, settled) {}
-        for panel in &panels {
-            self.summary.count(panel);
-        }
+        let count = || panels.iter().for_each(|panel| self.summary.count(panel));
+        self.strips.task.stages.of(Stage::Judging, count);
         panels
     }
 
-    /// What there is to say in the end.
-    pub fn finish(mut self) -> Summary {
-        self.summary.engine_failure = self.engine.failure;
-        self.summary
+    /// What there is to say in the end, after so much time.
+    pub fn finish(self, wall: Duration) -> Summary {
+        let mut summary = self.summary;
+        summary.engine_failure = self.engine.failure;
+        summary.stages = self.strips.task.stages.times();
+        summary.wall = wall;
+        summary
     }
 
     /// All strips on their way advance. Whether `panels` are complete.
@@ -133,17 +136,19 @@ impl<'a, 'e> Pipeline<'a, 'e> {
                     let Asked {
                         rods, references, ..
                     } = asked;
-                    let solved = engine.solve(task.plan.method, rods, &task.angles, references);
+                    let solve = || engine.solve(task.plan.method, rods, &task.angles, references);
+                    let solved = task.stages.of(Stage::References, solve);
                     *answer = (solved, start.elapsed());
                 });
             }
             if let Some(strip) = before {
                 let cells = strip.cells();
                 let failed = (has_engine || has_failed).then_some(has_failed);
-                audit = strip.finish(task, failed, panels, summary);
+                let finish = || strip.finish(task, failed, panels, summary);
+                audit = task.stages.of(Stage::Judging, finish);
                 settled(cells);
             }
-            self.prepared = strips.prepare(has_engine, summary);
+            self.prepared = strips.prepare(has_engine);
             Instant::now()
         });
         let (differences, device) = answer;
@@ -188,14 +193,13 @@ impl Strip<'_> {
             .differences
             .map(|differences| Solved { asked, differences });
         let solved = solved.unwrap_or_default();
-        let (settled, audit) = strip::settle(task.plan.method, faces, &self.rows, solved, summary);
+        let (settled, audit) =
+            strip::settle(task.plan.method, faces, &self.rows, solved, &task.stages);
         summary.audit += audit;
         if let Some(has_failed) = has_failed {
             settled.count(has_failed || audit.differing > 0, &mut summary.engine_cells);
         }
-        summary.time(Stage::Regimes, || {
-            answers::fill(width, whiskers, faces, task.sides.len(), &settled, panels);
-        });
+        answers::fill(width, whiskers, faces, task.sides.len(), &settled, panels);
         audit
     }
 }

@@ -1,6 +1,7 @@
 //! Which states of a map slide as friction is computed for: the others have a status of their own.
 
 use super::Face;
+use crate::account::carried;
 use crate::classify::{Dragged, Regime, Sliding, Status};
 use crate::sheet::{LevelCurve, TOGETHER};
 use glam::DVec2;
@@ -52,7 +53,7 @@ impl FoundRow {
 
 /// Writes the statuses of the states of `rows` of `face` into those of a panel that is so many cells wide.
 pub fn mark(face: &Face, rows: &[FoundRow], width: usize, status: &mut [u32]) {
-    let marks = rows.par_chunks(TOGETHER).flat_map_iter(|rows| {
+    let marks = rows.par_chunks(TOGETHER).map_init(carried(), |_, rows| {
         let levels: Vec<LevelCurve> = rows.iter().map(|row| face.sheet.level(row.row)).collect();
         let dragged = Dragged::of(&levels).into_iter();
         rows.iter().zip(dragged).flat_map(|(row, dragged)| {
@@ -60,7 +61,7 @@ pub fn mark(face: &Face, rows: &[FoundRow], width: usize, status: &mut [u32]) {
             marks.map(|(column, status)| (row.row * width + column, status))
         })
     });
-    let marks: Vec<(usize, Status)> = marks.collect();
+    let marks: Vec<(usize, Status)> = marks.flatten_iter().collect();
     for (cell, of_cell) in marks {
         status[cell] = of_cell.code();
     }

@@ -1,10 +1,12 @@
 //! Some rows, from an engine if there is one, beside references along each row; all other cells from the sheet's guesses by refinement.
 
+use super::Face;
 use super::audit::{self, Said, Sample};
 use super::cells::{Settled, SettledRow, Source};
 use super::pushes::Pushes;
+use super::stages::{Stage, Stages};
 use super::summary::Audit;
-use super::{Face, Stage, Summary};
+use crate::account::carried;
 use crate::integrate::{CellDifference, Reference, on_gpu};
 use crate::refine::{self, RowOfCells, Shot};
 use crate::rod::Rod;
@@ -49,13 +51,13 @@ pub fn settle(
     faces: &[Face],
     rows: &[(usize, usize)],
     solved: Solved,
-    summary: &mut Summary,
+    stages: &Stages,
 ) -> (Settled, Audit) {
     let rows = Rows::new(method, faces, rows);
-    let (mut settled, mut audit) = rows.finish(solved, summary);
+    let (mut settled, mut audit) = rows.finish(solved, stages);
     if audit.differing > 0 {
         audit.turned_over = settled.solved();
-        settled = rows.finish(Solved::default(), summary).0;
+        settled = rows.finish(Solved::default(), stages).0;
     }
     (settled, audit)
 }
@@ -140,13 +142,13 @@ impl<'a> Rows<'a> {
     }
 
     /// Refines what an engine has left, and a sample of what it has not.
-    fn finish(&self, solved: Solved, summary: &mut Summary) -> (Settled, Audit) {
-        let work = summary.time(Stage::Guesses, || {
+    fn finish(&self, solved: Solved, stages: &Stages) -> (Settled, Audit) {
+        let work: Vec<Work> = stages.of(Stage::Guesses, || {
             let rows = self.places.par_iter().enumerate();
-            let work: Vec<Work> = rows.map(|(i, place)| place.work(i, &solved)).collect();
-            work
+            let work = rows.map_init(carried(), |_, (i, place)| place.work(i, &solved));
+            work.collect()
         });
-        let refined = summary.time(Stage::Refinement, || {
+        let refined = stages.of(Stage::Refinement, || {
             let shots: Vec<Shot> = work.iter().flat_map(|row| &row.shots).copied().collect();
             let starts: Vec<_> = shots.iter().map(|shot| (shot.tau, shot.load)).collect();
             refine::refine(self.method, &self.sheets, &shots, &starts)

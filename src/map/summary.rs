@@ -1,39 +1,10 @@
 //! What a run says about itself when it is done.
 
-use super::Panel;
+use super::{Panel, Stage};
 use crate::classify::{Regime, Status};
 use crate::integrate::{EngineError, Outcome};
 use serde::{Deserialize, Serialize};
-use std::time::{Duration, Instant};
-
-/// The stages of a run.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Stage {
-    /// Folds, lattices and boundaries.
-    Sheets,
-    /// Guesses from the lattice.
-    Guesses,
-    /// References of rows, and waiting for the engine.
-    Shooting,
-    /// Newton's method in `f64`.
-    Refinement,
-    /// Regimes and units.
-    Regimes,
-    /// Waiting for what keeps the panels: it packs and writes them while the next ones are computed.
-    Files,
-}
-
-impl Stage {
-    /// Every stage, in order, and its name.
-    pub const ALL: [(Self, &str); 6] = [
-        (Self::Sheets, "sheets"),
-        (Self::Guesses, "guesses"),
-        (Self::Shooting, "shooting"),
-        (Self::Refinement, "refinement"),
-        (Self::Regimes, "regimes"),
-        (Self::Files, "files"),
-    ];
-}
+use std::time::Duration;
 
 /// What became of the cells of a run that an engine was to solve.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -109,30 +80,17 @@ pub struct Summary {
     pub audit: Audit,
     /// Why the CPU went on in the engine's stead, if it did.
     pub engine_failure: Option<EngineError>,
-    times: [Duration; Stage::ALL.len()],
+    pub(super) stages: [Duration; Stage::ALL.len()],
+    pub(super) wall: Duration,
     device: Duration,
     waiting: Duration,
 }
 
 impl Summary {
-    /// Runs `work` on the clock of `stage`.
-    pub(super) fn time<R>(&mut self, stage: Stage, work: impl FnOnce() -> R) -> R {
-        let start = Instant::now();
-        let result = work();
-        self.add(stage, start.elapsed());
-        result
-    }
-
-    /// Adds to the time of `stage`.
-    pub(super) fn add(&mut self, stage: Stage, time: Duration) {
-        self.times[stage as usize] += time;
-    }
-
-    /// Adds to the engine's time, and to that for which the threads waited for it, on the clock of [`Stage::Shooting`], too.
+    /// Adds to the engine's time, and to that for which the threads waited for it.
     pub(super) fn wait(&mut self, device: Duration, waiting: Duration) {
         self.device += device;
         self.waiting += waiting;
-        self.add(Stage::Shooting, waiting);
     }
 
     /// Adds a finished panel.
@@ -167,19 +125,25 @@ impl Summary {
         self.regimes[Regime::ALL.len() - 1]
     }
 
-    /// What `stage` took.
+    /// CPU seconds of `stage`, over all threads. What a thread spends on another stage while it waits for its part of one is the other's.
     #[must_use]
-    pub fn seconds(&self, stage: Stage) -> f64 {
-        self.times[stage as usize].as_secs_f64()
+    pub fn cpu_seconds(&self, stage: Stage) -> f64 {
+        self.stages[stage as usize].as_secs_f64()
     }
 
-    /// Seconds for which the engine worked on what it was asked, beside other stages.
+    /// Seconds from the first sheet to the last panel kept.
+    #[must_use]
+    pub const fn wall_seconds(&self) -> f64 {
+        self.wall.as_secs_f64()
+    }
+
+    /// Seconds for which the engine worked on what it was asked, beside the stages.
     #[must_use]
     pub const fn device_seconds(&self) -> f64 {
         self.device.as_secs_f64()
     }
 
-    /// Seconds, a part of [`Stage::Shooting`], for which nothing but the engine and the packing of panels went on.
+    /// Seconds, of these, for which nothing but the engine and the packing of panels went on.
     #[must_use]
     pub const fn waiting_seconds(&self) -> f64 {
         self.waiting.as_secs_f64()

@@ -2,6 +2,8 @@
 
 use super::Face;
 use super::pushes::Pushes;
+use super::stages::Stages;
+use crate::account::carried;
 use crate::plan::Plan;
 use crate::scene::{Scene, Swept};
 use crate::sheet::Sheet;
@@ -20,6 +22,7 @@ pub struct Task<'a> {
     pub sides: Vec<Pushes>,
     /// Signed push angles of the columns of all sides.
     pub angles: Vec<f64>,
+    pub stages: Stages,
 }
 
 impl<'a> Task<'a> {
@@ -46,6 +49,7 @@ impl<'a> Task<'a> {
             rows_at_once,
             sides,
             angles,
+            stages: Stages::default(),
         }
     }
 
@@ -68,7 +72,8 @@ impl<'a> Task<'a> {
             let sheet = Sheet::new(self.plan.method, &rod, pushes.side, &distances);
             Face { pushes, sheet }
         };
-        pairs.par_iter().map(face).collect()
+        let faces = pairs.par_iter().map_init(carried(), |_, pair| face(pair));
+        faces.collect()
     }
 }
 

@@ -11,6 +11,7 @@ mod references;
 
 pub use references::{RowOfCells, references};
 
+use crate::account::carried;
 use crate::sheet::Sheet;
 use crate::shooting::FullState;
 use crate::shooting::batch::{Method, chunk_size};
@@ -123,7 +124,9 @@ pub fn refine(
     cells
         .par_chunks_mut(size)
         .zip(shots.par_chunks(size).zip(starts.par_chunks(size)))
-        .for_each(|(cells, (shots, starts))| refine_chunk(method, sheets, shots, starts, cells));
+        .for_each_init(carried(), |_, (cells, (shots, starts))| {
+            refine_chunk(method, sheets, shots, starts, cells);
+        });
     cells
 }
 

@@ -6,6 +6,7 @@
 
 use super::Shot;
 use super::exact::{Exact, exact};
+use crate::account::carried;
 use crate::integrate::{POWERS, Reference, RowNumbers};
 use crate::numerics::nearest_turn;
 use crate::rod::Rest;
@@ -36,7 +37,8 @@ pub struct RowOfCells<'a> {
 #[must_use]
 pub fn references(method: Method, sheets: &[&Sheet], rows: &[RowOfCells]) -> Vec<Vec<Reference>> {
     let shots = |row: &RowOfCells| node_shots(sheets[row.sheet as usize], row);
-    let shots: Vec<Option<Vec<Shot>>> = rows.par_iter().map(shots).collect();
+    let shots = rows.par_iter().map_init(carried(), |_, row| shots(row));
+    let shots: Vec<Option<Vec<Shot>>> = shots.collect();
     let flat: Vec<Shot> = shots.iter().flatten().flatten().copied().collect();
     let found = exact(method, sheets, &flat);
     let mut after = 0;
@@ -50,7 +52,7 @@ pub fn references(method: Method, sheets: &[&Sheet], rows: &[RowOfCells]) -> Vec
         .collect();
     rows.par_iter()
         .zip(nodes)
-        .map(|(row, nodes)| {
+        .map_init(carried(), |_, (row, nodes)| {
             let found: Option<Vec<Exact>> = found[nodes].iter().copied().collect();
             let found = found.filter(|found| !found.is_empty());
             let expanded = found.and_then(|found| expand(sheets[row.sheet as usize], row, &found));

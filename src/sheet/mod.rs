@@ -23,6 +23,7 @@ pub use fold::FoldPoint;
 pub use lattice::guesses::Guess;
 pub use row::{Crossing, Edge, Row};
 
+use crate::account::carried;
 use crate::rod::{Rest, Rod, Side};
 use crate::shooting::ShootingMap;
 use crate::shooting::batch::Method;
@@ -154,7 +155,8 @@ impl Sheet {
         let walked: Vec<Vec<WalkedPiece>> = rows
             .par_chunks(TOGETHER)
             .zip(crossings.par_chunks_mut(TOGETHER))
-            .flat_map_iter(walk)
+            .map_init(carried(), |_, rows| walk(rows))
+            .flatten_iter()
             .collect();
         let tip = rod.tau_tip();
         Self {

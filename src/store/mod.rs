@@ -11,7 +11,6 @@
 //! Invariant: a file that bears its final name is complete.
 
 mod attributes;
-mod effort;
 mod error;
 mod header;
 mod layout;
@@ -28,9 +27,6 @@ mod zarr;
 mod zip;
 
 pub use attributes::Description;
-pub use effort::Packed;
-#[cfg(feature = "gpu")]
-pub(crate) use effort::thread_time;
 pub use error::Error;
 pub use layout::Layout;
 pub use output::Output;

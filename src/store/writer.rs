@@ -1,10 +1,10 @@
 //! Writes a map, some panels at a time.
 
 use super::attributes::{self, Description, attribute};
-use super::effort::Effort;
 use super::layout::{self, Channel, Layout, Part, SAMPLE_BYTES};
 use super::tally::{self, Counts};
-use super::{Channels, Error, Output, Packed, Panel, header, zip};
+use super::{Channels, Error, Output, Panel, header, zip};
+use crate::account::carried;
 use crate::classify::Regime;
 use crate::map::{Audit, EngineCells};
 use crate::scene::Grid;
@@ -17,7 +17,6 @@ use exr::meta::header::Header;
 use rayon::prelude::*;
 use std::io::{BufWriter, IntoInnerError, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
-use std::time::Duration;
 
 /// Bytes of a place in the file.
 const OFFSET_BYTES: u64 = 8;
@@ -38,7 +37,6 @@ pub struct MapWriter {
     /// Panels written so far.
     written: usize,
     counts: Counts,
-    effort: Effort,
 }
 
 impl MapWriter {
@@ -80,7 +78,6 @@ impl MapWriter {
             tables,
             written: 0,
             counts: Counts::default(),
-            effort: Effort::default(),
         };
         writer.write_at(0, &[preamble])?;
         Ok(writer)
@@ -114,11 +111,10 @@ impl MapWriter {
         let part = |task: usize| task % of_panel / blocks;
         let chunks: Vec<Vec<u8>> = (0..panels.len() * of_panel)
             .into_par_iter()
-            .map(|task| {
+            .map_init(carried(), |_, task| {
                 let (panel, part) = (task / of_panel, part(task));
                 let channels = &parts[panel][part].channels;
-                let chunk = || self.chunk(first + panel, part, task % blocks, channels);
-                self.effort.of(chunk)
+                self.chunk(first + panel, part, task % blocks, channels)
             })
             .collect::<exr::error::Result<_>>()
             .map_err(Error::at(&self.path, Error::Encode))?;
@@ -136,28 +132,20 @@ impl MapWriter {
         Ok(())
     }
 
-    /// Packs `panels` of a map with this `grid`, and tells what that takes.
+    /// Packs `panels` of a map with this `grid`, and tells how many bytes they take, but for headers.
     #[must_use]
-    pub fn sample(grid: &Grid, channels: Channels, panels: &[Panel]) -> Packed {
-        let (layout, effort) = (Layout::of(grid), Effort::default());
-        let packed = panels.par_iter().flat_map_iter(|panel| {
+    pub fn sample(grid: &Grid, channels: Channels, panels: &[Panel]) -> u64 {
+        let layout = Layout::of(grid);
+        let packed = panels.par_iter().map_init(carried(), |_, panel| {
             let parts = layout::parts(panel, channels).into_iter();
-            parts.map(|part| {
+            let bytes = parts.map(|part| {
                 let blocks = 0..layout.blocks_per_panel();
                 let pack = |block| zip::pack(layout.lines(block, &part.channels)).len() as u64;
-                effort.of(|| blocks.map(pack).sum::<u64>())
-            })
+                blocks.map(pack).sum::<u64>()
+            });
+            bytes.sum::<u64>()
         });
-        Packed {
-            bytes: packed.sum(),
-            time: effort.time(),
-        }
-    }
-
-    /// CPU time spent on packing so far.
-    #[must_use]
-    pub fn packing(&self) -> Duration {
-        self.effort.time()
+        packed.sum()
     }
 
     /// Writes the counts into the header and gives the map its name. Returns the counts.

@@ -31,8 +31,9 @@ the fastest run, and ! marks rows where that is more than 20 %.
 
 Then every engine computes whole maps of the scene, at most 1024 x 1024 cells (--quick: 256 x 256) and two values per sweep axis, \
 in turn, packed but not written. host is the CPU time a cell of all threads but those of a device in software; for devices \
-the part of it, in guesses and refinement, that a device could still take. Of the stages references, with what is packed for \
-them, and device are those of a GPU engine; packing is done beside the others; idle is what a thread does not compute. \
+the part of it, in guesses and refinement, that a device could still take. Of the stages are shown the CPU's milliseconds, over the \
+threads, and idle is when a thread does not compute; references, with what is packed for them, are those of a GPU engine, and device \
+is its time from call to answers, beside the others. \
 The verdict compares the CPU engine with the fastest GPU engine.")]
 pub struct Options {
     /// Scene file; - reads it from standard input

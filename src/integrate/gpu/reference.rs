@@ -1,6 +1,7 @@
 //! References as bytes, with the steps of their trajectories: structs of `shaders/nystrom8.wgsl` and `shaders/cells.wgsl`.
 
 use super::bytes::{Scalar, bytes, halves};
+use crate::account::carried;
 use crate::integrate::{POWERS, Reference};
 use crate::rod::{Rest, Rod, arclength};
 use crate::shooting::StateDerivative;
@@ -56,7 +57,7 @@ pub fn packed<T: Scalar>(
     let parts = references
         .par_chunks(TOGETHER)
         .zip(steps.par_chunks(TOGETHER));
-    let parts = parts.map(|(references, steps)| {
+    let parts = parts.map_init(carried(), |_, (references, steps)| {
         let conditions = references.iter().map(|reference| InitialCondition {
             rod: &rods[reference.rod as usize],
             tau: reference.tau,

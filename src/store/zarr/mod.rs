@@ -18,7 +18,6 @@ pub use self::pack::PackedPanel;
 use self::array::Array;
 use self::blocks::Blocks;
 use self::metadata::AGREED;
-use super::effort::Effort;
 use super::{Channels, Description, Error, Output};
 use crate::scene::{Grid, Scene};
 use serde_json::{Map, Value};
@@ -36,7 +35,6 @@ pub struct ZarrStore {
     channels: Channels,
     blocks: Blocks,
     arrays: Vec<Array>,
-    effort: Effort,
 }
 
 /// The name of every file of metadata.
@@ -127,7 +125,6 @@ impl ZarrStore {
             scene,
             channels,
             blocks,
-            effort: Effort::default(),
         })
     }
 

@@ -2,14 +2,14 @@
 
 use super::array::Array;
 use super::{ZarrStore, chunk, write};
+use crate::account::carried;
 use crate::classify::Regime;
 use crate::scene::Scene;
-use crate::store::{Channels, Error, Packed, Panel, STATE_CHANNELS};
+use crate::store::{Channels, Error, Panel, STATE_CHANNELS};
 use rayon::prelude::*;
 use serde_json::Map;
 use std::borrow::Cow;
 use std::path::Path;
-use std::time::Duration;
 
 /// A panel on its way to a store: its chunks, array by array.
 #[derive(Debug)]
@@ -23,35 +23,26 @@ impl ZarrStore {
     /// The codecs refuse.
     pub fn pack(&self, panel: &Panel) -> Result<PackedPanel, Error> {
         let chunks = |array: &Array| {
-            let chunks = || array.chunks(&values(&array.name, panel));
-            let packed = self.effort.of(chunks);
+            let packed = array.chunks(&values(&array.name, panel));
             packed.map_err(Error::at(&self.path.join(&array.name), Error::Pack))
         };
-        let arrays = self.arrays.par_iter().map(chunks);
+        let arrays = self.arrays.par_iter();
+        let arrays = arrays.map_init(carried(), |_, array| chunks(array));
         arrays.collect::<Result<_, _>>().map(PackedPanel)
     }
 
-    /// Packs `panels` of `scene`, and tells what that takes.
+    /// Packs `panels` of `scene`, and tells how many bytes they take, but for headers.
     ///
     /// # Errors
     ///
     /// The codecs refuse.
-    pub fn sample(scene: &Scene, channels: Channels, panels: &[Panel]) -> Result<Packed, Error> {
+    pub fn sample(scene: &Scene, channels: Channels, panels: &[Panel]) -> Result<u64, Error> {
         let (nowhere, channels) = (Path::new(""), channels.with("regime"));
         let store = Self::new(nowhere, Map::new(), scene.clone(), channels)?;
         let packed = panels.iter().map(|panel| store.pack(panel));
         let packed: Vec<PackedPanel> = packed.collect::<Result<_, _>>()?;
         let chunks = packed.iter().flat_map(|panel| &panel.0).flatten();
-        Ok(Packed {
-            bytes: chunks.map(|chunk| chunk.len() as u64).sum(),
-            time: store.packing(),
-        })
-    }
-
-    /// CPU time spent on packing so far.
-    #[must_use]
-    pub fn packing(&self) -> Duration {
-        self.effort.time()
+        Ok(chunks.map(|chunk| chunk.len() as u64).sum())
     }
 
     /// Writes the panels of a block.
@@ -78,7 +69,7 @@ impl ZarrStore {
         };
         let last = self.arrays.len() - 1;
         let others = self.arrays[..last].par_iter().enumerate();
-        others.try_for_each(put)?;
+        others.try_for_each_init(carried(), |_, other| put(other))?;
         put((last, &self.arrays[last]))
     }
 }

@@ -1,6 +1,7 @@
 //! The mechanics by themselves: no scene, no map, no device.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+mod accounts;
 mod batches;
 mod contact;
 mod effects;

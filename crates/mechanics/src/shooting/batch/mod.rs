@@ -20,6 +20,7 @@ pub use output_set::OutputSet;
 pub use steps::{StepStart, step_starts};
 
 use super::Resolution;
+use crate::account::carried;
 use crate::numerics::Unit;
 use crate::rod::{Effects, Rod};
 use rayon::prelude::*;
@@ -152,7 +153,9 @@ impl Batch {
             outputs
                 .par_chunks_mut(size)
                 .zip(conditions.par_chunks(size))
-                .for_each(|(outputs, conditions)| self.chunk(conditions, outputs));
+                .for_each_init(carried(), |_, (outputs, conditions)| {
+                    self.chunk(conditions, outputs);
+                });
         }
         outputs
     }
