@@ -83,10 +83,10 @@ fn pieces_share_the_bending() {
     let profile = RadiusProfile::new(&rows, 1.0);
     for s in [0.99_f64, 0.6, 0.3, 0.2, 1e-3, 1e-6] {
         for k in 0..4 {
-            let from = 0.25 * k as f64;
-            let to = s.min(from + 0.25).max(from);
+            let from = s.min(0.25 * k as f64);
+            let to = s.min(from + 0.25);
             // Under a load the end of a lever turns by the square of its length.
-            let share = ((s - from).max(0.0).powi(2) - (s - to).powi(2)) / (s * s);
+            let share = ((s - from).powi(2) - (s - to).powi(2)) / (s * s);
             let exact = (share * (0.25 / s).min(1.0)).sqrt().max(0.5 * share);
             let found = f64::from(profile.demands.of(Demands::reach(s), k).bending);
             // Other contacts of the reach have larger ones.
