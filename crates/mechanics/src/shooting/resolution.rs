@@ -167,7 +167,7 @@ fn weight(bending: f64, bend: f64) -> f64 {
 
 /// The root of a load from which on a whisker coils up by more than a turn, so that the same error counts for more of the distance
 /// between base and pole. Only with friction are such states stable.
-const COILING: f64 = 6.3;
+const COILING: f64 = 5.0;
 
 /// Of the fall of the radius.
 #[inline(always)]
