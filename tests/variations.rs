@@ -128,8 +128,9 @@ fn taylor_extrapolation_is_of_second_order() {
     assert!(worst[0] < 3e-11 && worst[1] < 3e-7);
 }
 
-/// A whisker of 60 rows with 30 % of noise, whose rows are walked.
-fn rough() -> Scene {
+/// Whiskers of rough radii, whose rows are walked: 60 rows with 30 % of noise; a waist before a bulge, on a rough pole, of a modulus that
+/// rises.
+fn rough() -> [Scene; 2] {
     const LAST: u32 = 59;
     let mut random = random_rods::Random(3);
     let row = |i: u32| {
@@ -137,13 +138,18 @@ fn rough() -> Scene {
         [20.0 * s, 30.0 * (1.0 - 0.95 * s) * random.between(0.7, 1.3)]
     };
     let rows: Vec<[f64; 2]> = (0..=LAST).map(row).collect();
-    let text = format!(
-        "title = \"rough\"\n[whisker]\nlength_mm = 20\nyoungs_modulus_gpa = 3\n\
-         [whisker.profile]\nrows = {rows:?}\n[whisker.curvature]\nparabola_per_mm = 0.02\n\
-         [pole]\nradius_mm = 0.25\n[grid]\npush_angle_deg = {{ from = -70, to = 70, count = 128 }}\n\
-         distance_mm = {{ from = 2, to = 20, count = 256 }}\n"
-    );
-    Scene::parse(&text, "rough").unwrap()
+    let waist = "[[0, 30], [5, 28], [6, 9], [7, 60], [9, 40], [12, 14], [16, 9], [20, 2]]";
+    let more = "[whisker.modulus_gradient]\ntip_to_base = 3\n[contact]\nfriction = 0.3\n";
+    let scene = |rows: &str, more: &str| {
+        let text = format!(
+            "title = \"rough\"\n[whisker]\nlength_mm = 20\nyoungs_modulus_gpa = 3\n\
+             [whisker.profile]\nrows = {rows}\n[whisker.curvature]\nparabola_per_mm = 0.02\n\
+             {more}[pole]\nradius_mm = 0.25\n[grid]\npush_angle_deg = {{ from = -70, to = 70, count = 128 }}\n\
+             distance_mm = {{ from = 2, to = 20, count = 256 }}\n"
+        );
+        Scene::parse(&text, "rough").unwrap()
+    };
+    [scene(&format!("{rows:?}"), ""), scene(waist, more)]
 }
 
 /// The residual of a refined state bounds what a trajectory finds there, at every resolution.
@@ -160,7 +166,10 @@ fn residuals_are_bounds() {
         let scene = Scene::read(format!("scenes/{name}.toml")).unwrap();
         (name, scene)
     });
-    for (name, scene) in shipped.into_iter().chain([("rough", rough())]) {
+    for (name, scene) in shipped
+        .into_iter()
+        .chain(rough().map(|scene| ("rough", scene)))
+    {
         let whisker = scene.first_whisker().whisker;
         for side in Side::BOTH {
             let rod = whisker.rod(&scene.pole, side);

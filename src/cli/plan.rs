@@ -22,8 +22,8 @@ radius and friction only change where a trajectory starts, and projection is a f
 whisker's centre line: the whisker's own thickness does not add to the pole's radius. A GPU divides an engine \
 call into dispatches, as many as its speed asks for. Trajectories are those of the cells. They, the seconds and the bytes are \
 scaled up from samples of at most 128 x 128 cells (for the bytes, some 2^18 in all) and two values per sweep axis, fewer where these \
-would take more than some seconds, computed and packed on this machine's CPU and thrown away: seconds are CPU time over the threads; nothing is written and no GPU is \
-opened. Files come with the seconds that packing them adds; the picture of an EXR file and the disk's own speed are not in them. \
+would take more than some seconds, computed and packed on this machine's CPU and thrown away; nothing is written and no GPU is \
+opened. Seconds are the CPU's over the threads: where these wait, a map takes longer. Files come with the seconds that packing them adds; the picture of an EXR file and the disk's own speed are not in them. \
 A store keeps the packed panels of the block that it is at, too: at most 2 million cells.")]
 pub struct Options {
     /// Scene file; - reads it from standard input

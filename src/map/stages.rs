@@ -42,7 +42,7 @@ impl Stages {
         self.0[stage as usize].of(work)
     }
 
-    /// That of each up to now.
+    /// What each stage has taken up to now.
     pub fn times(&self) -> [Duration; Stage::ALL.len()] {
         self.0.each_ref().map(Account::time)
     }

@@ -143,7 +143,7 @@ impl Summary {
         self.device.as_secs_f64()
     }
 
-    /// Seconds, of these, for which nothing but the engine and the packing of panels went on.
+    /// Seconds of [`Self::device_seconds`] for which nothing but the engine and the packing of panels went on.
     #[must_use]
     pub const fn waiting_seconds(&self) -> f64 {
         self.waiting.as_secs_f64()

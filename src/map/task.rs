@@ -22,6 +22,7 @@ pub struct Task<'a> {
     pub sides: Vec<Pushes>,
     /// Signed push angles of the columns of all sides.
     pub angles: Vec<f64>,
+    /// What its stages take of the CPU.
     pub stages: Stages,
 }
 

@@ -39,8 +39,11 @@ use rayon::prelude::*;
 /// strongly curved cone the rounding of first touch (1e-13 of the length) is a load of 1e-8.
 const UNLOADED: f64 = 1e-6;
 
-/// Rows that are walked together: some walks end before others, and lanes should be full.
-pub const TOGETHER: usize = 128;
+/// How many of some `rows` are walked together: few enough that every thread has some, so many that lanes are full, though walks end at
+/// different times. No answer depends on it.
+pub fn together(rows: usize) -> usize {
+    rows.div_ceil(rayon::current_num_threads()).clamp(32, 128)
+}
 
 /// The sheet of one whisker on one side, with the rows of a map.
 #[derive(Clone, Debug)]
@@ -153,8 +156,8 @@ impl Sheet {
             guesses
         };
         let walked: Vec<Vec<WalkedPiece>> = rows
-            .par_chunks(TOGETHER)
-            .zip(crossings.par_chunks_mut(TOGETHER))
+            .par_chunks(together(distances.len()))
+            .zip(crossings.par_chunks_mut(together(distances.len())))
             .map_init(carried(), |_, rows| walk(rows))
             .flatten_iter()
             .collect();

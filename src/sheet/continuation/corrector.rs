@@ -9,8 +9,8 @@ use glam::DVec2;
 /// Most trajectories of a point.
 const MOST: usize = 12;
 
-/// A step, in parts of the scale, after which a point that may miss the curve by [`NODE_MISS`] needs no trajectory of its own: its
-/// square is left.
+/// A step, in parts of the scale and in `ln D`, after which a point that may miss the curve by [`NODE_MISS`] needs no trajectory of its
+/// own: what is left goes with the square of the longer of the two. On a soft rod that is the change of `ln D`.
 const LAST_STEP: f64 = 2e-5;
 
 /// A point on its way to its level curve.
@@ -61,7 +61,8 @@ impl<'a> Corrector<'a> {
         let part = gradient * (miss / gradient.length_squared());
         let step = scale * part;
         self.point += step;
-        if self.tolerance >= NODE_MISS && part.length() < LAST_STEP {
+        let is_short = part.length().max(miss.abs()) < LAST_STEP;
+        if self.tolerance >= NODE_MISS && is_short {
             return Correction::Done(self.point, here.extrapolated(step));
         }
         let goes_on = self.point.is_finite() && self.point.x > 0.0 && self.trajectories < MOST;

@@ -158,8 +158,8 @@ fn correct(
 /// Halvings: more than a mantissa has bits.
 const HALVINGS: usize = 64;
 
-/// After so many halvings it is told by how much the distance still changes, in parts of the whole, that it leaps: as the first fold does
-/// from contact to contact. A root would have fallen to a 64th.
+/// After so many halvings it is told by how much the distance still changes, in parts of what it has been seen to miss, that it leaps: as
+/// the first fold does from contact to contact. The change of a square root would have fallen to a 64th.
 const TELLING: usize = 12;
 const LEAP: f64 = 0.25;
 
@@ -192,15 +192,16 @@ fn bisect(
     }
     let mut parts = Bracket::new([0.0, 1.0], misses);
     let mut ends = misses;
+    let mut largest = misses[0].abs().max(misses[1].abs());
     for halving in 0..HALVINGS {
-        let leap = (ends[1] - ends[0]) / (misses[1] - misses[0]);
-        if halving >= TELLING && leap > LEAP {
+        if halving >= TELLING && (ends[1] - ends[0]).abs() > LEAP * largest {
             return None;
         }
         let middle = parts.middle();
         let (_, here) = between(middle)?;
         let miss = here.map.pole.length().ln() - target;
         parts.shrink(middle, miss);
+        largest = largest.max(miss.abs());
         ends[usize::from((miss <= 0.0) != (ends[0] <= 0.0))] = miss;
     }
     between(parts.middle())

@@ -1,8 +1,8 @@
 //! What the pieces of a profile ask of an integrator, each by its own: most of many pieces hardly bend, and need no more than a step.
 //!
 //! A load bends a piece by its compliance and the lever to the contact: how much of the whole that is depends on where the contact is,
-//! but not by much among contacts that are about as far from the base. So demands are tabulated by reach: contacts of one reach are
-//! within a factor of `2^(1/4)` of each other.
+//! so demands are tabulated by reach, as the largest of all contacts of about one distance from the base: those of one reach are within a
+//! factor of `2^(1/4)` of each other.
 
 use crate::rod::RadiusProfile;
 
@@ -15,14 +15,14 @@ const REACHES: u32 = 49;
 /// How far the sheet goes beyond the tip at most, in whisker lengths from the base.
 const BEYOND_TIP: f64 = 1.5;
 
-/// What a piece asks for on the way from contacts of one reach.
+/// What a piece asks for on the way from contacts of one reach. In `f32`, because it only counts steps.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Demand {
     /// Its part in the bending that has to be followed: the root of its share in the compliance times its part of the way, or half
     /// of its share. On a rod that is the same everywhere, its part of the way, about.
     pub bending: f32,
     /// How rough it is: by how much `ln radius` changes over it, times the fifth root of the same product. The levers at five nodes
-    /// feel its compliance to the fifth order.
+    /// feel its compliance to the fifth order (`benches/NOTES.md`).
     pub roughness: f32,
 }
 
@@ -61,7 +61,15 @@ impl Demands {
                 bending: (share * way).sqrt().max(0.5 * share) as f32,
                 roughness: (change * (share * way).powf(0.2)) as f32,
             };
+            let from = by_reach.len();
             by_reach.extend(shares.iter().zip(ways).zip(&profile.changes).map(demand));
+            // The piece beyond the tip has no length of its own: it asks for as much as any other.
+            let most = |one: Demand, other: &Demand| Demand {
+                bending: one.bending.max(other.bending),
+                roughness: one.roughness.max(other.roughness),
+            };
+            let tail = by_reach[from..].iter().fold(Demand::default(), most);
+            by_reach[from + pieces - 1] = tail;
         }
         Self { by_reach, pieces }
     }

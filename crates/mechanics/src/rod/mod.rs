@@ -9,7 +9,6 @@ mod rest;
     reason = "the file of the type that the room is named after"
 )]
 mod rod;
-
 mod units;
 
 pub use demands::{Demand, Demands};

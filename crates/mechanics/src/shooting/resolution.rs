@@ -148,7 +148,8 @@ impl PieceSteps {
         let bent = f64::from(steps) * f64::from(demand.bending);
         let at_rest = f64::from(self.at_rest) * profile.widths[k];
         let rough = ROUGH * f64::from(self.least) * f64::from(demand.roughness);
-        (bent.max(at_rest).max(rough).ceil() as u32).max(self.fewest)
+        let needed = bent.max(at_rest).max(rough).min(MOST);
+        (needed.ceil() as u32).max(self.fewest)
     }
 }
 
@@ -165,8 +166,8 @@ fn weight(bending: f64, bend: f64) -> f64 {
     0.28 + 0.195 * root + coiling + 0.18 * bend * bend.min(2.0)
 }
 
-/// The root of a load from which on a whisker coils up by more than a turn, so that the same error counts for more of the distance
-/// between base and pole. Only with friction are such states stable.
+/// The root of a scaled load from which on a whisker coils up, so that the same error counts for more of the distance between base and
+/// pole. Few stable states without friction are beyond it: the first fold of a cone lies at 24 at most.
 const COILING: f64 = 5.0;
 
 /// Of the fall of the radius.
