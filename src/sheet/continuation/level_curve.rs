@@ -5,10 +5,9 @@
 //! continuation has its predictor along the tangent, bent as the curve was before, its corrector along the gradient. Lengths are measured
 //! where people look at the curve: in push angle, contact angle (both in radians) and arclength of the contact (in whisker lengths).
 
-use crate::numerics::{Root, illinois, nearest_turn};
+use crate::numerics::nearest_turn;
 use crate::rod::{Rod, Side, arclength};
-use crate::sheet::continuation::corrector::{Corrector, correct, shoot};
-use crate::sheet::row::{Crossing, Row};
+use crate::sheet::row::Row;
 use crate::shooting::FullState;
 use crate::shooting::batch::Method;
 use glam::{DVec2, DVec3};
@@ -66,58 +65,6 @@ impl LevelCurve {
         }
     }
 
-    /// First touch, from where pushes are counted.
-    #[must_use]
-    pub fn touch(&self) -> Option<Node> {
-        let at_touch = DVec2::new(self.rod.tau(self.row.contact).min(self.rod.tau_tip()), 0.0);
-        let full = shoot(&[Corrector::new(self, at_touch, ON_CURVE)])
-            .first()?
-            .full;
-        Some(Node {
-            push: 0.0,
-            ..self.node(at_touch, &full, 0.0, 0.0)
-        })
-    }
-
-    /// The state at a crossing.
-    #[must_use]
-    pub fn at_crossing(&self, crossing: &Crossing) -> Option<Node> {
-        let at = DVec2::new(crossing.tau, crossing.load);
-        let (point, full) = self.correct(&[at], ON_CURVE).pop()??;
-        Some(self.node(point, &full, self.side.sign() * crossing.push, 0.0))
-    }
-
-    /// The state at the signed `push` (radians) between two of the `nodes`, along which the push angle grows or falls throughout;
-    /// `None` outside, or where the curve is lost.
-    #[must_use]
-    pub fn state_at_push(&self, nodes: &[Node], push: f64) -> Option<Node> {
-        Some(self.bracketed_push(nodes, push)?.0)
-    }
-
-    /// The same, and how it was found: without slopes, because that of the push angle is zero at the fold.
-    pub(super) fn bracketed_push(&self, nodes: &[Node], push: f64) -> Option<(Node, Root)> {
-        let miss = |node: &Node| node.push - push;
-        let is_between = |pair: &&[Node]| miss(&pair[0]) * miss(&pair[1]) <= 0.0;
-        let [from, to] = nodes.windows(2).find(is_between)? else {
-            return None;
-        };
-        let is_from_closer = miss(from).abs() < miss(to).abs();
-        let mut best = if is_from_closer { *from } else { *to };
-        let ends = [[0.0, miss(from)], [1.0, miss(to)]];
-        // The corrector leaves as much.
-        let tolerance = ON_CURVE * push.abs().max(1.0);
-        let root = illinois(ends, tolerance, |part| {
-            let start = from.point.lerp(to.point, part);
-            let (point, full) = self.correct(&[start], ON_CURVE).pop()??;
-            let node = self.node(point, &full, from.push, from.angle);
-            if miss(&node).abs() < miss(&best).abs() {
-                best = node;
-            }
-            Some(miss(&node))
-        })?;
-        Some((best, root))
-    }
-
     /// The state `full` at `point`, its angles continued from `push` and `angle`.
     #[must_use]
     pub fn node(&self, point: DVec2, full: &FullState, push: f64, angle: f64) -> Node {
@@ -155,13 +102,6 @@ impl LevelCurve {
         let turned = (point - from.point) / self.scale(from.point);
         let node = self.node(point, &full, from.push, from.angle);
         (turned.dot(along) > 0.5 * turned.length()).then_some(node)
-    }
-
-    /// Brings every point onto the curve, to `tolerance` in `ln D` or to rounding; `None` where that fails.
-    #[must_use]
-    pub fn correct(&self, points: &[DVec2], tolerance: f64) -> Vec<Option<(DVec2, FullState)>> {
-        let corrector = |point: &DVec2| Corrector::new(self, *point, tolerance);
-        correct(points.iter().map(corrector).collect())
     }
 
     /// How much `tau` and load can change before the state changes by about as much as it is.

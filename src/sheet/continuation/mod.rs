@@ -4,6 +4,7 @@ mod corrector;
 pub mod level_curve;
 mod meeting;
 pub mod pieces;
+mod states;
 mod walk;
 pub mod walked;
 

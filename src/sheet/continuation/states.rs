@@ -1,0 +1,69 @@
+//! States on a level curve: at first touch, at a crossing, at a push, and the nearest ones to given points.
+
+use crate::numerics::{Root, illinois};
+use crate::sheet::continuation::corrector::{Corrector, correct, shoot};
+use crate::sheet::continuation::level_curve::{LevelCurve, Node, ON_CURVE};
+use crate::sheet::row::Crossing;
+use crate::shooting::FullState;
+use glam::DVec2;
+
+impl LevelCurve {
+    /// First touch, from where pushes are counted.
+    #[must_use]
+    pub fn touch(&self) -> Option<Node> {
+        let at_touch = DVec2::new(self.rod.tau(self.row.contact).min(self.rod.tau_tip()), 0.0);
+        let full = shoot(&[Corrector::new(self, at_touch, ON_CURVE)])
+            .first()?
+            .full;
+        Some(Node {
+            push: 0.0,
+            ..self.node(at_touch, &full, 0.0, 0.0)
+        })
+    }
+
+    /// The state at a crossing.
+    #[must_use]
+    pub fn at_crossing(&self, crossing: &Crossing) -> Option<Node> {
+        let at = DVec2::new(crossing.tau, crossing.load);
+        let (point, full) = self.correct(&[at], ON_CURVE).pop()??;
+        Some(self.node(point, &full, self.side.sign() * crossing.push, 0.0))
+    }
+
+    /// The state at the signed `push` (radians) between two of the `nodes`, along which the push angle grows or falls throughout;
+    /// `None` outside, or where the curve is lost.
+    #[must_use]
+    pub fn state_at_push(&self, nodes: &[Node], push: f64) -> Option<Node> {
+        Some(self.bracketed_push(nodes, push)?.0)
+    }
+
+    /// The same, and how it was found: without slopes, because that of the push angle is zero at the fold.
+    pub(super) fn bracketed_push(&self, nodes: &[Node], push: f64) -> Option<(Node, Root)> {
+        let miss = |node: &Node| node.push - push;
+        let is_between = |pair: &&[Node]| miss(&pair[0]) * miss(&pair[1]) <= 0.0;
+        let [from, to] = nodes.windows(2).find(is_between)? else {
+            return None;
+        };
+        let is_from_closer = miss(from).abs() < miss(to).abs();
+        let mut best = if is_from_closer { *from } else { *to };
+        let ends = [[0.0, miss(from)], [1.0, miss(to)]];
+        // The corrector leaves as much.
+        let tolerance = ON_CURVE * push.abs().max(1.0);
+        let root = illinois(ends, tolerance, |part| {
+            let start = from.point.lerp(to.point, part);
+            let (point, full) = self.correct(&[start], ON_CURVE).pop()??;
+            let node = self.node(point, &full, from.push, from.angle);
+            if miss(&node).abs() < miss(&best).abs() {
+                best = node;
+            }
+            Some(miss(&node))
+        })?;
+        Some((best, root))
+    }
+
+    /// Brings every point onto the curve, to `tolerance` in `ln D` or to rounding; `None` where that fails.
+    #[must_use]
+    pub fn correct(&self, points: &[DVec2], tolerance: f64) -> Vec<Option<(DVec2, FullState)>> {
+        let corrector = |point: &DVec2| Corrector::new(self, *point, tolerance);
+        correct(points.iter().map(corrector).collect())
+    }
+}
