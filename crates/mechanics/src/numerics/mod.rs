@@ -2,6 +2,7 @@
 
 mod bracket;
 mod complex;
+pub mod gauss;
 pub mod lobatto;
 pub mod newton_form;
 pub mod newton_form_simd;

@@ -2,6 +2,7 @@
 
 mod demands;
 mod effects;
+mod piece_weights;
 mod radius;
 mod rest;
 #[allow(

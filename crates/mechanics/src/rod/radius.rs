@@ -5,6 +5,7 @@
 //! row, where the second derivative jumps, and a Runge-Kutta method keeps its order.
 
 use crate::rod::Demands;
+use crate::rod::piece_weights::PieceWeights;
 use crate::rod::rod::{arclength_at, pointed, tau_at};
 
 /// A cubic piece of a profile.
@@ -48,7 +49,9 @@ pub struct RadiusProfile {
     /// What they ask of an integrator.
     pub demands: Demands,
     /// Of the cone from the first row to the last, continued.
-    taper: f64,
+    pub(super) taper: f64,
+    /// Their compliances.
+    pub(super) weights: PieceWeights,
     /// Per piece: into how many parts its quadrature divides it, along `tau`.
     parts: Vec<u32>,
     /// From the base to each piece: the integrals of `radius^-4` and of `s radius^-4`.
@@ -112,12 +115,14 @@ impl RadiusProfile {
             changes.push(length * steepest.max(taper));
             parts.push((length * steepest).ceil().max(1.0) as u32);
         }
+        let weights = PieceWeights::new(pieces.len());
         let mut profile = Self {
             pieces,
             changes,
             widths,
             demands: Demands::default(),
             taper,
+            weights,
             parts,
             compliances: vec![[0.0; 2]],
         };

@@ -144,18 +144,18 @@ pub struct Measured<T> {
     pub from: T,
     /// Coefficients of the radius there.
     pub cubic: [T; 4],
-    /// `g`.
-    pub gradient: T,
+    /// `g`; none without.
+    pub gradient: Option<T>,
 }
 
 impl<T: Real> Measured<T> {
-    /// `1/S` at the arclength `s`: what turns a moment into a curvature.
+    /// `r^-4` at the arclength `s`.
     #[inline(always)]
     pub fn compliance(&self, s: T) -> T {
         let x = s - self.from;
         let [c0, c1, c2, c3] = self.cubic;
         let radius = x.mul_add(x.mul_add(x.mul_add(c3, c2), c1), c0);
         let square = radius * radius;
-        T::of(1.0) / (square * square * self.gradient.mul_add(s, T::of(1.0)))
+        T::of(1.0) / (square * square)
     }
 }

@@ -129,12 +129,13 @@ impl Way<'_> {
                 let material = Measured {
                     from: piece.from,
                     cubic: piece.cubic,
-                    gradient,
+                    gradient: Some(gradient),
                 };
                 let system = self.system(intrinsic, material);
                 let scales = Scales::tapered::<Nystrom8>(self.rod.taper, h);
                 let section = self.section(from);
-                state = collocate::<f64, _, Shape>(&system, scales.end(), section, steps, state);
+                state =
+                    collocate::<f64, _, Shape>(&system, scales.end(), section, steps, None, state);
                 from = end;
             }
         }

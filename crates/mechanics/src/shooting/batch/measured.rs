@@ -3,18 +3,20 @@
 //! The pieces of a block are those of one profile, its contacts may lie on any of them: the way begins on the piece nearest to the
 //! tip, and lanes whose contact is nearer to the base wait there.
 
-use super::gather::{Conditions, Contacts, GatherMaterial, lanes};
+use super::gather::{Conditions, Contacts, GatherMaterial, numbers};
 use crate::numerics::{Lanes, Vector, WIDTH};
-use crate::rod::Piece;
+use crate::rod::RadiusProfile;
 use crate::shooting::{
     Integrator, Intrinsic, Measured, Nystrom8, RodSystem, Scales, Section, Sensitivity, State,
-    collocate,
+    Table, collocate,
 };
 
 /// What is taken along a piece, lane by lane.
 struct Part {
     /// 1 where the piece is on the way, 0 where the contact is nearer to the base.
     goes: [f64; WIDTH],
+    /// 1 where the whole piece is on the way.
+    is_whole: [f64; WIDTH],
     /// `tau` and arclength where it starts: the contact, or the end of the piece.
     tau: [f64; WIDTH],
     from: [f64; WIDTH],
@@ -23,20 +25,24 @@ struct Part {
 impl Part {
     /// The part of the piece `k` on the way from contacts at `tau` and `s`.
     #[inline(always)]
-    fn new(pieces: &[Piece], k: usize, tau: &[f64; WIDTH], s: &[f64; WIDTH]) -> Self {
+    fn new(profile: &RadiusProfile, k: usize, tau: &[f64; WIDTH], s: &[f64; WIDTH]) -> Self {
+        let piece = &profile.pieces[k];
         let mut part = Self {
             goes: [0.0; WIDTH],
-            tau: [pieces[k].tau; WIDTH],
-            from: [pieces[k].from; WIDTH],
+            is_whole: [0.0; WIDTH],
+            tau: [piece.tau; WIDTH],
+            from: [piece.from; WIDTH],
         };
-        let next = pieces.get(k + 1);
+        let end = profile.end_of(k).unwrap_or([f64::INFINITY; 2]);
         for lane in 0..WIDTH {
-            if s[lane] > pieces[k].from {
-                let ends = next.filter(|next| next.from < s[lane]);
-                let [tau, from] = ends.map_or([tau[lane], s[lane]], |next| [next.tau, next.from]);
+            if s[lane] > end[1] {
+                part.is_whole[lane] = 1.0;
                 part.goes[lane] = 1.0;
-                part.tau[lane] = tau;
-                part.from[lane] = from;
+                [part.tau[lane], part.from[lane]] = end;
+            } else if s[lane] > piece.from {
+                part.goes[lane] = 1.0;
+                part.tau[lane] = tau[lane];
+                part.from[lane] = s[lane];
             }
         }
         part
@@ -65,21 +71,44 @@ impl<T: Lanes> GatherMaterial<T> for Measured<T> {
         let Some(profile) = &contacts.conditions[0].rod.profile else {
             return start;
         };
-        let gradient = lanes(contacts.conditions, |condition| condition.rod.gradient);
-        let mut last = 0;
+        let gradients = numbers(contacts.conditions, |condition| condition.rod.gradient);
+        let gradient = if gradients == [0.0; WIDTH] {
+            None
+        } else {
+            Some(T::pack(gradients))
+        };
+        let (mut nearest, mut farthest) = (s[0], s[0]);
         for s in &s[..T::LANES] {
-            last = last.max(profile.piece(*s));
+            nearest = nearest.min(*s);
+            farthest = farthest.max(*s);
         }
         let mut state = start;
-        for k in (0..=last).rev() {
-            let part = Part::new(&profile.pieces, k, &tau, &s);
+        for k in (0..=profile.piece(farthest)).rev() {
             let piece = &profile.pieces[k];
             let steps = contacts.key.pieces.of(profile, k, contacts.key.steps);
-            let from = T::pack(part.from);
-            let h = (T::pack(part.tau) - T::of(piece.tau)) / T::of(f64::from(steps));
-            let rho = one - contacts.taper * from;
+            let tabulated = profile.weights(k, steps);
+            let whole = profile.end_of(k).filter(|[_, end]| nearest > *end);
+            let (tau, from, goes, holds) = match whole {
+                Some([tau, from]) => (T::of(tau), T::of(from), None, None),
+                None => {
+                    let part = Part::new(profile, k, &tau, &s);
+                    let goes = T::pack(part.goes);
+                    let holds = T::pack(part.is_whole);
+                    (
+                        T::pack(part.tau),
+                        T::pack(part.from),
+                        Some(goes),
+                        Some(holds),
+                    )
+                }
+            };
+            let table = match tabulated {
+                Some(steps) => Some(Table { steps, holds }),
+                None => None,
+            };
+            let h = (tau - T::of(piece.tau)) / T::of(f64::from(steps));
             let section = Section {
-                rho,
+                rho: one - contacts.taper * from,
                 inverse_cube: zero,
                 arclength: from,
             };
@@ -93,9 +122,11 @@ impl<T: Lanes> GatherMaterial<T> for Measured<T> {
                 },
             };
             let scales = Scales::tapered::<Nystrom8>(contacts.taper, h);
-            let goes = T::pack(part.goes);
-            let arrived = collocate::<T, I, S>(&system, scales.end(), section, steps, state);
-            state = start.times(one - goes).plus(goes, arrived);
+            let arrived = collocate::<T, I, S>(&system, scales.end(), section, steps, table, state);
+            state = match goes {
+                Some(goes) => state.times(one - goes).plus(goes, arrived),
+                None => arrived,
+            };
         }
         state
     }

@@ -3,132 +3,96 @@
 //! Measured radii are rough. Their fourth power is what bends the rod, and no method that takes it for smooth gets along with a
 //! step a piece. But the levers `X` hardly feel it: they change by the cosine of an angle that bending turns a little within a
 //! step. So the levers are taken for polynomials through Gauss's nodes, and what turns the rod, `dtheta/da = f X/S`, is their
-//! integral with `1/S` as its weight, whatever its shape. The derivatives by a parameter have the same equations.
+//! integral with `r^-4` as its weight, whatever its shape. The modulus is smooth, and divides them at the nodes. The derivatives by a parameter have the same equations.
 //!
 //! Levers turn angles, and angles move levers: a few turns of this iteration suffice, because within a step bending moves a lever
 //! by a small part of itself.
 
+use crate::numerics::gauss::{AT, FLAT, Integrals, NODES, Weight, integrals};
 use crate::numerics::{Real, Vector, rotated_by_small};
 use crate::shooting::integrator::upright;
 use crate::shooting::{Intrinsic, Measured, RodSystem, Section, Sensitivity, Stage, State};
 
-/// Gauss's nodes in a step.
-const NODES: usize = 5;
-
-/// Gauss and Legendre's nodes on `[0, 1]`.
-const AT: [f64; NODES] = [
-    0.046_910_077_030_668,
-    0.230_765_344_947_158_45,
-    0.5,
-    0.769_234_655_052_841_5,
-    0.953_089_922_969_332,
-];
-
-/// Nodes and weights on `[0, 1]` of the quadrature of the compliance between neighbouring nodes.
-const WITHIN: [[f64; 2]; 4] = [
-    [0.069_431_844_202_973_71, 0.173_927_422_568_726_93],
-    [0.330_009_478_207_571_87, 0.326_072_577_431_273_07],
-    [0.669_990_521_792_428_1, 0.326_072_577_431_273_07],
-    [0.930_568_155_797_026_3, 0.173_927_422_568_726_93],
-];
-
 /// Rounds in which levers follow from angles, after the first prediction.
 const ITERATIONS: usize = 2;
 
-/// Where the quadrature looks between a node and the one before it (the start, before the first; the end, after the last), and
-/// there the polynomials that are 1 at one node and 0 at the others, times the weight.
-struct Look {
-    at: f64,
-    basis: [f64; NODES],
+/// The compliance as a weight, where that is known before: see [`RadiusProfile::weights`](crate::rod::RadiusProfile::weights).
+#[derive(Clone, Copy, Debug)]
+pub struct Table<'a, T> {
+    /// Step by step.
+    pub steps: &'a [Integrals<f64>],
+    /// 1 where it holds, 0 elsewhere; none where it holds in all lanes.
+    pub holds: Option<T>,
 }
 
-const LOOKS: [[Look; WITHIN.len()]; NODES + 1] = {
-    const NONE: Look = Look {
-        at: 0.0,
-        basis: [0.0; NODES],
-    };
-    let mut looks = [const { [NONE; WITHIN.len()] }; NODES + 1];
-    let mut gap = 0;
-    while gap <= NODES {
-        let from = if gap == 0 { 0.0 } else { AT[gap - 1] };
-        let to = if gap == NODES { 1.0 } else { AT[gap] };
-        let mut i = 0;
-        while i < WITHIN.len() {
-            let [node, weight] = WITHIN[i];
-            let at = from + node * (to - from);
-            looks[gap][i].at = at;
-            let mut j = 0;
-            while j < NODES {
-                let mut basis = weight * (to - from);
-                let mut k = 0;
-                while k < NODES {
-                    if k != j {
-                        basis *= (at - AT[k]) / (AT[j] - AT[k]);
-                    }
-                    k += 1;
-                }
-                looks[gap][i].basis[j] = basis;
-                j += 1;
-            }
-            i += 1;
-        }
-        gap += 1;
-    }
-    looks
-};
+/// The compliance backward from an arclength.
+struct Backward<'a, T> {
+    material: &'a Measured<T>,
+    from: T,
+    length: T,
+}
 
-/// Integrals of the basis from the start to every node, and to the end.
-const FLAT: [[f64; NODES]; NODES + 1] = {
-    let mut flat = [[0.0; NODES]; NODES + 1];
-    let mut sum = [0.0; NODES];
-    let mut gap = 0;
-    while gap <= NODES {
-        let mut j = 0;
-        while j < NODES {
-            let mut i = 0;
-            while i < WITHIN.len() {
-                sum[j] += LOOKS[gap][i].basis[j];
-                i += 1;
-            }
-            j += 1;
-        }
-        flat[gap] = sum;
-        gap += 1;
+impl<T: Real> Weight<T> for Backward<'_, T> {
+    #[inline(always)]
+    fn at(&self, x: f64) -> T {
+        self.material.compliance(self.from - self.length * T::of(x))
     }
-    flat
-};
+}
 
-/// The same with the compliance over `length` as a weight, backward from the arclength `from`.
+/// Integrals with the compliance over `length` as a weight, backward from the arclength `from`.
 #[inline(always)]
-fn weights<T: Real>(material: &Measured<T>, from: T, length: T) -> [[T; NODES]; NODES + 1] {
+fn weights<T: Real>(
+    material: &Measured<T>,
+    [from, length]: [T; 2],
+    table: Option<(&Integrals<f64>, Option<T>)>,
+) -> Integrals<T> {
     let mut weights = [[T::of(0.0); NODES]; NODES + 1];
-    let mut sum = [T::of(0.0); NODES];
-    for (gap, weights) in weights.iter_mut().enumerate() {
-        for look in &LOOKS[gap] {
-            let compliance = material.compliance(from - length * T::of(look.at));
-            for (sum, basis) in sum.iter_mut().zip(&look.basis) {
-                *sum = compliance.mul_add(T::of(*basis), *sum);
+    let mut from_table = T::of(0.0);
+    if let Some((table, holds)) = table {
+        from_table = match holds {
+            Some(holds) => holds,
+            None => T::of(1.0),
+        };
+        for (weights, table) in weights.iter_mut().zip(table) {
+            for (weight, tabulated) in weights.iter_mut().zip(table) {
+                *weight = from_table * T::of(*tabulated);
             }
         }
-        for (weight, sum) in weights.iter_mut().zip(&sum) {
-            *weight = length * *sum;
+    }
+    if !matches!(table, Some((_, None))) {
+        let backward = Backward {
+            material,
+            from,
+            length,
+        };
+        let computed = (T::of(1.0) - from_table) * length;
+        for (weights, integrals) in weights.iter_mut().zip(integrals(&backward)) {
+            for (weight, integral) in weights.iter_mut().zip(integrals) {
+                *weight = computed.mul_add(integral, *weight);
+            }
         }
     }
     weights
 }
 
-/// Integrates `system` in `steps` steps from the section `from`; each of them changes the rod as `end` says.
+/// Integrates `system` in `steps` steps from the section `from`; each of them changes the rod as `end` says, and finds its compliance
+/// in the `table`, if there is one.
 #[inline(always)]
 pub fn collocate<T: Real, I: Intrinsic<T>, S: Sensitivity<T>>(
     system: &RodSystem<T, I, Measured<T>>,
     end: &Stage<T>,
     from: Section<T>,
     steps: u32,
+    table: Option<Table<T>>,
     mut state: State<T, I, S>,
 ) -> State<T, I, S> {
     let mut section = from;
-    for _ in 0..steps {
-        state = step::<T, I, S>(system, end, &section, state);
+    for i in 0..steps as usize {
+        let table = match &table {
+            Some(table) => Some((&table.steps[i], table.holds)),
+            None => None,
+        };
+        state = step::<T, I, S>(system, end, &section, table, state);
         section = section.at(end);
     }
     state
@@ -142,11 +106,12 @@ fn step<T: Real, I: Intrinsic<T>, S: Sensitivity<T>>(
     system: &RodSystem<T, I, Measured<T>>,
     end: &Stage<T>,
     from: &Section<T>,
+    table: Option<(&Integrals<f64>, Option<T>)>,
     (rest, (rod, (angles, (levers, sums)))): State<T, I, S>,
 ) -> State<T, I, S> {
     let [c, s, x, y, bent] = rod;
     let length = from.rho * end.along;
-    let weights = weights(&system.material, from.arclength, length);
+    let weights = weights(&system.material, [from.arclength, length], table);
     let course = system.intrinsic.course(from, rest);
     let force = system.force;
     let start: Levers<T, S> = ([x], levers);
@@ -160,12 +125,23 @@ fn step<T: Real, I: Intrinsic<T>, S: Sensitivity<T>>(
     for (turn, at) in rest_turns.iter_mut().zip(AT) {
         *turn = I::turn(&course, end.along * T::of(at));
     }
+    // What the modulus leaves of the moments.
+    let mut left = [None; NODES];
+    if let Some(gradient) = system.material.gradient {
+        for (left, at) in left.iter_mut().zip(AT) {
+            let here = from.arclength - length * T::of(at);
+            *left = Some(T::of(1.0) / gradient.mul_add(here, T::of(1.0)));
+        }
+    }
     let mut moments = [start; NODES];
     macro_rules! find_moments {
         () => {
             for i in 0..NODES {
                 let ([x], levers) = at_nodes[i];
                 moments[i] = ([force * x], S::moments(force, x, levers));
+                if let Some(left) = left[i] {
+                    moments[i] = moments[i].times(left);
+                }
             }
         };
     }
