@@ -21,7 +21,7 @@ pub mod sensitivity;
 pub mod shape;
 
 pub use integrator::{
-    Integrator, Nystrom8, Rk4, STAGES, Scales, Stage, Table, collocate, integrate,
+    Backward, Integrator, Nystrom8, Rk4, STAGES, Scales, Stage, collocate, integrate,
 };
 pub use intrinsic::{
     Bent, Intrinsic, Spiral, Straight, TANGENT as REST_TANGENT, TERMS as REST_TERMS,

@@ -87,14 +87,16 @@ impl Resolution {
         self.rounded(weight, fastest * tau)
     }
 
-    /// What the pieces of the profile of `rod` need on the way from a contact at arclength `s`.
+    /// What the pieces of the profile of `rod` need on the way of a trajectory from `tau` under `load`.
     #[must_use]
-    pub(super) fn of_pieces(&self, rod: &Rod, s: f64) -> PieceSteps {
+    pub(super) fn of_pieces(&self, rod: &Rod, tau: f64, load: f64) -> PieceSteps {
+        let s = arclength(rod, tau);
         let fastest = (1.6 * rod.sharpest_bend()).max(0.5 * change_of_modulus(rod));
         PieceSteps {
-            least: self.least,
+            bent: f64::from(self.steps_from(rod, tau, load, s)),
+            at_rest: fastest / self.longest,
+            rough: ROUGH * f64::from(self.least),
             fewest: self.fewest,
-            at_rest: (fastest / self.longest).ceil() as u32,
             reach: Demands::reach(s),
         }
     }
@@ -128,26 +130,29 @@ impl Resolution {
     }
 }
 
-/// What the pieces of a profile need, whatever the load.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+/// What the pieces of a profile need on the way of one trajectory.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PieceSteps {
-    /// See [`Resolution`].
-    least: u32,
-    fewest: u32,
+    /// Steps of a piece that did all the bending.
+    bent: f64,
     /// Steps of a piece as long as the whisker, for its shape at rest and its modulus.
-    at_rest: u32,
+    at_rest: f64,
+    /// Steps of a piece of roughness 1.
+    rough: f64,
+    /// See [`Resolution`].
+    fewest: u32,
     /// Of the contact, see [`Demands`].
     reach: u32,
 }
 
 impl PieceSteps {
-    /// How many steps the piece `k` of `profile` takes, where one that did all the bending would take so many `steps`: by its share
-    /// in the bending, its length, and how its radius changes.
-    pub(super) fn of(&self, profile: &RadiusProfile, k: usize, steps: u32) -> u32 {
+    /// How many steps the piece `k` of `profile` takes: by its share in the bending, its length, and how its radius changes.
+    #[inline(always)]
+    pub(super) fn of(&self, profile: &RadiusProfile, k: usize) -> u32 {
         let demand = profile.demands.of(self.reach, k);
-        let bent = f64::from(steps) * f64::from(demand.bending);
-        let at_rest = f64::from(self.at_rest) * profile.widths[k];
-        let rough = ROUGH * f64::from(self.least) * f64::from(demand.roughness);
+        let bent = self.bent * f64::from(demand.bending);
+        let at_rest = self.at_rest * profile.widths[k];
+        let rough = self.rough * f64::from(demand.roughness);
         let needed = bent.max(at_rest).max(rough).min(MOST);
         (needed.ceil() as u32).max(self.fewest)
     }

@@ -2,8 +2,8 @@
 
 use crate::rod::{Rest, Rod, arclength};
 use crate::shooting::{
-    Bent, Graded, Intrinsic, Measured, Nystrom8, Resolution, RodSystem, Scales, Section, Shape,
-    Spiral, State, collocate, integrate,
+    Backward, Bent, Graded, Intrinsic, Measured, Nystrom8, Resolution, RodSystem, Scales, Section,
+    Shape, Spiral, State, collocate, integrate,
 };
 use glam::DVec2;
 
@@ -119,12 +119,13 @@ impl Way<'_> {
         };
         let mut ahead = self.tau;
         let last = self.rod.piece(self.contact);
-        let needed = self.resolution.of_pieces(self.rod, self.contact);
+        let load = self.force / self.rod.radius(self.tau).powi(2);
+        let needed = self.resolution.of_pieces(self.rod, self.tau, load);
         for (k, piece) in profile.pieces[..=last].iter().enumerate().rev() {
             let (whole, end) = (ahead - piece.tau, piece.tau.max(to));
             ahead = piece.tau;
             if end < from {
-                let steps = needed.of(profile, k, self.steps);
+                let steps = needed.of(profile, k);
                 let (steps, h) = share(steps, whole, from - end);
                 let material = Measured {
                     from: piece.from,
@@ -133,9 +134,22 @@ impl Way<'_> {
                 };
                 let system = self.system(intrinsic, material);
                 let scales = Scales::tapered::<Nystrom8>(self.rod.taper, h);
-                let section = self.section(from);
-                state =
-                    collocate::<f64, _, Shape>(&system, scales.end(), section, steps, None, state);
+                let mut section = self.section(from);
+                for _ in 0..steps {
+                    let computed = Backward {
+                        material: &material,
+                        from: section.arclength,
+                        length: section.rho * scales.end().along,
+                    };
+                    state = collocate::<f64, _, Shape>(
+                        &system,
+                        scales.end(),
+                        &section,
+                        &computed.weights(),
+                        state,
+                    );
+                    section = section.at(scales.end());
+                }
                 from = end;
             }
         }

@@ -1,8 +1,7 @@
 //! Which trajectories may share a block.
 
 use super::{InitialCondition, Method};
-use crate::rod::{Effects, arclength};
-use crate::shooting::PieceSteps;
+use crate::rod::Effects;
 use std::sync::Arc;
 
 /// What the trajectories of a block have in common: lanes step together.
@@ -12,9 +11,7 @@ pub struct BlockKey {
     pub effects: Effects,
     /// The address of the profile; 0 without one.
     profile: usize,
-    /// What the pieces of the profile need; nothing without one.
-    pub pieces: PieceSteps,
-    /// Steps of a trajectory, or those of a piece that did all the bending.
+    /// Steps of a trajectory; 0 with a profile, along which each lane takes steps of its own.
     pub steps: u32,
 }
 
@@ -27,7 +24,6 @@ impl BlockKey {
         steps: u32,
     ) -> Self {
         let profile = rod.profile.as_ref();
-        let of_pieces = |_| method.resolution.of_pieces(rod, arclength(rod, *tau));
         Self {
             effects: Effects {
                 // Pieces are integrated in a way of their own.
@@ -35,14 +31,13 @@ impl BlockKey {
                 ..method.effects.and(rod).reaching(rod.taper * tau)
             },
             profile: profile.map_or(0, |profile| Arc::as_ptr(profile).addr()),
-            pieces: profile.map(of_pieces).unwrap_or_default(),
             steps,
         }
     }
 
     /// Whether the two can share a padded block, which takes the steps of the one that needs more.
     pub fn may_pad(&self, other: &Self) -> bool {
-        let but_steps = |key: &Self| (key.effects, key.profile, key.pieces);
+        let but_steps = |key: &Self| (key.effects, key.profile);
         but_steps(self) == but_steps(other)
     }
 }

@@ -76,6 +76,6 @@ pub fn flops_of_nystrom8(effects: Effects, steps: u32, condition: &InitialCondit
     let method = Method::new(Resolution::of(steps)).with_effects(effects);
     let key = BlockKey::new(method, condition, steps);
     COUNT.set(0);
-    let _ = by_effects::<Nystrom8, ShootingMap, Counted>(&key, &[condition; WIDTH]);
+    let _ = by_effects::<Nystrom8, ShootingMap, Counted>(method, &key, &[condition; WIDTH]);
     COUNT.get()
 }

@@ -2,11 +2,10 @@
 
 use crate::numerics::{Lanes, WIDTH};
 use crate::shooting::batch::InitialCondition;
-use crate::shooting::batch::block_key::BlockKey;
 use crate::shooting::contact::{arc, parabola_tangent};
 use crate::shooting::{
-    Bent, Graded, Integrator, Intrinsic, Material, RodSystem, Scales, Section, Sensitivity, Spiral,
-    State, Straight, Uniform, integrate,
+    Bent, Graded, Integrator, Intrinsic, Material, Resolution, RodSystem, Scales, Section,
+    Sensitivity, Spiral, State, Straight, Uniform, integrate,
 };
 
 /// One condition for every lane.
@@ -32,8 +31,10 @@ pub fn lanes<T: Lanes>(conditions: &Conditions, number: impl Fn(&InitialConditio
 pub struct Contacts<'a, T> {
     /// Where the trajectories start.
     pub conditions: &'a Conditions<'a>,
-    /// How many steps they take.
-    pub key: &'a BlockKey,
+    /// How finely they are integrated.
+    pub resolution: Resolution,
+    /// In how many steps; 0 along a profile.
+    pub steps: u32,
     /// `beta` of the rods.
     pub taper: T,
     /// `tau`.
@@ -75,7 +76,7 @@ fn evenly<
     state: State<T, I, S>,
 ) -> State<T, I, S> {
     let one = T::of(1.0);
-    let h = contacts.tau / T::of(f64::from(contacts.key.steps));
+    let h = contacts.tau / T::of(f64::from(contacts.steps));
     let (scales, rho) = if ADVANCES {
         (Scales::tapered::<M>(contacts.taper, h), contacts.radius)
     } else {
@@ -91,7 +92,7 @@ fn evenly<
         intrinsic,
         material,
     };
-    integrate::<M, _, I, C, S>(&system, &scales, section, contacts.key.steps, state)
+    integrate::<M, _, I, C, S>(&system, &scales, section, contacts.steps, state)
 }
 
 impl<T: Lanes> GatherMaterial<T> for Uniform {

@@ -12,15 +12,21 @@ use std::marker::PhantomData;
 
 /// Up to as many conditions as there are lanes.
 pub struct Block<'a> {
+    method: Method,
     /// The lanes after the last condition repeat it.
     conditions: Conditions<'a>,
     count: usize,
 }
 
 impl<'a> Block<'a> {
-    /// The first `count` conditions, at least 1.
-    pub fn new(count: usize, condition: impl Fn(usize) -> &'a InitialCondition<'a>) -> Self {
+    /// The first `count` conditions, at least 1, by `method`.
+    pub fn new(
+        method: Method,
+        count: usize,
+        condition: impl Fn(usize) -> &'a InitialCondition<'a>,
+    ) -> Self {
         Self {
+            method,
             conditions: std::array::from_fn(|lane| condition(lane.min(count - 1))),
             count,
         }
@@ -72,26 +78,22 @@ impl<O: OutputSet> SimdTask for Trajectories<'_, O> {
 
     #[inline(always)]
     fn run<T: Lanes>(self) -> Self::Output {
-        self.block
-            .in_parts::<T, _>(|conditions| by_effects::<Nystrom8, O, T>(&self.key, conditions))
+        self.block.in_parts::<T, _>(|conditions| {
+            by_effects::<Nystrom8, O, T>(self.block.method, &self.key, conditions)
+        })
     }
 }
 
-/// The steps that the trajectories of a block take.
-pub struct Steps<'a> {
-    /// How they are integrated.
-    pub method: Method,
-    /// The block.
-    pub block: &'a Block<'a>,
-}
+/// The steps that the trajectories of a block take; 0 along a profile.
+pub struct Steps<'a>(pub &'a Block<'a>);
 
 impl SimdTask for Steps<'_> {
     type Output = [u32; WIDTH];
 
     #[inline(always)]
     fn run<T: Lanes>(self) -> Self::Output {
-        self.block
-            .in_parts::<T, _>(|conditions| steps::<T>(self.method, conditions))
+        let Self(block) = self;
+        block.in_parts::<T, _>(|conditions| steps::<T>(block.method, conditions))
     }
 }
 
@@ -106,7 +108,9 @@ fn steps<T: Lanes>(method: Method, conditions: &Conditions) -> [u32; WIDTH] {
     if conditions.iter().any(|c| !c.rod.is_uniform_cone()) {
         for (lane, condition) in conditions.iter().enumerate() {
             let InitialCondition { rod, tau, load } = condition;
-            steps[lane] = resolution.steps_from(rod, *tau, *load, s[lane]);
+            if rod.profile.is_none() {
+                steps[lane] = resolution.steps_from(rod, *tau, *load, s[lane]);
+            }
         }
     } else {
         let bend = numbers(conditions, |condition| condition.rod.sharpest_bend());
@@ -122,6 +126,7 @@ fn steps<T: Lanes>(method: Method, conditions: &Conditions) -> [u32; WIDTH] {
 /// Integrates with the kernel for `effects`. A profile has one kernel with a gradient or without: it costs one multiplication.
 #[inline(always)]
 pub fn by_effects<M: Integrator, O: OutputSet, T: Lanes>(
+    method: Method,
     key: &BlockKey,
     conditions: &Conditions,
 ) -> [O; WIDTH] {
@@ -129,6 +134,7 @@ pub fn by_effects<M: Integrator, O: OutputSet, T: Lanes>(
     macro_rules! kernel {
         ($rest:ty, $material:ty, $set:ident, $advances:literal) => {
             T::outlined(Kernel::<M, O, O::$set<T>, $rest, $material, $advances> {
+                method,
                 key,
                 conditions,
                 of: PhantomData,
@@ -163,6 +169,7 @@ pub fn by_effects<M: Integrator, O: OutputSet, T: Lanes>(
 
 /// Integrates as many trajectories in step as there are lanes.
 struct Kernel<'a, M, O, S, I, C, const ADVANCES: bool> {
+    method: Method,
     key: &'a BlockKey,
     conditions: &'a Conditions<'a>,
     of: PhantomData<(M, O, S, I, C)>,
@@ -182,7 +189,10 @@ where
     #[inline(always)]
     fn run(self) -> [O; WIDTH] {
         let Self {
-            key, conditions, ..
+            method,
+            key,
+            conditions,
+            ..
         } = self;
         let tau: T = lanes(conditions, |condition| condition.tau);
         let load: T = lanes(conditions, |condition| condition.load);
@@ -205,7 +215,8 @@ where
         let rod = [c, sin, zero, zero, zero];
         let contacts = Contacts {
             conditions,
-            key,
+            resolution: method.resolution,
+            steps: key.steps,
             taper,
             tau,
             radius,

@@ -3,49 +3,118 @@
 //! The pieces of a block are those of one profile, its contacts may lie on any of them: the way begins on the piece nearest to the
 //! tip, and lanes whose contact is nearer to the base wait there.
 
+use super::InitialCondition;
 use super::gather::{Conditions, Contacts, GatherMaterial, numbers};
+use crate::numerics::gauss::{Integrals, NODES};
 use crate::numerics::{Lanes, Vector, WIDTH};
 use crate::rod::RadiusProfile;
 use crate::shooting::{
-    Integrator, Intrinsic, Measured, Nystrom8, RodSystem, Scales, Section, Sensitivity, State,
-    Table, collocate,
+    Backward, Integrator, Intrinsic, Measured, Nystrom8, PieceSteps, RodSystem, Scales, Section,
+    Sensitivity, Stage, State, collocate,
 };
 
 /// What is taken along a piece, lane by lane.
 struct Part {
-    /// 1 where the piece is on the way, 0 where the contact is nearer to the base.
-    goes: [f64; WIDTH],
-    /// 1 where the whole piece is on the way.
-    is_whole: [f64; WIDTH],
+    /// Steps; none where the contact is nearer to the base.
+    steps: [u32; WIDTH],
+    /// The most of any lane.
+    most: u32,
+    /// Whether the whole piece is on the way.
+    is_whole: [bool; WIDTH],
     /// `tau` and arclength where it starts: the contact, or the end of the piece.
     tau: [f64; WIDTH],
     from: [f64; WIDTH],
 }
 
 impl Part {
-    /// The part of the piece `k` on the way from contacts at `tau` and `s`.
+    /// The part of the piece `k` on the way from contacts at `tau` and `s` that take such `steps`.
     #[inline(always)]
-    fn new(profile: &RadiusProfile, k: usize, tau: &[f64; WIDTH], s: &[f64; WIDTH]) -> Self {
+    fn new(
+        profile: &RadiusProfile,
+        k: usize,
+        tau: &[f64; WIDTH],
+        s: &[f64; WIDTH],
+        steps: &[PieceSteps],
+    ) -> Self {
         let piece = &profile.pieces[k];
+        let end = profile.end_of(k).unwrap_or([f64::INFINITY; 2]);
         let mut part = Self {
-            goes: [0.0; WIDTH],
-            is_whole: [0.0; WIDTH],
+            steps: [0; WIDTH],
+            most: 0,
+            is_whole: [false; WIDTH],
             tau: [piece.tau; WIDTH],
             from: [piece.from; WIDTH],
         };
-        let end = profile.end_of(k).unwrap_or([f64::INFINITY; 2]);
-        for lane in 0..WIDTH {
-            if s[lane] > end[1] {
-                part.is_whole[lane] = 1.0;
-                part.goes[lane] = 1.0;
-                [part.tau[lane], part.from[lane]] = end;
-            } else if s[lane] > piece.from {
-                part.goes[lane] = 1.0;
-                part.tau[lane] = tau[lane];
-                part.from[lane] = s[lane];
+        let mut last = (PieceSteps::default(), 0);
+        for (lane, steps) in steps.iter().enumerate() {
+            if s[lane] <= piece.from {
+                continue;
             }
+            if last.0 != *steps {
+                last = (*steps, steps.of(profile, k));
+            }
+            part.steps[lane] = last.1;
+            part.most = part.most.max(last.1);
+            part.is_whole[lane] = s[lane] > end[1];
+            [part.tau[lane], part.from[lane]] = if part.is_whole[lane] {
+                end
+            } else {
+                [tau[lane], s[lane]]
+            };
         }
         part
+    }
+
+    /// 1 in the lanes that take the step `i`, 0 in the others.
+    #[inline(always)]
+    fn takes(&self, i: u32) -> [f64; WIDTH] {
+        let mut takes = [0.0; WIDTH];
+        for (takes, steps) in takes.iter_mut().zip(&self.steps) {
+            *takes = f64::from(u8::from(i < *steps));
+        }
+        takes
+    }
+
+    /// The compliance along the step `i` as a weight: from the table of the piece `k`, where the whole of it is on the way.
+    #[inline(always)]
+    fn weights<T: Lanes>(
+        &self,
+        (i, takes): (u32, [f64; WIDTH]),
+        (profile, k): (&RadiusProfile, usize),
+        computed: Backward<T>,
+    ) -> Integrals<T> {
+        let mut weights = [[T::of(0.0); NODES]; NODES + 1];
+        let mut left = takes;
+        for lane in 0..WIDTH {
+            if left[lane] == 0.0 || !self.is_whole[lane] {
+                continue;
+            }
+            let steps = self.steps[lane];
+            let Some(table) = profile.weights(k, steps) else {
+                continue;
+            };
+            let mut alike = [0.0; WIDTH];
+            for other in 0..WIDTH {
+                let holds = self.is_whole[other] && self.steps[other] == steps;
+                alike[other] = f64::from(u8::from(holds));
+                left[other] -= alike[other];
+            }
+            let alike = T::pack(alike);
+            for (weights, table) in weights.iter_mut().zip(&table[i as usize]) {
+                for (weight, tabulated) in weights.iter_mut().zip(table) {
+                    *weight = alike.mul_add(T::of(*tabulated), *weight);
+                }
+            }
+        }
+        if left != [0.0; WIDTH] {
+            let left = T::pack(left);
+            for (weights, computed) in weights.iter_mut().zip(computed.weights()) {
+                for (weight, computed) in weights.iter_mut().zip(computed) {
+                    *weight = left.mul_add(computed, *weight);
+                }
+            }
+        }
+        weights
     }
 }
 
@@ -77,37 +146,24 @@ impl<T: Lanes> GatherMaterial<T> for Measured<T> {
         } else {
             Some(T::pack(gradients))
         };
-        let (mut nearest, mut farthest) = (s[0], s[0]);
-        for s in &s[..T::LANES] {
-            nearest = nearest.min(*s);
-            farthest = farthest.max(*s);
+        let mut needs = [PieceSteps::default(); WIDTH];
+        let mut farthest = 0.0_f64;
+        for lane in 0..T::LANES {
+            let InitialCondition { rod, tau, load } = contacts.conditions[lane];
+            needs[lane] = contacts.resolution.of_pieces(rod, *tau, *load);
+            farthest = farthest.max(s[lane]);
         }
         let mut state = start;
         for k in (0..=profile.piece(farthest)).rev() {
             let piece = &profile.pieces[k];
-            let steps = contacts.key.pieces.of(profile, k, contacts.key.steps);
-            let tabulated = profile.weights(k, steps);
-            let whole = profile.end_of(k).filter(|[_, end]| nearest > *end);
-            let (tau, from, goes, holds) = match whole {
-                Some([tau, from]) => (T::of(tau), T::of(from), None, None),
-                None => {
-                    let part = Part::new(profile, k, &tau, &s);
-                    let goes = T::pack(part.goes);
-                    let holds = T::pack(part.is_whole);
-                    (
-                        T::pack(part.tau),
-                        T::pack(part.from),
-                        Some(goes),
-                        Some(holds),
-                    )
-                }
-            };
-            let table = match tabulated {
-                Some(steps) => Some(Table { steps, holds }),
-                None => None,
-            };
-            let h = (tau - T::of(piece.tau)) / T::of(f64::from(steps));
-            let section = Section {
+            let part = Part::new(profile, k, &tau, &s, &needs[..T::LANES]);
+            let mut counts = [1.0; WIDTH];
+            for (count, steps) in counts.iter_mut().zip(&part.steps) {
+                *count = f64::from((*steps).max(1));
+            }
+            let from = T::pack(part.from);
+            let h = (T::pack(part.tau) - T::of(piece.tau)) / T::pack(counts);
+            let mut section = Section {
                 rho: one - contacts.taper * from,
                 inverse_cube: zero,
                 arclength: from,
@@ -122,11 +178,24 @@ impl<T: Lanes> GatherMaterial<T> for Measured<T> {
                 },
             };
             let scales = Scales::tapered::<Nystrom8>(contacts.taper, h);
-            let arrived = collocate::<T, I, S>(&system, scales.end(), section, steps, table, state);
-            state = match goes {
-                Some(goes) => state.times(one - goes).plus(goes, arrived),
-                None => arrived,
-            };
+            for i in 0..part.most {
+                let lanes = part.takes(i);
+                let takes = T::pack(lanes);
+                // Lanes that wait go nowhere.
+                let end = Stage {
+                    along: takes * scales.end().along,
+                    ..*scales.end()
+                };
+                let computed = Backward {
+                    material: &system.material,
+                    from: section.arclength,
+                    length: section.rho * end.along,
+                };
+                let weights = part.weights((i, lanes), (profile, k), computed);
+                let stepped = collocate::<T, I, S>(&system, &end, &section, &weights, state);
+                state = state.times(one - takes).plus(takes, stepped);
+                section = section.at(&end);
+            }
         }
         state
     }

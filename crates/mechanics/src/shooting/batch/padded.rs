@@ -19,8 +19,8 @@ pub fn shoot<O: OutputSet>(
 ) {
     let mut members: Vec<(BlockKey, usize)> = Vec::with_capacity(conditions.len());
     for conditions in conditions.chunks(WIDTH) {
-        let block = &Block::new(conditions.len(), |i| &conditions[i]);
-        let steps = unit.run(Steps { method, block });
+        let block = &Block::new(method, conditions.len(), |i| &conditions[i]);
+        let steps = unit.run(Steps(block));
         for (condition, steps) in conditions.iter().zip(steps) {
             members.push((BlockKey::new(method, condition, steps), members.len()));
         }
@@ -32,7 +32,7 @@ pub fn shoot<O: OutputSet>(
         .collect();
     let compute = |members: &&[(BlockKey, usize)]| {
         let (most_steps, _) = members[members.len() - 1];
-        let block = Block::new(members.len(), |i| &conditions[members[i].1]);
+        let block = Block::new(method, members.len(), |i| &conditions[members[i].1]);
         O::shoot(unit, most_steps, &block)
     };
     let mut keep = |members: &[(BlockKey, usize)], computed: [O; WIDTH]| {

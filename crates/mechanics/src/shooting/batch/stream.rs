@@ -14,7 +14,7 @@ pub fn shoot<'a, O: OutputSet>(
     mut take: impl FnMut(usize, &O),
 ) {
     let mut compute = |key: BlockKey, members: &mut Vec<(usize, InitialCondition<'a>)>| {
-        let block = Block::new(members.len(), |i| &members[i].1);
+        let block = Block::new(method, members.len(), |i| &members[i].1);
         let outputs = O::shoot(unit, key, &block);
         for ((i, _), output) in members.iter().zip(&outputs) {
             take(*i, output);
@@ -31,8 +31,8 @@ pub fn shoot<'a, O: OutputSet>(
         if next.is_empty() {
             break;
         }
-        let block = &Block::new(next.len(), |i| &next[i]);
-        let steps = unit.run(Steps { method, block });
+        let block = &Block::new(method, next.len(), |i| &next[i]);
+        let steps = unit.run(Steps(block));
         for (i, (condition, steps)) in (from..).zip(next.drain(..).zip(steps)) {
             let key = BlockKey::new(method, &condition, steps);
             let index = keys.index(key);

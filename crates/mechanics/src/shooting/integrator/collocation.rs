@@ -16,20 +16,14 @@ use crate::shooting::{Intrinsic, Measured, RodSystem, Section, Sensitivity, Stag
 /// Rounds in which levers follow from angles, after the first prediction.
 const ITERATIONS: usize = 2;
 
-/// The compliance as a weight, where that is known before: see [`RadiusProfile::weights`](crate::rod::RadiusProfile::weights).
-#[derive(Clone, Copy, Debug)]
-pub struct Table<'a, T> {
-    /// Step by step.
-    pub steps: &'a [Integrals<f64>],
-    /// 1 where it holds, 0 elsewhere; none where it holds in all lanes.
-    pub holds: Option<T>,
-}
-
-/// The compliance backward from an arclength.
-struct Backward<'a, T> {
-    material: &'a Measured<T>,
-    from: T,
-    length: T,
+/// The compliance of a material backward from an arclength.
+pub struct Backward<'a, T> {
+    /// The material.
+    pub material: &'a Measured<T>,
+    /// The arclength.
+    pub from: T,
+    /// How far.
+    pub length: T,
 }
 
 impl<T: Real> Weight<T> for Backward<'_, T> {
@@ -39,79 +33,34 @@ impl<T: Real> Weight<T> for Backward<'_, T> {
     }
 }
 
-/// Integrals with the compliance over `length` as a weight, backward from the arclength `from`.
-#[inline(always)]
-fn weights<T: Real>(
-    material: &Measured<T>,
-    [from, length]: [T; 2],
-    table: Option<(&Integrals<f64>, Option<T>)>,
-) -> Integrals<T> {
-    let mut weights = [[T::of(0.0); NODES]; NODES + 1];
-    let mut from_table = T::of(0.0);
-    if let Some((table, holds)) = table {
-        from_table = match holds {
-            Some(holds) => holds,
-            None => T::of(1.0),
-        };
-        for (weights, table) in weights.iter_mut().zip(table) {
-            for (weight, tabulated) in weights.iter_mut().zip(table) {
-                *weight = from_table * T::of(*tabulated);
+impl<T: Real> Backward<'_, T> {
+    /// The compliance as a weight over the arclength.
+    #[inline(always)]
+    pub fn weights(&self) -> Integrals<T> {
+        let mut weights = integrals(self);
+        for weights in &mut weights {
+            for weight in weights {
+                *weight = self.length * *weight;
             }
         }
+        weights
     }
-    if !matches!(table, Some((_, None))) {
-        let backward = Backward {
-            material,
-            from,
-            length,
-        };
-        let computed = (T::of(1.0) - from_table) * length;
-        for (weights, integrals) in weights.iter_mut().zip(integrals(&backward)) {
-            for (weight, integral) in weights.iter_mut().zip(integrals) {
-                *weight = computed.mul_add(integral, *weight);
-            }
-        }
-    }
-    weights
-}
-
-/// Integrates `system` in `steps` steps from the section `from`; each of them changes the rod as `end` says, and finds its compliance
-/// in the `table`, if there is one.
-#[inline(always)]
-pub fn collocate<T: Real, I: Intrinsic<T>, S: Sensitivity<T>>(
-    system: &RodSystem<T, I, Measured<T>>,
-    end: &Stage<T>,
-    from: Section<T>,
-    steps: u32,
-    table: Option<Table<T>>,
-    mut state: State<T, I, S>,
-) -> State<T, I, S> {
-    let mut section = from;
-    for i in 0..steps as usize {
-        let table = match &table {
-            Some(table) => Some((&table.steps[i], table.holds)),
-            None => None,
-        };
-        state = step::<T, I, S>(system, end, &section, table, state);
-        section = section.at(end);
-    }
-    state
 }
 
 /// What turns the rod, and its derivatives: `X` and the levers of the sensitivities. Their moments turn the angles.
 type Levers<T, S> = ([T; 1], <S as Sensitivity<T>>::Pairs);
 
+/// One step of `system` from the section `from`, which changes the rod as `end` says, with the compliance along it as `weights`.
 #[inline(always)]
-fn step<T: Real, I: Intrinsic<T>, S: Sensitivity<T>>(
+pub fn collocate<T: Real, I: Intrinsic<T>, S: Sensitivity<T>>(
     system: &RodSystem<T, I, Measured<T>>,
     end: &Stage<T>,
     from: &Section<T>,
-    table: Option<(&Integrals<f64>, Option<T>)>,
+    weights: &Integrals<T>,
     (rest, (rod, (angles, (levers, sums)))): State<T, I, S>,
 ) -> State<T, I, S> {
     let [c, s, x, y, bent] = rod;
     let length = from.rho * end.along;
-    let weights = weights(&system.material, [from.arclength, length], table);
     let course = system.intrinsic.course(from, rest);
     let force = system.force;
     let start: Levers<T, S> = ([x], levers);

@@ -4,7 +4,7 @@ mod collocation;
 mod nystrom8;
 mod rk4;
 
-pub use collocation::{Table, collocate};
+pub use collocation::{Backward, collocate};
 pub use nystrom8::Nystrom8;
 pub use rk4::Rk4;
 
