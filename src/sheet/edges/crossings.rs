@@ -4,15 +4,14 @@
 //! distance, and a row crosses between two samples when exactly one of them is at most its own distance. So
 //! the number of crossings has the right parity whatever the rounding. Where a row crosses is predicted, and then corrected.
 
-use crate::numerics::{Bracket, nearest_turn};
+use crate::numerics::nearest_turn;
 use crate::rod::{Rod, Side};
 use crate::sheet::edges::Edges;
+use crate::sheet::edges::bisection::{Between, Point, bisect};
 use crate::sheet::edges::edge_newton::{EdgeProblem, edge_newton_predicted};
 use crate::sheet::edges::predictor::{Prediction, Sample};
-use crate::sheet::fold::first_folds;
 use crate::sheet::row::{Crossing, Edge, REACH_SLACK, Row};
-use crate::shooting::batch::{Batch, InitialCondition, Method};
-use crate::shooting::{SecondVariation, ShootingMap};
+use crate::shooting::batch::Method;
 use glam::DVec2;
 
 /// A row, and two samples of an edge between which it crosses.
@@ -119,90 +118,52 @@ fn correct(
         })
         .collect();
     let iterates = edge_newton_predicted(method, &problems);
-    let corrected = iterates.into_iter().zip(candidates).map(|(iterate, c)| {
-        let row = &rows[c.row];
-        let crossing = |point: DVec2, map: &ShootingMap, residual: f64| {
-            let phi = nearest_turn(map.pole.to_angle(), c.predicted.phi);
-            Crossing {
-                edge: c.edge,
-                tau: point.x,
-                load: point.y,
-                push: side.sign() * (phi - row.touch),
-                residual,
-            }
-        };
-        let residual = iterate.miss.abs() + iterate.left * iterate.left;
-        let newton = crossing(iterate.point, &iterate.here.map, residual);
-        if newton.is_sound() && c.holds(iterate.point) {
-            return newton;
+    let crossing = |c: &Candidate, (point, here): Point, residual: f64| {
+        let phi = nearest_turn(here.map.pole.to_angle(), c.predicted.phi);
+        Crossing {
+            edge: c.edge,
+            tau: point.x,
+            load: point.y,
+            push: side.sign() * (phi - rows[c.row].touch),
+            residual,
         }
-        let bisected = bisect(method, rod, side, c, row.pole_distance.ln());
-        let bisected = bisected.map(|(point, here)| {
-            let distance = here.map.pole.length();
-            let residual = (row.pole_distance / distance).ln().abs();
-            crossing(point, &here.map, residual)
+    };
+    let mut corrected: Vec<Crossing> = iterates
+        .iter()
+        .zip(candidates)
+        .map(|(iterate, c)| {
+            let residual = iterate.miss.abs() + iterate.left * iterate.left;
+            crossing(c, (iterate.point, iterate.here), residual)
+        })
+        .collect();
+    let is_lost =
+        |i: &usize| !(corrected[*i].is_sound() && candidates[*i].holds(iterates[*i].point));
+    let lost: Vec<usize> = (0..candidates.len()).filter(is_lost).collect();
+    let between: Vec<Between> = lost
+        .iter()
+        .map(|&i| Between {
+            edge: candidates[i].edge,
+            samples: candidates[i].between,
+            target: rows[candidates[i].row].pole_distance.ln(),
+        })
+        .collect();
+    for (i, point) in lost.into_iter().zip(bisect(method, rod, side, &between)) {
+        let c = &candidates[i];
+        let row = &rows[c.row];
+        let bisected = point.map(|point| {
+            let (_, here) = point;
+            let residual = (row.pole_distance / here.map.pole.length()).ln().abs();
+            crossing(c, point, residual)
         });
         // Where the first fold jumps from contact to contact, there is nothing between the samples. What Newton's method
         // has found may be on another sheet: continuation must tell.
-        bisected.filter(Crossing::is_sound).unwrap_or(Crossing {
+        corrected[i] = bisected.filter(Crossing::is_sound).unwrap_or(Crossing {
             edge: c.edge,
             tau: c.predicted.tau,
             load: c.predicted.load,
             push: side.sign() * (c.predicted.phi - row.touch),
             residual: f64::INFINITY,
-        })
-    });
-    corrected.collect()
-}
-
-/// Halvings: more than a mantissa has bits.
-const HALVINGS: usize = 64;
-
-/// After so many halvings it is told by how much the distance still changes, in parts of what it has been seen to miss, that it leaps: as
-/// the first fold does from contact to contact. The change of a square root would have fallen to a 64th.
-const TELLING: usize = 12;
-const LEAP: f64 = 0.25;
-
-/// The point `(tau, load)` of an edge at which `ln D` is `target`, where Newton's method loses it because the distance turns nearby.
-/// If both samples are on the same side of it, the one that is closer. `None` where a fold is missing, or the distance leaps
-/// over the target.
-fn bisect(
-    method: Method,
-    rod: &Rod,
-    side: Side,
-    candidate: &Candidate,
-    target: f64,
-) -> Option<(DVec2, SecondVariation)> {
-    let [from, to] = candidate.between;
-    let between = |part: f64| -> Option<(DVec2, SecondVariation)> {
-        let tau = from.tau + part * (to.tau - from.tau);
-        if candidate.edge == Edge::Fold {
-            let fold = first_folds(method, rod, side, &[tau]).pop()??;
-            return Some((DVec2::new(tau, fold.load), fold.variation));
-        }
-        let load = from.load + part * (to.load - from.load);
-        let shot =
-            Batch::new(method).shoot::<SecondVariation>(&[InitialCondition { rod, tau, load }]);
-        Some((DVec2::new(tau, load), *shot.first()?))
-    };
-    let misses = [from, to].map(|sample| sample.ln_distance - target);
-    if (misses[0] <= 0.0) == (misses[1] <= 0.0) {
-        let is_from_closer = misses[0].abs() <= misses[1].abs();
-        return between(if is_from_closer { 0.0 } else { 1.0 });
+        });
     }
-    let mut parts = Bracket::new([0.0, 1.0], misses);
-    let mut ends = misses;
-    let mut largest = misses[0].abs().max(misses[1].abs());
-    for halving in 0..HALVINGS {
-        if halving >= TELLING && (ends[1] - ends[0]).abs() > LEAP * largest {
-            return None;
-        }
-        let middle = parts.middle();
-        let (_, here) = between(middle)?;
-        let miss = here.map.pole.length().ln() - target;
-        parts.shrink(middle, miss);
-        largest = largest.max(miss.abs());
-        ends[usize::from((miss <= 0.0) != (ends[0] <= 0.0))] = miss;
-    }
-    between(parts.middle())
+    corrected
 }

@@ -1,5 +1,6 @@
 //! The edges of the stable sheet, sampled: the fold at every contact node, the tip from first touch to the corner.
 
+mod bisection;
 pub mod crossings;
 pub mod edge_newton;
 mod extremum;

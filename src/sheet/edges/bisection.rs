@@ -1,0 +1,150 @@
+//! Crossings by bisection between two samples of an edge, where Newton's method loses them because the distance turns nearby.
+
+use crate::numerics::Bracket;
+use crate::rod::{Rod, Side};
+use crate::sheet::edges::predictor::Sample;
+use crate::sheet::fold::first_folds;
+use crate::sheet::row::Edge;
+use crate::shooting::SecondVariation;
+use crate::shooting::batch::{Batch, InitialCondition, Method};
+use glam::DVec2;
+
+/// Two samples of an edge, and the `ln D` that is looked for between them.
+pub struct Between {
+    pub edge: Edge,
+    pub samples: [Sample; 2],
+    pub target: f64,
+}
+
+/// A point `(tau, load)` of an edge, and the pole there.
+pub type Point = (DVec2, SecondVariation);
+
+/// Halvings: more than a mantissa has bits.
+const HALVINGS: usize = 64;
+
+/// After so many halvings it is told by how much the distance still changes, in parts of what it has been seen to miss, that it leaps: as
+/// the first fold does from contact to contact. The change of a square root would have fallen to a 64th.
+const TELLING: usize = 12;
+const LEAP: f64 = 0.25;
+
+/// A bisection on its way.
+struct Search {
+    /// Which one.
+    index: usize,
+    /// Where it looks next, in parts of the way between the samples.
+    part: f64,
+    /// What is between.
+    parts: Bracket,
+    /// What the ends miss, and the most that any place has missed.
+    ends: [f64; 2],
+    largest: f64,
+    halvings: usize,
+    /// Whether the next place is the answer.
+    is_last: bool,
+}
+
+impl Search {
+    fn new(index: usize, between: &Between) -> Self {
+        let ends = between
+            .samples
+            .map(|sample| sample.ln_distance - between.target);
+        let parts = Bracket::new([0.0, 1.0], ends);
+        let sizes = ends.map(f64::abs);
+        let is_last = (ends[0] <= 0.0) == (ends[1] <= 0.0);
+        Self {
+            index,
+            part: match is_last {
+                true if sizes[0] <= sizes[1] => 0.0,
+                true => 1.0,
+                false => parts.middle(),
+            },
+            parts,
+            ends,
+            largest: sizes[0].max(sizes[1]),
+            halvings: 0,
+            is_last,
+        }
+    }
+
+    /// Goes on where the distance misses the target by `miss`; false if it leaps over it.
+    fn halve(&mut self, miss: f64) -> bool {
+        self.parts.shrink(self.part, miss);
+        self.largest = self.largest.max(miss.abs());
+        self.ends[usize::from((miss <= 0.0) != (self.ends[0] <= 0.0))] = miss;
+        self.part = self.parts.middle();
+        self.halvings += 1;
+        self.is_last = self.halvings == HALVINGS;
+        let leaps = (self.ends[1] - self.ends[0]).abs() > LEAP * self.largest;
+        !leaps || self.halvings < TELLING
+    }
+}
+
+/// For each two samples, the point of the edge between them at which `ln D` is the target. If both are on the same side of it, the one
+/// that is closer. `None` where a fold is missing, or the distance leaps over the target.
+pub fn bisect(method: Method, rod: &Rod, side: Side, all: &[Between]) -> Vec<Option<Point>> {
+    let mut found = vec![None; all.len()];
+    let mut open: Vec<Search> = all
+        .iter()
+        .enumerate()
+        .map(|(index, between)| Search::new(index, between))
+        .collect();
+    while !open.is_empty() {
+        let mut points = points(method, rod, side, all, &open).into_iter();
+        open.retain_mut(|search| {
+            let Some(Some(point)) = points.next() else {
+                return false;
+            };
+            if search.is_last {
+                found[search.index] = Some(point);
+                return false;
+            }
+            let (_, here) = point;
+            search.halve(here.map.pole.length().ln() - all[search.index].target)
+        });
+    }
+    found
+}
+
+/// Where each search looks next.
+fn points(
+    method: Method,
+    rod: &Rod,
+    side: Side,
+    all: &[Between],
+    open: &[Search],
+) -> Vec<Option<Point>> {
+    let at = |search: &Search| {
+        let [from, to] = all[search.index].samples;
+        let [from, to] = [from, to].map(|sample| DVec2::new(sample.tau, sample.load));
+        from.lerp(to, search.part)
+    };
+    let is_fold = |search: &&Search| all[search.index].edge == Edge::Fold;
+    let contacts: Vec<f64> = open
+        .iter()
+        .filter(is_fold)
+        .map(|search| at(search).x)
+        .collect();
+    let conditions: Vec<InitialCondition> = open
+        .iter()
+        .filter(|search| !is_fold(search))
+        .map(|search| InitialCondition {
+            rod,
+            tau: all[search.index].samples[0].tau,
+            load: at(search).y,
+        })
+        .collect();
+    let mut folds = first_folds(method, rod, side, &contacts).into_iter();
+    let mut shots = Batch::new(method)
+        .shoot::<SecondVariation>(&conditions)
+        .into_iter();
+    open.iter()
+        .map(|search| {
+            if is_fold(&search) {
+                let fold = folds.next()??;
+                Some((DVec2::new(fold.tau, fold.load), fold.variation))
+            } else {
+                Some((at(search), shots.next()?))
+            }
+        })
+        .collect()
+}
