@@ -15,6 +15,9 @@ pub const WIDTH: usize = 16;
 
 /// Numbers worked on in step, or one for comparison.
 pub trait Lanes: Real {
+    /// Half as many of the same unit, in one register of each kind: faster where two do not fit into the processor.
+    type Narrow: Lanes;
+
     /// How many.
     const LANES: usize;
 
@@ -40,6 +43,8 @@ pub trait LanesTask<T: Lanes> {
 }
 
 impl Lanes for f64 {
+    type Narrow = Self;
+
     const LANES: usize = 1;
 
     #[inline(always)]

@@ -14,54 +14,33 @@ use crate::numerics::Real;
 use std::arch::x86_64::*;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// Implements `$trait` for two registers, one after the other.
+/// Implements `$trait` for registers, one after the other.
 macro_rules! operator {
-    ($vectors:ident, $trait:ident, $method:ident, $f:ident) => {
+    ($vectors:ident [$($i:tt)+], $trait:ident, $method:ident, $f:ident) => {
         impl $trait for $vectors {
             type Output = Self;
             #[inline(always)]
             fn $method(self, other: Self) -> Self {
                 // SAFETY: such values exist only where the unit does; see the module.
-                unsafe { Self($f(self.0, other.0), $f(self.1, other.1)) }
+                unsafe { Self($($f(self.$i, other.$i)),+) }
             }
         }
     };
 }
 
-/// A token that only `detect` makes, and two registers of `$each` numbers as lanes.
-macro_rules! unit {
+/// Registers of `$each` numbers as lanes.
+macro_rules! vectors {
     (
-        $(#[$doc:meta])* $token:ident, $enabled:literal, [$($feature:tt)+], $vectors:ident, $register:ty, $each:literal,
+        $vectors:ident [$($i:tt $register:ty),+], $narrow:ident, $enabled:literal, $each:literal,
         $add:ident, $sub:ident, $mul:ident, $div:ident, $fma:ident, $splat:ident, $sqrt:ident, $load:ident, $store:ident
     ) => {
-        $(#[$doc])*
-        #[derive(Clone, Copy, Debug)]
-        pub struct $token(());
-
-        impl $token {
-            /// The token, where the processor has all features of the unit.
-            pub fn detect() -> Option<Self> {
-                ($(is_x86_feature_detected!($feature))&&+).then_some(Self(()))
-            }
-
-            /// Does `task` in this unit's lanes.
-            pub fn run<K: SimdTask>(self, task: K) -> K::Output {
-                #[target_feature(enable = $enabled)]
-                fn run<K: SimdTask>(task: K) -> K::Output {
-                    task.run::<$vectors>()
-                }
-                // SAFETY: `detect` has seen every feature that the function enables.
-                unsafe { run(task) }
-            }
-        }
-
         #[derive(Clone, Copy)]
-        struct $vectors($register, $register);
+        struct $vectors($($register),+);
 
-        operator!($vectors, Add, add, $add);
-        operator!($vectors, Sub, sub, $sub);
-        operator!($vectors, Mul, mul, $mul);
-        operator!($vectors, Div, div, $div);
+        operator!($vectors [$($i)+], Add, add, $add);
+        operator!($vectors [$($i)+], Sub, sub, $sub);
+        operator!($vectors [$($i)+], Mul, mul, $mul);
+        operator!($vectors [$($i)+], Div, div, $div);
 
         impl Neg for $vectors {
             type Output = Self;
@@ -75,44 +54,44 @@ macro_rules! unit {
             #[inline(always)]
             fn of(x: f64) -> Self {
                 // SAFETY: this is called only where the unit exists; see the module.
-                unsafe { Self($splat(x), $splat(x)) }
+                unsafe { Self($(<$register>::from($splat(x))),+) }
             }
 
             #[inline(always)]
             fn mul_add(self, a: Self, b: Self) -> Self {
                 // SAFETY: such values exist only where the unit does; see the module.
-                unsafe { Self($fma(self.0, a.0, b.0), $fma(self.1, a.1, b.1)) }
+                unsafe { Self($($fma(self.$i, a.$i, b.$i)),+) }
             }
 
             #[inline(always)]
             fn sqrt(self) -> Self {
                 // SAFETY: such values exist only where the unit does; see the module.
-                unsafe { Self($sqrt(self.0), $sqrt(self.1)) }
+                unsafe { Self($($sqrt(self.$i)),+) }
             }
         }
 
         impl Lanes for $vectors {
+            type Narrow = $narrow;
+
             const LANES: usize = {
-                assert!(2 * $each <= WIDTH);
-                2 * $each
+                let lanes = $each * [$($i),+].len();
+                assert!(lanes <= WIDTH);
+                lanes
             };
 
             #[inline(always)]
             fn pack(lanes: [f64; WIDTH]) -> Self {
                 let from = lanes.as_ptr();
-                // SAFETY: two registers are no longer than the array; see the module for the instructions.
-                unsafe { Self($load(from), $load(from.add($each))) }
+                // SAFETY: the registers are no longer than the array; see the module for the instructions.
+                unsafe { Self($($load(from.add($i * $each))),+) }
             }
 
             #[inline(always)]
             fn unpack(self) -> [f64; WIDTH] {
                 let mut lanes = [0.0; WIDTH];
                 let to = lanes.as_mut_ptr();
-                // SAFETY: two registers are no longer than the array; see the module for the instructions.
-                unsafe {
-                    $store(to, self.0);
-                    $store(to.add($each), self.1);
-                }
+                // SAFETY: the registers are no longer than the array; see the module for the instructions.
+                unsafe { $($store(to.add($i * $each), self.$i));+ }
                 lanes
             }
 
@@ -130,15 +109,47 @@ macro_rules! unit {
     };
 }
 
+/// A token that only `detect` makes, and one or two registers of `$each` numbers as lanes.
+macro_rules! unit {
+    (
+        $(#[$doc:meta])* $token:ident, $enabled:literal, [$($feature:tt)+], $one:ident, $two:ident, $register:ty, $each:literal,
+        $($instruction:ident),+
+    ) => {
+        $(#[$doc])*
+        #[derive(Clone, Copy, Debug)]
+        pub struct $token(());
+
+        impl $token {
+            /// The token, where the processor has all features of the unit.
+            pub fn detect() -> Option<Self> {
+                ($(is_x86_feature_detected!($feature))&&+).then_some(Self(()))
+            }
+
+            /// Does `task` in this unit's lanes.
+            pub fn run<K: SimdTask>(self, task: K) -> K::Output {
+                #[target_feature(enable = $enabled)]
+                fn run<K: SimdTask>(task: K) -> K::Output {
+                    task.run::<$two>()
+                }
+                // SAFETY: `detect` has seen every feature that the function enables.
+                unsafe { run(task) }
+            }
+        }
+
+        vectors!($one [0 $register], $one, $enabled, $each, $($instruction),+);
+        vectors!($two [0 $register, 1 $register], $one, $enabled, $each, $($instruction),+);
+    };
+}
+
 unit!(
     /// The processor has AVX-512.
-    Avx512, "avx512f,avx512dq,avx512vl,fma", ["avx512f" "avx512dq" "avx512vl" "fma"], Vectors512, __m512d, 8,
+    Avx512, "avx512f,avx512dq,avx512vl,fma", ["avx512f" "avx512dq" "avx512vl" "fma"], Vector512, Vectors512, __m512d, 8,
     _mm512_add_pd, _mm512_sub_pd, _mm512_mul_pd, _mm512_div_pd, _mm512_fmadd_pd, _mm512_set1_pd, _mm512_sqrt_pd,
     _mm512_loadu_pd, _mm512_storeu_pd
 );
 unit!(
     /// The processor has AVX2 with FMA.
-    Avx2, "avx2,fma", ["avx2" "fma"], Vectors256, __m256d, 4,
+    Avx2, "avx2,fma", ["avx2" "fma"], Vector256, Vectors256, __m256d, 4,
     _mm256_add_pd, _mm256_sub_pd, _mm256_mul_pd, _mm256_div_pd, _mm256_fmadd_pd, _mm256_set1_pd, _mm256_sqrt_pd,
     _mm256_loadu_pd, _mm256_storeu_pd
 );

@@ -58,6 +58,8 @@ impl Real for Counted {
 }
 
 impl Lanes for Counted {
+    type Narrow = Self;
+
     const LANES: usize = 1;
 
     fn pack(lanes: [f64; WIDTH]) -> Self {

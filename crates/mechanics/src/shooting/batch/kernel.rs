@@ -78,8 +78,14 @@ impl<O: OutputSet> SimdTask for Trajectories<'_, O> {
 
     #[inline(always)]
     fn run<T: Lanes>(self) -> Self::Output {
-        self.block.in_parts::<T, _>(|conditions| {
-            by_effects::<Nystrom8, O, T>(self.block.method, &self.key, conditions)
+        let Self { key, block, .. } = &self;
+        if key.effects.profile {
+            return block.in_parts::<T::Narrow, _>(|conditions| {
+                along_profile::<O, T::Narrow>(block.method, key, conditions)
+            });
+        }
+        block.in_parts::<T, _>(|conditions| {
+            by_effects::<Nystrom8, O, T>(block.method, key, conditions)
         })
     }
 }
@@ -123,47 +129,89 @@ fn steps<T: Lanes>(method: Method, conditions: &Conditions) -> [u32; WIDTH] {
     steps
 }
 
-/// Integrates with the kernel for `effects`. A profile has one kernel with a gradient or without: it costs one multiplication.
+/// A kernel with these sensitivities, rest shape and material, on a rod that changes along its length or not.
+macro_rules! kernel {
+    ($lanes:ty, $method:ty, $outputs:ty, $set:ty, $rest:ty, $material:ty, $advances:literal, $of:expr) => {{
+        let (method, key, conditions) = $of;
+        <$lanes>::outlined(
+            Kernel::<$method, $outputs, $set, $rest, $material, $advances> {
+                method,
+                key,
+                conditions,
+                of: PhantomData,
+            },
+        )
+    }};
+}
+
+/// Integrates with the kernel for the effects of the `key`, of which a profile is none.
 #[inline(always)]
 pub fn by_effects<M: Integrator, O: OutputSet, T: Lanes>(
     method: Method,
     key: &BlockKey,
     conditions: &Conditions,
 ) -> [O; WIDTH] {
-    /// The kernel for a rest shape and a material, with these sensitivities, on a rod that changes along its length or not.
-    macro_rules! kernel {
+    macro_rules! on {
         ($rest:ty, $material:ty, $set:ident, $advances:literal) => {
-            T::outlined(Kernel::<M, O, O::$set<T>, $rest, $material, $advances> {
-                method,
-                key,
-                conditions,
-                of: PhantomData,
-            })
+            kernel!(
+                T,
+                M,
+                O,
+                O::$set<T>,
+                $rest,
+                $material,
+                $advances,
+                (method, key, conditions)
+            )
         };
     }
     let Effects {
+        taper,
         curvature,
         spiral,
         gradient,
-        profile,
         ..
     } = key.effects;
-    match (spiral, curvature, profile, gradient) {
-        (true, _, true, _) => kernel!(Spiral<T>, Measured<T>, General, true),
-        (true, _, false, true) => kernel!(Spiral<T>, Graded<T>, General, true),
-        (true, _, false, false) => kernel!(Spiral<T>, Uniform, General, true),
-        (false, true, true, _) => kernel!(Bent<T>, Measured<T>, General, true),
-        (false, true, false, true) => kernel!(Bent<T>, Graded<T>, General, true),
-        (false, true, false, false) if key.effects.taper => {
-            kernel!(Bent<T>, Uniform, General, true)
-        }
-        (false, true, false, false) => kernel!(Bent<T>, Uniform, General, false),
-        (false, false, true, _) => kernel!(Straight, Measured<T>, General, true),
-        (false, false, false, true) => kernel!(Straight, Graded<T>, General, true),
-        (false, false, false, false) if key.effects.taper => {
-            kernel!(Straight, Uniform, Similar, true)
-        }
-        (false, false, false, false) => kernel!(Straight, Uniform, Similar, false),
+    match (spiral, curvature, gradient, taper) {
+        (true, _, true, _) => on!(Spiral<T>, Graded<T>, General, true),
+        (true, _, false, _) => on!(Spiral<T>, Uniform, General, true),
+        (false, true, true, _) => on!(Bent<T>, Graded<T>, General, true),
+        (false, true, false, true) => on!(Bent<T>, Uniform, General, true),
+        (false, true, false, false) => on!(Bent<T>, Uniform, General, false),
+        (false, false, true, _) => on!(Straight, Graded<T>, General, true),
+        (false, false, false, true) => on!(Straight, Uniform, Similar, true),
+        (false, false, false, false) => on!(Straight, Uniform, Similar, false),
+    }
+}
+
+/// The same along a profile. There is one kernel with a gradient or without, which costs a multiplication.
+#[inline(always)]
+fn along_profile<O: OutputSet, T: Lanes>(
+    method: Method,
+    key: &BlockKey,
+    conditions: &Conditions,
+) -> [O; WIDTH] {
+    macro_rules! on {
+        ($rest:ty) => {
+            kernel!(
+                T,
+                Nystrom8,
+                O,
+                O::General<T>,
+                $rest,
+                Measured<T>,
+                true,
+                (method, key, conditions)
+            )
+        };
+    }
+    let Effects {
+        curvature, spiral, ..
+    } = key.effects;
+    match (spiral, curvature) {
+        (true, _) => on!(Spiral<T>),
+        (false, true) => on!(Bent<T>),
+        (false, false) => on!(Straight),
     }
 }
 
