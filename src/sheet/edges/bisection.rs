@@ -105,7 +105,8 @@ pub fn bisect(method: Method, rod: &Rod, side: Side, all: &[Between]) -> Vec<Opt
     found
 }
 
-/// Where each search looks next.
+/// Where each search looks next. Searches for several distances between the same samples look at the same places, as long as all of them
+/// are on the same side.
 fn points(
     method: Method,
     rod: &Rod,
@@ -113,38 +114,35 @@ fn points(
     all: &[Between],
     open: &[Search],
 ) -> Vec<Option<Point>> {
-    let at = |search: &Search| {
+    let place = |search: &Search| {
         let [from, to] = all[search.index].samples;
         let [from, to] = [from, to].map(|sample| DVec2::new(sample.tau, sample.load));
-        from.lerp(to, search.part)
+        from + search.part * (to - from)
     };
-    let is_fold = |search: &&Search| all[search.index].edge == Edge::Fold;
-    let contacts: Vec<f64> = open
-        .iter()
-        .filter(is_fold)
-        .map(|search| at(search).x)
-        .collect();
-    let conditions: Vec<InitialCondition> = open
-        .iter()
-        .filter(|search| !is_fold(search))
+    let on = |edge: Edge| open.iter().filter(move |s| all[s.index].edge == edge);
+    let mut contacts: Vec<f64> = on(Edge::Fold).map(|search| place(search).x).collect();
+    contacts.sort_by(f64::total_cmp);
+    contacts.dedup();
+    let folds = first_folds(method, rod, side, &contacts);
+    let conditions: Vec<InitialCondition> = on(Edge::Tip)
         .map(|search| InitialCondition {
             rod,
             tau: all[search.index].samples[0].tau,
-            load: at(search).y,
+            load: place(search).y,
         })
         .collect();
-    let mut folds = first_folds(method, rod, side, &contacts).into_iter();
     let mut shots = Batch::new(method)
         .shoot::<SecondVariation>(&conditions)
         .into_iter();
     open.iter()
-        .map(|search| {
-            if is_fold(&search) {
-                let fold = folds.next()??;
-                Some((DVec2::new(fold.tau, fold.load), fold.variation))
-            } else {
-                Some((at(search), shots.next()?))
+        .map(|search| match all[search.index].edge {
+            Edge::Fold => {
+                let tau = place(search).x;
+                let contact = contacts.binary_search_by(|other| other.total_cmp(&tau));
+                let fold = folds[contact.ok()?]?;
+                Some((DVec2::new(tau, fold.load), fold.variation))
             }
+            Edge::Tip => Some((place(search), shots.next()?)),
         })
         .collect()
 }

@@ -184,6 +184,12 @@ fn polish(method: Method, rod: &Rod, marched: Vec<Option<Marched>>) -> Vec<Optio
             break;
         }
         // Those that are done stay in the batch: with fewer steps, at the tip of a perfect cone, `det` may have its root elsewhere.
+        // Along a profile each takes steps of its own.
+        if rod.profile.is_some() {
+            let mut still = is_open.iter().copied();
+            all.retain(|_| still.next().unwrap_or(false));
+            is_open.retain(|open| *open);
+        }
         let conditions: Vec<InitialCondition> = all
             .iter()
             .map(|(_, marched)| InitialCondition {
