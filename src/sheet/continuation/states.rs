@@ -1,11 +1,16 @@
 //! States on a level curve: at first touch, at a crossing, at a push, and the nearest ones to given points.
 
 use crate::numerics::{Root, illinois};
+use crate::rod::arclength;
 use crate::sheet::continuation::corrector::{Corrector, correct, shoot};
 use crate::sheet::continuation::level_curve::{LevelCurve, Node, ON_CURVE};
 use crate::sheet::row::Crossing;
 use crate::shooting::FullState;
 use glam::DVec2;
+
+/// How much more rounding leaves next to states of a scaled load `q` than [`ON_CURVE`], per `q`: 1.4e-14 at 38 was too little, of 800
+/// states on branches of cones up to there.
+const ROUGHENING: f64 = 0.1;
 
 impl LevelCurve {
     /// First touch, from where pushes are counted.
@@ -47,7 +52,7 @@ impl LevelCurve {
         let mut best = if is_from_closer { *from } else { *to };
         let ends = [[0.0, miss(from)], [1.0, miss(to)]];
         // The corrector leaves as much.
-        let tolerance = ON_CURVE * push.abs().max(1.0);
+        let tolerance = self.rounding(from).max(self.rounding(to)) * push.abs().max(1.0);
         let root = illinois(ends, tolerance, |part| {
             let start = from.point.lerp(to.point, part);
             let (point, full) = self.correct(&[start], ON_CURVE).pop()??;
@@ -58,6 +63,13 @@ impl LevelCurve {
             Some(miss(&node))
         })?;
         Some((best, root))
+    }
+
+    /// What rounding leaves of `ln D` and of the push angle next to a node: the levers' own, which the load makes turn the rod.
+    pub(super) fn rounding(&self, node: &Node) -> f64 {
+        let s = arclength(&self.rod, node.point.x);
+        let q = (node.point.y * s * s).abs() * self.rod.softness(node.point.x);
+        ON_CURVE * (ROUGHENING * q).max(1.0)
     }
 
     /// Brings every point onto the curve, to `tolerance` in `ln D` or to rounding; `None` where that fails.

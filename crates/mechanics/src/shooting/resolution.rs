@@ -167,13 +167,13 @@ fn change_of_modulus(rod: &Rod) -> f64 {
 #[inline(always)]
 fn weight(bending: f64, bend: f64) -> f64 {
     let root = bending.sqrt();
-    let coiling = 0.5 * (root - COILING).max(0.0);
+    let coiling = 0.6 * (root - COILING).max(0.0);
     0.28 + 0.195 * root + coiling + 0.18 * bend * bend.min(2.0)
 }
 
 /// The root of a scaled load from which on a whisker coils up, so that the same error counts for more of the distance between base and
 /// pole. Few stable states without friction are beyond it: the first fold of a cone lies at `q` of 24 at most.
-const COILING: f64 = 5.0;
+const COILING: f64 = 4.5;
 
 /// Of the fall of the radius.
 #[inline(always)]
