@@ -10,8 +10,7 @@ use whiskmap::classify::Regime;
 use whiskmap::rod::{Rod, Side};
 use whiskmap::scene::Scene;
 use whiskmap::sheet::Sheet;
-use whiskmap::shooting::ShootingMap;
-use whiskmap::shooting::batch::{Batch, InitialCondition, Method};
+use whiskmap::shooting::batch::Method;
 use whiskmap::trace::{Detachment, DetachmentKind, NoState};
 
 /// How far before and after an end the others are asked, in degrees.
@@ -24,7 +23,7 @@ const SAME: f64 = 1e-8;
 const MOST_PUSH: f64 = 360.0;
 
 /// Whether all agree that a push at the only distance of `scene` ends like `end`.
-fn agree(scene: &Scene, end: &Detachment) -> Result<(), TestCaseError> {
+pub fn agree(scene: &Scene, end: &Detachment) -> Result<(), TestCaseError> {
     let Some(push) = end.push_angle_deg else {
         prop_assert_eq!(end.kind, DetachmentKind::OutOfReach);
         let branch = whiskmap::branch(scene, end.distance_mm, end.side);
@@ -127,123 +126,6 @@ fn every_way_leads_to_the_same_end() {
     };
     TestRunner::new(config).run(&whiskers(), holds).unwrap();
     assert!(ends.get() > 400, "{}", ends.get());
-}
-
-/// Cylinders that coil up: the distance dips along the tip edge or along the fold so narrowly that samples of a sheet do not see it.
-#[test]
-fn narrow_dips_are_not_missed() {
-    use DetachmentKind::{PullOff, SlipOff};
-    let coiled = [
-        (
-            Side::Cb,
-            0.0,
-            0.8985976550518069,
-            1.0,
-            0.01197993778232795,
-            PullOff,
-        ),
-        (
-            Side::Cb,
-            0.1344136525243472,
-            0.8870166499183616,
-            1.0,
-            0.006561675176450292,
-            SlipOff,
-        ),
-        (
-            Side::Cf,
-            0.046872210686984314,
-            0.8550808096527569,
-            1.0,
-            0.004602123462169978,
-            PullOff,
-        ),
-        (
-            Side::Cb,
-            0.004535013423207362,
-            0.8712990696537211,
-            0.84679680609,
-            0.0010233092092122975,
-            SlipOff,
-        ),
-    ];
-    for (side, bend, friction, tip_to_base, distance, kind) in coiled {
-        let case = Case {
-            length_mm: 20.0,
-            taper: 0.0,
-            bend,
-            pole: 0.0,
-            friction,
-            tip_to_base,
-            stretch: 1.0,
-            rows: Vec::new(),
-            pushes_deg: vec![0.0],
-            distances: vec![distance],
-        };
-        let scene = case.scene();
-        for (_, end) in whiskmap::curve(&scene, Options::default()).unwrap() {
-            assert!(end.side != side || end.kind == kind, "{end:?}");
-            agree(&scene, &end).unwrap();
-        }
-    }
-}
-
-/// How far apart the first two folds of `rod` at the arclength `s` are in `q = |load| s^2`, up to 40; on the CB side.
-fn between_folds(rod: &Rod, s: f64) -> f64 {
-    const STEP: f64 = 0.05;
-    let condition = |i: i32| InitialCondition {
-        rod,
-        tau: rod.tau(s),
-        load: STEP * f64::from(i) / (s * s),
-    };
-    let conditions: Vec<InitialCondition> = (0..800).map(condition).collect();
-    let maps = Batch::new(Method::fine()).shoot::<ShootingMap>(&conditions);
-    let folds = maps.windows(2).enumerate();
-    let mut folds = folds.filter(|(_, pair)| pair[0].det() * pair[1].det() <= 0.0);
-    let [first, second] = [folds.next(), folds.next()].map(|fold| fold.unwrap().0);
-    STEP * (second - first) as f64
-}
-
-/// Strongly bent whiskers with two folds so close together that a march along the load may step over both.
-#[test]
-fn close_folds_are_not_missed() {
-    // Taper, `A*`, slope at the base, modulus gradient; the contact with the close folds, and the distance there.
-    let whiskers = [
-        (0.196, 3.175, -2.506, 0.286, 0.8, 0.593),
-        (0.142, 8.141, -2.119, 0.0, 0.25, 0.171),
-        (0.038, 9.524, -2.384, -0.373, 0.25, 0.181),
-    ];
-    for (taper, bend, slope, gradient, contact, distance) in whiskers {
-        let case = Case {
-            length_mm: 20.0,
-            taper,
-            bend,
-            pole: 0.0,
-            friction: 0.0,
-            tip_to_base: 1.0 + gradient,
-            stretch: 1.0,
-            rows: Vec::new(),
-            pushes_deg: vec![0.0],
-            distances: [0.5, 0.8, 0.9, 0.95, 0.98, 1.0, 1.02, 1.05]
-                .map(|part| part * distance)
-                .to_vec(),
-        };
-        let vertex_mm = -slope / (2.0 * bend) * case.length_mm;
-        let scene = case
-            .scene()
-            .with("whisker.curvature.vertex_mm", vertex_mm)
-            .unwrap();
-        let apart = between_folds(&scene.first_whisker().rod(Side::Cb), contact);
-        assert!((0.1..1.6).contains(&apart), "{apart}");
-        let mut ends = 0;
-        for (_, end) in whiskmap::curve(&scene, Options::default()).unwrap() {
-            assert_ne!(end.kind, DetachmentKind::Unresolved, "{end:?}");
-            let alone = scene.with("grid.distance_mm", [end.distance_mm]).unwrap();
-            agree(&alone, &end).unwrap();
-            ends += usize::from(end.push_angle_deg.is_some());
-        }
-        assert!(ends > 8, "{ends}");
-    }
 }
 
 /// The ends of a row are its own: a nearer row brings no others to light. This whisker straightens so far that it reaches the pole

@@ -14,6 +14,7 @@ mod compute;
 mod ends;
 mod engines;
 mod limits;
+mod missed;
 mod named;
 mod random;
 mod states;

@@ -9,3 +9,4 @@ mod integrators;
 mod radius;
 mod resolution;
 mod rest;
+mod rough;

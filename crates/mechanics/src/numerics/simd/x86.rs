@@ -54,7 +54,7 @@ macro_rules! vectors {
             #[inline(always)]
             fn of(x: f64) -> Self {
                 // SAFETY: this is called only where the unit exists; see the module.
-                unsafe { Self($(<$register>::from($splat(x))),+) }
+                unsafe { Self { $($i: $splat(x)),+ } }
             }
 
             #[inline(always)]

@@ -129,21 +129,6 @@ fn steps<T: Lanes>(method: Method, conditions: &Conditions) -> [u32; WIDTH] {
     steps
 }
 
-/// A kernel with these sensitivities, rest shape and material, on a rod that changes along its length or not.
-macro_rules! kernel {
-    ($lanes:ty, $method:ty, $outputs:ty, $set:ty, $rest:ty, $material:ty, $advances:literal, $of:expr) => {{
-        let (method, key, conditions) = $of;
-        <$lanes>::outlined(
-            Kernel::<$method, $outputs, $set, $rest, $material, $advances> {
-                method,
-                key,
-                conditions,
-                of: PhantomData,
-            },
-        )
-    }};
-}
-
 /// Integrates with the kernel for the effects of the `key`, of which a profile is none.
 #[inline(always)]
 pub fn by_effects<M: Integrator, O: OutputSet, T: Lanes>(
@@ -151,18 +136,15 @@ pub fn by_effects<M: Integrator, O: OutputSet, T: Lanes>(
     key: &BlockKey,
     conditions: &Conditions,
 ) -> [O; WIDTH] {
-    macro_rules! on {
+    /// The kernel for a rest shape and a material, with these sensitivities, on a rod that changes along its length or not.
+    macro_rules! kernel {
         ($rest:ty, $material:ty, $set:ident, $advances:literal) => {
-            kernel!(
-                T,
-                M,
-                O,
-                O::$set<T>,
-                $rest,
-                $material,
-                $advances,
-                (method, key, conditions)
-            )
+            T::outlined(Kernel::<M, O, O::$set<T>, $rest, $material, $advances> {
+                method,
+                key,
+                conditions,
+                of: PhantomData,
+            })
         };
     }
     let Effects {
@@ -173,45 +155,40 @@ pub fn by_effects<M: Integrator, O: OutputSet, T: Lanes>(
         ..
     } = key.effects;
     match (spiral, curvature, gradient, taper) {
-        (true, _, true, _) => on!(Spiral<T>, Graded<T>, General, true),
-        (true, _, false, _) => on!(Spiral<T>, Uniform, General, true),
-        (false, true, true, _) => on!(Bent<T>, Graded<T>, General, true),
-        (false, true, false, true) => on!(Bent<T>, Uniform, General, true),
-        (false, true, false, false) => on!(Bent<T>, Uniform, General, false),
-        (false, false, true, _) => on!(Straight, Graded<T>, General, true),
-        (false, false, false, true) => on!(Straight, Uniform, Similar, true),
-        (false, false, false, false) => on!(Straight, Uniform, Similar, false),
+        (true, _, true, _) => kernel!(Spiral<T>, Graded<T>, General, true),
+        (true, _, false, _) => kernel!(Spiral<T>, Uniform, General, true),
+        (false, true, true, _) => kernel!(Bent<T>, Graded<T>, General, true),
+        (false, true, false, true) => kernel!(Bent<T>, Uniform, General, true),
+        (false, true, false, false) => kernel!(Bent<T>, Uniform, General, false),
+        (false, false, true, _) => kernel!(Straight, Graded<T>, General, true),
+        (false, false, false, true) => kernel!(Straight, Uniform, Similar, true),
+        (false, false, false, false) => kernel!(Straight, Uniform, Similar, false),
     }
 }
 
-/// The same along a profile. There is one kernel with a gradient or without, which costs a multiplication.
+/// The same along a profile, with a gradient or without. By collocation, which is no method of steps all alike.
 #[inline(always)]
 fn along_profile<O: OutputSet, T: Lanes>(
     method: Method,
     key: &BlockKey,
     conditions: &Conditions,
 ) -> [O; WIDTH] {
-    macro_rules! on {
+    macro_rules! kernel {
         ($rest:ty) => {
-            kernel!(
-                T,
-                Nystrom8,
-                O,
-                O::General<T>,
-                $rest,
-                Measured<T>,
-                true,
-                (method, key, conditions)
+            T::outlined(
+                Kernel::<Nystrom8, O, O::General<T>, $rest, Measured<T>, true> {
+                    method,
+                    key,
+                    conditions,
+                    of: PhantomData,
+                },
             )
         };
     }
-    let Effects {
-        curvature, spiral, ..
-    } = key.effects;
-    match (spiral, curvature) {
-        (true, _) => on!(Spiral<T>),
-        (false, true) => on!(Bent<T>),
-        (false, false) => on!(Straight),
+    match (key.effects.spiral, key.effects.curvature) {
+        (true, _) => kernel!(Spiral<T>),
+        (false, true) => kernel!(Bent<T>),
+        (false, false) => kernel!(Straight),
     }
 }
 

@@ -1,7 +1,8 @@
 //! The way along measured radii, piece by piece.
 //!
-//! The pieces of a block are those of one profile, its contacts may lie on any of them: the way begins on the piece nearest to the
-//! tip, and lanes whose contact is nearer to the base wait there.
+//! The pieces of a block are those of one profile. Its contacts may lie on any of them, and take any number of steps along each: the
+//! way begins on the piece nearest to the tip, where lanes wait whose contact is nearer to the base, and on each piece lanes wait that
+//! take fewer steps.
 
 use super::InitialCondition;
 use super::gather::{Conditions, Contacts, GatherMaterial, numbers};
@@ -15,7 +16,7 @@ use crate::shooting::{
 
 /// What is taken along a piece, lane by lane.
 struct Part {
-    /// Steps; none where the contact is nearer to the base.
+    /// Steps; 0 where the contact is nearer to the base.
     steps: [u32; WIDTH],
     /// The most of any lane.
     most: u32,
@@ -65,6 +66,17 @@ impl Part {
         part
     }
 
+    /// Over how much of `tau` each step goes, down to the `tau` where the piece begins; 0 where none is taken.
+    #[inline(always)]
+    fn step_lengths(&self, begin: f64) -> [f64; WIDTH] {
+        let mut lengths = [0.0; WIDTH];
+        for lane in 0..WIDTH {
+            let steps = f64::from(self.steps[lane].max(1));
+            lengths[lane] = (self.tau[lane] - begin) / steps;
+        }
+        lengths
+    }
+
     /// 1 in the lanes that take the step `i`, 0 in the others.
     #[inline(always)]
     fn takes(&self, i: u32) -> [f64; WIDTH] {
@@ -75,7 +87,8 @@ impl Part {
         takes
     }
 
-    /// The compliance along the step `i` as a weight: from the table of the piece `k`, where the whole of it is on the way.
+    /// The compliance along the step `i` as a weight: from the table of the piece `k` where the whole of it is on the way, else
+    /// computed; 0 in lanes that do not take the step.
     #[inline(always)]
     fn weights<T: Lanes>(
         &self,
@@ -157,12 +170,7 @@ impl<T: Lanes> GatherMaterial<T> for Measured<T> {
         for k in (0..=profile.piece(farthest)).rev() {
             let piece = &profile.pieces[k];
             let part = Part::new(profile, k, &tau, &s, &needs[..T::LANES]);
-            let mut counts = [1.0; WIDTH];
-            for (count, steps) in counts.iter_mut().zip(&part.steps) {
-                *count = f64::from((*steps).max(1));
-            }
             let from = T::pack(part.from);
-            let h = (T::pack(part.tau) - T::of(piece.tau)) / T::pack(counts);
             let mut section = Section {
                 rho: one - contacts.taper * from,
                 inverse_cube: zero,
@@ -177,6 +185,7 @@ impl<T: Lanes> GatherMaterial<T> for Measured<T> {
                     gradient,
                 },
             };
+            let h = T::pack(part.step_lengths(piece.tau));
             let scales = Scales::tapered::<Nystrom8>(contacts.taper, h);
             for i in 0..part.most {
                 let lanes = part.takes(i);
