@@ -137,6 +137,7 @@ fn crossing(edge: Edge, push: f64) -> Crossing {
         load: 1.0,
         push,
         residual: 0.0,
+        slope: 0.0,
     }
 }
 

@@ -1,6 +1,7 @@
 //! A row of a map: a distance at first touch, where the pole stands for it, and where the row leaves the stable sheet.
 
 use crate::rod::{Rest, Rod};
+use crate::shooting::ShootingMap;
 use glam::DVec2;
 
 /// First touch this far beyond the tip, in whisker lengths, still counts as at it: the rounding of a distance in
@@ -62,6 +63,19 @@ pub enum Edge {
     Tip,
 }
 
+impl Edge {
+    /// How fast the push angle changes with `ln D` along the edge, in radians, at a point of it where the pole is as `map` says. At the
+    /// fold both change in proportion, in whatever direction.
+    #[must_use]
+    pub fn slope(self, map: &ShootingMap) -> f64 {
+        let change = match self {
+            Self::Fold => map.by_tau,
+            Self::Tip => map.by_load,
+        };
+        change.y / change.x
+    }
+}
+
 /// A row's crossing of an edge.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Crossing {
@@ -76,7 +90,13 @@ pub struct Crossing {
     /// Remaining error, relative: the distance in `ln D`, and the square of how far the point still is (the push angle is flat
     /// at a fold).
     pub residual: f64,
+    /// See [`Edge::slope`].
+    pub slope: f64,
 }
+
+/// Where the push angle changes this fast with `ln D`, a state's error of 1e-11 makes more than 1e-8 degrees of it: such ends are walked
+/// to, in twice the steps.
+pub const STEEP: f64 = 20.0;
 
 /// The largest error, relative to the distance of the pole, of a crossing that is taken for one.
 const SOUND: f64 = 1e-10;
@@ -88,6 +108,12 @@ impl Crossing {
         self.residual <= SOUND
     }
 
+    /// Whether the push angle changes so fast along the edge that it takes more steps to know it.
+    #[must_use]
+    pub fn is_steep(&self) -> bool {
+        self.slope.abs() > STEEP
+    }
+
     /// Of a row that meets the tip edge at first touch: without a load, whatever the resolution.
     #[must_use]
     pub fn at_touch(rod: &Rod) -> Self {
@@ -97,6 +123,7 @@ impl Crossing {
             load: 0.0,
             push: 0.0,
             residual: 0.0,
+            slope: 0.0,
         }
     }
 
@@ -115,6 +142,7 @@ impl Crossing {
             load: f64::NAN,
             push: f64::NAN,
             residual: f64::INFINITY,
+            slope: f64::NAN,
         }
     }
 

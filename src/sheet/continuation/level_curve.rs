@@ -56,6 +56,15 @@ impl LevelCurve {
         }
     }
 
+    /// The same in twice the steps.
+    #[must_use]
+    pub(super) fn finer(&self) -> Self {
+        Self {
+            method: Method::new(self.method.resolution.doubled()).with_effects(self.method.effects),
+            ..self.clone()
+        }
+    }
+
     /// The same, followed the other way.
     #[must_use]
     pub fn backward(&self) -> Self {

@@ -12,7 +12,7 @@ use crate::sheet::continuation::corrector::{Correction, shoot};
 use crate::sheet::continuation::level_curve::{LevelCurve, Node, ON_CURVE};
 use crate::sheet::continuation::meeting::{Meeting, meet};
 use crate::sheet::continuation::walk::Walk;
-use crate::sheet::row::Edge;
+use crate::sheet::row::{Edge, STEEP};
 
 /// What `ln D` may miss at a node between the ends that only tells the way, and about where states are.
 pub const NODE_MISS: f64 = 1e-8;
@@ -28,6 +28,18 @@ pub struct Continuation {
     pub end: Edge,
 }
 
+impl Continuation {
+    /// Whether errors of the first fold or the end count for much.
+    fn is_steep(&self) -> bool {
+        let last = self.nodes.last().map(|end| (self.end, end));
+        let fold = self.fold.map(|fold| (Edge::Fold, &self.nodes[fold]));
+        let slopes = fold.into_iter().chain(last);
+        slopes
+            .into_iter()
+            .any(|(edge, node)| edge.slope(&node.full.map).abs() > STEEP)
+    }
+}
+
 impl LevelCurve {
     /// The curve from `start` on to the tip or the fold, or past the fold to the tip or the second one; `None` where the continuation
     /// gets lost.
@@ -38,9 +50,29 @@ impl LevelCurve {
 }
 
 /// The same for several curves at once, whose trajectories share batches; nodes between the ends may `miss` the curve by so much in
-/// `ln D`. No answer depends on the other curves.
+/// `ln D`. No answer depends on the other curves. Where an end is steep ([`STEEP`]), the curve is followed in twice the steps.
 #[must_use]
-pub fn continuations<'a>(
+pub fn continuations(
+    starts: Vec<(&LevelCurve, Node)>,
+    past_fold: bool,
+    miss: f64,
+) -> Vec<Option<Continuation>> {
+    let mut ended = follow(starts.clone(), past_fold, miss);
+    let is_steep =
+        |found: &Option<Continuation>| found.as_ref().is_some_and(Continuation::is_steep);
+    let steep: Vec<usize> = (0..starts.len()).filter(|i| is_steep(&ended[*i])).collect();
+    let finer: Vec<LevelCurve> = steep.iter().map(|i| starts[*i].0.finer()).collect();
+    let again = finer
+        .iter()
+        .zip(&steep)
+        .map(|(level, i)| (level, starts[*i].1));
+    for (i, found) in steep.iter().zip(follow(again.collect(), past_fold, miss)) {
+        ended[*i] = found;
+    }
+    ended
+}
+
+fn follow<'a>(
     starts: Vec<(&'a LevelCurve, Node)>,
     past_fold: bool,
     miss: f64,

@@ -219,6 +219,7 @@ fn end_of_piece(level: &LevelCurve, piece: Continuation) -> Option<PieceEnd> {
         load: end.point.y,
         push: level.side.sign() * end.push,
         residual: (level.row.pole_distance / distance).ln().abs(),
+        slope: piece.end.slope(&end.full.map),
     };
     Some((crossing, piece.nodes))
 }

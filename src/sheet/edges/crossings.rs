@@ -126,6 +126,7 @@ fn correct(
             load: point.y,
             push: side.sign() * (phi - rows[c.row].touch),
             residual,
+            slope: c.edge.slope(&here.map),
         }
     };
     let mut corrected: Vec<Crossing> = iterates
@@ -163,6 +164,7 @@ fn correct(
             load: c.predicted.load,
             push: side.sign() * (c.predicted.phi - row.touch),
             residual: f64::INFINITY,
+            slope: f64::NAN,
         });
     }
     corrected
