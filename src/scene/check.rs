@@ -10,7 +10,7 @@ use super::deviations;
 use super::error::Fault;
 use super::file::{OutputTable, SceneTable, WhiskerTable};
 use super::grid::{FARTHEST, Grid, NEAREST};
-use super::limits::{Limits, MOST_FRICTION, MOST_STRETCH, STIFFEST_TIP};
+use super::limits::{Limits, MOST_STRETCH, STIFFEST_TIP, friction_limits};
 use super::parameter::Parameter;
 use super::profile;
 use super::setup::Setup;
@@ -63,10 +63,9 @@ fn whisker_and_pole(table: &SceneTable, grid: &Grid) -> Result<(Whisker, Pole), 
     let whisker = whisker(&table.whisker)?;
     let radius = table.pole.as_ref().map(|pole| &pole.radius_mm);
     let friction = table.contact.as_ref().map(|contact| &contact.friction);
-    let rough = Limits::between(0.0, MOST_FRICTION);
     let pole = Pole {
         radius_mm: pole_limits(&whisker, grid).check_or(0.0, "pole.radius_mm", radius)?,
-        friction: rough.check_or(0.0, "contact.friction", friction)?,
+        friction: friction_limits().check_or(0.0, "contact.friction", friction)?,
     };
     Ok((whisker, pole))
 }

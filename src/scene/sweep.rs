@@ -10,7 +10,7 @@ use super::file::{
     ContactTable, CurvatureTable, GradientTable, PoleTable, ProjectionTable, SceneTable,
 };
 use super::grid::{Grid, Place, SweepAxis};
-use super::limits::{Limits, MOST_FRICTION, MOST_STRETCH, Number, STIFFEST_TIP};
+use super::limits::{Limits, MOST_STRETCH, Number, STIFFEST_TIP, friction_limits};
 use super::parameter::Parameter;
 use super::shape;
 
@@ -24,7 +24,7 @@ pub(super) fn axes(table: &SceneTable, lengths_mm: [f64; 2]) -> Result<Vec<Sweep
             Parameter::BaseRadiusUm => Limits::between(1e-3, 1e5),
             Parameter::LengthMm => length_limits(),
             Parameter::ParabolaPerMm => shape::parabola_limits(lengths_mm[1]),
-            Parameter::Friction => Limits::between(0.0, MOST_FRICTION),
+            Parameter::Friction => friction_limits(),
             Parameter::ModulusTipToBase => Limits::between(1.0 / STIFFEST_TIP, STIFFEST_TIP),
             Parameter::ArcStretch => Limits::between(1.0, MOST_STRETCH),
             _ => Limits::between(-1e6, 1e6),

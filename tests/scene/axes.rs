@@ -175,7 +175,7 @@ fn every_combination_must_be_a_whisker() {
         ),
         (
             "friction = [0, 3]",
-            "grid.friction[1] = 3: must be between 0 and 2",
+            "grid.friction[1] = 3: must be between 0 and 1; with more, whiskers coil around the pole for turns on end, and not all ends are known",
         ),
         (
             "taper = [0.1, 0.2]\ntip_radius_um = [1, 2]",
