@@ -126,7 +126,6 @@ impl Sheet {
             let is_pair = usize::from(touches) + crossings.len() == 2;
             let is_simple = crossings.is_empty() && !touches
                 || fold_grows && is_pair && crossings.iter().all(Crossing::is_sound);
-            let is_simple = is_simple && !crossings.iter().any(Crossing::is_steep);
             !(is_certified && is_simple)
         };
         let walk = |(rows, crossings): (&[Row], &mut [Vec<Crossing>])| {

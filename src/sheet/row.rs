@@ -94,8 +94,8 @@ pub struct Crossing {
     pub slope: f64,
 }
 
-/// Where the push angle changes this fast with `ln D`, a state's error of 1e-11 makes more than 1e-8 degrees of it: such ends are walked
-/// to, in twice the steps.
+/// Where the push angle changes this fast with `ln D`, an error of 1e-11 in that makes more than 1e-8 degrees: such ends take twice the
+/// steps.
 pub const STEEP: f64 = 20.0;
 
 /// The largest error, relative to the distance of the pole, of a crossing that is taken for one.

@@ -32,8 +32,18 @@ fn effects_have_their_ranges() {
             "2.5",
             "must be between 1 and",
         ),
-        ("contact", "friction", "-0.1", "must be between 0 and 1; with more, whiskers coil around the pole for turns on end, and not all ends are known"),
-        ("contact", "friction", "inf", "must be between 0 and 1; with more, whiskers coil around the pole for turns on end, and not all ends are known"),
+        (
+            "contact",
+            "friction",
+            "-0.1",
+            "must be between 0 and 1; with more, whiskers coil around the pole for turns on end, and not all ends are known",
+        ),
+        (
+            "contact",
+            "friction",
+            "inf",
+            "must be between 0 and 1; with more, whiskers coil around the pole for turns on end, and not all ends are known",
+        ),
     ] {
         let text = format!("{BASE}\n[{table}]\n{key} = {bad}\n");
         let message = parse(&text).unwrap_err();

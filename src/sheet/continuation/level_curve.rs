@@ -60,7 +60,7 @@ impl LevelCurve {
     #[must_use]
     pub(super) fn finer(&self) -> Self {
         Self {
-            method: Method::new(self.method.resolution.doubled()).with_effects(self.method.effects),
+            method: self.method.doubled(),
             ..self.clone()
         }
     }

@@ -8,7 +8,9 @@ use crate::numerics::nearest_turn;
 use crate::rod::{Rod, Side};
 use crate::sheet::edges::Edges;
 use crate::sheet::edges::bisection::{Between, Point, bisect};
-use crate::sheet::edges::edge_newton::{EdgeProblem, edge_newton_predicted};
+use crate::sheet::edges::edge_newton::{
+    EdgeIterate, EdgeProblem, edge_newton_fine, edge_newton_predicted,
+};
 use crate::sheet::edges::predictor::{Prediction, Sample};
 use crate::sheet::row::{Crossing, Edge, REACH_SLACK, Row};
 use crate::shooting::batch::Method;
@@ -99,7 +101,8 @@ pub fn crossings(
     found
 }
 
-/// The crossings that the candidates lead to: by Newton's method, else by bisection between the samples.
+/// The crossings that the candidates lead to: by Newton's method, else by bisection between the samples; steep ones once more in twice
+/// the steps.
 fn correct(
     method: Method,
     rod: &Rod,
@@ -129,14 +132,11 @@ fn correct(
             slope: c.edge.slope(&here.map),
         }
     };
-    let mut corrected: Vec<Crossing> = iterates
-        .iter()
-        .zip(candidates)
-        .map(|(iterate, c)| {
-            let residual = iterate.miss.abs() + iterate.left * iterate.left;
-            crossing(c, (iterate.point, iterate.here), residual)
-        })
-        .collect();
+    let reached = |(c, iterate): (&Candidate, &EdgeIterate)| {
+        let residual = iterate.miss.abs() + iterate.left * iterate.left;
+        crossing(c, (iterate.point, iterate.here), residual)
+    };
+    let mut corrected: Vec<Crossing> = candidates.iter().zip(&iterates).map(reached).collect();
     let is_lost =
         |i: &usize| !(corrected[*i].is_sound() && candidates[*i].holds(iterates[*i].point));
     let lost: Vec<usize> = (0..candidates.len()).filter(is_lost).collect();
@@ -166,6 +166,20 @@ fn correct(
             residual: f64::INFINITY,
             slope: f64::NAN,
         });
+    }
+    let is_steep = |i: &usize| corrected[*i].is_sound() && corrected[*i].is_steep();
+    let steep: Vec<usize> = (0..candidates.len()).filter(is_steep).collect();
+    let again: Vec<EdgeProblem> = steep
+        .iter()
+        .map(|&i| EdgeProblem {
+            start: DVec2::new(corrected[i].tau, corrected[i].load),
+            second: None,
+            ..problems[i]
+        })
+        .collect();
+    let finer = edge_newton_fine(method.doubled(), &again);
+    for (i, iterate) in steep.into_iter().zip(&finer) {
+        corrected[i] = reached((&candidates[i], iterate));
     }
     corrected
 }

@@ -68,6 +68,13 @@ impl Method {
         Self { effects, ..self }
     }
 
+    /// The same in twice the steps.
+    #[must_use]
+    pub const fn doubled(self) -> Self {
+        let resolution = self.resolution.doubled();
+        Self { resolution, ..self }
+    }
+
     /// The same at [`Resolution::COARSE`].
     #[must_use]
     pub const fn coarsely(self) -> Self {
