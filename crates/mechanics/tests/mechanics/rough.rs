@@ -61,7 +61,6 @@ fn rough_radii_are_exact() {
         let [found, exact] = [least, 6 * least].map(|least| poles(least, &conditions));
         let miss = |(a, b): (&ShootingMap, &ShootingMap)| a.pole.distance(b.pole) / b.pole.length();
         let worst = found.iter().zip(&exact).map(miss).fold(0.0, f64::max);
-        eprintln!("{rows} rows, gradient {gradient}: {worst:e}");
         assert!(worst < 3e-10, "{rows} rows, gradient {gradient}: {worst:e}");
     }
 }

@@ -69,10 +69,9 @@ impl Part {
     /// Over how much of `tau` each step goes, down to the `tau` where the piece begins; 0 where none is taken.
     #[inline(always)]
     fn step_lengths(&self, begin: f64) -> [f64; WIDTH] {
-        let mut lengths = [0.0; WIDTH];
-        for lane in 0..WIDTH {
-            let steps = f64::from(self.steps[lane].max(1));
-            lengths[lane] = (self.tau[lane] - begin) / steps;
+        let mut lengths = self.tau;
+        for (length, steps) in lengths.iter_mut().zip(&self.steps) {
+            *length = (*length - begin) / f64::from((*steps).max(1));
         }
         lengths
     }
