@@ -65,6 +65,19 @@ fn rough_radii_are_exact() {
     }
 }
 
+/// Lanes that wait for each other, at their contacts and on every piece, get what they get alone, to the last bit.
+#[test]
+fn company_changes_nothing() {
+    for (rows, gradient) in [(5, 0.0), (40, 2.0)] {
+        let rod = rough(rows, gradient);
+        let conditions = conditions(&rod, 100);
+        let together = poles(20, &conditions);
+        for (condition, together) in conditions.iter().zip(together) {
+            assert_eq!(poles(20, std::slice::from_ref(condition))[0], together);
+        }
+    }
+}
+
 /// A contact just before a row leaves all but a trifle of its piece, the compliance of which is computed; from one just after it the
 /// whole piece is on the way, with the compliance of the table.
 #[test]
