@@ -4,15 +4,14 @@ use crate::case::Case;
 use crate::ends::agree;
 use whiskmap::Options;
 use whiskmap::rod::{Rod, Side};
-use whiskmap::scene::Scene;
 use whiskmap::sheet::Sheet;
 use whiskmap::shooting::ShootingMap;
 use whiskmap::shooting::batch::{Batch, InitialCondition, Method};
 use whiskmap::trace::DetachmentKind;
 
-/// A cylinder in front of a thin, rough pole.
-fn cylinder(bend: f64, friction: f64, tip_to_base: f64, distance: f64) -> Scene {
-    let case = Case {
+/// A cylinder in front of a rough pole without a radius.
+fn cylinder(bend: f64, friction: f64, tip_to_base: f64, distance: f64) -> Case {
+    Case {
         length_mm: 20.0,
         taper: 0.0,
         bend,
@@ -23,8 +22,7 @@ fn cylinder(bend: f64, friction: f64, tip_to_base: f64, distance: f64) -> Scene 
         rows: Vec::new(),
         pushes_deg: vec![0.0],
         distances: vec![distance],
-    };
-    case.scene()
+    }
 }
 
 /// Cylinders that coil up: the distance dips along the tip edge or along the fold so narrowly that samples of a sheet do not see it.
@@ -66,7 +64,7 @@ fn narrow_dips_are_not_missed() {
         ),
     ];
     for (side, bend, friction, tip_to_base, distance, kind) in coiled {
-        let scene = cylinder(bend, friction, tip_to_base, distance);
+        let scene = cylinder(bend, friction, tip_to_base, distance).scene();
         for (_, end) in whiskmap::curve(&scene, Options::default()).unwrap() {
             assert!(end.side != side || end.kind == kind, "{end:?}");
             agree(&scene, &end).unwrap();
@@ -140,12 +138,37 @@ fn lost_walks_are_walked_once_more() {
         0.8759848018136742,
         1.0,
         0.0023229318335218274,
-    );
+    )
+    .scene();
     let ends = whiskmap::curve(&scene, Options::default()).unwrap();
     assert_eq!(ends.len(), 2);
     for (_, end) in ends {
         assert_eq!(end.kind, DetachmentKind::SlipOff, "{end:?}");
         agree(&scene, &end).unwrap();
+    }
+}
+
+/// For two thirds of a degree the contact is beyond the tip, and comes back: between two nodes of a walk.
+#[test]
+fn a_row_that_grazes_the_tip_ends_there() {
+    let case = Case {
+        taper: 1.0 - 29.5916686304334 / 30.0,
+        pole: 0.00027453354913208,
+        ..cylinder(
+            0.023852954975056178,
+            0.9865609968131556,
+            1.0,
+            0.024479462769365525,
+        )
+    };
+    let scene = case.scene();
+    for (_, end) in whiskmap::curve(&scene, Options::default()).unwrap() {
+        assert_ne!(end.kind, DetachmentKind::Unresolved, "{end:?}");
+        agree(&scene, &end).unwrap();
+        assert!(
+            end.side == Side::Cb || end.kind == DetachmentKind::PullOff,
+            "{end:?}"
+        );
     }
 }
 

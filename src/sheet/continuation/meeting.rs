@@ -9,6 +9,12 @@ use glam::DVec2;
 /// What `ln D` may miss at the tip, where moving the contact would do more harm.
 const TIP_MISS: f64 = 1e-11;
 
+/// How far, in parts of its height over both nodes, the top of a curve may be from where a cubic has it.
+const GRAZE_OFF: f64 = 0.5;
+
+/// A top that is higher than both nodes by less than this part of the tip's `tau` is none but for rounding.
+const LOWEST_GRAZE: f64 = 1e-12;
+
 /// From one node of a level curve to the next.
 pub struct Chord<'a> {
     level: &'a LevelCurve,
@@ -41,6 +47,27 @@ impl<'a> Chord<'a> {
     /// Whether there may be an edge.
     pub fn may_meet(&self) -> bool {
         self.crossed().iter().any(Option::is_some)
+    }
+
+    /// Whether the curve may go beyond the tip between the nodes and come back, as far as the cubic through both tells.
+    pub fn may_graze(&self) -> bool {
+        let tip = self.level.rod.tau_tip();
+        let [from, to] = [self.from.point.x, self.to.point.x];
+        if from.max(to) >= tip {
+            return false;
+        }
+        let chord = (self.to.point - self.from.point) / self.level.scale(self.from.point);
+        let slope = |node: &Node| self.level.velocity(node).x * chord.length();
+        let [rises, falls] = [slope(&self.from), slope(&self.to)];
+        if rises <= 0.0 || falls >= 0.0 {
+            return false;
+        }
+        let square = 3.0 * (to - from) - 2.0 * rises - falls;
+        let cube = 2.0 * (from - to) + rises + falls;
+        let at = rises / ((square * square - 3.0 * cube * rises).max(0.0).sqrt() - square);
+        let highest = from + at * (rises + at * (square + at * cube));
+        let height = highest - from.max(to);
+        height > LOWEST_GRAZE * tip && highest + GRAZE_OFF * height > tip
     }
 
     /// The edges of which it has crossed the line.

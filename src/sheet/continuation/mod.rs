@@ -50,7 +50,7 @@ impl LevelCurve {
 }
 
 /// The same for several curves at once, whose trajectories share batches; nodes between the ends may `miss` the curve by so much in
-/// `ln D`. No answer depends on the other curves. Where an end is steep ([`STEEP`]), the curve is followed in twice the steps.
+/// `ln D`. No answer depends on the other curves. Where an end is steep, the curve is followed in twice the steps.
 #[must_use]
 pub fn continuations(
     starts: Vec<(&LevelCurve, Node)>,
@@ -122,6 +122,7 @@ fn to_edges(mut open: Vec<Walk>) -> Vec<(Walk, Node)> {
                 Correction::Lost => None,
             };
             match next {
+                Some(next) if walk.chord(next).may_graze() => open.extend(walk.shorten()),
                 Some(next) if walk.chord(next).may_meet() => at_edges.push((walk, next)),
                 Some(next) => open.extend(walk.go_on(next)),
                 None => open.extend(walk.shorten()),
