@@ -10,7 +10,7 @@ use super::error::Fault;
 /// A number and where the file has it. Integers are numbers too.
 pub(super) type Number = Spanned<f64>;
 
-/// Of Coulomb's coefficient: the whiskers of rats on steel have about 0.5. Up to here no end of 100,000 random whiskers was wrong or
+/// Of Coulomb's coefficient: the whiskers of rats on steel have about 0.5. Up to here no end of 25,000 random whiskers was
 /// unknown (`benches/NOTES.md`).
 pub(super) fn friction_limits() -> Limits {
     Limits::between(0.0, 1.0).remark(

@@ -1,7 +1,7 @@
 //! Which crossings of a row belong together. With friction or strong curvature `D` can have a saddle on the edge of the sheet: the
 //! level curve of a row is then in several pieces, whose push angles may overlap.
 
-use crate::sheet::continuation::level_curve::{LevelCurve, Node, ON_CURVE};
+use crate::sheet::continuation::level_curve::{LevelCurve, Node};
 use crate::sheet::continuation::{Continuation, NODE_MISS, continuations};
 use crate::sheet::row::Crossing;
 
@@ -192,16 +192,8 @@ fn ends_of_pieces(
             false => rows[*i].level.clone(),
         })
         .collect();
-    let walk = |k: usize| (&levels[k], started[k].1);
-    let mut walked = continuations((0..started.len()).map(walk).collect(), false, NODE_MISS);
-    // Next to where curves meet, nodes that only lead can lose the way.
-    let lost: Vec<usize> = (0..started.len())
-        .filter(|k| walked[*k].is_none())
-        .collect();
-    let again = continuations(lost.iter().map(|k| walk(*k)).collect(), false, ON_CURVE);
-    for (k, piece) in lost.into_iter().zip(again) {
-        walked[k] = piece;
-    }
+    let walks = levels.iter().zip(started.iter().map(|(_, start)| *start));
+    let walked = continuations(walks.collect(), false, NODE_MISS);
     let mut ends = vec![None; starts.len()];
     for ((level, (i, _)), piece) in levels.iter().zip(&started).zip(walked) {
         ends[*i] = piece.and_then(|piece| end_of_piece(level, piece));

@@ -179,7 +179,14 @@ fn correct(
         .collect();
     let finer = edge_newton_fine(method.doubled(), &again);
     for (i, iterate) in steep.into_iter().zip(&finer) {
-        corrected[i] = reached((&candidates[i], iterate));
+        let c = &candidates[i];
+        let found = reached((c, iterate));
+        if found.is_sound() && c.holds(iterate.point) {
+            corrected[i] = found;
+        } else {
+            // Continuation must tell.
+            corrected[i].residual = f64::INFINITY;
+        }
     }
     corrected
 }

@@ -183,8 +183,8 @@ fn polish(method: Method, rod: &Rod, marched: Vec<Option<Marched>>) -> Vec<Optio
         if !is_open.contains(&true) {
             break;
         }
-        // Those that are done stay in the batch: with fewer steps, at the tip of a perfect cone, `det` may have its root elsewhere.
-        // Along a profile each takes steps of its own.
+        // Those that are done stay in the batch, because with fewer steps, at the tip of a perfect cone, `det` may have its root
+        // elsewhere; but not along a profile, where each takes steps of its own.
         if rod.profile.is_some() {
             let mut still = is_open.iter().copied();
             all.retain(|_| still.next().unwrap_or(false));

@@ -4,7 +4,7 @@ use super::{InitialCondition, Method};
 use crate::rod::Effects;
 use std::sync::Arc;
 
-/// What the trajectories of a block have in common: lanes step together.
+/// What the trajectories of a block have in common.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct BlockKey {
     /// Those of the kernel: the method's, and all of the rod's own; a profile only if it is the rod's own.

@@ -2,7 +2,11 @@
 
 use crate::numerics::{Lanes, Real, WIDTH};
 use crate::rod::Effects;
-use crate::shooting::batch::{InitialCondition, Method, block_key::BlockKey, kernel::by_effects};
+use crate::shooting::batch::{
+    InitialCondition, Method,
+    block_key::BlockKey,
+    kernel::{along_profile, by_effects},
+};
 use crate::shooting::{Nystrom8, Resolution, ShootingMap};
 use std::cell::Cell;
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -78,6 +82,11 @@ pub fn flops_of_nystrom8(effects: Effects, steps: u32, condition: &InitialCondit
     let method = Method::new(Resolution::of(steps)).with_effects(effects);
     let key = BlockKey::new(method, condition, steps);
     COUNT.set(0);
-    let _ = by_effects::<Nystrom8, ShootingMap, Counted>(method, &key, &[condition; WIDTH]);
+    let conditions = [condition; WIDTH];
+    if key.effects.profile {
+        let _ = along_profile::<ShootingMap, Counted>(method, &key, &conditions);
+    } else {
+        let _ = by_effects::<Nystrom8, ShootingMap, Counted>(method, &key, &conditions);
+    }
     COUNT.get()
 }

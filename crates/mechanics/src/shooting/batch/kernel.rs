@@ -129,7 +129,7 @@ fn steps<T: Lanes>(method: Method, conditions: &Conditions) -> [u32; WIDTH] {
     steps
 }
 
-/// Integrates with the kernel for the effects of the `key`, of which a profile is none.
+/// Integrates with the kernel for the effects of the `key`, without a profile.
 #[inline(always)]
 pub fn by_effects<M: Integrator, O: OutputSet, T: Lanes>(
     method: Method,
@@ -168,7 +168,7 @@ pub fn by_effects<M: Integrator, O: OutputSet, T: Lanes>(
 
 /// The same along a profile, with a gradient or without. By collocation, which is no method of steps all alike.
 #[inline(always)]
-fn along_profile<O: OutputSet, T: Lanes>(
+pub fn along_profile<O: OutputSet, T: Lanes>(
     method: Method,
     key: &BlockKey,
     conditions: &Conditions,

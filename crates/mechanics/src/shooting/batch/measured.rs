@@ -192,6 +192,7 @@ impl<T: Lanes> GatherMaterial<T> for Measured<T> {
                 // Lanes that wait go nowhere.
                 let end = Stage {
                     along: takes * scales.end().along,
+                    grown: takes.mul_add(scales.end().grown - one, one),
                     ..*scales.end()
                 };
                 let computed = Backward {
