@@ -189,7 +189,7 @@ fn fastest(taper: f64, bend: f64) -> f64 {
 
 /// How many times as many steps collocation takes along a piece that does all the bending as Nystrom's method along a cone: it is of a
 /// lower order (`benches/NOTES.md`).
-const CONCENTRATED: f64 = 2.0;
+const CONCENTRATED: f64 = 2.2;
 
 /// Steps that a roughness of 1 takes, in parts of `least`.
 const ROUGH: f64 = 1.6;
