@@ -247,3 +247,45 @@ fn coarse_steps_leave_no_cell_in_doubt() {
         }
     }
 }
+
+/// Between pushes that are judged alike nothing changes, and where something changes there is no such stretch.
+#[test]
+fn one_verdict_holds_from_end_to_end() {
+    let fold = |push| crossing(Edge::Fold, push);
+    let rows = [
+        RowBoundary::new(true, &[fold(0.5)]),
+        RowBoundary::new(true, &[fold(0.5), crossing(Edge::Tip, 0.7), fold(0.8)]),
+        RowBoundary::new(false, &[crossing(Edge::Tip, 0.0), fold(0.8)]),
+        RowBoundary::new(true, &[fold(0.5), Crossing::unknown()]),
+        RowBoundary::new(false, &[Crossing::unknown()]),
+    ];
+    let near = |end: f64| [-2.0, -0.5, 0.0, 0.5, 2.0].map(|ties| end + ties * TIE);
+    let ends = [0.0, 0.5, 0.7, 0.8].into_iter().flat_map(near);
+    let pushes = ends.chain([0.3, 0.6, 0.75, 1.0]);
+    let mut pushes: Vec<f64> = pushes.filter(|push| *push >= 0.0).collect();
+    pushes.sort_by(f64::total_cmp);
+    for row in &rows {
+        let alike = |status: Status, from: usize, to: usize| {
+            let verdict = |push: &f64| (row.judge(*push, status), row.span(*push));
+            pushes[from..=to]
+                .iter()
+                .all(|push| verdict(push) == verdict(&pushes[from]))
+        };
+        for from in 0..pushes.len() {
+            for to in from..pushes.len() {
+                let holds = Status::ALL
+                    .into_iter()
+                    .all(|status| alike(status, from, to));
+                if row.is_one_verdict(pushes[from], pushes[to]) {
+                    assert!(holds, "{row:?}: {} to {}", pushes[from], pushes[to]);
+                }
+            }
+            // Far from all ends there is nothing that could differ.
+            let ends = row.spans().iter().flat_map(|span| [span.from, span.to]);
+            let is_apart = ends
+                .into_iter()
+                .all(|end| (end - pushes[from]).abs() > 1.5 * TIE);
+            assert_eq!(row.is_one_verdict(pushes[from], pushes[from]), is_apart);
+        }
+    }
+}

@@ -23,6 +23,12 @@ impl Span {
     pub fn contains(&self, push: f64) -> bool {
         self.from - TIE <= push && push <= self.to + TIE
     }
+
+    /// How far it is from `push` to where the whisker detaches, in degrees.
+    #[must_use]
+    pub fn margin_deg(&self, push: f64) -> f32 {
+        (self.to - push).max(0.0).to_degrees() as f32
+    }
 }
 
 /// Which push angles of a row are on the stable sheet.
@@ -75,6 +81,14 @@ impl RowBoundary {
     #[must_use]
     pub fn spans(&self) -> &[Span] {
         self.spans.as_deref().unwrap_or_default()
+    }
+
+    /// Whether all pushes between these are judged alike: none is on an end of a span.
+    #[must_use]
+    pub fn is_one_verdict(&self, from: f64, to: f64) -> bool {
+        let is_apart = |end: f64| end + TIE < from || to < end - TIE;
+        let mut spans = self.spans().iter();
+        spans.all(|span| is_apart(span.from) && is_apart(span.to))
     }
 
     /// Whether `push` is on an end of `span` beyond which there is no state; first touch is no such end.

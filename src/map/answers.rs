@@ -1,17 +1,16 @@
 //! From settled cells to the answers of a panel, in the units of the map.
 
-use super::cells::{Cell, Settled, State};
-use super::channels::{Numbers, channels, of_cell, of_reference};
+use super::answer::{Answer, Readings, answer};
+use super::cells::{Cell, Settled, SettledRow};
+use super::channels::number;
 use super::panel::RowMut;
+use super::runs::{Run, Source};
 use super::sliding::{self, FoundRow, FoundState};
-use super::{Face, Panel, STATE_CHANNELS, doubt};
+use super::{Face, Panel, doubt};
 use crate::account::carried;
 use crate::classify::{Regime, RowBoundary, Status};
-use crate::integrate::Reference;
 use crate::scene::Swept;
-use crate::sheet::Sheet;
 use crate::shooting::Reader;
-use glam::DVec2;
 use rayon::prelude::*;
 
 /// Judges the cells of `settled` and writes them into `panels`; face `i` belongs to panel `i / faces_per_panel`.
@@ -46,7 +45,18 @@ pub fn fill(
                     .map_init(carried(), |_, (into, row)| {
                         let reader = Reader::new(units, &face.sheet.rod);
                         let readings = has_state.then(|| Readings::new(reader, face, row.row));
-                        write_row(readings, face, row.row, || settled.cells(face, row), into)
+                        let sheet = &face.sheet;
+                        let crossings = &sheet.crossings[row.row];
+                        let boundary = RowBoundary::new(sheet.touches(row.row), crossings);
+                        let answers = RowAnswers {
+                            settled,
+                            face,
+                            row,
+                            boundary,
+                            readings,
+                            into,
+                        };
+                        answers.write()
                     });
                 let found: Vec<FoundRow> = found.flatten_iter().collect();
                 sliding::mark(face, &found, width, &mut panel.status);
@@ -54,73 +64,122 @@ pub fn fill(
         });
 }
 
-/// What turns the states of a row into numbers of the map.
-struct Readings<'a> {
-    reader: Reader,
-    /// What a difference of one is.
-    of_one: Numbers,
-    touch: f64,
-    /// The reference that was read last.
-    reference: Option<(&'a Reference, Numbers)>,
+/// The answers of a row.
+struct RowAnswers<'a> {
+    settled: &'a Settled,
+    face: &'a Face<'a>,
+    row: &'a SettledRow,
+    boundary: RowBoundary,
+    /// None where no channel of a state is wanted.
+    readings: Option<Readings<'a>>,
+    into: RowMut<'a>,
 }
 
-impl<'a> Readings<'a> {
-    fn new(reader: Reader, face: &Face, row: usize) -> Self {
-        Self {
-            of_one: channels(&reader.of_one(face.sheet.side.sign())),
-            touch: face.sheet.rows[row].touch,
-            reader,
-            reference: None,
-        }
-    }
-
-    /// The channels of a cell in contact.
-    fn read(&mut self, cell: &Cell<'a>) -> Option<Numbers> {
-        match cell.state {
-            State::Unknown => None,
-            State::Refined(state) => {
-                let reading = self
-                    .reader
-                    .read(state.tau, &state.full, self.touch, cell.push.angle);
-                Some(channels(&reading))
+impl<'a> RowAnswers<'a> {
+    /// Writes them; cells in doubt are settled once more. The states found are returned if there is friction, which may have dragged
+    /// their contacts elsewhere.
+    fn write(mut self) -> Option<FoundRow> {
+        let (settled, face, row) = (self.settled, self.face, self.row);
+        let mut states: Vec<FoundState> = Vec::new();
+        let mut doubtful = Vec::new();
+        // A cell that were forgotten would say so.
+        let nothing = Answer::new(Regime::Unresolved, Status::NotConverged, 0);
+        let columns = face.pushes.span(0..face.pushes.columns.len());
+        self.into.fill_codes(columns, &nothing);
+        for run in &row.runs {
+            if self.write_alike(run).is_some() {
+                continue;
             }
-            State::Different(reference, difference) => {
-                let known = self
-                    .reference
-                    .filter(|(known, _)| std::ptr::eq(*known, reference));
-                let (_, numbers) = known.unwrap_or_else(|| {
-                    (reference, of_reference(&self.reader, reference, self.touch))
-                });
-                self.reference = Some((reference, numbers));
-                Some(of_cell(&numbers, &self.of_one, difference))
+            for (index, cell) in run.cells.clone().zip(settled.cells(face, run)) {
+                let answer = self.write_cell(&cell);
+                states.extend(self.found(&cell, &answer));
+                if self.is_in_doubt(&cell, &answer) {
+                    doubtful.push(index);
+                }
             }
         }
+        if !doubtful.is_empty() {
+            let cells = row.runs.iter().flat_map(|run| settled.cells(face, run));
+            let mut again: Vec<Cell> = cells.collect();
+            let cells = again.iter_mut().enumerate();
+            let cells = cells.filter(|(index, _)| doubtful.binary_search(index).is_ok());
+            let cells = cells.map(|(_, cell)| cell);
+            doubt::settle(&face.sheet, row.row, &self.boundary, cells);
+            states.clear();
+            for cell in &again {
+                let answer = self.write_cell(cell);
+                states.extend(self.found(cell, &answer));
+            }
+        }
+        let row = row.row;
+        (!states.is_empty()).then_some(FoundRow { row, states })
     }
-}
 
-/// Writes the answers for the `cells` of `row`, with states if there are `readings` of them; cells in doubt are settled once more. The
-/// states found are returned if there is friction, which may have dragged their contacts elsewhere.
-fn write_row<'a, C: Iterator<Item = Cell<'a>>>(
-    mut readings: Option<Readings<'a>>,
-    face: &Face,
-    row: usize,
-    cells: impl Fn() -> C,
-    mut into: RowMut,
-) -> Option<FoundRow> {
-    let sheet = &face.sheet;
-    let boundary = RowBoundary::new(sheet.touches(row), &sheet.crossings[row]);
-    let mut write = |cell: &Cell<'a>| {
-        let answer = answer(cell, sheet, &boundary, readings.as_mut());
-        answer.write(&mut into, cell.push.column);
+    fn write_cell(&mut self, cell: &Cell<'a>) -> Answer {
+        let readings = self.readings.as_mut();
+        let answer = answer(cell, &self.face.sheet, &self.boundary, readings);
+        self.into.write(cell.push.column, &answer);
         answer
-    };
-    let in_doubt = |cell: &Cell, answer: &Answer| {
-        let is_touch = cell.is_first_touch(&boundary);
+    }
+
+    /// Writes the answers of a `run` at once if they differ in nothing but numbers; otherwise, none.
+    fn write_alike(&mut self, run: &Run) -> Option<()> {
+        let all = self.face.pushes;
+        let cells = run.cells.clone();
+        let pushes = &all.columns[cells.clone()];
+        let [from, to] = [pushes.first()?, pushes.last()?].map(|push| push.angle.abs());
+        if !self.boundary.is_one_verdict(from, to) {
+            return None;
+        }
+        let (status, steps) = match run.source {
+            Source::Outside => (Status::Outside, 0),
+            Source::Engine(..) if !self.has_friction() => (Status::Solved, 1),
+            _ => return None,
+        };
+        let (regime, status) = self.boundary.judge(from, status);
+        if regime == Regime::Unresolved {
+            return None;
+        }
+        let answer = Answer::new(regime, status, steps);
+        let columns = all.span(cells.clone());
+        if let Source::Engine(reference, first) = run.source {
+            self.into.fill_codes(columns, &answer);
+            let span = self.boundary.span(from)?;
+            let reference = &self.settled.references[reference as usize];
+            let differences = &self.settled.differences[first as usize..][..pushes.len()];
+            let into = &mut self.into;
+            all.write(into.residual, &cells, |i| differences[i].residual);
+            let margin = |i: usize| span.margin_deg(pushes[i].angle.abs());
+            all.write(into.margin_deg, &cells, margin);
+            let readings = self
+                .readings
+                .as_mut()
+                .map(|all| all.of_reference(reference));
+            if let Some([known, of_one]) = readings {
+                for (i, channel) in into.state.iter_mut().enumerate() {
+                    let (known, of_one) = (known[i], of_one[i]);
+                    let value = |cell: usize| number(i, known, of_one, &differences[cell]) as f32;
+                    all.write(channel, &cells, value);
+                }
+            }
+        } else {
+            self.into.fill(columns, &answer);
+        }
+        Some(())
+    }
+
+    fn has_friction(&self) -> bool {
+        self.face.sheet.rod.friction != 0.0
+    }
+
+    fn is_in_doubt(&self, cell: &Cell, answer: &Answer) -> bool {
+        let is_touch = cell.is_first_touch(&self.boundary);
         answer.regime == Regime::Unresolved || is_touch && answer.regime != Regime::Contact
-    };
-    let has_friction = sheet.rod.friction != 0.0;
-    let state = |cell: &Cell, answer: &Answer| {
-        let is_found = has_friction && answer.status == Status::Solved;
+    }
+
+    /// The state of a cell, if there is one and friction may have dragged its contact elsewhere.
+    fn found(&self, cell: &Cell, answer: &Answer) -> Option<FoundState> {
+        let is_found = self.has_friction() && answer.status == Status::Solved;
         let point = answer.point.filter(|_| is_found)?;
         Some(FoundState {
             column: cell.push.column,
@@ -128,112 +187,5 @@ fn write_row<'a, C: Iterator<Item = Cell<'a>>>(
             point,
             push: cell.push.angle.abs(),
         })
-    };
-    let mut states: Vec<FoundState> = Vec::new();
-    let mut doubtful = Vec::new();
-    for (index, cell) in cells().enumerate() {
-        let answer = write(&cell);
-        states.extend(state(&cell, &answer));
-        if in_doubt(&cell, &answer) {
-            doubtful.push(index);
-        }
     }
-    if !doubtful.is_empty() {
-        let mut again: Vec<Cell> = cells().collect();
-        let cells = again.iter_mut().enumerate();
-        let cells = cells.filter(|(index, _)| doubtful.binary_search(index).is_ok());
-        doubt::settle(sheet, row, &boundary, cells.map(|(_, cell)| cell));
-        let again = again.iter();
-        states = again.filter_map(|cell| state(cell, &write(cell))).collect();
-    }
-    let found = FoundRow { row, states };
-    (!found.states.is_empty()).then_some(found)
-}
-
-/// What a panel holds of one cell, and where on the sheet its state is.
-struct Answer {
-    regime: Regime,
-    status: Status,
-    /// `(tau, load)`.
-    point: Option<DVec2>,
-    state: [f32; STATE_CHANNELS.len()],
-    residual: f32,
-    margin_deg: f32,
-    steps: u32,
-}
-
-impl Answer {
-    /// Into a column of a row of a panel.
-    fn write(&self, row: &mut RowMut, column: usize) {
-        row.regime[column] = self.regime.code();
-        row.status[column] = self.status.code();
-        row.newton_steps[column] = self.steps;
-        row.residual[column] = self.residual;
-        row.margin_deg[column] = self.margin_deg;
-        for (channel, value) in row.state.iter_mut().zip(self.state) {
-            if let Some(cell) = channel.get_mut(column) {
-                *cell = value;
-            }
-        }
-    }
-
-    /// Without a state.
-    const fn new(regime: Regime, status: Status, steps: u32) -> Self {
-        Self {
-            regime,
-            status,
-            point: None,
-            state: [f32::NAN; STATE_CHANNELS.len()],
-            residual: f32::NAN,
-            margin_deg: f32::NAN,
-            steps,
-        }
-    }
-}
-
-fn answer<'a>(
-    cell: &Cell<'a>,
-    sheet: &Sheet,
-    boundary: &RowBoundary,
-    readings: Option<&mut Readings<'a>>,
-) -> Answer {
-    let push = cell.push.angle;
-    let span = boundary.span(push.abs());
-    // At the tip both verdicts are right; the boundary's is taken.
-    let status = match cell.state {
-        State::Refined(state)
-            if cell.status == Status::Solved && span.is_none() && state.is_at_tip(sheet) =>
-        {
-            Status::BeyondTip
-        }
-        _ => cell.status,
-    };
-    let (regime, status) = boundary.judge(push.abs(), status);
-    let mut answer = Answer::new(regime, status, cell.steps);
-    let residual = match cell.state {
-        State::Unknown => return answer,
-        State::Refined(state) => {
-            answer.point = Some(DVec2::new(state.tau, state.load));
-            state.residual as f32
-        }
-        State::Different(reference, difference) => {
-            let rod = &sheet.rod;
-            let point = || DVec2::from(difference.point(rod, reference));
-            // Only friction asks for it.
-            answer.point = (rod.friction != 0.0).then(point);
-            difference.residual
-        }
-    };
-    if matches!(regime, Regime::Contact | Regime::Unreachable) {
-        if let Some(numbers) = readings.and_then(|readings| readings.read(cell)) {
-            answer.state = numbers.map(|value| value as f32);
-        }
-        answer.residual = residual;
-        answer.margin_deg = span.map_or(f32::NAN, |span| {
-            (span.to - push.abs()).max(0.0).to_degrees() as f32
-        });
-    } else if regime == Regime::Unresolved {
-        answer.residual = residual;
-    }
-    answer
 }

@@ -6,6 +6,7 @@ use crate::refine::{End, Refined};
 use crate::rod::Units;
 use crate::sheet::Sheet;
 use crate::shooting::Reader;
+use std::ops::Range;
 
 /// One cell in so many is in the sample.
 const ONE_IN: u64 = 256;
@@ -19,17 +20,16 @@ const TOLERANCE: f64 = 3e-6;
 /// Engines vouch for no larger miss of a pole, in whisker lengths.
 const LARGEST_MISS: f64 = 1e-7;
 
-/// Which cells of a row are in the sample: the same ones in every run.
+/// Which cells of a row are in the sample: the same ones in every run, one of each so many.
 pub struct Sample {
     seed: u64,
-    threshold: u64,
+    one_in: u64,
 }
 
 impl Sample {
     /// Of `row` of `sheet`.
     pub fn new(sheet: &Sheet, row: usize, columns: usize) -> Self {
         let cells = (sheet.rows.len() * columns) as u64;
-        let one_in = (cells / AT_LEAST).clamp(1, ONE_IN);
         let distance = sheet.rows[row].pole_distance;
         let of_whisker = [
             sheet.rod.taper,
@@ -43,13 +43,18 @@ impl Sample {
             .chain([distance.to_bits(), row as u64]);
         Self {
             seed: numbers.fold(0, |seed, number| mixed(seed ^ mixed(number))),
-            threshold: u64::MAX / one_in,
+            one_in: (cells / AT_LEAST).clamp(1, ONE_IN),
         }
     }
 
-    /// Whether the cell in `column` is in it.
-    pub fn has(&self, column: usize) -> bool {
-        mixed(self.seed ^ mixed(column as u64)) <= self.threshold
+    /// Those of `cells` that are in it.
+    pub fn of(&self, cells: Range<usize>) -> impl Iterator<Item = usize> + use<> {
+        let Self { seed, one_in } = *self;
+        let all = cells.start as u64..cells.end as u64;
+        let parts = all.start / one_in..all.end.div_ceil(one_in);
+        let chosen = parts.map(move |part| part * one_in + mixed(seed ^ mixed(part)) % one_in);
+        let chosen = chosen.filter(move |cell| all.contains(cell));
+        chosen.map(|cell| cell as usize)
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::Face;
 use super::pushes::Push;
+use super::runs::{Run, Source};
 use super::summary::EngineCells;
 use crate::classify::{RowBoundary, Status, TIE};
 use crate::integrate::{CellDifference, Reference};
@@ -26,19 +27,8 @@ pub struct SettledRow {
     pub face: usize,
     /// Row of the panel.
     pub row: usize,
-    /// Where the answers of its cells come from, by growing push angle.
-    pub sources: Vec<Source>,
-}
-
-/// Where the answer of a cell comes from.
-#[derive(Clone, Copy, Debug)]
-pub enum Source {
-    /// Nowhere: the sheet has nothing there.
-    Outside,
-    /// A refined cell.
-    Refined(u32),
-    /// A cell of the engine, and its reference.
-    Engine(u32, u32),
+    /// All its cells, by growing push angle.
+    pub runs: Vec<Run>,
 }
 
 /// A settled cell.
@@ -90,15 +80,10 @@ impl Settled {
         } += self.unasked;
     }
 
-    /// The cells of `row`, which is one of `face`.
-    pub fn cells<'a>(
-        &'a self,
-        face: &'a Face,
-        row: &'a SettledRow,
-    ) -> impl Iterator<Item = Cell<'a>> + 'a {
-        let cells = face.pushes.columns.iter().zip(&row.sources);
-        cells.map(move |(push, source)| {
-            let (status, state, steps) = match *source {
+    /// The cells of a `run` of a row of `face`.
+    pub fn cells<'a>(&'a self, face: &'a Face, run: &Run) -> impl Iterator<Item = Cell<'a>> + 'a {
+        run.each().map(move |(cell, source)| {
+            let (status, state, steps) = match source {
                 Source::Outside => (Status::Outside, State::Unknown, 0),
                 Source::Refined(index) => {
                     let refined = &self.refined[index as usize];
@@ -117,7 +102,7 @@ impl Settled {
                 }
             };
             Cell {
-                push: *push,
+                push: face.pushes.columns[cell],
                 status,
                 state,
                 steps,

@@ -4,6 +4,9 @@ use super::STATE_CHANNELS;
 use crate::integrate::{CellDifference, Reference};
 use crate::shooting::{Reader, Reading};
 
+/// The place of the force among the channels.
+const FORCE: usize = 2;
+
 /// One number for each of [`STATE_CHANNELS`].
 pub type Numbers = [f64; STATE_CHANNELS.len()];
 
@@ -32,11 +35,13 @@ pub fn of_reference(reader: &Reader, reference: &Reference, touch: f64) -> Numbe
 
 /// The channels of a cell that differs from its reference, whose `channels` are these; `of_one` is what a difference of one is there.
 pub fn of_cell(channels: &Numbers, of_one: &Numbers, difference: &CellDifference) -> Numbers {
-    let mut cell = *channels;
-    for ((number, of_one), difference) in cell.iter_mut().zip(of_one).zip(difference.numbers) {
-        *number += of_one * f64::from(difference);
-    }
+    std::array::from_fn(|i| number(i, channels[i], of_one[i], difference))
+}
+
+/// The channel `i` of a cell whose reference has `known` there.
+#[inline]
+pub fn number(i: usize, known: f64, of_one: f64, difference: &CellDifference) -> f64 {
+    let number = known + of_one * f64::from(difference.numbers[i]);
     // Rounding at first touch.
-    cell[2] = cell[2].max(0.0);
-    cell
+    if i == FORCE { number.max(0.0) } else { number }
 }

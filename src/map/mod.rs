@@ -1,5 +1,6 @@
 //! The stages in order, for a whole scene: sheets, an engine's cells, guesses and refinement of all others, regimes, panels.
 
+mod answer;
 mod answers;
 mod audit;
 mod cells;
@@ -8,11 +9,13 @@ mod doubt;
 mod panel;
 mod pipeline;
 mod pushes;
+mod runs;
 mod sliding;
 mod stages;
 mod strip;
 mod summary;
 mod task;
+mod work;
 
 use crate::integrate::Engine;
 use crate::plan::Plan;

@@ -2,6 +2,7 @@
 
 use crate::rod::Side;
 use glam::DVec2;
+use std::ops::Range;
 
 /// One column.
 #[derive(Clone, Copy, Debug)]
@@ -52,6 +53,33 @@ impl Pushes {
             first,
         }
     }
+
+    /// Writes the values of `cells` of a row, by growing push angle, into a row of a panel if it has columns.
+    pub fn write(&self, row: &mut [f32], cells: &Range<usize>, value: impl Fn(usize) -> f32) {
+        let Some(columns) = row.get_mut(self.span(cells.clone())) else {
+            return;
+        };
+        match self.side {
+            Side::Cb => columns
+                .iter_mut()
+                .enumerate()
+                .for_each(|(i, cell)| *cell = value(i)),
+            Side::Cf => columns
+                .iter_mut()
+                .rev()
+                .enumerate()
+                .for_each(|(i, cell)| *cell = value(i)),
+        }
+    }
+
+    /// The columns of the panel that these `cells` of a row are in.
+    pub fn span(&self, cells: Range<usize>) -> Range<usize> {
+        match &self.columns[cells] {
+            [] => 0..0,
+            [only] => only.column..only.column + 1,
+            [first, .., last] => first.column.min(last.column)..first.column.max(last.column) + 1,
+        }
+    }
 }
 
 #[cfg(test)]
@@ -71,6 +99,18 @@ mod tests {
         };
         assert_eq!(columns(Side::Cf), [1, 0]);
         assert_eq!(columns(Side::Cb), [2, 3, 4]);
+        let span = |side, cells| Pushes::new(&all, side, 0).span(cells);
+        assert_eq!(span(Side::Cf, 0..2), 0..2);
+        assert_eq!(span(Side::Cf, 1..2), 0..1);
+        assert_eq!(span(Side::Cb, 1..3), 3..5);
+        let written = |side, cells| {
+            let mut row = [0.0; 5];
+            Pushes::new(&all, side, 0).write(&mut row, &cells, |i| 1.0 + i as f32);
+            row
+        };
+        assert_eq!(written(Side::Cf, 0..2), [2.0, 1.0, 0.0, 0.0, 0.0]);
+        assert_eq!(written(Side::Cb, 1..3), [0.0, 0.0, 0.0, 1.0, 2.0]);
+        Pushes::new(&all, Side::Cb, 0).write(&mut [], &(0..1), |_| unreachable!());
         let Push { angle, turn, .. } = Pushes::new(&all, Side::Cf, 0).columns[1];
         assert!(
             (turn.to_angle() - angle).abs() < 1e-15 && (angle + 1.2217304763960306).abs() < 1e-15

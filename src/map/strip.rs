@@ -1,16 +1,17 @@
 //! Some rows, from an engine if there is one, beside references along each row; all other cells from the sheet's guesses by refinement.
 
 use super::Face;
-use super::audit::{self, Said, Sample};
-use super::cells::{Settled, SettledRow, Source};
-use super::pushes::Pushes;
+use super::audit::{self, Said};
+use super::cells::{Settled, SettledRow};
+use super::runs::Source;
 use super::stages::{Stage, Stages};
 use super::summary::Audit;
+use super::work::{Place, Work};
 use crate::account::carried;
 use crate::integrate::{CellDifference, Reference, on_gpu};
 use crate::refine::{self, RowOfCells, Shot};
 use crate::rod::Rod;
-use crate::sheet::{Guess, Sheet};
+use crate::sheet::Sheet;
 use crate::shooting::batch::Method;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -23,7 +24,7 @@ pub struct Asked {
     /// The references of all rows.
     pub references: Vec<Reference>,
     /// The references of each row, and the first of their cells.
-    rows: Vec<(Range<usize>, usize)>,
+    pub rows: Vec<(Range<usize>, usize)>,
 }
 
 impl Asked {
@@ -67,34 +68,6 @@ struct Rows<'a> {
     method: Method,
     sheets: Vec<&'a Sheet>,
     places: Vec<Place<'a>>,
-}
-
-/// A row of a face.
-struct Place<'a> {
-    face: &'a Face<'a>,
-    /// Of the face.
-    index: usize,
-    row: usize,
-    /// Of the face's sheet among those of the strip.
-    sheet: u32,
-}
-
-/// What is to be done for a row.
-struct Work {
-    sources: Vec<Source>,
-    shots: Vec<Shot>,
-    audits: Vec<Chosen>,
-    /// Shots of cells that no engine was asked for.
-    unasked: u64,
-}
-
-/// A cell of an engine that is computed once more.
-struct Chosen {
-    column: usize,
-    reference: u32,
-    cell: u32,
-    /// Among the shots of its row.
-    shot: usize,
 }
 
 impl<'a> Rows<'a> {
@@ -160,19 +133,19 @@ impl<'a> Rows<'a> {
         for (i, (place, mut work)) in self.places.iter().zip(work).enumerate() {
             for chosen in &work.audits {
                 let refined = &refined[before + chosen.shot];
-                let push = place.face.pushes.columns[chosen.column].angle;
+                let push = place.face.pushes.columns[chosen.cell].angle;
                 let said = Said {
                     row: &asked.references[asked.rows[i].0.clone()],
                     reference: &asked.references[chosen.reference as usize],
-                    difference: &differences[chosen.cell as usize],
+                    difference: &differences[chosen.difference as usize],
                 };
                 let holds = audit::holds(&place.face.sheet, place.row, push, &said, refined);
                 audit.cells += 1;
                 audit.differing += u64::from(!holds);
             }
-            for source in &mut work.sources {
-                if let Source::Refined(index) = source {
-                    *index += before as u32;
+            for run in &mut work.runs {
+                if let Source::Refined(first) = &mut run.source {
+                    *first += before as u32;
                 }
             }
             before += work.shots.len();
@@ -180,7 +153,7 @@ impl<'a> Rows<'a> {
             rows.push(SettledRow {
                 face: place.index,
                 row: place.row,
-                sources: work.sources,
+                runs: work.runs,
             });
         }
         let settled = Settled {
@@ -191,87 +164,5 @@ impl<'a> Rows<'a> {
             unasked,
         };
         (settled, audit)
-    }
-}
-
-impl Place<'_> {
-    /// What is left to do for this row, the number `i` of its strip.
-    fn work(&self, i: usize, solved: &Solved) -> Work {
-        let pushes = self.face.pushes;
-        let mut sources = vec![Source::Outside; pushes.columns.len()];
-        let mut was_asked = vec![false; sources.len()];
-        let mut chosen = Vec::new();
-        if let Some((references, first)) = solved.asked.rows.get(i) {
-            let mut cell = *first;
-            let audit = Sample::new(&self.face.sheet, self.row, pushes.columns.len());
-            for reference in references.clone() {
-                let cells = &solved.asked.references[reference].cells;
-                for column in cells.clone().map(|index| (index - pushes.first) as usize) {
-                    let outcome = solved.differences[cell].outcome;
-                    was_asked[column] = true;
-                    if outcome.is_vouched_for() {
-                        sources[column] = Source::Engine(reference as u32, cell as u32);
-                        if audit.has(column) {
-                            chosen.push((column, reference as u32, cell as u32));
-                        }
-                    }
-                    cell += 1;
-                }
-            }
-        }
-        let is_left = |column: &usize| matches!(sources[*column], Source::Outside);
-        let mut columns: Vec<usize> = (0..sources.len()).filter(is_left).collect();
-        let left = columns.len();
-        columns.extend(chosen.iter().map(|(column, ..)| *column));
-        // Guesses are made by growing push angle.
-        columns.sort_unstable();
-        let guesses = self.shots(&columns);
-        let mut shots = Vec::with_capacity(left);
-        let (mut audits, mut unasked) = (Vec::new(), 0);
-        let mut chosen = chosen.into_iter().peekable();
-        for (column, shot) in columns.into_iter().zip(guesses) {
-            let audited = chosen.next_if(|(own, ..)| *own == column);
-            let Some(shot) = shot else { continue };
-            match audited {
-                Some((column, reference, cell)) => audits.push(Chosen {
-                    column,
-                    reference,
-                    cell,
-                    shot: shots.len(),
-                }),
-                None => {
-                    sources[column] = Source::Refined(shots.len() as u32);
-                    unasked += u64::from(!was_asked[column]);
-                }
-            }
-            shots.push(shot);
-        }
-        Work {
-            sources,
-            shots,
-            audits,
-            unasked,
-        }
-    }
-
-    /// The shots of the cells at `columns`, which grow.
-    fn shots(&self, columns: &[usize]) -> Vec<Option<Shot>> {
-        let Pushes {
-            columns: pushes,
-            magnitudes,
-            ..
-        } = self.face.pushes;
-        let sheet = &self.face.sheet;
-        let at_touch = sheet.rows[self.row].pole(0.0);
-        let guesses = sheet.guesses(self.row, columns.iter().map(|column| magnitudes[*column]));
-        let shot = |(guess, column): (Option<Guess>, &usize)| {
-            guess.map(|Guess { tau, load }| Shot {
-                rod: self.sheet,
-                tau,
-                load,
-                pole: pushes[*column].turn.rotate(at_touch),
-            })
-        };
-        guesses.into_iter().zip(columns).map(shot).collect()
     }
 }

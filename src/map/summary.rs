@@ -1,8 +1,10 @@
 //! What a run says about itself when it is done.
 
 use super::{Panel, Stage};
+use crate::account::carried;
 use crate::classify::{Regime, Status};
 use crate::integrate::{EngineError, Outcome};
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
 
@@ -57,6 +59,9 @@ impl std::ops::AddAssign for Audit {
     }
 }
 
+/// Cells that are counted together: they stay in a core's nearest cache.
+const AT_ONCE: usize = 2048;
+
 /// Counts and times of a run.
 #[derive(Clone, Debug, Default)]
 pub struct Summary {
@@ -95,22 +100,46 @@ impl Summary {
 
     /// Adds a finished panel.
     pub(super) fn count(&mut self, panel: &Panel) {
-        for (cells, regime) in self.regimes.iter_mut().zip(Regime::ALL) {
-            let codes = panel.regime.iter();
-            *cells += codes.filter(|code| **code == regime.code()).count() as u64;
-        }
-        let verdicts = panel.regime.iter().zip(&panel.status);
-        for (residual, (regime, status)) in panel.residual.iter().zip(verdicts) {
-            if residual.is_finite() && *regime != Regime::Unresolved.code() {
-                self.refined += 1;
-                self.worst_residual = self.worst_residual.max(f64::from(*residual));
+        let parts = panel
+            .regime
+            .par_chunks(AT_ONCE)
+            .zip(panel.status.par_chunks(AT_ONCE));
+        let numbers = panel.residual.par_chunks(AT_ONCE);
+        let parts = parts.zip(numbers.zip(panel.newton_steps.par_chunks(AT_ONCE)));
+        let parts = parts.map_init(carried(), |_, ((regimes, statuses), (residuals, steps))| {
+            let mut part = Self::default();
+            part.count_cells(regimes, statuses, residuals, steps);
+            part
+        });
+        let parts: Vec<Self> = parts.collect();
+        for part in parts {
+            for (cells, more) in self.regimes.iter_mut().zip(part.regimes) {
+                *cells += more;
             }
-            self.disagreements += u64::from(*status == Status::Disagreement.code());
-            self.toward_base += u64::from(*status == Status::TowardBase.code());
-            self.sticking += u64::from(*status == Status::Sticking.code());
+            self.refined += part.refined;
+            self.steps += part.steps;
+            self.worst_residual = self.worst_residual.max(part.worst_residual);
+            self.disagreements += part.disagreements;
+            self.toward_base += part.toward_base;
+            self.sticking += part.sticking;
         }
-        let steps = panel.newton_steps.iter().copied();
-        self.steps += steps.map(u64::from).sum::<u64>();
+    }
+
+    /// Counts some cells: their codes of regime and status, their residuals and steps.
+    fn count_cells(&mut self, regimes: &[u32], statuses: &[u32], residuals: &[f32], steps: &[u32]) {
+        let of = |codes: &[u32], code: u32| codes.iter().filter(|own| **own == code).count() as u64;
+        self.regimes = Regime::ALL.map(|regime| of(regimes, regime.code()));
+        let mut worst = 0.0_f32;
+        for (residual, regime) in residuals.iter().zip(regimes) {
+            let has_state = residual.is_finite() && *regime != Regime::Unresolved.code();
+            self.refined += u64::from(has_state);
+            worst = worst.max(if has_state { *residual } else { 0.0 });
+        }
+        self.worst_residual = worst.into();
+        self.disagreements = of(statuses, Status::Disagreement.code());
+        self.toward_base = of(statuses, Status::TowardBase.code());
+        self.sticking = of(statuses, Status::Sticking.code());
+        self.steps = steps.iter().copied().map(u64::from).sum();
     }
 
     /// Cells of the map.

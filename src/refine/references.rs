@@ -7,8 +7,9 @@
 use super::Shot;
 use super::exact::{Exact, exact};
 use crate::account::carried;
-use crate::integrate::{POWERS, Reference, RowNumbers};
-use crate::numerics::nearest_turn;
+use crate::integrate::{Reference, RowNumbers};
+use crate::numerics::taylor::around_nodes;
+use crate::numerics::{WIDTH, nearest_turn};
 use crate::rod::Rest;
 use crate::sheet::{Guess, Sheet};
 use crate::shooting::batch::Method;
@@ -16,8 +17,8 @@ use rayon::prelude::*;
 use std::f64::consts::PI;
 use std::ops::Range;
 
-/// References of a row.
-pub const NODES: usize = 16;
+/// References of a row: as many as polynomials are expanded around side by side.
+pub const NODES: usize = WIDTH;
 
 /// The cells of a row that ask for references.
 #[derive(Clone, Copy, Debug)]
@@ -130,11 +131,10 @@ fn expand(sheet: &Sheet, row: &RowOfCells, found: &[Exact]) -> Option<Vec<Refere
     if !ways.windows(2).all(|pair| pair[0] < pair[1]) {
         return None;
     }
-    let differences = divided_differences(&ways, numbers);
+    let expanded = around_nodes(&ways, &numbers);
     let mut references = Vec::with_capacity(NODES);
     let mut from = 0;
-    for m in 0..NODES {
-        let row_here = expanded(&ways, &differences, ways[m]);
+    for (m, row_here) in expanded.into_iter().enumerate() {
         let [push, ..] = numbers[m];
         let until = match ways.get(m + 1) {
             Some(next) => {
@@ -164,44 +164,4 @@ fn expand(sheet: &Sheet, row: &RowOfCells, found: &[Exact]) -> Option<Vec<Refere
         from = to;
     }
     Some(references)
-}
-
-/// Newton's divided differences.
-fn divided_differences(
-    nodes: &[f64; NODES],
-    mut values: [RowNumbers; NODES],
-) -> [RowNumbers; NODES] {
-    for level in 1..NODES {
-        for i in (level..NODES).rev() {
-            let inverse = 1.0 / (nodes[i] - nodes[i - level]);
-            let before = values[i - 1];
-            for (value, before) in values[i].iter_mut().zip(before) {
-                *value = (*value - before) * inverse;
-            }
-        }
-    }
-    values
-}
-
-/// The Taylor polynomials around `at` of those with these divided differences.
-fn expanded(
-    nodes: &[f64; NODES],
-    differences: &[RowNumbers; NODES],
-    at: f64,
-) -> [RowNumbers; POWERS] {
-    let mut series = [RowNumbers::default(); POWERS];
-    for (node, difference) in nodes.iter().zip(differences).rev() {
-        let shift = at - node;
-        for power in (0..POWERS).rev() {
-            let lower = if power > 0 {
-                series[power - 1]
-            } else {
-                *difference
-            };
-            for (term, lower) in series[power].iter_mut().zip(lower) {
-                *term = *term * shift + lower;
-            }
-        }
-    }
-    series
 }

@@ -155,9 +155,9 @@ fn a_sound_kernel_passes_its_audit() {
     }
 }
 
-/// Which one of a thousand cells is wrong, whatever dispatch it is in. The audit looks at 142 of
-/// 36,669 cells, so that it has one of 37 with a probability of 13 %, and the first choice is the eighth. It has one of those in a map of a million cells with 98 %.
-const CHOSEN: u32 = 7;
+/// Which one of a thousand cells is wrong, whatever dispatch it is in. The audit looks at 134 of
+/// 36,670 cells, so that it has one of 37 with a probability of 13 %, and the first choice is the sixth. It has one of those in a map of a million cells with 98 %.
+const CHOSEN: u32 = 5;
 
 /// The sample of the audit is the same in every run, and so are the cells that are wrong.
 #[test]

@@ -8,6 +8,7 @@ pub mod newton_form;
 pub mod newton_form_simd;
 mod real;
 mod simd;
+pub mod taylor;
 mod turn;
 mod vector;
 
