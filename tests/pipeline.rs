@@ -51,7 +51,7 @@ fn a_strip_is_solved_while_the_one_before_is_settled() {
         Ok(cells)
     };
     let mut engine = Watched::new(gpu, call);
-    on_threads(3, move || {
+    on_threads(1, move || {
         let mut settled = 0;
         let mut one_more = |_| {
             settled += 1;
@@ -115,9 +115,31 @@ fn answers_that_are_too_few_are_a_failure() {
     let (summary, panels) = compute_as(&scene, &plan, Some(&mut engine));
     let failure = summary.engine_failure.unwrap().to_string();
     assert!(failure.contains("answers for"), "{failure}");
-    assert_eq!(engine.calls, 1);
+    // It may have answered what was under way, which nobody believes.
+    assert!((1..=3).contains(&engine.calls), "{}", engine.calls);
     assert_eq!(summary.engine_cells.solved, 0);
     assert_identical(&compute_as(&scene, &plan, None).1, &panels);
+}
+
+/// What is under way when a run ends early is no answer to the next run's questions.
+#[test]
+fn an_engine_goes_from_run_to_run() {
+    let (scene, plan) = in_strips();
+    let Some(mut gpu) = open(Precision::F32) else {
+        return;
+    };
+    let fresh = compute_as(&scene, &plan, Some(&mut gpu)).1;
+    let sweep = Scene::read("scenes/morphology.toml")
+        .unwrap()
+        .thinned(48, 1);
+    let mut plan_of_sweep = Plan::new(&sweep).unwrap();
+    plan_of_sweep.panels_at_once = 1;
+    for _ in 0..3 {
+        let refuse = &mut |_| Err("no room");
+        let refused = map::run(&sweep, &plan_of_sweep, Some(&mut gpu), &mut |_| (), refuse);
+        assert_eq!(refused.unwrap_err(), "no room");
+        assert_identical(&fresh, &compute_as(&scene, &plan, Some(&mut gpu)).1);
+    }
 }
 
 /// Every stage that has worked has CPU time, and no second is counted twice, however the threads have helped each other out.
@@ -132,7 +154,8 @@ fn stages_share_the_time_of_the_threads() {
         };
         let before = host();
         let Ok(summary) = map::run(&scene, &plan, engine, &mut |_| (), &mut keep);
-        (summary, host() - before)
+        let of_engine = Duration::from_secs_f64(summary.engine_host_seconds());
+        (summary, host() - before + of_engine)
     };
     let check = |(summary, host): (Summary, Duration), has_engine: bool| {
         let seconds = Stage::ALL.map(|(stage, _)| summary.cpu_seconds(stage));

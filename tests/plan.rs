@@ -1,16 +1,22 @@
 //! What a plan promises is what a run does.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+use std::collections::VecDeque;
 use std::convert::Infallible;
-use whiskmap::integrate::{CellDifference, Description, Engine, EngineError, Outcome, Reference};
+use std::sync::Arc;
+use whiskmap::integrate::{CellDifference, Description, Engine, EngineError, Outcome, Question};
 use whiskmap::map::{self, EngineCells, STATE_CHANNELS};
 use whiskmap::plan::{Plan, effects};
-use whiskmap::rod::Rod;
 use whiskmap::scene::Scene;
-use whiskmap::shooting::batch::Method;
+use whiskmap::shooting::Resolution;
 
 /// Counts its calls, and hands all cells over.
-struct Counting(usize);
+#[derive(Default)]
+struct Counting {
+    calls: usize,
+    /// Cells of the questions without answers.
+    asked: VecDeque<usize>,
+}
 
 impl Engine for Counting {
     fn describe(&self) -> Description {
@@ -21,21 +27,23 @@ impl Engine for Counting {
         1.0
     }
 
-    fn solve(
-        &mut self,
-        _: Method,
-        _: &[Rod],
-        _: &[f64],
-        references: &[Reference],
-    ) -> Result<Vec<CellDifference>, EngineError> {
-        self.0 += 1;
+    fn resolution(&self, resolution: Resolution) -> Resolution {
+        resolution
+    }
+
+    fn ask(&mut self, question: Arc<Question>) -> Result<(), EngineError> {
+        self.calls += 1;
+        self.asked.push_back(question.cells());
+        Ok(())
+    }
+
+    fn answer(&mut self) -> Result<Vec<CellDifference>, EngineError> {
         let far = CellDifference {
             numbers: [f32::NAN; STATE_CHANNELS.len()],
             residual: f32::NAN,
             outcome: Outcome::Far,
         };
-        let cells = references.iter().map(|reference| reference.cells.len());
-        Ok(vec![far; cells.sum()])
+        Ok(vec![far; self.asked.pop_front().unwrap()])
     }
 }
 
@@ -56,12 +64,12 @@ fn kept(push_angles: &str, distances: &str, more: &str) -> (usize, usize) {
     );
     let scene = Scene::parse(&text, "scene").unwrap();
     let plan = Plan::new(&scene).unwrap();
-    let mut engine = Counting(0);
+    let mut engine = Counting::default();
     let discard = &mut |_| Ok::<(), Infallible>(());
     let Ok(summary) = map::run(&scene, &plan, Some(&mut engine), &mut |_| (), discard);
     // Rows of few cells have no references, of which an engine could solve any.
     let is_asked = scene.grid.push_angle_deg.len() > 100;
-    assert_eq!(engine.0, if is_asked { plan.engine_calls } else { 0 });
+    assert_eq!(engine.calls, if is_asked { plan.engine_calls } else { 0 });
     assert_eq!(summary.cells(), plan.cells as u64);
     let EngineCells {
         far,

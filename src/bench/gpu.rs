@@ -4,12 +4,13 @@ use super::task::{Task, faces, magnitudes};
 use super::watch::watch;
 use super::{Engine, Measurement, Report, Rung, Stages};
 use crate::integrate::gpu::{Gpu, Precision, adapters};
-use crate::integrate::{Engine as _, EngineError, Outcome, Reference, on_gpu};
+use crate::integrate::{Engine as _, EngineError, Outcome, Question, Reference, on_gpu};
 use crate::refine::{RowOfCells, references};
 use crate::rod::Rod;
 use crate::scene::Scene;
 use crate::sheet::Sheet;
 use crate::shooting::batch::Method;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// A GPU engine that may be measured.
@@ -81,7 +82,7 @@ type Point = (usize, (f64, f64));
 /// A whisker on one side.
 struct Side {
     rods: [Rod; 1],
-    pushes: Vec<f64>,
+    pushes: Arc<[f64]>,
     references: Vec<Reference>,
     /// Of each cell of the references, its shot in the task, if it has one.
     shots: Vec<Option<usize>>,
@@ -118,7 +119,7 @@ impl Sides {
                 rods: [rod.clone()],
                 shots: shots.collect(),
                 references: by_row.into_iter().flatten().collect(),
-                pushes,
+                pushes: pushes.into(),
             }
         });
         Self {
@@ -131,10 +132,19 @@ impl Sides {
     fn solve(&self, gpu: &mut Gpu) -> Result<(Vec<Point>, Stages), EngineError> {
         let (mut points, mut stages) = (Vec::new(), Stages::default());
         for side in &self.all {
-            let cells = gpu.solve(self.method, &side.rods, &side.pushes, &side.references)?;
-            let times = gpu.times().unwrap_or_default();
+            let begun = Instant::now();
+            let question = Question::new(
+                self.method.effects,
+                gpu.resolution(self.method.resolution),
+                side.rods.to_vec(),
+                Arc::clone(&side.pushes),
+                side.references.clone(),
+            );
+            let trajectories = begun.elapsed();
+            let cells = gpu.solve(Arc::new(question))?;
+            let times = gpu.take_times();
             let ms = |duration: Duration| 1e3 * duration.as_secs_f64();
-            stages.upload += ms(times.upload);
+            stages.upload += ms(trajectories + times.upload);
             stages.dispatch += ms(times.dispatch);
             stages.waiting += ms(times.waiting);
             stages.readback += ms(times.readback);
@@ -158,7 +168,7 @@ fn engine(
     one: &Candidate,
 ) -> Result<(), EngineError> {
     let start = Instant::now();
-    let mut gpu = Gpu::timed(one.adapter, one.precision)?;
+    let mut gpu = Gpu::at(one.adapter, one.precision)?;
     sides.solve(&mut gpu)?;
     let first_result_s = start.elapsed().as_secs_f64();
     let engine = Engine {

@@ -155,7 +155,8 @@ fn run(scene: &Scene, plan: &Plan, gpu: Option<&mut Gpu>) -> Result<Sample, Engi
     };
     let before = host_time();
     let Ok(summary) = map::run(scene, plan, engine, &mut |_| (), &mut keep);
-    let (seconds, host) = (summary.wall_seconds(), host_time() - before);
+    let host = host_time() - before + summary.engine_host_seconds();
+    let seconds = summary.wall_seconds();
     if let Some(failure) = summary.engine_failure {
         return Err(failure);
     }

@@ -5,18 +5,20 @@
 //! miss. Cells that it does not vouch for, it hands over by an [`Outcome`]: they are refined in `f64`. So are rows without
 //! references, and a sample of all others.
 
-mod fallback;
 #[cfg(feature = "gpu")]
 pub mod gpu;
+mod question;
+mod worker;
 
-pub use fallback::Fallback;
+pub use question::{MOST_STEPS, Question, Trajectory};
+pub use worker::Worker;
 
 use crate::numerics::Unit;
 use crate::plan::STATE_CHANNELS;
 use crate::rod::{Effects, Rod, arclength};
-use crate::shooting::FirstVariation;
-use crate::shooting::batch::Method;
+use crate::shooting::{FirstVariation, Resolution};
 use std::ops::Range;
+use std::sync::Arc;
 
 /// Coefficients of a Taylor polynomial along a row.
 pub const POWERS: usize = 12;
@@ -134,18 +136,29 @@ pub trait Engine: Send {
     /// The largest bound on the miss of a cell that it vouches for, in whisker lengths.
     fn goal(&self) -> f64;
 
-    /// Solves the cells of the `references`, in order, each on one of `rods`, at some of the signed `pushes` (radians). The effects of
-    /// `method` are some that are [`on_gpu`].
+    /// The resolution of the references' trajectories where the CPU has this one.
+    fn resolution(&self, resolution: Resolution) -> Resolution;
+
+    /// Takes on a `question`, and works on it as far as it can without being waited for.
+    ///
+    /// # Errors
+    /// When the device fails; from then on every call fails.
+    fn ask(&mut self, question: Arc<Question>) -> Result<(), EngineError>;
+
+    /// The answers to the oldest question that has none yet, one for each cell; none if there is no such question.
     ///
     /// # Errors
     /// When the device fails; a cell that is handed over is no error.
-    fn solve(
-        &mut self,
-        method: Method,
-        rods: &[Rod],
-        pushes: &[f64],
-        references: &[Reference],
-    ) -> Result<Vec<CellDifference>, EngineError>;
+    fn answer(&mut self) -> Result<Vec<CellDifference>, EngineError>;
+
+    /// The answers to a question, asked alone.
+    ///
+    /// # Errors
+    /// When the device fails.
+    fn solve(&mut self, question: Arc<Question>) -> Result<Vec<CellDifference>, EngineError> {
+        self.ask(question)?;
+        self.answer()
+    }
 }
 
 /// A device that failed.

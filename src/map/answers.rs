@@ -145,7 +145,7 @@ impl<'a> RowAnswers<'a> {
         if let Source::Engine(reference, first) = run.source {
             self.into.fill_codes(columns, &answer);
             let span = self.boundary.span(from)?;
-            let reference = &self.settled.references[reference as usize];
+            let reference = &self.settled.question.references[reference as usize];
             let differences = &self.settled.differences[first as usize..][..pushes.len()];
             let into = &mut self.into;
             all.write(into.residual, &cells, |i| differences[i].residual);

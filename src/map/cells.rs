@@ -5,15 +5,16 @@ use super::pushes::Push;
 use super::runs::{Run, Source};
 use super::summary::EngineCells;
 use crate::classify::{RowBoundary, Status, TIE};
-use crate::integrate::{CellDifference, Reference};
+use crate::integrate::{CellDifference, Question, Reference};
 use crate::refine::{ContactState, End, Refined};
+use std::sync::Arc;
 
 /// Some rows, settled.
 pub struct Settled {
     /// The rows.
     pub rows: Vec<SettledRow>,
-    /// The references of all rows, and what the engine made of their cells.
-    pub references: Vec<Reference>,
+    /// What an engine was asked, and what it made of the cells.
+    pub question: Arc<Question>,
     pub differences: Vec<CellDifference>,
     /// What the refinement made of the other cells.
     pub refined: Vec<Refined>,
@@ -97,7 +98,7 @@ impl Settled {
                 }
                 Source::Engine(reference, cell) => {
                     let cell = &self.differences[cell as usize];
-                    let reference = &self.references[reference as usize];
+                    let reference = &self.question.references[reference as usize];
                     (Status::Solved, State::Different(reference, cell), 1)
                 }
             };

@@ -17,7 +17,7 @@ mod summary;
 mod task;
 mod work;
 
-use crate::integrate::Engine;
+use crate::integrate::{Engine, Worker};
 use crate::plan::Plan;
 pub use crate::plan::{Channels, STATE_CHANNELS};
 use crate::scene::Scene;
@@ -37,8 +37,8 @@ struct Face<'a> {
 }
 
 /// Computes the panels of `scene` as `plan` says, on the threads of the current pool, best from within it
-/// (`rayon::ThreadPool::install`): from outside, every stage of every strip of rows wakes it up. `engine` solves
-/// cells in place of the refinement, those of a strip while the threads judge the one before and find the references of the one
+/// (`rayon::ThreadPool::install`): from outside, every stage of every strip of rows wakes it up. `engine`, on a thread of its own, solves
+/// cells in place of the refinement, those of a strip while the threads judge the one before and find the references of those
 /// after; without one, or where it fails, the CPU does it all. `settled` hears how many more cells are settled; `keep` gets the
 /// finished panels, in the order of the sweep, while the next ones are computed: it holds at most one group of them.
 ///
@@ -53,17 +53,28 @@ pub fn run<E: Send>(
 ) -> Result<Summary, E> {
     let start = Instant::now();
     let task = Task::new(scene, plan, engine.is_some());
-    let mut pipeline = Pipeline::new(&task, engine);
-    let mut keep = |panels| task.stages.of(Stage::Packing, || keep(panels));
-    let mut finished: Option<Vec<Panel>> = None;
-    for _ in plan.groups() {
-        let (before, mut kept) = (finished.take(), Ok(()));
-        rayon::in_place_scope(|scope| {
-            scope.spawn(|_| kept = before.map_or(Ok(()), &mut keep));
-            finished = Some(pipeline.panels(settled));
-        });
-        kept?;
-    }
-    finished.map_or(Ok(()), keep)?;
-    Ok(pipeline.finish(start.elapsed()))
+    let resolution = engine
+        .as_ref()
+        .map(|own| own.resolution(plan.method.resolution));
+    let account = task.stages.account(Stage::References);
+    let summary = Worker::with(engine, account, |worker| {
+        let mut pipeline = Pipeline::new(&task, worker, resolution);
+        let mut keep = |panels| task.stages.of(Stage::Packing, || keep(panels));
+        let mut finished: Option<Vec<Panel>> = None;
+        for _ in plan.groups() {
+            let (before, mut kept) = (finished.take(), Ok(()));
+            rayon::in_place_scope(|scope| {
+                scope.spawn(|_| kept = before.map_or(Ok(()), &mut keep));
+                finished = Some(pipeline.panels(settled));
+            });
+            kept?;
+        }
+        finished.map_or(Ok(()), keep)?;
+        Ok(pipeline.finish())
+    })?;
+    Ok(Summary {
+        stages: task.stages.times(),
+        wall: start.elapsed(),
+        ..summary
+    })
 }

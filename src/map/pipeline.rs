@@ -1,14 +1,16 @@
-//! Strips of rows on their way: the engine solves one while the threads judge the one before and prepare the one after.
+//! Strips of rows on their way: an engine is asked about the next ones before the threads, which share the work on each, settle one.
 //!
-//! A strip ahead is all that there is room for, and all that it takes: the threads share the work on each strip. What an audit finds
-//! in a strip is known before the answers to the next one are looked at, so that no race decides what becomes of a cell.
+//! Answers are looked at in order, and what an audit finds in a strip is known before those to the next one are, so that no race decides
+//! what becomes of a cell.
 
 use super::panel::Panel;
 use super::stages::Stage;
 use super::strip::{self, Asked, Solved};
 use super::task::{Group, Task};
 use super::{Audit, Summary, answers};
-use crate::integrate::{CellDifference, Engine, Fallback};
+use crate::integrate::{CellDifference, Worker};
+use crate::shooting::Resolution;
+use std::collections::VecDeque;
 use std::ops::Range;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -21,8 +23,6 @@ struct Strip<'a> {
     /// Whether it is the last one of its group.
     is_last: bool,
     asked: Asked,
-    /// What the engine made of it.
-    differences: Option<Vec<CellDifference>>,
 }
 
 /// The strips of a task, in order.
@@ -34,8 +34,8 @@ struct Strips<'a> {
 }
 
 impl<'a> Strips<'a> {
-    /// The next one, with references if there is an engine to ask.
-    fn prepare(&mut self, has_engine: bool) -> Option<Strip<'a>> {
+    /// The next one, with references in the steps of `resolution` if there is an engine to ask.
+    fn prepare(&mut self, resolution: Option<Resolution>) -> Option<Strip<'a>> {
         let task = self.task;
         let (group, from) = match self.begun.take() {
             Some(begun) => begun,
@@ -50,8 +50,9 @@ impl<'a> Strips<'a> {
         let to = all.min(from + task.rows_at_once);
         let rows: Vec<(usize, usize)> = (from..to).map(|i| (i / height, i % height)).collect();
         let mut asked = Asked::default();
-        if has_engine {
-            let ask = || Asked::new(task.plan.method, &group.faces, &rows);
+        if let Some(resolution) = resolution {
+            let method = task.plan.method;
+            let ask = || Asked::new(method, resolution, &task.angles, &group.faces, &rows);
             asked = task.stages.of(Stage::References, ask);
         }
         self.begun = (to < all).then(|| (Arc::clone(&group), to));
@@ -60,35 +61,40 @@ impl<'a> Strips<'a> {
             rows,
             is_last: to == all,
             asked,
-            differences: None,
         })
     }
 }
 
+/// Strips that an engine has been asked about while one is settled: one that it solves, and one that waits.
+const AHEAD: usize = 2;
+
 /// A run under way.
-pub struct Pipeline<'a, 'e> {
-    engine: Fallback<'e>,
+pub struct Pipeline<'a> {
+    worker: Worker,
+    /// The resolution of references for the engine, if there is one.
+    resolution: Option<Resolution>,
     strips: Strips<'a>,
-    prepared: Option<Strip<'a>>,
-    solved: Option<Strip<'a>>,
-    /// Counts and times up to now.
+    /// Those whose cells an engine may be at, in order.
+    under_way: VecDeque<Strip<'a>>,
+    waiting: Duration,
+    /// Counts up to now.
     pub summary: Summary,
 }
 
-impl<'a, 'e> Pipeline<'a, 'e> {
-    /// Before its first strip.
-    pub fn new(task: &'a Task<'a>, engine: Option<&'e mut dyn Engine>) -> Self {
+impl<'a> Pipeline<'a> {
+    /// Before its first strip; `resolution` is that of references for the engine of `worker`.
+    pub fn new(task: &'a Task<'a>, worker: Worker, resolution: Option<Resolution>) -> Self {
         let strips = Strips {
             task,
             groups: Box::new(task.plan.groups()),
             begun: None,
         };
-        let failure = None;
         Self {
-            engine: Fallback { engine, failure },
+            worker,
+            resolution,
             strips,
-            prepared: None,
-            solved: None,
+            under_way: VecDeque::new(),
+            waiting: Duration::ZERO,
             summary: Summary::default(),
         }
     }
@@ -102,81 +108,78 @@ impl<'a, 'e> Pipeline<'a, 'e> {
         panels
     }
 
-    /// What there is to say in the end, after so much time.
-    pub fn finish(self, wall: Duration) -> Summary {
-        let mut summary = self.summary;
-        summary.engine_failure = self.engine.failure;
-        summary.stages = self.strips.task.stages.times();
-        summary.wall = wall;
-        summary
-    }
-
-    /// All strips on their way advance. Whether `panels` are complete.
-    fn advance(&mut self, panels: &mut Vec<Panel>, settled: &mut dyn FnMut(usize)) -> bool {
+    /// What there is to say in the end.
+    pub fn finish(self) -> Summary {
         let Self {
-            engine,
-            strips,
+            worker,
+            waiting,
             summary,
             ..
         } = self;
-        let task = strips.task;
-        let has_engine = engine.engine.is_some();
-        let has_failed = engine.failure.is_some();
-        let before = self.solved.take();
-        let mut now = self.prepared.take();
-        let is_last = before.as_ref().map(|strip| strip.is_last);
-        let mut audit = Audit::default();
-        let mut answer = (None, Duration::ZERO);
-        let done = rayon::in_place_scope(|scope| {
-            let is_asked = |strip: &&Strip| has_engine && !strip.asked.references.is_empty();
-            if let Some(Strip { asked, .. }) = now.as_ref().filter(is_asked) {
-                let (engine, answer) = (&mut *engine, &mut answer);
-                scope.spawn(move |_| {
-                    let start = Instant::now();
-                    let Asked {
-                        rods, references, ..
-                    } = asked;
-                    let solve = || engine.solve(task.plan.method, rods, &task.angles, references);
-                    let solved = task.stages.of(Stage::References, solve);
-                    *answer = (solved, start.elapsed());
-                });
+        Summary {
+            device: worker.busy,
+            engine_host: worker.host,
+            engine_failure: worker.failure,
+            waiting,
+            ..summary
+        }
+    }
+
+    /// The next strip is settled, and others get under way. Whether `panels` are complete.
+    fn advance(&mut self, panels: &mut Vec<Panel>, settled: &mut dyn FnMut(usize)) -> bool {
+        let ahead = if self.worker.is_working() { AHEAD } else { 0 };
+        while self.under_way.len() <= ahead {
+            let resolution = self.resolution.filter(|_| self.worker.is_working());
+            let Some(strip) = self.strips.prepare(resolution) else {
+                break;
+            };
+            if strip.is_asked() {
+                self.worker.ask(Arc::clone(&strip.asked.question));
             }
-            if let Some(strip) = before {
-                let cells = strip.cells();
-                let failed = (has_engine || has_failed).then_some(has_failed);
-                let finish = || strip.finish(task, failed, panels, summary);
-                audit = task.stages.of(Stage::Judging, finish);
-                settled(cells);
-            }
-            self.prepared = strips.prepare(has_engine);
-            Instant::now()
+            self.under_way.push_back(strip);
+        }
+        let Some(strip) = self.under_way.pop_front() else {
+            return true;
+        };
+        let differences = strip.is_asked().then(|| {
+            let begun = Instant::now();
+            let answers = self.worker.answers();
+            self.waiting += begun.elapsed();
+            answers
         });
-        let (differences, device) = answer;
-        summary.wait(device, done.elapsed());
+        let task = self.strips.task;
+        let (cells, is_last) = (strip.cells(), strip.is_last);
+        let has_failed = self.resolution.map(|_| self.worker.failure.is_some());
+        let summary = &mut self.summary;
+        let finish = || strip.finish(task, differences.flatten(), has_failed, panels, summary);
+        let audit = task.stages.of(Stage::Judging, finish);
+        settled(cells);
         if audit.differing > 0 {
             // Who has been wrong once is not asked again, and not believed.
-            engine.distrust(audit.differing, audit.cells);
-        } else if let Some(strip) = &mut now {
-            strip.differences = differences;
+            self.worker.distrust(audit.differing, audit.cells);
         }
-        let is_over = now.is_none() && self.prepared.is_none();
-        self.solved = now;
-        is_last.unwrap_or(is_over)
+        is_last
     }
 }
 
 impl Strip<'_> {
+    /// Whether there is something to ask an engine.
+    fn is_asked(&self) -> bool {
+        !self.asked.question.references.is_empty()
+    }
+
     /// How many there are.
     fn cells(&self) -> usize {
         let columns = |(face, _): &(usize, usize)| self.group.faces[*face].pushes.columns.len();
         self.rows.iter().map(columns).sum()
     }
 
-    /// Settles what the engine has left, and writes all cells into `panels`, which are made if there are none; `has_failed` is about an
-    /// engine, if there is or was one.
+    /// Settles what the engine has left after these `differences`, and writes all cells into `panels`, which are made if there are none;
+    /// `has_failed` is about an engine, if there is or was one.
     fn finish(
         self,
         task: &Task,
+        differences: Option<Vec<CellDifference>>,
         has_failed: Option<bool>,
         panels: &mut Vec<Panel>,
         summary: &mut Summary,
@@ -189,9 +192,7 @@ impl Strip<'_> {
             *panels = whiskers.iter().map(panel).collect();
         }
         let asked = self.asked;
-        let solved = self
-            .differences
-            .map(|differences| Solved { asked, differences });
+        let solved = differences.map(|differences| Solved { asked, differences });
         let solved = solved.unwrap_or_default();
         let (settled, audit) =
             strip::settle(task.plan.method, faces, &self.rows, solved, &task.stages);

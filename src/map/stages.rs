@@ -42,6 +42,11 @@ impl Stages {
         self.0[stage as usize].of(work)
     }
 
+    /// That of `stage`.
+    pub const fn account(&self, stage: Stage) -> &Account {
+        &self.0[stage as usize]
+    }
+
     /// What each stage has taken up to now.
     pub fn times(&self) -> [Duration; Stage::ALL.len()] {
         self.0.each_ref().map(Account::time)

@@ -8,30 +8,36 @@ use super::stages::{Stage, Stages};
 use super::summary::Audit;
 use super::work::{Place, Work};
 use crate::account::carried;
-use crate::integrate::{CellDifference, Reference, on_gpu};
+use crate::integrate::{CellDifference, Question, on_gpu};
 use crate::refine::{self, RowOfCells, Shot};
-use crate::rod::Rod;
 use crate::sheet::Sheet;
+use crate::shooting::Resolution;
 use crate::shooting::batch::Method;
 use rayon::prelude::*;
 use std::ops::Range;
+use std::sync::Arc;
 
 /// What an engine is asked about some rows.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub struct Asked {
-    /// The rods of the references.
-    pub rods: Vec<Rod>,
-    /// The references of all rows.
-    pub references: Vec<Reference>,
+    /// About the references of all rows.
+    pub question: Arc<Question>,
     /// The references of each row, and the first of their cells.
     pub rows: Vec<(Range<usize>, usize)>,
 }
 
 impl Asked {
-    /// About `rows`, pairs of a face and a row of its panel.
-    pub fn new(method: Method, faces: &[Face], rows: &[(usize, usize)]) -> Self {
+    /// About `rows`, pairs of a face and a row of its panel, at some of the signed `pushes` (radians), with trajectories in the steps of
+    /// `resolution`.
+    pub fn new(
+        method: Method,
+        resolution: Resolution,
+        pushes: &Arc<[f64]>,
+        faces: &[Face],
+        rows: &[(usize, usize)],
+    ) -> Self {
         match on_gpu(method.effects) {
-            Ok(()) => Rows::new(method, faces, rows).ask(),
+            Ok(()) => Rows::new(method, faces, rows).ask(resolution, pushes),
             Err(_) => Self::default(),
         }
     }
@@ -90,7 +96,7 @@ impl<'a> Rows<'a> {
     }
 
     /// What there is to ask an engine.
-    fn ask(&self) -> Asked {
+    fn ask(&self, resolution: Resolution, pushes: &Arc<[f64]>) -> Asked {
         let rows = self.places.iter().map(|place| RowOfCells {
             sheet: place.sheet,
             row: place.row,
@@ -98,20 +104,23 @@ impl<'a> Rows<'a> {
             first: place.face.pushes.first,
         });
         let rows: Vec<RowOfCells> = rows.collect();
-        let mut asked = Asked {
-            rods: self.sheets.iter().map(|sheet| sheet.rod.clone()).collect(),
-            ..Asked::default()
-        };
+        let found = refine::references(self.method, &self.sheets, &rows);
+        let mut references = Vec::with_capacity(found.iter().map(Vec::len).sum());
+        let mut rows = Vec::with_capacity(found.len());
         let mut cells = 0;
-        for row in refine::references(self.method, &self.sheets, &rows) {
-            let from = asked.references.len();
+        for row in found {
+            let from = references.len();
             let of_row = row.iter().map(|reference| reference.cells.len());
             let of_row: usize = of_row.sum();
-            asked.references.extend(row);
-            asked.rows.push((from..asked.references.len(), cells));
+            references.extend(row);
+            rows.push((from..references.len(), cells));
             cells += of_row;
         }
-        asked
+        let rods = self.sheets.iter().map(|sheet| sheet.rod.clone()).collect();
+        let (effects, pushes) = (self.method.effects, Arc::clone(pushes));
+        let question = Question::new(effects, resolution, rods, pushes, references);
+        let question = Arc::new(question);
+        Asked { question, rows }
     }
 
     /// Refines what an engine has left, and a sample of what it has not.
@@ -126,7 +135,7 @@ impl<'a> Rows<'a> {
             let starts: Vec<_> = shots.iter().map(|shot| (shot.tau, shot.load)).collect();
             refine::refine(self.method, &self.sheets, &shots, &starts)
         });
-        let Solved { asked, differences } = solved;
+        let references = &solved.asked.question.references;
         let mut audit = Audit::default();
         let mut rows = Vec::with_capacity(self.places.len());
         let (mut before, mut unasked) = (0, 0);
@@ -135,9 +144,9 @@ impl<'a> Rows<'a> {
                 let refined = &refined[before + chosen.shot];
                 let push = place.face.pushes.columns[chosen.cell].angle;
                 let said = Said {
-                    row: &asked.references[asked.rows[i].0.clone()],
-                    reference: &asked.references[chosen.reference as usize],
-                    difference: &differences[chosen.difference as usize],
+                    row: &references[solved.asked.rows[i].0.clone()],
+                    reference: &references[chosen.reference as usize],
+                    difference: &solved.differences[chosen.difference as usize],
                 };
                 let holds = audit::holds(&place.face.sheet, place.row, push, &said, refined);
                 audit.cells += 1;
@@ -158,8 +167,8 @@ impl<'a> Rows<'a> {
         }
         let settled = Settled {
             rows,
-            references: asked.references,
-            differences,
+            question: solved.asked.question,
+            differences: solved.differences,
             refined,
             unasked,
         };

@@ -87,17 +87,12 @@ pub struct Summary {
     pub engine_failure: Option<EngineError>,
     pub(super) stages: [Duration; Stage::ALL.len()],
     pub(super) wall: Duration,
-    device: Duration,
-    waiting: Duration,
+    pub(super) device: Duration,
+    pub(super) engine_host: Duration,
+    pub(super) waiting: Duration,
 }
 
 impl Summary {
-    /// Adds to the engine's time, and to that for which the threads waited for it.
-    pub(super) fn wait(&mut self, device: Duration, waiting: Duration) {
-        self.device += device;
-        self.waiting += waiting;
-    }
-
     /// Adds a finished panel.
     pub(super) fn count(&mut self, panel: &Panel) {
         let parts = panel
@@ -166,13 +161,19 @@ impl Summary {
         self.wall.as_secs_f64()
     }
 
+    /// CPU seconds of the engine's own thread, which are among those of [`Stage::References`].
+    #[must_use]
+    pub const fn engine_host_seconds(&self) -> f64 {
+        self.engine_host.as_secs_f64()
+    }
+
     /// Seconds for which the engine worked on what it was asked, beside the stages.
     #[must_use]
     pub const fn device_seconds(&self) -> f64 {
         self.device.as_secs_f64()
     }
 
-    /// Seconds of [`Self::device_seconds`] for which nothing but the engine and the packing of panels went on.
+    /// Seconds of [`Self::device_seconds`] for which the threads waited for its answers: nothing but the engine and the packing of panels went on.
     #[must_use]
     pub const fn waiting_seconds(&self) -> f64 {
         self.waiting.as_secs_f64()

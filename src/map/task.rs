@@ -9,6 +9,7 @@ use crate::scene::{Scene, Swept};
 use crate::sheet::Sheet;
 use rayon::prelude::*;
 use std::ops::Range;
+use std::sync::Arc;
 
 /// Cells in flight for each thread where no engine shoots: so many that nearly all blocks of the refinement are full, and
 /// hardly a page of memory is new for them.
@@ -21,7 +22,7 @@ pub struct Task<'a> {
     pub rows_at_once: usize,
     pub sides: Vec<Pushes>,
     /// Signed push angles of the columns of all sides.
-    pub angles: Vec<f64>,
+    pub angles: Arc<[f64]>,
     /// What its stages take of the CPU.
     pub stages: Stages,
 }
@@ -49,7 +50,7 @@ impl<'a> Task<'a> {
             plan,
             rows_at_once,
             sides,
-            angles,
+            angles: angles.into(),
             stages: Stages::default(),
         }
     }

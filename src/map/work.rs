@@ -60,7 +60,7 @@ impl Place<'_> {
         let mut first = *first;
         for index in references.clone() {
             // The cells of a row's references follow each other.
-            let cells = &solved.asked.references[index].cells;
+            let cells = &solved.asked.question.references[index].cells;
             let [from, to] = [cells.start, cells.end].map(|cell| (cell - own_first) as usize);
             heard.asked = match heard.asked.is_empty() {
                 true => from..to,

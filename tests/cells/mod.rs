@@ -4,7 +4,8 @@
 
 use crate::random_rods::{Random, rod};
 use rayon::prelude::*;
-use whiskmap::integrate::{CellDifference, Engine, Reference};
+use std::sync::Arc;
+use whiskmap::integrate::{CellDifference, Engine, Question, Reference};
 use whiskmap::refine::{Refined, RowOfCells, Shot, references, refine};
 use whiskmap::rod::{Effects, Rod, Side};
 use whiskmap::sheet::Sheet;
@@ -115,8 +116,20 @@ impl Cells {
 
     /// What `engine` makes of them.
     pub fn solve(&self, engine: &mut dyn Engine) -> Vec<CellDifference> {
-        let cells = engine.solve(self.method, &self.rods, &self.pushes, &self.references);
-        cells.unwrap()
+        engine
+            .solve(self.question(engine, &self.references))
+            .unwrap()
+    }
+
+    /// What `engine` is asked about some `references`.
+    pub fn question(&self, engine: &dyn Engine, references: &[Reference]) -> Arc<Question> {
+        Arc::new(Question::new(
+            self.method.effects,
+            engine.resolution(self.method.resolution),
+            self.rods.clone(),
+            self.pushes.as_slice().into(),
+            references.to_vec(),
+        ))
     }
 
     /// What the refinement makes of them.

@@ -5,14 +5,15 @@
     reason = "what is skipped or measured is said aloud"
 )]
 
+use std::collections::VecDeque;
 use std::convert::Infallible;
+use std::sync::Arc;
 use whiskmap::integrate::gpu::{Gpu, Precision};
-use whiskmap::integrate::{CellDifference, Description, Engine, EngineError, Reference};
+use whiskmap::integrate::{CellDifference, Description, Engine, EngineError, Question};
 use whiskmap::map::{self, EngineCells, Panel, STATE_CHANNELS, Summary};
 use whiskmap::plan::Plan;
-use whiskmap::rod::Rod;
 use whiskmap::scene::Scene;
-use whiskmap::shooting::batch::Method;
+use whiskmap::shooting::Resolution;
 
 /// The map of `scene`: by the CPU alone, or with an engine before it.
 pub fn compute(scene: &Scene, engine: Option<&mut dyn Engine>) -> (Summary, Vec<Panel>) {
@@ -91,10 +92,12 @@ pub trait Call: FnMut(usize, &mut Gpu, &dyn Fn(&mut Gpu) -> Answer) -> Answer + 
 
 impl<F: FnMut(usize, &mut Gpu, &dyn Fn(&mut Gpu) -> Answer) -> Answer + Send> Call for F {}
 
-/// A GPU whose calls are looked after: `call` is told the number of each, from 0 on, and how the GPU answers it.
+/// A GPU that is asked one question at a time, and whose calls are looked after: `call` is told the number of each, from 0 on, and how
+/// the GPU answers it.
 pub struct Watched<F> {
     gpu: Gpu,
     call: F,
+    asked: VecDeque<Arc<Question>>,
     pub calls: usize,
 }
 
@@ -103,6 +106,7 @@ impl<F: Call> Watched<F> {
         Self {
             gpu,
             call,
+            asked: VecDeque::new(),
             calls: 0,
         }
     }
@@ -117,15 +121,19 @@ impl<F: Call> Engine for Watched<F> {
         self.gpu.goal()
     }
 
-    fn solve(
-        &mut self,
-        method: Method,
-        rods: &[Rod],
-        pushes: &[f64],
-        references: &[Reference],
-    ) -> Answer {
+    fn resolution(&self, resolution: Resolution) -> Resolution {
+        self.gpu.resolution(resolution)
+    }
+
+    fn ask(&mut self, question: Arc<Question>) -> Result<(), EngineError> {
+        self.asked.push_back(question);
+        Ok(())
+    }
+
+    fn answer(&mut self) -> Answer {
+        let question = self.asked.pop_front().unwrap();
         self.calls += 1;
-        let solve = |gpu: &mut Gpu| gpu.solve(method, rods, pushes, references);
+        let solve = |gpu: &mut Gpu| gpu.solve(Arc::clone(&question));
         (self.call)(self.calls - 1, &mut self.gpu, &solve)
     }
 }

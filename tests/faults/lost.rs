@@ -1,9 +1,12 @@
 //! Devices that are lost: before, between and within the calls of a run.
 
+use crate::cells::Cells;
 use crate::compute::{all_cells, assert_identical, compute, compute_as, open, sabotaged};
+use crate::random_rods::USUAL;
 use crate::{assert_same, cone};
-use whiskmap::integrate::EngineError;
+use std::sync::Arc;
 use whiskmap::integrate::gpu::Precision;
+use whiskmap::integrate::{CellDifference, Engine, EngineError, Question};
 use whiskmap::map::EngineCells;
 use whiskmap::plan::Plan;
 use whiskmap::scene::Scene;
@@ -123,5 +126,43 @@ fn lost_to_another_thread() {
         assert_eq!(all_cells(&summary.engine_cells), all);
         thread.unwrap().join().unwrap();
         assert_same(&cpu, &panels);
+    }
+}
+
+/// Whatever is under way when a device is lost: an answer is right, or it is an error, and so are all after it.
+#[test]
+fn lost_with_questions_under_way() {
+    let cells = Cells::random(USUAL, 24, 2, |_, _| ());
+    for precision in [Precision::F32, Precision::F64] {
+        let Some(mut gpu) = open(precision) else {
+            continue;
+        };
+        let parts = cells.references.chunks(cells.references.len().div_ceil(4));
+        let questions: Vec<_> = parts.map(|part| cells.question(&gpu, part)).collect();
+        // Numbers that are none are not equal to themselves.
+        let said = |answers: Vec<CellDifference>| format!("{answers:?}");
+        let solve = |one: &Arc<Question>| said(gpu.solve(Arc::clone(one)).unwrap());
+        let alone: Vec<_> = questions.iter().map(solve).collect();
+        for before in 0..questions.len() {
+            let mut gpu = open(precision).unwrap();
+            for one in &questions {
+                gpu.ask(Arc::clone(one)).unwrap();
+            }
+            let mut is_lost = false;
+            for (number, alone) in alone.iter().enumerate() {
+                if number == before {
+                    gpu.device().destroy();
+                }
+                match gpu.answer() {
+                    Ok(answers) => assert!(!is_lost && said(answers) == *alone),
+                    Err(EngineError::Device(_)) if number >= before => is_lost = true,
+                    Err(error) => panic!("{error}"),
+                }
+            }
+            assert!(
+                is_lost,
+                "the last question cannot have been sent as a whole"
+            );
+        }
     }
 }

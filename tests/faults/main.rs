@@ -8,12 +8,16 @@
     reason = "a test fails by panicking, and says aloud what it skipped"
 )]
 
+#[path = "../cells/mod.rs"]
+mod cells;
 #[path = "../compute/mod.rs"]
 mod compute;
 #[cfg(target_os = "linux")]
 mod driver;
 mod kernel;
 mod lost;
+#[path = "../random_rods/mod.rs"]
+mod random_rods;
 
 use compute::{assert_close, difference};
 use whiskmap::map::Panel;

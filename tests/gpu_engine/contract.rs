@@ -4,6 +4,7 @@ use crate::PRECISIONS;
 use crate::cells::Cells;
 use crate::compute::open;
 use crate::random_rods::USUAL;
+use std::sync::Arc;
 use whiskmap::integrate::gpu::{Gpu, Precision, adapters, preferred};
 use whiskmap::integrate::{CellDifference, Engine, Outcome, Reference};
 use whiskmap::plan::STATE_CHANNELS;
@@ -27,11 +28,38 @@ fn answers_do_not_depend_on_the_calls_that_they_come_from() {
         for size in [1, 7, 64, 1001] {
             let mut in_groups = Vec::new();
             for references in cells.references.chunks(size) {
-                let solved = gpu.solve(cells.method, &cells.rods, &cells.pushes, references);
+                let solved = gpu.solve(cells.question(&gpu, references));
                 in_groups.extend(solved.unwrap().iter().map(bits));
             }
             assert!(in_groups == at_once, "{size} references at once");
         }
+    }
+}
+
+/// Questions that are asked before the ones before them are answered, one of them about nothing, another at other push angles.
+#[test]
+fn answers_do_not_depend_on_what_else_is_under_way() {
+    let cells = some();
+    let other = Cells::random(USUAL, 3, 2, |_, _| ());
+    for mut gpu in PRECISIONS.into_iter().filter_map(open) {
+        let (few, many) = cells.references.split_at(cells.references.len() / 5);
+        let questions = [
+            cells.question(&gpu, few),
+            other.question(&gpu, &other.references),
+            cells.question(&gpu, &[]),
+            cells.question(&gpu, many),
+        ];
+        let of = |answers: Vec<CellDifference>| answers.iter().map(bits).collect::<Vec<_>>();
+        let alone = questions
+            .each_ref()
+            .map(|one| of(gpu.solve(Arc::clone(one)).unwrap()));
+        for one in &questions {
+            gpu.ask(Arc::clone(one)).unwrap();
+        }
+        for alone in alone {
+            assert!(of(gpu.answer().unwrap()) == alone);
+        }
+        assert!(gpu.answer().unwrap().is_empty());
     }
 }
 
@@ -44,8 +72,7 @@ fn spoilt(
 ) -> Vec<CellDifference> {
     let mut references = cells.references.clone();
     spoil(&mut references[spoilt]);
-    gpu.solve(cells.method, &cells.rods, &cells.pushes, &references)
-        .unwrap()
+    gpu.solve(cells.question(gpu, &references)).unwrap()
 }
 
 #[test]
@@ -83,7 +110,7 @@ fn no_number_hurts_only_its_own_cells() {
 fn nothing_in_nothing_out() {
     let cells = some();
     for mut gpu in PRECISIONS.into_iter().filter_map(open) {
-        let nothing = gpu.solve(cells.method, &cells.rods, &cells.pushes, &[]);
+        let nothing = gpu.solve(cells.question(&gpu, &[]));
         assert_eq!(nothing.unwrap(), []);
     }
 }

@@ -9,7 +9,7 @@ use crate::integrate::CellDifference;
 use std::time::{Duration, Instant};
 use wgpu::BufferUsages as Usage;
 
-/// What all dispatches of a call share.
+/// What a dispatch needs beside what it carries.
 #[derive(Clone, Copy, Debug)]
 pub struct Call<'a> {
     pub device: &'a Device,
@@ -17,14 +17,12 @@ pub struct Call<'a> {
     pub pipeline: &'a wgpu::ComputePipeline,
     /// The push angles.
     pub pushes: (&'a wgpu::Buffer, usize),
-    /// Whether dispatches are timed by the device.
-    pub timed: bool,
 }
 
-/// What the stages of a call took.
+/// What the stages of dispatches took.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Times {
-    /// Integrating references, packing and handing over.
+    /// Packing and handing over.
     pub upload: Duration,
     /// The shader, by the device's own clock; 0 where it has none.
     pub dispatch: Duration,
@@ -49,7 +47,7 @@ impl Buffers {
     fn new(call: &Call, bytes: u64) -> Result<Self, EngineError> {
         let device = call.device;
         Ok(Self {
-            stamps: Stamps::new(device, call.timed)?,
+            stamps: Stamps::new(device)?,
             groups: None,
             references: None,
             starts: None,
@@ -149,21 +147,22 @@ impl Flight {
     /// Waits for the cells, appends them, and gives the buffers back.
     pub fn finish(
         self,
-        call: &Call,
+        device: &Device,
+        layout: &BufferLayout,
         cells: &mut Vec<CellDifference>,
         times: &mut Times,
     ) -> Result<Buffers, EngineError> {
         let begun = Instant::now();
-        call.device.wait(self.index)?;
+        device.wait(self.index)?;
         let arrived = Instant::now();
         times.waiting += arrived - begun;
-        let size = (self.cells * call.layout.cell) as u64;
+        let size = (self.cells * layout.cell) as u64;
         Device::read(&self.buffers.readback, size, |bytes| {
-            (call.layout.cells)(bytes, cells)
+            (layout.cells)(bytes, cells)
         })?;
         times.readback += arrived.elapsed();
         if let Some(stamps) = &self.buffers.stamps {
-            times.dispatch += stamps.read(call.device)?;
+            times.dispatch += stamps.read(device)?;
         }
         Ok(self.buffers)
     }

@@ -1,11 +1,11 @@
 //! Push angles and cells as bytes, as `shaders/nystrom8.wgsl` and `shaders/cells.wgsl` have them.
 
 use super::Precision;
+use super::asked::Part;
 use super::bytes::{Scalar, bytes, halves};
 use super::reference::{Packed, packed};
-use crate::integrate::{CellDifference, Outcome, Reference};
+use crate::integrate::{CellDifference, Outcome, Question};
 use crate::plan::STATE_CHANNELS;
-use crate::rod::Rod;
 use bytemuck::{Pod, Zeroable};
 
 /// What buffers hold, for shaders of one precision.
@@ -17,8 +17,8 @@ pub struct BufferLayout {
     pub cell: usize,
     /// Push angles to bytes.
     pub pushes: fn(&[f64]) -> Vec<u8>,
-    /// References on rods to bytes, with their steps: [`packed`].
-    pub references: fn(&[Rod], &[Reference], &[u32], usize) -> Packed,
+    /// A part of a question to bytes, with room for so many steps: [`packed`].
+    pub packed: fn(&Question, Part, usize) -> Packed,
     /// Cells from bytes, appended.
     pub cells: fn(&[u8], &mut Vec<CellDifference>),
 }
@@ -37,7 +37,7 @@ impl BufferLayout {
             push: size_of::<[T; 2]>(),
             cell: size_of::<GpuCell>(),
             pushes: |pushes| bytes(pushes.iter().map(|push| halves::<T>(*push))),
-            references: packed::<T>,
+            packed: packed::<T>,
             cells: |bytes, cells| {
                 let each = bytes.chunks_exact(size_of::<GpuCell>());
                 cells.extend(each.map(|cell| {

@@ -7,6 +7,7 @@
 //! Absent on purpose: a second try on a lost device. [`Fallback`](super::Fallback) does without it.
 
 mod adapters;
+mod asked;
 mod bytes;
 mod device;
 mod flight;
@@ -25,15 +26,17 @@ pub use flight::Times;
 pub use guard::is_guarded;
 pub use precision::Precision;
 
-use super::{CellDifference, Description, Engine, EngineError, Reference};
-use crate::rod::{Effects, Rod};
-use crate::shooting::batch::Method;
+use super::{CellDifference, Description, Engine, EngineError, Question};
+use crate::rod::Effects;
+use crate::shooting::Resolution;
+use asked::Asked;
 use device::Device;
 use flight::{Buffers, Call, Flight};
 use layout::BufferLayout;
 use pipeline::Pipeline;
 use std::collections::hash_map::Entry;
 use std::collections::{HashMap, VecDeque};
+use std::sync::Arc;
 use std::time::Instant;
 
 /// The GPU engine on one adapter.
@@ -44,12 +47,20 @@ pub struct Gpu {
     shader: Option<String>,
     layout: BufferLayout,
     device: Device,
-    pushes: Option<wgpu::Buffer>,
+    /// The push angles of the last dispatch, and where they are.
+    pushes: (Arc<[f64]>, Option<wgpu::Buffer>),
     /// Those of no flight.
     buffers: Vec<Buffers>,
     pipelines: HashMap<Effects, Pipeline>,
-    /// The stages of the last call, for those who ask.
-    times: Option<Times>,
+    /// What has been asked and not answered.
+    asked: VecDeque<Asked>,
+    /// The dispatches under way, in order, each with whether it has the last cells of its question.
+    flights: VecDeque<(Flight, bool)>,
+    /// Since when the device has had nothing else to do, as far as is known.
+    idle_since: Instant,
+    times: Times,
+    /// What it has failed of.
+    failure: Option<EngineError>,
 }
 
 /// Dispatches in flight: one runs while the answers of the other are read.
@@ -73,34 +84,26 @@ impl Gpu {
         Device::at(index, precision).map(|device| Self::with_device(precision, device))
     }
 
-    /// The same, to have it timed stage by stage.
-    ///
-    /// # Errors
-    /// Those of [`Gpu::new`].
-    pub fn timed(index: usize, precision: Precision) -> Result<Self, EngineError> {
-        Ok(Self {
-            times: Some(Times::default()),
-            ..Self::at(index, precision)?
-        })
-    }
-
     fn with_device(precision: Precision, device: Device) -> Self {
         Self {
             precision,
             shader: None,
             layout: BufferLayout::of(precision),
             device,
-            pushes: None,
+            pushes: (Arc::default(), None),
             buffers: Vec::new(),
             pipelines: HashMap::new(),
-            times: None,
+            asked: VecDeque::new(),
+            flights: VecDeque::new(),
+            idle_since: Instant::now(),
+            times: Times::default(),
+            failure: None,
         }
     }
 
-    /// What the stages of the last call took, of an engine that is timed.
-    #[must_use]
-    pub const fn times(&self) -> Option<Times> {
-        self.times
+    /// What its stages have taken since this was asked last.
+    pub fn take_times(&mut self) -> Times {
+        std::mem::take(&mut self.times)
     }
 
     /// Opens the [`preferred`] adapter for a shader other than [`shaders::cells`]: a seam for tests, which spoil it.
@@ -112,6 +115,80 @@ impl Gpu {
             shader: Some(shader),
             ..Self::new(precision)?
         })
+    }
+
+    /// Does `work`, unless it has failed before: then it fails again.
+    fn working<R>(
+        &mut self,
+        work: impl FnOnce(&mut Self) -> Result<R, EngineError>,
+    ) -> Result<R, EngineError> {
+        if let Some(failure) = &self.failure {
+            return Err(failure.clone());
+        }
+        work(self).inspect_err(|failure| self.failure = Some(failure.clone()))
+    }
+
+    /// Sends dispatches as long as there is something to send, and not enough of them are in flight.
+    fn send(&mut self) -> Result<(), EngineError> {
+        let Self {
+            precision,
+            layout,
+            device,
+            ..
+        } = self;
+        while self.flights.len() < IN_FLIGHT
+            && let Some(asked) = self.asked.iter_mut().find(|asked| asked.is_waiting())
+        {
+            let begun = Instant::now();
+            let question = Arc::clone(&asked.question);
+            let (known, buffer) = &mut self.pushes;
+            if !Arc::ptr_eq(known, &question.pushes) {
+                *known = Arc::clone(&question.pushes);
+                device.upload("push angles", buffer, &(layout.pushes)(known))?;
+            }
+            let Some(buffer) = buffer else { break };
+            let pipeline = match self.pipelines.entry(question.effects) {
+                Entry::Occupied(known) => known.into_mut(),
+                Entry::Vacant(new) => {
+                    let text = self.shader.clone();
+                    let text = text.unwrap_or_else(|| shaders::cells(*precision));
+                    let effects = question.effects;
+                    new.insert(Pipeline::new(device, &text, layout, *precision, effects)?)
+                }
+            };
+            let call = Call {
+                device,
+                layout,
+                pipeline: &pipeline.handle,
+                pushes: (buffer, question.pushes.len()),
+            };
+            let part = asked.next(pipeline.pace.cells, precision.most_steps());
+            let packed = (layout.packed)(&question, part, precision.most_steps());
+            let flight = Flight::dispatch(&call, self.buffers.pop(), &packed)?;
+            self.flights.push_back((flight, !asked.is_waiting()));
+            self.times.upload += begun.elapsed();
+        }
+        Ok(())
+    }
+
+    /// Waits for the oldest dispatch.
+    fn receive(&mut self) -> Result<(), EngineError> {
+        let asked = self.asked.iter_mut().find(|asked| !asked.is_answered());
+        let (Some(asked), Some((flight, is_last))) = (asked, self.flights.pop_front()) else {
+            let lost = "a question has no dispatch under way";
+            return Err(EngineError::Device(lost.to_owned()));
+        };
+        let Asked {
+            question, cells, ..
+        } = asked;
+        let (count, started) = (flight.cells, flight.submitted.max(self.idle_since));
+        let buffers = flight.finish(&self.device, &self.layout, cells, &mut self.times)?;
+        self.buffers.push(buffers);
+        self.idle_since = Instant::now();
+        if let Some(Pipeline { pace, .. }) = self.pipelines.get_mut(&question.effects) {
+            pace.learn(count, is_last, self.idle_since - started);
+        }
+        Ok(())
     }
 
     /// The device: a seam for tests, which destroy it.
@@ -137,80 +214,25 @@ impl Engine for Gpu {
         self.precision.goal()
     }
 
-    fn solve(
-        &mut self,
-        method: Method,
-        rods: &[Rod],
-        pushes: &[f64],
-        references: &[Reference],
-    ) -> Result<Vec<CellDifference>, EngineError> {
-        let effects = method.effects;
-        let (device, layout, precision) = (&self.device, &self.layout, self.precision);
-        let resolution = precision.resolution(method.resolution);
-        let uploaded = device.upload("push angles", &mut self.pushes, &(layout.pushes)(pushes))?;
-        let Pipeline { handle, pace } = match self.pipelines.entry(effects) {
-            Entry::Occupied(known) => known.into_mut(),
-            Entry::Vacant(new) => {
-                let text = self.shader.clone();
-                let text = text.unwrap_or_else(|| shaders::cells(precision));
-                new.insert(Pipeline::new(device, &text, layout, precision, effects)?)
-            }
-        };
-        let call = Call {
-            device,
-            layout,
-            pipeline: handle,
-            pushes: (uploaded, pushes.len()),
-            timed: self.times.is_some(),
-        };
-        let mut times = Times::default();
-        let all = references.iter().map(|reference| reference.cells.len());
-        let mut cells = Vec::with_capacity(all.sum());
-        let most_steps = precision.most_steps();
-        let steps = references.iter().map(|reference| {
-            let Reference { tau, load, .. } = *reference;
-            let steps = resolution.steps(&rods[reference.rod as usize], tau, load);
-            // Exact states take dozens; only numbers that are none ask for thousands.
-            steps.min(most_steps as u32)
-        });
-        let steps: Vec<u32> = steps.collect();
-        let mut waiting = (references, &steps[..]);
-        let mut flights: VecDeque<(Flight, bool)> = VecDeque::new();
-        let mut idle_since = Instant::now();
-        loop {
-            if flights.len() < IN_FLIGHT && !waiting.0.is_empty() {
-                let begun = Instant::now();
-                let count = together(waiting.0, pace.cells, waiting.1, most_steps);
-                let (now, later) = waiting.0.split_at(count);
-                let (now_steps, later_steps) = waiting.1.split_at(count);
-                waiting = (later, later_steps);
-                let packed = (layout.references)(rods, now, now_steps, most_steps);
-                let flight = Flight::dispatch(&call, self.buffers.pop(), &packed)?;
-                flights.push_back((flight, waiting.0.is_empty()));
-                times.upload += begun.elapsed();
-            } else if let Some((flight, is_last)) = flights.pop_front() {
-                let (count, started) = (flight.cells, flight.submitted.max(idle_since));
-                self.buffers
-                    .push(flight.finish(&call, &mut cells, &mut times)?);
-                idle_since = Instant::now();
-                pace.learn(count, is_last, idle_since - started);
-            } else {
-                self.times = self.times.map(|_| times);
-                return Ok(cells);
-            }
-        }
+    fn resolution(&self, resolution: Resolution) -> Resolution {
+        self.precision.resolution(resolution)
     }
-}
 
-/// How many of the first of the `references`, at least one, have together at most so many `cells`, and at most `most` of the `steps`.
-fn together(references: &[Reference], cells: usize, steps: &[u32], most: usize) -> usize {
-    let mut sums = (0, 0);
-    let fits = references
-        .iter()
-        .zip(steps)
-        .take_while(|(reference, steps)| {
-            sums = (sums.0 + reference.cells.len(), sums.1 + **steps as usize);
-            sums.0 <= cells && sums.1 <= most
-        });
-    fits.count().max(1)
+    fn ask(&mut self, question: Arc<Question>) -> Result<(), EngineError> {
+        self.asked.push_back(Asked::new(question));
+        self.working(Self::send)
+    }
+
+    fn answer(&mut self) -> Result<Vec<CellDifference>, EngineError> {
+        self.working(|gpu| {
+            loop {
+                gpu.send()?;
+                if gpu.asked.front().is_none_or(Asked::is_answered) {
+                    let first = gpu.asked.pop_front();
+                    return Ok(first.map_or_else(Vec::new, |first| first.cells));
+                }
+                gpu.receive()?;
+            }
+        })
+    }
 }

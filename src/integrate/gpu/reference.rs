@@ -1,13 +1,12 @@
 //! References as bytes, with the steps of their trajectories: structs of `shaders/nystrom8.wgsl` and `shaders/cells.wgsl`.
 
+use super::asked::Part;
 use super::bytes::{Scalar, bytes, halves};
-use crate::account::carried;
-use crate::integrate::{POWERS, Reference};
+use crate::integrate::{POWERS, Question, Reference, Trajectory};
 use crate::rod::{Rest, Rod, arclength};
 use crate::shooting::StateDerivative;
-use crate::shooting::batch::{InitialCondition, StepStart, step_starts};
+use crate::shooting::batch::StepStart;
 use bytemuck::{Pod, Zeroable};
-use rayon::prelude::*;
 use std::mem::offset_of;
 
 /// Invocations per workgroup; every device allows this many.
@@ -37,69 +36,37 @@ pub struct Packed {
     pub starts: Vec<u8>,
 }
 
-/// The trajectory of a reference.
-struct Trip {
-    steps: u32,
-    /// How far bending has turned the base.
-    bent: f64,
-}
-
-/// The references of one thread at a time.
-const TOGETHER: usize = 64;
-
-/// The `references` on `rods`, each in so many `steps`, and room for `most_steps` of all of them.
-pub fn packed<T: Scalar>(
-    rods: &[Rod],
-    references: &[Reference],
-    steps: &[u32],
-    most_steps: usize,
-) -> Packed {
-    let parts = references
-        .par_chunks(TOGETHER)
-        .zip(steps.par_chunks(TOGETHER));
-    let parts = parts.map_init(carried(), |_, (references, steps)| {
-        let conditions = references.iter().map(|reference| InitialCondition {
-            rod: &rods[reference.rod as usize],
-            tau: reference.tau,
-            load: reference.load,
-        });
-        let (starts, bent) = step_starts(&conditions.collect::<Vec<_>>(), steps);
-        let trips = steps.iter().zip(bent);
-        let trips = trips.map(|(&steps, bent)| Trip { steps, bent });
-        let trips: Vec<Trip> = trips.collect();
-        (trips, bytes(starts.iter().map(GpuStart::<T>::from)))
-    });
-    let parts: Vec<(Vec<Trip>, Vec<u8>)> = parts.collect();
+/// A `part` of a question, with room for `most_steps`.
+pub fn packed<T: Scalar>(question: &Question, part: Part, most_steps: usize) -> Packed {
+    let count = part.references.len();
     let mut packed = Packed {
         cells: 0,
         groups: Vec::new(),
-        references: Vec::with_capacity(references.len() * size_of::<GpuReference<T>>()),
-        starts: Vec::with_capacity(most_steps * size_of::<GpuStart<T>>()),
+        references: Vec::with_capacity(count * size_of::<GpuReference<T>>()),
+        starts: bytes(question.starts[part.starts].iter().map(GpuStart::<T>::from)),
     };
+    packed
+        .starts
+        .resize(most_steps * size_of::<GpuStart<T>>(), 0);
+    let references = &question.references[part.references.clone()];
+    let trajectories = &question.trajectories[part.references];
     let mut first_step = 0;
-    let trips = parts.iter().flat_map(|(trips, _)| trips);
-    for (index, (reference, trip)) in (0..).zip(references.iter().zip(trips)) {
-        let rod = &rods[reference.rod as usize];
-        let packed_one = GpuReference::<T>::new(rod, reference, first_step, trip);
+    for (index, (reference, trajectory)) in (0..).zip(references.iter().zip(trajectories)) {
+        let rod = &question.rods[reference.rod as usize];
+        let packed_one = GpuReference::<T>::new(rod, reference, first_step, trajectory);
         packed
             .references
             .extend_from_slice(bytemuck::bytes_of(&packed_one));
         for push in reference.cells.clone().step_by(WORKGROUP as usize) {
             let cells = WORKGROUP.min(reference.cells.end - push);
-            // A call has fewer cells than `u32` can count.
+            // A question has fewer cells than `u32` can count.
             packed
                 .groups
                 .push([index, push, packed.cells as u32, cells]);
             packed.cells += cells as usize;
         }
-        first_step += trip.steps;
+        first_step += trajectory.steps;
     }
-    for (_, starts) in &parts {
-        packed.starts.extend_from_slice(starts);
-    }
-    packed
-        .starts
-        .resize(most_steps * size_of::<GpuStart<T>>(), 0);
     packed
 }
 
@@ -167,7 +134,7 @@ pub const PLACES: [(&str, usize); 13] = {
 };
 
 impl<T: Scalar> GpuReference<T> {
-    fn new(rod: &Rod, reference: &Reference, first_step: u32, trip: &Trip) -> Self {
+    fn new(rod: &Rod, reference: &Reference, first_step: u32, trajectory: &Trajectory) -> Self {
         let Reference {
             tau, load, state, ..
         } = reference;
@@ -189,12 +156,12 @@ impl<T: Scalar> GpuReference<T> {
         let rest = Rest::parabola_tangent(rod, s);
         let [k0, k1] = rod.spiral.unwrap_or_default();
         let [high, low] = halves(reference.push);
-        let steps = [trip.steps, first_step].map(|count| T::of(count.into()));
+        let steps = [trajectory.steps, first_step].map(|count| T::of(count.into()));
         Self {
             contact: [*tau, *load, rod.radius(*tau), s].map(T::of),
             rod: [rod.taper, rod.bend, k0, k1].map(T::of),
             places: [to_pole.x, to_pole.y, full.position.x, full.position.y].map(T::of),
-            base: [full.tangent.x, full.tangent.y, trip.bent, energy].map(T::of),
+            base: [full.tangent.x, full.tangent.y, trajectory.bent, energy].map(T::of),
             rest: [rest.x, rest.y, rod.tau_tip() - tau, reference.per_way].map(T::of),
             by_tau: numbers(&state.by_tau),
             by_load: numbers(&state.by_load),

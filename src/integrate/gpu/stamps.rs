@@ -17,10 +17,10 @@ pub struct Stamps {
 }
 
 impl Stamps {
-    /// `None` where they are not `wanted`, or the device has no such clock.
-    pub fn new(device: &Device, wanted: bool) -> Result<Option<Self>, EngineError> {
+    /// `None` where the device has no such clock.
+    pub fn new(device: &Device) -> Result<Option<Self>, EngineError> {
         let features = device.handle.features();
-        if !wanted || !features.contains(wgpu::Features::TIMESTAMP_QUERY) {
+        if !features.contains(wgpu::Features::TIMESTAMP_QUERY) {
             return Ok(None);
         }
         let set = device.handle.create_query_set(&wgpu::QuerySetDescriptor {

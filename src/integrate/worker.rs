@@ -1,0 +1,152 @@
+//! An engine on a thread of its own: it answers one question while others wait for it, so that a device need not wait for the host.
+//!
+//! Without an engine, and from its first error on, there is none to ask: a device that has failed once is not asked again, so that a run
+//! ends after one failure however many cells it has left.
+
+use super::{CellDifference, Engine, EngineError, Question};
+use crate::account::{Account, thread_time};
+use std::collections::VecDeque;
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::thread;
+use std::time::{Duration, Instant};
+
+/// Questions that an engine has at once: while it answers one, it gets the next one ready.
+const AT_ONCE: usize = 2;
+
+/// What an engine says to a question, and what it took.
+struct Reply {
+    answers: Result<Vec<CellDifference>, EngineError>,
+    /// For which it had something to do since the last reply.
+    busy: Duration,
+    /// CPU time of its thread up to now.
+    host: Duration,
+}
+
+/// The thread of an engine, as those see it who ask.
+pub struct Worker {
+    /// None without an engine that works.
+    questions: Option<Sender<Arc<Question>>>,
+    replies: Receiver<Reply>,
+    /// The cells of the questions under way.
+    cells: VecDeque<usize>,
+    /// Why it works no more, if an engine failed.
+    pub failure: Option<EngineError>,
+    /// For which the engine had something to do.
+    pub busy: Duration,
+    /// CPU time of its thread.
+    pub host: Duration,
+}
+
+impl Worker {
+    /// Does `work` with a worker, whose thread it outlives: with `engine`, if there is one, on whose part of the CPU's time `account` is
+    /// kept.
+    pub fn with<R>(
+        engine: Option<&mut dyn Engine>,
+        account: &Account,
+        work: impl FnOnce(Self) -> R,
+    ) -> R {
+        thread::scope(|scope| {
+            let (questions, asked) = channel();
+            let (reply, replies) = channel();
+            let has_engine = engine.is_some();
+            if let Some(engine) = engine {
+                scope.spawn(move || serve(engine, account, &asked, &reply));
+            }
+            work(Self {
+                questions: has_engine.then_some(questions),
+                replies,
+                cells: VecDeque::new(),
+                failure: None,
+                busy: Duration::ZERO,
+                host: Duration::ZERO,
+            })
+        })
+    }
+
+    /// Whether there is an engine to ask.
+    pub const fn is_working(&self) -> bool {
+        self.questions.is_some()
+    }
+
+    /// Hands a question over.
+    pub fn ask(&mut self, question: Arc<Question>) {
+        let cells = question.cells();
+        let Some(questions) = &self.questions else {
+            return;
+        };
+        // Where the thread has ended, its last reply says why.
+        let _ = questions.send(question);
+        self.cells.push_back(cells);
+    }
+
+    /// The answers to the oldest question under way; `None` where there are none.
+    pub fn answers(&mut self) -> Option<Vec<CellDifference>> {
+        let asked = self.cells.pop_front()?;
+        let reply = self.replies.recv().ok()?;
+        self.busy += reply.busy;
+        self.host = reply.host;
+        match reply.answers {
+            Ok(answers) if answers.len() == asked => Some(answers),
+            Ok(answers) => {
+                let few = format!("{} answers for {asked} cells", answers.len());
+                self.give_up(EngineError::Device(few))
+            }
+            Err(failure) => self.give_up(failure),
+        }
+    }
+
+    /// Does without the engine from now on: so many of some `cells` of it were wrong.
+    pub fn distrust(&mut self, differing: u64, cells: u64) {
+        self.give_up(EngineError::Distrusted { differing, cells });
+    }
+
+    fn give_up(&mut self, failure: EngineError) -> Option<Vec<CellDifference>> {
+        self.questions = None;
+        self.cells.clear();
+        self.failure = Some(failure);
+        None
+    }
+}
+
+/// Has `engine` answer what it is `asked` until there is nobody to ask, or to reply to.
+fn serve(
+    engine: &mut dyn Engine,
+    account: &Account,
+    asked: &Receiver<Arc<Question>>,
+    reply: &Sender<Reply>,
+) {
+    let mut under_way = 0;
+    let mut since = Instant::now();
+    loop {
+        let mut taken_on = Ok(());
+        while under_way < AT_ONCE && taken_on.is_ok() {
+            let question = match under_way {
+                0 => asked.recv().ok(),
+                _ => asked.try_recv().ok(),
+            };
+            let Some(question) = question else { break };
+            if under_way == 0 {
+                since = Instant::now();
+            }
+            taken_on = account.of(|| engine.ask(question));
+            under_way += 1;
+        }
+        if under_way == 0 {
+            return;
+        }
+        let answers = taken_on.and_then(|()| account.of(|| engine.answer()));
+        under_way -= 1;
+        let now = Instant::now();
+        let is_last = answers.is_err();
+        let said = reply.send(Reply {
+            answers,
+            busy: now - since,
+            host: thread_time(),
+        });
+        since = now;
+        if is_last || said.is_err() {
+            return;
+        }
+    }
+}
