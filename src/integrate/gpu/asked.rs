@@ -47,7 +47,7 @@ impl Asked {
         self.cells.len() >= self.count
     }
 
-    /// What is sent next: at least one reference, together at most so many `cells` and `steps`.
+    /// What is sent next: at least one reference, together at most so many `cells` and about so many `steps`.
     pub fn next(&mut self, cells: usize, steps: usize) -> Part {
         let [first, first_start] = [self.sent.references.end, self.sent.starts.end];
         let Question {

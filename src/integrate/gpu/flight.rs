@@ -1,4 +1,4 @@
-//! A dispatch under way, in buffers that are used again and again.
+//! A submission under way, in buffers that are used again and again.
 
 use super::EngineError;
 use super::device::{Device, answer};
@@ -6,10 +6,11 @@ use super::layout::BufferLayout;
 use super::reference::Packed;
 use super::stamps::Stamps;
 use crate::integrate::CellDifference;
+use std::ops::Range;
 use std::time::{Duration, Instant};
 use wgpu::BufferUsages as Usage;
 
-/// What a dispatch needs beside what it carries.
+/// What a submission needs beside what it carries.
 #[derive(Clone, Copy, Debug)]
 pub struct Call<'a> {
     pub device: &'a Device,
@@ -19,7 +20,7 @@ pub struct Call<'a> {
     pub pushes: (&'a wgpu::Buffer, usize),
 }
 
-/// What the stages of dispatches took.
+/// What the stages of submissions took.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Times {
     /// Packing and handing over.
@@ -32,7 +33,7 @@ pub struct Times {
     pub readback: Duration,
 }
 
-/// Room for what a dispatch reads and writes.
+/// Room for what a submission reads and writes.
 #[derive(Debug)]
 pub struct Buffers {
     stamps: Option<Stamps>,
@@ -61,7 +62,7 @@ impl Buffers {
     }
 }
 
-/// A dispatch under way.
+/// A submission under way.
 #[derive(Debug)]
 pub struct Flight {
     /// How many cells.
@@ -72,21 +73,21 @@ pub struct Flight {
     buffers: Buffers,
 }
 
-/// The first `size` bytes of a buffer.
-fn part(binding: u32, buffer: &wgpu::Buffer, size: u64) -> wgpu::BindGroupEntry<'_> {
+/// These bytes of a buffer.
+fn part(binding: u32, buffer: &wgpu::Buffer, bytes: Range<u64>) -> wgpu::BindGroupEntry<'_> {
     wgpu::BindGroupEntry {
         binding,
         resource: wgpu::BindingResource::Buffer(wgpu::BufferBinding {
             buffer,
-            offset: 0,
-            size: wgpu::BufferSize::new(size),
+            offset: bytes.start,
+            size: wgpu::BufferSize::new(bytes.end - bytes.start),
         }),
     }
 }
 
 impl Flight {
     /// Sends the cells of references on their way, in buffers of a finished flight if they are large enough.
-    pub fn dispatch(
+    pub fn submit(
         call: &Call,
         buffers: Option<Buffers>,
         packed: &Packed,
@@ -98,26 +99,36 @@ impl Flight {
             _ => Buffers::new(call, bytes)?,
         };
         let groups = bytemuck::cast_slice(&packed.groups);
-        let [groups_size, references_size, starts_size] =
-            [groups, &packed.references, &packed.starts].map(|bytes| bytes.len() as u64);
         let groups = device.upload("groups", &mut buffers.groups, groups)?;
         let references =
             device.upload("references", &mut buffers.references, &packed.references)?;
         let starts = device.upload("steps", &mut buffers.starts, &packed.starts)?;
-        let entries = [
-            part(0, groups, groups_size),
-            part(1, references, references_size),
-            part(2, starts, starts_size),
-            part(3, call.pushes.0, (call.pushes.1 * layout.push) as u64),
-            part(4, &buffers.cells, bytes),
-        ];
-        let bindings = device.handle.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("cells"),
-            layout: &call.pipeline.get_bind_group_layout(0),
-            entries: &entries,
-        });
+        let pushes = (call.pushes.1 * layout.push) as u64;
+        let room = (packed.starts.len() / packed.dispatches.len()) as u64;
+        let steps = (0..).map(|dispatch| dispatch * room..(dispatch + 1) * room);
+        let bindings = packed
+            .dispatches
+            .iter()
+            .zip(steps)
+            .map(|(of_dispatch, steps)| {
+                let groups_here = [of_dispatch.start, of_dispatch.end]
+                    .map(|i| (i * size_of::<[u32; 4]>()) as u64);
+                let entries = [
+                    part(0, groups, groups_here[0]..groups_here[1]),
+                    part(1, references, 0..packed.references.len() as u64),
+                    part(2, starts, steps),
+                    part(3, call.pushes.0, 0..pushes),
+                    part(4, &buffers.cells, 0..bytes),
+                ];
+                device.handle.create_bind_group(&wgpu::BindGroupDescriptor {
+                    label: Some("cells"),
+                    layout: &call.pipeline.get_bind_group_layout(0),
+                    entries: &entries,
+                })
+            });
+        let bindings: Vec<wgpu::BindGroup> = bindings.collect();
         let mut commands = device.handle.create_command_encoder(&Default::default());
-        // A cell that the shader does not write must not have the answer of another dispatch.
+        // A cell that the shader does not write must not have the answer of another submission.
         commands.clear_buffer(&buffers.cells, 0, Some(bytes));
         {
             let mut pass = commands.begin_compute_pass(&wgpu::ComputePassDescriptor {
@@ -125,9 +136,11 @@ impl Flight {
                 timestamp_writes: buffers.stamps.as_ref().map(Stamps::writes),
             });
             pass.set_pipeline(call.pipeline);
-            pass.set_bind_group(0, &bindings, &[]);
-            // The pace keeps them below what `u32` can count.
-            pass.dispatch_workgroups(packed.groups.len() as u32, 1, 1);
+            for (bindings, groups) in bindings.iter().zip(&packed.dispatches) {
+                pass.set_bind_group(0, bindings, &[]);
+                // The pace keeps them below what `u32` can count.
+                pass.dispatch_workgroups(groups.len() as u32, 1, 1);
+            }
         }
         answer(&mut commands, &buffers.cells, &buffers.readback, bytes);
         if let Some(stamps) = &buffers.stamps {

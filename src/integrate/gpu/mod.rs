@@ -1,7 +1,7 @@
 //! The GPU engine: WGSL compute shaders through wgpu, one cell per invocation.
 //!
 //! The shaders are joined from whole pieces ([`shaders`]), in `f32` or `f64` by a type alias; each set of
-//! effects has a pipeline of its own, made from `override` constants. Work goes out in dispatches short
+//! effects has a pipeline of its own, made from `override` constants. Work goes out in submissions short
 //! enough for any watchdog, at most two in flight; a device that fails is an error.
 //!
 //! Absent on purpose: a second try on a lost device. [`Fallback`](super::Fallback) does without it.
@@ -47,14 +47,14 @@ pub struct Gpu {
     shader: Option<String>,
     layout: BufferLayout,
     device: Device,
-    /// The push angles of the last dispatch, and where they are.
+    /// The push angles of the last submission, and where they are.
     pushes: (Arc<[f64]>, Option<wgpu::Buffer>),
     /// Those of no flight.
     buffers: Vec<Buffers>,
     pipelines: HashMap<Effects, Pipeline>,
     /// What has been asked and not answered.
     asked: VecDeque<Asked>,
-    /// The dispatches under way, in order, each with whether it has the last cells of its question.
+    /// The submissions under way, in order, each with whether it has the last cells of its question.
     flights: VecDeque<(Flight, bool)>,
     /// Since when the device has had nothing else to do, as far as is known.
     idle_since: Instant,
@@ -63,8 +63,11 @@ pub struct Gpu {
     failure: Option<EngineError>,
 }
 
-/// Dispatches in flight: one runs while the answers of the other are read.
+/// Submissions in flight: one runs while the answers of the other are read.
 const IN_FLIGHT: usize = 2;
+
+/// Dispatches of a submission at most: 4 MiB for where their steps start.
+const MOST_DISPATCHES: usize = 64;
 
 impl Gpu {
     /// Opens the [`preferred`] adapter.
@@ -128,7 +131,7 @@ impl Gpu {
         work(self).inspect_err(|failure| self.failure = Some(failure.clone()))
     }
 
-    /// Sends dispatches as long as there is something to send, and not enough of them are in flight.
+    /// Sends submissions as long as there is something to send, and not enough of them are in flight.
     fn send(&mut self) -> Result<(), EngineError> {
         let Self {
             precision,
@@ -162,20 +165,21 @@ impl Gpu {
                 pipeline: &pipeline.handle,
                 pushes: (buffer, question.pushes.len()),
             };
-            let part = asked.next(pipeline.pace.cells, precision.most_steps());
+            let steps = MOST_DISPATCHES * precision.most_steps();
+            let part = asked.next(pipeline.pace.cells, steps);
             let packed = (layout.packed)(&question, part, precision.most_steps());
-            let flight = Flight::dispatch(&call, self.buffers.pop(), &packed)?;
+            let flight = Flight::submit(&call, self.buffers.pop(), &packed)?;
             self.flights.push_back((flight, !asked.is_waiting()));
             self.times.upload += begun.elapsed();
         }
         Ok(())
     }
 
-    /// Waits for the oldest dispatch.
+    /// Waits for the oldest submission.
     fn receive(&mut self) -> Result<(), EngineError> {
         let asked = self.asked.iter_mut().find(|asked| !asked.is_answered());
         let (Some(asked), Some((flight, is_last))) = (asked, self.flights.pop_front()) else {
-            let lost = "a question has no dispatch under way";
+            let lost = "a question has no submission under way";
             return Err(EngineError::Device(lost.to_owned()));
         };
         let Asked {

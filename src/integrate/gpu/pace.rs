@@ -1,21 +1,21 @@
-//! How many cells go into one dispatch: decided from times, without a device.
+//! How many cells go into one submission: decided from times, without a device.
 
 use std::time::Duration;
 
-/// What a dispatch should take: long against the cost of a submission, short against the two seconds after
+/// What a submission should take: long against its own cost, short against the two seconds after
 /// which some systems reset a GPU.
 const GOAL: Duration = Duration::from_millis(75);
 
-/// Cells of the first dispatch, when nothing is known yet: some 10 ms on two cores of a CPU.
+/// Cells of the first submission, when nothing is known yet: some 10 ms on two cores of a CPU.
 const FIRST: usize = 4096;
 
-/// Most cells per dispatch: 48 MiB for the answers of one; larger dispatches are no faster.
+/// Most cells per submission: 48 MiB for the answers of one; larger submissions are no faster.
 const MOST: usize = 1 << 20;
 
-/// Cells per dispatch, learnt from the dispatches before.
+/// Cells per submission, learnt from the submissions before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Pace {
-    /// Cells of the next dispatch.
+    /// Cells of the next submission.
     pub cells: usize,
     most: usize,
     warm: bool,
@@ -35,7 +35,7 @@ impl Pace {
         }
     }
 
-    /// Learns that `cells` took at most `time`. The first dispatch of a pipeline compiles it and tells
+    /// Learns that `cells` took at most `time`. The first submission of a pipeline compiles it and tells
     /// nothing; one of the last cells of a call tells only that larger ones take too long.
     pub fn learn(&mut self, cells: usize, is_last: bool, time: Duration) {
         if std::mem::replace(&mut self.warm, true) && (!is_last || time > GOAL) {
@@ -56,7 +56,7 @@ mod tests {
     }
 
     #[test]
-    fn the_first_dispatch_teaches_nothing() {
+    fn the_first_submission_teaches_nothing() {
         assert_eq!(warm().cells, FIRST);
     }
 
@@ -78,7 +78,7 @@ mod tests {
     }
 
     #[test]
-    fn full_dispatches_settle_at_the_goal() {
+    fn full_submissions_settle_at_the_goal() {
         let mut pace = warm();
         for _ in 0..10 {
             pace.learn(pace.cells, false, Duration::from_micros(pace.cells as u64));

@@ -1,13 +1,14 @@
 //! References as bytes, with the steps of their trajectories: structs of `shaders/nystrom8.wgsl` and `shaders/cells.wgsl`.
 
 use super::asked::Part;
-use super::bytes::{Scalar, bytes, halves};
+use super::bytes::{Scalar, halves};
 use crate::integrate::{POWERS, Question, Reference, Trajectory};
 use crate::rod::{Rest, Rod, arclength};
 use crate::shooting::StateDerivative;
 use crate::shooting::batch::StepStart;
 use bytemuck::{Pod, Zeroable};
 use std::mem::offset_of;
+use std::ops::Range;
 
 /// Invocations per workgroup; every device allows this many.
 pub const WORKGROUP: u32 = 32;
@@ -23,51 +24,72 @@ const _: () = assert!(
     "shaders/cells.wgsl writes them out"
 );
 
-/// References, ready for a dispatch.
-#[derive(Debug)]
+/// References, ready for some dispatches.
+#[derive(Debug, Default)]
 pub struct Packed {
     /// Cells of all of them.
     pub cells: usize,
-    /// Their groups, each of one reference.
+    /// Their groups, each of one reference; those of a dispatch begin at a multiple of [`ALIGNED`].
     pub groups: Vec<[u32; 4]>,
+    /// Which groups belong to each dispatch.
+    pub dispatches: Vec<Range<usize>>,
     /// The references.
     pub references: Vec<u8>,
-    /// The steps of their trajectories.
+    /// The steps of their trajectories, with room for equally many in each dispatch.
     pub starts: Vec<u8>,
 }
 
-/// A `part` of a question, with room for `most_steps`.
+/// Every device takes a buffer from each 256th byte on.
+const ALIGNED: usize = 256 / size_of::<[u32; 4]>();
+
+/// A `part` of a question, in dispatches with room for `most_steps` each.
 pub fn packed<T: Scalar>(question: &Question, part: Part, most_steps: usize) -> Packed {
-    let count = part.references.len();
-    let mut packed = Packed {
-        cells: 0,
-        groups: Vec::new(),
-        references: Vec::with_capacity(count * size_of::<GpuReference<T>>()),
-        starts: bytes(question.starts[part.starts].iter().map(GpuStart::<T>::from)),
-    };
-    packed
-        .starts
-        .resize(most_steps * size_of::<GpuStart<T>>(), 0);
     let references = &question.references[part.references.clone()];
     let trajectories = &question.trajectories[part.references];
-    let mut first_step = 0;
+    let room = most_steps * size_of::<GpuStart<T>>();
+    let mut packed = Packed::default();
+    packed
+        .references
+        .reserve(references.len() * size_of::<GpuReference<T>>());
+    let mut starts = question.starts[part.starts].iter();
+    let (mut first_group, mut steps_here) = (0, 0);
     for (index, (reference, trajectory)) in (0..).zip(references.iter().zip(trajectories)) {
+        let steps = trajectory.steps as usize;
+        if steps_here + steps > most_steps {
+            packed.close(first_group, room);
+            (first_group, steps_here) = (packed.groups.len(), 0);
+        }
         let rod = &question.rods[reference.rod as usize];
-        let packed_one = GpuReference::<T>::new(rod, reference, first_step, trajectory);
+        // A dispatch has fewer steps than `u32` can count, a question fewer cells.
+        let one = GpuReference::<T>::new(rod, reference, steps_here as u32, trajectory);
         packed
             .references
-            .extend_from_slice(bytemuck::bytes_of(&packed_one));
+            .extend_from_slice(bytemuck::bytes_of(&one));
+        for start in starts.by_ref().take(steps) {
+            let start = GpuStart::<T>::from(start);
+            packed.starts.extend_from_slice(bytemuck::bytes_of(&start));
+        }
         for push in reference.cells.clone().step_by(WORKGROUP as usize) {
             let cells = WORKGROUP.min(reference.cells.end - push);
-            // A question has fewer cells than `u32` can count.
             packed
                 .groups
                 .push([index, push, packed.cells as u32, cells]);
             packed.cells += cells as usize;
         }
-        first_step += trajectory.steps;
+        steps_here += steps;
     }
+    packed.close(first_group, room);
     packed
+}
+
+impl Packed {
+    /// Closes the dispatch whose groups begin with `first_group`, with room for its steps in so many bytes.
+    fn close(&mut self, first_group: usize, room: usize) {
+        self.dispatches.push(first_group..self.groups.len());
+        self.starts.resize(self.dispatches.len() * room, 0);
+        let aligned = self.groups.len().next_multiple_of(ALIGNED);
+        self.groups.resize(aligned, [0; 4]);
+    }
 }
 
 #[derive(Clone, Copy, Pod, Zeroable)]
