@@ -109,7 +109,7 @@ impl Worker {
     }
 }
 
-/// Has `engine` answer what it is `asked` until there is nobody to ask, or to reply to.
+/// Has `engine` answer what it is `asked` until there is nobody to ask, or to reply to. Unless it fails, nothing is left under way.
 fn serve(
     engine: &mut dyn Engine,
     account: &Account,
@@ -117,10 +117,11 @@ fn serve(
     reply: &Sender<Reply>,
 ) {
     let mut under_way = 0;
+    let mut is_heard = true;
     let mut since = Instant::now();
     loop {
         let mut taken_on = Ok(());
-        while under_way < AT_ONCE && taken_on.is_ok() {
+        while is_heard && under_way < AT_ONCE && taken_on.is_ok() {
             let question = match under_way {
                 0 => asked.recv().ok(),
                 _ => asked.try_recv().ok(),
@@ -137,16 +138,86 @@ fn serve(
         }
         let answers = taken_on.and_then(|()| account.of(|| engine.answer()));
         under_way -= 1;
+        let has_failed = answers.is_err();
         let now = Instant::now();
-        let is_last = answers.is_err();
         let said = reply.send(Reply {
             answers,
             busy: now - since,
             host: thread_time(),
         });
         since = now;
-        if is_last || said.is_err() {
+        if has_failed {
             return;
         }
+        is_heard &= said.is_ok();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::integrate::Description;
+    use crate::shooting::Resolution;
+
+    /// Has so many questions to answer, and fails after so many answers.
+    struct Counting {
+        under_way: usize,
+        answers: usize,
+        most: usize,
+    }
+
+    impl Engine for Counting {
+        fn describe(&self) -> Description {
+            Description::of(None)
+        }
+
+        fn goal(&self) -> f64 {
+            1.0
+        }
+
+        fn resolution(&self, resolution: Resolution) -> Resolution {
+            resolution
+        }
+
+        fn ask(&mut self, _: Arc<Question>) -> Result<(), EngineError> {
+            self.under_way += 1;
+            Ok(())
+        }
+
+        fn answer(&mut self) -> Result<Vec<CellDifference>, EngineError> {
+            if self.answers == self.most {
+                return Err(EngineError::Device("lost".to_owned()));
+            }
+            (self.under_way, self.answers) = (self.under_way - 1, self.answers + 1);
+            Ok(Vec::new())
+        }
+    }
+
+    /// What is left under way after `count` questions, how many were answered, and how many replies there were.
+    fn served(count: usize, most: usize, is_heard: bool) -> (usize, usize, usize) {
+        let mut engine = Counting {
+            under_way: 0,
+            answers: 0,
+            most,
+        };
+        let ((questions, asked), (reply, replies)) = (channel(), channel());
+        for _ in 0..count {
+            questions.send(Arc::default()).unwrap_or_default();
+        }
+        drop(questions);
+        let replies = is_heard.then_some(replies);
+        serve(&mut engine, &Account::default(), &asked, &reply);
+        let heard = replies.map_or(0, |replies| replies.try_iter().count());
+        (engine.under_way, engine.answers, heard)
+    }
+
+    #[test]
+    fn nothing_is_left_under_way() {
+        assert_eq!(served(0, 9, true), (0, 0, 0));
+        assert_eq!(served(5, 9, true), (0, 5, 5));
+        // Nobody listens: what has been taken on is finished, and no more is.
+        assert_eq!(served(5, 9, false), (0, AT_ONCE, 0));
+        // The failure is the last reply.
+        assert_eq!(served(5, 3, true), (AT_ONCE, 3, 4));
     }
 }
