@@ -4,7 +4,7 @@ use super::Face;
 use super::pushes::Pushes;
 use super::stages::Stages;
 use crate::account::carried;
-use crate::plan::Plan;
+use crate::plan::{CELLS_IN_FLIGHT, Plan};
 use crate::scene::{Scene, Swept};
 use crate::sheet::Sheet;
 use rayon::prelude::*;
@@ -34,8 +34,8 @@ impl<'a> Task<'a> {
             plan.rows_at_once
         } else {
             let cells = CELLS_OF_A_THREAD * rayon::current_num_threads();
-            let rows = cells / scene.grid.push_angle_deg.len();
-            rows.clamp(1, plan.rows_at_once)
+            let rows = cells.min(CELLS_IN_FLIGHT) / scene.grid.push_angle_deg.len();
+            rows.max(1)
         };
         let mut sides: Vec<Pushes> = Vec::new();
         let mut angles: Vec<f64> = Vec::new();

@@ -17,11 +17,14 @@ pub const MEMORY_LIMIT: u64 = 4 << 30;
 /// Bytes per cell of a panel: 14 channels of 4 bytes.
 const BYTES_PER_CELL: u64 = 14 * 4;
 
-/// Bytes per cell in flight: shots, answers and states of the refinement, with an engine references of three strips.
+/// Bytes per cell in flight: shots, answers and states of the refinement, with an engine references of four strips.
 const BYTES_IN_FLIGHT: u64 = 1536;
 
-/// Cells handed to an engine at once: enough for every lane of a GPU, little memory.
-const CELLS_IN_FLIGHT: usize = 1 << 17;
+/// Cells settled, or handed to an engine, at once: enough for every lane of a GPU, little memory.
+pub const CELLS_IN_FLIGHT: usize = 1 << 17;
+
+/// Rows handed to an engine at once: the references of each take some 40 KiB, however few its cells are.
+const ROWS_IN_FLIGHT: usize = 1 << 10;
 
 /// Cells of the panels computed, and packed, together: enough for several threads, little memory.
 const CELLS_OF_PANELS: usize = 1 << 18;
@@ -109,7 +112,7 @@ impl Plan {
             .map(|own| own.rod(Side::Cb))
             .collect();
         let sides = Self::sides(scene);
-        let rows_at_once = (CELLS_IN_FLIGHT / push_angles).max(1);
+        let rows_at_once = (CELLS_IN_FLIGHT / push_angles).clamp(1, ROWS_IN_FLIGHT);
         let calls = |group: usize| (group * sides.len() * distances).div_ceil(rows_at_once);
         Ok(Self {
             method: Method::fine().with_effects(Effects::of(&corners)),
