@@ -4,7 +4,7 @@
 //! effects has a pipeline of its own, made from `override` constants. Work goes out in submissions short
 //! enough for any watchdog, at most two in flight; a device that fails is an error.
 //!
-//! Absent on purpose: a second try on a lost device. [`Fallback`](super::Fallback) does without it.
+//! Absent on purpose: a second try on a lost device. A [`Worker`](super::Worker) does without it.
 
 mod adapters;
 mod asked;
