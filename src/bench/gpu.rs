@@ -168,7 +168,7 @@ fn engine(
     one: &Candidate,
 ) -> Result<(), EngineError> {
     let start = Instant::now();
-    let mut gpu = Gpu::at(one.adapter, one.precision)?;
+    let mut gpu = Gpu::timed(one.adapter, one.precision)?;
     sides.solve(&mut gpu)?;
     let first_result_s = start.elapsed().as_secs_f64();
     let engine = Engine {

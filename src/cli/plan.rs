@@ -20,7 +20,7 @@ Examples:
 Sets of effects with kernels of their own cost work at every step of the integration. The others are free: pole \
 radius and friction only change where a trajectory starts, and projection is a faster taper and a steeper modulus gradient. The pole touches the \
 whisker's centre line: the whisker's own thickness does not add to the pole's radius. A GPU divides an engine \
-call into dispatches, as many as its speed asks for. Trajectories are those of the cells. They, the seconds and the bytes are \
+call into submissions, as many as its speed asks for. Trajectories are those of the cells. They, the seconds and the bytes are \
 scaled up from samples of at most 128 x 128 cells (for the bytes, some 2^18 in all) and two values per sweep axis, fewer where these \
 would take more than some seconds, computed and packed on this machine's CPU and thrown away; nothing is written and no GPU is \
 opened. Seconds are the CPU's over the threads: where these wait, a map takes longer. Files come with the seconds that packing them adds; the picture of an EXR file and the disk's own speed are not in them. \

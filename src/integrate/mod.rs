@@ -10,7 +10,7 @@ pub mod gpu;
 mod question;
 mod worker;
 
-pub use question::{MOST_STEPS, Question, Trajectory};
+pub use question::{MOST_TRAJECTORY_STEPS, Question, Trajectory};
 pub use worker::Worker;
 
 use crate::numerics::Unit;
@@ -30,7 +30,7 @@ pub type RowNumbers = [f64; 7];
 /// A state of a row of cells, exact, and its neighbourhood on the row.
 #[derive(Clone, Debug)]
 pub struct Reference {
-    /// Which of the rods of the call.
+    /// Which of the rods of the question.
     pub rod: u32,
     /// `tau` of the contact.
     pub tau: f64,
@@ -44,7 +44,7 @@ pub struct Reference {
     pub per_way: f64,
     /// Taylor polynomials of the row in the row parameter, less its value here.
     pub row: [RowNumbers; POWERS],
-    /// The cells next to it: those at these of the call's push angles.
+    /// The cells next to it: those at these of the question's push angles.
     pub cells: Range<u32>,
 }
 

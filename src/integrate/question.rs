@@ -8,8 +8,8 @@ use crate::shooting::batch::{InitialCondition, StepStart, step_starts};
 use rayon::prelude::*;
 use std::sync::Arc;
 
-/// Most steps of a trajectory: exact states take dozens, and only numbers that are none ask for thousands.
-pub const MOST_STEPS: u32 = 512;
+/// Most steps of a trajectory. Nearly all take dozens; rows with one that asks for more have no references.
+pub const MOST_TRAJECTORY_STEPS: u32 = 512;
 
 /// The references of one thread at a time.
 const TOGETHER: usize = 64;
@@ -60,7 +60,8 @@ impl Question {
             let conditions: Vec<InitialCondition> = conditions.collect();
             let steps = conditions.iter().map(|at| {
                 let steps = resolution.steps(at.rod, at.tau, at.load);
-                steps.min(MOST_STEPS)
+                // Numbers that are none ask for thousands.
+                steps.min(MOST_TRAJECTORY_STEPS)
             });
             let steps: Vec<u32> = steps.collect();
             let (starts, bent) = step_starts(&conditions, &steps);

@@ -8,7 +8,7 @@ use crate::account::{Account, thread_time};
 use std::collections::VecDeque;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
-use std::thread;
+use std::thread::{self, ScopedJoinHandle};
 use std::time::{Duration, Instant};
 
 /// Questions that an engine has at once: while it answers one, it gets the next one ready.
@@ -19,7 +19,7 @@ struct Reply {
     answers: Result<Vec<CellDifference>, EngineError>,
     /// For which it had something to do since the last reply.
     busy: Duration,
-    /// CPU time of its thread up to now.
+    /// CPU time of its thread since it began.
     host: Duration,
 }
 
@@ -49,18 +49,19 @@ impl Worker {
         thread::scope(|scope| {
             let (questions, asked) = channel();
             let (reply, replies) = channel();
-            let has_engine = engine.is_some();
-            if let Some(engine) = engine {
-                scope.spawn(move || serve(engine, account, &asked, &reply));
-            }
-            work(Self {
-                questions: has_engine.then_some(questions),
+            let serve = |engine| scope.spawn(move || serve(engine, account, &asked, &reply));
+            let thread = engine.map(serve);
+            let done = work(Self {
+                questions: thread.is_some().then_some(questions),
                 replies,
                 cells: VecDeque::new(),
                 failure: None,
                 busy: Duration::ZERO,
                 host: Duration::ZERO,
-            })
+            });
+            // A thread that has panicked is a failure by now, or was not needed any more.
+            let _ = thread.map(ScopedJoinHandle::join);
+            done
         })
     }
 
@@ -75,7 +76,7 @@ impl Worker {
         let Some(questions) = &self.questions else {
             return;
         };
-        // Where the thread has ended, its last reply says why.
+        // Where the thread has ended, its last reply says why, or that there is none.
         let _ = questions.send(question);
         self.cells.push_back(cells);
     }
@@ -83,7 +84,10 @@ impl Worker {
     /// The answers to the oldest question under way; `None` where there are none.
     pub fn answers(&mut self) -> Option<Vec<CellDifference>> {
         let asked = self.cells.pop_front()?;
-        let reply = self.replies.recv().ok()?;
+        let Ok(reply) = self.replies.recv() else {
+            let ended = "the engine's thread has panicked".to_owned();
+            return self.give_up(EngineError::Device(ended));
+        };
         self.busy += reply.busy;
         self.host = reply.host;
         match reply.answers {
@@ -116,8 +120,8 @@ fn serve(
     asked: &Receiver<Arc<Question>>,
     reply: &Sender<Reply>,
 ) {
-    let mut under_way = 0;
-    let mut is_heard = true;
+    let (mut under_way, mut is_heard) = (0, true);
+    let begun = thread_time();
     let mut since = Instant::now();
     loop {
         let mut taken_on = Ok(());
@@ -143,7 +147,7 @@ fn serve(
         let said = reply.send(Reply {
             answers,
             busy: now - since,
-            host: thread_time(),
+            host: thread_time().saturating_sub(begun),
         });
         since = now;
         if has_failed {
@@ -159,11 +163,12 @@ mod tests {
     use crate::integrate::Description;
     use crate::shooting::Resolution;
 
-    /// Has so many questions to answer, and fails after so many answers.
+    /// Has so many questions to answer, and fails, or panics, after so many answers.
     struct Counting {
         under_way: usize,
         answers: usize,
         most: usize,
+        panics: bool,
     }
 
     impl Engine for Counting {
@@ -186,6 +191,7 @@ mod tests {
 
         fn answer(&mut self) -> Result<Vec<CellDifference>, EngineError> {
             if self.answers == self.most {
+                assert!(!self.panics, "a panic on purpose");
                 return Err(EngineError::Device("lost".to_owned()));
             }
             (self.under_way, self.answers) = (self.under_way - 1, self.answers + 1);
@@ -199,6 +205,7 @@ mod tests {
             under_way: 0,
             answers: 0,
             most,
+            panics: false,
         };
         let ((questions, asked), (reply, replies)) = (channel(), channel());
         for _ in 0..count {
@@ -219,5 +226,29 @@ mod tests {
         assert_eq!(served(5, 9, false), (0, AT_ONCE, 0));
         // The failure is the last reply.
         assert_eq!(served(5, 3, true), (AT_ONCE, 3, 4));
+    }
+
+    #[test]
+    fn a_panic_of_an_engine_is_a_failure() {
+        let mut engine = Counting {
+            under_way: 0,
+            answers: 0,
+            most: 1,
+            panics: true,
+        };
+        let heard = Worker::with(Some(&mut engine), &Account::default(), |mut worker| {
+            let answered = [(); 3].map(|()| {
+                worker.ask(Arc::default());
+                worker.answers().is_some()
+            });
+            (answered, worker.is_working(), worker.failure)
+        });
+        let (answered, is_working, failure) = heard;
+        assert_eq!((answered, is_working), ([true, false, false], false));
+        let failure = failure.map(|failure| failure.to_string());
+        assert_eq!(
+            failure.as_deref(),
+            Some("GPU: the engine's thread has panicked")
+        );
     }
 }

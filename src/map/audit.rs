@@ -123,3 +123,40 @@ fn sizes(row: impl Iterator<Item = Numbers>, of_one: &Numbers) -> Numbers {
         arc, radian, force, force, force, moment, radian, distance, moment,
     ]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// One cell of each part of a row, whatever ranges are asked for; in other rows others.
+    #[test]
+    fn a_sample_has_a_cell_of_each_part() {
+        for one_in in [1, 2, 7, 256] {
+            let sample = |seed| Sample { seed, one_in };
+            let all: Vec<usize> = sample(3).of(0..1792).collect();
+            let parts: Vec<u64> = all.iter().map(|cell| *cell as u64 / one_in).collect();
+            assert_eq!(parts, (0..1792 / one_in).collect::<Vec<_>>());
+            for step in [1, 5, 100, 257] {
+                let ranges = (0..1792)
+                    .step_by(step)
+                    .map(|from| from..1792.min(from + step));
+                let joined: Vec<usize> = ranges.flat_map(|range| sample(3).of(range)).collect();
+                assert_eq!(joined, all);
+            }
+            assert_eq!(sample(3).of(9..9).count(), 0);
+            assert_eq!(sample(4).of(0..1792).eq(all), one_in == 1);
+        }
+    }
+
+    /// Of rows that are shorter than a part, as many cells in all.
+    #[test]
+    fn short_rows_are_sampled_as_often() {
+        let rows = (0..4096).map(|row| Sample {
+            seed: mixed(row),
+            one_in: 256,
+        });
+        let count = rows.map(|row| row.of(0..16).count()).sum::<usize>();
+        // 256 of 65,536 cells, give or take four standard deviations.
+        assert!((192..=320).contains(&count), "{count}");
+    }
+}

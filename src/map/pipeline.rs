@@ -5,7 +5,7 @@
 
 use super::panel::Panel;
 use super::stages::Stage;
-use super::strip::{self, Asked, Solved};
+use super::strip::{self, RowsAsked, Solved};
 use super::task::{Group, Task};
 use super::{Audit, Summary, answers};
 use crate::integrate::{CellDifference, Worker};
@@ -22,7 +22,7 @@ struct Strip<'a> {
     rows: Vec<(usize, usize)>,
     /// Whether it is the last one of its group.
     is_last: bool,
-    asked: Asked,
+    asked: RowsAsked,
 }
 
 /// The strips of a task, in order.
@@ -49,10 +49,10 @@ impl<'a> Strips<'a> {
         let all = group.faces.len() * height;
         let to = all.min(from + task.rows_at_once);
         let rows: Vec<(usize, usize)> = (from..to).map(|i| (i / height, i % height)).collect();
-        let mut asked = Asked::default();
+        let mut asked = RowsAsked::default();
         if let Some(resolution) = resolution {
             let method = task.plan.method;
-            let ask = || Asked::new(method, resolution, &task.angles, &group.faces, &rows);
+            let ask = || RowsAsked::new(method, resolution, &task.angles, &group.faces, &rows);
             asked = task.stages.of(Stage::References, ask);
         }
         self.begun = (to < all).then(|| (Arc::clone(&group), to));

@@ -19,14 +19,14 @@ use std::sync::Arc;
 
 /// What an engine is asked about some rows.
 #[derive(Clone, Default)]
-pub struct Asked {
+pub struct RowsAsked {
     /// About the references of all rows.
     pub question: Arc<Question>,
     /// The references of each row, and the first of their cells.
     pub rows: Vec<(Range<usize>, usize)>,
 }
 
-impl Asked {
+impl RowsAsked {
     /// About `rows`, pairs of a face and a row of its panel, at some of the signed `pushes` (radians), with trajectories in the steps of
     /// `resolution`.
     pub fn new(
@@ -47,7 +47,7 @@ impl Asked {
 #[derive(Default)]
 pub struct Solved {
     /// What it was asked.
-    pub asked: Asked,
+    pub asked: RowsAsked,
     /// Its answers.
     pub differences: Vec<CellDifference>,
 }
@@ -96,7 +96,7 @@ impl<'a> Rows<'a> {
     }
 
     /// What there is to ask an engine.
-    fn ask(&self, resolution: Resolution, pushes: &Arc<[f64]>) -> Asked {
+    fn ask(&self, resolution: Resolution, pushes: &Arc<[f64]>) -> RowsAsked {
         let rows = self.places.iter().map(|place| RowOfCells {
             sheet: place.sheet,
             row: place.row,
@@ -120,7 +120,7 @@ impl<'a> Rows<'a> {
         let (effects, pushes) = (self.method.effects, Arc::clone(pushes));
         let question = Question::new(effects, resolution, rods, pushes, references);
         let question = Arc::new(question);
-        Asked { question, rows }
+        RowsAsked { question, rows }
     }
 
     /// Refines what an engine has left, and a sample of what it has not.

@@ -17,7 +17,7 @@ pub const MEMORY_LIMIT: u64 = 4 << 30;
 /// Bytes per cell of a panel: 14 channels of 4 bytes.
 const BYTES_PER_CELL: u64 = 14 * 4;
 
-/// Bytes per cell in flight: shots, answers and states of the refinement, with an engine references of four strips.
+/// Bytes per cell in flight: shots, answers and states of the refinement, with an engine references of three strips.
 const BYTES_IN_FLIGHT: u64 = 1536;
 
 /// Cells settled, or handed to an engine, at once: enough for every lane of a GPU, little memory.

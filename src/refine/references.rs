@@ -7,7 +7,7 @@
 use super::Shot;
 use super::exact::{Exact, exact};
 use crate::account::carried;
-use crate::integrate::{Reference, RowNumbers};
+use crate::integrate::{MOST_TRAJECTORY_STEPS, Reference, RowNumbers};
 use crate::numerics::taylor::around_nodes;
 use crate::numerics::{WIDTH, nearest_turn};
 use crate::rod::Rest;
@@ -34,7 +34,7 @@ pub struct RowOfCells<'a> {
 }
 
 /// The references of every row, as far as its cells from first touch on go; none where the sheet is walked, where the row does not
-/// begin at first touch, and where there are too few cells to be worth it.
+/// begin at first touch, where a trajectory takes more than [`MOST_TRAJECTORY_STEPS`], and where there are too few cells to be worth it.
 #[must_use]
 pub fn references(method: Method, sheets: &[&Sheet], rows: &[RowOfCells]) -> Vec<Vec<Reference>> {
     let shots = |row: &RowOfCells| node_shots(sheets[row.sheet as usize], row);
@@ -55,8 +55,13 @@ pub fn references(method: Method, sheets: &[&Sheet], rows: &[RowOfCells]) -> Vec
         .zip(nodes)
         .map_init(carried(), |_, (row, nodes)| {
             let found: Option<Vec<Exact>> = found[nodes].iter().copied().collect();
-            let found = found.filter(|found| !found.is_empty());
-            let expanded = found.and_then(|found| expand(sheets[row.sheet as usize], row, &found));
+            let sheet = sheets[row.sheet as usize];
+            let is_short = |at: &Exact| {
+                let steps = method.resolution.steps(&sheet.rod, at.tau, at.load);
+                steps <= MOST_TRAJECTORY_STEPS
+            };
+            let found = found.filter(|found| !found.is_empty() && found.iter().all(is_short));
+            let expanded = found.and_then(|found| expand(sheet, row, &found));
             expanded.unwrap_or_default()
         })
         .collect()

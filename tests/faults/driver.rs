@@ -33,7 +33,7 @@ fn real_driver() -> Option<String> {
     Some(manifest["ICD"]["library_path"].as_str().unwrap().to_owned())
 }
 
-/// A folder with the faulty driver and a scene of several dispatches in it.
+/// A folder with the faulty driver and a scene of several submissions in it.
 struct Place {
     folder: TempDir,
     real_driver: String,

@@ -59,7 +59,7 @@ fn numbers_that_are_none_are_refined_in_f64_and_counted() {
             let (summary, panels) = compute(&scene, Some(&mut gpu));
             assert!(summary.engine_failure.is_none(), "{summary:?}");
             let cells = summary.engine_cells;
-            // Each dispatch, of a hundred cells and more, counts its cells from 0.
+            // Each submission, of thousands of cells, counts its cells from 0.
             let missing = cells.not_finite as f64 - part * asked as f64;
             assert!(missing.abs() <= 0.01 * asked as f64, "{none}: {cells:?}");
             assert_eq!(all_cells(&cells), all_cells(&sound));
@@ -155,7 +155,7 @@ fn a_sound_kernel_passes_its_audit() {
     }
 }
 
-/// Which one of a thousand cells is wrong, whatever dispatch it is in. The audit looks at 134 of
+/// Which one of a thousand cells is wrong, whatever submission it is in. The audit looks at 134 of
 /// 36,670 cells, so that it has one of 37 with a probability of 13 %, and the first choice is the sixth. It has one of those in a map of a million cells with 98 %.
 const CHOSEN: u32 = 5;
 

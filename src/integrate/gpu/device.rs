@@ -7,7 +7,7 @@ use std::sync::{Arc, mpsc};
 use std::time::Duration;
 use wgpu::BufferUsages as Usage;
 
-/// How long a device may take for a dispatch: hundreds of times what the pace aims at.
+/// How long a device may take for a submission: hundreds of times what the pace aims at.
 const PATIENCE: Duration = Duration::from_secs(60);
 
 /// A device, its queue, and the errors that nobody has seen yet.

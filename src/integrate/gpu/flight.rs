@@ -18,6 +18,8 @@ pub struct Call<'a> {
     pub pipeline: &'a wgpu::ComputePipeline,
     /// The push angles.
     pub pushes: (&'a wgpu::Buffer, usize),
+    /// Whether it is timed by the device.
+    pub timed: bool,
 }
 
 /// What the stages of submissions took.
@@ -48,7 +50,7 @@ impl Buffers {
     fn new(call: &Call, bytes: u64) -> Result<Self, EngineError> {
         let device = call.device;
         Ok(Self {
-            stamps: Stamps::new(device)?,
+            stamps: Stamps::new(device, call.timed)?,
             groups: None,
             references: None,
             starts: None,
@@ -74,7 +76,7 @@ pub struct Flight {
 }
 
 /// These bytes of a buffer.
-fn part(binding: u32, buffer: &wgpu::Buffer, bytes: Range<u64>) -> wgpu::BindGroupEntry<'_> {
+fn bytes_of(binding: u32, buffer: &wgpu::Buffer, bytes: Range<u64>) -> wgpu::BindGroupEntry<'_> {
     wgpu::BindGroupEntry {
         binding,
         resource: wgpu::BindingResource::Buffer(wgpu::BufferBinding {
@@ -114,11 +116,11 @@ impl Flight {
                 let groups_here = [of_dispatch.start, of_dispatch.end]
                     .map(|i| (i * size_of::<[u32; 4]>()) as u64);
                 let entries = [
-                    part(0, groups, groups_here[0]..groups_here[1]),
-                    part(1, references, 0..packed.references.len() as u64),
-                    part(2, starts, steps),
-                    part(3, call.pushes.0, 0..pushes),
-                    part(4, &buffers.cells, 0..bytes),
+                    bytes_of(0, groups, groups_here[0]..groups_here[1]),
+                    bytes_of(1, references, 0..packed.references.len() as u64),
+                    bytes_of(2, starts, steps),
+                    bytes_of(3, call.pushes.0, 0..pushes),
+                    bytes_of(4, &buffers.cells, 0..bytes),
                 ];
                 device.handle.create_bind_group(&wgpu::BindGroupDescriptor {
                     label: Some("cells"),

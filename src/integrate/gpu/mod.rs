@@ -47,8 +47,7 @@ pub struct Gpu {
     shader: Option<String>,
     layout: BufferLayout,
     device: Device,
-    /// The push angles of the last submission, and where they are.
-    pushes: (Arc<[f64]>, Option<wgpu::Buffer>),
+    pushes: Option<wgpu::Buffer>,
     /// Those of no flight.
     buffers: Vec<Buffers>,
     pipelines: HashMap<Effects, Pipeline>,
@@ -58,6 +57,8 @@ pub struct Gpu {
     flights: VecDeque<(Flight, bool)>,
     /// Since when the device has had nothing else to do, as far as is known.
     idle_since: Instant,
+    /// Whether the device times its work.
+    timed: bool,
     times: Times,
     /// What it has failed of.
     failure: Option<EngineError>,
@@ -66,7 +67,7 @@ pub struct Gpu {
 /// Submissions in flight: one runs while the answers of the other are read.
 const IN_FLIGHT: usize = 2;
 
-/// Dispatches of a submission at most: 4 MiB for where their steps start.
+/// About the most dispatches of a submission: 4 MiB for where their steps start.
 const MOST_DISPATCHES: usize = 64;
 
 impl Gpu {
@@ -87,18 +88,30 @@ impl Gpu {
         Device::at(index, precision).map(|device| Self::with_device(precision, device))
     }
 
+    /// The same, to have the device time its work.
+    ///
+    /// # Errors
+    /// Those of [`Gpu::new`].
+    pub fn timed(index: usize, precision: Precision) -> Result<Self, EngineError> {
+        Ok(Self {
+            timed: true,
+            ..Self::at(index, precision)?
+        })
+    }
+
     fn with_device(precision: Precision, device: Device) -> Self {
         Self {
             precision,
             shader: None,
             layout: BufferLayout::of(precision),
             device,
-            pushes: (Arc::default(), None),
+            pushes: None,
             buffers: Vec::new(),
             pipelines: HashMap::new(),
             asked: VecDeque::new(),
             flights: VecDeque::new(),
             idle_since: Instant::now(),
+            timed: false,
             times: Times::default(),
             failure: None,
         }
@@ -128,7 +141,13 @@ impl Gpu {
         if let Some(failure) = &self.failure {
             return Err(failure.clone());
         }
-        work(self).inspect_err(|failure| self.failure = Some(failure.clone()))
+        let worked = work(self);
+        if let Err(failure) = &worked {
+            self.failure = Some(failure.clone());
+            self.asked.clear();
+            self.flights.clear();
+        }
+        worked
     }
 
     /// Sends submissions as long as there is something to send, and not enough of them are in flight.
@@ -144,12 +163,8 @@ impl Gpu {
         {
             let begun = Instant::now();
             let question = Arc::clone(&asked.question);
-            let (known, buffer) = &mut self.pushes;
-            if !Arc::ptr_eq(known, &question.pushes) {
-                *known = Arc::clone(&question.pushes);
-                device.upload("push angles", buffer, &(layout.pushes)(known))?;
-            }
-            let Some(buffer) = buffer else { break };
+            let pushes = (layout.pushes)(&question.pushes);
+            let pushes = device.upload("push angles", &mut self.pushes, &pushes)?;
             let pipeline = match self.pipelines.entry(question.effects) {
                 Entry::Occupied(known) => known.into_mut(),
                 Entry::Vacant(new) => {
@@ -163,7 +178,8 @@ impl Gpu {
                 device,
                 layout,
                 pipeline: &pipeline.handle,
-                pushes: (buffer, question.pushes.len()),
+                pushes: (pushes, question.pushes.len()),
+                timed: self.timed,
             };
             let steps = MOST_DISPATCHES * precision.most_steps();
             let part = asked.next(pipeline.pace.cells, steps);
@@ -223,8 +239,10 @@ impl Engine for Gpu {
     }
 
     fn ask(&mut self, question: Arc<Question>) -> Result<(), EngineError> {
-        self.asked.push_back(Asked::new(question));
-        self.working(Self::send)
+        self.working(|gpu| {
+            gpu.asked.push_back(Asked::new(question));
+            gpu.send()
+        })
     }
 
     fn answer(&mut self) -> Result<Vec<CellDifference>, EngineError> {

@@ -36,7 +36,7 @@ impl Pace {
     }
 
     /// Learns that `cells` took at most `time`. The first submission of a pipeline compiles it and tells
-    /// nothing; one of the last cells of a call tells only that larger ones take too long.
+    /// nothing; one of the last cells of a question tells only that larger ones take too long.
     pub fn learn(&mut self, cells: usize, is_last: bool, time: Duration) {
         if std::mem::replace(&mut self.warm, true) && (!is_last || time > GOAL) {
             let fitting = cells as f64 * GOAL.as_secs_f64() / time.as_secs_f64().max(1e-6);

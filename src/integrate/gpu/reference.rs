@@ -1,8 +1,9 @@
 //! References as bytes, with the steps of their trajectories: structs of `shaders/nystrom8.wgsl` and `shaders/cells.wgsl`.
 
+use super::Precision;
 use super::asked::Part;
 use super::bytes::{Scalar, halves};
-use crate::integrate::{POWERS, Question, Reference, Trajectory};
+use crate::integrate::{MOST_TRAJECTORY_STEPS, POWERS, Question, Reference, Trajectory};
 use crate::rod::{Rest, Rod, arclength};
 use crate::shooting::StateDerivative;
 use crate::shooting::batch::StepStart;
@@ -18,6 +19,11 @@ const ROW_POWERS: usize = POWERS.next_multiple_of(4);
 
 /// Powers of the Jacobian's polynomials there: Newton's last step needs five digits.
 const JACOBIAN_POWERS: usize = 8;
+
+const _: () = assert!(
+    MOST_TRAJECTORY_STEPS as usize <= Precision::F64.most_steps(),
+    "a dispatch has room for every trajectory"
+);
 
 const _: () = assert!(
     POWERS == 12 && JACOBIAN_POWERS == 8,
@@ -194,6 +200,91 @@ impl<T: Scalar> GpuReference<T> {
             jacobian: std::array::from_fn(|power| {
                 std::array::from_fn(|i| T::of(reference.row[power][3 + i]))
             }),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::integrate::gpu::asked::Asked;
+    use crate::shooting::FirstVariation;
+    use std::sync::Arc;
+
+    /// References with so many steps and cells.
+    fn question(all: &[(u32, u32)]) -> Question {
+        let reference = |&(_, cells): &(u32, u32)| Reference {
+            rod: 0,
+            tau: 0.5,
+            load: 1.0,
+            push: 0.1,
+            state: FirstVariation::default(),
+            per_way: 1.0,
+            row: Default::default(),
+            cells: 0..cells,
+        };
+        let trajectory = |&(steps, _): &(u32, u32)| Trajectory { steps, bent: 0.0 };
+        let count = all.iter().map(|(steps, _)| *steps as usize).sum();
+        let start = |radius| StepStart {
+            radius: radius as f64,
+            ..StepStart::default()
+        };
+        Question {
+            rods: vec![Rod::default()],
+            references: all.iter().map(reference).collect(),
+            trajectories: all.iter().map(trajectory).collect(),
+            starts: (0..count).map(start).collect(),
+            ..Question::default()
+        }
+    }
+
+    /// Every cell is in one group, every step is where its dispatch looks for it, and dispatches begin where devices can.
+    #[test]
+    fn parts_of_a_question_are_packed_without_loss() {
+        let all: Vec<(u32, u32)> = (0..100).map(|i| (1 + i % 7, 1 + i * 13 % 90)).collect();
+        let question = Arc::new(question(&all));
+        let cells: u32 = all.iter().map(|(_, cells)| cells).sum();
+        for (most_cells, most_steps) in [(1, 8), (500, 16), (usize::MAX, 64), (usize::MAX, 4096)] {
+            let mut asked = Asked::new(Arc::clone(&question));
+            let (mut answers, mut starts, mut first) = (0, Vec::new(), 0);
+            while asked.is_waiting() {
+                let part = asked.next(most_cells, 5 * most_steps);
+                let packed = packed::<f32>(&question, part.clone(), most_steps);
+                let room = most_steps * size_of::<GpuStart<f32>>();
+                assert_eq!(packed.starts.len(), packed.dispatches.len() * room);
+                let mut next = 0;
+                for (number, groups) in packed.dispatches.iter().enumerate() {
+                    assert!(!groups.is_empty() && groups.start % ALIGNED == 0);
+                    let steps = &packed.starts[number * room..(number + 1) * room];
+                    let steps: &[GpuStart<f32>] = bytemuck::cast_slice(steps);
+                    let mut before = None;
+                    for &[index, _, answer, count] in &packed.groups[groups.clone()] {
+                        assert_eq!(answer, next);
+                        next += count;
+                        if before.replace(index) != Some(index) {
+                            let at = index as usize * size_of::<GpuReference<f32>>();
+                            let reference =
+                                &packed.references[at..][..size_of::<GpuReference<f32>>()];
+                            let reference: GpuReference<f32> =
+                                bytemuck::pod_read_unaligned(reference);
+                            let [_, _, count, from] = reference.push;
+                            let own = &steps[from as usize..][..count as usize];
+                            starts.extend(own.iter().map(|start| start.place[0]));
+                        }
+                    }
+                }
+                assert_eq!(packed.cells, next as usize);
+                assert_eq!(part.references.start, first);
+                first = part.references.end;
+                answers += next;
+            }
+            assert_eq!(answers, cells);
+            let wanted: Vec<f32> = question
+                .starts
+                .iter()
+                .map(|start| start.radius as f32)
+                .collect();
+            assert_eq!(starts, wanted);
         }
     }
 }

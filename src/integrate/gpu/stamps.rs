@@ -1,4 +1,4 @@
-//! The device's own clock around a dispatch.
+//! The device's own clock around a submission.
 
 use super::EngineError;
 use super::device::{Device, answer};
@@ -8,7 +8,7 @@ use wgpu::BufferUsages as Usage;
 /// Bytes of two time stamps.
 const BYTES: u64 = 16;
 
-/// Where the times of one dispatch go.
+/// Where the times of one submission go.
 #[derive(Debug)]
 pub struct Stamps {
     set: wgpu::QuerySet,
@@ -17,10 +17,10 @@ pub struct Stamps {
 }
 
 impl Stamps {
-    /// `None` where the device has no such clock.
-    pub fn new(device: &Device) -> Result<Option<Self>, EngineError> {
+    /// `None` where they are not `wanted`, or the device has no such clock.
+    pub fn new(device: &Device, wanted: bool) -> Result<Option<Self>, EngineError> {
         let features = device.handle.features();
-        if !features.contains(wgpu::Features::TIMESTAMP_QUERY) {
+        if !wanted || !features.contains(wgpu::Features::TIMESTAMP_QUERY) {
             return Ok(None);
         }
         let set = device.handle.create_query_set(&wgpu::QuerySetDescriptor {
@@ -51,7 +51,7 @@ impl Stamps {
         answer(commands, &self.resolved, &self.readback, BYTES);
     }
 
-    /// How long the dispatch took, once it is done.
+    /// How long its pass took, once it is done.
     pub fn read(&self, device: &Device) -> Result<Duration, EngineError> {
         let [start, end]: [u64; 2] =
             Device::read(&self.readback, BYTES, bytemuck::pod_read_unaligned)?;
