@@ -61,7 +61,7 @@ fn a_straight_cylinder_has_no_effects() {
     assert_eq!(fact(&run, "states"), states);
     let cells = "16: 8 push angles x 2 distances x 1 whisker";
     assert_eq!(fact(&run, "cells"), cells);
-    let calls = "1: groups of 1 whisker, 1 side of 2 rows, 16384 rows a call";
+    let calls = "1: groups of 1 whisker, 1 side of 2 rows, 1024 rows a call";
     assert_eq!(fact(&run, "GPU calls"), calls);
     let memory = "at most 193 MiB for panels and cells in flight";
     assert_eq!(fact(&run, "memory"), memory);
