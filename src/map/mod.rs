@@ -11,6 +11,7 @@ mod pipeline;
 mod pushes;
 mod runs;
 mod sliding;
+mod solved;
 mod stages;
 mod strip;
 mod summary;

@@ -4,8 +4,9 @@
 //! what becomes of a cell.
 
 use super::panel::Panel;
+use super::solved::{RowsAsked, Solved};
 use super::stages::Stage;
-use super::strip::{self, RowsAsked, Solved};
+use super::strip;
 use super::task::{Group, Task};
 use super::{Audit, Summary, answers};
 use crate::integrate::{CellDifference, Worker};
@@ -52,7 +53,7 @@ impl<'a> Strips<'a> {
         let mut asked = RowsAsked::default();
         if let Some(resolution) = resolution {
             let method = task.plan.method;
-            let ask = || RowsAsked::new(method, resolution, &task.angles, &group.faces, &rows);
+            let ask = || strip::ask(method, resolution, &task.angles, &group.faces, &rows);
             asked = task.stages.of(Stage::References, ask);
         }
         self.begun = (to < all).then(|| (Arc::clone(&group), to));

@@ -4,52 +4,32 @@ use super::Face;
 use super::audit::{self, Said};
 use super::cells::{Settled, SettledRow};
 use super::runs::Source;
+use super::solved::{RowsAsked, Solved};
 use super::stages::{Stage, Stages};
 use super::summary::Audit;
 use super::work::{Place, Work};
 use crate::account::carried;
-use crate::integrate::{CellDifference, Question, on_gpu};
+use crate::integrate::{Question, on_gpu};
 use crate::refine::{self, RowOfCells, Shot};
 use crate::sheet::Sheet;
 use crate::shooting::Resolution;
 use crate::shooting::batch::Method;
 use rayon::prelude::*;
-use std::ops::Range;
 use std::sync::Arc;
 
-/// What an engine is asked about some rows.
-#[derive(Clone, Default)]
-pub struct RowsAsked {
-    /// About the references of all rows.
-    pub question: Arc<Question>,
-    /// The references of each row, and the first of their cells.
-    pub rows: Vec<(Range<usize>, usize)>,
-}
-
-impl RowsAsked {
-    /// About `rows`, pairs of a face and a row of its panel, at some of the signed `pushes` (radians), with trajectories in the steps of
-    /// `resolution`.
-    pub fn new(
-        method: Method,
-        resolution: Resolution,
-        pushes: &Arc<[f64]>,
-        faces: &[Face],
-        rows: &[(usize, usize)],
-    ) -> Self {
-        match on_gpu(method.effects) {
-            Ok(()) => Rows::new(method, faces, rows).ask(resolution, pushes),
-            Err(_) => Self::default(),
-        }
+/// What there is to ask an engine about `rows`, pairs of a face and a row of its panel, at some of the signed `pushes` (radians), with
+/// trajectories in the steps of `resolution`.
+pub fn ask(
+    method: Method,
+    resolution: Resolution,
+    pushes: &Arc<[f64]>,
+    faces: &[Face],
+    rows: &[(usize, usize)],
+) -> RowsAsked {
+    match on_gpu(method.effects) {
+        Ok(()) => Rows::new(method, faces, rows).ask(resolution, pushes),
+        Err(_) => RowsAsked::default(),
     }
-}
-
-/// What an engine made of some rows.
-#[derive(Default)]
-pub struct Solved {
-    /// What it was asked.
-    pub asked: RowsAsked,
-    /// Its answers.
-    pub differences: Vec<CellDifference>,
 }
 
 /// Settles the cells of `rows`, pairs of a face and a row of its panel, with what an engine made of them as long as that holds.

@@ -4,7 +4,7 @@ use super::Face;
 use super::audit::Sample;
 use super::pushes::Pushes;
 use super::runs::{self, Run, Source};
-use super::strip::Solved;
+use super::solved::Solved;
 use crate::integrate::CellDifference;
 use crate::refine::Shot;
 use crate::sheet::Guess;
