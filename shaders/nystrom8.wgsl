@@ -26,8 +26,6 @@ struct Stage {
     inverse_scale: Both,
     forcing: Both,
     grown: Both,
-    // of the cell's radius over the reference's
-    growth: real,
 }
 
 // What is the same in all steps: the way from the contact to the base, of the reference and the cell.
@@ -52,8 +50,6 @@ struct Step {
     arclength: real,
     tangent: vec2<real>,
     rest: vec2<real>,
-    // how much wider the cell's rod is, over the radius
-    wider: real,
     // how far bending has turned the rod since the contact
     bent: Both,
     // h F/rho^3 and h rho
@@ -92,7 +88,6 @@ fn stage_at(path: Path, steps: real, node: real) -> Stage {
         Both(cube, cube * inverse_scale),
         Both(shrunk, shrunk * forcing),
         Both(grown, grown * growth),
-        growth,
     );
 }
 
@@ -143,7 +138,7 @@ fn pose_at(path: Path, step: Step, stage: Stage, chi: Both) -> Pose {
         let radius = step.radius * stage.grown.x;
         var ds = radius * path.tau.y * left;
         if TAPER {
-            ds = -radius * (step.wider + stage.growth + step.wider * stage.growth) / path.rod.taper;
+            ds *= expm1_over_small(path.widening * left);
         }
         let s = step.arclength - step.radius * stage.along;
         turn += at_rest;
@@ -170,7 +165,7 @@ fn climb(step: Step, stage: Stage, pose: Pose) -> vec4<real> {
 // From the contact to the base, along the reference's steps from `first` on.
 fn integrate(path: Path, first: u32, count: u32) -> Apart {
     let steps = real(count);
-    let none = Stage(0.0, 0.0, Both(1.0, 0.0), Both(1.0, 0.0), Both(1.0, 0.0), 0.0);
+    let none = Stage(0.0, 0.0, Both(1.0, 0.0), Both(1.0, 0.0), Both(1.0, 0.0));
     let s2 = stage_at(path, steps, 0.05);
     let s3 = stage_at(path, steps, 0.1);
     let s4 = stage_at(path, steps, 0.3);
@@ -206,7 +201,6 @@ fn integrate(path: Path, first: u32, count: u32) -> Apart {
             start.place.y,
             start.tangents.xy,
             rest,
-            wider,
             Both(start.place.z, apart.bent),
             w * product(Both(1.0, faster), path.force),
             reach * Both(1.0, slower + wider + slower * wider),

@@ -2,12 +2,13 @@
 
 use crate::PRECISIONS;
 use crate::cells::Cells;
-use crate::compute::open;
+use crate::compute::{compute, open};
 use crate::random_rods::USUAL;
 use std::sync::Arc;
 use whiskmap::integrate::gpu::{Gpu, Precision, adapters, preferred};
 use whiskmap::integrate::{CellDifference, Engine, Outcome, Reference};
 use whiskmap::plan::STATE_CHANNELS;
+use whiskmap::scene::Scene;
 
 fn some() -> Cells {
     Cells::random(USUAL, 40, 9, |_, _| ())
@@ -60,6 +61,21 @@ fn answers_do_not_depend_on_what_else_is_under_way() {
             assert!(of(gpu.answer().unwrap()) == alone);
         }
         assert!(gpu.answer().unwrap().is_empty());
+    }
+}
+
+/// Sweeps share kernels: a cylinder is integrated as a cone that does not taper, a straight whisker as one that hardly bends.
+#[test]
+fn effects_that_a_whisker_lacks_do_no_harm() {
+    let text = "title = \"sweep\"\nwhisker.length_mm = 20\nwhisker.base_radius_um = 30\nwhisker.youngs_modulus_gpa = 3\n\
+        pole.radius_mm = 0.25\n[grid]\npush_angle_deg = { from = -60, to = 60, count = 64 }\n\
+        distance_mm = { from = 4, to = 18, count = 8 }\ntaper = [0, 0.5]\ncurvature_per_mm = [0, 0.02]\n";
+    let scene = Scene::parse(text, "sweep").unwrap();
+    for mut gpu in PRECISIONS.into_iter().filter_map(open) {
+        let cells = compute(&scene, Some(&mut gpu)).0.engine_cells;
+        eprintln!("{cells:?}");
+        assert_eq!(cells.not_finite, 0);
+        assert!(cells.solved > 20 * (cells.near_edge + cells.far + cells.missed));
     }
 }
 
