@@ -67,6 +67,38 @@ pub trait SimdTask {
     fn run<T: Lanes>(self) -> Self::Output;
 }
 
+/// How `a * b + c` is rounded: all results of one class have the same bits, whatever the unit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ArithmeticClass {
+    /// Fused: one rounding, of the sum.
+    Fma,
+    /// Not fused: the product is rounded, then the sum.
+    NoFma,
+}
+
+impl ArithmeticClass {
+    /// The class of the widest unit of this processor: [`Unit::detect`] chooses it wherever numbers are computed.
+    #[must_use]
+    pub fn detect() -> Self {
+        Unit::detect().arithmetic()
+    }
+
+    /// The name in a store and in messages: `fma` or `no-fma`.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Fma => "fma",
+            Self::NoFma => "no-fma",
+        }
+    }
+}
+
+impl fmt::Display for ArithmeticClass {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
 /// A SIMD unit that this processor has.
 #[derive(Clone, Copy, Debug)]
 pub struct Unit(Instructions);
@@ -117,6 +149,16 @@ impl Unit {
     #[must_use]
     pub const fn scalar() -> Self {
         Self(Instructions::Scalar)
+    }
+
+    /// The rounding of `mul_add` in this unit's lanes.
+    #[must_use]
+    pub const fn arithmetic(self) -> ArithmeticClass {
+        match self.0 {
+            #[cfg(target_arch = "x86_64")]
+            Instructions::Avx512(_) | Instructions::Avx2(_) => ArithmeticClass::Fma,
+            Instructions::Scalar => ArithmeticClass::NoFma,
+        }
     }
 
     /// Does `task` in this unit's lanes.
