@@ -146,6 +146,7 @@ fn files(criterion: &mut Criterion) {
         engine: &whiskmap::integrate::Description::of(None),
         tolerances: &serde_json::json!({}),
         channels: whiskmap::map::Channels::ALL,
+        arithmetic: "fma",
     };
     let write = |path: &Path| -> Result<(), Error> {
         let mut writer = MapWriter::create(path, &about)?;

@@ -10,7 +10,9 @@ use std::path::{Path, PathBuf};
 use whiskmap::integrate;
 use whiskmap::map::{Audit, Channels, EngineCells};
 use whiskmap::scene::{Scene, Setup};
-use whiskmap::store::{Description, MapWriter, Output, Samples, Slice, Table, ZarrStore};
+use whiskmap::store::{
+    Description, MapWriter, Output, Samples, Slice, Table, UnfinishedFolder, ZarrStore,
+};
 
 /// Options of `extract`.
 #[derive(Debug, Args)]
@@ -118,7 +120,7 @@ fn array(slice: &Slice, channels: &[&'static str], path: &Path) -> Result<(), Fa
         return refuse(path, "an array has one channel; give one --channel");
     };
     let mut file = BufWriter::new(create("--output", path)?);
-    for (number, whisker) in slice.whiskers().into_iter().enumerate() {
+    for (number, whisker) in slice.whiskers().enumerate() {
         let (kind, bytes): (_, Vec<u8>) = match slice.read_panel(channel, whisker)? {
             Samples::F32(values) => (
                 "<f4",
@@ -197,14 +199,18 @@ fn store(slice: &Slice, channels: &[&'static str], path: &Path) -> Result<(), Fa
     let (scene, origin) = (scene(slice)?, Origin::of(slice)?);
     let chosen = Channels::those(|name| channels.contains(&name));
     let about = origin.describe(&scene, chosen.with("regime"));
-    let store = ZarrStore::join(path, &scene, &about, true)?;
+    if path.exists() {
+        return refuse(path, "is there already; remove it, or name another");
+    }
+    let folder = UnfinishedFolder::create(path).map_err(|cause| unwritten(path, cause))?;
+    let store = ZarrStore::join(folder.path(), &scene, &about, false)?;
     store.begin()?;
     for block in 0..store.block_count() {
         let whiskers = store.whiskers(block);
         let packed = whiskers.map(|whisker| store.pack(&slice.panel(about.channels, whisker)?));
         store.write(block, &packed.collect::<Result<Vec<_>, _>>()?)?;
     }
-    Ok(())
+    folder.finish(path).map_err(|cause| unwritten(path, cause))
 }
 
 /// The scene of the slice, in which each chosen axis has one value.
@@ -222,6 +228,7 @@ fn scene(slice: &Slice) -> Result<Scene, Failure> {
 /// What computed the whole, and how exactly.
 struct Origin {
     engine: integrate::Description,
+    arithmetic: String,
     tolerances: serde_json::Value,
 }
 
@@ -238,6 +245,8 @@ impl Origin {
         };
         Ok(Self {
             engine,
+            // Maps of older versions do not have it.
+            arithmetic: text("arithmetic").unwrap_or_default(),
             tolerances: slice.stored().attribute("tolerances")?,
         })
     }
@@ -248,6 +257,7 @@ impl Origin {
             engine: &self.engine,
             tolerances: &self.tolerances,
             channels,
+            arithmetic: &self.arithmetic,
         }
     }
 }

@@ -53,11 +53,14 @@ pub enum Failure {
     #[error("{0}")]
     NoValue(String),
     /// A store that lacks something.
-    #[error("{} is not complete: {missing} blocks are missing, {damaged} are damaged", store.display())]
+    #[error(
+        "{} is not complete: {missing} blocks are missing, {damaged} are damaged, and {metadata} files of metadata", store.display()
+    )]
     Incomplete {
         store: PathBuf,
         missing: usize,
         damaged: usize,
+        metadata: usize,
     },
     /// Numbers are not what they should be.
     #[error("{failed} of {all} checks fail")]

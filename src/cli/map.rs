@@ -18,6 +18,7 @@ use std::time::Instant;
 use whiskmap::accuracy::{Accuracy, BOUNDED};
 use whiskmap::integrate::Engine;
 use whiskmap::map;
+use whiskmap::numerics::ArithmeticClass;
 use whiskmap::plan::{Channels, Plan};
 use whiskmap::refine::{GOAL, TOLERANCE};
 use whiskmap::render;
@@ -87,16 +88,16 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     let left_deg = left_deg.map(|(tolerance, accuracy)| tolerance - accuracy.error_deg);
     plan.channels = options.channels.unwrap_or(Channels::ALL);
     let (mut engine, why) = options.engine.open(&scene, &plan, left_deg)?;
-    let about = whiskmap::integrate::Description::of(engine.as_deref());
-    let tolerances = tolerances(&scene, accuracy, engine.as_deref());
+    let solver = whiskmap::integrate::Description::of(engine.as_deref());
+    let about = Description {
+        scene: &scene,
+        engine: &solver,
+        tolerances: &tolerances(&scene, accuracy, engine.as_deref()),
+        channels: plan.channels,
+        arithmetic: ArithmeticClass::detect().name(),
+    };
     outputs::folder("--output", &options.output)?;
     if options.format == Format::Zarr {
-        let about = Description {
-            scene: &scene,
-            engine: &about,
-            tolerances: &tolerances,
-            channels: plan.channels,
-        };
         let path = options.output.join(format!("{}.zarr", scene.name));
         let run = sharded::Run {
             shard: options.shard,
@@ -124,19 +125,11 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     }
     say(&format!(
         "engine: {} on {} ({why})",
-        about.engine, about.adapter
+        solver.engine, solver.adapter
     ));
 
     let start = Instant::now();
-    let mut writer = MapWriter::create(
-        &file,
-        &Description {
-            scene: &scene,
-            engine: &about,
-            tolerances: &tolerances,
-            channels: plan.channels,
-        },
-    )?;
+    let mut writer = MapWriter::create(&file, &about)?;
     let bar = Progress::over(plan.cells, "cells");
     let engine = engine.as_mut().map(|engine| &mut **engine as _);
     let mut settled = |cells| bar.inc(cells);

@@ -14,7 +14,7 @@ use whiskmap::integrate::Engine;
 use whiskmap::map::{self, Panel};
 use whiskmap::plan::Plan;
 use whiskmap::scene::Scene;
-use whiskmap::store::{self, Description, PackedPanel, ZarrStore};
+use whiskmap::store::{self, BlockState, CheckDepth, Description, PackedPanel, ZarrStore};
 
 /// The blocks that one of `count` processes computes: every `count`-th.
 #[derive(Clone, Copy, Debug)]
@@ -70,11 +70,11 @@ impl Run<'_> {
         let start = Instant::now();
         let may_exist = self.resume || self.shard.is_some();
         let store = ZarrStore::join(path, scene, about, may_exist)?;
-        let is_due = |block: &usize| {
-            let is_ours = self.shard.is_none_or(|shard| shard.has(*block));
-            is_ours && !(self.resume && store.is_done(*block))
-        };
-        let blocks: Vec<usize> = (0..store.block_count()).filter(is_due).collect();
+        let is_ours = |block: &usize| self.shard.is_none_or(|shard| shard.has(*block));
+        let mut blocks: Vec<usize> = (0..store.block_count()).filter(is_ours).collect();
+        if self.resume {
+            blocks = unfinished(&store, blocks);
+        }
         plan.parts = blocks.iter().map(|block| store.whiskers(*block)).collect();
         let panel = scene.grid.push_angle_deg.len() * scene.grid.distance_mm.len();
         let whiskers: usize = plan.parts.iter().map(ExactSizeIterator::len).sum();
@@ -82,7 +82,12 @@ impl Run<'_> {
             let folder = path.parent().unwrap_or(path);
             disk::check(folder, Format::Zarr, scene, &plan, panel * whiskers)?;
         }
-        store.begin()?;
+        for file in store.begin()? {
+            say(&format!(
+                "warning: {} was damaged: written again",
+                file.display()
+            ));
+        }
         say(&format!(
             "engine: {} ({}); blocks: {} of {}",
             about.engine.engine,
@@ -127,4 +132,22 @@ impl Run<'_> {
         let see = "the channel `status`";
         check_resolved(summary.unresolved(), summary.cells(), "cells", see)
     }
+}
+
+/// The `blocks` that are missing or damaged, each damaged file with a warning.
+fn unfinished(store: &ZarrStore, blocks: Vec<usize>) -> Vec<usize> {
+    let states: Vec<BlockState> = blocks
+        .par_iter()
+        .map(|block| store.state(*block, CheckDepth::Checksums))
+        .collect();
+    for state in &states {
+        if let BlockState::Damaged(faults) = state {
+            for fault in faults {
+                say(&format!("warning: {fault}: its block is computed again"));
+            }
+        }
+    }
+    let states = blocks.into_iter().zip(states);
+    let unfinished = states.filter(|(_, state)| !matches!(state, BlockState::Done));
+    unfinished.map(|(block, _)| block).collect()
 }

@@ -2,10 +2,12 @@
 
 use super::failure::{Failure, say};
 use clap::Args;
+use rayon::prelude::*;
 use std::io::Write;
+use std::ops::Range;
 use std::path::PathBuf;
 use whiskmap::classify::Regime;
-use whiskmap::store::ZarrStore;
+use whiskmap::store::{BlockState, CheckDepth, Error, ZarrStore};
 
 /// Options of `status`.
 #[derive(Debug, Args)]
@@ -13,73 +15,158 @@ use whiskmap::store::ZarrStore;
 Examples:
   whiskmap status outputs/sweep.zarr
   whiskmap status outputs/sweep.zarr --verify
+  whiskmap status outputs/sweep.zarr --repair
 
-The exit code is 0 only when every block is there and, with --verify, sound. A damaged file may be removed: the next run \
-with --resume makes it again.")]
+The exit code is 0 only when every block is there and no file is damaged. Without --verify, the length and the index of each \
+file are checked. After --repair, `whiskmap map --resume` computes the removed blocks again.")]
 pub struct Options {
     /// Store written by `whiskmap map --format zarr`
     store: PathBuf,
-    /// Decode every file
+    /// Decode every file, and compare metadata and coordinates with the scene
     #[arg(long)]
     verify: bool,
+    /// Verify, remove damaged blocks, and write damaged metadata again
+    #[arg(long)]
+    repair: bool,
+}
+
+/// Blocks of a store by their state.
+#[derive(Default)]
+struct Found {
+    done: usize,
+    missing: Vec<Range<usize>>,
+    damaged: Vec<usize>,
+    faults: Vec<Error>,
+    regimes: [u64; Regime::ALL.len()],
+}
+
+/// Blocks that are checked side by side.
+const TOGETHER: usize = 4096;
+
+impl Found {
+    fn in_store(store: &ZarrStore, depth: CheckDepth) -> Self {
+        let mut found = Self::default();
+        let all = store.block_count();
+        for first in (0..all).step_by(TOGETHER) {
+            let blocks = (first..all.min(first + TOGETHER)).into_par_iter();
+            let states: Vec<_> = blocks
+                .map(|block| match store.state(block, depth) {
+                    BlockState::Done => store
+                        .regimes(block)
+                        .map_err(|fault| BlockState::Damaged(vec![fault])),
+                    state => Err(state),
+                })
+                .collect();
+            for (block, state) in (first..).zip(states) {
+                found.add(block, state);
+            }
+        }
+        found
+    }
+
+    fn add(&mut self, block: usize, state: Result<[u64; Regime::ALL.len()], BlockState>) {
+        match state {
+            Ok(regimes) => {
+                self.done += 1;
+                for (sum, cells) in self.regimes.iter_mut().zip(regimes) {
+                    *sum += cells;
+                }
+            }
+            Err(BlockState::Damaged(faults)) => {
+                self.damaged.push(block);
+                self.faults.extend(faults);
+            }
+            Err(_) => match self.missing.last_mut() {
+                Some(run) if run.end == block => run.end += 1,
+                _ => self.missing.push(block..block + 1),
+            },
+        }
+    }
 }
 
 /// Runs `status`.
 pub fn run(options: &Options) -> Result<(), Failure> {
     let store = ZarrStore::open(&options.store)?;
-    let all = store.block_count();
-    let (done, missing): (Vec<usize>, Vec<usize>) =
-        (0..all).partition(|block| store.is_done(*block));
-    let mut damaged = 0;
-    let mut regimes = [0; Regime::ALL.len()];
-    for block in &done {
-        let faults = if options.verify {
-            store.verify(*block)
-        } else {
-            Vec::new()
-        };
-        for fault in &faults {
-            say(&format!("error: {fault}"));
-        }
-        let cells = store.regimes(*block);
-        if let (true, Err(fault)) = (faults.is_empty(), &cells) {
-            say(&format!("error: {fault}"));
-        }
-        damaged += usize::from(!faults.is_empty() || cells.is_err());
-        for (sum, cells) in regimes.iter_mut().zip(cells.unwrap_or_default()) {
-            *sum += cells;
-        }
+    let is_thorough = options.verify || options.repair;
+    let depth = if is_thorough {
+        CheckDepth::Values
+    } else {
+        CheckDepth::Structure
+    };
+    let metadata = match store.metadata_faults() {
+        // Without --verify, a store of another version is no failure.
+        Err(Error::OtherVersion(..)) if !is_thorough => Vec::new(),
+        faults => faults?,
+    };
+    let found = Found::in_store(&store, depth);
+    for fault in metadata.iter().chain(&found.faults) {
+        say(&format!("error: {fault}"));
     }
-    let panel = store.grid().push_angle_deg.len() * store.grid().distance_mm.len();
-    let cells = panel * store.grid().whisker_count();
-    let mut out = std::io::stdout().lock();
-    writeln!(out, "{}", store.title())?;
-    writeln!(out, "{:>12}  of {all} blocks", done.len())?;
-    writeln!(out, "{:>12}  of {cells} cells", regimes.iter().sum::<u64>())?;
-    for (regime, cells) in Regime::ALL.iter().zip(regimes) {
-        if cells > 0 {
-            writeln!(out, "{cells:>12}  {}", regime.name())?;
-        }
+    report(&store, &found)?;
+    if options.repair {
+        repair(&store, &found, metadata.len())?;
     }
-    if !missing.is_empty() {
-        writeln!(out, "missing blocks: {}", ranges(&missing))?;
-    }
-    if missing.is_empty() && damaged == 0 {
+    let missing = found.missing.iter().map(ExactSizeIterator::len).sum();
+    let (damaged, metadata) = (found.damaged.len(), metadata.len());
+    let is_sound = missing == 0 && damaged == 0 && (metadata == 0 || options.repair);
+    if is_sound {
         return Ok(());
     }
     Err(Failure::Incomplete {
         store: options.store.clone(),
-        missing: missing.len(),
+        missing,
         damaged,
+        metadata,
     })
 }
 
-/// Growing numbers with their runs drawn together.
-fn ranges(numbers: &[usize]) -> String {
-    let runs = numbers.chunk_by(|one, next| one + 1 == *next);
-    let runs = runs.map(|run| match run {
-        [first, .., last] => format!("{first}-{last}"),
-        only => only[0].to_string(),
+fn report(store: &ZarrStore, found: &Found) -> Result<(), Failure> {
+    let panel = store.grid().push_angle_deg.len() * store.grid().distance_mm.len();
+    let cells = panel * store.grid().whisker_count();
+    let mut out = std::io::stdout().lock();
+    writeln!(out, "{}", store.title())?;
+    writeln!(out, "{:>12}  of {} blocks", found.done, store.block_count())?;
+    writeln!(
+        out,
+        "{:>12}  of {cells} cells",
+        found.regimes.iter().sum::<u64>()
+    )?;
+    for (regime, cells) in Regime::ALL.iter().zip(found.regimes) {
+        if cells > 0 {
+            writeln!(out, "{cells:>12}  {}", regime.name())?;
+        }
+    }
+    if !found.missing.is_empty() {
+        writeln!(out, "missing blocks: {}", ranges(&found.missing))?;
+    }
+    if !found.damaged.is_empty() {
+        let damaged: Vec<_> = found
+            .damaged
+            .iter()
+            .map(|&block| block..block + 1)
+            .collect();
+        writeln!(out, "damaged blocks: {}", ranges(&damaged))?;
+    }
+    Ok(())
+}
+
+/// Removes what is damaged, so that a run computes it again, and writes `metadata` files again.
+fn repair(store: &ZarrStore, found: &Found, metadata: usize) -> Result<(), Failure> {
+    store.restore_metadata()?;
+    for block in &found.damaged {
+        store.remove_block(*block)?;
+    }
+    let mut out = std::io::stdout().lock();
+    writeln!(out, "metadata written again: {metadata}")?;
+    writeln!(out, "blocks removed: {}", found.damaged.len())?;
+    Ok(())
+}
+
+/// Runs of numbers, such as `0-3, 7`.
+fn ranges(runs: &[Range<usize>]) -> String {
+    let runs = runs.iter().map(|run| match run.len() {
+        1 => run.start.to_string(),
+        _ => format!("{}-{}", run.start, run.end - 1),
     });
     runs.collect::<Vec<_>>().join(", ")
 }

@@ -123,7 +123,7 @@ impl Options {
             .iter()
             .map(|own| format!(" {}", word_of_shell(own)));
         let own: String = own.collect();
-        let status = word_of_shell(&format!("{program} status {store}"));
+        let status = word_of_shell(&format!("{program} status --verify {store}"));
         let shards = self.shards;
         Ok(format!(
             r#"#!/bin/sh
@@ -135,8 +135,8 @@ impl Options {
 # Whoever computes a block of the store, and however often, it is the same: tasks may
 # be killed, requeued or submitted again.
 
-# When all tasks have ended, a last job tells what the store has, and fails if anything
-# is missing.
+# When all tasks have ended, a last job verifies the store, and fails if anything is
+# missing or damaged.
 if [ "$SLURM_ARRAY_TASK_ID" = "$SLURM_ARRAY_TASK_MIN" ]; then
     sbatch --job-name={job}-status --dependency="afterany:$SLURM_ARRAY_JOB_ID"{partition} \
         --output="slurm-${{SLURM_ARRAY_JOB_ID}}_status.out" --wrap={status}

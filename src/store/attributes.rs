@@ -21,6 +21,8 @@ pub struct Description<'a> {
     pub tolerances: &'a Value,
     /// What is stored of each cell.
     pub channels: Channels,
+    /// How the CPU rounds: the [name](crate::numerics::ArithmeticClass::name) of a class.
+    pub arithmetic: &'a str,
 }
 
 /// An axis of the map.
@@ -47,6 +49,12 @@ const ATLAS: [[&str; 2]; 2] = [
     ["panel y", "row 0 of the atlas (top)"],
 ];
 
+/// The attribute that has the CRC-32C of all that precedes the tables of offsets, in 8 hexadecimal digits.
+pub(super) const CHECKSUM: &str = "checksum";
+
+/// The digits of the checksum while it is computed.
+pub(super) const NO_CHECKSUM: &str = "00000000";
+
 /// Texts by name, as the EXR library has them.
 pub(super) type Attributes = HashMap<Text, AttributeValue>;
 
@@ -65,10 +73,12 @@ pub(super) fn encode(about: &Description<'_>) -> Attributes {
         ("whiskmap_version", json!(env!("CARGO_PKG_VERSION"))),
         ("engine", json!(about.engine.engine)),
         ("adapter", json!(about.engine.adapter)),
+        ("arithmetic", json!(about.arithmetic)),
         ("tolerances", json!(about.tolerances)),
         ("regime_names", json!(regimes())),
         ("status_names", json!(statuses())),
         ("panels", json!([layout.columns, layout.rows])),
+        (CHECKSUM, json!(NO_CHECKSUM)),
     ];
     let encoded = attributes.map(|(name, value)| attribute(name, &ascii_json(&value)));
     encoded.into()
@@ -167,7 +177,7 @@ pub(super) fn decode_axes(mut found: Vec<Axis>) -> Result<Grid, String> {
 
 /// The same with the names in every object in their order: whether `serde_json` keeps another one depends on what else is
 /// built with it.
-fn sorted(value: &Value) -> Value {
+pub(super) fn sorted(value: &Value) -> Value {
     match value {
         Value::Object(names) => {
             let names: BTreeMap<_, _> = names

@@ -28,7 +28,8 @@ pub enum Error {
     Exists(PathBuf),
     /// A store that was begun otherwise.
     #[error(
-        "{} was begun with another {name}: {there} there, {here} here; go on as it was begun, or give another --output", path.display()
+        "{} was created with another {name}: {there} there, {here} here{reason}; use the settings with which it was created, or \
+         give another --output", path.display(), reason = reason(name)
     )]
     AtOdds {
         /// The store.
@@ -40,6 +41,18 @@ pub enum Error {
         /// Its value in this run.
         here: String,
     },
+    /// A folder with blocks of another store, whose metadata are missing or damaged.
+    #[error(
+        "{folder} has blocks of another scene, version, engine, arithmetic, accuracy or choice of channels; \
+         remove it, or give another --output", folder = .0.display()
+    )]
+    OtherBlocks(PathBuf),
+    /// A store that is not at its path any more.
+    #[error("{folder} was moved, removed or replaced during the run", folder = .0.display())]
+    Displaced(PathBuf),
+    /// A store whose metadata only another version of the program can check: the version.
+    #[error("{folder} was written by whiskmap {1}, and only that version can check it", folder = .0.display())]
+    OtherVersion(PathBuf, String),
     /// A folder of Zarr that this program did not write, and what is missing or different.
     #[error("{folder} is not a store of whiskmap: {1}", folder = .0.display())]
     NotAStore(PathBuf, String),
@@ -111,6 +124,15 @@ pub enum Error {
     },
 }
 
+/// What a reader may not know about an attribute.
+fn reason(name: &str) -> &'static str {
+    if name == "arithmetic" {
+        " (with and without fused multiply-add, processors round differently)"
+    } else {
+        ""
+    }
+}
+
 impl Error {
     /// Makes the error `kind` for the map at `path` of its cause.
     pub(super) fn at<C>(path: &Path, kind: fn(PathBuf, C) -> Self) -> impl Fn(C) -> Self {
@@ -129,6 +151,8 @@ impl Error {
                 | Self::Damaged(..)
                 | Self::Exists(_)
                 | Self::AtOdds { .. }
+                | Self::OtherBlocks(_)
+                | Self::OtherVersion(..)
                 | Self::NotAStore(..)
                 | Self::NotComputed(_)
         )

@@ -1,7 +1,8 @@
 //! The header: what precedes the blocks, written and read.
 
-use super::attributes::Attributes;
+use super::attributes::{Attributes, CHECKSUM, NO_CHECKSUM};
 use super::layout::Layout;
+use super::stored::is_compatible;
 use super::{Channels, Error};
 use exr::io::PeekRead;
 use exr::meta::attribute;
@@ -10,6 +11,7 @@ use exr::meta::{MetaData, OffsetTables, magic_number, sequence_end};
 use serde::de::DeserializeOwned;
 use std::fs::File;
 use std::io::{self, BufReader, Read, Seek};
+use std::ops::Range;
 use std::path::Path;
 
 /// All that precedes the tables of offsets. Attributes are sorted by name, so that equal maps have equal bytes.
@@ -41,8 +43,52 @@ pub(super) fn read(path: &Path, file: &mut BufReader<File>) -> Result<MetaData, 
         _ => return Err(Error::NotExr(path.to_owned())),
     }
     file.rewind().map_err(Error::at(path, Error::Read))?;
-    MetaData::read_from_buffered(file, true)
-        .map_err(|cause| Error::Damaged(path.to_owned(), format!("header: {cause}")))
+    let damaged = |why: String| Error::Damaged(path.to_owned(), format!("header: {why}"));
+    let meta =
+        MetaData::read_from_buffered(&mut *file, true).map_err(|why| damaged(why.to_string()))?;
+    match has_checksum(file, &meta).map_err(Error::at(path, Error::Read))? {
+        true => Ok(meta),
+        false => Err(damaged("it does not have its checksum".to_owned())),
+    }
+}
+
+/// Whether the bytes that have been read are those of the checksum. Maps of versions with another format have none.
+fn has_checksum(file: &mut BufReader<File>, meta: &MetaData) -> io::Result<bool> {
+    let mut preamble = vec![0; file.stream_position()? as usize];
+    file.rewind()?;
+    file.read_exact(&mut preamble)?;
+    let places = places_of_checksum(&preamble);
+    if places.is_empty() {
+        let version = parse::<String>(meta, "whiskmap_version");
+        return Ok(version.is_ok_and(|version| !is_compatible(&version)));
+    }
+    let mut sealed = preamble.clone();
+    for place in places {
+        sealed[place].copy_from_slice(NO_CHECKSUM.as_bytes());
+    }
+    seal(&mut sealed);
+    Ok(sealed == preamble)
+}
+
+/// Puts the checksum of a preamble, in which each part has [`NO_CHECKSUM`], into each part.
+pub(super) fn seal(preamble: &mut [u8]) {
+    let digits = format!("{:08x}", crc32c::crc32c(preamble));
+    for place in places_of_checksum(preamble) {
+        preamble[place].copy_from_slice(digits.as_bytes());
+    }
+}
+
+/// The digits of the checksum in each part, behind the name, type and size of their attribute and a quotation mark.
+fn places_of_checksum(preamble: &[u8]) -> Vec<Range<usize>> {
+    let size = NO_CHECKSUM.len() + 2;
+    let size = (size as u32).to_le_bytes();
+    let before = [CHECKSUM.as_bytes(), b"\0string\0", &size, b"\""].concat();
+    let windows = preamble.windows(before.len() + NO_CHECKSUM.len());
+    let found = windows
+        .enumerate()
+        .filter(|(_, bytes)| bytes.starts_with(&before));
+    let places = found.map(|(first, bytes)| first + before.len()..first + bytes.len());
+    places.collect()
 }
 
 /// The table between the headers and the blocks.

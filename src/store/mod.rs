@@ -4,7 +4,7 @@
 //! whiskers. The file has three parts, `regime`, `state` and `numerics`. Column 0 is the first push angle and row 0
 //! the first distance. One whisker fills the image; a sweep of whiskers is an atlas with one tile per whisker, the
 //! first sweep axis along x and the second along y. Every attribute is ASCII JSON: `axes`, `scene`, `title`, `whiskmap_version`,
-//! `engine`, `adapter`, `tolerances`, `regime_names`, `status_names`, `counts` and `panels`.
+//! `engine`, `adapter`, `arithmetic`, `tolerances`, `regime_names`, `status_names`, `counts`, `panels` and `checksum`.
 //!
 //! A sweep that outgrows a machine goes to a Zarr store instead, a folder that many processes fill.
 //!
@@ -35,10 +35,12 @@ pub use slice::{At, NoChoice, Slice};
 pub use stored::Stored;
 pub use table::Table;
 pub use tally::Counts;
+#[cfg(feature = "zarr")]
+pub use unfinished::UnfinishedFolder;
 pub use unfinished::abandon;
 pub use writer::MapWriter;
 #[cfg(feature = "zarr")]
-pub use zarr::{PackedPanel, ZarrStore};
+pub use zarr::{BlockState, CheckDepth, PackedPanel, ZarrStore};
 
 /// What a file holds of one whisker, and of the whole run.
 pub use crate::map::{Audit, Channels, EngineCells, Panel, STATE_CHANNELS};

@@ -57,14 +57,37 @@ impl Output {
         matches!(&self.0, Destination::Named { is_regular, .. } if *is_regular)
     }
 
-    /// Like [`Output::finish`], but a regular file is on the disk before it has its name, and its name when this returns, so that
+    /// Finishes a regular file such that it is on the disk before it has its name, and its name when this returns, so that
     /// a crash of the machine spoils neither. It takes 1 to 5 ms.
     ///
     /// # Errors
     ///
     /// Those of [`Output::finish`].
     #[cfg(feature = "zarr")]
-    pub(super) fn finish_durably(mut self) -> io::Result<()> {
+    pub(super) fn finish_durably(self) -> io::Result<()> {
+        self.finish_synced(Self::finish)
+    }
+
+    /// Finishes a regular file like [`Output::finish_durably`], unless a file of its name is there: of several processes that
+    /// do this at the same time one succeeds.
+    ///
+    /// # Errors
+    ///
+    /// [`AlreadyExists`](io::ErrorKind::AlreadyExists), or an error of [`Output::finish`].
+    #[cfg(feature = "zarr")]
+    pub(super) fn finish_new(self) -> io::Result<()> {
+        self.finish_synced(|output| match output.0 {
+            Destination::Named {
+                unfinished,
+                target,
+                is_regular: true,
+            } => unfinished.persist_new(&target),
+            _ => Err(io::ErrorKind::AlreadyExists.into()),
+        })
+    }
+
+    #[cfg(feature = "zarr")]
+    fn finish_synced(mut self, finish: fn(Self) -> io::Result<()>) -> io::Result<()> {
         let folder = match &mut self.0 {
             Destination::Named {
                 unfinished,
@@ -76,7 +99,7 @@ impl Output {
             }
             _ => None,
         };
-        self.finish()?;
+        finish(self)?;
         // Only Unix opens folders.
         match folder {
             Some(folder) if cfg!(unix) => File::open(folder)?.sync_all(),
@@ -181,7 +204,7 @@ fn is_descriptor(path: &Path) -> bool {
 }
 
 /// The folder that holds `path`.
-fn folder_of(path: &Path) -> &Path {
+pub(super) fn folder_of(path: &Path) -> &Path {
     match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
         _ => Path::new("."),

@@ -171,11 +171,19 @@ impl Slice {
     }
 
     /// The whiskers that are left, with the last axis varying fastest.
-    #[must_use]
-    pub fn whiskers(&self) -> Vec<usize> {
-        let mut whiskers: Vec<usize> = (0..self.grid.whisker_count()).collect();
-        whiskers.sort_by_key(|whisker| self.grid.indices(*whisker));
-        whiskers
+    pub fn whiskers(&self) -> impl Iterator<Item = usize> + '_ {
+        let sizes = self.grid.sweep.iter().map(|axis| axis.values.len());
+        let sizes: Vec<usize> = sizes.collect();
+        (0..self.grid.whisker_count()).map(move |place| {
+            let (mut rest, mut stride) = (place, self.grid.whisker_count());
+            let axes = sizes.iter().rev().map(|size| {
+                stride /= size;
+                let at = rest % size;
+                rest /= size;
+                at * stride
+            });
+            axes.sum()
+        })
     }
 
     /// The values of a whisker of the slice on all axes of the whole sweep.

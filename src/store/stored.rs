@@ -83,8 +83,7 @@ impl Stored {
     pub fn foreign_version(&self) -> Result<Option<String>, Error> {
         let version = self.attribute("whiskmap_version")?;
         let version = version.as_str().unwrap_or_default();
-        let is_ours = series(version) == series(env!("CARGO_PKG_VERSION"));
-        Ok((!is_ours).then(|| version.to_owned()))
+        Ok((!is_compatible(version)).then(|| version.to_owned()))
     }
 
     /// The names of the codes of a channel that is made of codes.
@@ -117,6 +116,11 @@ impl Stored {
             Self::Zarr(store) => store.read_panel(name, whisker),
         }
     }
+}
+
+/// Whether a map of this version of the program is one of this version's format.
+pub(super) fn is_compatible(version: &str) -> bool {
+    series(version) == series(env!("CARGO_PKG_VERSION"))
 }
 
 /// What compatible versions have in common: the numbers up to the first that is not 0.

@@ -38,6 +38,7 @@ pub fn abandon() {
     let list = list();
     for path in list.iter() {
         let _ = fs::remove_file(path);
+        let _ = fs::remove_dir_all(path);
     }
     std::mem::forget(list);
 }
@@ -77,6 +78,14 @@ impl Unfinished {
     /// Gives the file its name, in place of what has it.
     pub(super) fn persist(self, name: &Path) -> io::Result<()> {
         self.file.persist(name)?;
+        Ok(())
+    }
+
+    /// Gives the file its name, unless a file has it: by a rename that replaces nothing or, on file systems without, such as
+    /// NFS, by a hard link.
+    #[cfg(feature = "zarr")]
+    pub(super) fn persist_new(self, name: &Path) -> io::Result<()> {
+        self.file.persist_noclobber(name)?;
         Ok(())
     }
 }
@@ -124,4 +133,54 @@ fn prefix() -> String {
     let plain = |c: &char| c.is_ascii_alphanumeric() || "-_.".contains(*c);
     let host: String = host.chars().filter(plain).take(64).collect();
     format!("{PREFIX}{host}-")
+}
+
+/// A folder on its way to its name. It is removed when it is dropped, and when the process is interrupted.
+#[cfg(feature = "zarr")]
+#[derive(Debug)]
+pub struct UnfinishedFolder {
+    folder: tempfile::TempDir,
+    _listed: Listed,
+}
+
+#[cfg(feature = "zarr")]
+impl UnfinishedFolder {
+    /// An empty folder beside `target`.
+    ///
+    /// # Errors
+    ///
+    /// The folder of `target` does not exist or is not writable.
+    pub fn create(target: &Path) -> io::Result<Self> {
+        let mut list = list();
+        let prefix = prefix();
+        let mut builder = tempfile::Builder::new();
+        builder.prefix(&prefix);
+        // `tempfile` itself makes private folders.
+        #[cfg(unix)]
+        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o777));
+        let folder = builder.tempdir_in(super::output::folder_of(target))?;
+        list.push(folder.path().to_owned());
+        drop(list);
+        Ok(Self {
+            _listed: Listed(folder.path().to_owned()),
+            folder,
+        })
+    }
+
+    /// Where the folder is until it is finished.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        self.folder.path()
+    }
+
+    /// Gives the folder its name.
+    ///
+    /// # Errors
+    ///
+    /// A file, or a folder that is not empty, has the name.
+    pub fn finish(self, target: &Path) -> io::Result<()> {
+        fs::rename(self.folder.path(), target)?;
+        let _ = self.folder.keep();
+        Ok(())
+    }
 }

@@ -148,7 +148,7 @@ impl MapWriter {
         packed.sum()
     }
 
-    /// Writes the counts into the header and gives the map its name. Returns the counts.
+    /// Writes the counts and the checksum into the header and gives the map its name. Returns the counts.
     ///
     /// # Errors
     ///
@@ -168,8 +168,9 @@ impl MapWriter {
             attributes.extend([attribute("counts", &text)]);
         }
         // The counts were given their room at the start, so this has the length of what it replaces.
-        let preamble =
+        let mut preamble =
             header::encode(&self.headers).map_err(Error::at(&self.path, Error::Encode))?;
+        header::seal(&mut preamble);
         self.write_at(0, &[preamble])?;
         let Self {
             path, file, counts, ..

@@ -14,6 +14,8 @@ mod extract;
 #[cfg(unix)]
 mod files;
 mod fit;
+#[cfg(unix)]
+mod integrity;
 mod map;
 mod other;
 mod paper;

@@ -123,6 +123,7 @@ pub fn describe<'a>(scene: &'a Setup, tolerances: &'a Value) -> Description<'a> 
         engine: &ENGINE,
         tolerances,
         channels: Channels::ALL,
+        arithmetic: "fma",
     }
 }
 

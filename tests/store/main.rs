@@ -1,10 +1,12 @@
 //! What is written comes back, whole or not at all.
 #![allow(
     clippy::unwrap_used,
+    clippy::panic,
     reason = "a test that cannot set up its files should stop"
 )]
 
 mod comes_back;
+mod damage;
 #[path = "../map/mod.rs"]
 mod map;
 mod refused;

@@ -156,6 +156,16 @@ impl Array {
         sizes.product()
     }
 
+    /// Chunks of a block's file.
+    pub(super) fn chunk_count(&self) -> usize {
+        self.values() * self.kind.size() / self.chunk.bytes()
+    }
+
+    /// Bytes of a chunk's values.
+    pub(super) const fn chunk_bytes(&self) -> usize {
+        self.chunk.bytes()
+    }
+
     /// The chunks of a whisker with these values, as bytes.
     pub(super) fn chunks(&self, values: &[u8]) -> Result<Vec<Vec<u8>>, String> {
         self.chunk.pack_all(values)

@@ -80,8 +80,13 @@ impl Blocks {
 
     /// The block of a whisker, and its place in the block.
     pub(super) fn find(&self, whisker: usize) -> (usize, usize) {
-        let whole = (0..self.count()).find(|block| self.whiskers(*block).contains(&whisker));
-        let block = whole.unwrap_or_default();
+        let (mut rest, mut block, mut stride) = (whisker, 0, 1);
+        let axes = self.axes.iter().zip(&self.shape);
+        for ((values, taken), blocks) in axes.zip(self.blocks_per_axis()) {
+            block += rest % values / taken * stride;
+            rest /= values;
+            stride *= blocks;
+        }
         (block, whisker - self.whiskers(block).start)
     }
 

@@ -51,6 +51,11 @@ impl Chunk {
         })
     }
 
+    /// Bytes of a chunk's values.
+    pub(super) const fn bytes(&self) -> usize {
+        self.values * self.kind.size()
+    }
+
     /// The codecs as the metadata of an array with so many `dimensions` have them.
     pub(super) fn codecs(&self, dimensions: usize) -> Value {
         let mut codecs = packed(self.kind, self.values);
@@ -65,7 +70,7 @@ impl Chunk {
 
     /// Packs `values`, given as bytes, chunk by chunk; the last chunk is filled up.
     pub(super) fn pack_all(&self, values: &[u8]) -> Result<Vec<Vec<u8>>, String> {
-        let size = self.values * self.kind.size();
+        let size = self.bytes();
         let chunks = values.chunks(size).map(|chunk| {
             let missing = (size - chunk.len()) / self.kind.size();
             if missing == 0 {
@@ -96,7 +101,7 @@ impl Chunk {
 /// Blosc's level: zstd 3. Above it hardly anything gets smaller.
 const LEVEL: u8 = 2;
 
-/// A chunk is one block of Blosc: in those of 32 KB that it would choose itself, less repeats.
+/// A chunk is one block of Blosc, with a checksum: in blocks of 32 KB, which Blosc would choose itself, less repeats.
 fn packed(kind: Kind, values: usize) -> Value {
     json!([
         { "name": "bytes", "configuration": { "endian": "little" } },
@@ -107,6 +112,7 @@ fn packed(kind: Kind, values: usize) -> Value {
             "typesize": kind.size(),
             "blocksize": values * kind.size(),
         } },
+        { "name": "crc32c" },
     ])
 }
 
@@ -128,20 +134,6 @@ fn turned(lines: &[u8], width: usize) -> Vec<u8> {
         }
     }
     turned
-}
-
-/// A block's file: its chunks, then where each begins and how long it is, and the checksum of that.
-pub(super) fn file<'a>(chunks: impl Iterator<Item = &'a [u8]> + Clone) -> Vec<Cow<'a, [u8]>> {
-    let mut index = Vec::new();
-    let mut position = 0;
-    for chunk in chunks.clone() {
-        let size = chunk.len() as u64;
-        index.extend([position, size].map(u64::to_le_bytes).concat());
-        position += size;
-    }
-    let checksum = crc32c::crc32c(&index);
-    index.extend(checksum.to_le_bytes());
-    chunks.map(Cow::from).chain([index.into()]).collect()
 }
 
 #[cfg(test)]

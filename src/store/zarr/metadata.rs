@@ -2,6 +2,7 @@
 
 use super::array::{Array, about};
 use super::blocks::Blocks;
+use super::identity::Identity;
 use super::kind::{Kind, NOT_COMPUTED};
 use crate::classify::{Regime, Status};
 use crate::scene::{Grid, Setup};
@@ -174,30 +175,36 @@ pub(super) fn coordinates(grid: &Grid) -> Result<Vec<(Array, Vec<u8>)>, String> 
 }
 
 /// The attributes in which all runs that fill a store must agree, before those that follow from them.
-pub(super) const AGREED: [&str; 5] = [
+pub(super) const AGREED: [&str; 6] = [
     "whiskmap_version",
     "engine",
+    "arithmetic",
     "tolerances",
     "channels",
     "scene",
 ];
 
-/// The attributes of a store, which are the same on every machine.
+/// The attributes of a store, which are the same on every machine of its arithmetic.
 pub(super) fn attributes(about: &Description<'_>, scene: &Setup) -> Map<String, Value> {
-    let attributes = json!({
-        "Conventions": "CF-1.11",
-        "title": scene.title,
-        "whiskmap_version": env!("CARGO_PKG_VERSION"),
-        "engine": about.engine.engine,
-        "tolerances": about.tolerances,
-        "channels": about.channels.to_string(),
-        "scene": scene.text,
-    });
-    match attributes {
-        Value::Object(attributes) => attributes,
-        _ => Map::new(),
-    }
+    let attributes = [
+        ("Conventions", json!("CF-1.11")),
+        ("title", json!(scene.title)),
+        ("whiskmap_version", json!(env!("CARGO_PKG_VERSION"))),
+        ("engine", json!(about.engine.engine)),
+        ("arithmetic", json!(about.arithmetic)),
+        ("tolerances", json!(about.tolerances)),
+        ("channels", json!(about.channels.to_string())),
+        ("scene", json!(scene.text)),
+    ];
+    let attributes = attributes.map(|(name, value)| (name.to_owned(), value));
+    let mut attributes = Map::from_iter(attributes);
+    let identity = Identity::of(&attributes).text();
+    attributes.insert(IDENTITY.to_owned(), json!(identity));
+    attributes
 }
+
+/// The attribute that has the identity of the store.
+pub(super) const IDENTITY: &str = "identity";
 
 /// The metadata of the whole, those of the arrays among them.
 pub(super) fn group<'a>(

@@ -1,7 +1,8 @@
 //! From panels to the files of a block.
 
 use super::array::Array;
-use super::{ZarrStore, chunk, write};
+use super::files::write;
+use super::{ZarrStore, shard};
 use crate::account::carried;
 use crate::classify::Regime;
 use crate::scene::Scene;
@@ -49,8 +50,9 @@ impl ZarrStore {
     ///
     /// # Errors
     ///
-    /// The disk is full, or the folder is not writable.
+    /// The disk is full, the folder is not writable, or the store is no longer at its path.
     pub fn write(&self, block: usize, panels: &[PackedPanel]) -> Result<(), Error> {
+        self.check_place()?;
         let put = |(index, array): (usize, &Array)| {
             let file = self.file(array, block);
             let room = self.blocks.slots();
@@ -65,7 +67,8 @@ impl ZarrStore {
                 slots[self.blocks.slot(block, place)] = &panel.0[index];
             }
             let chunks = slots.into_iter().flatten().map(Vec::as_slice);
-            write(&file, &chunk::file(chunks))
+            let identity = self.expected(array, &file).identity;
+            write(&file, &shard::assemble(identity, chunks))
         };
         let last = self.arrays.len() - 1;
         let others = self.arrays[..last].par_iter().enumerate();

@@ -4,10 +4,12 @@ use super::ZarrStore;
 use super::array::Array;
 use super::kind::Kind;
 use super::metadata::CELLS;
+use super::shard::{self, Expected};
 use crate::classify::Regime;
 use crate::store::{Error, Samples};
-use rayon::prelude::*;
-use std::{fs, io};
+use std::fs::{self, File};
+use std::io::{self, Read, Seek};
+use std::path::Path;
 
 impl ZarrStore {
     /// How many cells of a block there are of each regime.
@@ -26,13 +28,6 @@ impl ZarrStore {
             }
         }
         Ok(regimes)
-    }
-
-    /// Reads all of a block, and tells what is wrong with it.
-    #[must_use]
-    pub fn verify(&self, block: usize) -> Vec<Error> {
-        let read = self.arrays.par_iter().map(|array| self.read(array, block));
-        read.filter_map(Result::err).collect()
     }
 
     /// A channel of one whisker: `[distance][push angle]`.
@@ -62,19 +57,45 @@ impl ZarrStore {
         })
     }
 
-    fn read(&self, array: &Array, block: usize) -> Result<Vec<u8>, Error> {
-        let file = self.file(array, block);
-        let bytes = fs::read(&file).map_err(|why| match why.kind() {
-            io::ErrorKind::NotFound => Error::NotComputed(file.clone()),
-            _ => Error::Read(file.clone(), why),
-        })?;
-        let values = array
-            .decode(bytes)
-            .map_err(Error::at(&file, Error::Damaged))?;
-        if values.len() == array.values() * array.kind.size() {
-            Ok(values)
-        } else {
-            Err(Error::Damaged(file, "it has the wrong length".to_owned()))
+    /// The values of a block's file, as bytes.
+    pub(super) fn read(&self, array: &Array, block: usize) -> Result<Vec<u8>, Error> {
+        let values = array.decode(self.read_file(array, block)?);
+        let expected = array.values() * array.kind.size();
+        let values = values.and_then(|values| match values.len() == expected {
+            true => Ok(values),
+            false => Err("it has the wrong number of values".to_owned()),
+        });
+        values.map_err(Error::at(&self.file(array, block), Error::Damaged))
+    }
+
+    /// A block's file whose structure and checksums have no fault.
+    pub(super) fn read_file(&self, array: &Array, block: usize) -> Result<Vec<u8>, Error> {
+        let path = self.file(array, block);
+        let mut file = open_regular(&path)?;
+        let expected = self.expected(array, &path);
+        let mut bytes = Vec::new();
+        let mut fault = || -> shard::Fault {
+            if let Some(why) = expected.structure_fault(&mut file)? {
+                return Ok(Some(why));
+            }
+            file.rewind()?;
+            file.read_to_end(&mut bytes)?;
+            // Whoever replaces the file meanwhile replaces it as a whole: this one stays as it was.
+            Ok(expected.chunk_fault(&bytes))
+        };
+        match fault().map_err(Error::at(&path, Error::Read))? {
+            Some(why) => Err(Error::Damaged(path, why)),
+            None => Ok(bytes),
+        }
+    }
+
+    /// What the file `path` of an array must be.
+    pub(super) fn expected(&self, array: &Array, path: &Path) -> Expected {
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        Expected {
+            identity: self.identity.of_file(&array.name, &name),
+            chunks: array.chunk_count(),
+            chunk_bytes: array.chunk_bytes(),
         }
     }
 
@@ -89,4 +110,16 @@ impl ZarrStore {
         };
         (values * array.kind.size(), room * array.kind.size())
     }
+}
+
+/// Opens a regular file; another, such as a pipe, might never open.
+pub(super) fn open_regular(path: &Path) -> Result<File, Error> {
+    let failed = |why: io::Error| match why.kind() {
+        io::ErrorKind::NotFound => Error::NotComputed(path.to_owned()),
+        _ => Error::Read(path.to_owned(), why),
+    };
+    if !fs::metadata(path).map_err(failed)?.is_file() {
+        return Err(Error::NotAFile(path.to_owned()));
+    }
+    File::open(path).map_err(failed)
 }

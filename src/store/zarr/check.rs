@@ -1,0 +1,182 @@
+//! What is there of a store, what is damaged, and its removal.
+
+use super::ZarrStore;
+use super::array::Array;
+use super::kind::NOT_COMPUTED;
+use super::metadata::CELLS;
+use super::read::open_regular;
+use crate::classify::Regime;
+use crate::store::Error;
+use rayon::prelude::*;
+use std::fs;
+use std::io;
+use std::path::Path;
+
+/// How much of a block's files is checked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CheckDepth {
+    /// Identity, length and index of each file.
+    Structure,
+    /// The checksum of each chunk too: files are read as a whole, at several GB/s.
+    Checksums,
+    /// Every value too: files are decoded, and the counts of regimes are compared with the regimes.
+    Values,
+}
+
+/// The state of a block on disk.
+#[derive(Debug)]
+pub enum BlockState {
+    /// A file is not there: the block has not been finished.
+    Missing,
+    /// All files are there, and these are damaged.
+    Damaged(Vec<Error>),
+    /// All files are there, without a fault as far as they were checked.
+    Done,
+}
+
+impl ZarrStore {
+    /// Checks the files of a block.
+    #[must_use]
+    pub fn state(&self, block: usize, depth: CheckDepth) -> BlockState {
+        // The last file to be written is the first to be looked for.
+        let is_there = |array: &Array| self.file(array, block).exists();
+        if !self.arrays.iter().rev().all(is_there) {
+            return BlockState::Missing;
+        }
+        let faults = self.arrays.par_iter();
+        let faults = faults.filter_map(|array| self.check(array, block, depth).err());
+        let mut faults: Vec<Error> = faults.collect();
+        if faults.is_empty() && depth == CheckDepth::Values {
+            faults.extend(self.check_counts(block).err());
+        }
+        if faults.is_empty() {
+            BlockState::Done
+        } else {
+            BlockState::Damaged(faults)
+        }
+    }
+
+    fn check(&self, array: &Array, block: usize, depth: CheckDepth) -> Result<(), Error> {
+        match depth {
+            CheckDepth::Structure => self.check_structure(array, &self.file(array, block)),
+            CheckDepth::Checksums => self.read_file(array, block).map(drop),
+            CheckDepth::Values => self.read(array, block).map(drop),
+        }
+    }
+
+    /// Compares identity, length and index of a file with what they must be.
+    fn check_structure(&self, array: &Array, file: &Path) -> Result<(), Error> {
+        let mut opened = open_regular(file)?;
+        let fault = self.expected(array, file).structure_fault(&mut opened);
+        match fault.map_err(Error::at(file, Error::Read))? {
+            Some(why) => Err(Error::Damaged(file.to_owned(), why)),
+            None => Ok(()),
+        }
+    }
+
+    /// Compares the counts of regimes with the regimes.
+    fn check_counts(&self, block: usize) -> Result<(), Error> {
+        let array = |name: &str| self.arrays.iter().find(|array| array.name == name);
+        let (Some(counts), Some(regimes)) = (array(CELLS), array("regime")) else {
+            return Ok(());
+        };
+        let counted: Vec<u32> = bytemuck::pod_collect_to_vec(&self.read(counts, block)?);
+        let cells = self.read(regimes, block)?;
+        let of_whisker = cells.chunks(cells.len() / self.blocks.slots());
+        let found = of_whisker.flat_map(|cells| {
+            Regime::ALL.map(|regime| {
+                let code = regime.code();
+                cells.iter().filter(|own| u32::from(**own) == code).count() as u32
+            })
+        });
+        if !found.eq(counted) {
+            let why = format!("its counts are not those of the array `{}`", regimes.name);
+            return Err(Error::Damaged(self.file(counts, block), why));
+        }
+        let unknown = cells.iter().find(|code| {
+            **code != NOT_COMPUTED
+                && Regime::ALL
+                    .iter()
+                    .all(|own| own.code() != u32::from(**code))
+        });
+        unknown.map_or(Ok(()), |code| {
+            let why = format!("the code {code} has no name");
+            Err(Error::Damaged(self.file(regimes, block), why))
+        })
+    }
+
+    /// The metadata and coordinates that are missing or damaged: files that [`ZarrStore::begin`] and
+    /// [`ZarrStore::restore_metadata`] write again.
+    ///
+    /// # Errors
+    ///
+    /// The store is of another version, whose metadata may differ, or a file cannot be read.
+    pub fn metadata_faults(&self) -> Result<Vec<Error>, Error> {
+        let version = self.attribute("whiskmap_version")?;
+        if version != env!("CARGO_PKG_VERSION") {
+            return Err(Error::OtherVersion(self.path.clone(), version.to_string()));
+        }
+        let files = self.metadata_files()?;
+        let faults = files
+            .iter()
+            .filter_map(|(path, bytes)| match fs::read(path) {
+                Ok(found) if found == *bytes => None,
+                Ok(_) => {
+                    let why = "it is not as the scene demands";
+                    Some(Error::Damaged(path.clone(), why.to_owned()))
+                }
+                Err(why) if why.kind() == io::ErrorKind::NotFound => {
+                    Some(Error::Damaged(path.clone(), "it is missing".to_owned()))
+                }
+                Err(why) => Some(Error::Read(path.clone(), why)),
+            });
+        Ok(faults.collect())
+    }
+
+    /// Removes the files of a block, so that the next run with `--resume` computes it again.
+    ///
+    /// # Errors
+    ///
+    /// A file cannot be removed.
+    pub fn remove_block(&self, block: usize) -> Result<(), Error> {
+        // Without the last file the block is not there, whatever becomes of the others.
+        for array in self.arrays.iter().rev() {
+            let file = self.file(array, block);
+            match fs::remove_file(&file) {
+                Err(why) if why.kind() != io::ErrorKind::NotFound => {
+                    return Err(Error::Write(file, why));
+                }
+                _ => {}
+            }
+        }
+        Ok(())
+    }
+
+    /// The owner of the blocks in the folder, by the identities of their files.
+    pub(super) fn owner(&self) -> Owner {
+        let mut owner = Owner::Nobody;
+        for array in &self.arrays {
+            let folder = self.path.join(&array.name);
+            for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+                if entry.file_name().to_string_lossy().starts_with("c.") {
+                    if self.check_structure(array, &entry.path()).is_ok() {
+                        return Owner::This;
+                    }
+                    owner = Owner::Other;
+                }
+            }
+        }
+        owner
+    }
+}
+
+/// Whose blocks are in a folder.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Owner {
+    /// There are no blocks.
+    Nobody,
+    /// A block of this store is there.
+    This,
+    /// There are blocks, and none is of this store.
+    Other,
+}

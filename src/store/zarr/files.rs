@@ -1,0 +1,205 @@
+//! The files of a store other than its blocks: metadata and coordinates, all of which follow from the scene.
+
+use super::array::Array;
+use super::check::Owner;
+use super::metadata::{self, AGREED, IDENTITY};
+use super::read::open_regular;
+use super::{METADATA, ZarrStore};
+use crate::store::{Error, Output};
+use serde_json::{Map, Value};
+use std::fs;
+use std::io::{self, Read, Write};
+use std::path::{Path, PathBuf};
+
+/// The most bytes of a file of metadata: a scene of 1 MiB with its radii, in JSON, needs less.
+const MOST_METADATA: u64 = 16 << 20;
+
+impl ZarrStore {
+    /// Creates the store, or joins the one that is there, and restores metadata that are missing or damaged. Returns the
+    /// damaged files that it has replaced.
+    ///
+    /// Of several processes that create a store at the same time one succeeds, and the others join it.
+    ///
+    /// # Errors
+    ///
+    /// The store that is there was created with other settings, or must not be there, or one of its folders cannot be written.
+    pub fn begin(&self) -> Result<Vec<PathBuf>, Error> {
+        fs::create_dir_all(&self.path).map_err(Error::at(&self.path, Error::Write))?;
+        let root = self.path.join(METADATA);
+        let created = finish(&root, &[self.root()?], Output::finish_new);
+        match created {
+            Err(why) if why.kind() == io::ErrorKind::AlreadyExists => self.agree()?,
+            created => created.map_err(Error::at(&root, Error::Write))?,
+        }
+        for array in &self.arrays {
+            let folder = self.path.join(&array.name);
+            fs::create_dir_all(&folder).map_err(Error::at(&folder, Error::Write))?;
+        }
+        let restored = self.restore_metadata()?;
+        let folders = self.arrays.iter().map(|array| self.path.join(&array.name));
+        for folder in folders.chain([self.path.clone()]) {
+            // The creation of an output removes what interrupted runs have left beside it.
+            Output::create(&folder.join(METADATA)).map_err(Error::at(&folder, Error::Write))?;
+        }
+        Ok(restored)
+    }
+
+    /// Writes the metadata and coordinates again that are missing or damaged. Returns the damaged files.
+    ///
+    /// # Errors
+    ///
+    /// A file cannot be read or written.
+    pub fn restore_metadata(&self) -> Result<Vec<PathBuf>, Error> {
+        let mut damaged = Vec::new();
+        for (path, bytes) in self.metadata_files()? {
+            match fs::read(&path) {
+                Ok(found) if found == bytes => continue,
+                Ok(_) => damaged.push(path.clone()),
+                Err(why) if why.kind() == io::ErrorKind::NotFound => {}
+                Err(why) => return Err(Error::Read(path, why)),
+            }
+            let folder = path.parent().map_or(Ok(()), fs::create_dir_all);
+            folder.map_err(Error::at(&path, Error::Write))?;
+            write(&path, &[bytes])?;
+        }
+        Ok(damaged)
+    }
+
+    /// Every file of metadata and coordinates, with the bytes that it must have; the root's is the last.
+    pub(super) fn metadata_files(&self) -> Result<Vec<(PathBuf, Vec<u8>)>, Error> {
+        let mut files = Vec::new();
+        for (array, values) in self.coordinates()? {
+            let folder = self.path.join(&array.name);
+            let encoded = array.encode(values);
+            let encoded = encoded.map_err(Error::at(&folder, Error::Pack))?;
+            files.push((folder.join(METADATA), json(&array.metadata)));
+            files.push((folder.join(Array::file(&[], 1)), encoded));
+        }
+        for array in &self.arrays {
+            let file = self.path.join(&array.name).join(METADATA);
+            files.push((file, json(&array.metadata)));
+        }
+        files.push((self.path.join(METADATA), self.root()?));
+        Ok(files)
+    }
+
+    fn coordinates(&self) -> Result<Vec<(Array, Vec<u8>)>, Error> {
+        let coordinates = metadata::coordinates(&self.scene.grid);
+        coordinates.map_err(Error::at(&self.path, Error::Pack))
+    }
+
+    /// The bytes of the root's metadata.
+    fn root(&self) -> Result<Vec<u8>, Error> {
+        let coordinates = self.coordinates()?;
+        let axes = coordinates.iter().map(|(array, _)| array);
+        let arrays = axes.chain(&self.arrays);
+        Ok(json(&metadata::group(&self.attributes, arrays)))
+    }
+
+    /// Compares the store with what is at its path. Damaged metadata are no obstacle where the blocks are of this store.
+    pub(super) fn agree(&self) -> Result<(), Error> {
+        match Self::open(&self.path) {
+            Ok(_) if !self.may_exist => Err(Error::Exists(self.path.clone())),
+            Ok(there) => self.agree_with(&there),
+            Err(Error::NotComputed(_)) if self.owner() != Owner::Other => Ok(()),
+            Err(Error::NotComputed(_)) => Err(Error::OtherBlocks(self.path.clone())),
+            Err(Error::NotAStore(..) | Error::Damaged(..))
+                if self.may_exist && self.owner() == Owner::This =>
+            {
+                Ok(())
+            }
+            Err(why) => Err(why),
+        }
+    }
+
+    fn agree_with(&self, there: &Self) -> Result<(), Error> {
+        let apart = AGREED
+            .iter()
+            .find(|name| self.attributes.get(**name) != there.attributes.get(**name));
+        let Some(name) = apart else {
+            return Ok(());
+        };
+        let text = |store: &Self| match store.attributes.get(*name) {
+            Some(Value::String(text)) => text.clone(),
+            Some(value) => value.to_string(),
+            None => "nothing".to_owned(),
+        };
+        let (there, here) = (text(there), text(self));
+        let [there, here] = first_difference(&there, &here);
+        Err(Error::AtOdds {
+            path: self.path.clone(),
+            name,
+            there,
+            here,
+        })
+    }
+
+    /// Finds out whether the store is still at its path, with the identity that it was begun with.
+    pub(super) fn check_place(&self) -> Result<(), Error> {
+        let found = attributes(&self.path);
+        let is_same =
+            |found: &Map<String, Value>| found.get(IDENTITY) == self.attributes.get(IDENTITY);
+        if found.is_ok_and(|found| is_same(&found)) {
+            Ok(())
+        } else {
+            Err(Error::Displaced(self.path.clone()))
+        }
+    }
+}
+
+/// The attributes of the store at `path`, as its root has them.
+pub(super) fn attributes(path: &Path) -> Result<Map<String, Value>, Error> {
+    let file = path.join(METADATA);
+    let foreign = |why: &dyn std::fmt::Display| Error::NotAStore(path.to_owned(), why.to_string());
+    let mut text = Vec::new();
+    let source = open_regular(&file)?;
+    let read = source.take(MOST_METADATA + 1).read_to_end(&mut text);
+    if read.map_err(Error::at(&file, Error::Read))? as u64 > MOST_METADATA {
+        return Err(foreign(&format!("{METADATA} is longer than 16 MiB")));
+    }
+    let mut root: Value = serde_json::from_slice(&text).map_err(|why| foreign(&why))?;
+    match root["attributes"].take() {
+        Value::Object(attributes) => Ok(attributes),
+        _ => Err(foreign(&"it has no attributes")),
+    }
+}
+
+fn json(value: &Value) -> Vec<u8> {
+    value.to_string().into_bytes()
+}
+
+/// Writes a file as a whole, piece by piece, into a folder that is there. It is on the disk before this returns: after a crash,
+/// what is there counts as done.
+pub(super) fn write(path: &Path, pieces: &[impl AsRef<[u8]>]) -> Result<(), Error> {
+    let written = finish(path, pieces, Output::finish_durably);
+    written.map_err(Error::at(path, Error::Write))
+}
+
+fn finish(
+    path: &Path,
+    pieces: &[impl AsRef<[u8]>],
+    finish: fn(Output) -> io::Result<()>,
+) -> io::Result<()> {
+    let mut output = Output::create(path)?;
+    let mut pieces = pieces.iter();
+    pieces.try_for_each(|piece| output.write_all(piece.as_ref()))?;
+    finish(output)
+}
+
+/// The first lines in which two texts differ.
+fn first_difference(one: &str, other: &str) -> [String; 2] {
+    let mut lines = [one.lines(), other.lines()];
+    let mut number = 0;
+    loop {
+        number += 1;
+        let [one, other] = lines.each_mut().map(Iterator::next);
+        if one != other || one.is_none() {
+            let shown = |line: Option<&str>| match (line, number) {
+                (None, _) => "nothing more".to_owned(),
+                (Some(line), 1) => line.to_owned(),
+                (Some(line), _) => format!("`{line}` in line {number}"),
+            };
+            return [one, other].map(shown);
+        }
+    }
+}

@@ -1,0 +1,59 @@
+//! The identity of a store: a hash of everything that its bytes depend on, and of each file of its blocks.
+
+use super::metadata::AGREED;
+use crate::store::attributes::sorted;
+use serde_json::{Map, Value};
+use twox_hash::XxHash3_128;
+
+/// The XXH3-128 hash of the attributes in which all runs that fill a store agree.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Identity(u128);
+
+/// The first bytes of a block's file: a hash of the store's identity, the array and the file's name.
+pub(super) type FileIdentity = [u8; 16];
+
+impl Identity {
+    /// The identity of a store with these attributes.
+    pub(super) fn of(attributes: &Map<String, Value>) -> Self {
+        let agreed = AGREED.map(|name| attributes.get(name).map(sorted));
+        let text = serde_json::json!(agreed).to_string();
+        Self(XxHash3_128::oneshot(text.as_bytes()))
+    }
+
+    /// 32 hexadecimal digits.
+    pub(super) fn text(self) -> String {
+        format!("{:032x}", self.0)
+    }
+
+    /// The identity of the file `name` of the array `array`.
+    pub(super) fn of_file(self, array: &str, name: &str) -> FileIdentity {
+        let text = format!("{}/{array}/{name}", self.text());
+        XxHash3_128::oneshot(text.as_bytes()).to_le_bytes()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    fn attributes(scene: &str) -> Map<String, Value> {
+        let tolerances = json!({ "b": 1, "a": 2 });
+        let all = [("scene", json!(scene)), ("tolerances", tolerances)];
+        all.map(|(name, value)| (name.to_owned(), value)).into()
+    }
+
+    #[test]
+    fn what_is_agreed_on_changes_it_and_nothing_else_does() {
+        let one = Identity::of(&attributes("one"));
+        let mut titled = attributes("one");
+        titled.insert("title".to_owned(), json!("One"));
+        assert_eq!(one, Identity::of(&titled));
+        assert_ne!(one, Identity::of(&attributes("two")));
+        titled.insert("arithmetic".to_owned(), json!("fma"));
+        assert_ne!(one, Identity::of(&titled));
+        let files = [("regime", "c.0"), ("regime", "c.1"), ("status", "c.0")];
+        let [a, b, c] = files.map(|(array, name)| one.of_file(array, name));
+        assert!(a != b && b != c && c != a);
+    }
+}

@@ -1,0 +1,127 @@
+//! A block's file, a shard in the sense of Zarr: identity, chunks without gaps, index, checksum of the index.
+//!
+//! The index has the position and the size of each chunk, as pairs of little-endian `u64`. Readers find chunks by the
+//! index alone, so that none of them needs to know of the identity.
+
+use super::identity::FileIdentity;
+use std::borrow::Cow;
+use std::io::{self, Read, Seek, SeekFrom};
+
+/// Bytes of the identity.
+const HEAD: u64 = size_of::<FileIdentity>() as u64;
+
+/// Bytes of a CRC-32C, of the index or of a chunk.
+const CHECKSUM: usize = 4;
+
+/// Bytes of a chunk's entry in the index.
+const ENTRY: usize = 16;
+
+/// The most bytes by which packing makes a chunk larger: 16 of Blosc, and the checksum.
+const OVERHEAD: u64 = 20;
+
+/// The pieces of a file with these chunks, in order.
+pub(super) fn assemble<'a>(
+    identity: FileIdentity,
+    chunks: impl Iterator<Item = &'a [u8]> + Clone,
+) -> Vec<Cow<'a, [u8]>> {
+    let mut index = Vec::new();
+    let mut position = HEAD;
+    for chunk in chunks.clone() {
+        let size = chunk.len() as u64;
+        index.extend([position, size].map(u64::to_le_bytes).concat());
+        position += size;
+    }
+    let checksum = crc32c::crc32c(&index);
+    index.extend(checksum.to_le_bytes());
+    let head = Cow::from(identity.to_vec());
+    let chunks = chunks.map(Cow::from);
+    [head]
+        .into_iter()
+        .chain(chunks)
+        .chain([index.into()])
+        .collect()
+}
+
+/// What a file of a block must be.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Expected {
+    pub(super) identity: FileIdentity,
+    /// Chunks of the file.
+    pub(super) chunks: usize,
+    /// Bytes of a chunk's values.
+    pub(super) chunk_bytes: usize,
+}
+
+/// The fault of a file, or a failure to read it.
+pub(super) type Fault = io::Result<Option<String>>;
+
+impl Expected {
+    /// Compares identity, length and index of a file with what they must be. Chunks are not read.
+    pub(super) fn structure_fault(&self, file: &mut (impl Read + Seek)) -> Fault {
+        let length = file.seek(SeekFrom::End(0))?;
+        let index_bytes = self.chunks * ENTRY + CHECKSUM;
+        let Some(end) = length
+            .checked_sub(index_bytes as u64)
+            .filter(|end| *end >= HEAD)
+        else {
+            return Ok(Some(format!("its {length} bytes are too few")));
+        };
+        let most = self.chunk_bytes as u64 + OVERHEAD;
+        if end - HEAD > most * self.chunks as u64 {
+            return Ok(Some(format!("its {length} bytes are too many")));
+        }
+        let mut identity = FileIdentity::default();
+        file.rewind()?;
+        file.read_exact(&mut identity)?;
+        let mut index = vec![0; index_bytes];
+        file.seek(SeekFrom::Start(end))?;
+        file.read_exact(&mut index)?;
+        Ok(self.index_fault(identity, &index, end).map(str::to_owned))
+    }
+
+    fn index_fault(&self, identity: FileIdentity, index: &[u8], end: u64) -> Option<&'static str> {
+        if !has_checksum(index) {
+            return Some("the index does not have its checksum");
+        }
+        let (entries, _) = index.as_chunks::<ENTRY>();
+        let mut position = HEAD;
+        for entry in entries {
+            let (begin, size) = entry.split_at(ENTRY / 2);
+            let [begin, size] = [begin, size].map(number);
+            if begin != position || size > end - position {
+                return Some("the index does not fit the file's length");
+            }
+            position += size;
+        }
+        if position != end {
+            return Some("the index does not fit the file's length");
+        }
+        let why = "it belongs to another block, or to a store of another scene, version, engine, \
+            arithmetic, accuracy or choice of channels";
+        (identity != self.identity).then_some(why)
+    }
+
+    /// Compares the chunks of a whole file, whose structure has no fault, with their checksums.
+    pub(super) fn chunk_fault(&self, file: &[u8]) -> Option<String> {
+        let index = &file[file.len() - CHECKSUM - self.chunks * ENTRY..];
+        let (entries, _) = index.as_chunks::<ENTRY>();
+        let is_damaged = |entry: &[u8; ENTRY]| {
+            let (begin, size) = entry.split_at(ENTRY / 2);
+            let [begin, size] = [begin, size].map(|bytes| number(bytes) as usize);
+            !has_checksum(&file[begin..begin + size])
+        };
+        let damaged = entries.iter().position(is_damaged)?;
+        Some(format!("chunk {damaged} does not have its checksum"))
+    }
+}
+
+/// Whether the last bytes are the checksum of those before.
+fn has_checksum(bytes: &[u8]) -> bool {
+    bytes
+        .split_last_chunk::<CHECKSUM>()
+        .is_some_and(|(bytes, checksum)| crc32c::crc32c(bytes) == u32::from_le_bytes(*checksum))
+}
+
+fn number(bytes: &[u8]) -> u64 {
+    bytes.try_into().map_or(0, u64::from_le_bytes)
+}
