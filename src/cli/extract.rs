@@ -199,18 +199,19 @@ fn store(slice: &Slice, channels: &[&'static str], path: &Path) -> Result<(), Fa
     let (scene, origin) = (scene(slice)?, Origin::of(slice)?);
     let chosen = Channels::those(|name| channels.contains(&name));
     let about = origin.describe(&scene, chosen.with("regime"));
-    if path.exists() {
-        return refuse(path, "is there already; remove it, or name another");
-    }
-    let folder = UnfinishedFolder::create(path).map_err(|cause| unwritten(path, cause))?;
-    let store = ZarrStore::join(folder.path(), &scene, &about, false)?;
+    // A new store appears when it is complete; one that is there is written again, block by block.
+    let folder = (!ZarrStore::is_at(path)).then(|| UnfinishedFolder::create(path));
+    let folder = folder.transpose().map_err(|cause| unwritten(path, cause))?;
+    let place = folder.as_ref().map_or(path, UnfinishedFolder::path);
+    let store = ZarrStore::join(place, &scene, &about, true)?;
     store.begin()?;
     for block in 0..store.block_count() {
         let whiskers = store.whiskers(block);
         let packed = whiskers.map(|whisker| store.pack(&slice.panel(about.channels, whisker)?));
         store.write(block, &packed.collect::<Result<Vec<_>, _>>()?)?;
     }
-    folder.finish(path).map_err(|cause| unwritten(path, cause))
+    let finished = folder.map_or(Ok(()), |folder| folder.finish(path));
+    finished.map_err(|cause| unwritten(path, cause))
 }
 
 /// The scene of the slice, in which each chosen axis has one value.

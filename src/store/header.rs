@@ -52,7 +52,7 @@ pub(super) fn read(path: &Path, file: &mut BufReader<File>) -> Result<MetaData, 
     }
 }
 
-/// Whether the bytes that have been read are those of the checksum. Maps of versions with another format have none.
+/// Whether the bytes that have been read have their checksum. Maps of versions with another format, and other files, have none.
 fn has_checksum(file: &mut BufReader<File>, meta: &MetaData) -> io::Result<bool> {
     let mut preamble = vec![0; file.stream_position()? as usize];
     file.rewind()?;
@@ -60,7 +60,7 @@ fn has_checksum(file: &mut BufReader<File>, meta: &MetaData) -> io::Result<bool>
     let places = places_of_checksum(&preamble);
     if places.is_empty() {
         let version = parse::<String>(meta, "whiskmap_version");
-        return Ok(version.is_ok_and(|version| !is_compatible(&version)));
+        return Ok(!version.is_ok_and(|version| is_compatible(&version)));
     }
     let mut sealed = preamble.clone();
     for place in places {

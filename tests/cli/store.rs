@@ -263,7 +263,7 @@ fn a_store_that_cannot_be_written_is_said_before_any_work() {
     let run = map(&place, ".", &["--shard=1/8"]);
     run.assert_said(
         1,
-        "error: cannot write ./scene.zarr/force_un: Permission denied (os error 13)\n",
+        "error: cannot write ./scene.zarr/force_un/zarr.json: Permission denied (os error 13)\n",
     );
     assert_eq!(run.out, "");
     fs::remove_file(&force).unwrap();

@@ -132,7 +132,7 @@ fn equal_maps_have_equal_bytes_all_attributes_ascii() {
         let meta = exr::meta::MetaData::read_from_buffered(&files[0][..], true).unwrap();
         assert_eq!(meta.headers.len(), 3);
         for header in &meta.headers {
-            assert_eq!(header.own_attributes.other.len(), 11);
+            assert_eq!(header.own_attributes.other.len(), 13);
             for value in header.own_attributes.other.values() {
                 assert!(value.to_text().unwrap().bytes().is_ascii());
             }

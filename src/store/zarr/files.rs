@@ -101,8 +101,11 @@ impl ZarrStore {
         match Self::open(&self.path) {
             Ok(_) if !self.may_exist => Err(Error::Exists(self.path.clone())),
             Ok(there) => self.agree_with(&there),
-            Err(Error::NotComputed(_)) if self.owner() != Owner::Other => Ok(()),
-            Err(Error::NotComputed(_)) => Err(Error::OtherBlocks(self.path.clone())),
+            Err(Error::Read(_, why)) if why.kind() == io::ErrorKind::NotFound => match self.owner()
+            {
+                Owner::Other => Err(Error::OtherBlocks(self.path.clone())),
+                Owner::Nobody | Owner::This => Ok(()),
+            },
             Err(Error::NotAStore(..) | Error::Damaged(..))
                 if self.may_exist && self.owner() == Owner::This =>
             {
@@ -152,12 +155,16 @@ pub(super) fn attributes(path: &Path) -> Result<Map<String, Value>, Error> {
     let file = path.join(METADATA);
     let foreign = |why: &dyn std::fmt::Display| Error::NotAStore(path.to_owned(), why.to_string());
     let mut text = Vec::new();
-    let source = open_regular(&file)?;
+    let source = open_regular(&file).map_err(|why| match why {
+        Error::NotComputed(file) => Error::Read(file, io::ErrorKind::NotFound.into()),
+        why => why,
+    })?;
     let read = source.take(MOST_METADATA + 1).read_to_end(&mut text);
     if read.map_err(Error::at(&file, Error::Read))? as u64 > MOST_METADATA {
         return Err(foreign(&format!("{METADATA} is longer than 16 MiB")));
     }
-    let mut root: Value = serde_json::from_slice(&text).map_err(|why| foreign(&why))?;
+    let root = serde_json::from_slice(&text);
+    let mut root: Value = root.map_err(|why| foreign(&format!("{METADATA}: {why}")))?;
     match root["attributes"].take() {
         Value::Object(attributes) => Ok(attributes),
         _ => Err(foreign(&"it has no attributes")),

@@ -72,6 +72,12 @@ impl ZarrStore {
         Ok(own)
     }
 
+    /// Whether there is a store, of this program or another one, at `path`.
+    #[must_use]
+    pub fn is_at(path: &Path) -> bool {
+        path.join(METADATA).exists()
+    }
+
     /// Opens a store to read it.
     ///
     /// # Errors
