@@ -2,6 +2,7 @@
 
 use super::columns;
 use super::failure::Failure;
+use super::files::Files;
 use super::numbers::whole;
 use super::outputs::Outputs;
 use super::pole::{self, Poles, refuse, title};
@@ -103,8 +104,9 @@ const PUSH: BranchAxis = BranchAxis {
 /// Runs `branch`.
 pub fn run(options: &Options) -> Result<(), Failure> {
     let distances = &options.poles.distance;
-    let (scene, whisker) = pole::read(&options.poles.scene, "branch", distances)?;
-    let mut outputs = options.outputs.open()?;
+    let mut files = Files::default();
+    let (scene, whisker) = pole::read(&mut files, &options.poles.scene, "branch", distances)?;
+    let mut outputs = options.outputs.open(&mut files)?;
     let sides: &[Side] = match options.side {
         Choice::Cb => &[Side::Cb],
         Choice::Cf => &[Side::Cf],

@@ -3,6 +3,7 @@
 use super::columns;
 use super::data;
 use super::failure::{Failure, check_resolved, say};
+use super::files::Files;
 use super::outputs::{Opened, Outputs};
 use super::pole::check_single;
 use super::progress::Progress;
@@ -70,7 +71,8 @@ pub struct Options {
 
 /// Runs `curve`.
 pub fn run(options: &Options) -> Result<(), Failure> {
-    let scene = Scene::read(&options.scene)?;
+    let mut files = Files::default();
+    let scene = files.scene(&options.scene)?;
     let whiskers = scene.whisker_count();
     if options.outputs.has_plot() && whiskers > 1 {
         return Err(Failure::Input(format!(
@@ -79,10 +81,10 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         )));
     }
     if let Some(path) = &options.data {
-        return beside_points(options, &scene, path);
+        return beside_points(options, &scene, path, &mut files);
     }
     let draws = options.sampling.draw(&scene)?;
-    let mut outputs = options.outputs.open()?;
+    let mut outputs = options.outputs.open(&mut files)?;
     let accuracy = options.tolerance.choose(&scene, &Side::BOTH)?;
     let resolution = accuracy.map_or(Resolution::FINE, |accuracy| accuracy.resolution);
     if let Some(draws) = draws {
@@ -147,12 +149,17 @@ fn write<R: Serialize>(
 }
 
 /// Compares the measured points of the file at `path` with the curve.
-fn beside_points(options: &Options, scene: &Scene, path: &Path) -> Result<(), Failure> {
+fn beside_points(
+    options: &Options,
+    scene: &Scene,
+    path: &Path,
+    files: &mut Files,
+) -> Result<(), Failure> {
     check_single(scene, "curve --data")?;
-    let points = data::read(path)?;
+    let points = data::read(files, path)?;
     let Swept { whisker, pole, .. } = scene.first_whisker();
     points.check_reach(&whisker, &pole)?;
-    let mut outputs = options.outputs.open()?;
+    let mut outputs = options.outputs.open(files)?;
     let comparison = points.beside(&whisker, &pole);
     data::name_left_out(&points, &comparison);
     let rows = &comparison.rows;

@@ -1,13 +1,15 @@
 //! `--data`: measured detachments, and what is said of them.
 
 use super::failure::{Failure, say};
+use super::files::Files;
 use std::path::Path;
 use whiskmap::measured::{Comparison, Points};
 use whiskmap::scene::digits;
 
-/// Reads the points of `path`; those whose angle has the sign of the other side are counted on standard error.
-pub fn read(path: &Path) -> Result<Points, Failure> {
+/// Reads the points of `path`, an input; those whose angle has the sign of the other side are counted on standard error.
+pub fn read(files: &mut Files, path: &Path) -> Result<Points, Failure> {
     let points = Points::read(path)?;
+    files.input(path);
     let all = points.points.len();
     let signs = points.points.iter();
     let crossed = signs.filter(|point| point.side.sign() * point.angle_deg < 0.0);

@@ -1,6 +1,7 @@
 //! `whiskmap design`.
 
 use super::failure::Failure;
+use super::files::Files;
 use super::numbers::degrees;
 use super::outputs::open;
 use super::pole::{self, Pole, title};
@@ -113,8 +114,10 @@ impl Options {
 /// Runs `design`.
 pub fn run(options: &Options) -> Result<(), Failure> {
     let target = options.target()?;
-    let (scene, _) = pole::read(&options.pole.scene, "design", &[options.pole.distance])?;
-    let (_, picture) = open("--plot", None, options.plot.as_deref())?;
+    let mut files = Files::default();
+    let (path, distance) = (&options.pole.scene, options.pole.distance);
+    let (scene, _) = pole::read(&mut files, path, "design", &[distance])?;
+    let (_, picture) = open(&mut files, "--plot", None, options.plot.as_deref())?;
     let found = design::design(&scene, options.parameter, &target);
     let found = found.map_err(|why| match why {
         NoDesign::Sweep(_) => Failure::Input(why.to_string()),

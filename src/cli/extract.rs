@@ -1,7 +1,7 @@
 //! `whiskmap extract`.
 
 use super::failure::Failure;
-use super::outputs::{create, unwritten};
+use super::files::{Files, unwritten};
 use super::selection::{Selection, channels};
 use clap::Args;
 use serde::ser::{Serialize, SerializeStruct, Serializer};
@@ -42,14 +42,15 @@ pub struct Options {
 
 /// Runs `extract`.
 pub fn run(options: &Options) -> Result<(), Failure> {
-    let slice = options.selection.open(&options.source)?;
+    let mut files = Files::default();
+    let slice = options.selection.open(&mut files, &options.source)?;
     let channels = channels(&slice, &options.channel)?;
     let path = &options.output;
     match path.extension().and_then(|ending| ending.to_str()) {
-        Some("csv") => table(&slice, &channels, path)?,
-        Some("npy") => array(&slice, &channels, path)?,
-        Some("zarr") => store(&slice, &channels, path)?,
-        Some("exr") => map(&slice, &channels, path)?,
+        Some("csv") => table(&slice, &channels, path, &mut files)?,
+        Some("npy") => array(&slice, &channels, path, &mut files)?,
+        Some("zarr") => store(&slice, &channels, path, &mut files)?,
+        Some("exr") => map(&slice, &channels, path, &mut files)?,
         _ => return refuse(path, "must end in .csv, .npy, .zarr or .exr"),
     }
     writeln!(io::stdout(), "{}", path.display())?;
@@ -89,8 +90,13 @@ impl Serialize for Line<'_> {
     }
 }
 
-fn table(slice: &Slice, channels: &[&'static str], path: &Path) -> Result<(), Failure> {
-    let mut table = Table::new(create("--output", path)?);
+fn table(
+    slice: &Slice,
+    channels: &[&'static str],
+    path: &Path,
+    files: &mut Files,
+) -> Result<(), Failure> {
+    let mut table = Table::new(files.output("--output", path)?);
     let grid = slice.grid();
     for whisker in slice.whiskers() {
         let samples = channels.iter().map(|name| slice.read_panel(name, whisker));
@@ -115,11 +121,16 @@ fn table(slice: &Slice, channels: &[&'static str], path: &Path) -> Result<(), Fa
     table.finish().map_err(|cause| unwritten(path, cause))
 }
 
-fn array(slice: &Slice, channels: &[&'static str], path: &Path) -> Result<(), Failure> {
+fn array(
+    slice: &Slice,
+    channels: &[&'static str],
+    path: &Path,
+    files: &mut Files,
+) -> Result<(), Failure> {
     let [channel] = channels else {
         return refuse(path, "an array has one channel; give one --channel");
     };
-    let mut file = BufWriter::new(create("--output", path)?);
+    let mut file = BufWriter::new(files.output("--output", path)?);
     for (number, whisker) in slice.whiskers().enumerate() {
         let (kind, bytes): (_, Vec<u8>) = match slice.read_panel(channel, whisker)? {
             Samples::F32(values) => (
@@ -158,7 +169,12 @@ fn npy(kind: &str, shape: &[usize]) -> Vec<u8> {
     header
 }
 
-fn map(slice: &Slice, channels: &[&'static str], path: &Path) -> Result<(), Failure> {
+fn map(
+    slice: &Slice,
+    channels: &[&'static str],
+    path: &Path,
+    files: &mut Files,
+) -> Result<(), Failure> {
     let missing = ["regime", "status"]
         .into_iter()
         .find(|name| !channels.contains(name));
@@ -181,6 +197,7 @@ fn map(slice: &Slice, channels: &[&'static str], path: &Path) -> Result<(), Fail
         ..Setup::clone(&scene)
     };
     let about = origin.describe(&scene, Channels::those(|name| channels.contains(&name)));
+    files.output("--output", path)?;
     let mut writer = MapWriter::create(path, &about)?;
     for whisker in 0..slice.grid().whisker_count() {
         writer.write_panels(&[slice.panel(about.channels, whisker)?])?;
@@ -189,7 +206,12 @@ fn map(slice: &Slice, channels: &[&'static str], path: &Path) -> Result<(), Fail
     Ok(())
 }
 
-fn store(slice: &Slice, channels: &[&'static str], path: &Path) -> Result<(), Failure> {
+fn store(
+    slice: &Slice,
+    channels: &[&'static str],
+    path: &Path,
+    files: &mut Files,
+) -> Result<(), Failure> {
     if !slice.channels().contains(&"regime") {
         return refuse(
             path,
@@ -199,6 +221,7 @@ fn store(slice: &Slice, channels: &[&'static str], path: &Path) -> Result<(), Fa
     let (scene, origin) = (scene(slice)?, Origin::of(slice)?);
     let chosen = Channels::those(|name| channels.contains(&name));
     let about = origin.describe(&scene, chosen.with("regime"));
+    files.store("--output", path)?;
     // A new store appears when it is complete; one that is there is written again, block by block.
     let folder = (!ZarrStore::is_at(path)).then(|| UnfinishedFolder::create(path));
     let folder = folder.transpose().map_err(|cause| unwritten(path, cause))?;

@@ -2,15 +2,14 @@
 
 use super::data;
 use super::failure::{Failure, say};
-use super::outputs::{STDOUT, create, one_file, write};
+use super::files::{Files, STDOUT, write};
 use super::pole::check_single;
 use clap::Args;
 use serde_json::{Map, Value, json};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use whiskmap::fit::{Error, Fit, fit};
-use whiskmap::scene::{Parameter, Scene, digits};
-use whiskmap::store::Output;
+use whiskmap::scene::{Parameter, digits};
 
 /// Options of `fit`.
 #[derive(Debug, Args)]
@@ -52,16 +51,16 @@ fn parameter(name: &str) -> Result<Parameter, String> {
 
 /// Runs `fit`.
 pub fn run(options: &Options) -> Result<(), Failure> {
-    let scene = Scene::read(&options.scene)?;
+    let mut files = Files::default();
+    let scene = files.scene(&options.scene)?;
     check_single(&scene, "fit")?;
-    let points = data::read(&options.data)?;
-    let toml = open("--output", options.output.as_deref())?;
-    let json = open("--json", options.json.as_deref())?;
-    if let (Some((toml, path)), Some((json, other))) = (&toml, &json)
-        && toml == json
-    {
-        return Err(one_file(("--output", path), ("--json", other)));
-    }
+    let points = data::read(&mut files, &options.data)?;
+    let mut open = |option, path: &Option<PathBuf>| {
+        let output = path.as_deref().map(|path| files.output(option, path));
+        output.transpose()
+    };
+    let toml = open("--output", &options.output)?.zip(options.output.as_deref());
+    let json = open("--json", &options.json)?.zip(options.json.as_deref());
     let found = fit(&scene, &points, &options.free).map_err(|why| match why {
         Error::Lacking { .. } | Error::Twice(..) | Error::Held { .. } => {
             Failure::Input(format!("--free {why}"))
@@ -70,7 +69,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     })?;
     data::name_left_out(&points, &found.comparison);
     warn(&found);
-    let files = [
+    let written = [
         toml.map(|place| (place, found.scene.text.clone())),
         json.map(|place| (place, format!("{:#}\n", document(&found)))),
     ];
@@ -79,7 +78,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     if !is_streamed {
         table(&scene.title, &found)?;
     }
-    for ((output, path), text) in files.into_iter().flatten() {
+    for ((output, path), text) in written.into_iter().flatten() {
         let is_regular = output.is_regular();
         write(output, path, &text)?;
         if is_regular && !is_streamed {
@@ -87,12 +86,6 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         }
     }
     Ok(())
-}
-
-/// The output of `option`, if there is one, and its path.
-fn open<'a>(option: &str, path: Option<&'a Path>) -> Result<Option<(Output, &'a Path)>, Failure> {
-    let open = |path| Ok((create(option, path)?, path));
-    path.map(open).transpose()
 }
 
 /// Names parameters that the points do not determine, and those at a limit.

@@ -4,8 +4,8 @@ use super::disk;
 use super::engine::{EngineOptions, bound_deg};
 use super::estimate::Format;
 use super::failure::{Failure, check_resolved, say};
+use super::files::{self, Files};
 use super::numbers::whole;
-use super::outputs;
 use super::picture::save;
 use super::progress::Progress;
 use super::sharded::{self, Shard};
@@ -76,7 +76,8 @@ pub struct Options {
 
 /// Runs `map`.
 pub fn run(options: &Options) -> Result<(), Failure> {
-    let scene = Scene::read(&options.scene)?;
+    let mut files = Files::default();
+    let scene = files.scene(&options.scene)?;
     options.check(&scene)?;
     let mut plan = Plan::new(&scene)?;
     let accuracy = options.tolerance.choose(&scene, &plan.sides)?;
@@ -96,9 +97,10 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         channels: plan.channels,
         arithmetic: ArithmeticClass::detect().name(),
     };
-    outputs::folder("--output", &options.output)?;
+    files::folder("--output", &options.output)?;
     if options.format == Format::Zarr {
         let path = options.output.join(format!("{}.zarr", scene.name));
+        files.store("--output", &path)?;
         let run = sharded::Run {
             shard: options.shard,
             resume: options.resume,
@@ -110,9 +112,9 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     }
     let file = options.output.join(format!("{}.exr", scene.name));
     let picture = (!options.no_png).then(|| file.with_extension("png"));
-    let is_regular = outputs::create("--output", &file)?.is_regular();
+    let is_regular = files.output("--output", &file)?.is_regular();
     if let Some(picture) = &picture {
-        outputs::create("--output", picture)?;
+        files.output("--output", picture)?;
         if !is_regular {
             return Err(Failure::Input(format!(
                 "--output {}: is no regular file, so no picture can be drawn of it; give --no-png",

@@ -15,6 +15,7 @@ mod engine;
 mod estimate;
 mod extract;
 mod failure;
+mod files;
 mod fit;
 mod map;
 mod numbers;
@@ -31,6 +32,7 @@ mod sharded;
 mod side;
 mod signals;
 mod status;
+mod stdout;
 mod submit;
 mod summary;
 mod theory;
@@ -40,6 +42,7 @@ mod verify;
 
 use clap::{Parser, Subcommand};
 use failure::Failure;
+use std::io::{self, Write};
 use std::process::ExitCode;
 
 /// Where does a whisker pushed against a pole stay in contact, where does it slip off, where is it pulled off?
@@ -108,7 +111,23 @@ enum Command {
 
 /// Runs the command that the process was called with.
 pub fn main() -> ExitCode {
-    let arguments = Arguments::parse();
+    let result = match Arguments::try_parse() {
+        Ok(arguments) => stdout::check()
+            .map_err(Failure::Output)
+            .and_then(|()| start(&arguments)),
+        Err(wrong) if wrong.use_stderr() => wrong.exit(),
+        Err(help) => stdout::check()
+            .and_then(|()| help.print())
+            .map_err(Failure::Output),
+    };
+    match result.and_then(|()| Ok(io::stdout().flush()?)) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => failure.report(),
+    }
+}
+
+/// Installs handlers and makes threads, then runs the command.
+fn start(arguments: &Arguments) -> Result<(), Failure> {
     failure::keep_expected_panics_silent();
     signals::handle();
     let threads = match &arguments.command {
@@ -120,17 +139,13 @@ pub fn main() -> ExitCode {
         .num_threads(threads.unwrap_or_default() as usize)
         .stack_size(STACK)
         .build();
-    let result = match pool {
-        Ok(pool) => pool.install(|| run(&arguments.command)),
-        Err(error) => Err(Failure::Input(match threads {
+    let pool = pool.map_err(|error| {
+        Failure::Input(match threads {
             Some(threads) => format!("--threads {threads}: {error}"),
             None => format!("threads for the processor's cores: {error}"),
-        })),
-    };
-    match result {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => failure.report(),
-    }
+        })
+    })?;
+    pool.install(|| run(&arguments.command))
 }
 
 /// Stack of a thread, that of a main thread: drivers of GPUs compile on it.

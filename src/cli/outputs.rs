@@ -1,6 +1,7 @@
 //! Where the tables and plots of a command go.
 
 use super::failure::Failure;
+use super::files::{Files, STDOUT, unwritten};
 use super::picture::save;
 use clap::Args;
 use serde::Serialize;
@@ -35,10 +36,10 @@ impl Outputs {
     }
 
     /// Opens the table, and finds out whether the picture can be made.
-    pub fn open(&self) -> Result<Opened, Failure> {
+    pub fn open(&self, files: &mut Files) -> Result<Opened, Failure> {
         let stdout = self.plot.is_none().then(|| PathBuf::from(STDOUT));
         let csv = self.csv.clone().or(stdout);
-        let (table, picture) = open("--csv", csv.as_deref(), self.plot.as_deref())?;
+        let (table, picture) = open(files, "--csv", csv.as_deref(), self.plot.as_deref())?;
         let is_regular = table.as_ref().is_some_and(Output::is_regular);
         let files = [
             csv.clone().filter(|_| is_regular),
@@ -79,9 +80,6 @@ impl Opened {
     }
 }
 
-/// What names standard output.
-pub const STDOUT: &str = "-";
-
 /// `--plot`: a picture that can be made.
 pub struct PlotFile {
     path: PathBuf,
@@ -102,8 +100,9 @@ impl PlotFile {
     }
 }
 
-/// Opens the file of `option` and finds out whether the picture can be made; they must be two files.
+/// Opens the file of `option` and finds out whether the picture can be made.
 pub fn open(
+    files: &mut Files,
     option: &str,
     data: Option<&Path>,
     plot: Option<&Path>,
@@ -113,14 +112,8 @@ pub fn open(
         Format::of(path).ok_or_else(|| Failure::Input(must()))
     };
     let format = plot.map(format).transpose()?;
-    let output = data.map(|path| create(option, path)).transpose()?;
-    let place = plot.map(|path| create("--plot", path)).transpose()?;
-    if let (Some(data), Some(plot)) = (data, plot)
-        && output == place
-        && output.as_ref().is_some_and(Output::is_regular)
-    {
-        return Err(one_file((option, data), ("--plot", plot)));
-    }
+    let output = data.map(|path| files.output(option, path)).transpose()?;
+    let place = plot.map(|path| files.output("--plot", path)).transpose()?;
     let picture = plot.zip(format).zip(place);
     let picture = picture.map(|((path, format), place)| PlotFile {
         path: path.to_owned(),
@@ -128,51 +121,4 @@ pub fn open(
         is_regular: place.is_regular(),
     });
     Ok((output, picture))
-}
-
-/// Two options name one file.
-pub fn one_file((option, path): (&str, &Path), (other, same): (&str, &Path)) -> Failure {
-    let (path, same) = (path.display(), same.display());
-    Failure::Input(format!(
-        "{option} {path} and {other} {same}: must be two files"
-    ))
-}
-
-/// Writes all of the file at `path`.
-pub fn write(mut output: Output, path: &Path, text: &str) -> Result<(), Failure> {
-    let written = output.write_all(text.as_bytes());
-    let finished = written.and_then(|()| output.finish());
-    finished.map_err(|cause| unwritten(path, cause))
-}
-
-/// The output that `option` names.
-pub fn create(option: &str, path: &Path) -> Result<Output, Failure> {
-    if path == Path::new(STDOUT) {
-        return Ok(Output::stdout());
-    }
-    let advice = "name a file in a folder that can be written";
-    Output::create(path).map_err(impossible(option, path, advice))
-}
-
-/// Makes the folder that `option` names, and finds out whether files can be made in it.
-pub fn folder(option: &str, path: &Path) -> Result<(), Failure> {
-    let any = path.join(".whiskmap");
-    let made = std::fs::create_dir_all(path).and_then(|()| Output::create(&any));
-    let advice = "give a folder that can be written";
-    made.map(drop).map_err(impossible(option, path, advice))
-}
-
-fn impossible(option: &str, path: &Path, advice: &str) -> impl FnOnce(io::Error) -> Failure {
-    move |error| Failure::Input(format!("{option} {}: {error}; {advice}", path.display()))
-}
-
-/// Why the file at `path` is not written.
-pub fn unwritten(path: &Path, cause: io::Error) -> Failure {
-    if path == Path::new(STDOUT) {
-        return Failure::Output(cause);
-    }
-    Failure::Write {
-        path: path.to_owned(),
-        cause,
-    }
 }

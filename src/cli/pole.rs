@@ -1,6 +1,7 @@
 //! One whisker in front of a pole.
 
 use super::failure::Failure;
+use super::files::Files;
 use super::numbers::number;
 use clap::Args;
 use std::path::{Path, PathBuf};
@@ -49,8 +50,13 @@ pub struct Poles {
 }
 
 /// Reads the scene and its only whisker for `command`, with poles at these distances.
-pub fn read(path: &Path, command: &str, distances: &[f64]) -> Result<(Scene, Whisker), Failure> {
-    let scene = Scene::read(path)?;
+pub fn read(
+    files: &mut Files,
+    path: &Path,
+    command: &str,
+    distances: &[f64],
+) -> Result<(Scene, Whisker), Failure> {
+    let scene = files.scene(path)?;
     check_single(&scene, command)?;
     let (nearest, farthest) = scene.distances_mm();
     let radius = scene.pole.radius_mm;

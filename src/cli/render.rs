@@ -1,8 +1,8 @@
 //! `whiskmap render`.
 
 use super::failure::Failure;
+use super::files::{Files, STDOUT};
 use super::numbers::whole;
-use super::outputs::create;
 use super::picture::{save, warn_of_boxes};
 use super::selection::{Selection, channels};
 use clap::Args;
@@ -58,9 +58,10 @@ fn range(text: &str) -> Result<[f64; 2], String> {
 
 /// Runs `render`.
 pub fn run(options: &Options) -> Result<(), Failure> {
-    let map = options.selection.open(&options.file)?;
+    let mut files = Files::default();
+    let map = options.selection.open(&mut files, &options.file)?;
     channels(&map, options.channel.as_slice())?;
-    let target = target(options, &map)?;
+    let target = target(options, &map, &mut files)?;
     let picture = render::map(
         &map,
         &MapOptions {
@@ -83,7 +84,11 @@ pub fn run(options: &Options) -> Result<(), Failure> {
 }
 
 /// The file to write and its format, found to be possible; `None` is standard output.
-fn target(options: &Options, map: &Slice) -> Result<Option<(PathBuf, Format)>, Failure> {
+fn target(
+    options: &Options,
+    map: &Slice,
+    files: &mut Files,
+) -> Result<Option<(PathBuf, Format)>, Failure> {
     let path = options.output.clone().unwrap_or_else(|| {
         let chosen = map.readable();
         let chosen = chosen.map(|(name, value)| format!("{name}={value}"));
@@ -95,18 +100,14 @@ fn target(options: &Options, map: &Slice) -> Result<Option<(PathBuf, Format)>, F
         let path = path.display();
         Err(Failure::Input(format!("--output {path}: {why}")))
     };
-    if path == Path::new("-") {
+    if path == Path::new(STDOUT) {
         return if std::io::stdout().is_terminal() {
             refuse("standard output is a terminal; send it to a file or a program")
         } else {
             Ok(None)
         };
     }
-    let real = |path: &Path| path.canonicalize().ok();
-    if real(&path).is_some_and(|path| Some(path) == real(&options.file)) {
-        return refuse("is the map itself; name a picture to write");
-    }
-    create("--output", &path)?;
+    files.output("--output", &path)?;
     match Format::of(&path) {
         Some(format) => Ok(Some((path, format))),
         None => refuse("must end in .png or .svg, or be - for PNG on standard output"),

@@ -2,7 +2,7 @@
 
 use super::data;
 use super::failure::Failure;
-use super::outputs::{self, unwritten};
+use super::files::{self, Files, unwritten};
 use clap::Args;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -38,21 +38,21 @@ pub struct Options {
 }
 
 impl Options {
-    fn measurements(&self) -> Result<Measurements, Failure> {
+    fn measurements(&self, files: &mut Files) -> Result<Measurements, Failure> {
         Ok(Measurements {
-            fig4d: points("--fig4d", self.fig4d.as_deref())?,
-            fig5c_left: points("--fig5c-left", self.fig5c_left.as_deref())?,
-            fig5c_right: points("--fig5c-right", self.fig5c_right.as_deref())?,
+            fig4d: points(files, "--fig4d", self.fig4d.as_deref())?,
+            fig5c_left: points(files, "--fig5c-left", self.fig5c_left.as_deref())?,
+            fig5c_right: points(files, "--fig5c-right", self.fig5c_right.as_deref())?,
         })
     }
 }
 
 /// The points of a file, if there is one. The figures show push angles.
-fn points(option: &str, path: Option<&Path>) -> Result<Vec<Point>, Failure> {
+fn points(files: &mut Files, option: &str, path: Option<&Path>) -> Result<Vec<Point>, Failure> {
     let Some(path) = path else {
         return Ok(Vec::new());
     };
-    let points = data::read(path)?;
+    let points = data::read(files, path)?;
     match points.angle {
         Angle::Push => Ok(points.points),
         Angle::Chord => Err(Failure::Input(format!(
@@ -64,18 +64,29 @@ fn points(option: &str, path: Option<&Path>) -> Result<Vec<Point>, Failure> {
 
 /// Runs `reproduce`.
 pub fn run(options: &Options) -> Result<(), Failure> {
-    let measured = options.measurements()?;
+    let mut files = Files::default();
+    let measured = options.measurements(&mut files)?;
     let folder = &options.folder;
-    outputs::folder("DIR", folder)?;
+    files::folder("DIR", folder)?;
+    let figures = paper::figures(&measured).map_err(Failure::State)?;
+    let picture = |name: &str, ending| folder.join(name).with_extension(ending);
+    let table = |name: &str| folder.join(name).with_extension("csv");
+    for figure in &figures {
+        let pictures = ["png", "svg"].map(|ending| picture(figure.name, ending));
+        let tables = figure.tables.iter().map(|(name, _)| table(name));
+        for path in tables.chain(pictures) {
+            files.output("DIR", &path)?;
+        }
+    }
     let mut out = std::io::stdout().lock();
-    for figure in paper::figures(&measured).map_err(Failure::State)? {
+    for figure in figures {
         for (ending, format) in [("png", Format::Png), ("svg", Format::Svg)] {
-            let path = folder.join(figure.name).with_extension(ending);
+            let path = picture(figure.name, ending);
             figure.chart.picture().save(&path, format)?;
             writeln!(out, "{}", path.display())?;
         }
         for (name, write) in &figure.tables {
-            let path = folder.join(name).with_extension("csv");
+            let path = table(name);
             let written = Output::create(&path).map(Table::new).and_then(|mut table| {
                 write(&mut table)?;
                 table.finish()

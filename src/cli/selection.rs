@@ -1,6 +1,7 @@
 //! `--at` and `--channel`: which part of a map or a store a command takes.
 
 use super::failure::{Failure, say};
+use super::files::Files;
 use clap::Args;
 use std::path::Path;
 use std::str::FromStr;
@@ -19,9 +20,10 @@ pub struct Selection {
 }
 
 impl Selection {
-    /// Opens the part of `source`, and says which values were taken.
-    pub fn open(&self, source: &Path) -> Result<Slice, Failure> {
+    /// Opens the part of `source`, an input, and says which values were taken.
+    pub fn open(&self, files: &mut Files, source: &Path) -> Result<Slice, Failure> {
         let stored = Stored::open(source)?;
+        files.input(source);
         if let Some(version) = stored.foreign_version()? {
             say(&format!(
                 "warning: {} was written by whiskmap {version}, not by {}; what it holds may mean something else",

@@ -2,6 +2,7 @@
 
 use super::columns;
 use super::failure::{Failure, say};
+use super::files::Files;
 use super::numbers::{number, whole};
 use super::outputs::Outputs;
 use super::pole::{self, Pole, refuse, title};
@@ -59,7 +60,9 @@ enum Part {
 
 /// Runs `shape`.
 pub fn run(options: &Options) -> Result<(), Failure> {
-    let (scene, whisker) = pole::read(&options.pole.scene, "shape", &[options.pole.distance])?;
+    let mut files = Files::default();
+    let (path, distance) = (&options.pole.scene, options.pole.distance);
+    let (scene, whisker) = pole::read(&mut files, path, "shape", &[distance])?;
     let push_deg = options.push_angle;
     if !(-360.0..=360.0).contains(&push_deg) {
         return Err(Failure::Input(format!(
@@ -67,7 +70,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
             digits(push_deg)
         )));
     }
-    let mut outputs = options.outputs.open()?;
+    let mut outputs = options.outputs.open(&mut files)?;
     let side = options.side.map_or(Side::of_push(push_deg), Side::from);
     let stable = options.branch == Part::Stable;
     let refused = |why| match why {

@@ -1,6 +1,7 @@
 //! `whiskmap submit`: a sweep as a job array of Slurm.
 
 use super::failure::Failure;
+use super::files::check_folder;
 use super::numbers::whole;
 use clap::{Args, Parser};
 use std::io::{self, Write};
@@ -68,6 +69,9 @@ pub fn run(options: &Options) -> Result<(), Failure> {
             options.shards
         )));
     }
+    let store = options.output.join(format!("{}.zarr", scene.name));
+    check_folder("--output", &options.output)?;
+    check_folder("--output", &store)?;
     let script = options.script(&scene.name)?;
     check(&options.map)?;
     io::stdout().lock().write_all(script.as_bytes())?;

@@ -3,7 +3,7 @@
 use std::fs::File;
 use std::io::{self, Read};
 use std::ops::Deref;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 use toml_edit::ser::ValueSerializer;
@@ -28,13 +28,16 @@ use super::source::bounded;
 /// # Ok::<(), whiskmap::scene::SceneError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
-pub struct Scene(Setup);
+pub struct Scene {
+    setup: Setup,
+    rows_file: Option<PathBuf>,
+}
 
 impl Deref for Scene {
     type Target = Setup;
 
     fn deref(&self) -> &Setup {
-        &self.0
+        &self.setup
     }
 }
 
@@ -65,6 +68,12 @@ impl Scene {
     /// with another one.
     pub fn parse(text: &str, origin: &str) -> Result<Self, SceneError> {
         Self::checked(text, origin, Path::new(origin))
+    }
+
+    /// The CSV file that the radii were read from, if the scene names one.
+    #[must_use]
+    pub fn rows_file(&self) -> Option<&Path> {
+        self.rows_file.as_deref()
     }
 
     /// The same scene with `value` at `key`, such as `"grid.distance_mm"`, as if its file had said so.
@@ -119,7 +128,7 @@ impl Scene {
     #[must_use]
     pub fn thinned_to(&self, [push_angles, distances]: [usize; 2], values: usize) -> Self {
         let mut thinned = self.clone();
-        let grid = &mut thinned.0.grid;
+        let grid = &mut thinned.setup.grid;
         thin(&mut grid.push_angle_deg, push_angles);
         thin(&mut grid.distance_mm, distances);
         for axis in &mut grid.sweep {
@@ -134,10 +143,13 @@ impl Scene {
         let folder = path.parent().unwrap_or(Path::new(""));
         let stem = path.file_stem().unwrap_or_default().to_string_lossy();
         let profile = table.whisker.profile.as_mut();
+        let rows_file = profile
+            .as_ref()
+            .and_then(|own| own.rows.get_ref().file(folder));
         let inlined = profile.map_or(Ok(None), |own| rows::read(&mut own.rows, text, folder));
         inlined
             .and_then(|inlined| check::setup(&mut table, inlined.as_deref().unwrap_or(text), &stem))
-            .map(Self)
+            .map(|setup| Self { setup, rows_file })
             .map_err(|fault| fault.in_scene(origin, text))
     }
 

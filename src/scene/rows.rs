@@ -3,7 +3,7 @@
 use std::fmt::{self, Write};
 use std::fs::File;
 use std::ops::Range;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 use serde::de::value::SeqAccessDeserializer;
@@ -47,6 +47,14 @@ pub(super) struct CsvRow {
 }
 
 impl Rows {
+    /// Path of the CSV file that these rows name, beside a scene in `folder`.
+    pub fn file(&self, folder: &Path) -> Option<PathBuf> {
+        match self {
+            Self::Named(name) => Some(folder.join(name)),
+            _ => None,
+        }
+    }
+
     /// Arclength in millimetres and radius in micrometres of every row.
     pub fn values(&self) -> Vec<[f64; 2]> {
         match self {
@@ -85,10 +93,10 @@ pub(super) fn read(
     folder: &Path,
 ) -> Result<Option<String>, Fault> {
     let span = rows.span();
-    let Rows::Named(name) = rows.get_ref() else {
+    let Some(file) = rows.get_ref().file(folder) else {
         return Ok(None);
     };
-    let read = from_csv(&folder.join(name)).map_err(|why| Fault::new(KEY, span.clone(), why))?;
+    let read = from_csv(&file).map_err(|why| Fault::new(KEY, span.clone(), why))?;
     let mut list = String::from("[\n");
     for [arc_length_mm, radius_um] in read.iter().map(|row| row.values) {
         // Writing to a String cannot fail.

@@ -12,6 +12,7 @@
 
 mod attributes;
 mod error;
+mod file_id;
 mod header;
 mod layout;
 mod output;
@@ -20,7 +21,10 @@ mod slice;
 mod stored;
 mod table;
 mod tally;
+mod target;
 mod unfinished;
+#[cfg(feature = "zarr")]
+mod unfinished_folder;
 mod writer;
 #[cfg(feature = "zarr")]
 mod zarr;
@@ -28,6 +32,7 @@ mod zip;
 
 pub use attributes::Description;
 pub use error::Error;
+pub use file_id::FileId;
 pub use layout::Layout;
 pub use output::Output;
 pub use reader::{MapHeader, Samples, StoredMap};
@@ -35,9 +40,9 @@ pub use slice::{At, NoChoice, Slice};
 pub use stored::Stored;
 pub use table::Table;
 pub use tally::Counts;
-#[cfg(feature = "zarr")]
-pub use unfinished::UnfinishedFolder;
 pub use unfinished::abandon;
+#[cfg(feature = "zarr")]
+pub use unfinished_folder::UnfinishedFolder;
 pub use writer::MapWriter;
 #[cfg(feature = "zarr")]
 pub use zarr::{BlockState, CheckDepth, PackedPanel, ZarrStore};

@@ -1,7 +1,8 @@
-//! Temporary files, which nobody should ever find: they vanish when dropped, when the process is interrupted, and, after it
-//! was killed, when the next one writes into their folder: one of the same host at once, one of another after a day.
+//! Temporary files. They are removed when they are dropped and when the process is interrupted. Those of a killed process are
+//! removed by the next one of the same user that writes into their folder: at once on the same host, after a day on another one.
 
-use std::fs::{self, DirEntry, File, Metadata};
+use super::target::inherit;
+use std::fs::{self, DirEntry, File, Metadata, OpenOptions};
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -15,16 +16,30 @@ pub(super) struct Unfinished {
     _listed: Listed,
 }
 
-/// The temporary files of this process.
+/// The temporary files and folders of this process.
 static LIST: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
 fn list() -> MutexGuard<'static, Vec<PathBuf>> {
     LIST.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// A place in the list.
+/// A temporary file or folder that [`abandon`] removes.
 #[derive(Debug)]
-struct Listed(PathBuf);
+pub(super) struct Listed(PathBuf);
+
+impl Listed {
+    /// Makes a file or a folder and lists it, with no interruption in between.
+    pub(super) fn make<T>(
+        make: impl FnOnce() -> io::Result<T>,
+        path: impl FnOnce(&T) -> &Path,
+    ) -> io::Result<(T, Self)> {
+        let mut list = list();
+        let made = make()?;
+        let path = path(&made).to_owned();
+        list.push(path.clone());
+        Ok((made, Self(path)))
+    }
+}
 
 impl Drop for Listed {
     fn drop(&mut self) {
@@ -32,7 +47,7 @@ impl Drop for Listed {
     }
 }
 
-/// Removes all temporary files of this process, for one that is about to end without unwinding. Threads that begin or
+/// Removes all temporary files and folders of this process, for one that is about to end without unwinding. Threads that begin or
 /// finish a file after this wait forever.
 pub fn abandon() {
     let list = list();
@@ -44,30 +59,32 @@ pub fn abandon() {
 }
 
 impl Unfinished {
-    /// A new file in `folder`, from which those that killed runs have left are removed.
-    pub(super) fn create(folder: &Path) -> io::Result<Self> {
+    /// A new file in `folder`, with owner and permissions of the file that it replaces. Files that killed runs have left in the
+    /// folder are removed.
+    pub(super) fn create(folder: &Path, replaced: Option<&Metadata>) -> io::Result<Self> {
         let prefix = prefix();
         let mut options = File::options();
         options.read(true).write(true).create_new(true);
         loop {
-            let mut list = list();
             // `tempfile` itself makes private files, and its errors name them.
-            let file = tempfile::Builder::new()
-                .prefix(&prefix)
-                .make_in(folder, |path| options.open(path))?;
-            list.push(file.path().to_owned());
-            drop(list);
-            let listed = Listed(file.path().to_owned());
+            let mut builder = tempfile::Builder::new();
+            builder.prefix(&prefix).rand_bytes(RANDOM);
+            let make = || builder.make_in(folder, |path| options.open(path));
+            let (file, listed) = Listed::make(make, NamedTempFile::path)?;
             // Without locks, a killed run's file stays.
             let _ = file.as_file().lock();
             // Before it was locked, another process may have taken it for a leftover.
-            if !matches!(file.path().try_exists(), Ok(false)) {
-                sweep(folder, &prefix, file.as_file());
-                return Ok(Self {
-                    file,
-                    _listed: listed,
-                });
+            if matches!(file.path().try_exists(), Ok(false)) {
+                continue;
             }
+            sweep(folder, &file.as_file().metadata()?);
+            if let Some(replaced) = replaced {
+                inherit(file.as_file(), replaced)?;
+            }
+            return Ok(Self {
+                file,
+                _listed: listed,
+            });
         }
     }
 
@@ -90,39 +107,93 @@ impl Unfinished {
     }
 }
 
-/// A file of another host to which nothing was written for so long is taken for a leftover.
+/// A file of another host counts as a leftover if nothing was written to it for so long.
 const ABANDONED: Duration = Duration::from_secs(24 * 3600);
 
-/// Removes the files in `folder` whose process is gone. One of this host has lost its lock then. Locks of other hosts may not be
-/// seen here, so their files must be old, too: older than `own`, which is new, by the clock that dates both.
-fn sweep(folder: &Path, prefix: &str, own: &File) {
-    let modified = |about: io::Result<Metadata>| about.and_then(|about| about.modified()).ok();
-    let now = modified(own.metadata());
-    let is_abandoned = |entry: &DirEntry| {
-        let age = now.zip(modified(entry.metadata()));
+/// Removes the temporary files in `folder` whose process is gone: a killed process on this host has lost its lock. Locks of other
+/// hosts may not be visible here, so their files must be old, too: older than `own`, the metadata of a new file, by the clock that
+/// dates both. Files of other users stay.
+fn sweep(folder: &Path, own: &Metadata) {
+    let host_here = host();
+    let is_abandoned = |about: &Metadata| {
+        let age = own.modified().ok().zip(about.modified().ok());
         let age = age.and_then(|(now, then)| now.duration_since(then).ok());
         age.is_some_and(|age| age > ABANDONED)
     };
-    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+    let is_gone = |entry: &DirEntry| {
         let name = entry.file_name();
-        let begins = |with: &str| name.to_str().is_some_and(|name| name.starts_with(with));
-        let is_gone = begins(prefix) || begins(PREFIX) && is_abandoned(&entry);
-        if !is_gone || !entry.file_type().is_ok_and(|kind| kind.is_file()) {
+        let host = name.to_str().and_then(host_of);
+        let about = host.zip(entry.metadata().ok());
+        about.is_some_and(|(host, about)| {
+            let is_ours = about.is_file() && is_of_one_user(&about, own);
+            is_ours && (host == host_here || is_abandoned(&about))
+        })
+    };
+    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+        if !is_gone(&entry) {
             continue;
         }
         // Kept open, and so locked, until it is removed.
-        let file = File::options().write(true).open(entry.path());
+        let file = not_following().open(entry.path());
         if file.as_ref().is_ok_and(|file| file.try_lock().is_ok()) {
             let _ = fs::remove_file(entry.path());
         }
     }
 }
 
-/// How the names of all hosts begin.
+/// Options to open a leftover: whatever has taken its name since, no link is followed and no pipe waited for.
+fn not_following() -> OpenOptions {
+    let mut options = File::options();
+    options.write(true);
+    #[cfg(unix)]
+    {
+        use rustix::fs::OFlags;
+        use std::os::unix::fs::OpenOptionsExt;
+        options.custom_flags((OFlags::NOFOLLOW | OFlags::NONBLOCK).bits().cast_signed());
+    }
+    options
+}
+
+#[cfg(unix)]
+fn is_of_one_user(one: &Metadata, other: &Metadata) -> bool {
+    use std::os::unix::fs::MetadataExt;
+    one.uid() == other.uid()
+}
+
+#[cfg(not(unix))]
+fn is_of_one_user(_: &Metadata, _: &Metadata) -> bool {
+    true
+}
+
+/// A temporary file's name is this, the host's name, [`DELIMITER`], and [`RANDOM`] letters and digits. It has the host's name
+/// because the locks in a shared folder may be visible on one host only.
 const PREFIX: &str = ".whiskmap-";
 
-/// How the names of this host begin. They name the host, because there are shared folders whose locks only one host sees.
-fn prefix() -> String {
+/// No host's name has this character.
+const DELIMITER: char = '+';
+
+/// Length of the random end of a name.
+pub(super) const RANDOM: usize = 12;
+
+/// The name of a temporary file of this host, but for the random end.
+pub(super) fn prefix() -> String {
+    format!("{PREFIX}{}{DELIMITER}", host())
+}
+
+/// The host in the name of a temporary file; any other name has none.
+fn host_of(name: &str) -> Option<&str> {
+    let (host, random) = name.strip_prefix(PREFIX)?.split_once(DELIMITER)?;
+    let is_random = random.len() == RANDOM && random.chars().all(|c| c.is_ascii_alphanumeric());
+    (is_random && host.chars().all(is_of_host)).then_some(host)
+}
+
+/// Returns true for the characters of a host's name.
+fn is_of_host(c: char) -> bool {
+    c.is_ascii_alphanumeric() || "-_.".contains(c)
+}
+
+/// Name of this host.
+fn host() -> String {
     #[cfg(unix)]
     let host = rustix::system::uname()
         .nodename()
@@ -130,57 +201,42 @@ fn prefix() -> String {
         .into_owned();
     #[cfg(not(unix))]
     let host = std::env::var("COMPUTERNAME").unwrap_or_default();
-    let plain = |c: &char| c.is_ascii_alphanumeric() || "-_.".contains(*c);
-    let host: String = host.chars().filter(plain).take(64).collect();
-    format!("{PREFIX}{host}-")
+    host.chars().filter(|c| is_of_host(*c)).take(64).collect()
 }
 
-/// A folder on its way to its name. It is removed when it is dropped, and when the process is interrupted.
-#[cfg(feature = "zarr")]
-#[derive(Debug)]
-pub struct UnfinishedFolder {
-    folder: tempfile::TempDir,
-    _listed: Listed,
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
 
-#[cfg(feature = "zarr")]
-impl UnfinishedFolder {
-    /// An empty folder beside `target`.
-    ///
-    /// # Errors
-    ///
-    /// The folder of `target` does not exist or is not writable.
-    pub fn create(target: &Path) -> io::Result<Self> {
-        let mut list = list();
-        let prefix = prefix();
-        let mut builder = tempfile::Builder::new();
-        builder.prefix(&prefix);
-        // `tempfile` itself makes private folders.
-        #[cfg(unix)]
-        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o777));
-        let folder = builder.tempdir_in(super::output::folder_of(target))?;
-        list.push(folder.path().to_owned());
-        drop(list);
-        Ok(Self {
-            _listed: Listed(folder.path().to_owned()),
-            folder,
-        })
+    #[test]
+    fn only_exact_names_have_a_host() {
+        let named = |name: &str| host_of(name).map(str::to_owned);
+        let host = |name: &str| Some(name.to_owned());
+        assert_eq!(named(".whiskmap-node+aB3dE6gH9jK2"), host("node"));
+        assert_eq!(
+            named(".whiskmap-node-2.org+aB3dE6gH9jK2"),
+            host("node-2.org")
+        );
+        for foreign in [
+            ".whiskmap-node-notes.txt",
+            ".whiskmap-node+notes.txt",
+            ".whiskmap-node+aB3dE6gH9jK",
+            ".whiskmap-node+aB3dE6gH9jK2x",
+            ".whiskmap-node+aB3dE6gH9jK.",
+            ".whiskmap-my node+aB3dE6gH9jK2",
+            ".whiskmap-node+x+aB3dE6gH9jK2",
+            "whiskmap-node+aB3dE6gH9jK2",
+            ".whiskmap-",
+        ] {
+            assert_eq!(named(foreign), None, "{foreign}");
+        }
     }
 
-    /// Where the folder is until it is finished.
-    #[must_use]
-    pub fn path(&self) -> &Path {
-        self.folder.path()
-    }
-
-    /// Gives the folder its name.
-    ///
-    /// # Errors
-    ///
-    /// A file, or a folder that is not empty, has the name.
-    pub fn finish(self, target: &Path) -> io::Result<()> {
-        fs::rename(self.folder.path(), target)?;
-        let _ = self.folder.keep();
-        Ok(())
+    #[test]
+    fn a_new_file_has_an_exact_name() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = Unfinished::create(folder.path(), None).unwrap();
+        let name = file.file.path().file_name().and_then(|name| name.to_str());
+        assert_eq!(name.and_then(host_of), Some(&*host()));
     }
 }

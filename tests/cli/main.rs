@@ -20,6 +20,8 @@ mod map;
 mod other;
 mod paper;
 mod plan;
+#[cfg(unix)]
+mod protected;
 mod refused;
 mod render;
 mod shape;

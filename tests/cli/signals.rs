@@ -62,15 +62,25 @@ fn an_interrupted_run_cleans_up() {
     }
 }
 
-/// A run that waits for the reader of a pipe has its table in the folder for temporary files.
+/// A run that waits for the reader of a pipe keeps its table in a file without a name. Handlers are there before it reads its
+/// scene.
 #[test]
 fn a_waiting_run_is_interrupted_and_an_ignored_signal_is_not_handled() {
     let place = Place::with(SCENE);
     place.pipe("t.csv");
+    place.pipe("piped.toml");
     fs::create_dir(place.path("tmp")).unwrap();
-    let curve = ["curve", "scene.toml", "--csv", "t.csv"];
-    let mut command = place.plain_command(&curve);
-    let child = begun(&place, command.env("TMPDIR", place.path("tmp")), "tmp");
+    let curve = ["curve", "piped.toml", "--csv", "t.csv"];
+    let begun = |command: &mut Command| {
+        command.env("TMPDIR", place.path("tmp"));
+        let child = command
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn();
+        place.write("piped.toml", SCENE);
+        child.unwrap()
+    };
+    let child = begun(&mut place.plain_command(&curve));
     send("TERM", &child);
     assert_eq!(child.wait_with_output().unwrap().status.code(), Some(143));
     assert_eq!(names(&place.path("tmp")), [""; 0]);
@@ -82,15 +92,12 @@ fn a_waiting_run_is_interrupted_and_an_ignored_signal_is_not_handled() {
         "trap '' HUP; exec \"$0\" \"$@\"",
         env!("CARGO_BIN_EXE_whiskmap"),
     ]);
-    shell
-        .args(curve)
-        .current_dir(place.path(""))
-        .env("TMPDIR", place.path("tmp"));
-    let child = begun(&place, &mut shell, "tmp");
+    let child = begun(shell.args(curve).current_dir(place.path("")));
     send("HUP", &child);
     assert!(fs::read(place.path("t.csv")).unwrap().len() > 1000);
     let run = Run::of(&child.wait_with_output().unwrap());
     assert_eq!((run.code, &*run.err), (Some(0), ""), "{run:?}");
+    assert_eq!(names(&place.path("tmp")), [""; 0]);
 }
 
 #[test]
@@ -113,8 +120,8 @@ fn what_a_killed_run_leaves_is_removed_by_the_next_one() {
     let hour = Duration::from_secs(3600);
     let now = SystemTime::now();
     let dates = [now - 23 * hour, now - 25 * hour, now + 48 * hour];
-    for (name, date) in ["late", "old", "skewed"].into_iter().zip(dates) {
-        let path = place.path(&format!("outputs/.whiskmap-another.host-{name}"));
+    for (name, date) in ["late", "olds", "skew"].into_iter().zip(dates) {
+        let path = place.path(&format!("outputs/.whiskmap-another.host+a1B2c3D4{name}"));
         let file = fs::File::create(path).unwrap();
         file.set_modified(date).unwrap();
     }
@@ -122,8 +129,8 @@ fn what_a_killed_run_leaves_is_removed_by_the_next_one() {
     assert_eq!(
         unfinished(&place, "outputs"),
         [
-            ".whiskmap-another.host-late",
-            ".whiskmap-another.host-skewed"
+            ".whiskmap-another.host+a1B2c3D4late",
+            ".whiskmap-another.host+a1B2c3D4skew"
         ]
     );
 }

@@ -4,14 +4,14 @@ mod plot;
 mod tables;
 
 use super::failure::{Failure, say};
-use super::outputs::{STDOUT, open, write};
+use super::files::{Files, STDOUT, write};
+use super::outputs::open;
 use clap::Args;
 use plot::plot;
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 use tables::tables;
 use whiskmap::bench::{self, Effort};
-use whiskmap::scene::Scene;
 
 /// Options of `bench`.
 #[derive(Debug, Args)]
@@ -51,9 +51,10 @@ pub struct Options {
 
 /// Runs `bench`.
 pub fn run(options: &Options) -> Result<(), Failure> {
-    let scene = Scene::read(&options.scene)?;
+    let mut files = Files::default();
+    let scene = files.scene(&options.scene)?;
     let json = options.json.as_deref();
-    let (output, picture) = open("--json", json, options.plot.as_deref())?;
+    let (output, picture) = open(&mut files, "--json", json, options.plot.as_deref())?;
     let effort = if options.quick {
         Effort::QUICK
     } else {

@@ -38,8 +38,7 @@ impl ZarrStore {
         let restored = self.restore_metadata()?;
         let folders = self.arrays.iter().map(|array| self.path.join(&array.name));
         for folder in folders.chain([self.path.clone()]) {
-            // The creation of an output removes what interrupted runs have left beside it.
-            Output::create(&folder.join(METADATA)).map_err(Error::at(&folder, Error::Write))?;
+            Output::probe(&folder).map_err(Error::at(&folder, Error::Write))?;
         }
         Ok(restored)
     }

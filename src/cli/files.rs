@@ -1,0 +1,143 @@
+//! The files of a command: each input and output is declared here, so that no output destroys an input or another output.
+
+use super::failure::Failure;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use whiskmap::scene::Scene;
+use whiskmap::store::{FileId, Output};
+
+/// Path that stands for standard input or output.
+pub const STDOUT: &str = "-";
+
+/// Inputs and outputs of one command. Inputs are declared before outputs are opened.
+#[derive(Debug, Default)]
+pub struct Files {
+    inputs: Vec<(PathBuf, FileId)>,
+    /// Option and path of each output.
+    outputs: Vec<(String, FileId)>,
+}
+
+impl Files {
+    /// Reads a scene and declares its files.
+    pub fn scene(&mut self, path: &Path) -> Result<Scene, Failure> {
+        let scene = Scene::read(path)?;
+        self.input(path);
+        if let Some(rows) = scene.rows_file() {
+            self.input(rows);
+        }
+        Ok(scene)
+    }
+
+    /// Declares an input: a file, a store, or standard input.
+    pub fn input(&mut self, path: &Path) {
+        let id = if path == Path::new(STDOUT) {
+            FileId::of_stdin()
+        } else {
+            FileId::of(path)
+        };
+        self.inputs.extend(id.map(|id| (path.to_owned(), id)));
+    }
+
+    /// Opens the output that `option` names.
+    ///
+    /// # Errors
+    ///
+    /// It is an input or in one, it is another output, or it cannot be written.
+    pub fn output(&mut self, option: &str, path: &Path) -> Result<Output, Failure> {
+        if path == Path::new(STDOUT) {
+            let output = Output::stdout();
+            self.claim(option, path, output.id(), &[])?;
+            return Ok(output);
+        }
+        let advice = "name a file that can be written";
+        let output = Output::create(path).map_err(impossible(option, path, advice))?;
+        let folders = output.target().map(FileId::of_folders);
+        self.claim(option, path, output.id(), &folders.unwrap_or_default())?;
+        Ok(output)
+    }
+
+    /// Declares the store that `option` names, a folder that is there or not.
+    ///
+    /// # Errors
+    ///
+    /// It is an input or in one, or a file.
+    pub fn store(&mut self, option: &str, path: &Path) -> Result<(), Failure> {
+        check_folder(option, path)?;
+        self.claim(option, path, FileId::of(path), &FileId::of_folders(path))
+    }
+
+    /// Adds an output, unless it or one of its `folders` is an input, or it is another output.
+    fn claim(
+        &mut self,
+        option: &str,
+        path: &Path,
+        id: Option<FileId>,
+        folders: &[FileId],
+    ) -> Result<(), Failure> {
+        let Some(id) = id else {
+            return Ok(());
+        };
+        let own = format!("{option} {}", path.display());
+        for (input, of_input) in &self.inputs {
+            let is = match of_input {
+                same if *same == id => "is",
+                folder if folders.contains(folder) => "is in",
+                _ => continue,
+            };
+            let input = input.display();
+            return Err(Failure::Input(format!(
+                "{own}: {is} the input {input}; name another file"
+            )));
+        }
+        if let Some((other, _)) = self.outputs.iter().find(|(_, other)| *other == id) {
+            return Err(Failure::Input(format!(
+                "{other} and {own}: must be two files"
+            )));
+        }
+        self.outputs.push((own, id));
+        Ok(())
+    }
+}
+
+/// Makes the folder that `option` names, and checks that files can be made in it.
+pub fn folder(option: &str, path: &Path) -> Result<(), Failure> {
+    check_folder(option, path)?;
+    let made = std::fs::create_dir_all(path).and_then(|()| Output::probe(path));
+    made.map_err(impossible(option, path, FOLDER_ADVICE))
+}
+
+const FOLDER_ADVICE: &str = "give a folder that can be written";
+
+/// Checks that `path`, which `option` names, is a folder or can become one.
+pub fn check_folder(option: &str, path: &Path) -> Result<(), Failure> {
+    match path.ancestors().find(|own| own.exists()) {
+        Some(file) if !file.is_dir() => Err(Failure::Input(format!(
+            "{option} {}: must be a folder, but {} is not one; {FOLDER_ADVICE}",
+            path.display(),
+            file.display()
+        ))),
+        _ => Ok(()),
+    }
+}
+
+fn impossible(option: &str, path: &Path, advice: &str) -> impl FnOnce(io::Error) -> Failure {
+    move |error| Failure::Input(format!("{option} {}: {error}; {advice}", path.display()))
+}
+
+/// Writes all of the file at `path`.
+pub fn write(mut output: Output, path: &Path, text: &str) -> Result<(), Failure> {
+    let written = output.write_all(text.as_bytes());
+    let finished = written.and_then(|()| output.finish());
+    finished.map_err(|cause| unwritten(path, cause))
+}
+
+/// The failure to write the file at `path`.
+pub fn unwritten(path: &Path, cause: io::Error) -> Failure {
+    if path == Path::new(STDOUT) {
+        return Failure::Output(cause);
+    }
+    Failure::Write {
+        path: path.to_owned(),
+        cause,
+    }
+}

@@ -1,0 +1,116 @@
+//! The end of an output's path: behind which links it lies, and whether it can be replaced.
+
+use super::file_id::folder_of;
+use std::fs::{self, File, Metadata};
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// What an output becomes.
+#[derive(Debug)]
+pub(super) enum Target {
+    /// A regular file, in place of the one with this metadata if there is one.
+    Regular(PathBuf, Option<Metadata>),
+    /// A device, a pipe or an open file of a process: bytes are appended to it.
+    Stream(PathBuf),
+}
+
+/// Linux follows at most this many symbolic links in a row.
+const MOST_LINKS: usize = 40;
+
+impl Target {
+    /// Follows the symbolic links of `path` and checks what is there.
+    ///
+    /// # Errors
+    ///
+    /// A link must not be followed, or `path` leads to a folder, or to a file without write permission.
+    pub(super) fn of(path: &Path) -> io::Result<Self> {
+        let mut path = path.to_owned();
+        for _ in 0..MOST_LINKS {
+            if is_descriptor(&path) {
+                return fs::metadata(&path).map(|_| Self::Stream(path));
+            }
+            let Ok(next) = fs::read_link(&path) else {
+                break;
+            };
+            check_link(&path)?;
+            path = folder_of(&path).join(next);
+        }
+        match fs::metadata(&path) {
+            Ok(about) if about.is_dir() => Err(io::ErrorKind::IsADirectory.into()),
+            Ok(about) if !about.is_file() => Ok(Self::Stream(path)),
+            // The system lets an administrator open it.
+            Ok(about) if about.permissions().readonly() => {
+                Err(refused("the file there is read-only"))
+            }
+            Ok(about) => File::options()
+                .write(true)
+                .open(&path)
+                .map(|_| Self::Regular(path, Some(about))),
+            Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(Self::Regular(path, None)),
+            Err(error) => Err(error),
+        }
+    }
+}
+
+fn refused(why: &str) -> io::Error {
+    io::Error::new(io::ErrorKind::PermissionDenied, why)
+}
+
+/// Returns true if `path` is an open file of a process, such as the target of `/dev/stdout`: the process that opened it would
+/// not see a file that replaces it.
+fn is_descriptor(path: &Path) -> bool {
+    let folder = folder_of(path).canonicalize();
+    folder.is_ok_and(|folder| {
+        folder.ends_with("fd") && (folder.starts_with("/proc") || folder.starts_with("/dev"))
+    })
+}
+
+/// Refuses a symbolic link that another user may have laid. Links are followed here and not by the kernel, so Linux's
+/// `protected_symlinks` does not see them. Its rule holds here in every folder that others may write to, sticky or not: the link
+/// must belong to this user or to the folder's owner.
+#[cfg(unix)]
+fn check_link(link: &Path) -> io::Result<()> {
+    use std::os::unix::fs::MetadataExt;
+    let folder = fs::metadata(folder_of(link))?;
+    let owner = fs::symlink_metadata(link)?.uid();
+    let is_shared = folder.mode() & 0o022 != 0;
+    if is_shared && owner != folder.uid() && owner != rustix::process::geteuid().as_raw() {
+        let link = link.display();
+        return Err(refused(&format!(
+            "{link} is a symbolic link of user {owner} in a folder that others may write to"
+        )));
+    }
+    Ok(())
+}
+
+#[cfg(not(unix))]
+fn check_link(_: &Path) -> io::Result<()> {
+    Ok(())
+}
+
+/// Gives `file` the owner, the group and the permissions of the file that it will replace. The set-user-ID and set-group-ID bits
+/// are dropped, as by every write.
+///
+/// # Errors
+///
+/// This user may not give files that owner or group: in its place would be a file with other rights.
+#[cfg(unix)]
+pub(super) fn inherit(file: &File, replaced: &Metadata) -> io::Result<()> {
+    use std::os::unix::fs::{MetadataExt, PermissionsExt, fchown};
+    let own = file.metadata()?;
+    let (user, group) = (replaced.uid(), replaced.gid());
+    if (own.uid(), own.gid()) != (user, group) {
+        let kept = fchown(file, Some(user), Some(group));
+        kept.map_err(|_| {
+            refused(&format!(
+                "the file there belongs to user {user} and group {group}, which a new file cannot"
+            ))
+        })?;
+    }
+    file.set_permissions(fs::Permissions::from_mode(replaced.mode() & 0o777))
+}
+
+#[cfg(not(unix))]
+pub(super) fn inherit(_: &File, _: &Metadata) -> io::Result<()> {
+    Ok(())
+}

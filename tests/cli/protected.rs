@@ -1,0 +1,400 @@
+//! Nothing that is not an output of the run is overwritten or removed.
+
+use crate::data::DATA;
+use crate::traces::good;
+use crate::{Place, Run, SCENE, names};
+use std::fs::{self, Permissions};
+use std::os::unix::fs::{MetadataExt, PermissionsExt, chown, lchown, symlink};
+use std::os::unix::process::CommandExt;
+use std::process::{Command, Stdio};
+
+/// A user that is neither the administrator nor the one who runs the tests.
+const STRANGER: u32 = 54_321;
+
+const MAP: [&str; 4] = ["map", "scene.toml", "--engine=cpu", "-o"];
+
+impl Place {
+    /// The run is refused for its output `option`, and changes no file.
+    fn keeps(&self, arguments: &[&str], parts: &[&str]) {
+        let before = self.all();
+        let run = self.run(arguments);
+        run.assert_refused(parts);
+        assert!(self.all() == before, "{run:?}");
+    }
+
+    /// Name and bytes of every file.
+    fn all(&self) -> Vec<(String, Vec<u8>)> {
+        let names = names(&self.path(""));
+        let files = names.into_iter().filter(|name| self.path(name).is_file());
+        files
+            .map(|name| (name.clone(), self.bytes(&name)))
+            .collect()
+    }
+
+    fn mode(&self, name: &str) -> u32 {
+        self.path(name).metadata().unwrap().mode() & 0o7777
+    }
+}
+
+#[test]
+fn no_output_is_an_input() {
+    let place = Place::with(SCENE);
+    place.write("pts.csv", DATA);
+    fs::hard_link(place.path("pts.csv"), place.path("hard.csv")).unwrap();
+    symlink("pts.csv", place.path("link.csv")).unwrap();
+    symlink("scene.toml", place.path("p.svg")).unwrap();
+    let curve = ["curve", "scene.toml", "--data=pts.csv"];
+    let is = "is the input pts.csv; name another file";
+    for name in ["pts.csv", "./pts.csv", "hard.csv", "link.csv"] {
+        let parts = [&*format!("--csv {name}: "), is];
+        place.keeps(&[&curve[..], &["--csv", name]].concat(), &parts);
+    }
+    let scene = "scene.toml: is the input scene.toml";
+    let pole = ["scene.toml", "--distance=9"];
+    for command in [
+        &["curve", "scene.toml"][..],
+        &[&["branch"], &pole[..]].concat(),
+        &[&["shape", "--push-angle=1"], &pole[..]].concat(),
+    ] {
+        place.keeps(&[command, &["--csv=scene.toml"]].concat(), &[scene]);
+        let plot = "--plot p.svg: is the input scene.toml";
+        place.keeps(&[command, &["--plot=p.svg"]].concat(), &[plot]);
+    }
+    let design = ["design", "--slip-off=30deg", "--for=taper", "--plot=p.svg"];
+    place.keeps(&[&design, &pole[..]].concat(), &["--plot p.svg: is the"]);
+    let bench = ["bench", "scene.toml", "--quick", "--json=scene.toml"];
+    place.keeps(&bench, &["--json", scene]);
+    let fit = ["fit", "scene.toml", "--data=pts.csv", "--free=taper"];
+    place.keeps(&[&fit[..], &["-o=pts.csv"]].concat(), &["--output", is]);
+    place.keeps(&[&fit[..], &["--json=hard.csv"]].concat(), &["--json", is]);
+    let figure = ["reproduce", ".", "--fig4d"];
+    fs::copy(place.path("pts.csv"), place.path("fig4d.csv")).unwrap();
+    let parts = ["DIR ./fig4d.csv: is the input fig4d.csv"];
+    place.keeps(&[&figure[..], &["fig4d.csv"]].concat(), &parts);
+}
+
+/// A scene by the name of its map, the file of its radii, and standard input.
+#[test]
+fn no_output_is_a_file_of_the_scene() {
+    let rows = "[whisker.profile]\nrows = \"radii.csv\"\n[pole]";
+    let scene = SCENE.replace("[pole]", rows);
+    let radius = |line: &&str| !line.contains("radius_um");
+    let scene: Vec<&str> = scene.lines().filter(radius).collect();
+    let place = Place::with(&scene.join("\n"));
+    place.write(
+        "radii.csv",
+        "arc_length_mm,radius_um\n0,30\n10,14\n20,1.5\n",
+    );
+    let parts = ["--csv radii.csv: is the input radii.csv"];
+    place.keeps(&["curve", "scene.toml", "--csv=radii.csv"], &parts);
+
+    for name in ["map.exr", "map.png", "map.svg"] {
+        place.write(name, SCENE);
+    }
+    for name in ["map.exr", "map.png"] {
+        let is = format!("--output ./{name}: is the input {name}");
+        place.keeps(&["map", name, "--engine=cpu", "-o."], &[&is]);
+    }
+    symlink("map.svg", place.path("map.zarr")).unwrap();
+    let map = ["map", "map.svg", "--format=zarr", "-o."];
+    place.keeps(&map, &["must be a folder"]);
+
+    let stdin = fs::File::open(place.path("map.svg")).unwrap();
+    let mut redirected = place.plain_command(&["curve", "-", "--csv=map.svg"]);
+    Run::of(&redirected.stdin(stdin).output().unwrap())
+        .assert_refused(&["--csv map.svg: is the input -"]);
+    assert_eq!(place.bytes("map.svg"), SCENE.as_bytes());
+}
+
+#[test]
+fn no_output_is_a_map_or_in_a_store() {
+    let place = Place::with(SCENE);
+    place.map(&["scene.toml", "-o."]);
+    fs::rename(place.path("scene.exr"), place.path("a.exr")).unwrap();
+    fs::hard_link(place.path("a.exr"), place.path("b.exr")).unwrap();
+    symlink("a.exr", place.path("c.csv")).unwrap();
+    for name in ["a.exr", "b.exr", "c.csv"] {
+        let parts = [&*format!("--output {name}: is the input a.exr")];
+        place.keeps(&["extract", "a.exr", "-o", name], &parts);
+    }
+    let parts = ["--output b.exr: is the input a.exr; name another file"];
+    place.keeps(&["render", "a.exr", "-o=b.exr"], &parts);
+
+    place.map(&["scene.toml", "-o.", "--format=zarr"]);
+    symlink("scene.zarr", place.path("link.zarr")).unwrap();
+    let inside = [
+        ("scene.zarr/t.csv", "is in"),
+        ("link.zarr/f.npy", "is in"),
+        ("scene.zarr/new/map.exr", "No such file"),
+        ("scene.zarr", "is"),
+        ("link.zarr", "is"),
+        ("scene.zarr/new/part.zarr", "is in"),
+    ];
+    let before = names(&place.path("scene.zarr"));
+    for (name, is) in inside {
+        let of = match is {
+            "No such file" => format!("--output {name}: {is}"),
+            _ => format!("--output {name}: {is} the input scene.zarr"),
+        };
+        let extract = ["extract", "scene.zarr", "-o", name];
+        let channel: &[&str] = if name.ends_with("npy") {
+            &["--channel=regime"]
+        } else {
+            &[]
+        };
+        place.keeps(&[&extract[..], channel].concat(), &[&of]);
+    }
+    let render = ["render", "link.zarr", "-o=scene.zarr/p.png"];
+    place.keeps(
+        &render,
+        &["--output scene.zarr/p.png: is in the input link.zarr"],
+    );
+    assert_eq!(names(&place.path("scene.zarr")), before);
+}
+
+#[test]
+fn no_output_is_another_output() {
+    let place = Place::with(SCENE);
+    place.write("t.svg", "old");
+    fs::hard_link(place.path("t.svg"), place.path("p.svg")).unwrap();
+    let curve = ["curve", "scene.toml", "--csv=t.svg", "--plot=p.svg"];
+    place.keeps(&curve, &["--csv t.svg and --plot p.svg: must be two files"]);
+    let spelt = ["curve", "scene.toml", "--csv=new.svg", "--plot=./new.svg"];
+    place.keeps(&spelt, &["--csv new.svg and --plot ./new.svg: must be"]);
+    place.write("scene.png", "old");
+    symlink("scene.png", place.path("scene.exr")).unwrap();
+    let both = "--output ./scene.exr and --output ./scene.png: must be two files";
+    place.keeps(&[&MAP[..], &["."]].concat(), &[both]);
+}
+
+#[test]
+fn a_folder_is_wanted_and_a_file_is_named() {
+    let place = Place::with(SCENE);
+    place.write("file.exr", "");
+    let is_none = "must be a folder, but file.exr is not one";
+    let submit = ["submit", "scene.toml", "--shards=1", "-o"];
+    for command in [&MAP[..], &submit, &["reproduce"]] {
+        for folder in ["file.exr", "file.exr/in"] {
+            let parts = [&*format!(" {folder}: {is_none}")];
+            place.keeps(&[command, &[folder]].concat(), &parts);
+        }
+    }
+    place.write("scene.zarr", "");
+    let store = "--output ./scene.zarr: must be a folder, but ./scene.zarr is not one";
+    place.keeps(&[&MAP[..], &[".", "--format=zarr"]].concat(), &[store]);
+    place.keeps(&[&submit[..], &["."]].concat(), &[store]);
+    place.map(&["scene.toml", "-omaps"]);
+    let extract = ["extract", "maps/scene.exr", "-o=scene.zarr"];
+    place.keeps(&extract, &["--output scene.zarr: must be a folder"]);
+}
+
+#[test]
+fn a_replaced_file_keeps_its_mode_and_a_read_only_one_is_refused() {
+    let place = Place::with(SCENE);
+    let table = [
+        "shape",
+        "scene.toml",
+        "--distance=9",
+        "--push-angle=1",
+        "--csv=t.csv",
+    ];
+    good(&place, &table);
+    let expected = place.bytes("t.csv");
+    for mode in [0o600, 0o640, 0o755, 0o666] {
+        place.write("t.csv", "old");
+        fs::set_permissions(place.path("t.csv"), Permissions::from_mode(mode)).unwrap();
+        good(&place, &table);
+        assert!(place.bytes("t.csv") == expected);
+        assert_eq!(place.mode("t.csv"), mode);
+    }
+    fs::set_permissions(place.path("t.csv"), Permissions::from_mode(0o444)).unwrap();
+    let must = "--csv t.csv: the file there is read-only; name a file that can be written";
+    place.keeps(&table, &[must]);
+    place.map(&["scene.toml", "-o."]);
+    for name in ["scene.exr", "scene.png"] {
+        fs::set_permissions(place.path(name), Permissions::from_mode(0o400)).unwrap();
+        let must = format!("--output ./{name}: the file there is read-only");
+        place.keeps(&[&MAP[..], &["."]].concat(), &[&must]);
+        fs::set_permissions(place.path(name), Permissions::from_mode(0o600)).unwrap();
+    }
+}
+
+/// Only an administrator can make files of another user.
+#[test]
+#[allow(clippy::print_stderr, reason = "a test that tests nothing says so")]
+fn files_and_links_of_others() {
+    let place = Place::with(SCENE);
+    place.write("t.csv", "old");
+    if chown(place.path("t.csv"), Some(STRANGER), Some(STRANGER)).is_err() {
+        eprintln!("SKIPPED files_and_links_of_others: this user cannot give files away");
+        return;
+    }
+    let table = [
+        "shape",
+        "scene.toml",
+        "--distance=9",
+        "--push-angle=1",
+        "--csv",
+    ];
+    let to = |name| [&table[..], &[name]].concat();
+    good(&place, &to("t.csv"));
+    let about = place.path("t.csv").metadata().unwrap();
+    assert_eq!((about.uid(), about.gid()), (STRANGER, STRANGER));
+
+    // A stranger may write to the file and to its folder, but cannot make a file of the administrator.
+    fs::set_permissions(place.path(""), Permissions::from_mode(0o777)).unwrap();
+    place.write("ours.csv", "old");
+    fs::set_permissions(place.path("ours.csv"), Permissions::from_mode(0o666)).unwrap();
+    let mut command = place.plain_command(&to("ours.csv"));
+    match command.uid(STRANGER).gid(STRANGER).output() {
+        Ok(output) => Run::of(&output).assert_refused(&[
+            "--csv ours.csv: the file there belongs to user 0 and group 0, which a new file cannot",
+        ]),
+        Err(why) => eprintln!("SKIPPED a stranger's run: {why}"),
+    }
+    assert_eq!(place.bytes("ours.csv"), b"old");
+
+    // A stranger's link is followed in a folder that only its owner writes to.
+    symlink("ours.csv", place.path("link.csv")).unwrap();
+    lchown(place.path("link.csv"), Some(STRANGER), Some(STRANGER)).unwrap();
+    let must = "--csv link.csv: link.csv is a symbolic link of user 54321 in a folder that others may write to";
+    for shared in [0o1777, 0o777, 0o775] {
+        fs::set_permissions(place.path(""), Permissions::from_mode(shared)).unwrap();
+        place.keeps(&to("link.csv"), &[must]);
+    }
+    lchown(place.path("link.csv"), Some(0), Some(0)).unwrap();
+    good(&place, &to("link.csv"));
+    lchown(place.path("link.csv"), Some(STRANGER), Some(STRANGER)).unwrap();
+    place.write("ours.csv", "old");
+    fs::set_permissions(place.path(""), Permissions::from_mode(0o755)).unwrap();
+    good(&place, &to("link.csv"));
+    assert!(place.bytes("ours.csv").len() > 1000 && place.path("link.csv").is_symlink());
+}
+
+/// Name of this host as it is in the names of temporary files.
+fn host() -> String {
+    let name = Command::new("uname").arg("-n").output().unwrap().stdout;
+    let name = String::from_utf8(name).unwrap();
+    let is_plain = |c: &char| c.is_ascii_alphanumeric() || "-_.".contains(*c);
+    name.chars().filter(is_plain).take(64).collect()
+}
+
+#[test]
+fn only_leftovers_are_removed() {
+    let place = Place::with(SCENE);
+    let host = host();
+    let leftover = |end: &str| format!(".whiskmap-{host}{end}");
+    let exact = |end: &str| leftover(&format!("+aB3dE6gH9jK{end}"));
+    let folder = |name: &str| fs::create_dir(place.path(name)).unwrap();
+    for name in [exact("1"), leftover("-notes.txt"), leftover("-2-aB3dE6")] {
+        place.write(&name, "");
+    }
+    place.write(&leftover("-2+aB3dE6gH9jK2"), "");
+    place.write(&leftover("+notes.txt"), "");
+    folder(&exact("3"));
+    place.pipe(&exact("4"));
+    symlink("scene.toml", place.path(&exact("5"))).unwrap();
+    place.write(&exact("6"), "");
+    let is_strange = lchown(place.path(&exact("6")), Some(STRANGER), None).is_ok();
+    let mut kept = names(&place.path(""));
+    kept.retain(|name| *name != exact("1") && (is_strange || *name != exact("6")));
+    good(
+        &place,
+        &[
+            "shape",
+            "scene.toml",
+            "--distance=9",
+            "--push-angle=1",
+            "--csv=t.csv",
+        ],
+    );
+    fs::remove_file(place.path("t.csv")).unwrap();
+    assert_eq!(names(&place.path("")), kept);
+}
+
+/// Each run sweeps the folder that the others write to.
+#[test]
+fn runs_at_once_write_the_same_files() {
+    let place = Place::with(SCENE);
+    let branch = [
+        "branch",
+        "scene.toml",
+        "--distance=9",
+        "--csv=t.csv",
+        "--plot=p.svg",
+    ];
+    good(&place, &branch);
+    let expected = (place.bytes("t.csv"), place.bytes("p.svg"));
+    let run = || {
+        let mut command = place.plain_command(&branch);
+        command.stdout(Stdio::piped()).stderr(Stdio::piped());
+        command.spawn().unwrap()
+    };
+    let runs: Vec<_> = (0..6).map(|_| run()).collect();
+    for run in runs {
+        let run = Run::of(&run.wait_with_output().unwrap());
+        assert_eq!((run.code, &*run.err), (Some(0), ""), "{run:?}");
+    }
+    assert!((place.bytes("t.csv"), place.bytes("p.svg")) == expected);
+    assert_eq!(names(&place.path("")), ["p.svg", "scene.toml", "t.csv"]);
+}
+
+/// Standard output that is closed, and one that is full.
+#[test]
+fn output_that_arrives_nowhere() {
+    let place = Place::with(SCENE);
+    place.map(&["scene.toml", "-o."]);
+    place.write("pts.csv", DATA);
+    let redirected = |to: &str, arguments: &[&str]| {
+        let mut shell = Command::new("sh");
+        let script = format!("exec \"$0\" \"$@\" {to}");
+        shell.args(["-c", &script, env!("CARGO_BIN_EXE_whiskmap")]);
+        let output = shell.args(arguments).current_dir(place.path("")).output();
+        Run::of(&output.unwrap())
+    };
+    let shape = ["shape", "scene.toml", "--distance=9", "--push-angle=1"];
+    let design = [
+        "design",
+        "scene.toml",
+        "--distance=9",
+        "--slip-off=40deg",
+        "--for=taper",
+    ];
+    for (to, why) in [
+        (">&-", "Bad file descriptor (os error 9)"),
+        (">/dev/full", "No space left on device (os error 28)"),
+    ] {
+        let said = format!("error: standard output: {why}\n");
+        for arguments in [
+            &["--version"][..],
+            &["--help"],
+            &["help", "map"],
+            &["curve", "--help"],
+            &["curve", "-h"],
+            &["curve", "scene.toml"],
+            &["curve", "scene.toml", "--plot=p.svg"],
+            &["curve", "scene.toml", "--data=pts.csv"],
+            &shape,
+            &[&shape[..], &["--csv=/dev/null", "--plot=p.png"]].concat(),
+            &["branch", "scene.toml", "--distance=9"],
+            &design,
+            &[
+                "fit",
+                "scene.toml",
+                "--data=pts.csv",
+                "--free=tip_radius_um",
+            ],
+            &["submit", "scene.toml", "--shards=1"],
+            &["render", "scene.exr", "-o=-"],
+            &["render", "scene.exr", "-o=r.png"],
+            &["extract", "scene.exr", "-o=t.csv"],
+            &["map", "scene.toml", "--engine=cpu", "-onew"],
+        ] {
+            let run = redirected(to, arguments);
+            assert_eq!(run.code, Some(1), "{arguments:?} {to}: {run:?}");
+            assert!(run.err.ends_with(&said), "{arguments:?} {to}: {run:?}");
+        }
+        redirected(to, &["curve"]).assert_refused(&["<SCENE>"]);
+        redirected(to, &["curve", "no.toml"]).assert_said(if to == ">&-" { 1 } else { 2 }, "error");
+    }
+}
