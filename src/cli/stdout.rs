@@ -1,5 +1,5 @@
-//! Whether standard output was open when the process began. Rust's runtime opens `/dev/null` in place of a closed one before
-//! `main`, and every write to it succeeds.
+//! Detects a standard output that was closed when the process began. Before `main`, Rust's runtime opens `/dev/null` in its
+//! place, and every write to that succeeds.
 
 use std::io;
 
@@ -7,7 +7,7 @@ use std::io;
 ///
 /// # Errors
 ///
-/// It was closed: nothing that a command prints would arrive.
+/// It was closed, so nothing that a command prints would be read.
 #[cfg(unix)]
 pub fn check() -> io::Result<()> {
     if WAS_CLOSED.load(Ordering::Relaxed) {

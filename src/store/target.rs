@@ -1,4 +1,4 @@
-//! The end of an output's path: behind which links it lies, and whether it can be replaced.
+//! Resolves the path of an output and checks that the file there can be replaced.
 
 use super::file_id::folder_of;
 use std::fs::{self, File, Metadata};
@@ -38,7 +38,7 @@ impl Target {
         match fs::metadata(&path) {
             Ok(about) if about.is_dir() => Err(io::ErrorKind::IsADirectory.into()),
             Ok(about) if !about.is_file() => Ok(Self::Stream(path)),
-            // The system lets an administrator open it.
+            // An administrator can open a read-only file, so the mode decides.
             Ok(about) if about.permissions().readonly() => {
                 Err(refused("the file there is read-only"))
             }
@@ -65,9 +65,9 @@ fn is_descriptor(path: &Path) -> bool {
     })
 }
 
-/// Refuses a symbolic link that another user may have laid. Links are followed here and not by the kernel, so Linux's
-/// `protected_symlinks` does not see them. Its rule holds here in every folder that others may write to, sticky or not: the link
-/// must belong to this user or to the folder's owner.
+/// Refuses a symbolic link that another user may have made. [`Target::of`] follows links itself, so `protected_symlinks` of Linux
+/// has no effect on them. Its rule applies here in every folder that others may write to, sticky or not: the link must belong to
+/// this user or to the folder's owner.
 #[cfg(unix)]
 fn check_link(link: &Path) -> io::Result<()> {
     use std::os::unix::fs::MetadataExt;
@@ -93,7 +93,7 @@ fn check_link(_: &Path) -> io::Result<()> {
 ///
 /// # Errors
 ///
-/// This user may not give files that owner or group: in its place would be a file with other rights.
+/// This user may not give files that owner or group. Without them, other users could read or write the new file.
 #[cfg(unix)]
 pub(super) fn inherit(file: &File, replaced: &Metadata) -> io::Result<()> {
     use std::os::unix::fs::{MetadataExt, PermissionsExt, fchown};
@@ -103,7 +103,7 @@ pub(super) fn inherit(file: &File, replaced: &Metadata) -> io::Result<()> {
         let kept = fchown(file, Some(user), Some(group));
         kept.map_err(|_| {
             refused(&format!(
-                "the file there belongs to user {user} and group {group}, which a new file cannot"
+                "the file there belongs to user {user} and group {group}; this user cannot make such a file"
             ))
         })?;
     }

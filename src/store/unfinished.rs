@@ -233,10 +233,11 @@ mod tests {
     }
 
     #[test]
-    fn a_new_file_has_an_exact_name() {
-        let folder = tempfile::tempdir().unwrap();
-        let file = Unfinished::create(folder.path(), None).unwrap();
+    fn a_new_file_has_an_exact_name() -> io::Result<()> {
+        let folder = tempfile::tempdir()?;
+        let file = Unfinished::create(folder.path(), None)?;
         let name = file.file.path().file_name().and_then(|name| name.to_str());
         assert_eq!(name.and_then(host_of), Some(&*host()));
+        Ok(())
     }
 }

@@ -248,7 +248,7 @@ fn files_and_links_of_others() {
     let mut command = place.plain_command(&to("ours.csv"));
     match command.uid(STRANGER).gid(STRANGER).output() {
         Ok(output) => Run::of(&output).assert_refused(&[
-            "--csv ours.csv: the file there belongs to user 0 and group 0, which a new file cannot",
+            "--csv ours.csv: the file there belongs to user 0 and group 0; this user cannot make such a file",
         ]),
         Err(why) => eprintln!("SKIPPED a stranger's run: {why}"),
     }
@@ -339,9 +339,8 @@ fn runs_at_once_write_the_same_files() {
     assert_eq!(names(&place.path("")), ["p.svg", "scene.toml", "t.csv"]);
 }
 
-/// Standard output that is closed, and one that is full.
 #[test]
-fn output_that_arrives_nowhere() {
+fn standard_output_that_is_closed_or_full() {
     let place = Place::with(SCENE);
     place.map(&["scene.toml", "-o."]);
     place.write("pts.csv", DATA);
