@@ -1,12 +1,10 @@
 //! Whole maps in memory, how far two of them are apart, and engines that are looked after.
 #![allow(dead_code, reason = "each test program uses its own share")]
-#![allow(
-    clippy::print_stderr,
-    reason = "what is skipped or measured is said aloud"
-)]
+#![allow(clippy::panic, reason = "a test fails by panicking")]
 
 use std::collections::VecDeque;
 use std::convert::Infallible;
+use std::path::Path;
 use std::sync::Arc;
 use whiskmap::integrate::gpu::{Gpu, Precision};
 use whiskmap::integrate::{CellDifference, Description, Engine, EngineError, Question};
@@ -33,31 +31,29 @@ pub fn compute_as(
     (summary, all)
 }
 
-/// The GPU engine, or `None` (said aloud) where there is none; `WHISKMAP_REQUIRE_GPU=1` makes that a failure, but for `f64`.
-pub fn open(precision: Precision) -> Option<Gpu> {
-    opened(precision, Gpu::new(precision))
+/// Every shipped scene.
+pub fn shipped() -> Vec<Scene> {
+    let mut paths: Vec<_> = Path::new("scenes")
+        .read_dir()
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .filter(|path| path.extension().is_some_and(|e| e == "toml"))
+        .collect();
+    paths.sort();
+    paths
+        .iter()
+        .map(|path| Scene::read(path).unwrap())
+        .collect()
 }
 
-/// The same with this shader.
-pub fn open_with(precision: Precision, shader: String) -> Option<Gpu> {
-    opened(precision, Gpu::with_shader(precision, shader))
+/// The GPU engine.
+pub fn open(precision: Precision) -> Gpu {
+    Gpu::new(precision).unwrap_or_else(|error| panic!("{error}"))
 }
 
-fn opened(precision: Precision, gpu: Result<Gpu, EngineError>) -> Option<Gpu> {
-    match gpu {
-        Ok(gpu) => Some(gpu),
-        Err(error) => {
-            let required = std::env::var_os("WHISKMAP_REQUIRE_GPU").is_some_and(|x| x == "1");
-            let optional = match error {
-                EngineError::NoAdapter(_) => !required,
-                EngineError::Unsupported { .. } => precision == Precision::F64,
-                EngineError::Device(_) | EngineError::Distrusted { .. } => false,
-            };
-            assert!(optional, "{error}");
-            eprintln!("SKIPPED, NOT TESTED: gpu {precision}: {error}");
-            None
-        }
-    }
+/// The GPU engine with this shader.
+pub fn open_with(precision: Precision, shader: String) -> Gpu {
+    Gpu::with_shader(precision, shader).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// The cells of a run with an engine, whoever solved them, without those of the audit.

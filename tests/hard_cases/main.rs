@@ -1,10 +1,10 @@
-//! Whiskers and grids at the ends of every range: no NaN, no doubtful cell, the same answer from every engine, at every
-//! resolution and in every unit, and the limits of each other where they must be.
+//! Whiskers and grids at the ends of every range: no NaN, no doubtful cell, the same answer at every resolution and in
+//! every unit, and the limits of each other where they must be.
 #![allow(
     clippy::unwrap_used,
     clippy::panic,
     clippy::print_stderr,
-    reason = "a test fails by panicking, and says aloud what it measured and skipped"
+    reason = "a test fails by panicking, and prints what it measured"
 )]
 
 mod case;
@@ -12,10 +12,10 @@ mod cases;
 #[path = "../compute/mod.rs"]
 mod compute;
 mod ends;
-mod engines;
 mod limits;
 mod missed;
 mod named;
 mod random;
+mod scanned;
 mod states;
 mod units;

@@ -1,21 +1,9 @@
-//! Two thousand random whiskers on small grids, always the same ones, and some with measured radii.
+//! Random whiskers on small grids, the same ones in every run.
+#![allow(dead_code, reason = "each test program uses its own share")]
 
-use crate::case::{Case, compute};
-use crate::cases::is_complete;
-use crate::states::{Shots, halving};
+use crate::case::Case;
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngSeed, TestRunner};
-use std::cell::RefCell;
-use whiskmap::rod::arclength;
-use whiskmap::shooting::Resolution;
-use whiskmap::shooting::batch::InitialCondition;
-
-/// Half as many steps as [`Resolution::FINE`].
-const HALF: Resolution = Resolution::of(10);
-
-/// Loads `q = |load| s^2` up to those of whiskers that do not coil up: only strong friction holds such a whisker, up to
-/// `q` of 1000 with a stiff tip.
-const MODERATE: f64 = 40.0;
 
 /// Evenly in the logarithm.
 pub fn even_in_log(from: f64, to: f64) -> impl Strategy<Value = f64> {
@@ -97,7 +85,8 @@ fn rows() -> impl Strategy<Value = Vec<[f64; 2]>> {
     })
 }
 
-fn measured() -> impl Strategy<Value = Case> {
+/// Whiskers with measured radii.
+pub fn measured() -> impl Strategy<Value = Case> {
     let stretch = prop_oneof![2 => Just(1.0), 1 => 1.0..1.3_f64];
     (cases(), rows(), stretch).prop_map(|(case, rows, stretch)| {
         let taper = 1.0 - rows[rows.len() - 1][1];
@@ -118,17 +107,6 @@ fn measured() -> impl Strategy<Value = Case> {
     })
 }
 
-/// What was seen, at the worst, over all whiskers.
-#[derive(Debug, Default)]
-struct Seen {
-    states: usize,
-    /// States under loads beyond [`MODERATE`].
-    coiled: usize,
-    /// How far halved steps move the poles, in whisker lengths, from the map's resolution and from half of it.
-    fine: f64,
-    half: f64,
-}
-
 /// What draws `count` whiskers, the same ones in every run.
 pub fn always_the_same(count: u32) -> TestRunner {
     TestRunner::new(Config {
@@ -137,61 +115,4 @@ pub fn always_the_same(count: u32) -> TestRunner {
         rng_seed: RngSeed::Fixed(7),
         ..Config::default()
     })
-}
-
-/// Maps `count` whiskers.
-fn scan(count: u32, whiskers: &impl Strategy<Value = Case>) -> Seen {
-    let seen = RefCell::new(Seen::default());
-    let holds = |case: Case| {
-        let scene = case.scene();
-        let (summary, panel) = compute(&scene, None);
-        prop_assert_eq!((summary.unresolved(), summary.disagreements), (0, 0));
-        prop_assert!(is_complete(&panel));
-
-        let seen = &mut *seen.borrow_mut();
-        let shots = Shots::new(&scene);
-        let cells = shots.refined();
-        let states = shots.conditions(&cells);
-        let fine = halving(shots.effects, &states, Resolution::FINE);
-        let half = halving(shots.effects, &states, HALF);
-        seen.states += states.len();
-        for ((fine, half), state) in fine.iter().zip(half).zip(&states) {
-            seen.fine = seen.fine.max(*fine);
-            seen.half = seen.half.max(half);
-            seen.coiled += usize::from(is_coiled(state));
-        }
-        Ok(())
-    };
-    always_the_same(count).run(whiskers, holds).unwrap();
-    let seen = seen.into_inner();
-    eprintln!("{seen:?}");
-    seen
-}
-
-#[test]
-fn measured_radii_hold() {
-    let seen = scan(200, &measured());
-    // Nearly half of these sheets are walked: radii that swell and thin make their edges steeper than samples can vouch for.
-    assert!(seen.states > 1000, "{seen:?}");
-    holds(&seen);
-}
-
-#[test]
-fn two_thousand_whiskers_hold() {
-    let seen = scan(2000, &cases());
-    // Most whiskers that coil up are walked: their cells have no shots.
-    assert!(seen.states > 19_000 && seen.coiled > 5, "{seen:?}");
-    holds(&seen);
-}
-
-fn holds(seen: &Seen) {
-    // Measured 5.6e-11, coiled up or not.
-    assert!(seen.fine < 1e-10, "{seen:?}");
-    // Order 8 would be 256 times; measured 185.
-    assert!(seen.half > 128.0 * seen.fine, "{seen:?}");
-}
-
-fn is_coiled(state: &InitialCondition) -> bool {
-    let s = arclength(state.rod, state.tau);
-    state.load.abs() * s * s * state.rod.softness(state.tau) > MODERATE
 }

@@ -1,15 +1,24 @@
 //! Devices that are lost: before, between and within the calls of a run.
 
+use super::{assert_same, cone};
 use crate::cells::Cells;
 use crate::compute::{all_cells, assert_identical, compute, compute_as, open, sabotaged};
 use crate::random_rods::USUAL;
-use crate::{assert_same, cone};
 use std::sync::Arc;
 use whiskmap::integrate::gpu::Precision;
 use whiskmap::integrate::{CellDifference, Engine, EngineError, Question};
 use whiskmap::map::EngineCells;
 use whiskmap::plan::Plan;
 use whiskmap::scene::Scene;
+
+tests! {
+    Adapter:
+        lost_between_two_calls,
+        lost_within_a_call,
+        lost_to_another_thread;
+    Precision:
+        lost_with_questions_under_way;
+}
 
 /// 16 calls of 8 rows each.
 fn in_strips(scene: &Scene) -> Plan {
@@ -19,23 +28,19 @@ fn in_strips(scene: &Scene) -> Plan {
 }
 
 /// So many cells a sound run counts.
-fn sound_cells(scene: &Scene, plan: &Plan) -> Option<u64> {
-    let mut gpu = open(Precision::F32)?;
-    let (summary, _) = compute_as(scene, plan, Some(&mut gpu));
+fn sound_cells(scene: &Scene, plan: &Plan) -> u64 {
+    let (summary, _) = compute_as(scene, plan, Some(&mut open(Precision::F32)));
     assert_eq!(summary.engine_cells.on_cpu_instead, 0);
-    Some(all_cells(&summary.engine_cells))
+    all_cells(&summary.engine_cells)
 }
 
-#[test]
 fn lost_between_two_calls() {
     let scene = cone(64);
     let plan = in_strips(&scene);
-    let Some(all) = sound_cells(&scene, &plan) else {
-        return;
-    };
+    let all = sound_cells(&scene, &plan);
     let (_, cpu) = compute_as(&scene, &plan, None);
     for call in [0, 1, 7, 12] {
-        let gpu = open(Precision::F32).unwrap();
+        let gpu = open(Precision::F32);
         let mut engine = sabotaged(gpu, call, wgpu::Device::destroy);
         let (summary, panels) = compute_as(&scene, &plan, Some(&mut engine));
         assert_eq!(engine.calls, call + 1, "a lost device is not asked again");
@@ -79,12 +84,9 @@ fn again(device: wgpu::Device, buffer: wgpu::Buffer, looks: usize) {
 }
 
 /// 256 x 256 cells are one call of several submissions. All of its cells are left to the refinement, so the map is that of the CPU.
-#[test]
 fn lost_within_a_call() {
     let scene = cone(256);
-    let Some(all) = sound_cells(&scene, &Plan::new(&scene).unwrap()) else {
-        return;
-    };
+    let all = sound_cells(&scene, &Plan::new(&scene).unwrap());
     // The first submissions have 4096 cells, and each is looked for more than once.
     assert!(all > 4 * 8192, "{all}");
     let failed = EngineCells {
@@ -93,7 +95,7 @@ fn lost_within_a_call() {
     };
     let (_, cpu) = compute(&scene, None);
     for looks in 0..4 {
-        let gpu = open(Precision::F32).unwrap();
+        let gpu = open(Precision::F32);
         let mut engine = sabotaged(gpu, 0, |device: &wgpu::Device| {
             destroy_within(device, looks);
         });
@@ -106,16 +108,13 @@ fn lost_within_a_call() {
 }
 
 /// Whenever the other thread comes, all cells are counted once, as the engine's or not.
-#[test]
 fn lost_to_another_thread() {
     let scene = cone(64);
     let plan = in_strips(&scene);
-    let Some(all) = sound_cells(&scene, &plan) else {
-        return;
-    };
+    let all = sound_cells(&scene, &plan);
     let (_, cpu) = compute_as(&scene, &plan, None);
     for _ in 0..10 {
-        let gpu = open(Precision::F32).unwrap();
+        let gpu = open(Precision::F32);
         let mut thread = None;
         let destroy = |device: &wgpu::Device| {
             let device = device.clone();
@@ -131,39 +130,34 @@ fn lost_to_another_thread() {
 }
 
 /// Whatever is under way when a device is lost: an answer is right, or it is an error, and so are all after it.
-#[test]
-fn lost_with_questions_under_way() {
+fn lost_with_questions_under_way(precision: Precision) {
     let cells = Cells::random(USUAL, 24, 2, |_, _| ());
-    for precision in [Precision::F32, Precision::F64] {
-        let Some(mut gpu) = open(precision) else {
-            continue;
-        };
-        let parts = cells.references.chunks(cells.references.len().div_ceil(4));
-        let questions: Vec<_> = parts.map(|part| cells.question(&gpu, part)).collect();
-        // Numbers that are none are not equal to themselves.
-        let said = |answers: Vec<CellDifference>| format!("{answers:?}");
-        let solve = |one: &Arc<Question>| said(gpu.solve(Arc::clone(one)).unwrap());
-        let alone: Vec<_> = questions.iter().map(solve).collect();
-        for before in 0..questions.len() {
-            let mut gpu = open(precision).unwrap();
-            for one in &questions {
-                gpu.ask(Arc::clone(one)).unwrap();
-            }
-            let mut is_lost = false;
-            for (number, alone) in alone.iter().enumerate() {
-                if number == before {
-                    gpu.device().destroy();
-                }
-                match gpu.answer() {
-                    Ok(answers) => assert!(!is_lost && said(answers) == *alone),
-                    Err(EngineError::Device(_)) if number >= before => is_lost = true,
-                    Err(error) => panic!("{error}"),
-                }
-            }
-            assert!(
-                is_lost,
-                "the last question cannot have been sent as a whole"
-            );
+    let mut gpu = open(precision);
+    let parts = cells.references.chunks(cells.references.len().div_ceil(4));
+    let questions: Vec<_> = parts.map(|part| cells.question(&gpu, part)).collect();
+    // Numbers that are none are not equal to themselves.
+    let said = |answers: Vec<CellDifference>| format!("{answers:?}");
+    let solve = |one: &Arc<Question>| said(gpu.solve(Arc::clone(one)).unwrap());
+    let alone: Vec<_> = questions.iter().map(solve).collect();
+    for before in 0..questions.len() {
+        let mut gpu = open(precision);
+        for one in &questions {
+            gpu.ask(Arc::clone(one)).unwrap();
         }
+        let mut is_lost = false;
+        for (number, alone) in alone.iter().enumerate() {
+            if number == before {
+                gpu.device().destroy();
+            }
+            match gpu.answer() {
+                Ok(answers) => assert!(!is_lost && said(answers) == *alone),
+                Err(EngineError::Device(_)) if number >= before => is_lost = true,
+                Err(error) => panic!("{error}"),
+            }
+        }
+        assert!(
+            is_lost,
+            "the last question cannot have been sent as a whole"
+        );
     }
 }

@@ -1,32 +1,9 @@
-//! One contract for the GPU engine in every precision: the cells of random whiskers, against the refinement in `f64`.
-//!
-//! Without an adapter all but the choice of one is skipped, loudly; `WHISKMAP_REQUIRE_GPU=1` makes that a failure.
-#![allow(
-    clippy::unwrap_used,
-    clippy::panic,
-    clippy::print_stderr,
-    reason = "a test fails by panicking, and says aloud what it measured and skipped"
-)]
+//! Random whiskers of every kind.
 
-mod adapters;
-mod bound;
-#[path = "../cells/mod.rs"]
-mod cells;
-#[path = "../compute/mod.rs"]
-mod compute;
-mod contract;
-#[path = "../effect_sets/mod.rs"]
-mod effect_sets;
-#[path = "../random_rods/mod.rs"]
-mod random_rods;
-mod states;
-
-use cells::Cells;
-use random_rods::Random;
-use whiskmap::integrate::gpu::Precision;
+use crate::cells::Cells;
+use crate::effect_sets;
+use crate::random_rods::Random;
 use whiskmap::rod::{Effects, Rod};
-
-const PRECISIONS: [Precision; 2] = [Precision::F32, Precision::F64];
 
 /// What is made of random whiskers, and the set of effects that it is made with.
 type Kind = (&'static str, Effects, fn(&mut Rod, &mut Random));
@@ -74,7 +51,7 @@ fn slender(rod: &mut Rod, random: &mut Random) {
 }
 
 /// Cells of `count` whiskers of every kind.
-fn every_kind(count: usize) -> impl Iterator<Item = (String, Cells)> {
+pub fn every_kind(count: usize) -> impl Iterator<Item = (String, Cells)> {
     (1..)
         .zip(kinds())
         .map(move |(seed, (name, effects, changed))| {

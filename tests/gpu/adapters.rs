@@ -3,6 +3,13 @@
 use wgpu::{AdapterInfo, Backend, DeviceType};
 use whiskmap::integrate::gpu::{AdapterReport, Precision, named, preferred};
 
+tests! {
+    Nothing:
+        software_comes_last_and_the_first_of_equals_wins,
+        f64_is_asked_of_an_adapter_that_has_it,
+        a_part_of_a_name_is_enough_whatever_the_case;
+}
+
 fn report(kind: DeviceType) -> AdapterReport {
     AdapterReport {
         info: AdapterInfo::new(kind, Backend::Noop),
@@ -12,7 +19,6 @@ fn report(kind: DeviceType) -> AdapterReport {
     }
 }
 
-#[test]
 fn software_comes_last_and_the_first_of_equals_wins() {
     let kinds = [
         DeviceType::Cpu,
@@ -28,7 +34,6 @@ fn software_comes_last_and_the_first_of_equals_wins() {
     assert_eq!(preferred(&[], Precision::F32), None);
 }
 
-#[test]
 fn f64_is_asked_of_an_adapter_that_has_it() {
     let mut reports = [DeviceType::DiscreteGpu, DeviceType::Cpu].map(report);
     assert_eq!(preferred(&reports, Precision::F64), None);
@@ -36,7 +41,6 @@ fn f64_is_asked_of_an_adapter_that_has_it() {
     assert_eq!(preferred(&reports, Precision::F64), Some(1));
 }
 
-#[test]
 fn a_part_of_a_name_is_enough_whatever_the_case() {
     let mut reports = [DeviceType::Cpu, DeviceType::IntegratedGpu, DeviceType::Cpu].map(report);
     for (report, name) in reports.iter_mut().zip(["llvmpipe", "Iris Xe", "Pipe"]) {

@@ -2,13 +2,20 @@
 
 use crate::cells::Cells;
 use crate::compute::{open, open_with};
-use crate::every_kind;
+use crate::kinds::every_kind;
 use crate::random_rods::USUAL;
 use whiskmap::integrate::gpu::{Gpu, Precision, shaders};
 use whiskmap::integrate::{CellDifference, Reference};
 use whiskmap::rod::Rod;
 use whiskmap::shooting::ShootingMap;
 use whiskmap::shooting::batch::{Batch, InitialCondition, Method};
+
+tests! {
+    Precision:
+        residuals_are_bounds;
+    Adapter:
+        a_wrong_shader_breaks_its_bounds;
+}
 
 /// The `(tau, load)` of a cell on a rod.
 type Place = fn(&Rod, &Reference, &CellDifference) -> (f64, f64);
@@ -96,33 +103,27 @@ fn truncation(method: Method, conditions: &[InitialCondition]) -> Vec<f64> {
         .collect()
 }
 
-#[test]
-fn residuals_are_bounds() {
+fn residuals_are_bounds(precision: Precision) {
+    let (mut gpu, place, median, worst) = match precision {
+        Precision::F32 => (open(precision), from_numbers as Place, 2e-9, 1e-7),
+        Precision::F64 => (
+            open_with(precision, telling_all()),
+            from_parts as Place,
+            1e-14,
+            1e-11,
+        ),
+    };
     for (name, cells) in every_kind(100) {
-        let gpus = [
-            (open(Precision::F32), from_numbers as Place, 2e-9, 1e-7),
-            (
-                open_with(Precision::F64, telling_all()),
-                from_parts,
-                1e-14,
-                1e-11,
-            ),
-        ];
-        for (gpu, place, median, worst) in gpus {
-            let Some(mut gpu) = gpu else { continue };
-            let seen = Seen::of(&cells, &mut gpu, place);
-            eprintln!("{name}: {seen:?}");
-            let is_close = seen.median_miss < median && seen.worst_miss < worst;
-            assert!(
-                seen.solved > 1000 && seen.of_bound <= 1.0 && is_close,
-                "{name}: {seen:?}"
-            );
-        }
+        let seen = Seen::of(&cells, &mut gpu, place);
+        let is_close = seen.median_miss < median && seen.worst_miss < worst;
+        assert!(
+            seen.solved > 1000 && seen.of_bound <= 1.0 && is_close,
+            "{name}: {seen:?}"
+        );
     }
 }
 
 /// A wrong constant anywhere shows.
-#[test]
 fn a_wrong_shader_breaks_its_bounds() {
     let cells = Cells::random(USUAL, 40, 3, |_, _| ());
     let text = shaders::cells(Precision::F32);
@@ -153,9 +154,7 @@ fn a_wrong_shader_breaks_its_bounds() {
         ),
     ] {
         assert_eq!(text.matches(good).count(), 1, "{good}");
-        let Some(mut gpu) = open_with(Precision::F32, text.replace(good, bad)) else {
-            return;
-        };
+        let mut gpu = open_with(Precision::F32, text.replace(good, bad));
         let seen = Seen::of(&cells, &mut gpu, from_numbers);
         assert!(seen.of_bound > 3.0, "{bad}: {seen:?}");
     }

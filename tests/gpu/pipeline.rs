@@ -1,9 +1,6 @@
 //! The strips of a map on their way: the engine solves one while the one before is settled, and no race decides about a cell.
-#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-mod compute;
-
-use compute::{Answer, Watched, assert_identical, compute_as, open};
+use crate::compute::{Answer, Watched, assert_identical, compute_as, open};
 use std::convert::Infallible;
 use std::sync::mpsc;
 use std::time::Duration;
@@ -14,6 +11,17 @@ use whiskmap::map::{self, Panel, Stage, Summary};
 use whiskmap::plan::Plan;
 use whiskmap::scene::Scene;
 use whiskmap::store::MapWriter;
+
+tests! {
+    Nothing:
+        stages_share_the_time_of_the_threads;
+    Adapter:
+        a_strip_is_solved_while_the_one_before_is_settled,
+        what_becomes_of_a_cell_does_not_depend_on_threads,
+        answers_that_are_too_few_are_a_failure,
+        an_engine_goes_from_run_to_run,
+        stages_share_the_time_beside_an_engine;
+}
 
 /// The paper's cone, and a plan that takes its rows by eights.
 fn in_strips() -> (Scene, Plan) {
@@ -32,12 +40,9 @@ fn on_threads<R: Send>(count: usize, work: impl FnOnce() -> R + Send) -> R {
 const AT_ONCE: usize = 8;
 
 /// The answer to a call waits until the strip before is settled, and that one for the call: in turn, one of them would wait in vain.
-#[test]
 fn a_strip_is_solved_while_the_one_before_is_settled() {
     let (scene, plan) = in_strips();
-    let Some(gpu) = open(Precision::F32) else {
-        return;
-    };
+    let gpu = open(Precision::F32);
     let wait = |other: &mpsc::Receiver<usize>, until: usize| {
         while other.recv_timeout(Duration::from_secs(60)).unwrap() < until {}
     };
@@ -67,11 +72,10 @@ fn a_strip_is_solved_while_the_one_before_is_settled() {
 }
 
 /// The fifth call fails, or its answers are wrong, which an audit finds while the sixth is under way: no cell of either is the engine's.
-#[test]
 fn what_becomes_of_a_cell_does_not_depend_on_threads() {
     let (scene, plan) = in_strips();
-    let run = |threads: usize, is_wrong: bool| -> Option<(Summary, Vec<Panel>)> {
-        let gpu = open(Precision::F32)?;
+    let run = |threads: usize, is_wrong: bool| -> (Summary, Vec<Panel>) {
+        let gpu = open(Precision::F32);
         let call = |before, gpu: &mut Gpu, solve: &dyn Fn(&mut Gpu) -> Answer| {
             let mut cells = solve(gpu)?;
             if before == 4 && !is_wrong {
@@ -84,14 +88,12 @@ fn what_becomes_of_a_cell_does_not_depend_on_threads() {
         };
         let mut engine = Watched::new(gpu, call);
         let work = || compute_as(&scene, &plan, Some(&mut engine));
-        Some(on_threads(threads, work))
+        on_threads(threads, work)
     };
-    let Some((wanted, panels)) = run(1, false) else {
-        return;
-    };
+    let (wanted, panels) = run(1, false);
     assert!(wanted.engine_cells.solved > 0 && wanted.engine_cells.on_cpu_instead > 0);
     for (threads, is_wrong) in [(4, false), (1, true), (4, true)] {
-        let (summary, found) = run(threads, is_wrong).unwrap();
+        let (summary, found) = run(threads, is_wrong);
         assert_eq!(summary.engine_cells, wanted.engine_cells);
         assert_eq!(summary.audit.differing > 0, is_wrong);
         assert!(summary.engine_failure.is_some());
@@ -100,12 +102,9 @@ fn what_becomes_of_a_cell_does_not_depend_on_threads() {
 }
 
 /// An engine that forgets a cell is not believed, and no cell is lost.
-#[test]
 fn answers_that_are_too_few_are_a_failure() {
     let (scene, plan) = in_strips();
-    let Some(gpu) = open(Precision::F32) else {
-        return;
-    };
+    let gpu = open(Precision::F32);
     let forget = |_, gpu: &mut Gpu, solve: &dyn Fn(&mut Gpu) -> Answer| {
         let mut cells = solve(gpu)?;
         cells.pop();
@@ -122,12 +121,9 @@ fn answers_that_are_too_few_are_a_failure() {
 }
 
 /// What is under way when a run ends early is no answer to the next run's questions.
-#[test]
 fn an_engine_goes_from_run_to_run() {
     let (scene, plan) = in_strips();
-    let Some(mut gpu) = open(Precision::F32) else {
-        return;
-    };
+    let mut gpu = open(Precision::F32);
     let fresh = compute_as(&scene, &plan, Some(&mut gpu)).1;
     let sweep = Scene::read("scenes/morphology.toml")
         .unwrap()
@@ -142,37 +138,39 @@ fn an_engine_goes_from_run_to_run() {
     }
 }
 
-/// Every stage that has worked has CPU time, and no second is counted twice, however the threads have helped each other out.
-#[test]
 fn stages_share_the_time_of_the_threads() {
-    let (scene, plan) = in_strips();
-    let run = |engine: Option<&mut dyn Engine>| -> (Summary, Duration) {
-        let host = || -> Duration { rayon::broadcast(|_| thread_time()).iter().sum() };
-        let mut keep = |panels: Vec<Panel>| {
-            assert!(MapWriter::sample(&scene.grid, plan.channels, &panels) > 0);
-            Ok::<(), Infallible>(())
-        };
-        let before = host();
-        let Ok(summary) = map::run(&scene, &plan, engine, &mut |_| (), &mut keep);
-        let of_engine = Duration::from_secs_f64(summary.engine_host_seconds());
-        (summary, host() - before + of_engine)
-    };
-    let check = |(summary, host): (Summary, Duration), has_engine: bool| {
-        let seconds = Stage::ALL.map(|(stage, _)| summary.cpu_seconds(stage));
-        for ((stage, name), seconds) in Stage::ALL.into_iter().zip(seconds) {
-            let has_worked = has_engine || stage != Stage::References;
-            assert_eq!(seconds > 0.0, has_worked, "{name}: {seconds}");
-        }
-        // Sums of rounded seconds.
-        let (sum, host) = (seconds.iter().sum::<f64>(), host.as_secs_f64());
-        assert!(sum <= host + 1e-9, "{seconds:?}: {sum} of {host}");
-        assert_eq!(summary.device_seconds() > 0.0, has_engine);
-        assert!(summary.waiting_seconds() <= summary.wall_seconds());
-    };
     for threads in [1, 3] {
-        check(on_threads(threads, || run(None)), false);
-        if let Some(mut gpu) = open(Precision::F32) {
-            check(on_threads(threads, || run(Some(&mut gpu))), true);
-        }
+        on_threads(threads, || stages_share_the_time(None));
     }
+}
+
+fn stages_share_the_time_beside_an_engine() {
+    for threads in [1, 3] {
+        let mut gpu = open(Precision::F32);
+        on_threads(threads, || stages_share_the_time(Some(&mut gpu)));
+    }
+}
+
+/// Asserts that every stage that has worked has CPU time, and that no second is counted twice, whatever threads take over from each other.
+fn stages_share_the_time(engine: Option<&mut dyn Engine>) {
+    let (scene, plan) = in_strips();
+    let has_engine = engine.is_some();
+    let host = || -> Duration { rayon::broadcast(|_| thread_time()).iter().sum() };
+    let mut keep = |panels: Vec<Panel>| {
+        assert!(MapWriter::sample(&scene.grid, plan.channels, &panels) > 0);
+        Ok::<(), Infallible>(())
+    };
+    let before = host();
+    let Ok(summary) = map::run(&scene, &plan, engine, &mut |_| (), &mut keep);
+    let host = (host() - before).as_secs_f64() + summary.engine_host_seconds();
+    let seconds = Stage::ALL.map(|(stage, _)| summary.cpu_seconds(stage));
+    for ((stage, name), seconds) in Stage::ALL.into_iter().zip(seconds) {
+        let has_worked = has_engine || stage != Stage::References;
+        assert_eq!(seconds > 0.0, has_worked, "{name}: {seconds}");
+    }
+    // Sums of rounded seconds.
+    let sum = seconds.iter().sum::<f64>();
+    assert!(sum <= host + 1e-9, "{seconds:?}: {sum} of {host}");
+    assert_eq!(summary.device_seconds() > 0.0, has_engine);
+    assert!(summary.waiting_seconds() <= summary.wall_seconds());
 }

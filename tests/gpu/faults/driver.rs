@@ -1,36 +1,36 @@
 //! The program on a driver that fails: `icd.rs` in front of the real one.
 
+use super::cone;
 use crate::compute::all_cells;
-use crate::cone;
 use assert_cmd::Command;
-use std::env;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::Output;
 use tempfile::TempDir;
 use whiskmap::map::{EngineCells, STATE_CHANNELS};
 use whiskmap::store::{Samples, StoredMap};
 
-/// The library of a Vulkan driver of this machine, lavapipe's if it is there; `None` (said aloud) without any.
-fn real_driver() -> Option<String> {
+tests! {
+    Driver:
+        the_map_is_completed_whatever_fails_while_it_runs,
+        a_gpu_that_was_asked_for_and_cannot_start_is_an_error;
+}
+
+/// The library of a Vulkan driver of this machine, lavapipe's if there is one.
+///
+/// # Errors
+/// There is no driver.
+pub fn real_driver() -> Result<String, String> {
     let folders = ["/usr/share/vulkan/icd.d", "/etc/vulkan/icd.d"];
     let files = folders
         .iter()
         .filter_map(|folder| fs::read_dir(folder).ok());
-    let mut manifests: Vec<PathBuf> = files.flatten().map(|file| file.unwrap().path()).collect();
-    manifests.sort_by_key(|path| !path.to_string_lossy().contains("lvp"));
-    if manifests.is_empty() {
-        let required = env::var_os("WHISKMAP_REQUIRE_GPU").is_some_and(|x| x == "1");
-        assert!(
-            !required,
-            "WHISKMAP_REQUIRE_GPU=1, but no driver in {folders:?}"
-        );
-        eprintln!("SKIPPED, NOT TESTED: no Vulkan driver in {folders:?}");
-        return None;
-    }
+    let manifests = files.flatten().map(|file| file.unwrap().path());
+    let manifest = manifests.min_by_key(|path| !path.to_string_lossy().contains("lvp"));
+    let manifest = manifest.ok_or_else(|| format!("no Vulkan driver in {folders:?}"))?;
     let manifest: serde_json::Value =
-        serde_json::from_str(&fs::read_to_string(&manifests[0]).unwrap()).unwrap();
-    Some(manifest["ICD"]["library_path"].as_str().unwrap().to_owned())
+        serde_json::from_str(&fs::read_to_string(manifest).unwrap()).unwrap();
+    Ok(manifest["ICD"]["library_path"].as_str().unwrap().to_owned())
 }
 
 /// A folder with the faulty driver and a scene of several submissions in it.
@@ -40,13 +40,13 @@ struct Place {
 }
 
 impl Place {
-    fn new() -> Option<Self> {
-        let real_driver = real_driver()?;
+    fn new() -> Self {
+        let real_driver = real_driver().unwrap();
         let folder = tempfile::tempdir().unwrap();
         let library = folder.path().join("libfaulty.so");
         Command::new("rustc")
             .args(["--edition", "2024", "--crate-type", "cdylib", "-o"])
-            .args([&library, Path::new("tests/faults/icd.rs")])
+            .args([&library, Path::new("tests/gpu/faults/icd.rs")])
             .assert()
             .success();
         let manifest = serde_json::json!({
@@ -56,10 +56,10 @@ impl Place {
         fs::write(folder.path().join("icd.json"), manifest.to_string()).unwrap();
         let text = cone(2).text.replace("count = 512", "count = 128");
         fs::write(folder.path().join("scene.toml"), text).unwrap();
-        Some(Self {
+        Self {
             folder,
             real_driver,
-        })
+        }
     }
 
     /// Runs `map` with this engine on the driver with this fault.
@@ -103,11 +103,8 @@ const LOST: i32 = -4;
 const OUT_OF_DEVICE_MEMORY: i32 = -2;
 const OUT_OF_HOST_MEMORY: i32 = -1;
 
-#[test]
 fn the_map_is_completed_whatever_fails_while_it_runs() {
-    let Some(place) = Place::new() else {
-        return;
-    };
+    let place = Place::new();
     assert!(place.map("cpu", "nothing 0 0").status.success());
     let cpu = place.stored();
     assert_eq!(cpu.counts.engine_cells, EngineCells::default());
@@ -157,11 +154,8 @@ fn the_map_is_completed_whatever_fails_while_it_runs() {
     }
 }
 
-#[test]
 fn a_gpu_that_was_asked_for_and_cannot_start_is_an_error() {
-    let Some(place) = Place::new() else {
-        return;
-    };
+    let place = Place::new();
     for fault in [
         "vkCreateDevice 0 -3",
         "vkCreateBuffer 0 -2",

@@ -1,20 +1,31 @@
 //! Kernels that are spoilt.
 
+use super::{assert_same, cone};
 use crate::compute::{
     all_cells, assert_identical, compute, compute_as, handed_over, open, open_with, works,
 };
-use crate::{assert_same, cone};
 use whiskmap::integrate::EngineError;
 use whiskmap::integrate::gpu::{Gpu, Precision, shaders};
 use whiskmap::map::{EngineCells, Panel, Summary};
 use whiskmap::plan::Plan;
 use whiskmap::scene::Scene;
 
+tests! {
+    Precision:
+        numbers_that_are_none_are_refined_in_f64_and_counted,
+        a_kernel_that_is_wrong_everywhere_is_caught,
+        a_sound_kernel_passes_its_audit;
+    Adapter:
+        a_kernel_that_does_nothing_is_noticed,
+        a_kernel_that_is_wrong_in_one_cell_of_a_thousand_is_caught,
+        a_kernel_that_the_driver_refuses_leaves_all_to_the_cpu;
+}
+
 /// The last line of the entry point.
 const LAST: &str = "answer(id, cell);";
 
 /// The GPU engine with `LAST` replaced; `cell` is the sound answer, `wrong` a copy of it.
-fn spoilt(precision: Precision, with: &str) -> Option<Gpu> {
+fn spoilt(precision: Precision, with: &str) -> Gpu {
     let text = shaders::cells(precision);
     assert_eq!(text.matches(LAST).count(), 1);
     let numbers = "let nan = bitcast<f32>(0x7fc00000u | (id >> 31u));
@@ -34,45 +45,38 @@ fn at_once(scene: &Scene, gpu: &mut Gpu) -> (Summary, Vec<Panel>) {
 const SOLVED: f64 = 0.9;
 
 /// Claims of having solved a cell with a number that is none. All of those cells are refined, and counted.
-#[test]
-fn numbers_that_are_none_are_refined_in_f64_and_counted() {
+fn numbers_that_are_none_are_refined_in_f64_and_counted(precision: Precision) {
     let scene = cone(64);
     let (_, cpu) = compute(&scene, None);
-    for precision in [Precision::F32, Precision::F64] {
-        let Some(mut sound) = open(precision) else {
-            continue;
-        };
-        let (sound, _) = compute(&scene, Some(&mut sound));
-        works(&sound, SOLVED).unwrap();
-        let sound = sound.engine_cells;
-        assert_eq!(sound.not_finite, 0);
-        let asked = sound.solved + handed_over(&sound);
-        for (none, part) in [
-            ("wrong.numbers[8] = nan;", 1.0),
-            ("wrong.residual = infinite;", 1.0),
-            (
-                "if id % 7u == 0u { wrong.numbers[0] = infinite; }",
-                1.0 / 7.0,
-            ),
-        ] {
-            let mut gpu = spoilt(precision, &format!("{none} answer(id, wrong);")).unwrap();
-            let (summary, panels) = compute(&scene, Some(&mut gpu));
-            assert!(summary.engine_failure.is_none(), "{summary:?}");
-            let cells = summary.engine_cells;
-            // Each submission, of thousands of cells, counts its cells from 0.
-            let missing = cells.not_finite as f64 - part * asked as f64;
-            assert!(missing.abs() <= 0.01 * asked as f64, "{none}: {cells:?}");
-            assert_eq!(all_cells(&cells), all_cells(&sound));
-            assert_same(&cpu, &panels);
-            if part == 1.0 {
-                assert_identical(&cpu, &panels);
-            }
+    let (sound, _) = compute(&scene, Some(&mut open(precision)));
+    works(&sound, SOLVED).unwrap();
+    let sound = sound.engine_cells;
+    assert_eq!(sound.not_finite, 0);
+    let asked = sound.solved + handed_over(&sound);
+    for (none, part) in [
+        ("wrong.numbers[8] = nan;", 1.0),
+        ("wrong.residual = infinite;", 1.0),
+        (
+            "if id % 7u == 0u { wrong.numbers[0] = infinite; }",
+            1.0 / 7.0,
+        ),
+    ] {
+        let mut gpu = spoilt(precision, &format!("{none} answer(id, wrong);"));
+        let (summary, panels) = compute(&scene, Some(&mut gpu));
+        assert!(summary.engine_failure.is_none(), "{summary:?}");
+        let cells = summary.engine_cells;
+        // Each submission, of thousands of cells, counts its cells from 0.
+        let missing = cells.not_finite as f64 - part * asked as f64;
+        assert!(missing.abs() <= 0.01 * asked as f64, "{none}: {cells:?}");
+        assert_eq!(all_cells(&cells), all_cells(&sound));
+        assert_same(&cpu, &panels);
+        if part == 1.0 {
+            assert_identical(&cpu, &panels);
         }
     }
 }
 
 /// The map is right, so only what the engine did for it tells.
-#[test]
 fn a_kernel_that_does_nothing_is_noticed() {
     let scene = cone(64);
     let (_, cpu) = compute(&scene, None);
@@ -80,9 +84,7 @@ fn a_kernel_that_does_nothing_is_noticed() {
         "if id == 0xffffffffu { answer(id, wrong); }",
         "wrong = Cell(); answer(id, wrong);",
     ] {
-        let Some(mut gpu) = spoilt(Precision::F32, writes) else {
-            return;
-        };
+        let mut gpu = spoilt(Precision::F32, writes);
         let (summary, panels) = compute(&scene, Some(&mut gpu));
         let EngineCells {
             not_finite,
@@ -105,7 +107,6 @@ fn a_kernel_that_does_nothing_is_noticed() {
 fn assert_caught(scene: &Scene, gpu: &mut Gpu) {
     let (summary, panels) = at_once(scene, gpu);
     let audit = summary.audit;
-    eprintln!("{audit:?}, {:?}", summary.engine_cells);
     let distrusted = EngineError::Distrusted {
         differing: audit.differing,
         cells: audit.cells,
@@ -128,31 +129,22 @@ const WRONG: [&str; 3] = [
     "wrong = solve(push + 1e-4, steps);",
 ];
 
-#[test]
-fn a_kernel_that_is_wrong_everywhere_is_caught() {
+fn a_kernel_that_is_wrong_everywhere_is_caught(precision: Precision) {
     let scene = cone(64);
-    for precision in [Precision::F32, Precision::F64] {
-        for wrong in WRONG {
-            let Some(mut gpu) = spoilt(precision, &format!("{wrong} answer(id, wrong);")) else {
-                continue;
-            };
-            assert_caught(&scene, &mut gpu);
-        }
+    for wrong in WRONG {
+        let mut gpu = spoilt(precision, &format!("{wrong} answer(id, wrong);"));
+        assert_caught(&scene, &mut gpu);
     }
 }
 
 /// A sound kernel is not.
-#[test]
-fn a_sound_kernel_passes_its_audit() {
+fn a_sound_kernel_passes_its_audit(precision: Precision) {
     let scene = cone(128);
     let (_, cpu) = compute(&scene, None);
-    for gpu in [Precision::F32, Precision::F64].map(open) {
-        let Some(mut gpu) = gpu else { continue };
-        let (summary, panels) = at_once(&scene, &mut gpu);
-        works(&summary, SOLVED).unwrap();
-        assert!(summary.audit.cells > 32 && summary.audit.turned_over == 0);
-        assert_same(&cpu, &panels);
-    }
+    let (summary, panels) = at_once(&scene, &mut open(precision));
+    works(&summary, SOLVED).unwrap();
+    assert!(summary.audit.cells > 32 && summary.audit.turned_over == 0);
+    assert_same(&cpu, &panels);
 }
 
 /// Which one of a thousand cells is wrong, whatever submission it is in. The audit looks at 134 of
@@ -160,7 +152,6 @@ fn a_sound_kernel_passes_its_audit() {
 const CHOSEN: u32 = 5;
 
 /// The sample of the audit is the same in every run, and so are the cells that are wrong.
-#[test]
 fn a_kernel_that_is_wrong_in_one_cell_of_a_thousand_is_caught() {
     let scene = cone(256);
     let wrong = format!(
@@ -169,23 +160,16 @@ fn a_kernel_that_is_wrong_in_one_cell_of_a_thousand_is_caught() {
          answer(id, wrong);",
         WRONG[0]
     );
-    let Some(mut gpu) = spoilt(Precision::F32, &wrong) else {
-        return;
-    };
-    assert_caught(&scene, &mut gpu);
+    assert_caught(&scene, &mut spoilt(Precision::F32, &wrong));
 }
 
-#[test]
 fn a_kernel_that_the_driver_refuses_leaves_all_to_the_cpu() {
     let scene = cone(64);
-    if open(Precision::F32).is_none() {
-        return;
-    }
     for (shader, why) in [
         ("fn solve_cells() {", "expected"),
         ("fn other() {}", "solve_cells"),
     ] {
-        let mut gpu = open_with(Precision::F32, shader.to_owned()).unwrap();
+        let mut gpu = open_with(Precision::F32, shader.to_owned());
         let (summary, panels) = compute(&scene, Some(&mut gpu));
         let failure = summary.engine_failure.unwrap().to_string();
         assert!(failure.contains(why), "{failure}");

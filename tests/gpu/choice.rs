@@ -1,0 +1,120 @@
+//! Which engine and which adapter the program takes.
+
+use crate::program::{Place, Run, SCENE};
+use serde_json::Value;
+use whiskmap::store::StoredMap;
+
+tests! {
+    Adapter:
+        auto_times_the_engines_for_a_large_map,
+        adapters_are_taken_by_number_and_name,
+        a_file_states_the_tolerances_of_its_engine;
+}
+
+/// So many cells that every processor takes longer for them than a GPU takes to start.
+fn large() -> String {
+    let large = SCENE.replace("count = 24", "count = 1024");
+    large.replace("title = \"A small map\"", "title = \"A large map\"")
+}
+
+/// The name of the first adapter that `devices` lists.
+fn adapter(place: &Place) -> String {
+    let run = place.run(&["devices"]);
+    assert_eq!(run.code, Some(0), "{run:?}");
+    let line = run.out.lines().find(|line| line.get(2..4) == Some("0 "));
+    line.unwrap()[4..].rsplit_once(" (").unwrap().0.to_owned()
+}
+
+fn said(run: &Run) -> &str {
+    assert_eq!(run.code, Some(0), "{run:?}");
+    run.assert_settled();
+    run.err.strip_prefix("engine: ").unwrap().trim_end()
+}
+
+/// It takes what it has found to be faster, and says against what.
+fn auto_times_the_engines_for_a_large_map() {
+    let place = Place::with(&large());
+    let adapter = adapter(&place);
+    let run = place.run(&["map", "scene.toml", "--no-png", "--threads", "1"]);
+    let said = said(&run);
+    let (taken, why) = said.rsplit_once(" (auto: ").unwrap();
+    let (times, other) = why
+        .strip_suffix(')')
+        .unwrap()
+        .split_once(" times ")
+        .unwrap();
+    assert!(times.parse::<f64>().unwrap() >= 1.0, "{said}");
+    let gpu = format!("gpu f32 on {adapter}");
+    let [first, second] = match taken.starts_with("cpu") {
+        true => ["cpu f64 on ", &gpu],
+        false => [&gpu[..], "cpu f64 on "],
+    };
+    assert!(
+        taken.starts_with(first) && other.starts_with(second),
+        "{said}"
+    );
+}
+
+fn adapters_are_taken_by_number_and_name() {
+    let place = Place::with(SCENE);
+    let adapter = adapter(&place);
+    let map = ["map", "scene.toml", "--no-png", "--engine", "gpu"];
+    let taken = |run: Run| assert!(said(&run).starts_with(&format!("gpu f32 on {adapter}")));
+    taken(place.run(&[&map[..], &["--adapter", "0"]].concat()));
+    let part = &adapter.to_uppercase()[..adapter.find(' ').unwrap_or(adapter.len())];
+    taken(place.run(&[&map[..], &["--adapter", part]].concat()));
+    let named = |arguments: &[&str], name: &str| {
+        let mut command = place.command(arguments);
+        Run::of(&command.env("WGPU_ADAPTER_NAME", name).output().unwrap())
+    };
+    taken(named(&map, part));
+    // What is asked for comes before the variable.
+    taken(named(&[&map[..], &["--adapter", "0"]].concat(), "abacus"));
+    let auto = ["map", "scene.toml", "--no-png"];
+    let allowed = format!("0 ({adapter})");
+    for engine in [&map[..], &auto] {
+        for adapter in ["99", "abacus"] {
+            let run = place.run(&[engine, &["--adapter", adapter]].concat());
+            let what = format!("--adapter {adapter}: no such GPU adapter");
+            run.assert_refused(&[&what, &allowed]);
+        }
+        named(engine, "abacus").assert_refused(&["WGPU_ADAPTER_NAME=abacus: no such", &allowed]);
+    }
+    let devices = named(&["devices"], "abacus");
+    assert_eq!(devices.code, Some(2), "{devices:?}");
+    assert!(
+        devices.err.contains(&allowed) && !devices.out.contains('*'),
+        "{devices:?}"
+    );
+}
+
+/// The file says what the engine that solved leaves, and no cell leaves more.
+fn a_file_states_the_tolerances_of_its_engine() {
+    let place = Place::with(&SCENE.replace("count = 24", "count = 64"));
+    let tolerances = |arguments: &[&str]| {
+        let run = place.run(&[&["map", "scene.toml", "--no-png"], arguments].concat());
+        assert_eq!(run.code, Some(0), "{run:?}");
+        let map = StoredMap::open(&place.path("outputs/scene.exr")).unwrap();
+        let tolerances = map.attribute("tolerances").unwrap();
+        let accepted = tolerances["residual_accepted_whisker_lengths"]
+            .as_f64()
+            .unwrap();
+        let residuals = map.read_channel("residual").unwrap();
+        let worst = residuals.values().fold(0.0, f64::max);
+        assert!(worst > 0.0 && worst <= accepted, "{worst:e}: {tolerances}");
+        tolerances
+    };
+    let goal = |tolerances: &Value| tolerances["residual_goal_whisker_lengths"].as_f64();
+    let estimate = |tolerances: &Value| tolerances["push_angle_error_estimated_deg"].as_f64();
+    let tolerance = ["--tolerance", "1e-3deg"];
+    let on = |engine: &str| tolerances(&[&tolerance[..], &["--engine", engine]].concat());
+    let (cpu, gpu) = (on("cpu"), on("gpu"));
+    assert_eq!((goal(&cpu), goal(&gpu)), (Some(1e-12), Some(1e-7)));
+    // The nearest pole is at 2 of 20 mm.
+    let more = estimate(&gpu).unwrap() - estimate(&cpu).unwrap();
+    assert!((more - 1e-6_f64.to_degrees()).abs() < 1e-12, "{more:e}");
+    assert!(estimate(&gpu).unwrap() <= 1e-3);
+    // A tolerance that shaders do not meet is met by the CPU.
+    let handed = tolerances(&["--tolerance", "1e-6deg", "--engine", "gpu"]);
+    assert_eq!(goal(&handed), Some(1e-12));
+}

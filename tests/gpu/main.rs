@@ -1,0 +1,138 @@
+//! Tests that need a GPU: one contract in every precision, faults, strips of rows, whole maps and the program.
+//!
+//! A test that cannot run here is ignored with the reason, which needs a harness other than that of the standard library.
+#![allow(
+    clippy::unwrap_used,
+    clippy::panic,
+    reason = "a test fails by panicking"
+)]
+
+/// The tests of a module: their names, and what each group of them needs.
+macro_rules! tests {
+    ($($needs:ident: $($test:ident),+;)+) => {
+        pub const TESTS: &[(&str, crate::GpuTest)] = &[$($(
+            (concat!(module_path!(), "::", stringify!($test)), crate::GpuTest::$needs($test)),
+        )+)+];
+    };
+}
+
+mod adapters;
+mod bound;
+#[path = "../hard_cases/case.rs"]
+mod case;
+#[path = "../cells/mod.rs"]
+mod cells;
+mod choice;
+#[path = "../compute/mod.rs"]
+mod compute;
+mod contract;
+#[path = "../effect_sets/mod.rs"]
+mod effect_sets;
+mod faults;
+mod hard_cases;
+mod kinds;
+mod maps;
+#[path = "../hard_cases/named.rs"]
+mod named;
+mod pipeline;
+#[path = "../program/mod.rs"]
+mod program;
+#[path = "../hard_cases/random.rs"]
+mod random;
+#[path = "../random_rods/mod.rs"]
+mod random_rods;
+mod states;
+
+use libtest_mimic::{Arguments, Completion, Trial};
+use std::process::ExitCode;
+use whiskmap::integrate::EngineError;
+use whiskmap::integrate::gpu::{Gpu, Precision};
+
+/// A test by what it needs.
+#[derive(Clone, Copy)]
+pub enum GpuTest {
+    /// Nothing: runs on every machine.
+    Nothing(fn()),
+    /// An adapter.
+    Adapter(fn()),
+    /// For each precision, an adapter that computes in it.
+    Precision(fn(Precision)),
+    /// The library of a Vulkan driver, which a driver that fails calls.
+    #[cfg(target_os = "linux")]
+    Driver(fn()),
+}
+
+fn main() -> ExitCode {
+    let arguments = Arguments::from_args();
+    let missing = [Precision::F32, Precision::F64].map(missing_adapter);
+    let modules = [
+        adapters::TESTS,
+        bound::TESTS,
+        choice::TESTS,
+        contract::TESTS,
+        #[cfg(target_os = "linux")]
+        faults::driver::TESTS,
+        faults::kernel::TESTS,
+        faults::lost::TESTS,
+        hard_cases::TESTS,
+        maps::TESTS,
+        pipeline::TESTS,
+        states::TESTS,
+    ];
+    let tests = modules.concat().into_iter();
+    let trials = tests.flat_map(|(path, test)| {
+        let name = path.trim_start_matches("gpu::");
+        match test {
+            GpuTest::Nothing(run) => vec![trial(&arguments, name, None, run)],
+            GpuTest::Adapter(run) => vec![trial(&arguments, name, missing[0].as_deref(), run)],
+            #[cfg(target_os = "linux")]
+            GpuTest::Driver(run) => {
+                let missing = faults::driver::real_driver().err();
+                vec![trial(&arguments, name, missing.as_deref(), run)]
+            }
+            GpuTest::Precision(run) => [Precision::F32, Precision::F64]
+                .iter()
+                .zip(&missing)
+                .map(|(&precision, missing)| {
+                    let name = format!("{name}::{precision}");
+                    trial(&arguments, &name, missing.as_deref(), move || {
+                        run(precision)
+                    })
+                })
+                .collect(),
+        }
+    });
+    libtest_mimic::run(&arguments, trials.collect()).exit_code()
+}
+
+/// Why no adapter computes in `precision`, or `None` if one does or fails otherwise.
+fn missing_adapter(precision: Precision) -> Option<String> {
+    match Gpu::new(precision).err()? {
+        error @ (EngineError::NoAdapter(_) | EngineError::Unsupported { .. }) => {
+            Some(error.to_string())
+        }
+        EngineError::Device(_) | EngineError::Distrusted { .. } => None,
+    }
+}
+
+/// The test `name`, which is ignored if something is `missing` and `arguments` do not include ignored tests.
+///
+/// Lists mark the test as ignored, which `cargo nextest` reads; a run prints the reason.
+fn trial(
+    arguments: &Arguments,
+    name: &str,
+    missing: Option<&str>,
+    run: impl FnOnce() + Send + 'static,
+) -> Trial {
+    let is_included = arguments.ignored || arguments.include_ignored;
+    let is_marked = missing.is_some() && (arguments.list || is_included);
+    let reason = missing.filter(|_| !is_included).map(str::to_owned);
+    let trial = Trial::ignorable_test(name, || match reason {
+        Some(reason) => Ok(Completion::ignored_with(reason)),
+        None => {
+            run();
+            Ok(Completion::Completed)
+        }
+    });
+    trial.with_ignored_flag(is_marked)
+}

@@ -1,0 +1,59 @@
+//! Whole maps: every engine with the same answer.
+
+use crate::compute::{assert_close, assert_identical, compute, open, shipped, works};
+use whiskmap::integrate::gpu::Precision;
+use whiskmap::integrate::on_gpu;
+use whiskmap::map::EngineCells;
+use whiskmap::plan::Plan;
+use whiskmap::scene::Scene;
+
+tests! {
+    Precision:
+        engines_agree_on_every_cell,
+        what_an_engine_cannot_is_done_by_the_cpu;
+}
+
+/// The part of the cells that a GPU solves at least where rows have references.
+const SOLVED: f64 = 0.9;
+
+fn engines_agree_on_every_cell(precision: Precision) {
+    let mut gpu = open(precision);
+    for scene in shipped() {
+        let scene = scene.thinned(128, 4);
+        let effects = Plan::new(&scene).unwrap().method.effects;
+        let (_, cpu) = compute(&scene, None);
+        let (summary, panels) = compute(&scene, Some(&mut gpu));
+        let title = &scene.title;
+        assert_eq!(summary.unresolved(), 0, "{title}");
+        if on_gpu(effects).is_ok() {
+            works(&summary, SOLVED).unwrap_or_else(|why| panic!("{title}: {why}"));
+            assert_close(&cpu, &panels, title);
+        } else {
+            assert_identical(&cpu, &panels);
+        }
+    }
+}
+
+/// What the shaders lack, the CPU does: every cell of the map.
+fn what_an_engine_cannot_is_done_by_the_cpu(precision: Precision) {
+    let mut gpu = open(precision);
+    let cone = Scene::read("scenes/cone.toml").unwrap().thinned(48, 1);
+    let graded = cone
+        .with("whisker.modulus_gradient.tip_to_base", 1.5)
+        .unwrap();
+    let measured = Scene::read("scenes/measured.toml").unwrap().thinned(48, 1);
+    for (scene, why) in [(graded, "a modulus gradient"), (measured, "measured radii")] {
+        let effects = Plan::new(&scene).unwrap().method.effects;
+        assert!(on_gpu(effects).unwrap_err().contains(why));
+        let (_, cpu) = compute(&scene, None);
+        let (summary, panels) = compute(&scene, Some(&mut gpu));
+        let without_reference = summary.engine_cells.without_reference;
+        assert!(without_reference > 0);
+        let only = EngineCells {
+            without_reference,
+            ..EngineCells::default()
+        };
+        assert_eq!(summary.engine_cells, only);
+        assert_identical(&cpu, &panels);
+    }
+}

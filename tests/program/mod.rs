@@ -1,0 +1,146 @@
+//! The program in a folder of its own, and the output of its runs.
+#![allow(dead_code, reason = "each test program uses its own share")]
+#![allow(clippy::panic, reason = "a test fails by panicking")]
+
+use assert_cmd::Command;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Output;
+use tempfile::TempDir;
+
+/// A whisker that shows every regime but two within a split second.
+pub const SCENE: &str = r#"title = "A small map"
+[whisker]
+length_mm = 20
+base_radius_um = 30.0
+tip_radius_um = 1.5
+youngs_modulus_gpa = 3.0
+[whisker.curvature]
+parabola_per_mm = 0.02
+[pole]
+radius_mm = 0.25
+[grid]
+push_angle_deg = { from = -70, to = 70, count = 24 }
+distance_mm = { from = 2, to = 20, count = 24 }
+"#;
+
+/// A folder with scenes in it, and the program to be run there.
+pub struct Place(TempDir);
+
+impl Place {
+    /// A folder with `text` as `scene.toml`.
+    pub fn with(text: &str) -> Self {
+        let place = Self(tempfile::tempdir().unwrap());
+        place.write("scene.toml", text);
+        place
+    }
+
+    pub fn path(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    pub fn write(&self, name: &str, text: &str) {
+        fs::write(self.path(name), text).unwrap();
+    }
+
+    /// The program, not yet run.
+    pub fn command(&self, arguments: &[&str]) -> Command {
+        Command::from_std(self.plain_command(arguments))
+    }
+
+    /// The same as the standard library has it, with streams left to be set.
+    pub fn plain_command(&self, arguments: &[&str]) -> std::process::Command {
+        let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_whiskmap"));
+        command
+            .args(arguments)
+            .current_dir(self.0.path())
+            // Where it is not set, the libraries of software adapters complain on standard error.
+            .env_remove("XDG_RUNTIME_DIR");
+        command
+    }
+
+    /// Runs the program; it must not panic.
+    pub fn run(&self, arguments: &[&str]) -> Run {
+        Run::of(&self.command(arguments).output().unwrap())
+    }
+
+    /// Runs `map`, which must succeed.
+    pub fn map(&self, arguments: &[&str]) -> Run {
+        let run = self.run(&[&["map", "--engine", "cpu"], arguments].concat());
+        assert_eq!(run.code, Some(0), "{run:?}");
+        run
+    }
+
+    pub fn bytes(&self, name: &str) -> Vec<u8> {
+        fs::read(self.path(name)).unwrap()
+    }
+}
+
+/// Names of what is in a folder, in order; nothing where there is no folder.
+pub fn names(folder: &Path) -> Vec<String> {
+    let mut names: Vec<String> = fs::read_dir(folder)
+        .into_iter()
+        .flatten()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    names.sort();
+    names
+}
+
+/// What a run of the program left behind.
+#[derive(Debug)]
+pub struct Run {
+    pub code: Option<i32>,
+    pub out: String,
+    pub err: String,
+}
+
+impl Run {
+    pub fn of(output: &Output) -> Self {
+        let run = Self {
+            code: output.status.code(),
+            out: String::from_utf8(output.stdout.clone()).unwrap(),
+            err: String::from_utf8(output.stderr.clone()).unwrap(),
+        };
+        assert!(!run.err.contains("panicked"), "{run:?}");
+        run
+    }
+
+    /// The number before `what` in the summary.
+    pub fn count(&self, what: &str) -> u64 {
+        let line = self
+            .out
+            .lines()
+            .find(|line| line.trim_end().ends_with(what));
+        let number = line.and_then(|line| line.split_whitespace().next());
+        number
+            .unwrap_or_else(|| panic!("no {what}: {self:?}"))
+            .parse()
+            .unwrap()
+    }
+
+    /// Every cell has an answer, and it is that of its row.
+    pub fn assert_settled(&self) {
+        assert_eq!(self.count("unresolved"), 0, "{self:?}");
+        let disagreements = "disagreements between cells and boundaries";
+        assert_eq!(self.count(disagreements), 0, "{self:?}");
+    }
+
+    /// It ended with this exit code, and said this.
+    pub fn assert_said(&self, code: i32, said: &str) {
+        assert_eq!(self.code, Some(code), "{self:?}");
+        assert!(self.err.contains(said), "{self:?}");
+    }
+
+    /// Refused as wrong input: exit code 2, nothing on standard output, one message that says all of `parts`.
+    pub fn assert_refused(&self, parts: &[&str]) {
+        assert_eq!(self.code, Some(2), "{self:?}");
+        assert_eq!(self.out, "", "{self:?}");
+        assert!(self.err.starts_with("error: "), "{self:?}");
+        assert_eq!(self.err.matches("error: ").count(), 1, "{self:?}");
+        assert!(!self.err.contains('\u{1b}'), "colours in a pipe: {self:?}");
+        for part in parts {
+            assert!(self.err.contains(part), "no {part:?} in {self:?}");
+        }
+    }
+}
