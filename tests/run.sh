@@ -23,7 +23,13 @@ cargo fmt --check
 cargo clippy --all-targets --profile checked --locked -- -D warnings
 cargo clippy --lib --no-default-features --profile checked --locked -- -D warnings
 RUSTDOCFLAGS="-D warnings" cargo doc --no-deps --locked --profile checked
-WHISKMAP_REQUIRE_GPU=1 cargo test --profile checked --locked --no-fail-fast
+log="$(mktemp)"
+trap 'rm -f "$log"' EXIT
+cargo test --profile checked --locked --no-fail-fast | tee "$log"
+if grep -E '^test .* \.\.\. ignored|; [1-9][0-9]* ignored;' "$log"; then
+    echo "error: tests were ignored, for the reasons above; all tests must run" >&2
+    exit 1
+fi
 
 # The documentation's Python reads what the tests' program writes.
 target="${CARGO_TARGET_DIR:-target}"

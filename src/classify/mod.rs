@@ -83,3 +83,8 @@ named! {
         NoBoundary = 103, "unresolved: boundary not found";
     }
 }
+
+impl Status {
+    /// Statuses of states whose friction is not the one assumed: contact, force and moment are off.
+    pub const MARKS: [Self; 2] = [Self::TowardBase, Self::Sticking];
+}

@@ -1,12 +1,13 @@
 //! `whiskmap extract`.
 
-use super::failure::Failure;
+use super::failure::{Failure, say};
 use super::files::{Files, unwritten};
-use super::selection::{Selection, channels};
+use super::selection::{Selection, channels, with_marks};
 use clap::Args;
 use serde::ser::{Serialize, SerializeStruct, Serializer};
 use std::io::{self, BufWriter, IntoInnerError, Write};
 use std::path::{Path, PathBuf};
+use whiskmap::classify::Status;
 use whiskmap::integrate;
 use whiskmap::map::{Audit, Channels, EngineCells};
 use whiskmap::scene::{Scene, Setup};
@@ -32,7 +33,7 @@ pub struct Options {
     source: PathBuf,
     #[command(flatten)]
     selection: Selection,
-    /// Channel to extract, more than one if repeated [default: all]
+    /// Channel to extract, more than one if repeated; with friction, one of a state brings status, but for an array [default: all]
     #[arg(long, value_name = "NAME")]
     channel: Vec<String>,
     /// What to write: a table, an array of one channel, a store or a map, by its ending .csv, .npy, .zarr or .exr
@@ -45,12 +46,16 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     let mut files = Files::default();
     let slice = options.selection.open(&mut files, &options.source)?;
     let channels = channels(&slice, &options.channel)?;
+    let marked = with_marks(&options.source, &slice, &channels)?;
     let path = &options.output;
     match path.extension().and_then(|ending| ending.to_str()) {
-        Some("csv") => table(&slice, &channels, path, &mut files)?,
-        Some("npy") => array(&slice, &channels, path, &mut files)?,
-        Some("zarr") => store(&slice, &channels, path, &mut files)?,
-        Some("exr") => map(&slice, &channels, path, &mut files)?,
+        Some("csv") => table(&slice, &marked, path, &mut files)?,
+        Some("npy") => {
+            array(&slice, &channels, path, &mut files)?;
+            warn_of_marks(&slice, &channels, &marked)?;
+        }
+        Some("zarr") => store(&slice, &marked, path, &mut files)?,
+        Some("exr") => map(&slice, &marked, path, &mut files)?,
         _ => return refuse(path, "must end in .csv, .npy, .zarr or .exr"),
     }
     writeln!(io::stdout(), "{}", path.display())?;
@@ -155,6 +160,33 @@ fn array(
     let output = file.into_inner().map_err(IntoInnerError::into_error);
     let done = output.and_then(Output::finish);
     done.map_err(|cause| unwritten(path, cause))
+}
+
+/// Warns of an array whose states `status` marks: an array has one channel, so the marks are not in it.
+fn warn_of_marks(
+    slice: &Slice,
+    channels: &[&'static str],
+    marked: &[&'static str],
+) -> Result<(), Failure> {
+    if channels == marked {
+        return Ok(());
+    }
+    let marks = Status::MARKS.map(Status::code);
+    let (mut off, mut cells) = (0, 0);
+    for whisker in slice.whiskers() {
+        if let Samples::U32(codes) = slice.read_panel("status", whisker)? {
+            off += codes.iter().filter(|code| marks.contains(code)).count();
+            cells += codes.len();
+        }
+    }
+    if off > 0 {
+        let [sliding, sticking] = marks;
+        say(&format!(
+            "warning: {off} of {cells} cells of {} are off: their friction is not as assumed; --channel status marks them by {sliding} and {sticking}",
+            channels.join(", ")
+        ));
+    }
+    Ok(())
 }
 
 /// What precedes the values in a file of NumPy, version 1.0.

@@ -54,7 +54,8 @@ pub struct Options {
     pub threads: Option<u32>,
     #[command(flatten)]
     tolerance: Tolerance,
-    /// What to compute and store of each cell, by names with commas between them [default: everything]
+    /// Channels to compute and store, by names with commas between them; with friction, those of a state bring status
+    /// [default: all]
     #[arg(long, value_name = "LIST", value_parser = Channels::from_str)]
     channels: Option<Channels>,
     /// What to write
@@ -87,7 +88,8 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     // What the steps leave of the tolerance.
     let left_deg = options.tolerance.degrees().zip(accuracy.as_ref());
     let left_deg = left_deg.map(|(tolerance, accuracy)| tolerance - accuracy.error_deg);
-    plan.channels = options.channels.unwrap_or(Channels::ALL);
+    let channels = options.channels.unwrap_or(Channels::ALL);
+    plan.channels = channels.with_marks(scene.has_friction());
     let (mut engine, why) = options.engine.open(&scene, &plan, left_deg)?;
     let solver = whiskmap::integrate::Description::of(engine.as_deref());
     let about = Description {

@@ -4,7 +4,7 @@ use super::failure::Failure;
 use super::files::{Files, STDOUT};
 use super::numbers::whole;
 use super::picture::{save, warn_of_boxes};
-use super::selection::{Selection, channels};
+use super::selection::{Selection, channels, with_marks};
 use clap::Args;
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
@@ -60,7 +60,10 @@ fn range(text: &str) -> Result<[f64; 2], String> {
 pub fn run(options: &Options) -> Result<(), Failure> {
     let mut files = Files::default();
     let map = options.selection.open(&mut files, &options.file)?;
-    channels(&map, options.channel.as_slice())?;
+    if let Some(channel) = &options.channel {
+        let channel = channels(&map, std::slice::from_ref(channel))?;
+        with_marks(&options.file, &map, &channel)?;
+    }
     let target = target(options, &map, &mut files)?;
     let picture = render::map(
         &map,

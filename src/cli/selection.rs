@@ -5,6 +5,7 @@ use super::files::Files;
 use clap::Args;
 use std::path::Path;
 use std::str::FromStr;
+use whiskmap::map::Channels;
 use whiskmap::scene::digits;
 use whiskmap::store::{At, Slice, Stored};
 
@@ -38,6 +39,26 @@ impl Selection {
         }
         Ok(slice)
     }
+}
+
+/// The `channels` of the slice of `source`, and with friction the one that marks their states; warns if it is missing.
+pub fn with_marks(
+    source: &Path,
+    slice: &Slice,
+    channels: &[&'static str],
+) -> Result<Vec<&'static str>, Failure> {
+    let chosen = Channels::those(|name| channels.contains(&name));
+    let has_friction = chosen.has_state() && slice.has_friction()?;
+    let known = slice.channels();
+    if has_friction && !known.contains(&"status") {
+        say(&format!(
+            "warning: {} has friction, but no channel status: where the contact slides toward the base or sticks, \
+             contact, force and moment are off, unmarked",
+            source.display()
+        ));
+    }
+    let marked = chosen.with_marks(has_friction);
+    Ok(marked.names().filter(|name| known.contains(name)).collect())
 }
 
 /// The channels that were `asked` for, or all.

@@ -56,6 +56,17 @@ impl Channels {
         Self::those(|other| other == name || self.contains(other))
     }
 
+    /// The channels to store where there may be friction: with it, channels of a state bring `status`, which marks the states that are
+    /// off ([`Status::MARKS`](crate::classify::Status::MARKS)).
+    #[must_use]
+    pub fn with_marks(self, has_friction: bool) -> Self {
+        if has_friction && self.has_state() {
+            self.with("status")
+        } else {
+            self
+        }
+    }
+
     /// Whether there is one of this name among them.
     #[must_use]
     pub fn contains(&self, name: &str) -> bool {

@@ -70,7 +70,6 @@ pub fn effects(scene: &Scene, kernels: Effects) -> Vec<Effect> {
         stretch += " does nothing without taper or modulus gradient";
     }
     let is_disc = any(|own| own.pole.radius_mm != 0.0);
-    let is_rough = any(|own| own.pole.friction != 0.0);
     let effect = |name, on, cost, why| Effect {
         name,
         on,
@@ -85,7 +84,7 @@ pub fn effects(scene: &Scene, kernels: Effects) -> Vec<Effect> {
         effect("euler spiral", kernels.spiral, Cost::Kernel, spiral),
         effect("modulus gradient", kernels.gradient, Cost::Kernel, gradient),
         effect("pole radius", is_disc, Cost::Start, radius),
-        effect("friction", is_rough, Cost::Start, friction),
+        effect("friction", scene.has_friction(), Cost::Start, friction),
         effect("projection", stretched && varies, Cost::Taper, stretch),
     ];
     effects

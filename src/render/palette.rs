@@ -49,6 +49,17 @@ impl Fill {
         }
     }
 
+    /// The ground with stripes that stand out from it.
+    pub(super) fn hatched(self) -> Self {
+        let [red, green, blue] = self.ground.map(f64::from);
+        // Luma by ITU-R BT.601.
+        let is_light = 0.299 * red + 0.587 * green + 0.114 * blue > 127.5;
+        Self {
+            stripes: if is_light { INK } else { WHITE },
+            ..self
+        }
+    }
+
     /// The colour at a sum of the coordinates: stripes run from the lower left to the upper right.
     pub(super) fn at(self, sum: f64) -> Rgb {
         if sum % 10.0 < 3.0 {

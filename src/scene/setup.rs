@@ -94,6 +94,12 @@ impl Setup {
         corners.map(move |index| self.whisker_at(ends.place(index)))
     }
 
+    /// Whether any whisker of the sweep has friction with its pole.
+    #[must_use]
+    pub fn has_friction(&self) -> bool {
+        self.corner_whiskers().any(|own| own.pole.friction != 0.0)
+    }
+
     /// Whether whiskers are swept: whether there is an axis beside push angle and distance.
     #[must_use]
     pub fn is_sweep(&self) -> bool {

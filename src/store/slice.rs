@@ -1,7 +1,7 @@
 //! A part of a map or a store: what is left of its axes where a value is chosen on some of them.
 
 use super::{Channels, Error, Layout, Panel, STATE_CHANNELS, Samples, Stored, StoredMap};
-use crate::scene::{Grid, digits};
+use crate::scene::{Grid, Scene, digits};
 use std::collections::{BTreeMap, BTreeSet};
 use std::str::FromStr;
 
@@ -168,6 +168,21 @@ impl Slice {
     #[must_use]
     pub fn channels(&self) -> Vec<&'static str> {
         self.stored.channels()
+    }
+
+    /// Whether any whisker of the slice has friction with its pole. A scene that this version cannot read counts as having it.
+    ///
+    /// # Errors
+    ///
+    /// The map or store has no scene.
+    pub fn has_friction(&self) -> Result<bool, Error> {
+        let text = self.stored.attribute("scene")?;
+        let scene = Scene::parse(text.as_str().unwrap_or_default(), "the scene of the map");
+        let mut chosen = self.chosen.iter();
+        Ok(match chosen.find(|(name, _)| *name == "friction") {
+            Some((_, friction)) => *friction != 0.0,
+            None => scene.map_or(true, |scene| scene.has_friction()),
+        })
     }
 
     /// The whiskers that are left, with the last axis varying fastest.

@@ -32,7 +32,7 @@ fn a_slice_is_what_the_store_has_there() {
     );
     let table = fs::read_to_string(place.path("s.csv")).unwrap();
     let mut lines = table.lines();
-    let header = "taper,friction,pole_radius_mm,distance_mm,push_angle_deg,regime,force_un";
+    let header = "taper,friction,pole_radius_mm,distance_mm,push_angle_deg,regime,status,force_un";
     assert_eq!(lines.next(), Some(header));
     for friction in 0..2 {
         let whisker = 1 + 3 * friction + 6;
@@ -43,7 +43,7 @@ fn a_slice_is_what_the_store_has_there() {
             assert_eq!(cells[1], ["0.0", "0.3"][friction]);
             assert_eq!(cells[4..6], ["-70.0", &regime.value(row * 64).to_string()]);
             let own = force.value(row * 64);
-            let found = cells[6].parse::<f32>().map(f64::from).ok();
+            let found = cells[7].parse::<f32>().map(f64::from).ok();
             assert_eq!(found, Some(own).filter(|own| own.is_finite()));
         }
     }

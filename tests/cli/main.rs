@@ -17,6 +17,7 @@ mod fit;
 #[cfg(unix)]
 mod integrity;
 mod map;
+mod marks;
 mod other;
 mod paper;
 mod plan;

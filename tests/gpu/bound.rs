@@ -136,8 +136,8 @@ fn a_wrong_shader_breaks_its_bounds() {
         ),
         ("slower * (2.0 + slower)", "slower * (2.001 + slower)"),
         (
-            "(step.wider + stage.growth +",
-            "(step.wider + 1.1 * stage.growth +",
+            "ds *= expm1_over_small(path.widening * left)",
+            "ds *= expm1_over_small(1.1 * path.widening * left)",
         ),
         ("- path.rest_at_contact;", "- 0.999 * path.rest_at_contact;"),
         (

@@ -2,11 +2,12 @@
 
 use super::boundary;
 use super::cells::Cells;
+use super::scale::is_mark;
 use super::shading::Shading;
 use crate::render::error::Error;
 use crate::render::palette::{INK, WHITE};
 use crate::render::picture::{Area, Pen, Picture};
-use crate::store::Slice;
+use crate::store::{Samples, Slice};
 
 /// Draws panel `index` of a channel into `area`, distance upwards, with lines of the given width.
 pub(super) fn draw(
@@ -20,9 +21,18 @@ pub(super) fn draw(
     let angles = Cells::new(&grid.push_angle_deg);
     let distances = Cells::new(&grid.distance_mm);
     let samples = map.read_panel(channel, index)?;
+    let marks = match shading {
+        Shading::Scale(scale) if scale.has_marks => Some(map.read_panel("status", index)?),
+        _ => None,
+    };
     let columns = grid.push_angle_deg.len();
     picture.raster(area, |across, up| {
-        shading.fill(samples.value(distances.cell(up) * columns + angles.cell(across)))
+        let cell = distances.cell(up) * columns + angles.cell(across);
+        let fill = shading.fill(samples.value(cell));
+        match &marks {
+            Some(Samples::U32(codes)) if is_mark(codes[cell]) => fill.hatched(),
+            _ => fill,
+        }
     });
     let rest = angles.fraction(0.0);
     if rest > 0.0 && rest < 1.0 {

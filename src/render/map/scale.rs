@@ -1,6 +1,7 @@
 //! Colours of quantities, and the bar that explains them.
 
 use super::options::MapOptions;
+use crate::classify::Status;
 use crate::render::error::Error;
 use crate::render::heading::{LABEL, TICK};
 use crate::render::palette::{self, Fill, INK};
@@ -8,7 +9,7 @@ use crate::render::picture::{Anchor, Area, Pen, Picture};
 use crate::render::ticks::{self, Tick};
 use crate::render::{axes, units};
 use crate::scene::digits;
-use crate::store::{Samples, Slice};
+use crate::store::{STATE_CHANNELS, Samples, Slice};
 
 /// Room that the colour bar takes to the right of the picture's body.
 pub(super) const BAR_ROOM: f64 = 190.0;
@@ -20,6 +21,8 @@ pub(super) struct Scale {
     pub(super) range: Option<[f64; 2]>,
     /// What the cells without a colour are.
     pub(super) blank: Option<String>,
+    /// Whether there are states that are off, which are hatched.
+    pub(super) has_marks: bool,
     log: bool,
     /// Only whole numbers occur.
     whole: bool,
@@ -60,6 +63,7 @@ impl Scale {
         Ok(Self {
             range: options.range.or(extent.map(|extent| widened(extent, log))),
             blank: (!blank.is_empty()).then(|| blank.join(", or ")),
+            has_marks: has_marks(map, channel)?,
             log,
             whole,
             channel: channel.to_owned(),
@@ -130,6 +134,19 @@ impl Scale {
         let middle = [body.right() + BAR_ROOM - 24.0, bar.top + 0.5 * bar.height];
         picture.text(&label, middle, LABEL, Anchor::Upwards);
     }
+}
+
+/// Whether `channel` is of states, some of which `status` marks as off.
+fn has_marks(map: &Slice, channel: &str) -> Result<bool, Error> {
+    if !STATE_CHANNELS.contains(&channel) || !map.channels().contains(&"status") {
+        return Ok(false);
+    }
+    Ok(map.codes("status")?.into_iter().any(is_mark))
+}
+
+/// Whether this is the code of a status that marks a state as off.
+pub(super) fn is_mark(code: u32) -> bool {
+    Status::MARKS.iter().any(|status| status.code() == code)
 }
 
 /// Whether the ends of a colour bar can be what they are.

@@ -80,8 +80,12 @@ impl Shading {
             Self::Names { present, .. } => present.clone(),
             Self::Scale(scale) => {
                 let blank = scale.blank.iter().cloned();
-                blank
-                    .map(|name| (Sample::Swatch(Fill::BLANK), name))
+                let blank = blank.map(|name| (Fill::BLANK, name));
+                let off = "off: friction is not as assumed".to_owned();
+                let marks = scale.has_marks.then_some((Fill::BLANK.hatched(), off));
+                let samples = blank.chain(marks);
+                samples
+                    .map(|(fill, name)| (Sample::Swatch(fill), name))
                     .collect()
             }
         }
