@@ -13,6 +13,7 @@ use crate::scene::Scene;
 use crate::store::MapWriter;
 use serde::Serialize;
 use std::convert::Infallible;
+use std::fmt;
 use std::hint::black_box;
 use std::time::Duration;
 
@@ -65,6 +66,31 @@ pub struct Verdict {
     pub times: f64,
     /// Whether runs of the slower one were as fast as runs of the faster one.
     pub within_spread: bool,
+    /// Whether the timing of either is noisy.
+    pub is_noisy: bool,
+}
+
+impl fmt::Display for Verdict {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self {
+            faster,
+            slower,
+            times,
+            ..
+        } = self;
+        match (self.within_spread, self.is_noisy) {
+            (false, _) => write!(f, "{faster} is {times:.1} times as fast as {slower}"),
+            (true, false) => write!(
+                f,
+                "{faster} and {slower} are equally fast, within their spread"
+            ),
+            (true, true) => write!(
+                f,
+                "too noisy to tell whether {faster} or {slower} is faster;\n\
+                 repeat on an idle machine, without --quick, or with a larger grid"
+            ),
+        }
+    }
 }
 
 impl Verdict {
@@ -82,6 +108,7 @@ impl Verdict {
             slower: slower.engine.clone(),
             times: slower.seconds.median / faster.seconds.median,
             within_spread: slower.seconds.fastest <= faster.seconds.slowest,
+            is_noisy: slower.seconds.is_noisy || faster.seconds.is_noisy,
         })
     }
 }
@@ -247,5 +274,27 @@ mod tests {
         assert_eq!(verdict(&[&cpu, &slow]), says("cpu", "slow", 2.0, false));
         let near = map("near", &[2.05, 2.5, 3.0]);
         assert_eq!(verdict(&[&cpu, &near]), says("cpu", "near", 1.25, true));
+    }
+
+    #[test]
+    fn a_verdict_on_noisy_timings_names_no_faster_engine() {
+        let says = |cpu: &[f64], gpu: &[f64]| {
+            let verdict = Verdict::of(&[map("cpu", cpu), map("gpu", gpu)]);
+            verdict.map(|verdict| verdict.to_string())
+        };
+        let quiet = says(&[1.95, 2.0, 2.05], &[2.0, 2.1, 2.2]);
+        let wanted = "cpu and gpu are equally fast, within their spread";
+        assert_eq!(quiet.as_deref(), Some(wanted));
+        for (cpu, gpu) in [
+            ([1.0, 2.0, 3.0], [2.0, 2.1, 2.2]),
+            ([1.95, 2.0, 2.05], [2.0, 2.5, 3.0]),
+        ] {
+            let noisy = says(&cpu, &gpu).unwrap_or_default();
+            assert!(noisy.starts_with("too noisy to tell"), "{noisy}");
+            assert!(noisy.contains("an idle machine"), "{noisy}");
+        }
+        // Noise does not matter where no runs overlap.
+        let apart = says(&[1.0, 2.0, 3.0], &[8.0, 9.0, 10.0]);
+        assert_eq!(apart.as_deref(), Some("cpu is 4.5 times as fast as gpu"));
     }
 }

@@ -47,7 +47,7 @@ row! {
         pub det: f64,
         /// first-touch; slip-off, pull-off (stable end); second-fold, tip (unstable end).
         pub mark: Option<Mark>,
-        /// With friction, where the contact slides: tip, as assumed, or base; or sticks.
+        /// With friction, where the contact slides: tip, as assumed; with base or sticks, contact, force and moment are off.
         pub sliding: Option<Sliding>,
     }
 }

@@ -133,7 +133,10 @@ fn tables_fit_a_terminal_and_pictures_are_drawn() {
     let widest = rows.map(|line| line.chars().count()).max();
     assert!(widest <= Some(80), "{}", run.out);
     assert!(run.out.contains("\n* "), "{}", run.out);
-    assert_eq!(run.out.matches("verdict: ").count(), 1, "{}", run.out);
+    for line in ["for devices: ", "idle: ", "verdict: "] {
+        let start = format!("\n{line}");
+        assert_eq!(run.out.matches(&start).count(), 1, "{}", run.out);
+    }
     assert_eq!(place.path("b.json").is_symlink(), cfg!(unix));
     let json: Value = serde_json::from_slice(&place.bytes("b.json")).unwrap();
     assert_eq!(json["scene"], "A small map");

@@ -77,7 +77,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     }
     if let Some(picture) = picture {
         let title = format!("What accuracy costs: {}", report.scene);
-        picture.save(title, plot(&report))?;
+        picture.save(title, plot(&report.rows))?;
     }
     if json != Some(Path::new(STDOUT)) {
         tables(&report)?;

@@ -134,17 +134,15 @@ fn maps(out: &mut impl Write, report: &Report) -> io::Result<()> {
             stages.idle
         )?;
     }
-    let verdict = match &report.verdict {
-        None => "no GPU engine was measured".to_owned(),
-        Some(verdict) => {
-            let (faster, slower, times) = (&verdict.faster, &verdict.slower, verdict.times);
-            match verdict.within_spread {
-                true => format!("{faster} and {slower} are equally fast, within their spread"),
-                false => format!("{faster} is {times:.1} times as fast as {slower}"),
-            }
-        }
-    };
-    writeln!(out, "verdict: {verdict}")
+    writeln!(
+        out,
+        "\nfor devices: part of the host's CPU time that a GPU could take over\n\
+         idle: milliseconds a thread has no CPU time: it waits, or others use the core"
+    )?;
+    match &report.verdict {
+        None => writeln!(out, "verdict: no GPU engine was measured"),
+        Some(verdict) => writeln!(out, "verdict: {verdict}"),
+    }
 }
 
 /// The spread of a timing in percent, marked where it is noisy.
