@@ -1,4 +1,5 @@
 //! One whisker in front of a few poles; lengths in whisker lengths.
+#![allow(dead_code, reason = "each test program uses its own share")]
 
 use std::fmt::Write;
 use whiskmap::integrate::Engine;
