@@ -1,9 +1,5 @@
 //! Maps of whiskers whose level curves run along lines of constant load, turn back, or come in pieces.
-#![allow(
-    clippy::unwrap_used,
-    clippy::print_stderr,
-    reason = "a test fails by panicking, and says aloud what it skipped"
-)]
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod compute;
 

@@ -89,7 +89,7 @@ fn a_slice_with_friction_keeps_the_status_of_loads() {
 
 /// Writes a map without `status`, as older versions did.
 fn write_without_status(place: &Place) {
-    let scene = whiskmap::scene::Scene::read(&place.path("scene.toml")).unwrap();
+    let scene = whiskmap::scene::Scene::read(place.path("scene.toml")).unwrap();
     let map = whiskmap::map(&scene, whiskmap::Options::default()).unwrap();
     let about = Description {
         scene: &scene,
