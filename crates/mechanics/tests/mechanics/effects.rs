@@ -7,7 +7,7 @@ use whiskmap_mechanics::shooting::batch::{Batch, InitialCondition, Method};
 use whiskmap_mechanics::shooting::{SecondVariation, ShootingMap};
 
 /// A rod with each effect, one with none, and two with radii measured in different places.
-fn rods() -> Vec<Rod> {
+pub fn rods() -> Vec<Rod> {
     let cone = Rod {
         taper: 0.9,
         pole: 0.01,
@@ -48,7 +48,8 @@ fn rods() -> Vec<Rod> {
     ]
 }
 
-fn conditions(rods: &[Rod]) -> Vec<InitialCondition<'_>> {
+/// Three contacts on each rod, under a load that bends it well.
+pub fn conditions(rods: &[Rod]) -> Vec<InitialCondition<'_>> {
     let on = |rod| [0.3, 0.55, 0.8].map(|s| (rod, s));
     let pairs = rods.iter().flat_map(on);
     let condition = |(rod, s): (_, f64)| InitialCondition {

@@ -3,6 +3,7 @@
 
 mod accounts;
 mod batches;
+mod bytes;
 mod contact;
 mod effects;
 mod integrators;

@@ -2,10 +2,18 @@
 //!
 //! Each bundle waits for itself most of the time, so that two registers of each kind take hardly longer than one.
 
+#[cfg(any(target_arch = "aarch64", target_arch = "x86_64"))]
+#[macro_use]
+mod registers;
+
+#[cfg(target_arch = "aarch64")]
+mod aarch64;
 #[cfg(target_arch = "x86_64")]
 mod x86;
 
 use super::Real;
+#[cfg(target_arch = "aarch64")]
+use aarch64::Neon;
 use std::fmt;
 #[cfg(target_arch = "x86_64")]
 use x86::{Avx2, Avx512};
@@ -110,7 +118,9 @@ enum Instructions {
     Avx512(Avx512),
     #[cfg(target_arch = "x86_64")]
     Avx2(Avx2),
-    /// One number at a time, as the compiler's default target does arithmetic.
+    #[cfg(target_arch = "aarch64")]
+    Neon(Neon),
+    /// One number at a time, products rounded before they are added.
     Scalar,
 }
 
@@ -121,6 +131,8 @@ impl fmt::Display for Unit {
             Instructions::Avx512(_) => "AVX-512",
             #[cfg(target_arch = "x86_64")]
             Instructions::Avx2(_) => "AVX2",
+            #[cfg(target_arch = "aarch64")]
+            Instructions::Neon(_) => "NEON",
             Instructions::Scalar => "scalar",
         })
     }
@@ -134,6 +146,8 @@ impl Unit {
             Avx512::detect().map(Instructions::Avx512),
             #[cfg(target_arch = "x86_64")]
             Avx2::detect().map(Instructions::Avx2),
+            #[cfg(target_arch = "aarch64")]
+            Neon::detect().map(Instructions::Neon),
             Some(Instructions::Scalar),
         ];
         units.into_iter().flatten().map(Self)
@@ -145,7 +159,7 @@ impl Unit {
         Self::all().next().unwrap_or(Self::scalar())
     }
 
-    /// Plain numbers: what vectors are compared with, and all that processors other than x86-64 are given.
+    /// Plain numbers, not fused: what vectors are compared with, and the unit of processors without AVX2 and NEON.
     #[must_use]
     pub const fn scalar() -> Self {
         Self(Instructions::Scalar)
@@ -157,6 +171,8 @@ impl Unit {
         match self.0 {
             #[cfg(target_arch = "x86_64")]
             Instructions::Avx512(_) | Instructions::Avx2(_) => ArithmeticClass::Fma,
+            #[cfg(target_arch = "aarch64")]
+            Instructions::Neon(_) => ArithmeticClass::Fma,
             Instructions::Scalar => ArithmeticClass::NoFma,
         }
     }
@@ -169,6 +185,8 @@ impl Unit {
             Instructions::Avx512(unit) => unit.run(task),
             #[cfg(target_arch = "x86_64")]
             Instructions::Avx2(unit) => unit.run(task),
+            #[cfg(target_arch = "aarch64")]
+            Instructions::Neon(unit) => unit.run(task),
             Instructions::Scalar => task.run::<f64>(),
         }
     }

@@ -1,0 +1,134 @@
+//! Macros for the vector units: a unit is its token, its registers and the names of its instructions.
+//!
+//! Why the instructions are safe: vectors of a unit are of a type private to the unit's file, so that only generic code makes
+//! them, and only where [`SimdTask::run`](super::SimdTask::run) is called with that type: in a function that enables the unit's
+//! features. The function is called by the unit's token alone, and a token comes from `detect` alone, after a look at the
+//! processor. Vectors cannot outlive the call: neither the task nor its output can name their type, and nothing says that it
+//! is `'static`.
+
+/// Implements `$trait` for registers, one after the other.
+macro_rules! operator {
+    ($vectors:ident [$($i:tt)+], $trait:ident, $method:ident, $f:ident) => {
+        impl $trait for $vectors {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                // SAFETY: such values exist only where the unit does; see the module.
+                unsafe { Self($($f(self.$i, other.$i)),+) }
+            }
+        }
+    };
+}
+
+/// Registers of `$each` numbers as lanes.
+macro_rules! vectors {
+    (
+        $vectors:ident [$($i:tt $register:ty),+], $narrow:ident, $enabled:literal, $each:literal,
+        $add:ident, $sub:ident, $mul:ident, $div:ident, $fma:ident, $splat:ident, $sqrt:ident, $load:ident, $store:ident
+    ) => {
+        #[derive(Clone, Copy)]
+        struct $vectors($($register),+);
+
+        operator!($vectors [$($i)+], Add, add, $add);
+        operator!($vectors [$($i)+], Sub, sub, $sub);
+        operator!($vectors [$($i)+], Mul, mul, $mul);
+        operator!($vectors [$($i)+], Div, div, $div);
+
+        impl Neg for $vectors {
+            type Output = Self;
+            #[inline(always)]
+            fn neg(self) -> Self {
+                Self::of(-0.0) - self
+            }
+        }
+
+        impl Real for $vectors {
+            #[inline(always)]
+            fn of(x: f64) -> Self {
+                // SAFETY: this is called only where the unit exists; see the module.
+                unsafe { Self { $($i: $splat(x)),+ } }
+            }
+
+            #[inline(always)]
+            fn mul_add(self, a: Self, b: Self) -> Self {
+                // SAFETY: such values exist only where the unit does; see the module.
+                unsafe { Self($($fma(self.$i, a.$i, b.$i)),+) }
+            }
+
+            #[inline(always)]
+            fn sqrt(self) -> Self {
+                // SAFETY: such values exist only where the unit does; see the module.
+                unsafe { Self($($sqrt(self.$i)),+) }
+            }
+        }
+
+        impl Lanes for $vectors {
+            type Narrow = $narrow;
+
+            const LANES: usize = {
+                let lanes = $each * [$($i),+].len();
+                assert!(lanes <= WIDTH);
+                lanes
+            };
+
+            #[inline(always)]
+            fn pack(lanes: [f64; WIDTH]) -> Self {
+                let from = lanes.as_ptr();
+                // SAFETY: the registers are no longer than the array; see the module for the instructions.
+                unsafe { Self($($load(from.add($i * $each))),+) }
+            }
+
+            #[inline(always)]
+            fn unpack(self) -> [f64; WIDTH] {
+                let mut lanes = [0.0; WIDTH];
+                let to = lanes.as_mut_ptr();
+                // SAFETY: the registers are no longer than the array; see the module for the instructions.
+                unsafe { $($store(to.add($i * $each), self.$i));+ }
+                lanes
+            }
+
+            #[inline(always)]
+            fn outlined<K: LanesTask<Self>>(task: K) -> K::Output {
+                #[target_feature(enable = $enabled)]
+                #[inline(never)]
+                fn run<K: LanesTask<$vectors>>(task: K) -> K::Output {
+                    task.run()
+                }
+                // SAFETY: this is called only where the unit exists; see the module.
+                unsafe { run(task) }
+            }
+        }
+    };
+}
+
+/// A token that only `detect` makes, and registers of `$each` numbers as lanes, in narrow and in wide vectors.
+macro_rules! unit {
+    (
+        $(#[$doc:meta])* $token:ident, $enabled:literal, $detected:ident [$($feature:tt)+],
+        $narrow:ident [$($few:tt)+], $wide:ident [$($many:tt)+], $each:literal, $($instruction:ident),+
+    ) => {
+        $(#[$doc])*
+        #[derive(Clone, Copy, Debug)]
+        pub struct $token(());
+
+        impl $token {
+            /// The token, where the processor has all features of the unit.
+            pub fn detect() -> Option<Self> {
+                ($($detected!($feature))&&+).then_some(Self(()))
+            }
+
+            /// Does `task` in this unit's lanes.
+            pub fn run<K: SimdTask>(self, task: K) -> K::Output {
+                #[target_feature(enable = $enabled)]
+                fn run<K: SimdTask>(task: K) -> K::Output {
+                    task.run::<$wide>()
+                }
+                // SAFETY: `detect` has seen every feature that the function enables.
+                unsafe { run(task) }
+            }
+        }
+
+        vectors!($narrow [$($few)+], $narrow, $enabled, $each, $($instruction),+);
+        vectors!($wide [$($many)+], $narrow, $enabled, $each, $($instruction),+);
+    };
+}

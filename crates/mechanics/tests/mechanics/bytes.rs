@@ -1,0 +1,45 @@
+//! Bits of trajectories: equal on all units of one arithmetic class, on every processor and operating system.
+
+use crate::effects::{conditions, rods};
+use whiskmap_mechanics::numerics::{ArithmeticClass, Unit};
+use whiskmap_mechanics::shooting::batch::{Batch, InitialCondition, Method, OutputSet};
+use whiskmap_mechanics::shooting::{FirstVariation, Resolution, SecondVariation, ShootingMap};
+
+/// FNV-1a of a text. The text of an `f64` in Rust has all of its bits, except those of NaN.
+fn fnv(hash: u64, text: &str) -> u64 {
+    text.bytes().fold(hash, |hash, byte| {
+        (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
+    })
+}
+
+/// The hash of the outputs of all conditions, each alone in its block and in padded blocks.
+fn hashed<O: OutputSet + std::fmt::Debug>(
+    hash: u64,
+    batch: Batch,
+    conditions: &[InitialCondition],
+) -> u64 {
+    [batch, batch.padded()]
+        .iter()
+        .flat_map(|batch| batch.shoot::<O>(conditions))
+        .fold(hash, |hash, output| fnv(hash, &format!("{output:?}")))
+}
+
+#[test]
+fn units_of_a_class_have_equal_bits() {
+    let rods = rods();
+    let conditions = conditions(&rods);
+    for unit in Unit::all() {
+        let mut hash = 0xcbf2_9ce4_8422_2325;
+        for resolution in [Resolution::of(7), Resolution::FINE] {
+            let batch = Batch::new(Method::new(resolution)).on(unit);
+            hash = hashed::<ShootingMap>(hash, batch, &conditions);
+            hash = hashed::<FirstVariation>(hash, batch, &conditions);
+            hash = hashed::<SecondVariation>(hash, batch, &conditions);
+        }
+        let expected: u64 = match unit.arithmetic() {
+            ArithmeticClass::Fma => 0,
+            ArithmeticClass::NoFma => 0,
+        };
+        eprintln!("{unit} ({}): {hash:#018x} {expected}", unit.arithmetic());
+    }
+}
