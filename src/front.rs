@@ -17,7 +17,6 @@ use crate::scene::Parameter;
 use crate::scene::{Grid, Place, Scene, Swept};
 use crate::shooting::Resolution;
 use crate::trace::{Branch, Detachment, NoState, Shape, curve_at, sides, whiskers_at_once};
-use std::convert::Infallible;
 
 /// How exact an answer is to be, and what shoots before the refinement.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -110,27 +109,75 @@ impl Map {
 /// ```
 ///
 /// # Errors
-/// When the map takes too much memory, the tolerance cannot be kept, or there is no GPU where one was asked for.
+/// When the panels of all whiskers take more than [`MEMORY_LIMIT`](crate::plan::MEMORY_LIMIT), for which
+/// [`for_each_panel`] is there; when the tolerance cannot be kept, or there is no GPU where one was asked for.
 pub fn map(scene: &Scene, options: Options) -> Result<Map, Error> {
-    let mut plan = Plan::new(scene)?;
-    plan.method.resolution = resolution(scene, options, &plan.sides)?;
-    #[cfg(feature = "gpu")]
-    let mut gpu = options.gpu.map(Gpu::new).transpose()?;
-    #[cfg(feature = "gpu")]
-    let engine = gpu.as_mut().map(|gpu| gpu as _);
-    #[cfg(not(feature = "gpu"))]
-    let engine = None;
+    let plan = Plan::in_memory(scene)?;
     let mut panels = Vec::with_capacity(plan.whiskers);
-    let mut keep = |finished| {
-        panels.extend::<Vec<Panel>>(finished);
-        Ok::<(), Infallible>(())
-    };
-    let Ok(summary) = stages::run(scene, &plan, engine, &mut |_| (), &mut keep);
+    let summary = run(scene, plan, options, |_, panel| {
+        panels.push(panel);
+        Ok::<(), Error>(())
+    })?;
     Ok(Map {
         grid: scene.grid.clone(),
         panels,
         summary,
     })
+}
+
+/// Computes the regime map of `scene`, and passes one [`Panel`] at a time to `each`, with the index of its whisker.
+///
+/// Panels come in the order of [`Setup::whiskers`](crate::scene::Setup::whiskers), while the next ones are computed. Memory does not
+/// grow with the number of whiskers. The first error of `each` ends the run.
+///
+/// ```
+/// use whiskmap::classify::Regime;
+/// use whiskmap::{Options, scene::Scene};
+///
+/// let scene = Scene::parse(include_str!("../scenes/morphology.toml"), "morphology.toml")?.thinned(8, 2);
+/// let mut contacts = Vec::new();
+/// whiskmap::for_each_panel(&scene, Options::default(), |whisker, panel| {
+///     assert_eq!(whisker, contacts.len());
+///     let is_contact = |code: &&u32| **code == Regime::Contact.code();
+///     contacts.push(panel.regime.iter().filter(is_contact).count());
+///     Ok::<(), whiskmap::Error>(())
+/// })?;
+/// assert_eq!(contacts.len(), scene.whisker_count());
+/// # Ok::<(), whiskmap::Error>(())
+/// ```
+///
+/// # Errors
+/// When one panel takes more than [`MEMORY_LIMIT`](crate::plan::MEMORY_LIMIT), the tolerance cannot be kept, or there is no GPU where
+/// one was asked for; and any error of `each`.
+pub fn for_each_panel<E: From<Error> + Send>(
+    scene: &Scene,
+    options: Options,
+    each: impl FnMut(usize, Panel) -> Result<(), E> + Send,
+) -> Result<Summary, E> {
+    let plan = Plan::new(scene).map_err(Error::from)?;
+    run(scene, plan, options, each)
+}
+
+/// Runs `plan` with the steps and the engine of `options`.
+fn run<E: From<Error> + Send>(
+    scene: &Scene,
+    mut plan: Plan,
+    options: Options,
+    mut each: impl FnMut(usize, Panel) -> Result<(), E> + Send,
+) -> Result<Summary, E> {
+    plan.method.resolution = resolution(scene, options, &plan.sides)?;
+    #[cfg(feature = "gpu")]
+    let mut gpu = options.gpu.map(Gpu::new).transpose().map_err(Error::from)?;
+    #[cfg(feature = "gpu")]
+    let engine = gpu.as_mut().map(|gpu| gpu as _);
+    #[cfg(not(feature = "gpu"))]
+    let engine = None;
+    let mut whiskers = 0..plan.whiskers;
+    let mut keep = |panels: Vec<Panel>| {
+        let mut numbered = panels.into_iter().zip(&mut whiskers);
+        numbered.try_for_each(|(panel, whisker)| each(whisker, panel))
+    };
+    stages::run(scene, &plan, engine, &mut |_| (), &mut keep)
 }
 
 /// Computes where every whisker of `scene` detaches: at each distance, CF before CB.

@@ -19,6 +19,8 @@
 //! [`map`](fn@map), [`curve`], [`branch`], [`shape`] and [`fit`](fn@fit) answer in memory; the modules are what they are made of. Features, all on by
 //! default: `cli` is the command `whiskmap`, `fit` least squares, `gpu` the compute shaders, `render` the pictures.
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 pub mod accuracy;
 #[cfg(feature = "gpu")]
 pub mod bench;
@@ -31,10 +33,18 @@ pub mod integrate;
 pub mod map;
 pub mod measured;
 #[cfg(feature = "render")]
+#[allow(
+    clippy::disallowed_methods,
+    reason = "pictures and comparisons need not have the same bits on every machine"
+)]
 pub mod paper;
 pub mod plan;
 pub mod refine;
 #[cfg(feature = "render")]
+#[allow(
+    clippy::disallowed_methods,
+    reason = "pictures and comparisons need not have the same bits on every machine"
+)]
 pub mod render;
 pub mod scene;
 pub mod sheet;
@@ -44,7 +54,7 @@ pub mod uncertainty;
 
 #[cfg(feature = "fit")]
 pub use front::fit;
-pub use front::{Error, Map, Options, branch, curve, map, shape};
+pub use front::{Error, Map, Options, branch, curve, for_each_panel, map, shape};
 pub use whiskmap_mechanics::{account, numerics, rod, shooting};
 
 /// README's code compiles.

@@ -6,7 +6,7 @@ use std::convert::Infallible;
 use std::sync::Arc;
 use whiskmap::integrate::{CellDifference, Description, Engine, EngineError, Outcome, Question};
 use whiskmap::map::{self, EngineCells, STATE_CHANNELS};
-use whiskmap::plan::{Plan, effects};
+use whiskmap::plan::{MEMORY_LIMIT, Plan, effects};
 use whiskmap::scene::Scene;
 use whiskmap::shooting::Resolution;
 
@@ -214,5 +214,59 @@ fn a_projected_cylinder_is_a_cylinder() {
     assert_eq!(
         listed(30.0, "whisker.projection.arc_stretch = 1.03")[7],
         projection
+    );
+}
+
+/// A sweep of the shipped scene with so many values on each of its two axes, and so many lines in its panels.
+fn sweep(lines: usize, values: usize) -> Scene {
+    let text = include_str!("../scenes/morphology.toml")
+        .replace("count = 96", &format!("count = {lines}"))
+        .replace("count = 16", &format!("count = {values}"));
+    Scene::parse(&text, "sweep.toml").unwrap()
+}
+
+#[test]
+fn a_map_in_memory_is_limited_by_all_its_panels() {
+    let large = sweep(500, 20);
+    assert!(Plan::new(&large).unwrap().bytes < MEMORY_LIMIT);
+    let refused = whiskmap::map(&large, whiskmap::Options::default()).unwrap_err();
+    assert_eq!(
+        refused.to_string(),
+        "grid: 400 panels of 250000 cells take 5546 MiB in memory: must be at most 4096 MiB; \
+         take one panel at a time with `for_each_panel`, or lower the counts of the axes"
+    );
+    let one = Plan::in_memory(&sweep(500, 1)).unwrap();
+    assert_eq!(one.bytes, Plan::new(&sweep(500, 1)).unwrap().bytes);
+}
+
+#[test]
+fn panels_one_at_a_time_are_those_of_the_map() {
+    let scene = sweep(4, 9);
+    let plan = Plan::new(&scene).unwrap();
+    assert!(plan.groups().count() > 1);
+    let map = whiskmap::map(&scene, whiskmap::Options::default()).unwrap();
+    let mut panels = map.panels.iter().enumerate();
+    whiskmap::for_each_panel(&scene, whiskmap::Options::default(), |whisker, panel| {
+        assert_eq!(Some((whisker, &panel)), panels.next());
+        Ok::<(), whiskmap::Error>(())
+    })
+    .unwrap();
+    assert_eq!(panels.next(), None);
+}
+
+#[test]
+fn an_error_of_the_caller_ends_the_run() {
+    let mut seen = 0;
+    let stopped =
+        whiskmap::for_each_panel(&sweep(4, 9), whiskmap::Options::default(), |whisker, _| {
+            seen += 1;
+            if whisker == 2 {
+                return Err(Box::<dyn std::error::Error + Send + Sync>::from("enough"));
+            }
+            Ok(())
+        });
+    assert_eq!(
+        (stopped.unwrap_err().to_string().as_str(), seen),
+        ("enough", 3)
     );
 }

@@ -21,7 +21,7 @@ pub fn samples([low, high]: [f64; 2]) -> Vec<f64> {
     }
     let half = SAMPLES / 2;
     // Without the ends, which are there already.
-    let inner = (1..=half).map(|i| low * (high / low).powf(i as f64 / (half + 1) as f64));
+    let inner = (1..=half).map(|i| low * libm::pow(high / low, i as f64 / (half + 1) as f64));
     let mut values: Vec<f64> = even(half).chain(inner).collect();
     values.sort_by(f64::total_cmp);
     values.dedup();

@@ -26,7 +26,9 @@ impl<'a> Misfit<'a> {
             scene,
             points,
             free,
-            units: units.map(|size| size.log2().round().exp2()).collect(),
+            units: units
+                .map(|size| libm::exp2(libm::log2(size).round()))
+                .collect(),
         }
     }
 

@@ -68,18 +68,44 @@ pub struct Plan {
     pub bytes: u64,
 }
 
-/// A run that is too large.
+/// A run that takes more than [`MEMORY_LIMIT`].
 #[derive(Debug, thiserror::Error, PartialEq, Eq)]
-#[error(
-    "grid: {push_angles} push angles x {distances} distances make a panel of {cells} cells that takes \
-     {needed} MiB: must be at most {limit} MiB; lower grid.push_angle_deg.count or grid.distance_mm.count",
-    cells = push_angles * distances,
-    limit = MEMORY_LIMIT >> 20
-)]
-pub struct PlanError {
-    push_angles: usize,
-    distances: usize,
-    needed: u64,
+#[non_exhaustive]
+pub enum PlanError {
+    /// One panel is too large.
+    #[error(
+        "grid: {push_angles} push angles x {distances} distances make a panel of {cells} cells that takes \
+         {needed} MiB: must be at most {limit} MiB; lower grid.push_angle_deg.count or grid.distance_mm.count",
+        cells = push_angles * distances,
+        limit = MEMORY_LIMIT >> 20
+    )]
+    Panel {
+        /// Push angles of the grid.
+        push_angles: usize,
+        /// Distances of the grid.
+        distances: usize,
+        /// Memory of the run, in MiB.
+        needed: u64,
+    },
+    /// The panels of all whiskers together are too large to be kept in memory.
+    #[error(
+        "grid: {whiskers} panels of {cells} cells take {needed} MiB in memory: must be at most {limit} MiB; \
+         take one panel at a time with `for_each_panel`, or lower the counts of the axes",
+        limit = MEMORY_LIMIT >> 20
+    )]
+    AllPanels {
+        /// Whiskers of the sweep.
+        whiskers: usize,
+        /// Cells of one panel.
+        cells: usize,
+        /// Memory of the run, in MiB.
+        needed: u64,
+    },
+}
+
+/// Bytes of the cells in flight.
+fn bytes_in_flight(scene: &Scene) -> u64 {
+    CELLS_IN_FLIGHT.max(scene.grid.push_angle_deg.len()) as u64 * BYTES_IN_FLIGHT
 }
 
 impl Plan {
@@ -95,13 +121,12 @@ impl Plan {
         let panels_at_once = (CELLS_OF_PANELS / cells)
             .clamp(1, MOST_PANELS)
             .min(whiskers);
-        let in_flight = CELLS_IN_FLIGHT.max(push_angles) as u64;
         // As computed and as packed; in a sweep, where a panel is one block, also rearranged, and some are computed meanwhile.
         let copies = if whiskers > 1 { 4 } else { 2 };
         let panels = (copies * cells * panels_at_once) as u64;
-        let bytes = panels * BYTES_PER_CELL + in_flight * BYTES_IN_FLIGHT;
+        let bytes = panels * BYTES_PER_CELL + bytes_in_flight(scene);
         if bytes > MEMORY_LIMIT {
-            return Err(PlanError {
+            return Err(PlanError::Panel {
                 push_angles,
                 distances,
                 needed: bytes >> 20,
@@ -127,6 +152,25 @@ impl Plan {
             bytes,
             whiskers,
         })
+    }
+
+    /// The plan for a run of `scene` that keeps the panels of all whiskers in memory.
+    ///
+    /// # Errors
+    /// When one panel, or all panels with those that are being computed, take more than [`MEMORY_LIMIT`].
+    pub fn in_memory(scene: &Scene) -> Result<Self, PlanError> {
+        let plan = Self::new(scene)?;
+        let cells = plan.cells / plan.whiskers;
+        let panels = (plan.cells + cells * plan.panels_at_once) as u64;
+        let bytes = panels * BYTES_PER_CELL + bytes_in_flight(scene);
+        if bytes > MEMORY_LIMIT {
+            return Err(PlanError::AllPanels {
+                whiskers: plan.whiskers,
+                cells,
+                needed: bytes >> 20,
+            });
+        }
+        Ok(Self { bytes, ..plan })
     }
 
     /// The sides that the push angles of `scene` ask for.

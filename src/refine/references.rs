@@ -93,7 +93,7 @@ fn node_shots(sheet: &Sheet, row: &RowOfCells) -> Option<Vec<Shot>> {
     points.push([last, 1.0]);
     let mut pushes = Vec::with_capacity(NODES);
     for m in 0..NODES {
-        let part = (1.0 - (PI * (m as f64 + 0.5) / NODES as f64).cos()) / 2.0;
+        let part = (1.0 - libm::cos(PI * (m as f64 + 0.5) / NODES as f64)) / 2.0;
         let after = points.partition_point(|point| point[1] < part).max(1);
         let [from, to] = [points.get(after - 1)?, points.get(after)?];
         let between = (part - from[1]) / (to[1] - from[1]);

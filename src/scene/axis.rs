@@ -110,7 +110,7 @@ fn range(axis: &Range, key: &str, limits: &Limits) -> Result<Vec<f64>, Fault> {
         .map(|i| match i {
             // `from + (to - from)` may miss `to` by a rounding.
             _ if i == last => to,
-            _ if axis.scale == Scale::Log => from * (to / from).powf(i as f64 / last as f64),
+            _ if axis.scale == Scale::Log => from * libm::pow(to / from, i as f64 / last as f64),
             _ => from + (to - from) * i as f64 / last as f64,
         })
         .collect();

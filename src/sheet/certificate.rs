@@ -9,7 +9,7 @@ const DIP: f64 = 1.0;
 /// Whether a function that is positive at `count` samples is positive between them, too. Its ends are taken to be those of a function
 /// that is even or constant there.
 pub fn stays_positive(count: usize, sample: impl Fn(usize) -> f64) -> bool {
-    let dips = |i: usize| sample(i - 1) * sample(i + 1) > DIP.exp() * sample(i).powi(2);
+    let dips = |i: usize| sample(i - 1) * sample(i + 1) > libm::exp(DIP) * sample(i).powi(2);
     (0..count).all(|i| sample(i) > 0.0) && !(1..count.max(1) - 1).any(dips)
 }
 

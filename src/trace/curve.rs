@@ -133,7 +133,7 @@ pub fn curve_at(
         let reading = reached.as_ref().map(|(end, FirstVariation { full, .. })| {
             let push = side.sign() * end.push;
             // The crossing's own residual foretells what its last step leaves; this trajectory has gone there.
-            let off = (row.pole_distance / full.map.pole.length()).ln().abs();
+            let off = libm::log(row.pole_distance / full.map.pole.length()).abs();
             let reading = reader.read(end.tau, full, row.touch, push);
             (push.to_degrees(), end.residual + off, reading)
         });

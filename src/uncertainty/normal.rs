@@ -21,7 +21,7 @@ impl Normal {
     pub fn draw(&mut self) -> f64 {
         // The first is in (0, 1], whose logarithm is finite.
         let [radius, turn] = [1.0, 0.0].map(|shift| (self.bits() as f64 + shift) / STEPS);
-        (-2.0 * radius.ln()).sqrt() * (TAU * turn).cos()
+        (-2.0 * libm::log(radius)).sqrt() * libm::cos(TAU * turn)
     }
 
     /// 53 random bits.

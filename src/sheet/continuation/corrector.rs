@@ -48,7 +48,7 @@ impl<'a> Corrector<'a> {
     /// Goes on with the trajectory of the point.
     pub fn advance(&mut self, here: &FirstVariation) -> Correction {
         let (level, map) = (self.level, &here.full.map);
-        let miss = (level.row.pole_distance / map.pole.length()).ln();
+        let miss = libm::log(level.row.pole_distance / map.pole.length());
         let is_stuck =
             miss.abs() < (1e3 * self.tolerance).min(NODE_MISS) && miss.abs() > 0.5 * self.missed;
         if miss.abs() <= self.tolerance || is_stuck {

@@ -210,7 +210,7 @@ fn end_of_piece(level: &LevelCurve, piece: Continuation) -> Option<PieceEnd> {
         tau: end.point.x,
         load: end.point.y,
         push: level.side.sign() * end.push,
-        residual: (level.row.pole_distance / distance).ln().abs(),
+        residual: libm::log(level.row.pole_distance / distance).abs(),
         slope: piece.end.slope(&end.full.map),
     };
     Some((crossing, piece.nodes))

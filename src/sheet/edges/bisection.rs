@@ -99,7 +99,7 @@ pub fn bisect(method: Method, rod: &Rod, side: Side, all: &[Between]) -> Vec<Opt
                 return false;
             }
             let (_, here) = point;
-            search.halve(here.map.pole.length().ln() - all[search.index].target)
+            search.halve(libm::log(here.map.pole.length()) - all[search.index].target)
         });
     }
     found

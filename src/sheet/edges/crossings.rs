@@ -64,7 +64,7 @@ pub fn crossings(
 ) -> Vec<Vec<Crossing>> {
     let targets: Vec<f64> = rows
         .iter()
-        .map(|row| row.pole_distance.ln() - REACH_SLACK)
+        .map(|row| libm::log(row.pole_distance) - REACH_SLACK)
         .collect();
     let mut candidates = Vec::new();
     let mut found = vec![Vec::new(); rows.len()];
@@ -145,7 +145,7 @@ fn correct(
         .map(|&i| Between {
             edge: candidates[i].edge,
             samples: candidates[i].between,
-            target: rows[candidates[i].row].pole_distance.ln(),
+            target: libm::log(rows[candidates[i].row].pole_distance),
         })
         .collect();
     for (i, point) in lost.into_iter().zip(bisect(method, rod, side, &between)) {
@@ -153,7 +153,7 @@ fn correct(
         let row = &rows[c.row];
         let bisected = point.map(|point| {
             let (_, here) = point;
-            let residual = (row.pole_distance / here.map.pole.length()).ln().abs();
+            let residual = libm::log(row.pole_distance / here.map.pole.length()).abs();
             crossing(c, point, residual)
         });
         // Where the first fold jumps from contact to contact, there is nothing between the samples. What Newton's method

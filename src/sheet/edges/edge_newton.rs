@@ -162,7 +162,7 @@ fn newton_step(
     here: &SecondVariation,
     last_step: Option<f64>,
 ) -> (EdgeIterate, DVec2) {
-    let miss = |here: &SecondVariation| (problem.pole_distance / here.map.pole.length()).ln();
+    let miss = |here: &SecondVariation| libm::log(problem.pole_distance / here.map.pole.length());
     let step = match problem.edge {
         Edge::Fold => fold_step(here, miss(here)),
         Edge::Tip => DVec2::new(0.0, load_step(here, miss(here))),

@@ -49,7 +49,7 @@ impl Edges {
                     place: i as f64,
                     tau: fold.tau,
                     load: fold.load,
-                    ln_distance: pole.length().ln(),
+                    ln_distance: libm::log(pole.length()),
                     phi: nearest_turn(pole.to_angle(), phi),
                 }
             })
@@ -81,7 +81,7 @@ impl Edges {
             fold_grows: (0..contacts.tip).all(|i| contacts.grow_after(i)),
             tip,
             tip_edge,
-            tip_error: ((at_touch.pole.length() / pole).ln() / at_touch.by_tau.x).abs(),
+            tip_error: (libm::log(at_touch.pole.length() / pole) / at_touch.by_tau.x).abs(),
         }
     }
 

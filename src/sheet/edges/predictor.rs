@@ -44,7 +44,7 @@ impl Prediction {
     pub fn linear([a, b]: [&Sample; 2], target: f64) -> Self {
         let t = (target - a.ln_distance) / (b.ln_distance - a.ln_distance);
         let scaled = |s: &Sample| s.load * s.tau * s.tau;
-        let tau = a.tau * (t * (b.tau / a.tau).ln()).exp();
+        let tau = a.tau * libm::exp(t * libm::log(b.tau / a.tau));
         Self {
             tau,
             load: (scaled(a) + t * (scaled(b) - scaled(a))) / (tau * tau),
@@ -102,7 +102,7 @@ impl FoldEdge {
         let values: Vec<[f64; 2]> = maps
             .clone()
             .zip(phis)
-            .map(|(map, phi)| [map.pole.length().ln(), phi])
+            .map(|(map, phi)| [libm::log(map.pole.length()), phi])
             .collect();
         let slopes: Vec<[f64; 2]> = maps
             .enumerate()
@@ -148,12 +148,12 @@ impl FoldEdge {
         let piece = &self.pieces[start];
         let ends = ends.map(|end| end - start as f64);
         let place = place_between(&piece.ln_distance, ends, pair, target);
-        let tau = piece.ln_tau.at(place).0.exp();
+        let tau = libm::exp(piece.ln_tau.at(place).0);
         let number = |i: usize| piece.second[i].at(place).0;
         let vector = |i: usize| DVec2::new(number(i), number(i + 1));
         Prediction {
             tau,
-            load: self.sign * piece.ln_q.at(place).0.exp() / (tau * tau),
+            load: self.sign * libm::exp(piece.ln_q.at(place).0) / (tau * tau),
             phi: piece.phi.at(place).0,
             second: Some([
                 vector(0) / (tau * tau),

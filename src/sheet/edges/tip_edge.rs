@@ -54,7 +54,7 @@ impl SampledTipEdge {
                 at_touch,
             };
         }
-        let part = |i| (FRAC_PI_2 * i as f64 / MANY as f64).sin().powi(2);
+        let part = |i| libm::sin(FRAC_PI_2 * i as f64 / MANY as f64).powi(2);
         let parts: Vec<f64> = (0..=MANY).map(part).collect();
         let sampled = Loads::new(method, rod, corner, &parts);
         Self {
@@ -109,7 +109,7 @@ impl<'a> Loads<'a> {
                 place,
                 tau: self.corner.tau,
                 load,
-                ln_distance: map.pole.length().ln(),
+                ln_distance: libm::log(map.pole.length()),
                 phi: nearest_turn(map.pole.to_angle(), self.phis[m]),
             };
             samples.push(sample(*part, part * self.corner.load, &self.maps[m]));
@@ -168,7 +168,7 @@ impl TipEdge {
         let numbers =
             |number: fn(&ShootingMap) -> f64| std::array::from_fn(|m| number(&sampled.maps[m]));
         let values = [
-            numbers(|map| map.pole.length().ln()),
+            numbers(|map| libm::log(map.pole.length())),
             std::array::from_fn(|m| sampled.phis[m]),
             numbers(|map| map.by_load.x),
             numbers(|map| map.by_load.y),

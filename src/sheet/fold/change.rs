@@ -31,7 +31,7 @@ pub fn least_q(values: &[[f64; 2]], slopes: &[[f64; 2]]) -> f64 {
         let dip = 4.0 / 27.0 * (falling.max(0.0) + rising.max(0.0));
         values[0][1].min(values[1][1]) - dip
     });
-    least.fold(f64::INFINITY, f64::min).exp()
+    libm::exp(least.fold(f64::INFINITY, f64::min))
 }
 
 /// The first fold jumps between two nodes if the change of `ln q` differs by this much from the slope at one of them. A jump

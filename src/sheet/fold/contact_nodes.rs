@@ -91,7 +91,10 @@ impl ContactNodes {
     /// missing.
     pub fn new(method: Method, rod: &Rod, side: Side, nearest: &Row, spacing: f64) -> Option<Self> {
         let folds = folds_down_to(method, rod, side, nearest, spacing)?;
-        let values: Vec<[f64; 2]> = folds.iter().map(|f| [f.tau.ln(), q(f).ln()]).collect();
+        let values: Vec<[f64; 2]> = folds
+            .iter()
+            .map(|f| [libm::log(f.tau), libm::log(q(f))])
+            .collect();
         let slopes: Vec<[f64; 2]> = folds
             .iter()
             .map(|fold| slopes_at(rod, fold, spacing))
@@ -137,7 +140,7 @@ impl ContactNodes {
         let maps = ends.map(|i| &self.folds[i].variation.map);
         let [here, next] = maps.map(|map| map.pole.length());
         let grows = |end: usize| self.slope(ends[end], 1.0, maps[end]).x > -FLAT;
-        let [from, to] = ends.map(|i| q(&self.folds[i]).ln());
+        let [from, to] = ends.map(|i| libm::log(q(&self.folds[i])));
         let slopes = ends.map(|i| self.slopes[i][1]);
         here < next && grows(0) && grows(1) && !jumps(to - from, slopes)
     }
@@ -149,7 +152,7 @@ impl ContactNodes {
         let last = self.folds.len() - 2;
         let before = (place as usize).min(last);
         let start = stencil(before, STENCIL, self.folds.len());
-        self.ln_q[start].at(place - start as f64).0.exp() / (tau * tau)
+        libm::exp(self.ln_q[start].at(place - start as f64).0) / (tau * tau)
     }
 }
 

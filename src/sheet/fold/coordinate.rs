@@ -9,11 +9,11 @@ use crate::rod::{Rod, arclength};
 /// become 0.
 pub fn u_of(rod: &Rod, tau: f64) -> f64 {
     let softening = if rod.gradient < 0.0 {
-        rod.modulus(arclength(rod, tau)).ln()
+        libm::log(rod.modulus(arclength(rod, tau)))
     } else {
         0.0
     };
-    tau.ln() + tau - softening
+    libm::log(tau) + tau - softening
 }
 
 /// `du/dln tau`.
@@ -37,7 +37,7 @@ pub fn tau_of(rod: &Rod, u: f64, near: f64) -> f64 {
     } else {
         f64::INFINITY
     };
-    let most = if u < 1.0 { u.exp() } else { u };
+    let most = if u < 1.0 { libm::exp(u) } else { u };
     // Of `u` less that of a place, which falls.
     let mut bracket = Bracket {
         below: most.min(end),
@@ -50,7 +50,7 @@ pub fn tau_of(rod: &Rod, u: f64, near: f64) -> f64 {
     };
     for _ in 0..100 {
         let miss = u - u_of(rod, tau);
-        let newton = tau * (miss / slope_of_u(rod, tau)).exp();
+        let newton = tau * libm::exp(miss / slope_of_u(rod, tau));
         let next = bracket.next(tau, miss, newton);
         if (next - tau).abs() <= LAST_TAU_STEP * tau {
             return next;

@@ -60,7 +60,7 @@ impl LoadLine {
         directions(load, &*LOBATTO_NODES, maps.clone(), &mut line.phi);
         let mut at_touch = 1.0;
         for (m, (map, part)) in maps.zip(LOBATTO_NODES.iter()).enumerate() {
-            line.ln_distance[m] = map.pole.length().ln();
+            line.ln_distance[m] = libm::log(map.pole.length());
             [line.slopes[0][m], line.slopes[1][m]] = contacts.slope(i, *part, map).to_array();
             let det = map.det() * map.pole.length_squared();
             if m == 0 {

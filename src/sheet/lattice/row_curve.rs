@@ -54,7 +54,7 @@ impl Lattice {
     /// The level curve of `row` on the lattice.
     #[must_use]
     pub fn row_curve(&self, contacts: &ContactNodes, row: &Row) -> RowCurve {
-        let target = row.pole_distance.ln();
+        let target = libm::log(row.pole_distance);
         let mut curve = RowCurve::default();
         let mut after = [0; LOBATTO_COUNT];
         let mut near = 0;
@@ -99,7 +99,7 @@ impl Lattice {
         from: usize,
         curve: &mut RowCurve,
     ) {
-        let (patch, target) = (&self.patches[start], row.pole_distance.ln());
+        let (patch, target) = (&self.patches[start], libm::log(row.pole_distance));
         let problem = |(m, &i): (usize, &usize)| {
             let offset = i as f64 - start as f64;
             let ends = [i, i + 1].map(|i| self.lines[i].ln_distance[m]);

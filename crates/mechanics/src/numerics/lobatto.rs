@@ -11,11 +11,7 @@ pub const LOBATTO_COUNT: usize = 16;
 
 /// The nodes, growing.
 pub static LOBATTO_NODES: LazyLock<[f64; LOBATTO_COUNT]> = LazyLock::new(|| {
-    let node = |m: usize| {
-        (FRAC_PI_2 * m as f64 / (LOBATTO_COUNT - 1) as f64)
-            .sin()
-            .powi(2)
-    };
+    let node = |m: usize| libm::sin(FRAC_PI_2 * m as f64 / (LOBATTO_COUNT - 1) as f64).powi(2);
     std::array::from_fn(node)
 });
 

@@ -41,7 +41,7 @@ impl Demands {
         let mut by_reach = Vec::with_capacity(REACHES as usize * pieces);
         for reach in 0..REACHES {
             let [nearest, mut farthest] =
-                [reach + 1, reach].map(|reach| (-f64::from(reach) / REACHES_PER_OCTAVE).exp2());
+                [reach + 1, reach].map(|reach| libm::exp2(-f64::from(reach) / REACHES_PER_OCTAVE));
             if reach == 0 {
                 farthest = BEYOND_TIP.min(0.999 * end);
             }
@@ -59,7 +59,7 @@ impl Demands {
                 .map(|width| (width / nearest).min(1.0));
             let demand = |((share, way), change): ((&f64, f64), &f64)| Demand {
                 bending: (share * way).sqrt().max(0.5 * share) as f32,
-                roughness: (change * (share * way).powf(0.2)) as f32,
+                roughness: (change * libm::pow(share * way, 0.2)) as f32,
             };
             let from = by_reach.len();
             by_reach.extend(shares.iter().zip(ways).zip(&profile.changes).map(demand));
@@ -77,7 +77,7 @@ impl Demands {
     /// The reach of contacts at arclength `s`.
     #[must_use]
     pub fn reach(s: f64) -> u32 {
-        ((-REACHES_PER_OCTAVE * s.log2()) as u32).min(REACHES - 1)
+        ((-REACHES_PER_OCTAVE * libm::log2(s)) as u32).min(REACHES - 1)
     }
 
     /// That of the piece `k` on the way from a contact of this `reach`.

@@ -169,7 +169,7 @@ impl RadiusProfile {
             GAUSS.map(|[node, weight]| (width.mul_add(f64::from(part) + node, from), weight))
         });
         nodes.fold(self.compliances[k], |[flat, lever], (tau, weight)| {
-            let scale = (-self.taper * tau).exp();
+            let scale = libm::exp(-self.taper * tau);
             let here = arclength_at(self.taper, tau);
             let part = weight * width * scale / piece.radius(here).powi(4);
             [flat + part, lever + part * here]

@@ -70,7 +70,7 @@ pub(crate) fn tau_at(taper: f64, s: f64) -> f64 {
     if taper == 0.0 {
         s
     } else {
-        -(-taper * s).ln_1p() / taper
+        -libm::log1p(-taper * s) / taper
     }
 }
 
@@ -85,7 +85,7 @@ pub(crate) fn arclength_at(taper: f64, tau: f64) -> f64 {
     if taper == 0.0 {
         tau
     } else {
-        -(-taper * tau).exp_m1() / taper
+        -libm::expm1(-taper * tau) / taper
     }
 }
 
@@ -172,6 +172,6 @@ impl Rod {
     /// The scale of the coordinates at `tau`: without a profile the radius over the base radius.
     #[must_use]
     pub fn radius(&self, tau: f64) -> f64 {
-        (-self.taper * tau).exp()
+        libm::exp(-self.taper * tau)
     }
 }

@@ -151,7 +151,7 @@ impl SecondVariation {
         let ln_pole = tau * step.x + load * step.y;
         Self {
             map: ShootingMap {
-                pole: (DVec2::from_angle(ln_pole.y) * ln_pole.x.exp()).rotate(pole),
+                pole: (DVec2::from_angle(ln_pole.y) * libm::exp(ln_pole.x)).rotate(pole),
                 by_tau: by_tau + turned_tau,
                 by_load: by_load + turned_load,
             },

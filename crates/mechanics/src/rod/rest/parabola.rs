@@ -10,7 +10,7 @@ fn arc(t: f64) -> f64 {
     let root = (1.0 + t * t).sqrt();
     let size = t.abs();
     // asinh, accurate to the last digits for small and for large slopes, without the cost of `hypot`.
-    let asinh = (size + size * size / (1.0 + root)).ln_1p();
+    let asinh = libm::log1p(size + size * size / (1.0 + root));
     t * root + asinh.copysign(t)
 }
 
