@@ -16,7 +16,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! [`map`](fn@map), [`curve`], [`branch`], [`shape`] and [`fit`](fn@fit) answer in memory; the modules are what they are made of. Features, all on by
+//! [`map`](fn@map), [`for_each_panel`], [`curve`], [`branch`], [`shape`] and [`fit`](fn@fit) answer in memory; the modules are what they are made of. Features, all on by
 //! default: `cli` is the command `whiskmap`, `fit` least squares, `gpu` the compute shaders, `render` the pictures.
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
