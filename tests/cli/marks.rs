@@ -96,6 +96,7 @@ fn write_without_status(place: &Place) {
         engine: &whiskmap::integrate::Description::of(None),
         tolerances: &serde_json::json!({}),
         channels: Channels::those(|name| name != "status"),
+        arithmetic: "fma",
     };
     let mut writer = MapWriter::create(&place.path("old.exr"), &about).unwrap();
     writer.write_panels(&map.panels).unwrap();
