@@ -21,12 +21,14 @@ mod marks;
 mod other;
 mod paper;
 mod plan;
-#[cfg(unix)]
-mod protected;
 #[path = "../program/mod.rs"]
 mod program;
+#[cfg(unix)]
+mod protected;
 mod refused;
 mod render;
+#[path = "../sealed/mod.rs"]
+mod sealed;
 mod shape;
 #[cfg(unix)]
 mod signals;

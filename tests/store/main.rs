@@ -10,6 +10,8 @@ mod damage;
 #[path = "../map/mod.rs"]
 mod map;
 mod refused;
+#[path = "../sealed/mod.rs"]
+mod sealed;
 
 type Swept = Option<Vec<f64>>;
 

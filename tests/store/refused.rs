@@ -134,6 +134,7 @@ fn channels_that_do_not_fit_the_axes_are_refused() {
     let name = b"newton_steps\0";
     let place = bytes.windows(name.len()).position(|found| found == name);
     bytes[place.unwrap()] = b'm';
+    super::sealed::seal(&mut bytes);
     fs::write(&path, bytes).unwrap();
     let error = StoredMap::open(&path).unwrap_err();
     assert!(matches!(error, Error::NotAMap { .. }), "{error}");
