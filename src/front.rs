@@ -143,7 +143,7 @@ pub fn map(scene: &Scene, options: Options) -> Result<Map, Error> {
 ///     Ok::<(), whiskmap::Error>(())
 /// })?;
 /// assert_eq!(contacts.len(), scene.whisker_count());
-/// # Ok::<(), whiskmap::Error>(())
+/// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
 /// # Errors
