@@ -29,6 +29,7 @@ pub mod design;
 #[cfg(feature = "fit")]
 pub mod fit;
 mod front;
+pub mod input;
 pub mod integrate;
 pub mod map;
 pub mod measured;

@@ -6,10 +6,14 @@ use std::path::Path;
 use whiskmap::measured::{Comparison, Points};
 use whiskmap::scene::digits;
 
-/// Reads the points of `path`, an input; those whose angle has the sign of the other side are counted on standard error.
+/// Reads the points of `path`, an input; columns that are not used, and points whose angle has the sign of the other side, are
+/// named on standard error.
 pub fn read(files: &mut Files, path: &Path) -> Result<Points, Failure> {
     let points = Points::read(path)?;
     files.input(path);
+    if let Some(note) = &points.note {
+        say(&format!("note: {note}"));
+    }
     let all = points.points.len();
     let signs = points.points.iter();
     let crossed = signs.filter(|point| point.side.sign() * point.angle_deg < 0.0);

@@ -2,12 +2,12 @@
 
 use super::failure::Failure;
 use super::files::Files;
-use super::numbers::degrees;
+use super::numbers::angle;
 use super::outputs::open;
+use super::parameter::parameter;
 use super::pole::{self, Pole, title};
 use super::side::OneSide;
 use clap::Args;
-use clap::builder::{PossibleValuesParser, TypedValueParser};
 use std::io::{self, Write};
 use std::path::PathBuf;
 use whiskmap::design::{self, Design, NoDesign, Target};
@@ -50,28 +50,16 @@ pub struct Options {
 #[derive(Debug, Args)]
 #[group(required = true, multiple = false)]
 struct End {
-    /// Push angle at which it slips off, such as 30deg, 30 or 0.5rad: positive CB, negative CF
-    #[arg(long, value_name = "ANGLE", allow_hyphen_values = true, value_parser = angle)]
+    /// Push angle at which it slips off, such as 30deg, 30°, 30 or 0.5rad: positive CB, negative CF
+    #[arg(long, value_name = "ANGLE", allow_hyphen_values = true, value_parser = push)]
     slip_off: Option<f64>,
     /// Push angle at which it is pulled off
-    #[arg(long, value_name = "ANGLE", allow_hyphen_values = true, value_parser = angle)]
+    #[arg(long, value_name = "ANGLE", allow_hyphen_values = true, value_parser = push)]
     pull_off: Option<f64>,
 }
 
-/// A parser of parameters' names.
-fn parameter() -> impl TypedValueParser<Value = Parameter> {
-    PossibleValuesParser::new(Parameter::ALL.map(Parameter::name)).try_map(|name| {
-        let unknown = || format!("there is no {name}");
-        Parameter::named(&name).ok_or_else(unknown)
-    })
-}
-
-fn angle(text: &str) -> Result<f64, String> {
-    let angle = match text.strip_suffix("rad") {
-        Some(radians) => radians.trim_end().parse().ok().map(f64::to_degrees),
-        None => degrees(text),
-    };
-    let angle = angle.ok_or("must be an angle, such as 30deg or 0.5rad")?;
+fn push(text: &str) -> Result<f64, String> {
+    let angle = angle(text)?;
     if angle.abs() <= 360.0 && angle != 0.0 {
         Ok(angle)
     } else {

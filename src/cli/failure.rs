@@ -4,8 +4,8 @@ use std::io::{self, IsTerminal, Write};
 use std::path::PathBuf;
 use std::process::ExitCode;
 use whiskmap::fit;
+use whiskmap::input::CsvError;
 use whiskmap::integrate::EngineError;
-use whiskmap::measured::PointsError;
 use whiskmap::plan::PlanError;
 use whiskmap::render;
 use whiskmap::scene::SceneError;
@@ -20,10 +20,13 @@ pub enum Failure {
     Scene(#[from] SceneError),
     /// The measured points are not valid.
     #[error(transparent)]
-    Points(#[from] PointsError),
+    Points(#[from] CsvError),
     /// There is no fit.
     #[error(transparent)]
     Fit(#[from] fit::Error),
+    /// The best values are not a fit, and what is not written therefore.
+    #[error("{0}{1}")]
+    NotAFit(fit::NotAFit, String),
     /// The scene is too large.
     #[error(transparent)]
     Plan(#[from] PlanError),

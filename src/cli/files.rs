@@ -20,7 +20,7 @@ pub struct Files {
 impl Files {
     /// Reads a scene and declares its files.
     pub fn scene(&mut self, path: &Path) -> Result<Scene, Failure> {
-        let scene = Scene::read(path)?;
+        let scene = scene::read(path)?;
         self.input(path);
         if let Some(rows) = scene.rows_file() {
             self.input(rows);

@@ -3,12 +3,14 @@
 use super::data;
 use super::failure::{Failure, say};
 use super::files::{Files, STDOUT, write};
+use super::parameter::parameter;
 use super::pole::check_single;
 use clap::Args;
 use serde_json::{Map, Value, json};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
-use whiskmap::fit::{Error, Fit, fit};
+use whiskmap::fit::{Error, Estimate, Fit, fit};
+use whiskmap::measured::Points;
 use whiskmap::scene::{Parameter, digits};
 
 /// Options of `fit`.
@@ -22,9 +24,11 @@ Least squares of measured less predicted angles, from the scene's values on and 
 side (cb or cf), distance_mm, push_angle_deg or push_chord_deg, and maybe kind (slip-off, pull-off or empty) and sd_deg, \
 the standard deviation of the angle. Without it, standard errors are those of points as exact as their residuals tell.
 
-Names for --free: length_mm, base_radius_um, tip_radius_um, taper, youngs_modulus_gpa, parabola_per_mm, vertex_mm, \
-spiral_per_mm, spiral_per_mm2, modulus_tip_to_base, arc_stretch, pole_radius_mm, friction. Parameters that the points \
-do not determine are named; youngs_modulus_gpa is always one of them, because no detachment depends on it.")]
+Parameters that the points do not determine are named; youngs_modulus_gpa is always one of them, because no detachment \
+depends on it. Neither these nor parameters at a limit of the scene have a standard error.
+
+The values are not a fit, the exit code is 1 and -o writes nothing where the RMS is more than 5 degrees, or than a third of \
+the range of the measured angles and 0; with sd_deg, only if chi-square is too large for these deviations, too.")]
 pub struct Options {
     /// Scene file; - reads it from standard input
     scene: PathBuf,
@@ -32,7 +36,7 @@ pub struct Options {
     #[arg(long, value_name = "FILE")]
     data: PathBuf,
     /// Parameters to fit, with commas in between
-    #[arg(long, value_name = "NAMES", required = true, value_delimiter = ',', value_parser = parameter)]
+    #[arg(long, value_name = "NAMES", required = true, value_delimiter = ',', value_parser = parameter())]
     free: Vec<Parameter>,
     /// Scene to write, with the fitted values; - is standard output
     #[arg(short, long, value_name = "FITTED.toml")]
@@ -40,13 +44,6 @@ pub struct Options {
     /// Result to write; - is standard output
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
-}
-
-fn parameter(name: &str) -> Result<Parameter, String> {
-    Parameter::named(name).ok_or_else(|| {
-        let names = Parameter::ALL.map(Parameter::name);
-        format!("must be some of {}", names.join(", "))
-    })
 }
 
 /// Runs `fit`.
@@ -68,9 +65,14 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         _ => why.into(),
     })?;
     data::name_left_out(&points, &found.comparison);
-    warn(&found);
+    warn(&points, &found);
+    let unwritten = options
+        .output
+        .as_ref()
+        .filter(|_| found.not_a_fit.is_some());
     let written = [
-        toml.map(|place| (place, found.scene.text.clone())),
+        toml.filter(|_| unwritten.is_none())
+            .map(|place| (place, found.scene.text.clone())),
         json.map(|place| (place, format!("{:#}\n", document(&found)))),
     ];
     let mut outputs = [&options.output, &options.json].into_iter().flatten();
@@ -85,22 +87,39 @@ pub fn run(options: &Options) -> Result<(), Failure> {
             writeln!(io::stdout(), "{}", path.display())?;
         }
     }
-    Ok(())
+    let unwritten = unwritten.map(|path| format!("; {} is not written", path.display()));
+    match found.not_a_fit {
+        Some(why) => Err(Failure::NotAFit(why, unwritten.unwrap_or_default())),
+        None => Ok(()),
+    }
 }
 
-/// Names parameters that the points do not determine, and those at a limit.
-fn warn(fit: &Fit) {
+/// Names parameters at a limit and those that the points do not determine, and standard deviations that are too small.
+fn warn(points: &Points, fit: &Fit) {
     for estimate in &fit.estimates {
         let name = estimate.parameter.name();
-        if estimate.standard_error.is_none() {
-            say(&format!("warning: {name}: not determined by these points"));
-        }
         if estimate.is_at_limit {
             say(&format!(
-                "warning: {name}: {} is the last value that the scene accepts",
+                "warning: {name}: {} is the last value that the scene accepts, so there is no standard error",
                 digits(estimate.value)
             ));
+        } else if estimate.standard_error.is_none() && fit.not_a_fit.is_none() {
+            say(&format!("warning: {name}: not determined by these points"));
         }
+    }
+    if points.have_deviations && !fit.is_explained() && fit.not_a_fit.is_none() {
+        say(
+            "warning: chi-square is too large for the degrees of freedom: sd_deg is too small, and so are standard errors",
+        );
+    }
+}
+
+/// What stands in the table in place of a standard error.
+fn no_error(fit: &Fit, estimate: &Estimate) -> &'static str {
+    match fit.not_a_fit {
+        Some(_) => "not a fit",
+        None if estimate.is_at_limit => "at its limit",
+        None => "not determined",
     }
 }
 
@@ -108,6 +127,9 @@ fn warn(fit: &Fit) {
 fn table(title: &str, fit: &Fit) -> io::Result<()> {
     let mut out = io::stdout().lock();
     writeln!(out, "{title}")?;
+    if fit.not_a_fit.is_some() {
+        writeln!(out, "not a fit")?;
+    }
     writeln!(
         out,
         "{:19} {:>22} {:>22}",
@@ -120,7 +142,7 @@ fn table(title: &str, fit: &Fit) -> io::Result<()> {
             "{:19} {:>22} {:>22}",
             estimate.parameter.name(),
             digits(estimate.value),
-            error.as_deref().unwrap_or("not determined")
+            error.as_deref().unwrap_or(no_error(fit, estimate))
         )?;
     }
     for (i, estimate) in fit.estimates.iter().enumerate() {
@@ -161,6 +183,7 @@ fn document(fit: &Fit) -> Value {
     let rows = rows.map(|row| Value::Object(keyed(row.iter().map(|own| json!(own)).collect())));
     let comparison = &fit.comparison;
     json!({
+        "not_a_fit": fit.not_a_fit.as_ref().map(ToString::to_string),
         "values": keyed(values),
         "standard_errors": keyed(errors),
         "correlation": keyed(rows.collect()),

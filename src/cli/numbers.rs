@@ -1,17 +1,16 @@
 //! Numbers in arguments, refused in words rather than by the names of Rust's types.
 
 use std::ops::RangeInclusive;
+use whiskmap::input::Quantity;
 
-/// A number.
-pub fn number(text: &str) -> Result<f64, String> {
-    text.parse()
-        .map_err(|_| "must be a number, such as 15.66".to_owned())
+/// A length in millimetres, or with a unit.
+pub fn length(text: &str) -> Result<f64, String> {
+    Quantity::LengthMm.parse(text)
 }
 
-/// An angle in degrees, such as `30deg` or `30`.
-pub fn degrees(text: &str) -> Option<f64> {
-    let number = text.strip_suffix("deg").unwrap_or(text);
-    number.trim_end().parse().ok()
+/// An angle in degrees, or with a unit.
+pub fn angle(text: &str) -> Result<f64, String> {
+    Quantity::AngleDeg.parse(text)
 }
 
 /// A parser of whole numbers within `range`.

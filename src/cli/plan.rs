@@ -2,6 +2,7 @@
 
 use super::estimate::{Estimate, Files, Format, estimate, files};
 use super::failure::Failure;
+use super::scene;
 use clap::Args;
 use indicatif::DecimalBytes;
 use std::io::Write;
@@ -35,7 +36,7 @@ const SAMPLE_SECONDS: f64 = 2.0;
 
 /// Runs `plan`.
 pub fn run(options: &Options) -> Result<(), Failure> {
-    let scene = Scene::read(&options.scene)?;
+    let scene = scene::read(&options.scene)?;
     let plan = Plan::new(&scene)?;
     let estimate = estimate(&scene, &plan, SAMPLE_SECONDS)?;
     let files = files(&scene, &plan, &Format::of(&scene))?;

@@ -2,7 +2,7 @@
 
 use super::failure::Failure;
 use super::files::Files;
-use super::numbers::number;
+use super::numbers::length;
 use clap::Args;
 use std::path::{Path, PathBuf};
 use whiskmap::scene::{Scene, Whisker, digits};
@@ -27,8 +27,8 @@ pub fn check_single(scene: &Scene, command: &str) -> Result<(), Failure> {
 pub struct Pole {
     /// Scene file; - reads it from standard input
     pub scene: PathBuf,
-    /// Distance from the base to the contact at first touch
-    #[arg(long, value_name = "MM", allow_hyphen_values = true, value_parser = number)]
+    /// Distance from the base to the contact at first touch, in mm or with a unit, such as 1.5cm
+    #[arg(long, value_name = "LENGTH", allow_hyphen_values = true, value_parser = length)]
     pub distance: f64,
 }
 
@@ -37,14 +37,15 @@ pub struct Pole {
 pub struct Poles {
     /// Scene file; - reads it from standard input
     pub scene: PathBuf,
-    /// Distance from the base to the contact at first touch; several with commas, or by several --distance
+    /// Distance from the base to the contact at first touch, in mm or with a unit, such as 1.5cm; several with commas, or by
+    /// several --distance
     #[arg(
         long,
-        value_name = "MM",
+        value_name = "LENGTH",
         required = true,
         value_delimiter = ',',
         allow_hyphen_values = true,
-        value_parser = number
+        value_parser = length
     )]
     pub distance: Vec<f64>,
 }

@@ -8,6 +8,7 @@ use super::selection::{Selection, channels, with_marks};
 use clap::Args;
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
+use whiskmap::input::Quantity;
 use whiskmap::render::{self, Format, MapOptions};
 use whiskmap::store::Slice;
 
@@ -23,7 +24,7 @@ Examples:
   whiskmap render outputs/sweep.zarr --at pole_radius_mm=0.25 --at friction=0.2
 
 A picture has at most two sweep axes: choose a value of each other one by --at. An SVG has the cells as pixels, and text and lines as such. The ends of --range are in the unit that the channel's \
-name ends in; the colour bar shows them in the unit that suits them.")]
+name ends in, or lengths and angles with a unit, such as 5mm,1cm; the colour bar shows them in the unit that suits them.")]
 pub struct Options {
     /// Map or store written by `whiskmap map`
     file: PathBuf,
@@ -36,8 +37,13 @@ pub struct Options {
     #[arg(long, requires = "channel")]
     log: bool,
     /// Ends of the colour bar; values beyond them take the colours of the ends
-    #[arg(long, value_name = "A,B", requires = "channel", value_parser = range, allow_hyphen_values = true)]
-    range: Option<[f64; 2]>,
+    #[arg(
+        long,
+        value_name = "A,B",
+        requires = "channel",
+        allow_hyphen_values = true
+    )]
+    range: Option<String>,
     /// Width of the picture in pixels, from 300 to 8000 [default: by the map, about 1500]
     #[arg(long, value_name = "PX", value_parser = whole(300..=8000))]
     width: Option<u32>,
@@ -47,13 +53,14 @@ pub struct Options {
     output: Option<PathBuf>,
 }
 
-/// Two numbers with a comma between them.
-fn range(text: &str) -> Result<[f64; 2], String> {
-    let ends = text.split_once(',').and_then(|(low, high)| {
-        let [low, high] = [low, high].map(|end| end.trim().parse().ok());
-        Some([low?, high?])
-    });
-    ends.ok_or_else(|| "must be two numbers with a comma between them, such as 0,100".to_owned())
+/// Two numbers with a comma between them, with the unit of the channel or another one.
+fn range(text: &str, channel: &str) -> Result<[f64; 2], Failure> {
+    let refuse = |why: &str| Failure::Input(format!("--range {text}: {why}"));
+    let ends = text.split_once(',');
+    let (low, high) =
+        ends.ok_or_else(|| refuse("must be two numbers with a comma between them, such as 0,100"))?;
+    let end = |end| Quantity::of(channel).parse(end).map_err(|why| refuse(&why));
+    Ok([end(low)?, end(high)?])
 }
 
 /// Runs `render`.
@@ -64,13 +71,17 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         let channel = channels(&map, std::slice::from_ref(channel))?;
         with_marks(&options.file, &map, &channel)?;
     }
+    let ends = options.range.as_deref().zip(options.channel.as_deref());
+    let range = ends
+        .map(|(text, channel)| range(text, channel))
+        .transpose()?;
     let target = target(options, &map, &mut files)?;
     let picture = render::map(
         &map,
         &MapOptions {
-            channel: options.channel.as_deref(),
+            channel,
             log: options.log,
-            range: options.range,
+            range,
             width: options.width,
         },
     )?;

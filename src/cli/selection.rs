@@ -5,6 +5,7 @@ use super::files::Files;
 use clap::Args;
 use std::path::Path;
 use std::str::FromStr;
+use whiskmap::input::did_you_mean;
 use whiskmap::map::Channels;
 use whiskmap::scene::digits;
 use whiskmap::store::{At, Slice, Stored};
@@ -12,7 +13,7 @@ use whiskmap::store::{At, Slice, Stored};
 /// Options that choose a part.
 #[derive(Debug, Args)]
 pub struct Selection {
-    /// Value of an axis to stay at: the nearest there is
+    /// Value of an axis to stay at, with or without a unit, such as distance_mm=1.5cm: the nearest on the axis is taken
     #[arg(long, value_name = "AXIS=VALUE", value_parser = At::from_str, allow_hyphen_values = true)]
     at: Vec<At>,
     /// Take the values of --at alone, not the nearest
@@ -65,9 +66,10 @@ pub fn with_marks(
 pub fn channels(slice: &Slice, asked: &[String]) -> Result<Vec<&'static str>, Failure> {
     let known = slice.channels();
     if let Some(name) = asked.iter().find(|name| !known.contains(&name.as_str())) {
+        let hint = did_you_mean(name, known.iter().copied());
         let known = known.join(", ");
         return Err(Failure::Input(format!(
-            "--channel {name}: must be one of {known}"
+            "--channel {name}: must be one of {known}{hint}"
         )));
     }
     let is_wanted = |name: &&str| asked.is_empty() || asked.iter().any(|own| own == name);

@@ -3,7 +3,7 @@
 use super::columns;
 use super::failure::{Failure, say};
 use super::files::Files;
-use super::numbers::{number, whole};
+use super::numbers::{angle, whole};
 use super::outputs::Outputs;
 use super::pole::{self, Pole, refuse, title};
 use super::side::OneSide;
@@ -32,8 +32,8 @@ turned by the push angle, and the pole has stayed where it is.";
 pub struct Options {
     #[command(flatten)]
     pole: Pole,
-    /// Rotation of the base since first touch: positive CB, negative CF
-    #[arg(long, value_name = "DEG", allow_hyphen_values = true, value_parser = number)]
+    /// Rotation of the base since first touch, in degrees or with a unit, such as 0.5rad: positive CB, negative CF
+    #[arg(long, value_name = "ANGLE", allow_hyphen_values = true, value_parser = angle)]
     push_angle: f64,
     // Unstable states reach push angles of the other sign.
     /// Side of the whisker that the pole is on [default: that of the push angle's sign]

@@ -3,10 +3,10 @@
 use super::failure::Failure;
 use super::files::check_folder;
 use super::numbers::whole;
+use super::scene;
 use clap::{Args, Parser};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
-use whiskmap::scene::Scene;
 use whiskmap::store::ZarrStore;
 
 /// Options of `submit`.
@@ -61,7 +61,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         let why = "scene -: must be a file, which every task reads";
         return Err(Failure::Input(why.to_owned()));
     }
-    let scene = Scene::read(&options.scene)?;
+    let scene = scene::read(&options.scene)?;
     let blocks = ZarrStore::blocks(&scene.grid);
     if options.shards as usize > blocks {
         return Err(Failure::Input(format!(

@@ -27,10 +27,9 @@ const RANGE: std::ops::RangeInclusive<f64> = 1e-10..=1.0;
 const ROUNDED_UP: f64 = 1.06;
 
 fn degrees(text: &str) -> Result<f64, String> {
-    match numbers::degrees(text) {
-        Some(degrees) if RANGE.contains(&degrees) => Ok(degrees),
-        Some(_) => Err("must be between 1e-10deg and 1deg".to_owned()),
-        None => Err("must be an angle in degrees, such as 1e-6deg".to_owned()),
+    match numbers::angle(text)? {
+        degrees if RANGE.contains(&degrees) => Ok(degrees),
+        _ => Err("must be between 1e-10deg and 1deg".to_owned()),
     }
 }
 

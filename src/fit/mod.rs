@@ -7,8 +7,12 @@
 mod bounded;
 mod covariance;
 mod misfit;
+mod verdict;
 
-use crate::measured::{Comparison, Points, PointsError};
+pub use verdict::{LikelyCause, NotAFit};
+
+use crate::input::CsvError;
+use crate::measured::{Comparison, Points};
 use crate::scene::{Parameter, Scene, SceneError, Swept, digits};
 use bounded::{NO_DERIVATIVE, minimise};
 use covariance::Covariance;
@@ -29,6 +33,17 @@ pub struct Fit {
     pub degrees_of_freedom: usize,
     /// The points beside the fitted scene.
     pub comparison: Comparison,
+    /// Why the values are not a fit; `None` for a fit. Without a fit there are no standard errors and correlations.
+    pub not_a_fit: Option<NotAFit>,
+}
+
+impl Fit {
+    /// Whether `chi_square` is as expected of points with standard deviations. Where it is larger, the deviations are too
+    /// small, and so are the standard errors.
+    #[must_use]
+    pub fn is_explained(&self) -> bool {
+        verdict::is_explained(self.chi_square, self.degrees_of_freedom)
+    }
 }
 
 /// A fitted parameter.
@@ -38,7 +53,7 @@ pub struct Estimate {
     pub parameter: Parameter,
     /// Its value; where it is not determined, one of many that fit as well.
     pub value: f64,
-    /// Its standard error; `None` where the points do not determine it.
+    /// Its standard error; `None` where the points do not determine it, at a limit, and without a fit.
     pub standard_error: Option<f64>,
     /// Whether it is the least or the greatest value that the scene accepts.
     pub is_at_limit: bool,
@@ -74,7 +89,7 @@ pub enum Error {
     Scene(#[from] SceneError),
     /// Points that the scene's whisker cannot touch.
     #[error(transparent)]
-    Points(#[from] PointsError),
+    Points(#[from] CsvError),
     /// Fewer points than parameters.
     #[error("{free} free parameters need as many points: {origin} has {used} that detach")]
     TooFew {
@@ -114,9 +129,15 @@ pub fn fit(scene: &Scene, points: &Points, free: &[Parameter]) -> Result<Fit, Er
     let fitted = misfit.scene(&best)?;
     let here = misfit.residuals(&best);
     let jacobian = here.as_ref().and_then(|here| misfit.jacobian(&best, here));
-    let (here, jacobian) = here
+    let (here, mut jacobian) = here
         .zip(jacobian)
         .ok_or(Error::NotConverged(NO_DERIVATIVE))?;
+    let ranges = misfit.ranges(&fitted);
+    let is_at_limit = |i: usize| ranges[i].contains(&best[i]);
+    // The limit determines such a parameter, not the points.
+    for i in (0..free.len()).filter(|i| is_at_limit(*i)) {
+        jacobian.column_mut(i).fill(0.0);
+    }
     let covariance = Covariance::new(&jacobian);
     let chi_square = here.norm_squared();
     let degrees_of_freedom = used.points.len() - covariance.rank;
@@ -126,7 +147,10 @@ pub fn fit(scene: &Scene, points: &Points, free: &[Parameter]) -> Result<Fit, Er
         (false, 0) => None,
         (false, freedom) => Some(chi_square / freedom as f64),
     };
-    let estimate = |(i, [least, most]): (usize, [f64; 2])| {
+    let comparison = fitted.first_whisker();
+    let comparison = points.beside(&comparison.whisker, &comparison.pole);
+    let not_a_fit = NotAFit::new(&used, scene, &comparison, chi_square, degrees_of_freedom);
+    let estimate = |(i, [least, most]): (usize, &[f64; 2])| {
         let (value, unit) = (best[i], misfit.units[i]);
         let error = covariance.deviation(i).zip(variance);
         let error = error.map(|(deviation, variance)| deviation * variance.sqrt());
@@ -134,12 +158,12 @@ pub fn fit(scene: &Scene, points: &Points, free: &[Parameter]) -> Result<Fit, Er
             parameter: free[i],
             value: unit * value,
             standard_error: error
-                .filter(|error| *error < most - least)
+                .filter(|error| *error < most - least && not_a_fit.is_none())
                 .map(|error| unit * error),
-            is_at_limit: value == least || value == most,
+            is_at_limit: is_at_limit(i),
         }
     };
-    let estimates = misfit.ranges(&fitted).into_iter().enumerate().map(estimate);
+    let estimates = ranges.iter().enumerate().map(estimate);
     let estimates: Vec<Estimate> = estimates.collect();
     let is_known = |i: usize| estimates[i].standard_error.is_some();
     let correlation = |i, j| {
@@ -148,14 +172,14 @@ pub fn fit(scene: &Scene, points: &Points, free: &[Parameter]) -> Result<Fit, Er
             .filter(|_| is_known(i) && is_known(j))
     };
     let all = || 0..free.len();
-    let first = fitted.first_whisker();
     Ok(Fit {
         correlation: all()
             .map(|i| all().map(|j| correlation(i, j)).collect())
             .collect(),
         chi_square,
         degrees_of_freedom,
-        comparison: points.beside(&first.whisker, &first.pole),
+        comparison,
+        not_a_fit,
         scene: fitted,
         estimates,
     })
@@ -186,7 +210,7 @@ fn check(scene: &Scene, free: &[Parameter]) -> Result<(), Error> {
 }
 
 /// The points that detach at the values of `scene`.
-fn used(scene: &Scene, points: &Points) -> Result<Points, PointsError> {
+fn used(scene: &Scene, points: &Points) -> Result<Points, CsvError> {
     let Swept { whisker, pole, .. } = scene.first_whisker();
     points.check_reach(&whisker, &pole)?;
     let rows = points.beside(&whisker, &pole).rows;

@@ -4,7 +4,6 @@ mod compare;
 mod read;
 
 pub use compare::{Compared, Comparison};
-pub use read::PointsError;
 
 use crate::rod::Side;
 use crate::trace::DetachmentKind;
@@ -14,6 +13,8 @@ use crate::trace::DetachmentKind;
 pub struct Points {
     /// The name of their file.
     pub origin: String,
+    /// What the file has that is not used, for people.
+    pub note: Option<String>,
     /// The angle that was measured.
     pub angle: Angle,
     /// Whether every point has a standard deviation of its own.

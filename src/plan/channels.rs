@@ -1,5 +1,6 @@
 //! What a map tells of every cell, and the choice of it that is computed and stored.
 
+use crate::input::did_you_mean;
 use std::fmt;
 use std::str::FromStr;
 
@@ -106,9 +107,10 @@ impl FromStr for Channels {
     fn from_str(list: &str) -> Result<Self, String> {
         let wanted: Vec<&str> = list.split(',').map(str::trim).collect();
         match wanted.iter().find(|name| !Self::ALL.contains(name)) {
-            Some(_) => Err(format!(
-                "must be names with commas between them, out of {}",
-                Self::ALL
+            Some(unknown) => Err(format!(
+                "must be names with commas between them, out of {}{}",
+                Self::ALL,
+                did_you_mean(unknown, names())
             )),
             None => Ok(Self::those(|name| wanted.contains(&name))),
         }

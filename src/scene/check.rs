@@ -55,6 +55,7 @@ pub(super) fn setup(table: &mut SceneTable, text: &str, stem: &str) -> Result<Se
         grid,
         name: name(table.output.as_ref(), stem)?,
         text: text.to_owned(),
+        note: None,
     })
 }
 

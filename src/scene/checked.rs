@@ -9,12 +9,13 @@ use serde::Serialize;
 use toml_edit::ser::ValueSerializer;
 use toml_edit::{DocumentMut, Item, TableLike, TomlError};
 
+use crate::input::bounded;
+
 use super::check;
 use super::error::SceneError;
 use super::file::SceneTable;
 use super::rows;
 use super::setup::Setup;
-use super::source::bounded;
 
 /// A scene that has passed every check. It reads like its [`Setup`], and only [`Scene::with`] changes it.
 ///
@@ -147,8 +148,13 @@ impl Scene {
             .as_ref()
             .and_then(|own| own.rows.get_ref().file(folder));
         let inlined = profile.map_or(Ok(None), |own| rows::read(&mut own.rows, text, folder));
-        inlined
-            .and_then(|inlined| check::setup(&mut table, inlined.as_deref().unwrap_or(text), &stem))
+        let setup = inlined.and_then(|inlined| {
+            let own = inlined.as_ref().map_or(text, |inlined| &inlined.text);
+            let setup = check::setup(&mut table, own, &stem)?;
+            let note = inlined.and_then(|inlined| inlined.note);
+            Ok(Setup { note, ..setup })
+        });
+        setup
             .map(|setup| Self { setup, rows_file })
             .map_err(|fault| fault.in_scene(origin, text))
     }

@@ -4,6 +4,8 @@ use std::collections::BTreeMap;
 
 use toml::Spanned;
 
+use crate::input::did_you_mean;
+
 use super::error::Fault;
 use super::limits::{Limits, Number};
 use super::parameter::Parameter;
@@ -42,7 +44,9 @@ pub(super) fn deviations(
         let refuse = |must: String| Err(Fault::new(&*key, number.span(), must));
         let parameter = Parameter::named(name);
         if parameter.is_none() && name != ROWS {
-            return refuse(format!("is not known; must be one of {}", names()));
+            let known = Parameter::ALL.map(Parameter::name);
+            let hint = did_you_mean(name, known.into_iter().chain([ROWS]));
+            return refuse(format!("is not known; must be one of {}{hint}", names()));
         }
         let deviation = Limits::between(0.0, MOST).check(&key, number)?;
         let measured = whisker.profile.is_some();

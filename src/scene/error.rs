@@ -5,6 +5,8 @@ use std::ops::Range;
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 use thiserror::Error;
 
+use crate::input::{did_you_mean, shortened};
+
 /// A scene that cannot be read or is refused.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("{}", self.render(false))]
@@ -47,11 +49,16 @@ impl SceneError {
                     kind if kind == "a map" || kind.starts_with("struct ") => "a table",
                     _ => expected,
                 };
-                format!("{found}, expected {expected}")
+                let hint = suggestion(&found, expected);
+                format!("{found}, expected {expected}{hint}")
             }
             None => shortened(why.message()),
         };
-        Self::at(origin, text, why.span(), message)
+        let number = why.span().and_then(|span| decimal_comma(text, span.start));
+        let hint = number.map_or_else(String::new, |number| {
+            format!("; write a decimal point, not a comma: {number}")
+        });
+        Self::at(origin, text, why.span(), message + &hint)
     }
 
     /// An error about the file as a whole.
@@ -81,18 +88,33 @@ impl SceneError {
     }
 }
 
-/// The characters of a text that a message quotes at most, at its beginning and at its end.
-const QUOTED: [usize; 2] = [60, 20];
+/// The end of a message about an unknown field: the key among those expected that resembles it, if one does.
+fn suggestion(found: &str, expected: &str) -> String {
+    // TOML quotes every key in backticks.
+    let keys = |text: &'_ str| {
+        text.split('`')
+            .skip(1)
+            .step_by(2)
+            .map(str::to_owned)
+            .collect()
+    };
+    let (found, expected): (Vec<String>, Vec<String>) = (keys(found), keys(expected));
+    let found = found.first().map_or("", String::as_str);
+    did_you_mean(found, expected.iter().map(String::as_str))
+}
 
-/// A text that may quote a value or a key of any length, without its middle where it is long.
-pub(crate) fn shortened(text: &str) -> String {
-    let [head, tail] = QUOTED;
-    let count = text.chars().count();
-    if count <= head + tail {
-        return text.to_owned();
-    }
-    let part = |from, length| text.chars().skip(from).take(length).collect::<String>();
-    format!("{}...{}", part(0, head), part(count - tail, tail))
+/// The number with a decimal comma that a line of `text` gives a key, with a point; `place` is anywhere in the line.
+fn decimal_comma(text: &str, place: usize) -> Option<String> {
+    let start = text.get(..place)?.rfind('\n').map_or(0, |end| end + 1);
+    let line = text[start..].lines().next()?;
+    line.split('=').skip(1).find_map(|value| {
+        let value = value.trim_start().trim_start_matches(['"', '\'']);
+        let is_other = |c: char| !(c.is_ascii_digit() || "+-.,eE".contains(c));
+        let number = value.split(is_other).next()?.trim_end_matches(',');
+        let with_point = number.replacen(',', ".", 1);
+        let is_number = number.contains(',') && with_point.parse::<f64>().is_ok();
+        is_number.then_some(with_point)
+    })
 }
 
 /// The part of a span on its first line: a mark under a whole table would bury the message.

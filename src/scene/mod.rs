@@ -1,6 +1,6 @@
 //! A scene: what to simulate, read from TOML and checked. An accepted scene is valid everywhere after.
 //!
-//! Text (`source`, `checked`) becomes tables (`file`, `axis`, `rows`), tables become a [`Setup`] (`check`, `sweep`, `limits`), and
+//! Text (`checked`) becomes tables (`file`, `axis`, `rows`), tables become a [`Setup`] (`check`, `sweep`, `limits`), and
 //! whatever is refused becomes one message that points into the text (`error`). Only what was checked is a [`Scene`].
 
 mod axis;
@@ -17,14 +17,12 @@ mod profile;
 mod rows;
 mod setup;
 mod shape;
-mod source;
 mod sweep;
 mod varied;
+mod warnings;
 mod whisker;
 
-pub(crate) use error::shortened;
 pub(crate) use grid::NEAREST;
-pub(crate) use source::bounded;
 
 pub use checked::Scene;
 pub use deviations::Deviations;

@@ -1,7 +1,6 @@
 //! Rows of radii, as the scene lists them or as a CSV file that it names has them.
 
 use std::fmt::{self, Write};
-use std::fs::File;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
@@ -10,8 +9,9 @@ use serde::de::value::SeqAccessDeserializer;
 use serde::de::{Deserializer, Error as _, SeqAccess, Visitor};
 use toml::Spanned;
 
+use crate::input::{CsvError, CsvTable};
+
 use super::error::Fault;
-use super::source::bounded;
 
 /// How messages call the rows.
 pub(super) const KEY: &str = "whisker.profile.rows";
@@ -42,7 +42,7 @@ impl<'de> Deserialize<'de> for Pair {
 
 /// A row and its line in the file.
 pub(super) struct CsvRow {
-    line: u64,
+    line: usize,
     values: [f64; 2],
 }
 
@@ -85,18 +85,24 @@ impl Rows {
     }
 }
 
-/// Reads the CSV file that `rows` may name from `folder` into them. Returns the scene's text with the rows in place of
-/// the name, so that it stands for itself.
+/// A scene's text with the rows of a file in place of its name, and a note about what the file has beside them.
+pub(super) struct Inlined {
+    pub text: String,
+    pub note: Option<String>,
+}
+
+/// Reads the CSV file that `rows` may name from `folder` into them, and writes them into the scene's `text`.
 pub(super) fn read(
     rows: &mut Spanned<Rows>,
     text: &str,
     folder: &Path,
-) -> Result<Option<String>, Fault> {
+) -> Result<Option<Inlined>, Fault> {
     let span = rows.span();
     let Some(file) = rows.get_ref().file(folder) else {
         return Ok(None);
     };
-    let read = from_csv(&file).map_err(|why| Fault::new(KEY, span.clone(), why))?;
+    let read = from_csv(&file);
+    let (read, note) = read.map_err(|why| Fault::new(KEY, span.clone(), why.to_string()))?;
     let mut list = String::from("[\n");
     for [arc_length_mm, radius_um] in read.iter().map(|row| row.values) {
         // Writing to a String cannot fail.
@@ -104,59 +110,24 @@ pub(super) fn read(
     }
     list.push(']');
     *rows.get_mut() = Rows::Read(read);
-    let mut inlined = text.to_owned();
-    inlined.replace_range(span, &list);
-    Ok(Some(inlined))
+    let mut text = text.to_owned();
+    text.replace_range(span, &list);
+    Ok(Some(Inlined { text, note }))
 }
 
-/// The columns of the CSV file that count; others are left alone.
-#[derive(Deserialize)]
-struct Columns {
-    arc_length_mm: f64,
-    radius_um: f64,
-}
-
-/// The rows of a file, one more than allowed at most, or what is wrong with it.
-fn from_csv(path: &Path) -> Result<Vec<CsvRow>, String> {
-    let bytes = File::open(path)
-        .and_then(bounded)
-        .map_err(|why| why.to_string())?;
-    let mut reader = csv::ReaderBuilder::new()
-        .trim(csv::Trim::All)
-        .comment(Some(b'#'))
-        .from_reader(&*bytes);
-    let headers = reader.headers().map_err(|why| why.to_string())?.clone();
-    let text = String::from_utf8_lossy(&bytes);
-    let is_record = |line: &str| !line.is_empty() && !line.starts_with('#');
-    let lines = text.lines().zip(1..).filter(|(line, _)| is_record(line));
-    let lines = lines.map(|(_, line)| line).skip(1);
-    let row = |(record, line): (csv::Result<csv::StringRecord>, u64)| {
-        let record = record.map_err(|why| why.to_string())?;
-        let Columns {
-            arc_length_mm,
-            radius_um,
-        } = record
-            .deserialize(Some(&headers))
-            .map_err(|why| format!("line {line}: {}", said(&why, &headers)))?;
-        let values = [arc_length_mm, radius_um];
-        Ok(CsvRow { line, values })
-    };
-    let records = reader.records().zip(lines);
-    records.take(MOST + 1).map(row).collect()
-}
-
-/// What a row's error says, without the place, which is said already.
-fn said(why: &csv::Error, columns: &csv::StringRecord) -> String {
-    let csv::ErrorKind::Deserialize { err, .. } = why.kind() else {
-        return why.to_string();
-    };
-    let column = err.field().and_then(|field| columns.get(field as usize));
-    match (err.kind(), column) {
-        (csv::DeserializeErrorKind::ParseFloat(_), Some(column)) => {
-            format!("{column} must be a number")
-        }
-        _ => err.to_string(),
-    }
+/// The rows of a file, one more than allowed at most, and a note about what is not used.
+fn from_csv(path: &Path) -> Result<(Vec<CsvRow>, Option<String>), CsvError> {
+    let table = CsvTable::read(path)?;
+    let note = table.require(&[&["arc_length_mm"], &["radius_um"]], &[])?;
+    let column = |name| table.numbers(name, "a number", f64::is_finite);
+    let arc_length_mm = column("arc_length_mm")?.unwrap_or_default();
+    let radius_um = column("radius_um")?.unwrap_or_default();
+    let rows = table.lines().zip(arc_length_mm.into_iter().zip(radius_um));
+    let rows = rows.map(|(line, (arc_length_mm, radius_um))| CsvRow {
+        line,
+        values: [arc_length_mm, radius_um],
+    });
+    Ok((rows.take(MOST + 1).collect(), note))
 }
 
 impl<'de> Deserialize<'de> for Rows {

@@ -22,6 +22,8 @@ pub struct Setup {
     pub name: String,
     /// The file as it was read.
     pub text: String,
+    /// What the CSV file of its radii has that is not used, for people.
+    pub note: Option<String>,
 }
 
 impl Setup {

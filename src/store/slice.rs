@@ -1,6 +1,7 @@
 //! A part of a map or a store: what is left of its axes where a value is chosen on some of them.
 
 use super::{Channels, Error, Layout, Panel, STATE_CHANNELS, Samples, Stored, StoredMap};
+use crate::input::{Quantity, did_you_mean};
 use crate::scene::{Grid, Scene, digits};
 use std::collections::{BTreeMap, BTreeSet};
 use std::str::FromStr;
@@ -14,17 +15,26 @@ pub struct At {
     pub value: f64,
 }
 
+/// Reads `AXIS=VALUE`; the value of a length or an angle may have another unit than the axis.
+///
+/// ```
+/// use whiskmap::store::At;
+///
+/// let at: At = "distance_mm = 1.5cm".parse()?;
+/// assert_eq!((&*at.axis, at.value), ("distance_mm", 15.0));
+/// # Ok::<(), String>(())
+/// ```
 impl FromStr for At {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let parts = text.split_once('=');
-        let at = parts.and_then(|(axis, value)| {
-            let value: f64 = value.trim().parse().ok()?;
-            let axis = axis.trim().to_owned();
-            value.is_finite().then_some(Self { axis, value })
-        });
-        at.ok_or_else(|| "must be AXIS=VALUE, such as taper=0.9".to_owned())
+        let (axis, value) = text
+            .split_once('=')
+            .ok_or("must be AXIS=VALUE, such as taper=0.9")?;
+        let axis = axis.trim();
+        let value = Quantity::of(axis).parse(value)?;
+        let axis = axis.to_owned();
+        Ok(Self { axis, value })
     }
 }
 
@@ -54,7 +64,7 @@ impl Slice {
     ///
     /// # Errors
     ///
-    /// An axis is unknown or there twice, or does not have the value exactly.
+    /// If an axis is unknown or there twice, does not have the value exactly, or ends more than half a step before it.
     pub fn new(stored: Stored, wanted: &[At], exact: bool) -> Result<Self, NoChoice> {
         let mut slice = Self::whole(stored);
         for at in wanted {
@@ -89,8 +99,11 @@ impl Slice {
         let axes: Vec<(&'static str, &Vec<f64>)> = sweep.chain(inside).collect();
         let names = || axes.iter().map(|(name, _)| *name).collect::<Vec<_>>();
         let axis = axes.iter().position(|(name, _)| *name == at.axis);
-        let axis =
-            axis.ok_or_else(|| format!("must be one of the axes, {}", names().join(", ")))?;
+        let unknown = || {
+            let hint = did_you_mean(&at.axis, names());
+            format!("must be one of the axes, {}{hint}", names().join(", "))
+        };
+        let axis = axis.ok_or_else(unknown)?;
         let (name, values) = axes[axis];
         let index = nearest(values, at.value);
         let value = values[index];
@@ -98,6 +111,12 @@ impl Slice {
             let [wanted, value] = [at.value, value].map(digits);
             return Err(format!(
                 "{wanted} is no value of the axis; the nearest is {value}"
+            ));
+        }
+        if !is_near(values, at.value) {
+            let [wanted, first, last] = [at.value, values[0], values[values.len() - 1]].map(digits);
+            return Err(format!(
+                "{wanted} is more than half a step beyond the axis, which goes from {first} to {last}"
             ));
         }
         if self.chosen.iter().any(|(other, _)| *other == name) {
@@ -312,6 +331,23 @@ impl From<StoredMap> for Slice {
     fn from(map: StoredMap) -> Self {
         Self::whole(Stored::Exr(Box::new(map)))
     }
+}
+
+/// How close a value must be to the only one of an axis, relative to it: [`Slice::readable`] rounds to four digits.
+const ROUNDED: f64 = 5e-4;
+
+/// Whether `wanted` is at most half a step beyond the axis of these `values`.
+fn is_near(values: &[f64], wanted: f64) -> bool {
+    let half_steps = match values {
+        [only] => [ROUNDED * only.abs(); 2],
+        [first, second, ..] => {
+            let [last, before] = [1, 2].map(|back| values[values.len() - back]);
+            [second - first, last - before].map(|step| step / 2.0)
+        }
+        [] => return false,
+    };
+    let [below, above] = half_steps;
+    values[0] - below <= wanted && wanted <= values[values.len() - 1] + above
 }
 
 /// The place of the value nearest to `wanted`.

@@ -42,6 +42,7 @@ fn detachments(scene: &Scene, angle: Angle, distances_mm: &[f64]) -> Points {
     });
     Points {
         origin: "points.csv".to_owned(),
+        note: None,
         angle,
         have_deviations: false,
         points: points.collect(),

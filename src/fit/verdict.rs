@@ -1,0 +1,133 @@
+//! Which best values are no fit: no whisker of the scene's kind explains the points.
+
+use crate::measured::{Comparison, Points};
+use crate::scene::{Scene, Swept, digits};
+use std::fmt;
+
+/// The largest root mean square of residuals, in degrees. Theory and real whiskers differ by a few degrees; the measured
+/// ends of a push go from a few degrees to 90.
+const LARGEST_RMS_DEG: f64 = 5.0;
+
+/// The same as a part of the range of the measured angles. The range includes 0, the angle at first touch: repeated
+/// measurements at one distance differ by their errors alone.
+const LARGEST_PART: f64 = 1.0 / 3.0;
+
+/// How far the reduced chi-square of right deviations may be above 1, in its own standard deviations `sqrt(2 / freedom)`.
+const DEVIATIONS: f64 = 5.0;
+
+/// Angles in radians are all below one turn, 2 pi.
+const TURN: f64 = 6.3;
+
+/// A predicted angle in degrees that no angle in radians has.
+const TENS_DEG: f64 = 10.0;
+
+/// Why the best values are not a fit.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NotAFit {
+    /// Root mean square of the residuals.
+    pub rms_deg: f64,
+    /// The largest one of a fit: 5 degrees, or a third of the range of the measured angles and 0.
+    pub largest_rms_deg: f64,
+    /// Chi-square over its degrees of freedom, where points have standard deviations.
+    pub reduced_chi_square: Option<f64>,
+    /// What the points look like, if they look like a known mistake.
+    pub cause: Option<LikelyCause>,
+}
+
+/// A mistake that points show.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LikelyCause {
+    /// All angles are below 6.3, and the scene predicts tens of degrees.
+    Radians,
+    /// Ten times the distances are within reach, and halve the RMS at the start at least.
+    Centimetres,
+}
+
+impl NotAFit {
+    /// The verdict on the `end` of a fit of the `used` points, from `start` on; `None` for a fit.
+    ///
+    /// The RMS must be too large for the theory. Where points have standard deviations, chi-square must be too large for
+    /// these, too: points of low precision may be far off.
+    pub(super) fn new(
+        used: &Points,
+        start: &Scene,
+        end: &Comparison,
+        chi_square: f64,
+        freedom: usize,
+    ) -> Option<Self> {
+        let angles = used.points.iter().map(|point| point.angle_deg);
+        let [least, most] = angles.fold([0.0_f64; 2], |[least, most], angle| {
+            [least.min(angle), most.max(angle)]
+        });
+        let largest_rms_deg = LARGEST_RMS_DEG.min(LARGEST_PART * (most - least));
+        let rms_deg = end.rms_deg()?;
+        let is_explained = used.have_deviations && is_explained(chi_square, freedom);
+        let is_fit = rms_deg <= largest_rms_deg || is_explained;
+        let reduced = || chi_square / freedom.max(1) as f64;
+        (!is_fit).then(|| Self {
+            rms_deg,
+            largest_rms_deg,
+            reduced_chi_square: used.have_deviations.then(reduced),
+            cause: LikelyCause::of(used, start),
+        })
+    }
+}
+
+/// Whether standard deviations explain residuals with this chi-square.
+pub(super) fn is_explained(chi_square: f64, freedom: usize) -> bool {
+    let freedom = freedom.max(1) as f64;
+    chi_square / freedom <= 1.0 + DEVIATIONS * (2.0 / freedom).sqrt()
+}
+
+impl LikelyCause {
+    /// The mistake that `points` show beside the theory of `scene`.
+    fn of(points: &Points, scene: &Scene) -> Option<Self> {
+        let Swept { whisker, pole, .. } = scene.first_whisker();
+        let own = points.beside(&whisker, &pole);
+        let predicted = own.rows.iter().filter_map(|row| row.predicted_deg);
+        let has_tens = predicted.fold(0.0, |most: f64, angle| most.max(angle.abs())) >= TENS_DEG;
+        if has_tens
+            && points
+                .points
+                .iter()
+                .all(|point| point.angle_deg.abs() < TURN)
+        {
+            return Some(Self::Radians);
+        }
+        let mut farther = points.clone();
+        for point in &mut farther.points {
+            point.distance_mm *= 10.0;
+        }
+        farther.check_reach(&whisker, &pole).ok()?;
+        let rms_deg = farther.beside(&whisker, &pole).rms_deg()?;
+        (rms_deg < own.rms_deg()? / 2.0).then_some(Self::Centimetres)
+    }
+}
+
+impl fmt::Display for NotAFit {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [rms, largest] = [self.rms_deg, self.largest_rms_deg].map(rounded);
+        write!(f, "not a fit: RMS {rms} deg, must be at most {largest} deg")?;
+        if let Some(reduced) = self.reduced_chi_square {
+            write!(
+                f,
+                "; reduced chi-square {}, must be about 1",
+                rounded(reduced)
+            )?;
+        }
+        match self.cause {
+            Some(LikelyCause::Radians) => {
+                f.write_str("; all measured angles are below 6.3, predicted ones are tens: are they in radians?")
+            }
+            Some(LikelyCause::Centimetres) => {
+                f.write_str("; ten times the distances fit better: are they in cm?")
+            }
+            None => Ok(()),
+        }
+    }
+}
+
+/// A number to three digits.
+fn rounded(number: f64) -> String {
+    digits(format!("{number:.2e}").parse().unwrap_or(number))
+}

@@ -1,0 +1,13 @@
+//! Input text: files of bounded length, CSV tables, numbers with units, and names that are nearly right.
+
+mod names;
+mod quantity;
+mod source;
+mod table;
+
+pub use names::did_you_mean;
+pub use quantity::Quantity;
+pub use table::{CsvError, CsvTable};
+
+pub(crate) use names::shortened;
+pub(crate) use source::bounded;

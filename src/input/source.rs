@@ -1,0 +1,68 @@
+//! Bytes of an input file, and the text that they encode.
+
+use std::io::{self, Read};
+
+/// The longest input in bytes. A scene is a page of text and a table is short: a longer file is a wrong file.
+const MOST_BYTES: u64 = 1 << 20;
+
+/// All bytes of `source`.
+///
+/// # Errors
+/// If it cannot be read, or is longer than 1 MiB.
+pub(crate) fn bounded(source: impl Read) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    source.take(MOST_BYTES + 1).read_to_end(&mut bytes)?;
+    if bytes.len() as u64 > MOST_BYTES {
+        return Err(io::Error::new(
+            io::ErrorKind::FileTooLarge,
+            "longer than 1 MiB",
+        ));
+    }
+    Ok(bytes)
+}
+
+/// The text of `bytes`, without a byte order mark: UTF-16 where the mark says so, UTF-8 otherwise.
+///
+/// # Errors
+/// The line of the first byte that is wrong, from 1, and what it is.
+pub(super) fn decoded(bytes: &[u8]) -> Result<String, (usize, String)> {
+    let (units, encoding): (fn([u8; 2]) -> u16, _) = match bytes {
+        [0xFF, 0xFE, ..] => (u16::from_le_bytes, "UTF-16LE"),
+        [0xFE, 0xFF, ..] => (u16::from_be_bytes, "UTF-16BE"),
+        _ => return utf8(bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes)),
+    };
+    let (pairs, rest) = bytes[2..].as_chunks::<2>();
+    let mut text = String::with_capacity(pairs.len());
+    for unit in char::decode_utf16(pairs.iter().map(|pair| units(*pair))) {
+        let wrong = |why: std::char::DecodeUtf16Error| {
+            let unit = why.unpaired_surrogate();
+            (
+                line(&text),
+                format!("not {encoding} text: code 0x{unit:04X}"),
+            )
+        };
+        let unit = unit.map_err(wrong)?;
+        text.push(unit);
+    }
+    match rest {
+        [] => Ok(text),
+        _ => Err((
+            line(&text),
+            format!("not {encoding} text: half a character at the end"),
+        )),
+    }
+}
+
+fn utf8(bytes: &[u8]) -> Result<String, (usize, String)> {
+    let text = str::from_utf8(bytes).map_err(|why| {
+        let (before, wrong) = bytes.split_at(why.valid_up_to());
+        let line = 1 + before.iter().filter(|byte| **byte == b'\n').count();
+        (line, format!("not UTF-8 text: byte 0x{:02X}", wrong[0]))
+    })?;
+    Ok(text.to_owned())
+}
+
+/// The line of the end of `text`, from 1.
+fn line(text: &str) -> usize {
+    1 + text.matches('\n').count()
+}

@@ -1,0 +1,256 @@
+//! The reader of all CSV files: a header, and columns by their names.
+
+use super::names::{shortened, similar};
+use super::source::{bounded, decoded};
+use csv::{ReaderBuilder, StringRecord, Trim};
+use std::fs::File;
+use std::io;
+use std::path::Path;
+
+/// An error in a CSV file: the file, the line, the value and what is allowed, in one line.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{place}: {what}")]
+pub struct CsvError {
+    place: String,
+    what: String,
+}
+
+impl CsvError {
+    /// An error in the whole file `origin`.
+    pub(crate) fn whole(origin: &str, what: impl Into<String>) -> Self {
+        Self {
+            place: origin.to_owned(),
+            what: what.into(),
+        }
+    }
+
+    /// An error in a line of the file `origin`.
+    pub(crate) fn at(origin: &str, line: usize, what: impl Into<String>) -> Self {
+        Self::whole(&format!("{origin}:{line}"), what)
+    }
+}
+
+/// A CSV file as text: a header, and at least one row below it.
+///
+/// Columns are separated by `,`, `;` or tabs, whichever the header has most of. Blank lines, rows of empty cells and
+/// lines that begin with `#` are left out. Where the separator is no comma, a column may have decimal commas.
+///
+/// ```
+/// use whiskmap::input::CsvTable;
+///
+/// let table = CsvTable::parse("radius_um;day\n1,5;Monday\n", "radii.csv")?;
+/// let note = table.require(&[&["radius_um"]], &[])?;
+/// assert_eq!(note.as_deref(), Some("radii.csv:1: columns that are not used: day"));
+/// let radii = table.numbers("radius_um", "a positive number", |radius| radius > 0.0)?;
+/// assert_eq!(radii, Some(vec![1.5]));
+/// # Ok::<(), whiskmap::input::CsvError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct CsvTable {
+    /// The name of the file in messages.
+    pub origin: String,
+    separator: char,
+    header: CsvLine,
+    rows: Vec<CsvLine>,
+}
+
+/// The cells of one line of a file, and its number from 1.
+#[derive(Clone, Debug)]
+struct CsvLine {
+    number: usize,
+    cells: StringRecord,
+}
+
+impl CsvTable {
+    /// Reads a CSV file in UTF-8, or in UTF-16 with a byte order mark; `-` is standard input.
+    ///
+    /// # Errors
+    /// If the file cannot be read, is longer than 1 MiB, is no such text, or for the reasons of [`CsvTable::parse`].
+    pub fn read(path: impl AsRef<Path>) -> Result<Self, CsvError> {
+        let path = path.as_ref();
+        let (origin, bytes) = if path == Path::new("-") {
+            ("<stdin>".into(), bounded(io::stdin().lock()))
+        } else {
+            (path.to_string_lossy(), File::open(path).and_then(bounded))
+        };
+        let unreadable = |why| CsvError::whole(&origin, format!("cannot be read: {why}"));
+        let bytes = bytes.map_err(unreadable)?;
+        let text = decoded(&bytes);
+        let text = text.map_err(|(line, what)| CsvError::at(&origin, line, what))?;
+        Self::parse(&text, &origin)
+    }
+
+    /// Splits the text of a CSV file. Messages call it `origin`.
+    ///
+    /// # Errors
+    /// If there is no row, or a row has more or fewer cells than the header.
+    pub fn parse(text: &str, origin: &str) -> Result<Self, CsvError> {
+        let separator = separator(text);
+        let lines = lines(text, separator);
+        let mut lines = lines.map_err(|why| CsvError::whole(origin, why.to_string()))?;
+        if lines.len() < 2 {
+            let what = "has no rows: must have a header and at least one row below it";
+            return Err(CsvError::whole(origin, what));
+        }
+        let header = lines.remove(0);
+        let must = header.cells.len();
+        if let Some(row) = lines.iter().find(|row| row.cells.len() != must) {
+            let has = row.cells.len();
+            let what = format!("has {has} cells: must have {must}, one a column");
+            return Err(CsvError::at(origin, row.number, what));
+        }
+        Ok(Self {
+            origin: origin.to_owned(),
+            separator,
+            header,
+            rows: lines,
+        })
+    }
+
+    /// Checks the header: it must have one name of each group of `needed`, once, and each `optional` name at most once.
+    /// Returns a note about other columns, if there are any.
+    ///
+    /// # Errors
+    /// What the header has, and what it needs.
+    pub fn require(
+        &self,
+        needed: &[&[&str]],
+        optional: &[&str],
+    ) -> Result<Option<String>, CsvError> {
+        let found = || self.header.cells.iter().filter(|name| !name.is_empty());
+        let count = |names: &[&str]| found().filter(|name| names.contains(name)).count();
+        let known = || needed.iter().copied().flatten().chain(optional).copied();
+        let is_unknown = |name: &&str| known().all(|other| other != *name);
+        let is_absent = |name: &&str| found().all(|other| other != *name);
+        let is_right = needed.iter().all(|group| count(group) == 1)
+            && optional.iter().all(|name| count(&[name]) <= 1);
+        let unused: Vec<&str> = found().filter(is_unknown).collect();
+        let hints = unused.iter().filter_map(|name| {
+            let meant = similar(name, known().filter(is_absent))?;
+            Some(format!("; did you mean `{meant}` by `{name}`?"))
+        });
+        let hint = hints.take(1).collect::<String>();
+        let line = self.header.number;
+        if !is_right {
+            let groups: Vec<String> = needed.iter().map(|group| group.join(" or ")).collect();
+            let found: Vec<&str> = found().collect();
+            let what = format!(
+                "found {}; needed {}, each once{hint}",
+                shortened(&found.join(", ")),
+                groups.join(", ")
+            );
+            return Err(CsvError::at(&self.origin, line, what));
+        }
+        let unused = (!unused.is_empty()).then(|| shortened(&unused.join(", ")));
+        let note = |unused| {
+            format!(
+                "{}:{line}: columns that are not used: {unused}{hint}",
+                self.origin
+            )
+        };
+        Ok(unused.map(note))
+    }
+
+    /// Whether the header has a column of this name.
+    #[must_use]
+    pub fn has(&self, column: &str) -> bool {
+        self.header.cells.iter().any(|name| name == column)
+    }
+
+    /// The numbers of the lines of all rows, from 1.
+    pub fn lines(&self) -> impl Iterator<Item = usize> + '_ {
+        self.rows.iter().map(|row| row.number)
+    }
+
+    /// The values of a column, row by row; `None` without such a column.
+    ///
+    /// # Errors
+    /// The first cell of which `value` makes none, and what it `must` be.
+    pub fn values<T>(
+        &self,
+        column: &str,
+        must: &str,
+        value: impl Fn(&str) -> Option<T>,
+    ) -> Result<Option<Vec<T>>, CsvError> {
+        let Some(place) = self.header.cells.iter().position(|name| name == column) else {
+            return Ok(None);
+        };
+        let values = self.rows.iter().map(|row| {
+            let cell = row.cells.get(place).unwrap_or_default();
+            value(cell).ok_or_else(|| {
+                let what = format!("{column} = {}: must be {must}", shortened(cell));
+                CsvError::at(&self.origin, row.number, what)
+            })
+        });
+        values.collect::<Result<_, _>>().map(Some)
+    }
+
+    /// The numbers of a column, row by row; `None` without such a column. A column with a decimal comma has no decimal
+    /// points.
+    ///
+    /// # Errors
+    /// The first cell that is no number, or not one that `is_allowed`, and what it `must` be.
+    pub fn numbers(
+        &self,
+        column: &str,
+        must: &str,
+        is_allowed: impl Fn(f64) -> bool,
+    ) -> Result<Option<Vec<f64>>, CsvError> {
+        let with_point = |cell: &str| match cell.contains('.') {
+            true => None,
+            false => Some(cell.replacen(',', ".", 1)),
+        };
+        let number = |text: String| text.parse().ok().filter(|number| is_allowed(*number));
+        let has_commas = || {
+            let cells = self.values(column, "", |cell| Some(cell.contains(',')));
+            cells.is_ok_and(|cells| cells.is_some_and(|cells| cells.contains(&true)))
+        };
+        if self.separator != ',' && has_commas() {
+            let must = format!("{must}; this column has decimal commas");
+            return self.values(column, &must, |cell| with_point(cell).and_then(number));
+        }
+        self.values(column, must, |cell| number(cell.to_owned()))
+    }
+}
+
+/// The separator of the columns of `text`: what its header has most of, outside of quotes.
+fn separator(text: &str) -> char {
+    let is_header = |line: &&str| !line.trim().is_empty() && !line.trim_start().starts_with('#');
+    let header = text.lines().find(is_header).unwrap_or_default();
+    let count = |separator: &char| -> usize {
+        let unquoted = header.split('"').step_by(2);
+        unquoted.map(|part| part.matches(*separator).count()).sum()
+    };
+    let most = [';', '\t', ','].into_iter().max_by_key(count);
+    most.unwrap_or(',')
+}
+
+/// The lines of `text` that are neither blank nor comments; a cell in quotes may have line breaks.
+fn lines(text: &str, separator: char) -> csv::Result<Vec<CsvLine>> {
+    let mut reader = ReaderBuilder::new()
+        .has_headers(false)
+        .flexible(true)
+        .comment(Some(b'#'))
+        .delimiter(separator as u8)
+        .trim(Trim::All)
+        .from_reader(text.as_bytes());
+    let mut lines = Vec::new();
+    let (mut number, mut counted) = (1, 0);
+    for cells in reader.records() {
+        let cells = cells?;
+        // A record's position is before the blank lines and comments that the reader has left out.
+        let start = cells.position().map_or(0, |place| place.byte() as usize);
+        number += text[counted..start].matches('\n').count();
+        counted = start;
+        let left_out = |line: &&str| line.is_empty() || line.starts_with('#');
+        let above = text[start..].lines().take_while(left_out).count();
+        let is_comment = cells.get(0).is_some_and(|cell| cell.starts_with('#'));
+        if !is_comment && cells.iter().any(|cell| !cell.is_empty()) {
+            lines.push(CsvLine {
+                number: number + above,
+                cells,
+            });
+        }
+    }
+    Ok(lines)
+}

@@ -1,0 +1,146 @@
+//! Numbers that a scene accepts, but that look like numbers in another unit.
+
+use super::limits::digits;
+use super::parameter::Parameter;
+use super::setup::Setup;
+
+/// Radius over length. Whiskers of rats lie between 1e-4 (at the tip) and 0.01; a thicker rod is no beam.
+const SLENDER: [f64; 2] = [1e-5, 0.1];
+
+/// Young's modulus in GPa, from rubber to fibres of carbon. Whiskers of rats have 1 to 8.
+const MODULUS_GPA: [f64; 2] = [0.1, 100.0];
+
+/// Forces in uN, from below the noise of any sensor to a kilonewton.
+const FORCE_UN: [f64; 2] = [1e-6, 1e9];
+
+/// A number of the scene: its key, and its least and greatest value over the sweep. Values of 0 do not count.
+struct SceneNumber {
+    key: String,
+    ends: [f64; 2],
+}
+
+impl SceneNumber {
+    fn new(key: impl Into<String>, values: impl IntoIterator<Item = f64>) -> Self {
+        let values = values.into_iter().filter(|value| *value > 0.0);
+        let none = [f64::INFINITY, 0.0];
+        let ends = values.fold(none, |[least, most], value| {
+            [least.min(value), most.max(value)]
+        });
+        Self {
+            key: key.into(),
+            ends,
+        }
+    }
+}
+
+impl Setup {
+    /// Numbers that look as if they were in another unit: one line each, with key, value, unit and what is expected.
+    ///
+    /// These are radii below 1e-5 or above 0.1 of the length, a Young's modulus outside 0.1 to 100 GPa, and forces outside
+    /// 1e-6 to 1e9 uN. All values of sweep axes count. The force is `E I / L^2` with the second moment of area at the base: a
+    /// cylinder bends by 1 radian under twice that force across its tip, to first order.
+    ///
+    /// ```
+    /// use whiskmap::scene::Scene;
+    ///
+    /// let cone = Scene::parse(include_str!("../../scenes/cone.toml"), "cone.toml")?;
+    /// assert!(cone.warnings().is_empty());
+    /// let warnings = cone.with("whisker.youngs_modulus_gpa", 3000)?.warnings();
+    /// let modulus = "whisker.youngs_modulus_gpa = 3000 GPa: expected 0.1 to 100 GPa; is it in MPa?";
+    /// assert_eq!(warnings, [modulus]);
+    /// # Ok::<(), whiskmap::scene::SceneError>(())
+    /// ```
+    #[must_use]
+    pub fn warnings(&self) -> Vec<String> {
+        let length = self.number(Parameter::LengthMm, self.whisker.length_mm);
+        let radii = self.radii();
+        let radii = radii.iter().filter_map(|radius| thickness(radius, &length));
+        radii.chain(self.modulus()).chain(self.force()).collect()
+    }
+
+    /// The number of `parameter`: its axis, or the scene's `own` value.
+    fn number(&self, parameter: Parameter, own: f64) -> SceneNumber {
+        match self.grid.axis(parameter) {
+            Some(values) => {
+                let key = format!("grid.{}", parameter.axis());
+                SceneNumber::new(key, values.iter().copied())
+            }
+            None => SceneNumber::new(parameter.key(), [own]),
+        }
+    }
+
+    /// The radii of the scene. A tip that follows from a taper is none of its numbers.
+    fn radii(&self) -> Vec<SceneNumber> {
+        let whisker = &self.whisker;
+        if let Some(rows) = &whisker.profile {
+            let radii = rows
+                .iter()
+                .map(|[_, radius]| radius * whisker.base_radius_um);
+            return vec![SceneNumber::new("whisker.profile.rows", radii)];
+        }
+        let mut radii = vec![self.number(Parameter::BaseRadiusUm, whisker.base_radius_um)];
+        if self.grid.axis(Parameter::Taper).is_none() {
+            radii.push(self.number(Parameter::TipRadiusUm, whisker.tip_radius_um));
+        }
+        radii
+    }
+
+    fn modulus(&self) -> Option<String> {
+        let gpa = self.whisker.youngs_modulus_gpa;
+        let unit = ["TPa", "MPa"][beyond(gpa, MODULUS_GPA)?];
+        let key = Parameter::YoungsModulusGpa.key();
+        let [gpa, least, most] = [gpa, MODULUS_GPA[0], MODULUS_GPA[1]].map(digits);
+        Some(format!(
+            "{key} = {gpa} GPa: expected {least} to {most} GPa; is it in {unit}?"
+        ))
+    }
+
+    /// The force of the first whisker at an end of the axes whose force is not as expected.
+    fn force(&self) -> Option<String> {
+        self.corner_whiskers().find_map(|own| {
+            let whisker = own.whisker;
+            let force_un = whisker.units().force_un;
+            let others = [
+                "the radii in mm, the length in um or the modulus in TPa",
+                "the radii in nm, the length in m or the modulus in MPa",
+            ];
+            let others = others[beyond(force_un, FORCE_UN)?];
+            let numbers = [
+                whisker.youngs_modulus_gpa,
+                whisker.base_radius_um,
+                whisker.length_mm,
+            ];
+            let [gpa, um, mm] = numbers.map(digits);
+            let [least, most] = FORCE_UN.map(|force| format!("{force:e}"));
+            Some(format!(
+                "forces of about {force_un:.1e} uN (E I / L^2 of {gpa} GPa, {um} um and {mm} mm): expected {least} to {most} \
+                 uN; are {others}?"
+            ))
+        })
+    }
+}
+
+/// A warning about a radius that is not as expected beside the length.
+fn thickness(radius: &SceneNumber, length: &SceneNumber) -> Option<String> {
+    let [thinnest_um, thickest_um] = radius.ends;
+    let [shortest_mm, longest_mm] = length.ends;
+    let extremes = [(thinnest_um, longest_mm), (thickest_um, shortest_mm)];
+    extremes.into_iter().find_map(|(um, mm)| {
+        let ratio = um * 1e-3 / mm;
+        let other = ["mm, or the length in um", "nm, or the length in m"][beyond(ratio, SLENDER)?];
+        let [um, mm, least, most] = [um, mm, SLENDER[0], SLENDER[1]].map(digits);
+        Some(format!(
+            "{} = {um} um: expected {least} to {most} of {} = {mm} mm, is {ratio:.1e}; is it in {other}?",
+            radius.key, length.key
+        ))
+    })
+}
+
+/// The end of `range` that `value` is beyond: 0 the lower, 1 the upper; `None` within.
+fn beyond(value: f64, [least, most]: [f64; 2]) -> Option<usize> {
+    match value {
+        low if low < least => Some(0),
+        high if high > most => Some(1),
+        _ => None,
+    }
+}
