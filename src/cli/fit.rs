@@ -108,9 +108,10 @@ fn warn(points: &Points, fit: &Fit) {
         }
     }
     if points.have_deviations && !fit.is_explained() && fit.not_a_fit.is_none() {
-        say(
-            "warning: chi-square is too large for the degrees of freedom: sd_deg is too small, and so are standard errors",
-        );
+        let ratio = (fit.chi_square / fit.degrees_of_freedom.max(1) as f64).sqrt();
+        say(&format!(
+            "warning: residuals are {ratio:.1} times as large as sd_deg: standard errors are too small by about that factor"
+        ));
     }
 }
 

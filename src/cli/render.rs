@@ -59,7 +59,10 @@ fn range(text: &str, channel: &str) -> Result<[f64; 2], Failure> {
     let ends = text.split_once(',');
     let (low, high) =
         ends.ok_or_else(|| refuse("must be two numbers with a comma between them, such as 0,100"))?;
-    let end = |end| Quantity::of(channel).parse(end).map_err(|why| refuse(&why));
+    let end = |end: &str| {
+        let number = Quantity::of(channel).parse(end);
+        number.map_err(|why| refuse(&format!("{end}: {why}")))
+    };
     Ok([end(low)?, end(high)?])
 }
 

@@ -62,22 +62,28 @@ struct CsvLine {
 }
 
 impl CsvTable {
-    /// Reads a CSV file in UTF-8, or in UTF-16 with a byte order mark; `-` is standard input.
+    /// Reads a CSV file in UTF-8, or in UTF-16 with a byte order mark.
     ///
     /// # Errors
     /// If the file cannot be read, is longer than 1 MiB, is no such text, or for the reasons of [`CsvTable::parse`].
     pub fn read(path: impl AsRef<Path>) -> Result<Self, CsvError> {
         let path = path.as_ref();
-        let (origin, bytes) = if path == Path::new("-") {
-            ("<stdin>".into(), bounded(io::stdin().lock()))
-        } else {
-            (path.to_string_lossy(), File::open(path).and_then(bounded))
-        };
-        let unreadable = |why| CsvError::whole(&origin, format!("cannot be read: {why}"));
-        let bytes = bytes.map_err(unreadable)?;
-        let text = decoded(&bytes);
-        let text = text.map_err(|(line, what)| CsvError::at(&origin, line, what))?;
-        Self::parse(&text, &origin)
+        Self::decode(File::open(path).and_then(bounded), &path.to_string_lossy())
+    }
+
+    /// Reads a CSV file from standard input.
+    ///
+    /// # Errors
+    /// Those of [`CsvTable::read`].
+    pub fn read_stdin() -> Result<Self, CsvError> {
+        Self::decode(bounded(io::stdin().lock()), "<stdin>")
+    }
+
+    fn decode(bytes: io::Result<Vec<u8>>, origin: &str) -> Result<Self, CsvError> {
+        let unreadable = |why| CsvError::whole(origin, format!("cannot be read: {why}"));
+        let text = decoded(&bytes.map_err(unreadable)?);
+        let text = text.map_err(|(line, what)| CsvError::at(origin, line, what))?;
+        Self::parse(&text, origin)
     }
 
     /// Splits the text of a CSV file. Messages call it `origin`.

@@ -25,7 +25,13 @@ impl Points {
     /// If the file cannot be read, is longer than 1 MiB, is neither UTF-8 nor UTF-16 with a byte order mark, or for the
     /// reasons of [`Points::parse`].
     pub fn read(path: impl AsRef<Path>) -> Result<Self, CsvError> {
-        Self::of(&CsvTable::read(path)?)
+        let path = path.as_ref();
+        let table = if path == Path::new("-") {
+            CsvTable::read_stdin()
+        } else {
+            CsvTable::read(path)
+        };
+        Self::of(&table?)
     }
 
     /// Checks the text of a CSV file, as [`CsvTable`] splits it. Messages call it `origin`.

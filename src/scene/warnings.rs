@@ -13,7 +13,7 @@ const MODULUS_GPA: [f64; 2] = [0.1, 100.0];
 /// Forces in uN, from below the noise of any sensor to a kilonewton.
 const FORCE_UN: [f64; 2] = [1e-6, 1e9];
 
-/// A number of the scene: its key, and its least and greatest value over the sweep. Values of 0 do not count.
+/// A number of the scene: its key, and its least and greatest value over the sweep. Values of 0 do not count; NaN if all are 0.
 struct SceneNumber {
     key: String,
     ends: [f64; 2],
@@ -22,13 +22,12 @@ struct SceneNumber {
 impl SceneNumber {
     fn new(key: impl Into<String>, values: impl IntoIterator<Item = f64>) -> Self {
         let values = values.into_iter().filter(|value| *value > 0.0);
-        let none = [f64::INFINITY, 0.0];
-        let ends = values.fold(none, |[least, most], value| {
-            [least.min(value), most.max(value)]
-        });
+        let ends = values
+            .map(|value| [value; 2])
+            .reduce(|[least, most], [value, _]| [least.min(value), most.max(value)]);
         Self {
             key: key.into(),
-            ends,
+            ends: ends.unwrap_or([f64::NAN; 2]),
         }
     }
 }
@@ -37,7 +36,7 @@ impl Setup {
     /// Numbers that look as if they were in another unit: one line each, with key, value, unit and what is expected.
     ///
     /// These are radii below 1e-5 or above 0.1 of the length, a Young's modulus outside 0.1 to 100 GPa, and forces outside
-    /// 1e-6 to 1e9 uN. All values of sweep axes count. The force is `E I / L^2` with the second moment of area at the base: a
+    /// 1e-6 to 1e9 uN. All values of sweep axes count; of measured radii the largest one does. The force is `E I / L^2` with the second moment of area at the base: a
     /// cylinder bends by 1 radian under twice that force across its tip, to first order.
     ///
     /// ```
@@ -73,10 +72,12 @@ impl Setup {
     fn radii(&self) -> Vec<SceneNumber> {
         let whisker = &self.whisker;
         if let Some(rows) = &whisker.profile {
-            let radii = rows
+            // A column has one unit, and a waist may be thin.
+            let thickest = rows
                 .iter()
-                .map(|[_, radius]| radius * whisker.base_radius_um);
-            return vec![SceneNumber::new("whisker.profile.rows", radii)];
+                .fold(0.0, |most: f64, [_, radius]| most.max(*radius));
+            let thickest_um = thickest * whisker.base_radius_um;
+            return vec![SceneNumber::new("whisker.profile.rows", [thickest_um])];
         }
         let mut radii = vec![self.number(Parameter::BaseRadiusUm, whisker.base_radius_um)];
         if self.grid.axis(Parameter::Taper).is_none() {

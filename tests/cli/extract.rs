@@ -49,6 +49,14 @@ fn a_slice_is_what_the_store_has_there() {
     }
     assert_eq!(lines.next(), None);
 
+    // Half a step beyond the end is the end, whatever the unit.
+    let beyond = ["--at=distance_mm=2.01cm", "--at=push_angle_deg=-1.23rad"];
+    let said = run(&[&beyond[..], &["--channel=regime", "-o", "s.csv"]].concat());
+    assert_eq!(
+        said.err, "distance_mm = 20\npush_angle_deg = -70\n",
+        "{said:?}"
+    );
+
     let npy = [
         "--at=taper=0.5",
         "--channel=force_un",
@@ -87,6 +95,26 @@ fn a_slice_is_what_the_store_has_there() {
             &["--at=colour=1", "-o", "s.csv"],
             "--at colour: must be one of the axes, taper, friction",
         ),
+        (
+            &["--at=frction=0", "-o", "s.csv"],
+            "push_angle_deg; did you mean `friction`?",
+        ),
+        (
+            &["--at=distance_mm=150", "-o", "s.csv"],
+            "--at distance_mm: 150 is more than half a step beyond the axis, which goes from 2 to 20",
+        ),
+        (
+            &["--at=distance_mm=3cm", "-o", "s.csv"],
+            "--at distance_mm: 30 is more than half a step beyond the axis",
+        ),
+        (
+            &["--at=push_angle_deg=5mm", "-o", "s.csv"],
+            "unit mm: must be deg (the default), ° or rad",
+        ),
+        (
+            &["--at=taper=1mm", "-o", "s.csv"],
+            "unit mm: must be left out",
+        ),
         (&["--at=taper", "-o", "s.csv"], "must be AXIS=VALUE"),
         (
             &["--at=taper=0.6", "--exact", "-o", "s.csv"],
@@ -94,7 +122,7 @@ fn a_slice_is_what_the_store_has_there() {
         ),
         (
             &["--channel=force", "-o", "s.csv"],
-            "--channel force: must be one of regime",
+            "--channel force: must be one of regime, status, arc_length_mm",
         ),
     ] {
         run(arguments).assert_refused(&[said]);

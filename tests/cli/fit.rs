@@ -34,6 +34,7 @@ fn table_scene_and_document_agree() {
         "correlation",
         "degrees_of_freedom",
         "left_out",
+        "not_a_fit",
         "points",
         "rms_deg",
         "standard_errors",
@@ -163,20 +164,124 @@ fn what_is_not_determined_is_null() {
 #[test]
 fn limits_and_signs_are_told() {
     let place = place();
-    // Stiffer tips detach earlier.
     place.write(
         "points.csv",
-        &DATA.replace("49.2", "30").replace("-29.1", "29.1"),
+        &DATA.replace("49.2", "43").replace("-29.1", "29.1"),
     );
-    let run = fit(&place, &["--free", "pole_radius_mm"]);
+    let run = place.run(&[&FIT[..], &["--free", "pole_radius_mm"]].concat());
     let signs = "warning: 1 of 6 points in points.csv have an angle of the other side's sign: it is positive for cb, negative for cf\n";
     assert!(run.err.contains(signs), "{run:?}");
-    assert!(run.err.contains("warning: pole_radius_mm: "), "{run:?}");
+    // Thinner poles detach earlier, up to a point.
+    let early = DATA.replace("49.2", "43").replace("40.1", "35");
+    place.write("points.csv", &early.replace("19.3,4.3", "19.3,1"));
+    let run = fit(&place, &["--free", "pole_radius_mm"]);
+    let limit = "warning: pole_radius_mm: 0 is the last value that the scene accepts, so there is no standard error\n";
+    assert_eq!(run.err, limit);
+    let line = run
+        .out
+        .lines()
+        .find(|line| line.starts_with("pole_radius_mm"));
     assert!(
-        run.err
-            .contains(" is the last value that the scene accepts\n"),
+        line.unwrap().ends_with(" 0           at its limit"),
         "{run:?}"
     );
+}
+
+/// Degrees are asked for; radians have an exit code, and no files but the document.
+#[test]
+fn what_is_not_a_fit_says_so() {
+    let place = place();
+    let text = "side,distance_mm,push_angle_deg,sd_deg\ncf,10,-0.859,0.01\ncf,15,-0.508,0.01\ncb,10,0.7,0.01\ncb,15,0.33,0.01\n";
+    place.write("points.csv", text);
+    let more = [
+        "--free",
+        "tip_radius_um",
+        "-o",
+        "fitted.toml",
+        "--json",
+        "fit.json",
+    ];
+    let run = place.run(&[&FIT[..], &more].concat());
+    assert_eq!(run.code, Some(1), "{run:?}");
+    assert!(run.out.contains("\nnot a fit\n"), "{run:?}");
+    let line = run
+        .out
+        .lines()
+        .find(|line| line.starts_with("tip_radius_um"));
+    assert!(line.unwrap().ends_with("not a fit"), "{run:?}");
+    for part in [
+        "error: not a fit: RMS ",
+        "reduced chi-square ",
+        "all measured angles are below 6.3, predicted ones are tens: are they in radians?; fitted.toml is not written\n",
+    ] {
+        assert!(run.err.contains(part), "no {part:?} in {run:?}");
+    }
+    assert_eq!(
+        names(&place.path("")),
+        ["fit.json", "points.csv", "scene.toml"]
+    );
+    let found = json(&place, "fit.json");
+    assert_eq!(found["standard_errors"]["tip_radius_um"], Value::Null);
+    assert!(
+        found["not_a_fit"]
+            .as_str()
+            .unwrap()
+            .starts_with("not a fit: RMS ")
+    );
+    let streamed = place.run(&[&FIT[..], &more[..2], &["-o", "-"]].concat());
+    assert_eq!(
+        (streamed.code, &*streamed.out),
+        (Some(1), ""),
+        "{streamed:?}"
+    );
+
+    // Deviations may be too small for a good fit.
+    place.write(
+        "points.csv",
+        &DATA
+            .replace("deg\n", "deg,sd_deg\n")
+            .replace(".2\n", ".2,0.01\n")
+            .replace(".1\n", ".1,0.01\n")
+            .replace(".9\n", ".9,0.01\n")
+            .replace(".3\n", ".3,0.01\n")
+            .replace(".4\n", ".4,0.01\n"),
+    );
+    let run = fit(&place, &["--free", "tip_radius_um"]);
+    assert!(
+        run.err.contains(
+            " times as large as sd_deg: standard errors are too small by about that factor\n"
+        ),
+        "{run:?}"
+    );
+}
+
+/// The tables of other programs: separators, decimal commas, UTF-16, capital letters, more columns.
+#[test]
+fn tables_of_other_programs_are_read() {
+    let place = place();
+    let free = ["--free", "tip_radius_um"];
+    let own = fit(&place, &free);
+    let text = DATA.replace(',', ";").replace('.', ",").replace("cb", "CB");
+    let text: String = text
+        .lines()
+        .map(|line| {
+            format!(
+                "{line};{}\r\n",
+                if line.contains("kind") { "rat" } else { "" }
+            )
+        })
+        .collect();
+    let bytes = format!("\u{feff}{text}")
+        .encode_utf16()
+        .flat_map(u16::to_le_bytes)
+        .collect::<Vec<u8>>();
+    std::fs::write(place.path("points.csv"), bytes).unwrap();
+    let run = fit(&place, &free);
+    assert_eq!(
+        run.err,
+        "note: points.csv:2: columns that are not used: rat\n"
+    );
+    assert_eq!(run.out, own.out);
 }
 
 #[test]
@@ -186,11 +291,12 @@ fn wrong_input_is_refused_before_any_file_is_made() {
         |more: &[&str], parts: &[&str]| place.run(&[&FIT, more].concat()).assert_refused(parts);
     refused(&[], &["--free"]);
     refused(
-        &["--free", "tip"],
+        &["--free", "tip_radius"],
         &[
-            "'tip'",
+            "'tip_radius'",
             "--free",
-            "must be some of length_mm, base_radius_um,",
+            "possible values: length_mm, base_radius_um,",
+            "a similar value exists: 'tip_radius_um'",
         ],
     );
     refused(
@@ -215,8 +321,11 @@ fn wrong_input_is_refused_before_any_file_is_made() {
         curve(&place, &["--csv", "t.csv"]).assert_refused(parts);
     };
     data(
-        &DATA.replace("kind", "how"),
-        &["points.csv:2: unknown column \"how\": must be one of side, distance_mm,"],
+        &DATA.replace("side", "sides"),
+        &[
+            "points.csv:2: found kind, sides, distance_mm, push_angle_deg; needed side, distance_mm, push_angle_deg or \
+             push_chord_deg, each once; did you mean `side` by `sides`?",
+        ],
     );
     data(
         &DATA.replace("18.9\n", "nearly\n"),

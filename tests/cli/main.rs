@@ -40,5 +40,6 @@ mod sweep;
 mod tolerance;
 mod traces;
 mod uncertainty;
+mod units;
 
 use program::{Place, Run, SCENE, names};

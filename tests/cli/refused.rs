@@ -202,12 +202,26 @@ fn arguments_out_of_range() {
         "--push-angle",
         "1",
     ];
-    for (at, option) in [(3, "--distance"), (5, "--push-angle")] {
+    for (at, word, option, must) in [
+        (3, "far", "--distance", "must be a length, such as"),
+        (
+            3,
+            "30deg",
+            "--distance",
+            "unit deg: must be mm (the default), cm, m or um",
+        ),
+        (5, "far", "--push-angle", "must be an angle, such as"),
+        (
+            5,
+            "1mm",
+            "--push-angle",
+            "unit mm: must be deg (the default), ° or rad",
+        ),
+    ] {
         let mut words = shape;
-        words[at] = "far";
-        place
-            .run(&words)
-            .assert_refused(&["'far'", option, "must be a number"]);
+        words[at] = word;
+        let quoted = format!("'{word}'");
+        place.run(&words).assert_refused(&[&quoted, option, must]);
     }
     for command in [&shape[..], &["branch", "scene.toml", "--distance=9"]] {
         let run = place.run(&[command, &["--points", "2.5"]].concat());

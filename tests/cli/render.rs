@@ -189,6 +189,21 @@ fn scale_and_width_are_chosen() {
     assert!(ranged.contains(">force (N)<") && ranged.contains(">2.0<"));
     assert!(draw(&["--width", "640"]).contains(" width=\"640\" "));
 
+    let arc = |range: &str| {
+        let arc = [
+            "--channel",
+            "arc_length_mm",
+            "-o",
+            "arc.svg",
+            "--range",
+            range,
+        ];
+        let run = place.run(&[&["render", "outputs/scene.exr"], &arc[..]].concat());
+        assert_eq!(run.code, Some(0), "{run:?}");
+        place.bytes("arc.svg")
+    };
+    assert!(arc("5mm,2cm") == arc("5,20"));
+
     let refused = |more: &[&str], parts: &[&str]| {
         let run = place.run(&[&["render", "outputs/scene.exr"], more].concat());
         run.assert_refused(parts);
@@ -201,12 +216,18 @@ fn scale_and_width_are_chosen() {
     );
     let force = ["--channel", "force_un"];
     let refused = |more: &[&str], parts: &[&str]| refused(&[&force[..], more].concat(), parts);
-    for range in ["1", "a,2", "1;2", "1,2,3"] {
+    for range in ["1", "1;2"] {
         refused(&["--range", range], &[range, "two numbers with a comma"]);
     }
+    for range in ["a,2", "1,2,3", "0,inf"] {
+        refused(&["--range", range], &[range, "must be a number"]);
+    }
+    refused(
+        &["--range", "1uN,2"],
+        &["--range 1uN,2: 1uN: unit uN: must be left out"],
+    );
     refused(&["--range", "2,1"], &["range 2,1", "smaller one first"]);
     refused(&["--range", "1e99,1"], &["range 1e99,1:"]);
-    refused(&["--range", "0,inf"], &["range 0,inf", "finite"]);
     refused(&["--log", "--range", "-1,1"], &["range -1,1", "above 0"]);
     for width in ["299", "8001", "wide"] {
         refused(&["--width", width], &["--width <PX>", width]);

@@ -45,9 +45,10 @@ fn what_is_no_tolerance_is_refused() {
     for (text, why) in [
         ("0", "between 1e-10deg and 1deg"),
         ("1e-11deg", "between 1e-10deg and 1deg"),
-        ("nan", "between 1e-10deg and 1deg"),
-        ("1e-6rad", "must be an angle in degrees, such as 1e-6deg"),
-        ("abc", "must be an angle in degrees, such as 1e-6deg"),
+        ("nan", "must be an angle, such as"),
+        ("0.1rad", "between 1e-10deg and 1deg"),
+        ("1e-6mm", "unit mm: must be deg (the default), ° or rad"),
+        ("abc", "must be an angle, such as"),
         ("-1", "between 1e-10deg and 1deg"),
     ] {
         let run = place.run(&["curve", "scene.toml", &format!("--tolerance={text}")]);

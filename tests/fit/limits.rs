@@ -66,7 +66,8 @@ fn what_counts_only_together_is_not_determined() {
 
 #[test]
 fn an_error_beyond_the_range_is_none() {
-    let mut points = detachments(&cone(), Angle::Push, &DISTANCES_MM);
+    let rough = cone().with_parameters(&[(Friction, 0.2)]).unwrap();
+    let mut points = detachments(&rough, Angle::Push, &DISTANCES_MM);
     points.have_deviations = true;
     for (sd_deg, known) in [(1.0, vec![Friction]), (1e3, vec![])] {
         points
@@ -116,7 +117,13 @@ fn parameters_stay_within_the_scene() {
             (0.0, true)
         );
         assert!((found.chi_square / alone.chi_square - 1.0).abs() < 1e-9);
+        // A parameter at its limit is held, so that the others are as certain as without it.
+        assert_eq!(found.estimates[0].standard_error, None);
+        assert_eq!(found.degrees_of_freedom, alone.degrees_of_freedom);
         for (one, other) in found.estimates[1..].iter().zip(&alone.estimates) {
+            let errors = [one, other].map(|own| own.standard_error.unwrap());
+            // Measured: 2e-6.
+            assert!((errors[0] / errors[1] - 1.0).abs() < 1e-4, "{errors:?}");
             assert!(
                 (one.value / other.value - 1.0).abs() < 1e-5,
                 "{one:?} {other:?}"

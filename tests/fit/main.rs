@@ -6,6 +6,7 @@ mod limits;
 mod noisy;
 mod points;
 mod refused;
+mod verdict;
 
 use whiskmap::measured::{Angle, Point, Points};
 use whiskmap::rod::Side;

@@ -56,43 +56,25 @@ fn what_is_wrong_is_told() {
         assert_ne!(text, GOOD);
         refused(&text)
     };
-    let columns = "side, distance_mm, push_angle_deg, push_chord_deg, kind, sd_deg";
-    assert_eq!(
-        refused(""),
-        format!("p.csv: is empty: must have columns of {columns}")
-    );
-    assert_eq!(
-        refused("side,distance_mm,push_angle_deg\n"),
-        "p.csv: has no points: must have at least one line below its header"
-    );
-    assert_eq!(
-        with("sd_deg", "error"),
-        format!("p.csv:1: unknown column \"error\": must be one of {columns}")
-    );
-    assert_eq!(
-        with("sd_deg", "kind"),
-        "p.csv:1: column kind: must be there once"
-    );
-    assert_eq!(
-        with("side", "sd_deg"),
-        "p.csv:1: column sd_deg: must be there once"
-    );
-    assert_eq!(
-        refused("distance_mm,push_angle_deg\n15,16\n"),
-        "p.csv:1: missing column side"
-    );
-    assert_eq!(
-        refused("side,push_angle_deg\ncb,16\n"),
-        "p.csv:1: missing column distance_mm"
-    );
-    assert_eq!(
-        refused("side,distance_mm\ncb,15\n"),
-        "p.csv:1: missing column push_angle_deg, or push_chord_deg in its place"
-    );
-    assert_eq!(
-        with("kind", "push_chord_deg"),
-        "p.csv:1: push_angle_deg and push_chord_deg: must be one of them"
-    );
+    let columns = "side, distance_mm, push_angle_deg or push_chord_deg";
+    let rows = "p.csv: has no rows: must have a header and at least one row below it";
+    assert_eq!(refused(""), rows);
+    assert_eq!(refused("side,distance_mm,push_angle_deg\n"), rows);
+    for (old, new) in [
+        ("sd_deg", "kind"),
+        ("side", "sd_deg"),
+        ("kind", "push_chord_deg"),
+        ("distance_mm", "distance"),
+        ("push_angle_deg", "angle"),
+    ] {
+        let header = GOOD.lines().next().unwrap();
+        let found = header.replacen(old, new, 1).replace(',', ", ");
+        let said = format!("p.csv:1: found {found}; needed {columns}, each once");
+        let why = with(old, new);
+        assert!(why.starts_with(&said), "{why}");
+    }
+    let hint = "; did you mean `distance_mm` by `distance`?";
+    assert!(with("distance_mm", "distance").ends_with(hint));
     assert_eq!(
         with("cb,", "left,"),
         "p.csv:2: side = left: must be cb or cf"
@@ -130,6 +112,66 @@ fn what_is_wrong_is_told() {
     );
     let long = with("cb,", &format!("{},", "x".repeat(100_000)));
     assert!(long.len() < 200, "{long}");
+}
+
+/// The same table, as programs of several countries save it.
+#[test]
+fn separators_decimal_commas_and_encodings() {
+    let wanted = Points::parse(GOOD, "p.csv").unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("p.csv");
+    let read = |bytes: Vec<u8>| {
+        std::fs::write(&path, bytes).unwrap();
+        let points = Points::read(&path).unwrap();
+        assert_eq!((&points.points, points.note), (&wanted.points, None));
+    };
+    let semicolons = GOOD.replace(',', ";").replace('.', ",");
+    for text in [
+        GOOD,
+        &GOOD.replace(',', ";"),
+        &GOOD.replace(',', "\t"),
+        &semicolons,
+        &semicolons.replace(';', "\t"),
+        &GOOD.replace("cb", "CB").replace("cf", "Cf"),
+        &GOOD.replace("side", "\"side\"").replace('\n', "\r\n"),
+    ] {
+        let marked = format!("\u{feff}{text}");
+        read(text.as_bytes().to_vec());
+        read(marked.as_bytes().to_vec());
+        read(marked.encode_utf16().flat_map(u16::to_le_bytes).collect());
+        read(marked.encode_utf16().flat_map(u16::to_be_bytes).collect());
+    }
+    let refused = |bytes: &[u8], said: &str| {
+        std::fs::write(&path, bytes).unwrap();
+        let why = Points::read(&path).unwrap_err().to_string();
+        assert!(why.ends_with(said), "{why}");
+    };
+    let half = "p.csv:2: not UTF-16LE text: half a character at the end";
+    refused(b"\xff\xfe\n\0i", half);
+    let code = "p.csv:1: not UTF-16BE text: code 0xD800";
+    refused(b"\xfe\xff\xd8\0\0a", code);
+    // A column has one decimal mark, and a comma that separates columns is none.
+    let mixed = semicolons.replace("12;", "12.0;");
+    let said =
+        "p.csv:3: distance_mm = 12.0: must be a positive number; this column has decimal commas";
+    refused(mixed.as_bytes(), said);
+    let quoted = GOOD.replace("15.5", "\"15,5\"");
+    let said = "p.csv:2: distance_mm = 15,5: must be a positive number";
+    refused(quoted.as_bytes(), said);
+}
+
+/// Columns that are not used may hold anything, line breaks too.
+#[test]
+fn columns_that_are_not_used_are_noted_once() {
+    let text = "rat,side,sd,distance_mm,push_angle_deg,note,\nA,cb,1,15.5,16,\"two\nlines\",\n,,,,,,\n \nB,cf,1,12,-41,,\n";
+    let text = text.replace("\n \n", "\n\n");
+    let points = Points::parse(&text, "p.csv").unwrap();
+    let note = "p.csv:1: columns that are not used: rat, sd, note; did you mean `sd_deg` by `sd`?";
+    assert_eq!(points.note.as_deref(), Some(note));
+    let lines: Vec<usize> = points.points.iter().map(|point| point.line).collect();
+    assert_eq!((lines, points.have_deviations), (vec![2, 6], false));
+    let why = "p.csv:6: distance_mm = far: must be a positive number";
+    assert_eq!(refused(&text.replace("12,", "far,")), why);
 }
 
 #[test]

@@ -11,6 +11,7 @@ mod changed;
 mod refused;
 mod shape;
 mod tables;
+mod warnings;
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -72,6 +73,7 @@ fn every_shipped_scene_is_accepted() {
     for path in shipped() {
         let scene = Scene::read(&path).unwrap_or_else(|why| panic!("{why}"));
         assert_eq!(scene.name, path.file_stem().unwrap().to_str().unwrap());
+        assert_eq!((scene.note.as_deref(), scene.warnings()), (None, vec![]));
         if scene.whisker.profile.is_none() {
             assert_eq!(scene.text, fs::read_to_string(&path).unwrap());
         }

@@ -137,7 +137,10 @@ fn radii_are_read_from_the_scene_and_from_a_file() {
 #[test]
 fn radii_that_are_refused() {
     for (rows, why) in [
-        ("\"no.csv\"", "rows = \"no.csv\": No such file"),
+        (
+            "\"no.csv\"",
+            "rows = \"no.csv\": no.csv: cannot be read: No such file",
+        ),
         ("5", "expected the name of a CSV file or a list"),
         ("[]", "must be 2 to 256 rows, are 0"),
         (
@@ -203,15 +206,21 @@ fn a_bad_csv_file_is_named_with_its_line() {
     let path = folder.path().join("scene.toml");
     fs::write(&path, scene("[whisker.profile]\nrows = \"radii.csv\"", "")).unwrap();
     for (csv, why) in [
-        ("arc_length_mm,radius\n0,30\n", "missing field `radius_um`"),
+        (
+            "arc_length_mm,radius\n0,30\n",
+            "radii.csv:1: found arc_length_mm, radius; needed arc_length_mm, radius_um, each once; did you mean `radius_um`",
+        ),
         (
             "arc_length_mm,radius_um\n0,30\n1,thin\n",
-            "line 3: radius_um must be a number",
+            "radii.csv:3: radius_um = thin: must be a number",
         ),
-        ("arc_length_mm,radius_um\n0,30\n1\n", "line: 3"),
+        (
+            "arc_length_mm,radius_um\n0,30\n1\n",
+            "radii.csv:3: has 1 cells: must have 2, one a column",
+        ),
         (
             "arc_length_mm,radius_um\n# a remark\n0,30\n\n# another\n20,nan\n",
-            "line 6: the radius must be",
+            "radii.csv:6: radius_um = nan: must be a number",
         ),
         (
             "arc_length_mm,radius_um\n0,30\n20,0.001\n",
@@ -221,7 +230,11 @@ fn a_bad_csv_file_is_named_with_its_line() {
             "arc_length_mm,radius_um\n0,30\n21,1\n",
             "line 3: the arclength",
         ),
-        ("", "must be 2 to 256 rows, are 0"),
+        ("", "radii.csv: has no rows"),
+        (
+            "arc_length_mm,radius_um\n0,30\n",
+            "must be 2 to 256 rows, are 1",
+        ),
         (&"0,1\n".repeat(300_000), "longer than 1 MiB"),
         (
             &format!("arc_length_mm,radius_um\n{}", "0,1\n".repeat(300)),
@@ -233,6 +246,19 @@ fn a_bad_csv_file_is_named_with_its_line() {
         assert!(message.contains(why), "{csv:.100}: {message}");
         assert!(message.contains("rows = \"radii.csv\""), "{message}");
     }
+
+    // The tables of other countries and programs have the same rows.
+    fs::write(
+        folder.path().join("radii.csv"),
+        "day;radius_um;arc_length_mm\n1;30;0\n2;20,5;5\n3;1,5;20\n",
+    )
+    .unwrap();
+    let read = Scene::read(&path).unwrap();
+    let rows = read.whisker.profile.as_ref().unwrap();
+    assert_eq!(rows[1], [5.0 / 20.0, 20.5 / 30.0]);
+    let note = read.note.as_deref().unwrap();
+    let wanted = "radii.csv:1: columns that are not used: day";
+    assert!(note.ends_with(wanted), "{note}");
 
     // What is wrong elsewhere is shown where the scene's own text has it.
     fs::write(

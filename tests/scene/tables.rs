@@ -111,6 +111,14 @@ fn deviations_belong_to_numbers_of_the_scene() {
             ],
         ),
         (
+            "pole_radius = 1",
+            "20:15",
+            [
+                "uncertainty.pole_radius = 1: is not known; must be one of",
+                "; did you mean `pole_radius_mm`?",
+            ],
+        ),
+        (
             "length_mm = -1",
             "20:13",
             [

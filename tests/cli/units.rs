@@ -1,0 +1,93 @@
+//! Units of options, and warnings about numbers of a scene that look like numbers in another unit.
+
+use crate::{Place, SCENE};
+
+#[test]
+fn distances_and_angles_take_units() {
+    let place = Place::with(SCENE);
+    let shape = |distance: &str, angle: &str| {
+        let words = [
+            "shape",
+            "scene.toml",
+            "--distance",
+            distance,
+            "--push-angle",
+            angle,
+        ];
+        let run = place.run(&words);
+        assert_eq!((run.code, &*run.err), (Some(0), ""), "{run:?}");
+        run.out
+    };
+    let own = shape("15", "5");
+    for (distance, angle) in [
+        ("15mm", "5deg"),
+        ("1.5cm", "5°"),
+        ("15000um", "0.08726646259971647rad"),
+    ] {
+        assert!(shape(distance, angle) == own, "{distance} {angle}");
+    }
+    let branch = |distances: &str| {
+        let run = place.run(&[
+            "branch",
+            "scene.toml",
+            "--points",
+            "9",
+            "--distance",
+            distances,
+        ]);
+        assert_eq!(run.code, Some(0), "{run:?}");
+        run.out
+    };
+    assert_eq!(branch("10,1.5cm"), branch("10,15"));
+}
+
+/// Each command that reads a scene warns, once.
+#[test]
+fn numbers_in_other_units_are_warned_of() {
+    let place = Place::with(
+        &SCENE
+            .replace("count = 24", "count = 3")
+            .replace("= 3.0", "= 3000"),
+    );
+    place.write("points.csv", crate::data::DATA);
+    let warning =
+        "warning: whisker.youngs_modulus_gpa = 3000 GPa: expected 0.1 to 100 GPa; is it in MPa?\n";
+    for words in [
+        &["map", "scene.toml", "--engine", "cpu", "--no-png"][..],
+        &["plan", "scene.toml"],
+        &["curve", "scene.toml"],
+        &["branch", "scene.toml", "--distance", "15"],
+        &[
+            "shape",
+            "scene.toml",
+            "--distance",
+            "15",
+            "--push-angle",
+            "5",
+        ],
+        &[
+            "design",
+            "scene.toml",
+            "--distance",
+            "15",
+            "--slip-off",
+            "20",
+            "--for",
+            "taper",
+        ],
+        &[
+            "fit",
+            "scene.toml",
+            "--data",
+            "points.csv",
+            "--free",
+            "tip_radius_um",
+        ],
+        &["submit", "scene.toml", "--shards", "1"],
+    ] {
+        let run = place.run(words);
+        assert_eq!(run.code, Some(0), "{run:?}");
+        assert_eq!(run.err.matches(warning).count(), 1, "{run:?}");
+        assert_eq!(run.err.matches("warning: ").count(), 1, "{run:?}");
+    }
+}

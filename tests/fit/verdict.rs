@@ -1,0 +1,78 @@
+//! What is not a fit, and what stays one.
+
+use crate::noisy::Random;
+use crate::{DISTANCES_MM, cone, detachments};
+use whiskmap::fit::{Fit, LikelyCause, fit};
+use whiskmap::measured::{Angle, Point, Points};
+use whiskmap::scene::Parameter::{ParabolaPerMm, TipRadiusUm};
+
+/// The detachments of another cone, each changed by `change`, and fitted.
+fn changed(have_deviations: bool, change: impl Fn(&mut Point)) -> Fit {
+    let truth = [(TipRadiusUm, 2.5), (ParabolaPerMm, 0.018)];
+    let truth = cone().with_parameters(&truth).unwrap();
+    let mut points = detachments(&truth, Angle::Push, &DISTANCES_MM);
+    points.have_deviations = have_deviations;
+    points.points.iter_mut().for_each(change);
+    fit(&cone(), &points, &[TipRadiusUm, ParabolaPerMm]).unwrap()
+}
+
+#[test]
+fn wrong_units_are_not_a_fit() {
+    for have_deviations in [false, true] {
+        let radians = changed(have_deviations, |point| {
+            point.angle_deg = point.angle_deg.to_radians();
+            point.sd_deg = 0.01;
+        });
+        let centimetres = changed(have_deviations, |point| point.distance_mm /= 10.0);
+        for (found, cause) in [
+            (radians, LikelyCause::Radians),
+            (centimetres, LikelyCause::Centimetres),
+        ] {
+            let why = found.not_a_fit.as_ref().unwrap();
+            assert_eq!(why.cause, Some(cause), "{why}");
+            assert_eq!(why.reduced_chi_square.is_some(), have_deviations);
+            assert!(
+                found
+                    .estimates
+                    .iter()
+                    .all(|own| own.standard_error.is_none())
+            );
+            assert_eq!(found.correlation, [[None; 2]; 2]);
+        }
+    }
+    let turned = changed(false, |point| point.angle_deg = -point.angle_deg);
+    let why = turned.not_a_fit.unwrap();
+    assert_eq!((why.cause, why.largest_rms_deg), (None, 5.0));
+    let said = why.to_string();
+    assert!(
+        said.starts_with("not a fit: RMS ") && said.ends_with(" deg, must be at most 5 deg"),
+        "{said}"
+    );
+}
+
+/// Errors of 3 degrees, deviations that are ten times too small, and points of low precision that are far off.
+#[test]
+fn noisy_points_stay_a_fit() {
+    for (noise_deg, sd_deg, is_explained) in
+        [(3.0, 3.0, true), (1.0, 0.1, false), (12.0, 12.0, true)]
+    {
+        let random = std::cell::RefCell::new(Random(7));
+        let found = changed(true, |point| {
+            point.angle_deg += noise_deg * random.borrow_mut().normal();
+            point.sd_deg = sd_deg;
+        });
+        assert_eq!(found.not_a_fit, None, "{noise_deg}");
+        assert_eq!(found.is_explained(), is_explained, "{noise_deg}");
+        assert!(found.estimates[0].standard_error.is_some());
+    }
+}
+
+/// Their range is that of their errors; a third of it says nothing of the fit.
+#[test]
+fn repeated_measurements_at_one_distance_stay_a_fit() {
+    let text = "side,distance_mm,push_angle_deg\ncb,15,18\ncb,15,20.5\ncb,15,16\n";
+    let points = Points::parse(text, "points.csv").unwrap();
+    let found = fit(&cone(), &points, &[TipRadiusUm]).unwrap();
+    assert_eq!(found.not_a_fit, None);
+    assert!(found.estimates[0].standard_error.is_some());
+}

@@ -1,0 +1,122 @@
+//! Numbers in another unit: accepted, with a warning.
+
+use whiskmap::scene::Scene;
+
+use crate::{BASE, with_line};
+
+fn warnings(text: &str) -> Vec<String> {
+    Scene::parse(text, "test.toml").unwrap().warnings()
+}
+
+#[test]
+fn a_number_in_another_unit_is_named_with_key_value_and_unit() {
+    let thin = "expected 1e-5 to 0.1 of whisker.length_mm = 20 mm";
+    let forces = "uN (E I / L^2 of ";
+    for (line, replacement, parts) in [
+        (
+            4,
+            "base_radius_um = 0.03\ntip_radius_um = 0",
+            &[
+                "whisker.base_radius_um = 0.03 um",
+                thin,
+                "is it in mm",
+                forces,
+            ][..],
+        ),
+        (
+            4,
+            "base_radius_um = 30000",
+            &["whisker.base_radius_um = 30000 um", thin, "is it in nm"],
+        ),
+        (
+            5,
+            "tip_radius_um = 0.0015",
+            &["whisker.tip_radius_um = 0.0015 um", thin, "is it in mm"],
+        ),
+        (
+            6,
+            "youngs_modulus_gpa = 3000",
+            &[
+                "whisker.youngs_modulus_gpa = 3000 GPa",
+                "0.1 to 100 GPa",
+                "is it in MPa",
+            ],
+        ),
+        (
+            6,
+            "youngs_modulus_gpa = 0.003",
+            &["whisker.youngs_modulus_gpa = 0.003 GPa", "is it in TPa"],
+        ),
+    ] {
+        let mut text = with_line(line, replacement);
+        if replacement.contains('\n') {
+            text = text.replace("tip_radius_um = 1.5\n", "");
+        }
+        let found = warnings(&text).join("\n");
+        for part in parts {
+            assert!(
+                found.contains(part),
+                "{replacement}: no {part:?} in {found:?}"
+            );
+        }
+    }
+    assert_eq!(warnings(BASE), [""; 0]);
+    // A perfect cone has no radius at its tip.
+    assert_eq!(warnings(&with_line(5, "tip_radius_um = 0")), [""; 0]);
+}
+
+/// Both ends of an axis count, and the axis has the number's place.
+#[test]
+fn axes_are_looked_at_from_end_to_end() {
+    let axis = |axis: &str| warnings(&BASE.replace("# taper", &format!("{axis}\n# taper")));
+    assert_eq!(axis("base_radius_um = [20, 30]"), [""; 0]);
+    let thick = axis("base_radius_um = [20, 30, 3000]");
+    assert!(
+        thick[0].starts_with("grid.base_radius_um = 3000 um"),
+        "{thick:?}"
+    );
+    let thin = axis("tip_radius_um = [0, 0.1, 1]");
+    assert!(
+        thin[0].starts_with("grid.tip_radius_um = 0.1 um"),
+        "{thin:?}"
+    );
+    // The tip of a taper is none of the scene's numbers.
+    let tapers = BASE
+        .replace("tip_radius_um = 1.5", "")
+        .replace("# taper", "taper");
+    assert_eq!(warnings(&tapers), [""; 0]);
+}
+
+#[test]
+fn forces_of_slender_rods_count_too() {
+    let soft = BASE.replace("= 30.0", "= 1").replace("= 1.5", "= 1");
+    let soft = soft
+        .replace("length_mm = 20", "length_mm = 99")
+        .replace("= 3.0", "= 0.1");
+    let soft = soft
+        .replace("[2.0", "[3.0")
+        .replace("0.04", "0.004")
+        .replace("0.02", "0.002");
+    let found = warnings(&soft);
+    assert_eq!(found.len(), 1, "{found:?}");
+    assert!(
+        found[0].starts_with("forces of about 8.0e-9 uN (E I / L^2 of 0.1 GPa, 1 um and 99 mm)"),
+        "{found:?}"
+    );
+}
+
+/// A column of radii has one unit, so that its largest radius counts; a waist may be thin.
+#[test]
+fn of_measured_radii_the_largest_counts() {
+    let measured = |rows: &str| {
+        let rows = format!("profile = {{ rows = {rows} }}");
+        let text = BASE.replace("base_radius_um = 30.0", &rows);
+        warnings(&text.replace("tip_radius_um = 1.5", ""))
+    };
+    let found = measured("[[0, 0.03], [10, 0.04], [20, 0.0015]]");
+    assert!(
+        found[0].starts_with("whisker.profile.rows = 0.04 um"),
+        "{found:?}"
+    );
+    assert_eq!(measured("[[0, 30], [10, 0.1], [20, 1.5]]"), [""; 0]);
+}
