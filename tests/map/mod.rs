@@ -56,6 +56,7 @@ pub fn scene(
         },
         name: "made-up".to_owned(),
         text: "title = \"A made-up whisker\"\n".to_owned(),
+        note: None,
     }
 }
 
