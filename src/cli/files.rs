@@ -1,6 +1,7 @@
 //! The files of a command: each input and output is declared here, so that no output destroys an input or another output.
 
 use super::failure::Failure;
+use super::scene;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use whiskmap::scene::Scene;

@@ -1,5 +1,6 @@
 //! Input text: files of bounded length, CSV tables, numbers with units, and names that are nearly right.
 
+mod lines;
 mod names;
 mod quantity;
 mod source;

@@ -10,6 +10,7 @@
 //!
 //! Invariant: a file that bears its final name is complete.
 
+mod at;
 mod attributes;
 mod error;
 mod file_id;
@@ -30,13 +31,14 @@ mod writer;
 mod zarr;
 mod zip;
 
+pub use at::At;
 pub use attributes::Description;
 pub use error::Error;
 pub use file_id::FileId;
 pub use layout::Layout;
 pub use output::Output;
 pub use reader::{MapHeader, Samples, StoredMap};
-pub use slice::{At, NoChoice, Slice};
+pub use slice::{NoChoice, Slice};
 pub use stored::Stored;
 pub use table::Table;
 pub use tally::Counts;

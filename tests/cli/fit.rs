@@ -5,15 +5,15 @@ use crate::{Place, Run, SCENE, names};
 use serde_json::Value;
 use whiskmap::scene::Scene;
 
-const FIT: [&str; 4] = ["fit", "scene.toml", "--data", "points.csv"];
+pub const FIT: [&str; 4] = ["fit", "scene.toml", "--data", "points.csv"];
 
-fn fit(place: &Place, more: &[&str]) -> Run {
+pub fn fit(place: &Place, more: &[&str]) -> Run {
     let run = place.run(&[&FIT, more].concat());
     assert_eq!(run.code, Some(0), "{run:?}");
     run
 }
 
-fn json(place: &Place, name: &str) -> Value {
+pub fn json(place: &Place, name: &str) -> Value {
     serde_json::from_slice(&place.bytes(name)).unwrap()
 }
 
@@ -185,103 +185,6 @@ fn limits_and_signs_are_told() {
         line.unwrap().ends_with(" 0           at its limit"),
         "{run:?}"
     );
-}
-
-/// Degrees are asked for; radians have an exit code, and no files but the document.
-#[test]
-fn what_is_not_a_fit_says_so() {
-    let place = place();
-    let text = "side,distance_mm,push_angle_deg,sd_deg\ncf,10,-0.859,0.01\ncf,15,-0.508,0.01\ncb,10,0.7,0.01\ncb,15,0.33,0.01\n";
-    place.write("points.csv", text);
-    let more = [
-        "--free",
-        "tip_radius_um",
-        "-o",
-        "fitted.toml",
-        "--json",
-        "fit.json",
-    ];
-    let run = place.run(&[&FIT[..], &more].concat());
-    assert_eq!(run.code, Some(1), "{run:?}");
-    assert!(run.out.contains("\nnot a fit\n"), "{run:?}");
-    let line = run
-        .out
-        .lines()
-        .find(|line| line.starts_with("tip_radius_um"));
-    assert!(line.unwrap().ends_with("not a fit"), "{run:?}");
-    for part in [
-        "error: not a fit: RMS ",
-        "reduced chi-square ",
-        "all measured angles are below 6.3, predicted ones are tens: are they in radians?; fitted.toml is not written\n",
-    ] {
-        assert!(run.err.contains(part), "no {part:?} in {run:?}");
-    }
-    assert_eq!(
-        names(&place.path("")),
-        ["fit.json", "points.csv", "scene.toml"]
-    );
-    let found = json(&place, "fit.json");
-    assert_eq!(found["standard_errors"]["tip_radius_um"], Value::Null);
-    assert!(
-        found["not_a_fit"]
-            .as_str()
-            .unwrap()
-            .starts_with("not a fit: RMS ")
-    );
-    let streamed = place.run(&[&FIT[..], &more[..2], &["-o", "-"]].concat());
-    assert_eq!(
-        (streamed.code, &*streamed.out),
-        (Some(1), ""),
-        "{streamed:?}"
-    );
-
-    // Deviations may be too small for a good fit.
-    place.write(
-        "points.csv",
-        &DATA
-            .replace("deg\n", "deg,sd_deg\n")
-            .replace(".2\n", ".2,0.01\n")
-            .replace(".1\n", ".1,0.01\n")
-            .replace(".9\n", ".9,0.01\n")
-            .replace(".3\n", ".3,0.01\n")
-            .replace(".4\n", ".4,0.01\n"),
-    );
-    let run = fit(&place, &["--free", "tip_radius_um"]);
-    assert!(
-        run.err.contains(
-            " times as large as sd_deg: standard errors are too small by about that factor\n"
-        ),
-        "{run:?}"
-    );
-}
-
-/// The tables of other programs: separators, decimal commas, UTF-16, capital letters, more columns.
-#[test]
-fn tables_of_other_programs_are_read() {
-    let place = place();
-    let free = ["--free", "tip_radius_um"];
-    let own = fit(&place, &free);
-    let text = DATA.replace(',', ";").replace('.', ",").replace("cb", "CB");
-    let text: String = text
-        .lines()
-        .map(|line| {
-            format!(
-                "{line};{}\r\n",
-                if line.contains("kind") { "rat" } else { "" }
-            )
-        })
-        .collect();
-    let bytes = format!("\u{feff}{text}")
-        .encode_utf16()
-        .flat_map(u16::to_le_bytes)
-        .collect::<Vec<u8>>();
-    std::fs::write(place.path("points.csv"), bytes).unwrap();
-    let run = fit(&place, &free);
-    assert_eq!(
-        run.err,
-        "note: points.csv:2: columns that are not used: rat\n"
-    );
-    assert_eq!(run.out, own.out);
 }
 
 #[test]

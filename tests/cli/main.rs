@@ -41,5 +41,6 @@ mod tolerance;
 mod traces;
 mod uncertainty;
 mod units;
+mod verdict;
 
 use program::{Place, Run, SCENE, names};

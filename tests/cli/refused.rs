@@ -233,6 +233,8 @@ fn arguments_out_of_range() {
     let turned = "--push-angle 1e99: must be between";
     let shape = [&shape[..5], &["1e99"]].concat();
     place.run(&shape).assert_refused(&[turned]);
+    map(&["--channels", "regme,force_un"])
+        .assert_refused(&["out of regime, status,", "; did you mean `regime`?"]);
     map(&["--engine", "abacus"]).assert_refused(&["'abacus'", "--engine", "auto, cpu, gpu"]);
     place.run(&["map"]).assert_refused(&["<SCENE>"]);
     for file in ["scene.exr", "scene.png"] {
