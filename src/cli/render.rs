@@ -70,11 +70,12 @@ fn range(text: &str, channel: &str) -> Result<[f64; 2], Failure> {
 pub fn run(options: &Options) -> Result<(), Failure> {
     let mut files = Files::default();
     let map = options.selection.open(&mut files, &options.file)?;
-    if let Some(channel) = &options.channel {
-        let channel = channels(&map, std::slice::from_ref(channel))?;
-        with_marks(&options.file, &map, &channel)?;
+    let channel = options.channel.as_deref();
+    if let Some(name) = &options.channel {
+        let drawn = channels(&map, std::slice::from_ref(name))?;
+        with_marks(&options.file, &map, &drawn)?;
     }
-    let ends = options.range.as_deref().zip(options.channel.as_deref());
+    let ends = options.range.as_deref().zip(channel);
     let range = ends
         .map(|(text, channel)| range(text, channel))
         .transpose()?;

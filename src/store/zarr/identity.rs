@@ -40,7 +40,7 @@ mod tests {
     fn attributes(scene: &str) -> Map<String, Value> {
         let tolerances = json!({ "b": 1, "a": 2 });
         let all = [("scene", json!(scene)), ("tolerances", tolerances)];
-        all.map(|(name, value)| (name.to_owned(), value)).into()
+        Map::from_iter(all.map(|(name, value)| (name.to_owned(), value)))
     }
 
     #[test]
