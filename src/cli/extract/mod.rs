@@ -1,19 +1,20 @@
 //! `whiskmap extract`.
 
-use super::failure::{Failure, say};
+mod array;
+mod table;
+
+use self::array::{array, warn_of_marks};
+use self::table::table;
+use super::failure::Failure;
 use super::files::{Files, unwritten};
 use super::selection::{Selection, channels, with_marks};
 use clap::Args;
-use serde::ser::{Serialize, SerializeStruct, Serializer};
-use std::io::{self, BufWriter, IntoInnerError, Write};
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
-use whiskmap::classify::Status;
 use whiskmap::integrate;
 use whiskmap::map::{Audit, Channels, EngineCells};
 use whiskmap::scene::{Scene, Setup};
-use whiskmap::store::{
-    Description, MapWriter, Output, Samples, Slice, Table, UnfinishedFolder, ZarrStore,
-};
+use whiskmap::store::{Description, MapWriter, Slice, UnfinishedFolder, ZarrStore};
 
 /// Options of `extract`.
 #[derive(Debug, Args)]
@@ -65,140 +66,6 @@ pub fn run(options: &Options) -> Result<(), Failure> {
 fn refuse(path: &Path, why: &str) -> Result<(), Failure> {
     let path = path.display();
     Err(Failure::Input(format!("--output {path}: {why}")))
-}
-
-/// A line of a table.
-struct Line<'a> {
-    axes: &'a [(&'static str, f64)],
-    channels: &'a [&'static str],
-    samples: &'a [Samples],
-    cell: usize,
-}
-
-impl Serialize for Line<'_> {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let count = self.axes.len() + self.channels.len();
-        let mut columns = serializer.serialize_struct("Line", count)?;
-        for (name, value) in self.axes {
-            columns.serialize_field(name, value)?;
-        }
-        for (name, samples) in self.channels.iter().zip(self.samples) {
-            match samples {
-                Samples::U32(codes) => columns.serialize_field(name, &codes[self.cell])?,
-                Samples::F32(values) => {
-                    let value = Some(values[self.cell]).filter(|value| !value.is_nan());
-                    columns.serialize_field(name, &value)?;
-                }
-            }
-        }
-        columns.end()
-    }
-}
-
-fn table(
-    slice: &Slice,
-    channels: &[&'static str],
-    path: &Path,
-    files: &mut Files,
-) -> Result<(), Failure> {
-    let mut table = Table::new(files.output("--output", path)?);
-    let grid = slice.grid();
-    for whisker in slice.whiskers() {
-        let samples = channels.iter().map(|name| slice.read_panel(name, whisker));
-        let samples: Vec<Samples> = samples.collect::<Result<_, _>>()?;
-        let place = slice.place(whisker);
-        let rows = grid.distance_mm.iter();
-        let cells =
-            rows.flat_map(|row| grid.push_angle_deg.iter().map(move |column| (row, column)));
-        for (cell, (distance, push_angle)) in cells.enumerate() {
-            let mut axes = place.clone();
-            axes.push(("distance_mm", *distance));
-            axes.push(("push_angle_deg", *push_angle));
-            let line = Line {
-                axes: &axes,
-                channels,
-                samples: &samples,
-                cell,
-            };
-            table.rows([line]).map_err(|cause| unwritten(path, cause))?;
-        }
-    }
-    table.finish().map_err(|cause| unwritten(path, cause))
-}
-
-fn array(
-    slice: &Slice,
-    channels: &[&'static str],
-    path: &Path,
-    files: &mut Files,
-) -> Result<(), Failure> {
-    let [channel] = channels else {
-        return refuse(path, "an array has one channel; give one --channel");
-    };
-    let mut file = BufWriter::new(files.output("--output", path)?);
-    for (number, whisker) in slice.whiskers().enumerate() {
-        let (kind, bytes): (_, Vec<u8>) = match slice.read_panel(channel, whisker)? {
-            Samples::F32(values) => (
-                "<f4",
-                values.into_iter().flat_map(f32::to_le_bytes).collect(),
-            ),
-            Samples::U32(codes) => (
-                "<u4",
-                codes.into_iter().flat_map(u32::to_le_bytes).collect(),
-            ),
-        };
-        let header = if number == 0 {
-            npy(kind, &slice.shape())
-        } else {
-            Vec::new()
-        };
-        let written = file
-            .write_all(&header)
-            .and_then(|()| file.write_all(&bytes));
-        written.map_err(|cause| unwritten(path, cause))?;
-    }
-    let output = file.into_inner().map_err(IntoInnerError::into_error);
-    let done = output.and_then(Output::finish);
-    done.map_err(|cause| unwritten(path, cause))
-}
-
-/// Warns of an array whose states `status` marks: an array has one channel, so the marks are not in it.
-fn warn_of_marks(
-    slice: &Slice,
-    channels: &[&'static str],
-    marked: &[&'static str],
-) -> Result<(), Failure> {
-    if channels == marked {
-        return Ok(());
-    }
-    let marks = Status::MARKS.map(Status::code);
-    let (mut off, mut cells) = (0, 0);
-    for whisker in slice.whiskers() {
-        if let Samples::U32(codes) = slice.read_panel("status", whisker)? {
-            off += codes.iter().filter(|code| marks.contains(code)).count();
-            cells += codes.len();
-        }
-    }
-    if off > 0 {
-        let [sliding, sticking] = marks;
-        say(&format!(
-            "warning: {off} of {cells} cells of {} are off: their friction is not as assumed; --channel status marks them by {sliding} and {sticking}",
-            channels.join(", ")
-        ));
-    }
-    Ok(())
-}
-
-/// What precedes the values in a file of NumPy, version 1.0.
-fn npy(kind: &str, shape: &[usize]) -> Vec<u8> {
-    let sizes: String = shape.iter().map(|size| format!("{size},")).collect();
-    let about = format!("{{'descr': '{kind}', 'fortran_order': False, 'shape': ({sizes}), }}");
-    // The values begin at a multiple of 64 bytes, after a line's end.
-    let length = (about.len() + 11).next_multiple_of(64) - 10;
-    let mut header = b"\x93NUMPY\x01\x00".to_vec();
-    header.extend((length as u16).to_le_bytes());
-    header.extend(format!("{about:<width$}\n", width = length - 1).into_bytes());
-    header
 }
 
 fn map(

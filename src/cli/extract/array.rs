@@ -1,0 +1,85 @@
+//! A channel of a slice as an array of NumPy.
+
+use super::super::failure::{Failure, say};
+use super::super::files::{Files, unwritten};
+use super::refuse;
+use std::io::{BufWriter, IntoInnerError, Write};
+use std::path::Path;
+use whiskmap::classify::Status;
+use whiskmap::store::{Output, Samples, Slice};
+
+/// Writes the only one of `channels`.
+pub fn array(
+    slice: &Slice,
+    channels: &[&'static str],
+    path: &Path,
+    files: &mut Files,
+) -> Result<(), Failure> {
+    let [channel] = channels else {
+        return refuse(path, "an array has one channel; give one --channel");
+    };
+    let mut file = BufWriter::new(files.output("--output", path)?);
+    for (number, whisker) in slice.whiskers().enumerate() {
+        let (kind, bytes): (_, Vec<u8>) = match slice.read_panel(channel, whisker)? {
+            Samples::F32(values) => (
+                "<f4",
+                values.into_iter().flat_map(f32::to_le_bytes).collect(),
+            ),
+            Samples::U32(codes) => (
+                "<u4",
+                codes.into_iter().flat_map(u32::to_le_bytes).collect(),
+            ),
+        };
+        let header = if number == 0 {
+            npy(kind, &slice.shape())
+        } else {
+            Vec::new()
+        };
+        let written = file
+            .write_all(&header)
+            .and_then(|()| file.write_all(&bytes));
+        written.map_err(|cause| unwritten(path, cause))?;
+    }
+    let output = file.into_inner().map_err(IntoInnerError::into_error);
+    let done = output.and_then(Output::finish);
+    done.map_err(|cause| unwritten(path, cause))
+}
+
+/// Warns of an array whose states `status` marks: an array has one channel, so the marks are not in it.
+pub fn warn_of_marks(
+    slice: &Slice,
+    channels: &[&'static str],
+    marked: &[&'static str],
+) -> Result<(), Failure> {
+    if channels == marked {
+        return Ok(());
+    }
+    let marks = Status::MARKS.map(Status::code);
+    let (mut off, mut cells) = (0, 0);
+    for whisker in slice.whiskers() {
+        if let Samples::U32(codes) = slice.read_panel("status", whisker)? {
+            off += codes.iter().filter(|code| marks.contains(code)).count();
+            cells += codes.len();
+        }
+    }
+    if off > 0 {
+        let [sliding, sticking] = marks;
+        say(&format!(
+            "warning: {off} of {cells} cells of {} are off: their friction is not as assumed; --channel status marks them by {sliding} and {sticking}",
+            channels.join(", ")
+        ));
+    }
+    Ok(())
+}
+
+/// What precedes the values in a file of NumPy, version 1.0.
+fn npy(kind: &str, shape: &[usize]) -> Vec<u8> {
+    let sizes: String = shape.iter().map(|size| format!("{size},")).collect();
+    let about = format!("{{'descr': '{kind}', 'fortran_order': False, 'shape': ({sizes}), }}");
+    // The values begin at a multiple of 64 bytes, after a line's end.
+    let length = (about.len() + 11).next_multiple_of(64) - 10;
+    let mut header = b"\x93NUMPY\x01\x00".to_vec();
+    header.extend((length as u16).to_le_bytes());
+    header.extend(format!("{about:<width$}\n", width = length - 1).into_bytes());
+    header
+}

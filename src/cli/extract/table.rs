@@ -1,0 +1,67 @@
+//! A slice as a table: a line for each cell.
+
+use super::super::failure::Failure;
+use super::super::files::{Files, unwritten};
+use serde::ser::{Serialize, SerializeStruct, Serializer};
+use std::path::Path;
+use whiskmap::store::{Samples, Slice, Table};
+
+/// A line of a table.
+struct Line<'a> {
+    axes: &'a [(&'static str, f64)],
+    channels: &'a [&'static str],
+    samples: &'a [Samples],
+    cell: usize,
+}
+
+impl Serialize for Line<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let count = self.axes.len() + self.channels.len();
+        let mut columns = serializer.serialize_struct("Line", count)?;
+        for (name, value) in self.axes {
+            columns.serialize_field(name, value)?;
+        }
+        for (name, samples) in self.channels.iter().zip(self.samples) {
+            match samples {
+                Samples::U32(codes) => columns.serialize_field(name, &codes[self.cell])?,
+                Samples::F32(values) => {
+                    let value = Some(values[self.cell]).filter(|value| !value.is_nan());
+                    columns.serialize_field(name, &value)?;
+                }
+            }
+        }
+        columns.end()
+    }
+}
+
+/// Writes the table of a slice.
+pub fn table(
+    slice: &Slice,
+    channels: &[&'static str],
+    path: &Path,
+    files: &mut Files,
+) -> Result<(), Failure> {
+    let mut table = Table::new(files.output("--output", path)?);
+    let grid = slice.grid();
+    for whisker in slice.whiskers() {
+        let samples = channels.iter().map(|name| slice.read_panel(name, whisker));
+        let samples: Vec<Samples> = samples.collect::<Result<_, _>>()?;
+        let place = slice.place(whisker);
+        let rows = grid.distance_mm.iter();
+        let cells =
+            rows.flat_map(|row| grid.push_angle_deg.iter().map(move |column| (row, column)));
+        for (cell, (distance, push_angle)) in cells.enumerate() {
+            let mut axes = place.clone();
+            axes.push(("distance_mm", *distance));
+            axes.push(("push_angle_deg", *push_angle));
+            let line = Line {
+                axes: &axes,
+                channels,
+                samples: &samples,
+                cell,
+            };
+            table.rows([line]).map_err(|cause| unwritten(path, cause))?;
+        }
+    }
+    table.finish().map_err(|cause| unwritten(path, cause))
+}
