@@ -26,7 +26,10 @@ RUSTDOCFLAGS="-D warnings" cargo doc --no-deps --locked --profile checked
 log="$(mktemp)"
 trap 'rm -f "$log"' EXIT
 cargo test --profile checked --locked --no-fail-fast | tee "$log"
-if grep -E '^test .* \.\.\. ignored|; [1-9][0-9]* ignored;' "$log"; then
+# Tests that only root can run are no failure for another user.
+accepted="only root can"
+[ "$(id -u)" != 0 ] || accepted="nothing"
+if grep -E '^test .* \.\.\. ignored' "$log" | grep -v "$accepted"; then
     echo "error: tests were ignored, for the reasons above; all tests must run" >&2
     exit 1
 fi

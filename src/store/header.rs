@@ -28,7 +28,10 @@ pub(super) fn encode(headers: &[Header]) -> exr::error::Result<Vec<u8>> {
         }
         sequence_end::write(&mut bytes)?;
     }
-    sequence_end::write(&mut bytes)?;
+    // A list of headers has an end; a file of one part has no list.
+    if headers.len() > 1 {
+        sequence_end::write(&mut bytes)?;
+    }
     Ok(bytes)
 }
 

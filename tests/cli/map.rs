@@ -143,3 +143,30 @@ fn a_map_without_any_answer_is_written_and_fails() {
     let warning = "warning: 2 of 4 cells are unresolved: see the channel `status`\n";
     assert!(run.err.ends_with(warning), "{run:?}");
 }
+
+/// A file of one part has no list of headers, so its offset table follows the header at once.
+#[test]
+fn a_map_of_one_part_is_read_by_all() {
+    use exr::prelude::{ReadChannels, ReadLayers, read};
+    for sweep in ["", "taper = [0, 0.5]\n"] {
+        let scene = SCENE.replace("tip_radius_um = 1.5\n", "") + sweep;
+        let place = Place::with(&scene);
+        place.map(&["scene.toml", "--channels", "regime"]);
+        let path = place.path("outputs/scene.exr");
+        let map = StoredMap::open(&path).unwrap();
+        let regimes: Vec<f64> = map.read_channel("regime").unwrap().values().collect();
+        let image = read().no_deep_data().largest_resolution_level();
+        let image = image.all_channels().all_layers().all_attributes();
+        let image = image.from_file(&path).unwrap();
+        let samples = &image.layer_data[0].channel_data.list[0].sample_data;
+        let mut found: Vec<f64> = samples.values_as_f32().map(f64::from).collect();
+        let mut expected = regimes;
+        found.sort_by(f64::total_cmp);
+        expected.sort_by(f64::total_cmp);
+        assert_eq!(found, expected);
+        for output in ["x.csv", "x.npy"] {
+            let run = place.run(&["extract", "outputs/scene.exr", "-o", output]);
+            assert_eq!(run.code, Some(0), "{run:?}");
+        }
+    }
+}

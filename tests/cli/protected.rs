@@ -4,12 +4,8 @@ use crate::data::DATA;
 use crate::traces::good;
 use crate::{Place, Run, SCENE, names};
 use std::fs::{self, Permissions};
-use std::os::unix::fs::{MetadataExt, PermissionsExt, chown, lchown, symlink};
-use std::os::unix::process::CommandExt;
+use std::os::unix::fs::{MetadataExt, PermissionsExt, symlink};
 use std::process::{Command, Stdio};
-
-/// A user that is neither the administrator nor the one who runs the tests.
-const STRANGER: u32 = 54_321;
 
 const MAP: [&str; 4] = ["map", "scene.toml", "--engine=cpu", "-o"];
 
@@ -219,58 +215,6 @@ fn a_replaced_file_keeps_its_mode_and_a_read_only_one_is_refused() {
     }
 }
 
-/// Only an administrator can make files of another user.
-#[test]
-#[allow(clippy::print_stderr, reason = "a test that tests nothing says so")]
-fn files_and_links_of_others() {
-    let place = Place::with(SCENE);
-    place.write("t.csv", "old");
-    if chown(place.path("t.csv"), Some(STRANGER), Some(STRANGER)).is_err() {
-        eprintln!("SKIPPED files_and_links_of_others: this user cannot give files away");
-        return;
-    }
-    let table = [
-        "shape",
-        "scene.toml",
-        "--distance=9",
-        "--push-angle=1",
-        "--csv",
-    ];
-    let to = |name| [&table[..], &[name]].concat();
-    good(&place, &to("t.csv"));
-    let about = place.path("t.csv").metadata().unwrap();
-    assert_eq!((about.uid(), about.gid()), (STRANGER, STRANGER));
-
-    // A stranger may write to the file and to its folder, but cannot make a file of the administrator.
-    fs::set_permissions(place.path(""), Permissions::from_mode(0o777)).unwrap();
-    place.write("ours.csv", "old");
-    fs::set_permissions(place.path("ours.csv"), Permissions::from_mode(0o666)).unwrap();
-    let mut command = place.plain_command(&to("ours.csv"));
-    match command.uid(STRANGER).gid(STRANGER).output() {
-        Ok(output) => Run::of(&output).assert_refused(&[
-            "--csv ours.csv: the file there belongs to user 0 and group 0; this user cannot make such a file",
-        ]),
-        Err(why) => eprintln!("SKIPPED a stranger's run: {why}"),
-    }
-    assert_eq!(place.bytes("ours.csv"), b"old");
-
-    // A stranger's link is followed in a folder that only its owner writes to.
-    symlink("ours.csv", place.path("link.csv")).unwrap();
-    lchown(place.path("link.csv"), Some(STRANGER), Some(STRANGER)).unwrap();
-    let must = "--csv link.csv: link.csv is a symbolic link of user 54321 in a folder that others may write to";
-    for shared in [0o1777, 0o777, 0o775] {
-        fs::set_permissions(place.path(""), Permissions::from_mode(shared)).unwrap();
-        place.keeps(&to("link.csv"), &[must]);
-    }
-    lchown(place.path("link.csv"), Some(0), Some(0)).unwrap();
-    good(&place, &to("link.csv"));
-    lchown(place.path("link.csv"), Some(STRANGER), Some(STRANGER)).unwrap();
-    place.write("ours.csv", "old");
-    fs::set_permissions(place.path(""), Permissions::from_mode(0o755)).unwrap();
-    good(&place, &to("link.csv"));
-    assert!(place.bytes("ours.csv").len() > 1000 && place.path("link.csv").is_symlink());
-}
-
 /// Name of this host as it is in the names of temporary files.
 fn host() -> String {
     let name = Command::new("uname").arg("-n").output().unwrap().stdout;
@@ -294,10 +238,8 @@ fn only_leftovers_are_removed() {
     folder(&exact("3"));
     place.pipe(&exact("4"));
     symlink("scene.toml", place.path(&exact("5"))).unwrap();
-    place.write(&exact("6"), "");
-    let is_strange = lchown(place.path(&exact("6")), Some(STRANGER), None).is_ok();
     let mut kept = names(&place.path(""));
-    kept.retain(|name| *name != exact("1") && (is_strange || *name != exact("6")));
+    kept.retain(|name| *name != exact("1"));
     good(
         &place,
         &[

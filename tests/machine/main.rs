@@ -1,4 +1,5 @@
-//! Tests that need a GPU: one contract in every precision, faults, strips of rows, whole maps and the program.
+//! Tests that need something of the machine. A GPU: one contract in every precision, faults, strips of rows, whole maps and the
+//! program. Root: files of other users.
 //!
 //! A test that cannot run here is ignored with the reason, which needs a harness other than that of the standard library.
 #![allow(
@@ -10,8 +11,8 @@
 /// The tests of a module: their names, and what each group of them needs.
 macro_rules! tests {
     ($($needs:ident: $($test:ident),+;)+) => {
-        pub const TESTS: &[(&str, crate::GpuTest)] = &[$($(
-            (concat!(module_path!(), "::", stringify!($test)), crate::GpuTest::$needs($test)),
+        pub const TESTS: &[(&str, crate::MachineTest)] = &[$($(
+            (concat!(module_path!(), "::", stringify!($test)), crate::MachineTest::$needs($test)),
         )+)+];
     };
 }
@@ -42,6 +43,8 @@ mod random;
 #[path = "../random_rods/mod.rs"]
 mod random_rods;
 mod states;
+#[cfg(unix)]
+mod strangers;
 
 use libtest_mimic::{Arguments, Completion, Trial};
 use std::process::ExitCode;
@@ -50,7 +53,7 @@ use whiskmap::integrate::gpu::{Gpu, Precision};
 
 /// A test by what it needs.
 #[derive(Clone, Copy)]
-pub enum GpuTest {
+pub enum MachineTest {
     /// Nothing: runs on every machine.
     Nothing(fn()),
     /// An adapter.
@@ -60,6 +63,9 @@ pub enum GpuTest {
     /// The library of a Vulkan driver, which a driver that fails calls.
     #[cfg(target_os = "linux")]
     Driver(fn()),
+    /// Files of other users, which only root can make.
+    #[cfg(unix)]
+    Root(fn()),
 }
 
 fn main() -> ExitCode {
@@ -78,19 +84,27 @@ fn main() -> ExitCode {
         maps::TESTS,
         pipeline::TESTS,
         states::TESTS,
+        #[cfg(unix)]
+        strangers::TESTS,
     ];
     let tests = modules.concat().into_iter();
     let trials = tests.flat_map(|(path, test)| {
-        let name = path.trim_start_matches("gpu::");
+        let name = path.trim_start_matches("machine::");
         match test {
-            GpuTest::Nothing(run) => vec![trial(&arguments, name, None, run)],
-            GpuTest::Adapter(run) => vec![trial(&arguments, name, missing[0].as_deref(), run)],
+            MachineTest::Nothing(run) => vec![trial(&arguments, name, None, run)],
+            MachineTest::Adapter(run) => vec![trial(&arguments, name, missing[0].as_deref(), run)],
             #[cfg(target_os = "linux")]
-            GpuTest::Driver(run) => {
+            MachineTest::Driver(run) => {
                 let missing = faults::driver::real_driver().err();
                 vec![trial(&arguments, name, missing.as_deref(), run)]
             }
-            GpuTest::Precision(run) => [Precision::F32, Precision::F64]
+            #[cfg(unix)]
+            MachineTest::Root(run) => {
+                let is_root = rustix::process::geteuid().is_root();
+                let missing = (!is_root).then_some("only root can make files of other users");
+                vec![trial(&arguments, name, missing, run)]
+            }
+            MachineTest::Precision(run) => [Precision::F32, Precision::F64]
                 .iter()
                 .zip(&missing)
                 .map(|(&precision, missing)| {

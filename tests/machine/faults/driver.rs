@@ -46,7 +46,7 @@ impl Place {
         let library = folder.path().join("libfaulty.so");
         Command::new("rustc")
             .args(["--edition", "2024", "--crate-type", "cdylib", "-o"])
-            .args([&library, Path::new("tests/gpu/faults/icd.rs")])
+            .args([&library, Path::new("tests/machine/faults/icd.rs")])
             .assert()
             .success();
         let manifest = serde_json::json!({

@@ -106,7 +106,7 @@ fn named_cases_are_solved_or_handed_over(precision: Precision) {
     let mut gpu = open(precision);
     let mut table = format!(
         "What {} makes of hard cases in {precision}, against f64 on the CPU.\n\
-         WHISKMAP_WRITE_TABLES=1 cargo test --profile checked --test gpu named_cases_are_solved\n\n\
+         WHISKMAP_WRITE_TABLES=1 cargo test --profile checked --test machine named_cases_are_solved\n\n\
          solved: by the GPU; handed over to the CPU: next to the fold or to the tip, too far from a reference, for too large a\n\
          bound, for numbers that are not finite; not asked for: cells of rows without references\n\
          apart: how far the states that the GPU solved are from those of the CPU, in parts of a channel's largest value along\n\
