@@ -42,15 +42,25 @@ pub(super) fn outlines(text: &str, size: f64) -> Vec<OutlinedGlyph> {
     outlines.collect()
 }
 
+/// What stands for the end of a text that is cut.
+const ELLIPSIS: &str = "\u{2026}";
+
 /// A text and its size, the largest in which it fits, at most `largest`; cut if even the smallest one does not.
 pub(super) fn fitted(text: &str, largest: f64, room: f64) -> Fitted {
-    let size = largest * (room / width(text, largest).max(1.0)).clamp(0.6, 1.0);
-    let mut shown = text.to_owned();
-    while width(&shown, size) > room + 1.0 && shown != "\u{2026}" {
-        let kept = shown.chars().count().saturating_sub(2);
-        shown = shown.chars().take(kept).chain(['\u{2026}']).collect();
+    let whole = width(text, largest).max(1.0);
+    let size = largest * (room / whole).clamp(0.6, 1.0);
+    let most = room + 1.0;
+    if whole * size / largest <= most {
+        return (text.to_owned(), size);
     }
-    (shown, size)
+    let font = sized(size);
+    let mut end = width(ELLIPSIS, size);
+    let fits = |c: &char| {
+        end += f64::from(font.h_advance(font.glyph_id(*c)));
+        end <= most
+    };
+    let kept: String = text.chars().take_while(fits).collect();
+    (kept + ELLIPSIS, size)
 }
 
 /// The characters of a text that the built-in font does not have, each once, in their order. Pictures in pixels show
@@ -64,4 +74,24 @@ pub fn missing_glyphs(text: &str) -> Vec<char> {
         }
     }
     missing
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_long_text_is_cut_where_its_room_ends() {
+        let (whole, size) = fitted("short", 20.0, 400.0);
+        assert_eq!((&*whole, size), ("short", 20.0));
+        for text in ["m".repeat(100_000), "i".repeat(500), "\u{9b0d}".repeat(90)] {
+            let (cut, size) = fitted(&text, 20.0, 400.0);
+            let kept = cut.strip_suffix(ELLIPSIS).unwrap_or_default();
+            assert!(size == 12.0 && text.starts_with(kept), "{cut}");
+            let one: String = text.chars().take(1).collect();
+            let [cut, one] = [&*cut, &*one].map(|text| width(text, size));
+            assert!(cut <= 401.0 && cut + one > 401.0, "{cut}");
+        }
+        assert_eq!(fitted("wide", 20.0, 1.0).0, ELLIPSIS);
+    }
 }

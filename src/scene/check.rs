@@ -21,6 +21,9 @@ use super::whisker::{Curvature, Pole, Whisker};
 /// More than any disk holds: a stored cell takes about 20 bytes.
 const MOST_CELLS: u128 = 1 << 44;
 
+/// The longest title, in characters: many times what fits on a picture.
+pub const LONGEST_TITLE: usize = 1000;
+
 /// File systems allow 255 bytes; the output adds its own endings.
 const LONGEST_NAME: usize = 200;
 
@@ -75,6 +78,11 @@ fn title(title: &Spanned<String>) -> Result<String, Fault> {
     let text = title.get_ref();
     if text.trim().is_empty() || text.contains(char::is_control) {
         let must = "must be one line of text";
+        return Err(Fault::new("title", title.span(), must));
+    }
+    let length = text.chars().count();
+    if length > LONGEST_TITLE {
+        let must = format!("must have at most {LONGEST_TITLE} characters, has {length}");
         return Err(Fault::new("title", title.span(), must));
     }
     Ok(text.clone())

@@ -24,6 +24,7 @@ mod whisker;
 
 pub(crate) use grid::NEAREST;
 
+pub use check::LONGEST_TITLE;
 pub use checked::Scene;
 pub use deviations::Deviations;
 pub use error::SceneError;

@@ -1,7 +1,7 @@
 //! `whiskmap extract`: slices of stores and maps.
 
-use crate::Place;
 use crate::store::{SWEEP, good};
+use crate::{Place, SCENE};
 use std::fs;
 use whiskmap::scene::Parameter;
 use whiskmap::store::{StoredMap, ZarrStore};
@@ -256,4 +256,19 @@ fn a_store_of_a_slice_has_the_values_of_the_whole() {
         "a.png",
     ];
     assert_eq!(place.run(&draw).code, Some(0));
+}
+
+/// The chosen value would make it longer than a scene may have it.
+#[test]
+fn the_longest_title_is_extracted() {
+    let title = "t".repeat(1000);
+    let place = Place::with(&SCENE.replace("A small map", &title));
+    place.map(&["scene.toml", "--no-png"]);
+    let at = ["--at=push_angle_deg=-70", "-o", "part.exr"];
+    let run = place.run(&[&["extract", "outputs/scene.exr"], &at[..]].concat());
+    assert_eq!(run.code, Some(0), "{run:?}");
+    assert_eq!(
+        StoredMap::open(&place.path("part.exr")).unwrap().title,
+        title
+    );
 }

@@ -13,7 +13,7 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use whiskmap::integrate;
 use whiskmap::map::{Audit, Channels, EngineCells};
-use whiskmap::scene::{Scene, Setup};
+use whiskmap::scene::{LONGEST_TITLE, Scene, Setup};
 use whiskmap::store::{Description, MapWriter, Slice, UnfinishedFolder, ZarrStore};
 
 /// Options of `extract`.
@@ -141,7 +141,9 @@ fn scene(slice: &Slice) -> Result<Scene, Failure> {
     let text = slice.stored().attribute("scene")?;
     let text = text.as_str().unwrap_or_default();
     let mut scene = Scene::parse(text, "the scene of the map")?;
-    scene = scene.with("title", slice.title())?;
+    // The chosen values may make the longest title longer.
+    let title: String = slice.title().chars().take(LONGEST_TITLE).collect();
+    scene = scene.with("title", title)?;
     for (axis, value) in slice.chosen() {
         scene = scene.with(&format!("grid.{axis}"), [*value])?;
     }
