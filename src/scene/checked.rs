@@ -16,6 +16,7 @@ use super::error::SceneError;
 use super::file::SceneTable;
 use super::rows;
 use super::setup::Setup;
+use super::source::NamedFiles;
 
 /// A scene that has passed every check. It reads like its [`Setup`], and only [`Scene::with`] changes it.
 ///
@@ -44,7 +45,8 @@ impl Deref for Scene {
 
 impl Scene {
     /// Reads and checks a scene file; `-` is standard input. Where the file does not name its output, the
-    /// file's own stem does, or `scene` for standard input.
+    /// file's own stem does, or `scene` for standard input. A CSV file that the scene names is looked for beside the scene
+    /// file, and its rows take the place of its name in [`Setup::text`].
     ///
     /// # Errors
     ///
@@ -59,16 +61,15 @@ impl Scene {
         Self::from_source(file, &origin, path)
     }
 
-    /// Checks the text of a scene. Messages call it by its file's name, `origin`, whose stem is the name of the output
-    /// where the scene gives none. A CSV file that the scene names is looked for beside `origin`, and its rows take the
-    /// place of its name in [`Setup::text`].
+    /// Checks the text of a scene and opens no file. Messages call the text `origin`, whose stem is the name of the output
+    /// where the scene gives none.
     ///
     /// # Errors
     ///
-    /// If the text is not TOML, has a key too many or too few, or a value that is out of its range or at odds
-    /// with another one.
+    /// If the text is not TOML, names a CSV file, has a key too many or too few, or a value that is out of its range or at
+    /// odds with another one.
     pub fn parse(text: &str, origin: &str) -> Result<Self, SceneError> {
-        Self::checked(text, origin, Path::new(origin))
+        Self::checked(text, origin, Path::new(origin), NamedFiles::Forbidden)
     }
 
     /// The CSV file that the radii were read from, if the scene names one.
@@ -115,7 +116,8 @@ impl Scene {
             table.insert(last, value.into());
         }
         let path = format!("{}.toml", self.name);
-        Self::checked(&document.to_string(), origin, Path::new(&path))
+        let text = document.to_string();
+        Self::checked(&text, origin, Path::new(&path), NamedFiles::Forbidden)
     }
 
     /// The same scene with at most `lines` push angles and distances, and at most `values` of each sweep axis, from all over
@@ -138,16 +140,20 @@ impl Scene {
         thinned
     }
 
-    fn checked(text: &str, origin: &str, path: &Path) -> Result<Self, SceneError> {
+    fn checked(
+        text: &str,
+        origin: &str,
+        path: &Path,
+        files: NamedFiles,
+    ) -> Result<Self, SceneError> {
         let mut table: SceneTable =
             toml::from_str(text).map_err(|why| SceneError::of_toml(origin, text, &why))?;
-        let folder = path.parent().unwrap_or(Path::new(""));
         let stem = path.file_stem().unwrap_or_default().to_string_lossy();
         let profile = table.whisker.profile.as_mut();
         let rows_file = profile
             .as_ref()
-            .and_then(|own| own.rows.get_ref().file(folder));
-        let inlined = profile.map_or(Ok(None), |own| rows::read(&mut own.rows, text, folder));
+            .and_then(|own| files.path_of(own.rows.get_ref().name()?));
+        let inlined = profile.map_or(Ok(None), |own| rows::read(&mut own.rows, text, files));
         let setup = inlined.and_then(|inlined| {
             let own = inlined.as_ref().map_or(text, |inlined| &inlined.text);
             let setup = check::setup(&mut table, own, &stem)?;
@@ -170,7 +176,8 @@ impl Scene {
             let message = format!("not UTF-8 text: byte 0x{byte:02X}");
             SceneError::at(origin, &shown, Some(span), message)
         })?;
-        Self::checked(&text, origin, path)
+        let folder = path.parent().unwrap_or(Path::new(""));
+        Self::checked(&text, origin, path, NamedFiles::In(folder))
     }
 }
 

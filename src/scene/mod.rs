@@ -17,6 +17,7 @@ mod profile;
 mod rows;
 mod setup;
 mod shape;
+mod source;
 mod sweep;
 mod varied;
 mod warnings;

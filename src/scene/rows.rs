@@ -2,7 +2,7 @@
 
 use std::fmt::{self, Write};
 use std::ops::Range;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use serde::Deserialize;
 use serde::de::value::SeqAccessDeserializer;
@@ -12,6 +12,7 @@ use toml::Spanned;
 use crate::input::{CsvError, CsvTable};
 
 use super::error::Fault;
+use super::source::NamedFiles;
 
 /// How messages call the rows.
 pub(super) const KEY: &str = "whisker.profile.rows";
@@ -47,10 +48,10 @@ pub(super) struct CsvRow {
 }
 
 impl Rows {
-    /// Path of the CSV file that these rows name, beside a scene in `folder`.
-    pub fn file(&self, folder: &Path) -> Option<PathBuf> {
+    /// Name of the CSV file that these rows name.
+    pub fn name(&self) -> Option<&str> {
         match self {
-            Self::Named(name) => Some(folder.join(name)),
+            Self::Named(name) => Some(name),
             _ => None,
         }
     }
@@ -91,18 +92,20 @@ pub(super) struct Inlined {
     pub note: Option<String>,
 }
 
-/// Reads the CSV file that `rows` may name from `folder` into them, and writes them into the scene's `text`.
+/// Reads the CSV file that `rows` may name, one of `files`, into them. Returns the scene's text with the rows in place of
+/// the name, so that the text names no file.
 pub(super) fn read(
     rows: &mut Spanned<Rows>,
     text: &str,
-    folder: &Path,
+    files: NamedFiles,
 ) -> Result<Option<Inlined>, Fault> {
     let span = rows.span();
-    let Some(file) = rows.get_ref().file(folder) else {
+    let Some(name) = rows.get_ref().name() else {
         return Ok(None);
     };
-    let read = from_csv(&file);
-    let (read, note) = read.map_err(|why| Fault::new(KEY, span.clone(), why.to_string()))?;
+    let read = files.find(name);
+    let read = read.and_then(|path| from_csv(&path).map_err(|why| why.to_string()));
+    let (read, note) = read.map_err(|why| Fault::new(KEY, span.clone(), why))?;
     let mut list = String::from("[\n");
     for [arc_length_mm, radius_um] in read.iter().map(|row| row.values) {
         // Writing to a String cannot fail.

@@ -228,3 +228,56 @@ fn a_pipe_is_no_map() {
     let run = place.run(&["render", "map.exr"]);
     run.assert_refused(&["map.exr is no regular file"]);
 }
+
+/// Nobody writes into the pipe: opening it would never end.
+#[test]
+fn a_pipe_holds_no_radii() {
+    let measured = "[whisker]\nprofile.rows = \"radii.csv\"";
+    let scene = SCENE.replace("[whisker]", measured);
+    let place = Place::with(&scene);
+    place.pipe("radii.csv");
+    place
+        .run(&["curve", "scene.toml"])
+        .assert_refused(&["whisker.profile.rows = \"radii.csv\": must name a regular file"]);
+
+    // A store that names it opens it no more than its user does.
+    place.write("scene.toml", crate::store::SWEEP);
+    crate::store::good(&place, ".", &["--shard", "1/8"]);
+    let root = String::from_utf8(place.bytes("scene.zarr/zarr.json")).unwrap();
+    let named = root.replace(
+        "[whisker]",
+        &measured.replace('\n', "\\n").replace('"', "'"),
+    );
+    assert_ne!(root, named);
+    place.write("scene.zarr/zarr.json", &named);
+    let refused = "only a scene file may name a CSV file";
+    for command in [
+        &["status", "scene.zarr"][..],
+        &["render", "scene.zarr", "--at=friction=0"],
+        &["extract", "scene.zarr", "-o", "part.npy"],
+    ] {
+        place.run(command).assert_said(2, refused);
+    }
+}
+
+/// A scene that its user names may come from a program; a folder or an endless device is no scene, and holds no points.
+#[test]
+fn what_a_user_names_is_read_to_its_end_or_refused() {
+    let place = Place::with(SCENE);
+    place.pipe("piped.toml");
+    let mut child = place.plain_command(&["curve", "piped.toml"]);
+    let child = child.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn();
+    fs::write(place.path("piped.toml"), SCENE).unwrap();
+    let run = Run::of(&child.unwrap().wait_with_output().unwrap());
+    assert_eq!(run.code, Some(0), "{run:?}");
+    assert_eq!(run.out, good(&place, &["curve", "scene.toml"]).out);
+    for (path, why) in [
+        (".", "cannot be read: Is a directory"),
+        ("/dev/zero", "cannot be read: longer than 1 MiB"),
+    ] {
+        place.run(&["curve", path]).assert_refused(&[path, why]);
+        place
+            .run(&["curve", "scene.toml", "--data", path])
+            .assert_refused(&[path, why]);
+    }
+}
