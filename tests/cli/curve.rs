@@ -106,7 +106,7 @@ fn a_curve_without_any_end_is_written_and_fails() {
 
     place.write(
         "near.toml",
-        &crate::map::HINGED.replace("[14, 19]", "[7, 14]"),
+        &crate::map::HINGED.replace("[5, 8]", "[8, 19]"),
     );
     let run = place.run(&["curve", "near.toml"]);
     let warning = "warning: 2 of 4 ends are unresolved: see the column `kind`\n";

@@ -120,10 +120,10 @@ fn a_reader_that_has_gone_is_no_failure() {
     assert_eq!(names(&place.path("outputs")), ["scene.exr", "scene.png"]);
 }
 
-/// A hinge in the middle: no contact beyond it has a fold.
+/// A hinge next to the base: nearer contacts coil up for more turns than are followed.
 pub const HINGED: &str = "title = 'A hinge'\n[whisker]\nlength_mm = 20\nyoungs_modulus_gpa = 3\n\
-                          profile.rows = [[0, 30], [10, 0.03], [12, 30], [20, 30]]\n\
-                          [grid]\npush_angle_deg = [5, 10]\ndistance_mm = [14, 19]\n";
+                          profile.rows = [[0, 30], [2, 7.5], [3, 30], [20, 30]]\n\
+                          [grid]\npush_angle_deg = [5, 10]\ndistance_mm = [5, 8]\n";
 
 #[test]
 fn a_map_without_any_answer_is_written_and_fails() {
@@ -137,8 +137,8 @@ fn a_map_without_any_answer_is_written_and_fails() {
     assert_eq!(run.count("unresolved"), 4, "{run:?}");
     assert!(StoredMap::open(&place.path("scene.exr")).is_ok());
 
-    // The hinge is out of the way of the nearer row.
-    place.write("scene.toml", &HINGED.replace("[14, 19]", "[7, 14]"));
+    // The farther row is pulled off before it coils up.
+    place.write("scene.toml", &HINGED.replace("[5, 8]", "[8, 19]"));
     let run = place.map(&["scene.toml", "-o", "."]);
     let warning = "warning: 2 of 4 cells are unresolved: see the channel `status`\n";
     assert!(run.err.ends_with(warning), "{run:?}");

@@ -166,10 +166,10 @@ fn the_whisker_keeps_reaching_its_points() {
 #[test]
 fn points_that_never_detach_are_left_out() {
     let hinged = "title = 'A hinge'\n[whisker]\nlength_mm = 20\nyoungs_modulus_gpa = 3\n\
-                  profile.rows = [[0, 30], [10, 0.03], [12, 30], [20, 30]]\n\
-                  [grid]\npush_angle_deg = [5, 10]\ndistance_mm = [5, 14]\n";
+                  profile.rows = [[0, 30], [2, 7.5], [3, 30], [20, 30]]\n\
+                  [grid]\npush_angle_deg = [5, 10]\ndistance_mm = [8, 19]\n";
     let scene = Scene::parse(hinged, "hinged.toml").unwrap();
-    let text = "side,distance_mm,push_angle_deg\ncb,5,13\ncb,14,40\n";
+    let text = "side,distance_mm,push_angle_deg\ncb,19,13\ncb,8,40\n";
     let points = Points::parse(text, "points.csv").unwrap();
     let found = fit(&scene, &points, &[YoungsModulusGpa]).unwrap();
     let left_out: Vec<usize> = found.comparison.left_out().map(|row| row.line).collect();

@@ -139,7 +139,7 @@ fn radii_that_are_refused() {
     for (rows, why) in [
         (
             "\"no.csv\"",
-            "rows = \"no.csv\": no.csv: cannot be read: No such file",
+            "rows = \"no.csv\": must be a list of rows: only a scene file may name a CSV file",
         ),
         ("5", "expected the name of a CSV file or a list"),
         ("[]", "must be 2 to 256 rows, are 0"),
@@ -181,12 +181,33 @@ fn radii_that_are_refused() {
             "rows[1]: the radius must be between a thousandth",
         ),
         (
+            "[[0, 30], [2, 29], [3, 2], [4, 28], [20, 1]]",
+            "rows[2]: the radius must be at least 7 um: a waist is at most four times as thin",
+        ),
+        (
+            "[[0, 2], [5, 9], [20, 1]]",
+            "rows[1]: the radius must be between a thousandth of that at the base (0.002) and four times it (8)",
+        ),
+        (
+            "[[0, 30], [5, 12], [6, 2.9], [7, 11], [8, 12], [20, 1]]",
+            "rows[2]: the radius must be at least 3 um",
+        ),
+        (
             "[[0, 1], [5, 0.0009], [20, 1]]",
             "rows[1]: the radius must be",
         ),
     ] {
         let message = refusal(&scene(&format!("[whisker.profile]\nrows = {rows}"), ""));
         assert!(message.contains(why), "{rows}: {message}");
+    }
+    // A step, a bulge and a waist that is just shallow enough.
+    for rows in [
+        "[[0, 30], [2, 30], [3, 2], [20, 2]]",
+        "[[0, 30], [5, 20], [6, 120], [7, 20], [20, 1]]",
+        "[[0, 30], [5, 30], [6, 3], [7, 12], [20, 1]]",
+    ] {
+        let accepted = parse(&scene(&format!("[whisker.profile]\nrows = {rows}"), ""));
+        assert_eq!(accepted.err(), None, "{rows}");
     }
     let both = scene("", "").replace("[pole]", &format!("{ROWS}\n[pole]"));
     assert!(
@@ -235,6 +256,10 @@ fn a_bad_csv_file_is_named_with_its_line() {
             "arc_length_mm,radius_um\n0,30\n",
             "must be 2 to 256 rows, are 1",
         ),
+        (
+            "arc_length_mm,radius_um\n0,30\n# a slip\n3,2\n4,30\n20,1\n",
+            "line 4: the radius must be at least 7.5 um",
+        ),
         (&"0,1\n".repeat(300_000), "longer than 1 MiB"),
         (
             &format!("arc_length_mm,radius_um\n{}", "0,1\n".repeat(300)),
@@ -278,4 +303,55 @@ fn a_bad_csv_file_is_named_with_its_line() {
         message.contains(&format!("scene.toml:{line}:")),
         "{message}"
     );
+}
+
+/// A map or a store brings its scene along: checking its text opens no file, even one that is there.
+#[test]
+fn the_text_of_a_scene_names_no_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let csv = folder.path().join("radii.csv");
+    fs::write(&csv, "arc_length_mm,radius_um\n0,30\n20,1\n").unwrap();
+    let text = scene(&format!("[whisker.profile]\nrows = {csv:?}"), "");
+    let path = folder.path().join("scene.toml");
+    fs::write(&path, &text).unwrap();
+    let read = Scene::read(&path).unwrap();
+    let refused = "only a scene file may name a CSV file";
+    assert!(refusal(&text).contains(refused), "{}", refusal(&text));
+    let with = read.with("whisker.profile.rows", csv.to_string_lossy());
+    let with = with.unwrap_err().to_string();
+    assert!(with.contains(refused), "{with}");
+}
+
+#[test]
+fn a_scene_names_regular_files() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("scene.toml");
+    for (name, why) in [
+        (".", "must name a regular file"),
+        ("no.csv", "No such file"),
+        #[cfg(unix)]
+        ("/dev/zero", "must name a regular file"),
+    ] {
+        let text = scene(&format!("[whisker.profile]\nrows = {name:?}"), "");
+        fs::write(&path, &text).unwrap();
+        let message = Scene::read(&path).unwrap_err().to_string();
+        let why = format!("whisker.profile.rows = {name:?}: {why}");
+        assert!(message.contains(&why), "{message}");
+    }
+}
+
+#[test]
+fn a_title_has_at_most_a_thousand_characters() {
+    let titled = |length: usize| {
+        scene("", "").replacen(
+            "title = \"",
+            &format!("title = \"{}", "\u{b5}".repeat(length)),
+            1,
+        )
+    };
+    let own = parse(&scene("", "")).unwrap().title.chars().count();
+    assert_eq!(parse(&titled(1000 - own)).err(), None);
+    let message = refusal(&titled(1001 - own));
+    let why = "title: must have at most 1000 characters, has 1001";
+    assert!(message.contains(why), "{message}");
 }

@@ -2,6 +2,7 @@
 //! level curve of a row is then in several pieces, whose push angles may overlap.
 
 use crate::sheet::continuation::level_curve::{LevelCurve, Node};
+use crate::sheet::continuation::walk::MOST_PUSH;
 use crate::sheet::continuation::{Continuation, NODE_MISS, continuations};
 use crate::sheet::row::Crossing;
 
@@ -58,7 +59,10 @@ pub fn stable_pieces(rows: &[WalkedRow]) -> Vec<StablePieces> {
             .zip(&found)
             .map(|(row, found)| {
                 let is_walked = found.are_complete || !found.pieces.is_empty();
-                row.crossings.get(index).copied().filter(|_| is_walked)
+                // No cell has a push angle of several turns.
+                let is_near = |crossing: &Crossing| crossing.push.abs() <= MOST_PUSH;
+                let crossing = row.crossings.get(index).copied();
+                crossing.filter(|crossing| is_walked && is_near(crossing))
             })
             .collect();
         through_crossings(rows, &crossings, &mut found);

@@ -6,6 +6,7 @@ use crate::sheet::continuation::meeting::Chord;
 use crate::sheet::row::Edge;
 use crate::shooting::FullState;
 use glam::DVec2;
+use std::f64::consts::TAU;
 
 /// Nodes are about this far apart.
 const NODE_DISTANCE: f64 = 0.05;
@@ -24,6 +25,10 @@ const SHORTEST_ARC_STEP: f64 = 1e-9;
 
 /// A predictor bends where the direction has changed by less than this since the node before.
 const MOST_BEND: f64 = 0.25;
+
+/// The largest push angle of a node, in radians: eight turns. Push angles of maps are at most one turn; beyond a soft waist, a
+/// whisker can coil up for thirty turns, in thousands of nodes.
+pub const MOST_PUSH: f64 = 8.0 * TAU;
 
 /// Most nodes: no branch known has more than 300.
 const MOST_NODES: usize = 10_000;
@@ -69,7 +74,8 @@ impl<'a> Walk<'a> {
     /// Sets out for the next node; `None` where it is lost.
     pub fn set_out(mut self) -> Option<Self> {
         self.predict();
-        (self.nodes.len() < MOST_NODES && self.step > SHORTEST_ARC_STEP).then_some(self)
+        let is_within = self.nodes.len() < MOST_NODES && self.last().push.abs() <= MOST_PUSH;
+        (is_within && self.step > SHORTEST_ARC_STEP).then_some(self)
     }
 
     /// The same with a shorter step.
