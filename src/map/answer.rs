@@ -34,6 +34,11 @@ impl<'a> Readings<'a> {
     fn read(&mut self, cell: &Cell<'a>) -> Option<Numbers> {
         match cell.state {
             State::Unknown => None,
+            State::FirstTouch(row) => {
+                let contact = row.contact.min(row.end);
+                let reading = self.reader.at_first_touch(contact, row.touch);
+                Some(channels(&reading))
+            }
             State::Refined(state) => {
                 let reading = self
                     .reader
@@ -109,6 +114,10 @@ pub fn answer<'a>(
     let mut answer = Answer::new(regime, status, cell.steps);
     let residual = match cell.state {
         State::Unknown => return answer,
+        State::FirstTouch(row) => {
+            answer.point = Some(row.first_touch(&sheet.rod));
+            0.0
+        }
         State::Refined(state) => {
             answer.point = Some(DVec2::new(state.tau, state.load));
             state.residual as f32

@@ -90,7 +90,7 @@ impl<'a> RowAnswers<'a> {
             if self.write_alike(run).is_some() {
                 continue;
             }
-            for (index, cell) in run.cells.clone().zip(settled.cells(face, run)) {
+            for (index, cell) in run.cells.clone().zip(settled.cells(face, row.row, run)) {
                 let answer = self.write_cell(&cell);
                 states.extend(self.found(&cell, &answer));
                 if self.is_in_doubt(&cell, &answer) {
@@ -99,7 +99,8 @@ impl<'a> RowAnswers<'a> {
             }
         }
         if !doubtful.is_empty() {
-            let cells = row.runs.iter().flat_map(|run| settled.cells(face, run));
+            let runs = row.runs.iter();
+            let cells = runs.flat_map(|run| settled.cells(face, row.row, run));
             let mut again: Vec<Cell> = cells.collect();
             let cells = again.iter_mut().enumerate();
             let cells = cells.filter(|(index, _)| doubtful.binary_search(index).is_ok());

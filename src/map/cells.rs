@@ -7,6 +7,7 @@ use super::summary::EngineCells;
 use crate::classify::{RowBoundary, Status, TIE};
 use crate::integrate::{CellDifference, Question, Reference};
 use crate::refine::{ContactState, End, Refined};
+use crate::sheet::Row;
 use std::sync::Arc;
 
 /// Some rows, settled.
@@ -50,6 +51,8 @@ pub struct Cell<'a> {
 pub enum State<'a> {
     /// None.
     Unknown,
+    /// First touch in this row, whatever solved the cell: the resting whisker, without a load.
+    FirstTouch(Row),
     /// In `f64`, to the last one if there were several.
     Refined(ContactState),
     /// By an engine, as it differs from a reference.
@@ -81,9 +84,16 @@ impl Settled {
         } += self.unasked;
     }
 
-    /// The cells of a `run` of a row of `face`.
-    pub fn cells<'a>(&'a self, face: &'a Face, run: &Run) -> impl Iterator<Item = Cell<'a>> + 'a {
+    /// The cells of a `run` of `row` of `face`.
+    pub fn cells<'a>(
+        &'a self,
+        face: &'a Face,
+        row: usize,
+        run: &Run,
+    ) -> impl Iterator<Item = Cell<'a>> + 'a {
+        let row = &face.sheet.rows[row];
         run.each().map(move |(cell, source)| {
+            let push = face.pushes.columns[cell];
             let (status, state, steps) = match source {
                 Source::Outside => (Status::Outside, State::Unknown, 0),
                 Source::Refined(index) => {
@@ -102,8 +112,13 @@ impl Settled {
                     (Status::Solved, State::Different(reference, cell), 1)
                 }
             };
+            let is_first_touch = push.angle == 0.0 && row.is_reached();
+            let (status, state) = match is_first_touch {
+                true => (Status::Solved, State::FirstTouch(*row)),
+                false => (status, state),
+            };
             Cell {
-                push: face.pushes.columns[cell],
+                push,
                 status,
                 state,
                 steps,

@@ -47,6 +47,12 @@ impl Row {
         (self.contact - self.end).abs() <= REACH_SLACK
     }
 
+    /// `(tau, load)` of `rod` at first touch: the load is 0.
+    #[must_use]
+    pub fn first_touch(&self, rod: &Rod) -> DVec2 {
+        DVec2::new(rod.tau(self.contact).min(rod.tau_tip()), 0.0)
+    }
+
     /// Centre of the pole in the frame of the base after a rotation of the base by `push` since first touch.
     #[must_use]
     pub fn pole(&self, push: f64) -> DVec2 {

@@ -16,7 +16,7 @@ impl LevelCurve {
     /// First touch, from where pushes are counted.
     #[must_use]
     pub fn touch(&self) -> Option<Node> {
-        let at_touch = DVec2::new(self.rod.tau(self.row.contact).min(self.rod.tau_tip()), 0.0);
+        let at_touch = self.row.first_touch(&self.rod);
         let full = shoot(&[Corrector::new(self, at_touch, ON_CURVE)])
             .first()?
             .full;

@@ -74,6 +74,23 @@ impl Reader {
         }
     }
 
+    /// The state at first touch: the resting whisker, without a load. The contact is at arclength `contact`, in whisker lengths, and the
+    /// pole in the direction `touch`.
+    #[must_use]
+    pub fn at_first_touch(&self, contact: f64, touch: f64) -> Reading {
+        let (point, tangent) = self.rest.at_arclength(contact);
+        Reading {
+            arc_length_mm: contact * self.units.length_mm,
+            contact_angle_deg: nearest_turn(tangent.to_angle(), touch).to_degrees(),
+            force_un: 0.0,
+            base_force_un: DVec2::ZERO,
+            base_moment_nnm: 0.0,
+            push_chord_deg: 0.0,
+            contact_distance_mm: point.length() * self.units.length_mm,
+            energy_nj: 0.0,
+        }
+    }
+
     /// The state `full`, in contact at `tau`, after the signed `push` (radians) since the pole was first touched in the
     /// direction `touch`.
     #[must_use]
