@@ -33,7 +33,7 @@ pub struct Options {
     /// Channel to draw with a colour bar; without it the regimes are drawn
     #[arg(long, value_name = "NAME")]
     channel: Option<String>,
-    /// Logarithmic colour scale; cells at or below 0 stay blank
+    /// Logarithmic colour scale from the 1st percentile of the values above 0; cells at or below 0 stay blank
     #[arg(long, requires = "channel")]
     log: bool,
     /// Ends of the colour bar; values beyond them take the colours of the ends

@@ -102,8 +102,10 @@ pub(super) fn round([low, high]: [f64; 2], wanted: f64) -> Vec<f64> {
         .collect()
 }
 
-/// At most `wanted` powers of ten within a range of positive numbers; where there are few, their multiples too.
+/// At most `wanted` powers of ten within a range of positive numbers; where there are few, their multiples too. The search
+/// begins at the smallest normal number.
 pub(super) fn logarithmic([low, high]: [f64; 2], wanted: f64) -> Vec<f64> {
+    let low = low.max(f64::MIN_POSITIVE);
     let powers = low.log10().floor() as i32..=high.log10().ceil() as i32;
     for factors in [&[1.0][..], &[1.0, 2.0, 5.0]] {
         let values = powers.clone().flat_map(|power| {
@@ -180,6 +182,11 @@ mod tests {
         assert_eq!(logarithmic([3.0, 60.0], 8.0), [5.0, 10.0, 20.0, 50.0]);
         assert_eq!(logarithmic([4.5, 8.5], 4.0), [5.0, 6.0, 7.0, 8.0]);
         assert!(logarithmic([1e-30, 1e30], 8.0).len() <= 8);
+        // In a larger unit, the smallest numbers are 0.
+        for low in [0.0, 1e-320] {
+            let ticks = logarithmic([low, 1e308], 8.0);
+            assert!((3..=8).contains(&ticks.len()), "{ticks:?}");
+        }
     }
 
     #[test]

@@ -70,6 +70,44 @@ fn a_logarithmic_scale_has_equal_ratios_at_equal_distances() {
 }
 
 #[test]
+fn a_logarithmic_scale_starts_at_the_1st_percentile() {
+    let scene = scene(40, 10, None, None);
+    let mut panel = flat(&scene, &[1; 400], 0.0);
+    for (value, cell) in panel.state[2].iter_mut().zip(0_u16..) {
+        *value = match cell {
+            0..10 => 0.0,
+            10..13 => 1e-30,
+            _ => f32::from(cell),
+        };
+    }
+    let options = MapOptions {
+        channel: Some("force_un"),
+        log: true,
+        ..MapOptions::default()
+    };
+    let svg = svg(&picture(&scene, &[panel], &options).unwrap());
+    for name in ["\u{2264} 0 (cells: 10)", "> 0, below the scale (cells: 3)"] {
+        let name = name.replace('>', "&gt;");
+        assert!(svg.contains(&format!(">{name}<")), "{name}");
+    }
+    for tick in [">20<", ">50<", ">100<", ">200<"] {
+        assert!(svg.contains(tick), "{tick}");
+    }
+}
+
+/// The powers of ten between the ends are few, whatever the ends and the unit.
+#[test]
+fn a_logarithmic_scale_takes_all_positive_numbers() {
+    let options = MapOptions {
+        log: true,
+        range: Some([1e-320, 1e308]),
+        ..MapOptions::default()
+    };
+    let svg = svg(&force([1.0, 100.0, 1e4], &options).unwrap());
+    assert!(svg.contains(">force (N)<") && !svg.contains("NaN") && !svg.contains("inf"));
+}
+
+#[test]
 fn values_beyond_the_range_take_the_colours_of_its_ends() {
     let ranged = |values, log| {
         let range = Some([1.0, 100.0]);

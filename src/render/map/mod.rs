@@ -2,6 +2,7 @@
 
 mod boundary;
 mod cells;
+mod histogram;
 mod options;
 mod panel;
 mod scale;

@@ -5,7 +5,8 @@
 pub struct MapOptions<'a> {
     /// The channel. Without it, the regimes are drawn, with the detachment boundary over them.
     pub channel: Option<&'a str>,
-    /// A logarithmic colour scale: values that are not positive are blank.
+    /// A logarithmic colour scale. Values that are not positive are blank; without a range, the colour bar starts at the 1st
+    /// percentile of the positive values.
     pub log: bool,
     /// The ends of the colour bar, in the channel's unit: values beyond them take the colours of the ends.
     pub range: Option<[f64; 2]>,

@@ -1,5 +1,6 @@
 //! Colours of quantities, and the bar that explains them.
 
+use super::histogram::Histogram;
 use super::options::MapOptions;
 use crate::classify::Status;
 use crate::render::error::Error;
@@ -19,10 +20,8 @@ pub(super) const BAR_ROOM: f64 = 190.0;
 pub(super) struct Scale {
     /// The ends of the colour bar; `None` where no cell has a value.
     pub(super) range: Option<[f64; 2]>,
-    /// What the cells without a colour are.
-    pub(super) blank: Option<String>,
-    /// Whether there are states that are off, which are hatched.
-    pub(super) has_marks: bool,
+    /// What the cells are whose colour the bar does not explain.
+    pub(super) legend: Vec<(Fill, String)>,
     log: bool,
     /// Only whole numbers occur.
     whole: bool,
@@ -38,6 +37,7 @@ impl Scale {
         }
         let (mut none, mut below, mut whole) = (false, 0_u64, false);
         let mut extent: Option<[f64; 2]> = None;
+        let mut positive = Histogram::default();
         for index in 0..map.layout().panels() {
             let samples = map.read_panel(channel, index)?;
             whole = matches!(samples, Samples::U32(_));
@@ -49,6 +49,9 @@ impl Scale {
                 } else {
                     let [low, high] = extent.unwrap_or([value, value]);
                     extent = Some([low.min(value), high.max(value)]);
+                    if log {
+                        positive.add(value);
+                    }
                 }
             }
         }
@@ -60,10 +63,24 @@ impl Scale {
         let below = (below > 0).then(|| format!("\u{2264} 0 (cells: {below})"));
         let none = none.then(|| "no contact".to_owned());
         let blank: Vec<String> = none.into_iter().chain(below).collect();
+        let blank = (!blank.is_empty()).then(|| (Fill::BLANK, blank.join(", or ")));
+        let cut = extent.filter(|_| log && options.range.is_none());
+        let cut = cut.map(|[low, high]| {
+            let (start, cells) = positive.start();
+            ([start.max(low), high], cells)
+        });
+        let few = cut.filter(|(_, cells)| *cells > 0).map(|(_, cells)| {
+            let lowest = Fill::plain(palette::sequential(0.0));
+            (lowest, format!("> 0, below the scale (cells: {cells})"))
+        });
+        let marks = has_marks(map, channel)?.then(|| {
+            let off = "off: friction is not as assumed";
+            (Fill::BLANK.hatched(), off.to_owned())
+        });
+        let extent = cut.map(|(extent, _)| extent).or(extent);
         Ok(Self {
             range: options.range.or(extent.map(|extent| widened(extent, log))),
-            blank: (!blank.is_empty()).then(|| blank.join(", or ")),
-            has_marks: has_marks(map, channel)?,
+            legend: blank.into_iter().chain(few).chain(marks).collect(),
             log,
             whole,
             channel: channel.to_owned(),
@@ -106,7 +123,9 @@ impl Scale {
         let shown = range.map(|end| end / unit);
         if self.log {
             let values = ticks::logarithmic(shown, wanted);
-            let tick = |value: &f64| Tick::of_power(self.fraction(shown, *value), *value);
+            // The smallest end may be 0 in a larger unit.
+            let at = |value: f64| self.fraction(range, value * unit);
+            let tick = |value: &f64| Tick::of_power(at(*value), *value);
             return values.iter().map(tick).collect();
         }
         let mut values = ticks::round(shown, wanted);

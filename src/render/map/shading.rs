@@ -79,12 +79,8 @@ impl Shading {
         match self {
             Self::Names { present, .. } => present.clone(),
             Self::Scale(scale) => {
-                let blank = scale.blank.iter().cloned();
-                let blank = blank.map(|name| (Fill::BLANK, name));
-                let off = "off: friction is not as assumed".to_owned();
-                let marks = scale.has_marks.then_some((Fill::BLANK.hatched(), off));
-                let samples = blank.chain(marks);
-                samples
+                let legend = scale.legend.iter().cloned();
+                legend
                     .map(|(fill, name)| (Sample::Swatch(fill), name))
                     .collect()
             }
