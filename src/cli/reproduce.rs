@@ -7,8 +7,9 @@ use clap::Args;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use whiskmap::measured::{Angle, Point};
-use whiskmap::paper::{self, Measurements};
+use whiskmap::paper::{self, FIG4_WHISKER, FIG5_LEFT, FIG5_RIGHT, Measurements, POLE};
 use whiskmap::render::Format;
+use whiskmap::scene::Whisker;
 use whiskmap::store::{Output, Table};
 
 /// Options of `reproduce`.
@@ -40,19 +41,27 @@ pub struct Options {
 impl Options {
     fn measurements(&self, files: &mut Files) -> Result<Measurements, Failure> {
         Ok(Measurements {
-            fig4d: points(files, "--fig4d", self.fig4d.as_deref())?,
-            fig5c_left: points(files, "--fig5c-left", self.fig5c_left.as_deref())?,
-            fig5c_right: points(files, "--fig5c-right", self.fig5c_right.as_deref())?,
+            fig4d: points(files, "--fig4d", self.fig4d.as_deref(), &FIG4_WHISKER)?,
+            fig5c_left: points(files, "--fig5c-left", self.fig5c_left.as_deref(), &FIG5_LEFT)?,
+            fig5c_right: points(files, "--fig5c-right", self.fig5c_right.as_deref(), &FIG5_RIGHT)?,
         })
     }
 }
 
-/// The points of a file, if there is one. The figures show push angles.
-fn points(files: &mut Files, option: &str, path: Option<&Path>) -> Result<Vec<Point>, Failure> {
+/// The points of a file, if there is one, all within reach of the resting `whisker`, which reaches farthest in its panel. The
+/// figures show push angles.
+fn points(
+    files: &mut Files,
+    option: &str,
+    path: Option<&Path>,
+    whisker: &Whisker,
+) -> Result<Vec<Point>, Failure> {
     let Some(path) = path else {
         return Ok(Vec::new());
     };
     let points = data::read(files, path)?;
+    let reach = points.check_reach(whisker, &POLE);
+    reach.map_err(|why| Failure::Input(format!("{option} {why}")))?;
     match points.angle {
         Angle::Push => Ok(points.points),
         Angle::Chord => Err(Failure::Input(format!(

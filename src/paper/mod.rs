@@ -13,6 +13,7 @@ mod whiskers;
 
 pub use check::{Check, Expected, Verdict};
 pub use figures::{Figure, Measurements, Rows, figures};
+pub use whiskers::{FIG4_WHISKER, FIG5_LEFT, FIG5_RIGHT, POLE};
 
 /// Every number that is known otherwise: published, in closed form, or from an independent solver.
 #[must_use]

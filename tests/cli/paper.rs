@@ -70,6 +70,23 @@ fn figures_show_measured_points() {
         .assert_refused(&["--fig4d chord.csv: has push_chord_deg; must have push_angle_deg"]);
 }
 
+/// As `curve --data` refuses them.
+#[test]
+fn figures_refuse_points_beyond_reach() {
+    let place = Place::with(SCENE);
+    place.write(
+        "points.csv",
+        "side,distance_mm,push_angle_deg\ncb,9,21\ncb,15.2,3\n",
+    );
+    for option in ["--fig4d", "--fig5c-left", "--fig5c-right"] {
+        let run = place.run(&["reproduce", "figures", option, "points.csv"]);
+        run.assert_refused(&[&format!(
+            "{option} points.csv:3: distance_mm = 15.2: must be between"
+        )]);
+        assert!(!place.path("figures").exists());
+    }
+}
+
 #[test]
 fn verify_says_pass_for_every_number_but_one_of_the_papers() {
     let run = good(&Place::with(SCENE), &["verify"]);

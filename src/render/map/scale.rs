@@ -22,6 +22,8 @@ pub(super) struct Scale {
     pub(super) range: Option<[f64; 2]>,
     /// What the cells are whose colour the bar does not explain.
     pub(super) legend: Vec<(Fill, String)>,
+    /// Whether there are states that are off, which are hatched.
+    pub(super) has_marks: bool,
     log: bool,
     /// Only whole numbers occur.
     whole: bool,
@@ -73,7 +75,8 @@ impl Scale {
             let lowest = Fill::plain(palette::sequential(0.0));
             (lowest, format!("> 0, below the scale (cells: {cells})"))
         });
-        let marks = has_marks(map, channel)?.then(|| {
+        let has_marks = has_marks(map, channel)?;
+        let marks = has_marks.then(|| {
             let off = "off: friction is not as assumed";
             (Fill::BLANK.hatched(), off.to_owned())
         });
@@ -81,6 +84,7 @@ impl Scale {
         Ok(Self {
             range: options.range.or(extent.map(|extent| widened(extent, log))),
             legend: blank.into_iter().chain(few).chain(marks).collect(),
+            has_marks,
             log,
             whole,
             channel: channel.to_owned(),
