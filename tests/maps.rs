@@ -103,46 +103,7 @@ fn first_touch_and_the_tip_are_decided() {
     assert_eq!(row(&pointed, &pushes, 20.0).regime, [3, 3, 1, 3, 3]);
 }
 
-/// The load is 0 by definition: a logarithmic scale would show what rounding makes of it.
 #[test]
-fn first_touch_is_without_a_load_on_every_engine() {
-    let mut engines: Vec<Option<Gpu>> = vec![None];
-    engines.extend(gpus().into_iter().map(Some));
-    let cone = Scene::read("scenes/cone.toml").unwrap();
-    let scenes = [
-        cone.with("whisker.curvature.parabola_per_mm", 0.075),
-        cone.with("contact.friction", 0.3),
-        cone.with("whisker.tip_radius_um", 0.0),
-        Scene::read("scenes/euler_spiral.toml"),
-        Scene::read("scenes/measured.toml"),
-    ];
-    let pushes = [-1e-3, -0.0, 1e-3, 2.0, 5.0];
-    let distances = [4.0, 7.0, 11.0, 15.0];
-    for scene in scenes {
-        let scene = scene.unwrap().with("grid.push_angle_deg", pushes).unwrap();
-        let scene = scene.with("grid.distance_mm", distances).unwrap();
-        for engine in &mut engines {
-            let engine = engine.as_mut().map(|gpu| gpu as &mut dyn Engine);
-            let panel = compute(&scene, engine).1.remove(0);
-            for (name, values) in STATE_CHANNELS.iter().zip(&panel.state) {
-                let is_load = |kind: &&str| name.contains(*kind);
-                let is_load = ["force", "base_", "energy"].iter().any(is_load);
-                for row in values.chunks(pushes.len()) {
-                    if is_load {
-                        let are_none = row.iter().map(|value| value.to_bits() == 0);
-                        let only_touch = [false, true, false, false, false];
-                        assert!(are_none.eq(only_touch), "{}: {name} {row:?}", scene.title);
-                    } else {
-                        let middle = 0.5 * (row[0] + row[2]);
-                        let off = (row[1] - middle).abs() - (row[2] - row[0]).abs();
-                        assert!(off <= 1e-4, "{}: {name} {row:?}", scene.title);
-                    }
-                }
-            }
-            for row in 0..distances.len() {
-                let touch = row * pushes.len() + 1;
-                assert_eq!((panel.regime[touch], panel.residual[touch]), (1, 0.0));
-            }
-        }
-    }
+fn first_touch_is_without_a_load() {
+    compute::assert_no_load_at_touch(|scene| compute(scene, None).1.remove(0));
 }

@@ -42,8 +42,18 @@ impl Options {
     fn measurements(&self, files: &mut Files) -> Result<Measurements, Failure> {
         Ok(Measurements {
             fig4d: points(files, "--fig4d", self.fig4d.as_deref(), &FIG4_WHISKER)?,
-            fig5c_left: points(files, "--fig5c-left", self.fig5c_left.as_deref(), &FIG5_LEFT)?,
-            fig5c_right: points(files, "--fig5c-right", self.fig5c_right.as_deref(), &FIG5_RIGHT)?,
+            fig5c_left: points(
+                files,
+                "--fig5c-left",
+                self.fig5c_left.as_deref(),
+                &FIG5_LEFT,
+            )?,
+            fig5c_right: points(
+                files,
+                "--fig5c-right",
+                self.fig5c_right.as_deref(),
+                &FIG5_RIGHT,
+            )?,
         })
     }
 }

@@ -1,6 +1,8 @@
 //! Whole maps: every engine with the same answer.
 
-use crate::compute::{assert_close, assert_identical, compute, open, shipped, works};
+use crate::compute::{
+    assert_close, assert_identical, assert_no_load_at_touch, compute, open, shipped, works,
+};
 use whiskmap::integrate::gpu::Precision;
 use whiskmap::integrate::on_gpu;
 use whiskmap::map::EngineCells;
@@ -10,6 +12,7 @@ use whiskmap::scene::Scene;
 tests! {
     Precision:
         engines_agree_on_every_cell,
+        first_touch_is_without_a_load,
         what_an_engine_cannot_is_done_by_the_cpu;
 }
 
@@ -32,6 +35,11 @@ fn engines_agree_on_every_cell(precision: Precision) {
             assert_identical(&cpu, &panels);
         }
     }
+}
+
+fn first_touch_is_without_a_load(precision: Precision) {
+    let mut gpu = open(precision);
+    assert_no_load_at_touch(|scene| compute(scene, Some(&mut gpu)).1.remove(0));
 }
 
 /// What the shaders lack, the CPU does: every cell of the map.

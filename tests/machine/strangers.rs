@@ -4,6 +4,7 @@ use crate::program::{Place, Run, SCENE};
 use std::fs::{self, Permissions};
 use std::os::unix::fs::{MetadataExt, PermissionsExt, chown, lchown, symlink};
 use std::os::unix::process::CommandExt;
+use std::process::Command;
 
 tests! {
     Root: files_and_links_of_others, leftovers_of_others_stay;
