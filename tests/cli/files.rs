@@ -240,7 +240,7 @@ fn a_pipe_holds_no_radii() {
         .run(&["curve", "scene.toml"])
         .assert_refused(&["whisker.profile.rows = \"radii.csv\": must name a regular file"]);
 
-    // A store that names it opens it no more than its user does.
+    // A store whose scene was changed so that it names the pipe: no command opens it.
     place.write("scene.toml", crate::store::SWEEP);
     crate::store::good(&place, ".", &["--shard", "1/8"]);
     let root = String::from_utf8(place.bytes("scene.zarr/zarr.json")).unwrap();
@@ -250,7 +250,7 @@ fn a_pipe_holds_no_radii() {
     );
     assert_ne!(root, named);
     place.write("scene.zarr/zarr.json", &named);
-    let refused = "only a scene file may name a CSV file";
+    let refused = "is damaged: one of its attributes";
     for command in [
         &["status", "scene.zarr"][..],
         &["render", "scene.zarr", "--at=friction=0"],

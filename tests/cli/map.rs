@@ -148,8 +148,8 @@ fn a_map_without_any_answer_is_written_and_fails() {
 #[test]
 fn a_map_of_one_part_is_read_by_all() {
     use exr::prelude::{ReadChannels, ReadLayers, read};
-    for sweep in ["", "taper = [0, 0.5]\n"] {
-        let scene = SCENE.replace("tip_radius_um = 1.5\n", "") + sweep;
+    for sweep in ["", "pole_radius_mm = [0.1, 0.2]\n"] {
+        let scene = SCENE.to_owned() + sweep;
         let place = Place::with(&scene);
         place.map(&["scene.toml", "--channels", "regime"]);
         let path = place.path("outputs/scene.exr");

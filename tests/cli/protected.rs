@@ -64,7 +64,7 @@ fn no_output_is_an_input() {
     place.keeps(&[&fit[..], &["-o=pts.csv"]].concat(), &["--output", is]);
     place.keeps(&[&fit[..], &["--json=hard.csv"]].concat(), &["--json", is]);
     let figure = ["reproduce", ".", "--fig4d"];
-    fs::copy(place.path("pts.csv"), place.path("fig4d.csv")).unwrap();
+    place.write("fig4d.csv", "side,distance_mm,push_angle_deg\ncb,9,20\n");
     let parts = ["DIR ./fig4d.csv: is the input fig4d.csv"];
     place.keeps(&[&figure[..], &["fig4d.csv"]].concat(), &parts);
 }

@@ -26,9 +26,10 @@ const SHORTEST_ARC_STEP: f64 = 1e-9;
 /// A predictor bends where the direction has changed by less than this since the node before.
 const MOST_BEND: f64 = 0.25;
 
-/// The largest push angle of a node, in radians: sixteen turns. Push angles of maps are at most one turn; beyond a soft waist, a
-/// whisker can coil up for thirty turns, in thousands of nodes.
-pub const MOST_PUSH: f64 = 16.0 * TAU;
+/// The largest push angle of a node, in radians: nine turns. Push angles of maps are at most one turn, and the largest detachment
+/// that another program has confirmed is at 2924 degrees. Beyond a soft waist, a whisker can coil up for thirty turns, in
+/// thousands of nodes.
+pub const MOST_PUSH: f64 = 9.0 * TAU;
 
 /// Most nodes: no branch known has more than 300.
 const MOST_NODES: usize = 10_000;
