@@ -73,7 +73,7 @@ impl Run<'_> {
         let is_ours = |block: &usize| self.shard.is_none_or(|shard| shard.has(*block));
         let mut blocks: Vec<usize> = (0..store.block_count()).filter(is_ours).collect();
         if self.resume {
-            blocks = unfinished(&store, blocks);
+            blocks = unfinished(&store, blocks)?;
         }
         plan.parts = blocks.iter().map(|block| store.whiskers(*block)).collect();
         let panel = scene.grid.push_angle_deg.len() * scene.grid.distance_mm.len();
@@ -134,20 +134,28 @@ impl Run<'_> {
     }
 }
 
-/// The `blocks` that are missing or damaged, each damaged file with a warning.
-fn unfinished(store: &ZarrStore, blocks: Vec<usize>) -> Vec<usize> {
+/// The `blocks` that are missing or damaged, each damaged file with a warning. A file that cannot be read may be whole: it ends
+/// the run.
+fn unfinished(store: &ZarrStore, blocks: Vec<usize>) -> Result<Vec<usize>, Failure> {
     let states: Vec<BlockState> = blocks
         .par_iter()
         .map(|block| store.state(*block, CheckDepth::Checksums))
         .collect();
-    for state in &states {
-        if let BlockState::Damaged(faults) = state {
-            for fault in faults {
-                say(&format!("warning: {fault}: its block is computed again"));
+    let mut unfinished = Vec::new();
+    for (block, state) in blocks.into_iter().zip(states) {
+        match state {
+            BlockState::Done => continue,
+            BlockState::Missing => {}
+            BlockState::Damaged(faults) => {
+                for fault in faults {
+                    say(&format!("warning: {fault}: its block is computed again"));
+                }
+            }
+            BlockState::Unreadable(faults) => {
+                faults.into_iter().next().map_or(Ok(()), Err)?;
             }
         }
+        unfinished.push(block);
     }
-    let states = blocks.into_iter().zip(states);
-    let unfinished = states.filter(|(_, state)| !matches!(state, BlockState::Done));
-    unfinished.map(|(block, _)| block).collect()
+    Ok(unfinished)
 }

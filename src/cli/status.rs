@@ -72,7 +72,7 @@ impl Found {
                     *sum += cells;
                 }
             }
-            Err(BlockState::Damaged(faults)) => {
+            Err(BlockState::Damaged(faults) | BlockState::Unreadable(faults)) => {
                 self.damaged.push(block);
                 self.faults.extend(faults);
             }
@@ -153,12 +153,13 @@ fn report(store: &ZarrStore, found: &Found) -> Result<(), Failure> {
 /// Removes what is damaged, so that a run computes it again, and writes `metadata` files again.
 fn repair(store: &ZarrStore, found: &Found, metadata: usize) -> Result<(), Failure> {
     store.restore_metadata()?;
+    let mut removed = 0;
     for block in &found.damaged {
-        store.remove_block(*block)?;
+        removed += usize::from(store.remove_damaged(*block)?);
     }
     let mut out = std::io::stdout().lock();
     writeln!(out, "metadata written again: {metadata}")?;
-    writeln!(out, "blocks removed: {}", found.damaged.len())?;
+    writeln!(out, "blocks removed: {removed}")?;
     Ok(())
 }
 

@@ -28,7 +28,7 @@ pub enum Error {
     Exists(PathBuf),
     /// A store that was begun otherwise.
     #[error(
-        "{} was created with another {name}: {there} there, {here} here{reason}; use the settings with which it was created, or \
+        "{} differs in `{name}`: {there} there, {here} here{reason}; use the settings with which it was created, or \
          give another --output", path.display(), reason = reason(name)
     )]
     AtOdds {
@@ -51,7 +51,7 @@ pub enum Error {
     #[error("{folder} was moved, removed or replaced during the run", folder = .0.display())]
     Displaced(PathBuf),
     /// A store whose metadata only another version of the program can check: the version.
-    #[error("{folder} was written by whiskmap {1}, and only that version can check it", folder = .0.display())]
+    #[error("{folder} was written by whiskmap {1}, and only that version can check and read it", folder = .0.display())]
     OtherVersion(PathBuf, String),
     /// A folder of Zarr that this program did not write, and what is missing or different.
     #[error("{folder} is not a store of whiskmap: {1}", folder = .0.display())]
@@ -63,7 +63,7 @@ pub enum Error {
     #[error("cannot pack {file}: {1}", file = .0.display())]
     Pack(PathBuf, String),
     /// A folder, a pipe or a device.
-    #[error("{file} is no regular file; a map is one", file = .0.display())]
+    #[error("{file} is no regular file", file = .0.display())]
     NotAFile(PathBuf),
     /// The file does not start like an EXR file.
     #[error("{file} is not an EXR file", file = .0.display())]

@@ -42,6 +42,7 @@ pub use slice::{NoChoice, Slice};
 pub use stored::Stored;
 pub use table::Table;
 pub use tally::Counts;
+pub use target::check_links;
 pub use unfinished::abandon;
 #[cfg(feature = "zarr")]
 pub use unfinished_folder::UnfinishedFolder;

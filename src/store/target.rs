@@ -24,6 +24,7 @@ impl Target {
     ///
     /// A link must not be followed, or `path` leads to a folder, or to a file without write permission.
     pub(super) fn of(path: &Path) -> io::Result<Self> {
+        check_links(folder_of(path))?;
         let mut path = path.to_owned();
         for _ in 0..MOST_LINKS {
             if is_descriptor(&path) {
@@ -50,6 +51,16 @@ impl Target {
             Err(error) => Err(error),
         }
     }
+}
+
+/// Checks every symbolic link among the folders that `path` names.
+///
+/// # Errors
+///
+/// A link must not be followed: it belongs to another user, in a folder that others may write to.
+pub fn check_links(path: &Path) -> io::Result<()> {
+    let mut links = path.ancestors().filter(|folder| folder.is_symlink());
+    links.try_for_each(check_link)
 }
 
 fn refused(why: &str) -> io::Error {

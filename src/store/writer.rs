@@ -58,6 +58,13 @@ impl MapWriter {
         let mut attributes = attributes::encode(about);
         attributes.extend([attribute("counts", &" ".repeat(attributes::counts_width()))]);
         let headers = layout.headers(about.channels, &attributes);
+        if headers
+            .iter()
+            .any(|own| own.chunk_count > i32::MAX as usize)
+        {
+            let why = exr::error::Error::Invalid("it has more than 2^31 blocks".into());
+            return Err(Error::Encode(path.to_owned(), why));
+        }
 
         let preamble = header::encode(&headers).map_err(Error::at(path, Error::Encode))?;
         let mut position = preamble.len() as u64;

@@ -243,7 +243,7 @@ fn a_store_of_a_slice_has_the_values_of_the_whole() {
             "map.zarr",
         ];
         let run = place.run(&[&other, channel].concat());
-        run.assert_said(2, "map.zarr was created with another scene");
+        run.assert_said(2, "map.zarr differs in `scene`");
         run.assert_said(2, "push_angle_deg = -70\" there");
         fs::remove_dir_all(place.path("map.zarr")).unwrap();
     }

@@ -250,7 +250,7 @@ fn a_pipe_holds_no_radii() {
     );
     assert_ne!(root, named);
     place.write("scene.zarr/zarr.json", &named);
-    let refused = "is damaged: one of its attributes";
+    let refused = "is damaged: its `identity` does not fit";
     for command in [
         &["status", "scene.zarr"][..],
         &["render", "scene.zarr", "--at=friction=0"],

@@ -67,10 +67,15 @@ fn of_two_runs_that_create_a_store_differently_one_succeeds() {
     for number in 0..50 {
         let folder = format!("scenes-{number}");
         let runs = race(&place, &folder, [a, b], [exact; 2]);
-        assert_one_succeeds(&place, &folder, &runs, "another scene: `taper = [0, 0.");
+        assert_one_succeeds(
+            &place,
+            &folder,
+            &runs,
+            "differs in `scene`: `taper = [0, 0.",
+        );
         let folder = format!("tolerances-{number}");
         let runs = race(&place, &folder, [a; 2], [exact, "--tolerance=1e-3deg"]);
-        assert_one_succeeds(&place, &folder, &runs, "another tolerances: ");
+        assert_one_succeeds(&place, &folder, &runs, "differs in `tolerances`: ");
         let folder = format!("equal-{number}");
         let runs = race(&place, &folder, [a; 2], [exact; 2]);
         assert!(runs.iter().all(|run| run.code == Some(0)), "{runs:?}");
@@ -191,7 +196,7 @@ fn an_edited_scene_is_found_and_the_scene_of_the_run_written_again() {
     ] {
         place
             .run(arguments)
-            .assert_said(2, "zarr.json is damaged: one of its attributes");
+            .assert_said(2, "zarr.json is damaged: its `identity` does not fit");
     }
     let run = good(&place, "out", &["--resume"]);
     assert!(
@@ -271,7 +276,10 @@ fn a_failed_extract_leaves_no_store() {
     fs::create_dir(place.path("full.zarr")).unwrap();
     place.write("full.zarr/notes.txt", "of somebody");
     let run = place.run(&["extract", "out/scene.zarr", "-o", "full.zarr"]);
-    run.assert_said(1, "cannot write full.zarr: Directory not empty");
+    run.assert_said(
+        2,
+        "full.zarr: is there, and neither a store nor an empty folder",
+    );
     assert_eq!(crate::names(&place.path("full.zarr")), ["notes.txt"]);
 }
 
@@ -318,4 +326,90 @@ fn sizes_that_a_store_claims_are_not_allocated() {
     root.set_len(200 << 20).unwrap();
     let run = in_little_memory(&place, &["status", "huge.zarr"]);
     run.assert_said(2, "zarr.json is longer than 16 MiB");
+}
+
+/// Blocks of a store whose root was replaced by another one's: the root is wrong, so no block is removed or overwritten.
+#[test]
+fn blocks_under_a_wrong_root_stay() {
+    let place = Place::with(SMALL);
+    good(&place, "out", &[]);
+    place.write("scene.toml", &SMALL.replace("[0, 0.5]", "[0, 0.6]"));
+    good(&place, "other", &[]);
+    let root = "out/scene.zarr/zarr.json";
+    fs::copy(place.path("other/scene.zarr/zarr.json"), place.path(root)).unwrap();
+    let before = files(&place.path("out"));
+    let run = status(&place, "--repair");
+    run.assert_said(2, "scene.zarr has blocks of another scene, version");
+    assert!(files(&place.path("out")).keys().eq(before.keys()));
+    let run = map(&place, "out", &["--resume"]);
+    run.assert_said(2, "scene.zarr has blocks of another scene, version");
+    for (name, bytes) in files(&place.path("out")) {
+        let is_block = name
+            .file_name()
+            .unwrap()
+            .to_str()
+            .unwrap()
+            .starts_with("c.0.");
+        assert!(!is_block || bytes == before[&name], "{}", name.display());
+    }
+}
+
+#[test]
+fn a_folder_of_others_is_no_store() {
+    let place = Place::with(SMALL);
+    fs::create_dir_all(place.path("out/scene.zarr/taper")).unwrap();
+    place.write("out/scene.zarr/taper/zarr.json", "of somebody");
+    let run = map(&place, "out", &[]);
+    run.assert_said(
+        2,
+        "is not a store of whiskmap: it has files, but no zarr.json",
+    );
+    assert_eq!(
+        place.bytes("out/scene.zarr/taper/zarr.json"),
+        b"of somebody"
+    );
+    for root in ["[]", "1", "\"x\"", "null", "{}", "{\"attributes\": 1}"] {
+        place.write("out/scene.zarr/zarr.json", root);
+        status(&place, "--verify").assert_said(2, "it has no attributes");
+        map(&place, "out", &["--resume"]).assert_said(2, "it has no attributes");
+    }
+}
+
+/// A pipe without a writer would never open, and a circle of links may hide a whole file.
+#[test]
+fn what_is_no_file_is_neither_read_nor_removed() {
+    let place = Place::with(SMALL);
+    good(&place, "out", &[]);
+    let coordinate = place.path("out/scene.zarr/taper/c.0");
+    fs::remove_file(&coordinate).unwrap();
+    place.pipe("out/scene.zarr/taper/c.0");
+    for option in ["--verify", "--repair"] {
+        status(&place, option).assert_said(2, "taper/c.0 is no regular file");
+    }
+    map(&place, "out", &["--resume"]).assert_said(2, "taper/c.0 is no regular file");
+    fs::remove_file(&coordinate).unwrap();
+    good(&place, "out", &["--resume"]);
+
+    let chunk = place.path("out/scene.zarr/force_un/c.0.0.0");
+    fs::remove_file(&chunk).unwrap();
+    std::os::unix::fs::symlink("c.0.0.0", &chunk).unwrap();
+    let before = crate::names(&place.path("out/scene.zarr/force_un"));
+    let run = status(&place, "--repair");
+    run.assert_said(1, "cannot read out/scene.zarr/force_un/c.0.0.0: ");
+    assert!(run.out.contains("blocks removed: 0"), "{run:?}");
+    assert_eq!(crate::names(&place.path("out/scene.zarr/force_un")), before);
+    let run = map(&place, "out", &["--resume"]);
+    run.assert_said(2, "cannot read out/scene.zarr/force_un/c.0.0.0: ");
+}
+
+#[test]
+fn scenes_that_differ_in_line_endings_are_told_apart() {
+    let place = Place::with(SMALL);
+    good(&place, "out", &[]);
+    place.write("scene.toml", &SMALL.replace('\n', "\r\n"));
+    let run = map(&place, "out", &["--resume"]);
+    run.assert_said(
+        2,
+        "differs in `scene`: line endings there, other line endings here",
+    );
 }

@@ -231,15 +231,13 @@ fn a_store_is_not_continued_otherwise_than_it_was_begun() {
     let place = Place::with(SWEEP);
     good(&place, ".", &["--shard=0/8"]);
     map(&place, ".", &[]).assert_refused(&["scene.zarr is there already", "--resume"]);
-    map(&place, ".", &["--resume", "--channels=force_un"]).assert_refused(&[
-        "was created with another channels: ",
-        "regime, status, force_un here",
-    ]);
+    map(&place, ".", &["--resume", "--channels=force_un"])
+        .assert_refused(&["differs in `channels`: ", "regime, status, force_un here"]);
     map(&place, ".", &["--resume", "--tolerance=1e-3deg"])
-        .assert_said(2, "was created with another tolerances");
+        .assert_said(2, "differs in `tolerances`");
     place.write("scene.toml", &SWEEP.replace("[0, 0.5, 1]", "[0, 0.6, 1]"));
     map(&place, ".", &["--shard=1/8"]).assert_refused(&[
-        "was created with another scene: ",
+        "differs in `scene`: ",
         "`taper = [0, 0.5, 1]` in line 9 there, `taper = [0, 0.6, 1]` in line 9 here",
     ]);
     place

@@ -121,6 +121,16 @@ fn store(
     let chosen = Channels::those(|name| channels.contains(&name));
     let about = origin.describe(&scene, chosen.with("regime"));
     files.store("--output", path)?;
+    let is_free = match path.read_dir() {
+        Ok(mut entries) => entries.next().is_none(),
+        Err(_) => !path.exists() && !path.is_symlink(),
+    };
+    if !ZarrStore::is_at(path) && !is_free {
+        return refuse(
+            path,
+            "is there, and neither a store nor an empty folder; name another",
+        );
+    }
     // A new store appears when it is complete; one that is there is written again, block by block.
     let folder = (!ZarrStore::is_at(path)).then(|| UnfinishedFolder::create(path));
     let folder = folder.transpose().map_err(|cause| unwritten(path, cause))?;

@@ -2,6 +2,7 @@
 
 use super::ZarrStore;
 use super::array::Array;
+use super::identity::FileIdentity;
 use super::kind::NOT_COMPUTED;
 use super::metadata::CELLS;
 use super::read::open_regular;
@@ -9,7 +10,7 @@ use crate::classify::Regime;
 use crate::store::Error;
 use rayon::prelude::*;
 use std::fs;
-use std::io;
+use std::io::{self, Read};
 use std::path::Path;
 
 /// How much of a block's files is checked.
@@ -30,6 +31,8 @@ pub enum BlockState {
     Missing,
     /// All files are there, and these are damaged.
     Damaged(Vec<Error>),
+    /// The file system refused to read these files: they may be whole.
+    Unreadable(Vec<Error>),
     /// All files are there, without a fault as far as they were checked.
     Done,
 }
@@ -39,9 +42,13 @@ impl ZarrStore {
     #[must_use]
     pub fn state(&self, block: usize, depth: CheckDepth) -> BlockState {
         // The last file to be written is the first to be looked for.
-        let is_there = |array: &Array| self.file(array, block).exists();
-        if !self.arrays.iter().rev().all(is_there) {
-            return BlockState::Missing;
+        for array in self.arrays.iter().rev() {
+            let file = self.file(array, block);
+            match file.try_exists() {
+                Ok(true) => {}
+                Ok(false) => return BlockState::Missing,
+                Err(why) => return BlockState::Unreadable(vec![Error::Read(file, why)]),
+            }
         }
         let faults = self.arrays.par_iter();
         let faults = faults.filter_map(|array| self.check(array, block, depth).err());
@@ -51,6 +58,8 @@ impl ZarrStore {
         }
         if faults.is_empty() {
             BlockState::Done
+        } else if faults.iter().any(|fault| matches!(fault, Error::Read(..))) {
+            BlockState::Unreadable(faults)
         } else {
             BlockState::Damaged(faults)
         }
@@ -117,28 +126,26 @@ impl ZarrStore {
             return Err(Error::OtherVersion(self.path.clone(), version.to_string()));
         }
         let files = self.metadata_files()?;
-        let faults = files
-            .iter()
-            .filter_map(|(path, bytes)| match fs::read(path) {
-                Ok(found) if found == *bytes => None,
-                Ok(_) => {
-                    let why = "it is not as the scene demands";
-                    Some(Error::Damaged(path.clone(), why.to_owned()))
-                }
-                Err(why) if why.kind() == io::ErrorKind::NotFound => {
-                    Some(Error::Damaged(path.clone(), "it is missing".to_owned()))
-                }
-                Err(why) => Some(Error::Read(path.clone(), why)),
-            });
+        let faults = files.iter();
+        let faults = faults.filter_map(|(path, bytes)| metadata_fault(path, bytes));
         Ok(faults.collect())
     }
 
-    /// Removes the files of a block, so that the next run with `--resume` computes it again.
+    /// Removes the files of a block if it is still damaged, so that the next run with `--resume` computes it again. Returns
+    /// true if it was.
     ///
     /// # Errors
     ///
-    /// A file cannot be removed.
-    pub fn remove_block(&self, block: usize) -> Result<(), Error> {
+    /// A file cannot be removed, or all blocks are of another store: then the root is wrong, not the blocks.
+    pub fn remove_damaged(&self, block: usize) -> Result<bool, Error> {
+        if self.owner() == Owner::Other {
+            return Err(Error::OtherBlocks(self.path.clone()));
+        }
+        // A run may have computed it again meanwhile.
+        let state = self.state(block, CheckDepth::Values);
+        if !matches!(state, BlockState::Damaged(_)) {
+            return Ok(false);
+        }
         // Without the last file the block is not there, whatever becomes of the others.
         for array in self.arrays.iter().rev() {
             let file = self.file(array, block);
@@ -149,25 +156,34 @@ impl ZarrStore {
                 _ => {}
             }
         }
-        Ok(())
+        Ok(true)
     }
 
-    /// The owner of the blocks in the folder, by the identities of their files.
+    /// The owner of the blocks in the folder, by the first bytes of their files.
     pub(super) fn owner(&self) -> Owner {
         let mut owner = Owner::Nobody;
         for array in &self.arrays {
             let folder = self.path.join(&array.name);
             for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
-                if entry.file_name().to_string_lossy().starts_with("c.") {
-                    if self.check_structure(array, &entry.path()).is_ok() {
-                        return Owner::This;
-                    }
-                    owner = Owner::Other;
+                let is_block = entry.file_name().to_string_lossy().starts_with("c.");
+                let Some(identity) = is_block.then(|| identity_in(&entry.path())).flatten() else {
+                    continue;
+                };
+                if identity == self.expected(array, &entry.path()).identity {
+                    return Owner::This;
                 }
+                owner = Owner::Other;
             }
         }
         owner
     }
+}
+
+/// The first bytes of a block's file, if it has so many.
+fn identity_in(file: &Path) -> Option<FileIdentity> {
+    let mut identity = FileIdentity::default();
+    let read = open_regular(file).ok()?.read_exact(&mut identity);
+    read.ok().map(|()| identity)
 }
 
 /// Whose blocks are in a folder.
@@ -179,4 +195,24 @@ pub(super) enum Owner {
     This,
     /// There are blocks, and none is of this store.
     Other,
+}
+
+/// The fault of a file of metadata that must have these `bytes`. A longer file is not read to its end.
+pub(super) fn metadata_fault(path: &Path, bytes: &[u8]) -> Option<Error> {
+    let mut found = Vec::new();
+    let read = open_regular(path).and_then(|file| {
+        let read = file.take(bytes.len() as u64 + 1).read_to_end(&mut found);
+        read.map_err(Error::at(path, Error::Read))
+    });
+    match read {
+        Ok(_) if found == bytes => None,
+        Ok(_) => {
+            let why = "it is not as the scene demands";
+            Some(Error::Damaged(path.to_owned(), why.to_owned()))
+        }
+        Err(Error::NotComputed(_)) => {
+            Some(Error::Damaged(path.to_owned(), "it is missing".to_owned()))
+        }
+        Err(why) => Some(why),
+    }
 }

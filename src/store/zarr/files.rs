@@ -1,11 +1,11 @@
 //! The files of a store other than its blocks: metadata and coordinates, all of which follow from the scene.
 
 use super::array::Array;
-use super::check::Owner;
+use super::check::{Owner, metadata_fault};
 use super::metadata::{self, AGREED, IDENTITY};
 use super::read::open_regular;
 use super::{METADATA, ZarrStore};
-use crate::store::{Error, Output};
+use crate::store::{Error, Output, check_links};
 use serde_json::{Map, Value};
 use std::fs;
 use std::io::{self, Read, Write};
@@ -24,7 +24,8 @@ impl ZarrStore {
     ///
     /// The store that is there was created with other settings, or must not be there, or one of its folders cannot be written.
     pub fn begin(&self) -> Result<Vec<PathBuf>, Error> {
-        fs::create_dir_all(&self.path).map_err(Error::at(&self.path, Error::Write))?;
+        let made = check_links(&self.path).and_then(|()| fs::create_dir_all(&self.path));
+        made.map_err(Error::at(&self.path, Error::Write))?;
         let root = self.path.join(METADATA);
         let created = finish(&root, &[self.root()?], Output::finish_new);
         match created {
@@ -33,7 +34,8 @@ impl ZarrStore {
         }
         for array in &self.arrays {
             let folder = self.path.join(&array.name);
-            fs::create_dir_all(&folder).map_err(Error::at(&folder, Error::Write))?;
+            let made = check_links(&folder).and_then(|()| fs::create_dir_all(&folder));
+            made.map_err(Error::at(&folder, Error::Write))?;
         }
         let restored = self.restore_metadata()?;
         let folders = self.arrays.iter().map(|array| self.path.join(&array.name));
@@ -49,19 +51,20 @@ impl ZarrStore {
     ///
     /// A file cannot be read or written.
     pub fn restore_metadata(&self) -> Result<Vec<PathBuf>, Error> {
-        let mut damaged = Vec::new();
+        let (mut damaged, mut failures) = (Vec::new(), Vec::new());
         for (path, bytes) in self.metadata_files()? {
-            match fs::read(&path) {
-                Ok(found) if found == bytes => continue,
-                Ok(_) => damaged.push(path.clone()),
-                Err(why) if why.kind() == io::ErrorKind::NotFound => {}
-                Err(why) => return Err(Error::Read(path, why)),
+            let restored = match metadata_fault(&path, &bytes) {
+                None => continue,
+                Some(Error::Damaged(..)) => restore(&path, &bytes),
+                Some(why) => Err(why),
+            };
+            match restored {
+                Ok(true) => damaged.push(path),
+                Ok(false) => {}
+                Err(why) => failures.push(why),
             }
-            let folder = path.parent().map_or(Ok(()), fs::create_dir_all);
-            folder.map_err(Error::at(&path, Error::Write))?;
-            write(&path, &[bytes])?;
         }
-        Ok(damaged)
+        failures.into_iter().next().map_or(Ok(damaged), Err)
     }
 
     /// Every file of metadata and coordinates, with the bytes that it must have; the root's is the last.
@@ -99,10 +102,20 @@ impl ZarrStore {
     pub(super) fn agree(&self) -> Result<(), Error> {
         match Self::open(&self.path) {
             Ok(_) if !self.may_exist => Err(Error::Exists(self.path.clone())),
-            Ok(there) => self.agree_with(&there),
+            Ok(there) => {
+                self.agree_with(&there)?;
+                match self.owner() {
+                    Owner::Other => Err(Error::OtherBlocks(self.path.clone())),
+                    Owner::Nobody | Owner::This => Ok(()),
+                }
+            }
             Err(Error::Read(_, why)) if why.kind() == io::ErrorKind::NotFound => match self.owner()
             {
                 Owner::Other => Err(Error::OtherBlocks(self.path.clone())),
+                Owner::Nobody if !is_empty(&self.path) => {
+                    let why = format!("it has files, but no {METADATA}");
+                    Err(Error::NotAStore(self.path.clone(), why))
+                }
                 Owner::Nobody | Owner::This => Ok(()),
             },
             Err(Error::NotAStore(..) | Error::Damaged(..))
@@ -164,10 +177,26 @@ pub(super) fn attributes(path: &Path) -> Result<Map<String, Value>, Error> {
     }
     let root = serde_json::from_slice(&text);
     let mut root: Value = root.map_err(|why| foreign(&format!("{METADATA}: {why}")))?;
-    match root["attributes"].take() {
-        Value::Object(attributes) => Ok(attributes),
+    match root.get_mut("attributes").map(Value::take) {
+        Some(Value::Object(attributes)) => Ok(attributes),
         _ => Err(foreign(&"it has no attributes")),
     }
+}
+
+/// Whether a folder is missing, or has no files but temporary ones.
+fn is_empty(folder: &Path) -> bool {
+    let names = fs::read_dir(folder).into_iter().flatten().flatten();
+    let mut names = names.map(|entry| entry.file_name());
+    names.all(|name| name.to_string_lossy().starts_with(".whiskmap-"))
+}
+
+/// Writes a file of metadata again. Returns true if it was there.
+fn restore(path: &Path, bytes: &[u8]) -> Result<bool, Error> {
+    let was_there = path.exists();
+    let folder = path.parent().map_or(Ok(()), fs::create_dir_all);
+    folder.map_err(Error::at(path, Error::Write))?;
+    write(path, &[bytes])?;
+    Ok(was_there)
 }
 
 fn json(value: &Value) -> Vec<u8> {
@@ -187,6 +216,9 @@ fn finish(
     finish: fn(Output) -> io::Result<()>,
 ) -> io::Result<()> {
     let mut output = Output::create(path)?;
+    if !output.is_regular() {
+        return Err(io::Error::other("it is no regular file"));
+    }
     let mut pieces = pieces.iter();
     pieces.try_for_each(|piece| output.write_all(piece.as_ref()))?;
     finish(output)
@@ -199,7 +231,10 @@ fn first_difference(one: &str, other: &str) -> [String; 2] {
     loop {
         number += 1;
         let [one, other] = lines.each_mut().map(Iterator::next);
-        if one != other || one.is_none() {
+        if one.is_none() && other.is_none() {
+            return ["line endings", "other line endings"].map(str::to_owned);
+        }
+        if one != other {
             let shown = |line: Option<&str>| match (line, number) {
                 (None, _) => "nothing more".to_owned(),
                 (Some(line), 1) => line.to_owned(),

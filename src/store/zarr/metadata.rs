@@ -186,9 +186,7 @@ pub(super) const AGREED: [&str; 6] = [
 
 /// The attributes of a store, which are the same on every machine of its arithmetic.
 pub(super) fn attributes(about: &Description<'_>, scene: &Setup) -> Map<String, Value> {
-    let attributes = [
-        ("Conventions", json!("CF-1.11")),
-        ("title", json!(scene.title)),
+    let agreed = [
         ("whiskmap_version", json!(env!("CARGO_PKG_VERSION"))),
         ("engine", json!(about.engine.engine)),
         ("arithmetic", json!(about.arithmetic)),
@@ -196,9 +194,20 @@ pub(super) fn attributes(about: &Description<'_>, scene: &Setup) -> Map<String, 
         ("channels", json!(about.channels.to_string())),
         ("scene", json!(scene.text)),
     ];
-    let attributes = attributes.map(|(name, value)| (name.to_owned(), value));
-    let mut attributes = Map::from_iter(attributes);
+    let agreed = agreed.map(|(name, value)| (name.to_owned(), value));
+    completed(&Map::from_iter(agreed), &scene.title)
+}
+
+/// The attributes of a store with this `title`, which `found` has as far as they are [`AGREED`] on.
+pub(super) fn completed(found: &Map<String, Value>, title: &str) -> Map<String, Value> {
+    let agreed = AGREED.iter().filter_map(|name| {
+        let value = found.get(*name)?;
+        Some(((*name).to_owned(), value.clone()))
+    });
+    let mut attributes: Map<String, Value> = agreed.collect();
     let identity = Identity::of(&attributes).text();
+    attributes.insert("Conventions".to_owned(), json!("CF-1.11"));
+    attributes.insert("title".to_owned(), json!(title));
     attributes.insert(IDENTITY.to_owned(), json!(identity));
     attributes
 }

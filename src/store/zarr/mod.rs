@@ -25,6 +25,7 @@ pub use self::pack::PackedPanel;
 use self::array::Array;
 use self::blocks::Blocks;
 use self::identity::Identity;
+use super::stored::is_compatible;
 use super::{Channels, Description, Error};
 use crate::scene::{Grid, Scene};
 use serde_json::{Map, Value};
@@ -91,15 +92,22 @@ impl ZarrStore {
             let value = attributes.get(name).and_then(Value::as_str);
             value.ok_or_else(|| foreign(&format!("there is no text attribute `{name}`")))
         };
+        let version = text("whiskmap_version")?;
+        if !is_compatible(version) {
+            return Err(Error::OtherVersion(path.to_owned(), version.to_owned()));
+        }
         if text(metadata::IDENTITY)? != Identity::of(&attributes).text() {
             let names = metadata::AGREED.join(", ");
-            let why = format!("one of its attributes {names} is not that of the `identity`");
+            let why = format!(
+                "its `identity` does not fit its attributes {names}: one of them was changed"
+            );
             return Err(Error::Damaged(path.join(METADATA), why));
         }
         let scene = Scene::parse(text("scene")?, "its scene").map_err(|why| foreign(&why))?;
         let channels = text("channels")?
             .parse()
             .map_err(|why: String| foreign(&why))?;
+        let attributes = metadata::completed(&attributes, &scene.title);
         Self::new(path, attributes, scene, channels)
     }
 

@@ -4,11 +4,11 @@ use super::ZarrStore;
 use super::array::Array;
 use super::kind::Kind;
 use super::metadata::CELLS;
-use super::shard::{self, Expected};
+use super::shard::Expected;
 use crate::classify::Regime;
 use crate::store::{Error, Samples};
 use std::fs::{self, File};
-use std::io::{self, Read, Seek};
+use std::io::{self, Cursor, Read};
 use std::path::Path;
 
 impl ZarrStore {
@@ -71,19 +71,14 @@ impl ZarrStore {
     /// A block's file whose structure and checksums have no fault.
     pub(super) fn read_file(&self, array: &Array, block: usize) -> Result<Vec<u8>, Error> {
         let path = self.file(array, block);
-        let mut file = open_regular(&path)?;
+        let file = open_regular(&path)?;
         let expected = self.expected(array, &path);
         let mut bytes = Vec::new();
-        let mut fault = || -> shard::Fault {
-            if let Some(why) = expected.structure_fault(&mut file)? {
-                return Ok(Some(why));
-            }
-            file.rewind()?;
-            file.read_to_end(&mut bytes)?;
-            // Whoever replaces the file meanwhile replaces it as a whole: this one stays as it was.
-            Ok(expected.chunk_fault(&bytes))
-        };
-        match fault().map_err(Error::at(&path, Error::Read))? {
+        let read = file.take(expected.most_bytes() + 1).read_to_end(&mut bytes);
+        read.map_err(Error::at(&path, Error::Read))?;
+        let fault = expected.structure_fault(&mut Cursor::new(&bytes));
+        let fault = fault.map_err(Error::at(&path, Error::Read))?;
+        match fault.or_else(|| expected.chunk_fault(&bytes)) {
             Some(why) => Err(Error::Damaged(path, why)),
             None => Ok(bytes),
         }

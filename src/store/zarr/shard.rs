@@ -53,21 +53,30 @@ pub(super) struct Expected {
 }
 
 /// The fault of a file, or a failure to read it.
-pub(super) type Fault = io::Result<Option<String>>;
+type Fault = io::Result<Option<String>>;
 
 impl Expected {
+    /// The most bytes that the file can have.
+    pub(super) fn most_bytes(&self) -> u64 {
+        let chunks = self.chunks as u64 * (self.chunk_bytes as u64 + OVERHEAD);
+        HEAD + chunks + self.index_bytes() as u64
+    }
+
+    fn index_bytes(&self) -> usize {
+        self.chunks * ENTRY + CHECKSUM
+    }
+
     /// Compares identity, length and index of a file with what they must be. Chunks are not read.
     pub(super) fn structure_fault(&self, file: &mut (impl Read + Seek)) -> Fault {
         let length = file.seek(SeekFrom::End(0))?;
-        let index_bytes = self.chunks * ENTRY + CHECKSUM;
+        let index_bytes = self.index_bytes();
         let Some(end) = length
             .checked_sub(index_bytes as u64)
             .filter(|end| *end >= HEAD)
         else {
             return Ok(Some(format!("its {length} bytes are too few")));
         };
-        let most = self.chunk_bytes as u64 + OVERHEAD;
-        if end - HEAD > most * self.chunks as u64 {
+        if length > self.most_bytes() {
             return Ok(Some(format!("its {length} bytes are too many")));
         }
         let mut identity = FileIdentity::default();
@@ -103,7 +112,7 @@ impl Expected {
 
     /// Compares the chunks of a whole file, whose structure has no fault, with their checksums.
     pub(super) fn chunk_fault(&self, file: &[u8]) -> Option<String> {
-        let index = &file[file.len() - CHECKSUM - self.chunks * ENTRY..];
+        let index = &file[file.len() - self.index_bytes()..];
         let (entries, _) = index.as_chunks::<ENTRY>();
         let is_damaged = |entry: &[u8; ENTRY]| {
             let (begin, size) = entry.split_at(ENTRY / 2);
