@@ -72,6 +72,9 @@ pub struct Options {
 /// Runs `curve`.
 pub fn run(options: &Options) -> Result<(), Failure> {
     let mut files = Files::default();
+    if let Some(data) = &options.data {
+        data::check_stdin(&options.scene, data)?;
+    }
     let scene = files.scene(&options.scene)?;
     let whiskers = scene.whisker_count();
     if options.outputs.has_plot() && whiskers > 1 {

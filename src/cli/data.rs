@@ -1,10 +1,19 @@
 //! `--data`: measured detachments, and what is said of them.
 
 use super::failure::{Failure, say};
-use super::files::Files;
+use super::files::{Files, STDOUT};
 use std::path::Path;
 use whiskmap::measured::{Comparison, Points};
 use whiskmap::scene::digits;
+
+/// Refuses to read both the scene and the points from standard input.
+pub fn check_stdin(scene: &Path, data: &Path) -> Result<(), Failure> {
+    if [scene, data] == [Path::new(STDOUT); 2] {
+        let what = "--data -: standard input is the scene, and can be read once; name a file";
+        return Err(Failure::Input(what.to_owned()));
+    }
+    Ok(())
+}
 
 /// Reads the points of `path`, an input; columns that are not used, and points whose angle has the sign of the other side, are
 /// named on standard error.

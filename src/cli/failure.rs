@@ -89,15 +89,21 @@ impl Failure {
         if is_input { 2 } else { 1 }
     }
 
+    /// Whether the reader of an output has closed it.
+    pub fn is_broken_pipe(&self) -> bool {
+        match self {
+            Self::Output(error) | Self::Write { cause: error, .. } => {
+                error.kind() == io::ErrorKind::BrokenPipe
+            }
+            _ => false,
+        }
+    }
+
     /// Prints the message and gives the exit code.
     pub fn report(&self) -> ExitCode {
         match self {
             // A reader that has seen enough, like `head`, is no failure of ours.
-            Self::Output(error) | Self::Write { cause: error, .. }
-                if error.kind() == io::ErrorKind::BrokenPipe =>
-            {
-                return ExitCode::SUCCESS;
-            }
+            _ if self.is_broken_pipe() => return ExitCode::SUCCESS,
             Self::Scene(error) => say(&error.render(color())),
             _ => say(&format!("error: {self}")),
         }

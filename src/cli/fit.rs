@@ -12,6 +12,7 @@ use std::path::{Path, PathBuf};
 use whiskmap::fit::{Error, Estimate, Fit, fit};
 use whiskmap::measured::Points;
 use whiskmap::scene::{Parameter, digits};
+use whiskmap::store::Output;
 
 /// Options of `fit`.
 #[derive(Debug, Args)]
@@ -28,7 +29,8 @@ Parameters that the points do not determine are named; youngs_modulus_gpa is alw
 depends on it. Neither these nor parameters at a limit of the scene have a standard error.
 
 The values are not a fit, the exit code is 1 and -o writes nothing where the RMS is more than 5 degrees, or than a third of \
-the range of the measured angles and 0; with sd_deg, only if chi-square is too large for these deviations, too.")]
+the range of the measured angles and 0; with sd_deg, only if chi-square is too large for these deviations, too. A reduced \
+chi-square above 400 is never a fit.")]
 pub struct Options {
     /// Scene file; - reads it from standard input
     scene: PathBuf,
@@ -49,6 +51,7 @@ pub struct Options {
 /// Runs `fit`.
 pub fn run(options: &Options) -> Result<(), Failure> {
     let mut files = Files::default();
+    data::check_stdin(&options.scene, &options.data)?;
     let scene = files.scene(&options.scene)?;
     check_single(&scene, "fit")?;
     let points = data::read(&mut files, &options.data)?;
@@ -66,32 +69,46 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     })?;
     data::name_left_out(&points, &found.comparison);
     warn(&points, &found);
-    let unwritten = options
-        .output
-        .as_ref()
-        .filter(|_| found.not_a_fit.is_some());
-    let written = [
-        toml.filter(|_| unwritten.is_none())
-            .map(|place| (place, found.scene.text.clone())),
-        json.map(|place| (place, format!("{:#}\n", document(&found)))),
-    ];
-    let mut outputs = [&options.output, &options.json].into_iter().flatten();
-    let is_streamed = outputs.any(|path| path == Path::new(STDOUT));
-    if !is_streamed {
-        table(&scene.title, &found)?;
+    let toml = toml.filter(|_| found.not_a_fit.is_none());
+    let json = json.map(|place| (place, format!("{:#}\n", document(&found))));
+    let toml = toml.map(|place| (place, found.scene.text.clone()));
+    let printed = print(
+        &scene.title,
+        &found,
+        [toml, json].into_iter().flatten().collect(),
+    );
+    match found.not_a_fit {
+        Some(why) if printed.as_ref().err().is_none_or(Failure::is_broken_pipe) => {
+            let unwritten = options.output.as_deref().map(|path| match path {
+                path if path == Path::new(STDOUT) => {
+                    "; no scene is written to standard output".to_owned()
+                }
+                path => format!("; {} is not written", path.display()),
+            });
+            Err(Failure::NotAFit(why, unwritten.unwrap_or_default()))
+        }
+        _ => printed,
     }
-    for ((output, path), text) in written.into_iter().flatten() {
+}
+
+/// An output, its path and its text.
+type Written<'a> = ((Output, &'a Path), String);
+
+/// Writes the outputs. The table and their names go to standard output unless one of them does.
+fn print(title: &str, fit: &Fit, outputs: Vec<Written>) -> Result<(), Failure> {
+    let mut paths = outputs.iter().map(|((_, path), _)| *path);
+    let is_streamed = paths.any(|path| path == Path::new(STDOUT));
+    if !is_streamed {
+        table(title, fit)?;
+    }
+    for ((output, path), text) in outputs {
         let is_regular = output.is_regular();
         write(output, path, &text)?;
         if is_regular && !is_streamed {
             writeln!(io::stdout(), "{}", path.display())?;
         }
     }
-    let unwritten = unwritten.map(|path| format!("; {} is not written", path.display()));
-    match found.not_a_fit {
-        Some(why) => Err(Failure::NotAFit(why, unwritten.unwrap_or_default())),
-        None => Ok(()),
-    }
+    Ok(())
 }
 
 /// Names parameters at a limit and those that the points do not determine, and standard deviations that are too small.

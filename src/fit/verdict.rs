@@ -8,12 +8,15 @@ use std::fmt;
 /// ends of a push go from a few degrees to 90.
 const LARGEST_RMS_DEG: f64 = 5.0;
 
-/// The same as a part of the range of the measured angles. The range includes 0, the angle at first touch: repeated
+/// Largest RMS as a fraction of the range of the measured angles, 0 included, which is the angle at first touch: repeated
 /// measurements at one distance differ by their errors alone.
 const LARGEST_PART: f64 = 1.0 / 3.0;
 
 /// How far the reduced chi-square of right deviations may be above 1, in its own standard deviations `sqrt(2 / freedom)`.
 const DEVIATIONS: f64 = 5.0;
+
+/// Largest reduced chi-square of a fit: residuals are 20 times their standard deviations.
+const LARGEST_REDUCED: f64 = 400.0;
 
 /// Angles in radians are all below one turn, 2 pi.
 const TURN: f64 = 6.3;
@@ -26,7 +29,7 @@ const TENS_DEG: f64 = 10.0;
 pub struct NotAFit {
     /// Root mean square of the residuals.
     pub rms_deg: f64,
-    /// The largest one of a fit: 5 degrees, or a third of the range of the measured angles and 0.
+    /// Largest RMS of a fit, in degrees: 5, or a third of the range of the measured angles and 0.
     pub largest_rms_deg: f64,
     /// Chi-square over its degrees of freedom, where points have standard deviations.
     pub reduced_chi_square: Option<f64>,
@@ -41,13 +44,15 @@ pub enum LikelyCause {
     Radians,
     /// Ten times the distances are within reach, and halve the RMS at the start at least.
     Centimetres,
+    /// Standard deviations in degrees would explain the residuals, and all given ones are below 6.3 degrees in radians.
+    RadianDeviations,
 }
 
 impl NotAFit {
     /// The verdict on the `end` of a fit of the `used` points, from `start` on; `None` for a fit.
     ///
-    /// The RMS must be too large for the theory. Where points have standard deviations, chi-square must be too large for
-    /// these, too: points of low precision may be far off.
+    /// Without standard deviations, a fit has a small RMS. With them, points of low precision may be far off: a fit has a
+    /// small RMS or a chi-square that the deviations explain, and its reduced chi-square is at most 400.
     pub(super) fn new(
         used: &Points,
         start: &Scene,
@@ -61,14 +66,23 @@ impl NotAFit {
         });
         let largest_rms_deg = LARGEST_RMS_DEG.min(LARGEST_PART * (most - least));
         let rms_deg = end.rms_deg()?;
-        let is_explained = used.have_deviations && is_explained(chi_square, freedom);
-        let is_fit = rms_deg <= largest_rms_deg || is_explained;
-        let reduced = || chi_square / freedom.max(1) as f64;
+        let is_near = rms_deg <= largest_rms_deg;
+        let reduced = chi_square / freedom.max(1) as f64;
+        let reduced = used.have_deviations.then_some(reduced);
+        let is_fit = match reduced {
+            Some(reduced) => {
+                reduced <= LARGEST_REDUCED && (is_near || is_explained(chi_square, freedom))
+            }
+            None => is_near,
+        };
         (!is_fit).then(|| Self {
             rms_deg,
             largest_rms_deg,
-            reduced_chi_square: used.have_deviations.then(reduced),
-            cause: LikelyCause::of(used, start),
+            reduced_chi_square: reduced,
+            cause: match reduced {
+                Some(reduced) if is_near => LikelyCause::of_deviations(used, reduced),
+                _ => LikelyCause::of(used, start),
+            },
         })
     }
 }
@@ -102,18 +116,28 @@ impl LikelyCause {
         let rms_deg = farther.beside(&whisker, &pole).rms_deg()?;
         (rms_deg < own.rms_deg()? / 2.0).then_some(Self::Centimetres)
     }
+
+    /// The mistake that the standard deviations of `points` show beside this reduced chi-square. In radians they are
+    /// `180 / pi` times too small, which residuals show within a factor of 2.
+    fn of_deviations(points: &Points, reduced: f64) -> Option<Self> {
+        let turn = 1.0_f64.to_degrees();
+        let is_turned = (turn / 2.0..=2.0 * turn).contains(&reduced.sqrt());
+        let mut points = points.points.iter();
+        let is_small = points.all(|point| point.sd_deg < TURN / turn);
+        (is_turned && is_small).then_some(Self::RadianDeviations)
+    }
 }
 
 impl fmt::Display for NotAFit {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [rms, largest] = [self.rms_deg, self.largest_rms_deg].map(rounded);
-        write!(f, "not a fit: RMS {rms} deg, must be at most {largest} deg")?;
+        write!(f, "not a fit: RMS {rms} deg")?;
+        if self.rms_deg > self.largest_rms_deg {
+            write!(f, ", must be at most {largest} deg")?;
+        }
         if let Some(reduced) = self.reduced_chi_square {
-            write!(
-                f,
-                "; reduced chi-square {}, must be about 1",
-                rounded(reduced)
-            )?;
+            let reduced = rounded(reduced);
+            write!(f, "; reduced chi-square {reduced}, must be about 1")?;
         }
         match self.cause {
             Some(LikelyCause::Radians) => {
@@ -121,6 +145,9 @@ impl fmt::Display for NotAFit {
             }
             Some(LikelyCause::Centimetres) => {
                 f.write_str("; ten times the distances fit better: are they in cm?")
+            }
+            Some(LikelyCause::RadianDeviations) => {
+                f.write_str("; residuals are tens of times as large as sd_deg: are the deviations in radians?")
             }
             None => Ok(()),
         }

@@ -13,7 +13,7 @@ use crate::trace::DetachmentKind;
 pub struct Points {
     /// The name of their file.
     pub origin: String,
-    /// What the file has that is not used, for people.
+    /// Message that names unused columns of the file.
     pub note: Option<String>,
     /// The angle that was measured.
     pub angle: Angle,

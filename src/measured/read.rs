@@ -18,6 +18,9 @@ const NEEDED: [&[&str]; 3] = [
 /// Columns that a file may have beside them.
 const OPTIONAL: [&str; 2] = ["kind", "sd_deg"];
 
+/// Least standard deviation of an angle, in degrees: far below what any instrument resolves.
+const LEAST_SD_DEG: f64 = 1e-6;
+
 impl Points {
     /// Reads the points of a CSV file; `-` is standard input.
     ///
@@ -70,16 +73,20 @@ impl Points {
             "pull-off" => Some(Some(DetachmentKind::PullOff)),
             _ => None,
         })?;
-        let positive = |column| {
-            let is_positive = |number: f64| number > 0.0 && number.is_finite();
-            table.numbers(column, "a positive number", is_positive)
-        };
-        let distances_mm = positive("distance_mm")?.unwrap_or_default();
-        let deviations_deg = positive("sd_deg")?;
+        let is_positive = |number: f64| number > 0.0 && number.is_finite();
+        let distances_mm = table.numbers("distance_mm", "a positive number", is_positive)?;
+        let is_deviation = |number: f64| number >= LEAST_SD_DEG && number.is_finite();
+        let must = format!("a number of at least {}", digits(LEAST_SD_DEG));
+        let deviations_deg = table.numbers("sd_deg", &must, is_deviation)?;
         let turn = "a number between -360 and 360";
         let angles_deg = table.numbers(angle.column(), turn, |number| number.abs() <= 360.0)?;
         let rows = table.lines().zip(sides.unwrap_or_default());
-        let rows = rows.zip(distances_mm.into_iter().zip(angles_deg.unwrap_or_default()));
+        let rows = rows.zip(
+            distances_mm
+                .unwrap_or_default()
+                .into_iter()
+                .zip(angles_deg.unwrap_or_default()),
+        );
         let points = rows
             .enumerate()
             .map(|(i, ((line, side), (distance_mm, angle_deg)))| Point {

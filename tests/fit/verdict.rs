@@ -67,6 +67,27 @@ fn noisy_points_stay_a_fit() {
     }
 }
 
+/// The scene's kind of whisker explains the angles, but not the deviations.
+#[test]
+fn absurd_deviations_are_not_a_fit() {
+    for (sd_deg, cause) in [
+        (3.0_f64.to_radians(), Some(LikelyCause::RadianDeviations)),
+        (0.001, None),
+    ] {
+        let random = std::cell::RefCell::new(Random(7));
+        let found = changed(true, |point| {
+            point.angle_deg += 3.0 * random.borrow_mut().normal();
+            point.sd_deg = sd_deg;
+        });
+        let why = found.not_a_fit.unwrap();
+        assert_eq!(why.cause, cause, "{why}");
+        assert!(why.rms_deg < why.largest_rms_deg, "{why}");
+        assert!(why.reduced_chi_square.unwrap() > 400.0, "{why}");
+        assert!(!why.to_string().contains("at most"), "{why}");
+        assert_eq!(found.estimates[0].standard_error, None);
+    }
+}
+
 /// Their range is that of their errors; a third of it says nothing of the fit.
 #[test]
 fn repeated_measurements_at_one_distance_stay_a_fit() {
