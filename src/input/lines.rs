@@ -9,19 +9,41 @@ pub(super) struct CsvLine {
     pub cells: StringRecord,
 }
 
-/// The separator of the columns of `text`: what its header has most of, outside of quotes.
+/// The separators of columns. Decimal commas may stand between the first two, which are preferred therefore.
+const SEPARATORS: [char; 3] = [';', '\t', ','];
+
+/// The text of a file with one kind of line end, and without the byte order mark.
+pub(super) fn normalised(text: &str) -> String {
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    text.replace("\r\n", "\n").replace('\r', "\n")
+}
+
+/// The separator that the first line of `text` declares, as spreadsheet programs do with `sep=;`.
+fn declared(text: &str) -> Option<char> {
+    let line = text.lines().next()?.to_lowercase();
+    let separator = line.trim_end_matches(' ').strip_prefix("sep=")?;
+    SEPARATORS
+        .into_iter()
+        .find(|own| separator.trim_start_matches(' ') == own.to_string())
+}
+
+/// The separator of the columns of `text`: the declared one, or what its header has most of, outside of quotes.
 pub(super) fn separator(text: &str) -> char {
+    if let Some(separator) = declared(text) {
+        return separator;
+    }
     let is_header = |line: &&str| !line.trim().is_empty() && !line.trim_start().starts_with('#');
     let header = text.lines().find(is_header).unwrap_or_default();
     let count = |separator: &char| -> usize {
         let unquoted = header.split('"').step_by(2);
         unquoted.map(|part| part.matches(*separator).count()).sum()
     };
-    let most = [';', '\t', ','].into_iter().max_by_key(count);
+    // Of several greatest counts, the last one is taken.
+    let most = SEPARATORS.into_iter().rev().max_by_key(count);
     most.unwrap_or(',')
 }
 
-/// The lines of `text` that are neither blank nor comments; a cell in quotes may have line breaks.
+/// The lines of `text` that are neither blank nor comments nor declare the separator; a cell in quotes may have line breaks.
 pub(super) fn lines(text: &str, separator: char) -> csv::Result<Vec<CsvLine>> {
     let mut reader = ReaderBuilder::new()
         .has_headers(false)
@@ -31,6 +53,7 @@ pub(super) fn lines(text: &str, separator: char) -> csv::Result<Vec<CsvLine>> {
         .trim(Trim::All)
         .from_reader(text.as_bytes());
     let mut lines = Vec::new();
+    let has_declaration = declared(text).is_some();
     let (mut number, mut counted) = (1, 0);
     for cells in reader.records() {
         let cells = cells?;
@@ -41,7 +64,8 @@ pub(super) fn lines(text: &str, separator: char) -> csv::Result<Vec<CsvLine>> {
         let left_out = |line: &&str| line.is_empty() || line.starts_with('#');
         let above = text[start..].lines().take_while(left_out).count();
         let is_comment = cells.get(0).is_some_and(|cell| cell.starts_with('#'));
-        if !is_comment && cells.iter().any(|cell| !cell.is_empty()) {
+        let is_declaration = has_declaration && start == 0;
+        if !is_comment && !is_declaration && cells.iter().any(|cell| !cell.is_empty()) {
             lines.push(CsvLine {
                 number: number + above,
                 cells,

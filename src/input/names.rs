@@ -15,29 +15,111 @@ pub(crate) fn similar<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) 
 
 /// The end of a message about an unknown `name`: a suggestion among the `known` names, or nothing.
 ///
+/// A name in another unit is not suggested without the unit, because its values must be converted.
+///
 /// ```
 /// use whiskmap::input::did_you_mean;
 ///
 /// let known = ["tip_radius_um", "base_radius_um"];
 /// assert_eq!(did_you_mean("tip_radius", known), "; did you mean `tip_radius_um`?");
+/// let unit = "; values must be in um: convert them, and use the name `tip_radius_um`";
+/// assert_eq!(did_you_mean("tip_radius_mm", known), unit);
 /// assert_eq!(did_you_mean("colour", known), "");
 /// ```
 #[must_use]
-pub fn did_you_mean<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> String {
+pub fn did_you_mean<'a>(
+    name: &str,
+    known: impl IntoIterator<Item = &'a str, IntoIter: Clone>,
+) -> String {
+    let known = known.into_iter();
+    let mut converted = known
+        .clone()
+        .filter(|other| is_of_another_unit(name, other));
+    if let Some(own) = converted.next() {
+        let (stem, unit) = own.rsplit_once('_').unwrap_or(("", own));
+        let per = if stem.ends_with("per") { "1/" } else { "" };
+        let unit = if unit == "gpa" { "GPa" } else { unit };
+        return format!("; values must be in {per}{unit}: convert them, and use the name `{own}`");
+    }
     let found = similar(name, known);
     found.map_or_else(String::new, |known| format!("; did you mean `{known}`?"))
+}
+
+/// Units at the ends of names, those of one quantity together.
+const UNITS: [&[&str]; 4] = [
+    &["nm", "um", "mm", "cm", "m", "inch"],
+    &["nm2", "um2", "mm2", "cm2", "m2"],
+    &["deg", "rad", "mrad"],
+    &["pa", "kpa", "mpa", "gpa", "tpa"],
+];
+
+/// Whether two names differ only in the units at their ends, which belong to one quantity.
+fn is_of_another_unit(name: &str, other: &str) -> bool {
+    let [name, other] = [name, other].map(str::to_lowercase);
+    let ends = name.rsplit_once('_').zip(other.rsplit_once('_'));
+    ends.is_some_and(|((stem, unit), (own_stem, own_unit))| {
+        let mut quantities = UNITS.iter();
+        let has_both = |units: &&[&str]| [unit, own_unit].iter().all(|unit| units.contains(unit));
+        stem == own_stem && unit != own_unit && quantities.any(has_both)
+    })
 }
 
 /// The most characters that a message quotes of a text, at its beginning and at its end.
 const QUOTED: [usize; 2] = [60, 20];
 
-/// A text that may quote a value or a key of any length, without its middle where it is long.
+/// A text of a file as messages print it: a terminal must not obey its control characters.
+pub(crate) fn escaped(text: &str) -> String {
+    let parts = text.chars().map(|c| match c {
+        control if control.is_control() => control.escape_default().to_string(),
+        other => other.to_string(),
+    });
+    parts.collect()
+}
+
+/// A text that may quote a value or a key of any length: escaped, and without its middle where it is long.
 pub(crate) fn shortened(text: &str) -> String {
+    let text = escaped(text);
     let [head, tail] = QUOTED;
     let count = text.chars().count();
     if count <= head + tail {
-        return text.to_owned();
+        return text;
     }
     let part = |from, length| text.chars().skip(from).take(length).collect::<String>();
     format!("{}...{}", part(0, head), part(count - tail, tail))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{did_you_mean, shortened};
+
+    #[test]
+    fn names_in_other_units_ask_for_a_conversion() {
+        for (name, known, unit) in [
+            ("arc_length_cm", "arc_length_mm", "mm"),
+            ("distance_cm", "distance_mm", "mm"),
+            ("Distance_m", "distance_mm", "mm"),
+            ("push_angle_rad", "push_angle_deg", "deg"),
+            ("tip_radius_mm", "tip_radius_um", "um"),
+            ("youngs_modulus_mpa", "youngs_modulus_gpa", "GPa"),
+            ("curvature_per_cm", "curvature_per_mm", "1/mm"),
+        ] {
+            let hint = did_you_mean(name, ["side", known]);
+            let start = format!("; values must be in {unit}: convert them");
+            assert!(hint.starts_with(&start), "{name}: {hint}");
+        }
+        for (name, known) in [
+            ("Distance_MM", "distance_mm"),
+            ("distance", "distance_mm"),
+            ("distance_deg", "distance_mm"),
+            ("distnce_cm", "distance_mm"),
+        ] {
+            let hint = did_you_mean(name, ["side", known]);
+            assert_eq!(hint, format!("; did you mean `{known}`?"), "{name}");
+        }
+    }
+
+    #[test]
+    fn control_characters_are_escaped() {
+        assert_eq!(shortened("a\u{1b}[31mb\n"), r"a\u{1b}[31mb\n");
+    }
 }

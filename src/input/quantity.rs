@@ -1,5 +1,7 @@
 //! Numbers with units, as options of the command line give them.
 
+use super::names::shortened;
+
 /// What a number measures, and its unit where the text gives none.
 ///
 /// ```
@@ -45,6 +47,17 @@ impl Quantity {
         }
     }
 
+    /// Its unit; `None` for a number without one.
+    #[must_use]
+    pub const fn unit(self) -> Option<&'static str> {
+        match self {
+            Self::LengthMm => Some("mm"),
+            Self::LengthUm => Some("um"),
+            Self::AngleDeg => Some("deg"),
+            Self::Number => None,
+        }
+    }
+
     /// The finite number in `text`, in the quantity's own unit.
     ///
     /// # Errors
@@ -57,7 +70,7 @@ impl Quantity {
         let number = number.filter(|number| number.is_finite());
         let number = number.ok_or_else(|| self.example().to_owned())?;
         let unit = unit.trim();
-        let unknown = || format!("unit {unit}: {}", self.allowed());
+        let unknown = || format!("unit {}: {}", shortened(unit), self.allowed());
         self.convert(number, unit).ok_or_else(unknown)
     }
 
@@ -152,6 +165,15 @@ mod tests {
             (AngleDeg, "nan", "must be an angle"),
             (AngleDeg, "1e999", "must be an angle"),
             (Number, "", "must be a number"),
+            (
+                Number,
+                &format!("1{}", "x".repeat(1000)),
+                &format!(
+                    "unit {}...{}: must be left out",
+                    "x".repeat(60),
+                    "x".repeat(20)
+                ),
+            ),
         ] {
             let why = quantity.parse(text).err().unwrap_or_default();
             assert!(why.starts_with(must), "{text}: {why}");

@@ -56,13 +56,16 @@ pub(super) fn decoded(bytes: &[u8]) -> Result<String, (usize, String)> {
 fn utf8(bytes: &[u8]) -> Result<String, (usize, String)> {
     let text = str::from_utf8(bytes).map_err(|why| {
         let (before, wrong) = bytes.split_at(why.valid_up_to());
-        let line = 1 + before.iter().filter(|byte| **byte == b'\n').count();
-        (line, format!("not UTF-8 text: byte 0x{:02X}", wrong[0]))
+        let before = String::from_utf8_lossy(before);
+        (
+            line(&before),
+            format!("not UTF-8 text: byte 0x{:02X}", wrong[0]),
+        )
     })?;
     Ok(text.to_owned())
 }
 
-/// The line of the end of `text`, from 1.
+/// The line of the end of `text`, from 1; a carriage return alone ends a line, too.
 fn line(text: &str) -> usize {
-    1 + text.matches('\n').count()
+    1 + text.replace("\r\n", "\n").matches(['\n', '\r']).count()
 }

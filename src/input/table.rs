@@ -1,7 +1,7 @@
 //! The reader of all CSV files: a header, and columns by their names.
 
-use super::lines::{CsvLine, lines, separator};
-use super::names::{shortened, similar};
+use super::lines::{CsvLine, lines, normalised, separator};
+use super::names::{did_you_mean, escaped, shortened};
 use super::source::{bounded, decoded};
 use std::fs::File;
 use std::io;
@@ -19,7 +19,7 @@ impl CsvError {
     /// An error in the whole file `origin`.
     pub(crate) fn whole(origin: &str, what: impl Into<String>) -> Self {
         Self {
-            place: origin.to_owned(),
+            place: escaped(origin),
             what: what.into(),
         }
     }
@@ -32,8 +32,8 @@ impl CsvError {
 
 /// A CSV file as text: a header, and at least one row below it.
 ///
-/// Columns are separated by `,`, `;` or tabs, whichever the header has most of. Blank lines, rows of empty cells and
-/// lines that begin with `#` are left out. Where the separator is no comma, a column may have decimal commas.
+/// Columns are separated by `;`, tabs or `,`: the one that a first line such as `sep=;` declares, or that the header has most
+/// of. Blank lines, rows of empty cells and lines that begin with `#` are left out. Where the separator is no comma, a column may have decimal commas.
 ///
 /// ```
 /// use whiskmap::input::CsvTable;
@@ -67,7 +67,7 @@ impl CsvTable {
     /// Reads a CSV file from standard input.
     ///
     /// # Errors
-    /// Those of [`CsvTable::read`].
+    /// Fails as [`CsvTable::read`] does.
     pub fn read_stdin() -> Result<Self, CsvError> {
         Self::decode(bounded(io::stdin().lock()), "<stdin>")
     }
@@ -82,20 +82,35 @@ impl CsvTable {
     /// Splits the text of a CSV file. Messages call it `origin`.
     ///
     /// # Errors
-    /// If there is no row, or a row has more or fewer cells than the header.
+    /// If there is no row, or a row has fewer cells than the header has names, or more that are not empty.
     pub fn parse(text: &str, origin: &str) -> Result<Self, CsvError> {
-        let separator = separator(text);
-        let lines = lines(text, separator);
+        let text = normalised(text);
+        let separator = separator(&text);
+        let lines = lines(&text, separator);
         let mut lines = lines.map_err(|why| CsvError::whole(origin, why.to_string()))?;
         if lines.len() < 2 {
             let what = "has no rows: must have a header and at least one row below it";
             return Err(CsvError::whole(origin, what));
         }
         let header = lines.remove(0);
-        let must = header.cells.len();
-        if let Some(row) = lines.iter().find(|row| row.cells.len() != must) {
+        let columns = header.cells.len();
+        let named = filled(&header);
+        let is_wrong = |row: &&CsvLine| row.cells.len() < named || filled(row) > columns;
+        if let Some(row) = lines.iter().find(is_wrong) {
             let has = row.cells.len();
-            let what = format!("has {has} cells: must have {must}, one a column");
+            let ending = if has == 1 { "" } else { "s" };
+            let mut pairs = row.cells.iter().zip(row.cells.iter().skip(1));
+            let mut has_comma = || {
+                pairs.any(|(whole, rest)| {
+                    let is_digit = |c: char| c.is_ascii_digit();
+                    whole.ends_with(is_digit) && !rest.is_empty() && rest.chars().all(is_digit)
+                })
+            };
+            let hint = match has > columns && separator == ',' && has_comma() {
+                true => DECIMAL_COMMAS,
+                false => "",
+            };
+            let what = format!("has {has} cell{ending}: must have {columns}, one a column{hint}");
             return Err(CsvError::at(origin, row.number, what));
         }
         Ok(Self {
@@ -124,11 +139,11 @@ impl CsvTable {
         let is_right = needed.iter().all(|group| count(group) == 1)
             && optional.iter().all(|name| count(&[name]) <= 1);
         let unused: Vec<&str> = found().filter(is_unknown).collect();
-        let hints = unused.iter().filter_map(|name| {
-            let meant = similar(name, known().filter(is_absent))?;
-            Some(format!("; did you mean `{meant}` by `{name}`?"))
+        let mut hints = unused.iter().filter_map(|name| {
+            let hint = did_you_mean(name, known().filter(is_absent));
+            (!hint.is_empty()).then(|| format!("; `{}` is not known{hint}", shortened(name)))
         });
-        let hint = hints.take(1).collect::<String>();
+        let hint = hints.next().unwrap_or_default();
         let line = self.header.number;
         if !is_right {
             let groups: Vec<String> = needed.iter().map(|group| group.join(" or ")).collect();
@@ -208,6 +223,17 @@ impl CsvTable {
             let must = format!("{must}; this column has decimal commas");
             return self.values(column, &must, |cell| with_point(cell).and_then(number));
         }
-        self.values(column, must, |cell| number(cell.to_owned()))
+        let is_quoted = self.separator == ',' && has_commas();
+        let must = format!("{must}{}", if is_quoted { DECIMAL_COMMAS } else { "" });
+        self.values(column, &must, |cell| number(cell.to_owned()))
     }
+}
+
+/// The end of a message about numbers with commas where commas separate columns.
+const DECIMAL_COMMAS: &str = "; where numbers have decimal commas, separate columns by `;`";
+
+/// How many cells a line has, without empty ones at its end.
+fn filled(line: &CsvLine) -> usize {
+    let empty = line.cells.iter().rev().take_while(|cell| cell.is_empty());
+    line.cells.len() - empty.count()
 }

@@ -88,7 +88,7 @@ impl Channels {
 }
 
 /// The names of all channels.
-fn names() -> impl Iterator<Item = &'static str> {
+fn names() -> impl Iterator<Item = &'static str> + Clone {
     let (verdict, numerics) = OTHERS.split_at(2);
     let all = verdict.iter().chain(&STATE_CHANNELS).chain(numerics);
     all.copied()

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use toml::Spanned;
 
-use crate::input::did_you_mean;
+use crate::input::{did_you_mean, shortened};
 
 use super::error::Fault;
 use super::limits::{Limits, Number};
@@ -40,7 +40,7 @@ pub(super) fn deviations(
     let scene: toml::Table = toml::from_str(text).unwrap_or_default();
     let mut deviations = Deviations::default();
     for (name, number) in fields {
-        let key = format!("uncertainty.{name}");
+        let key = format!("uncertainty.{}", shortened(name));
         let refuse = |must: String| Err(Fault::new(&*key, number.span(), must));
         let parameter = Parameter::named(name);
         if parameter.is_none() && name != ROWS {

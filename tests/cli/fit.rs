@@ -227,7 +227,7 @@ fn wrong_input_is_refused_before_any_file_is_made() {
         &DATA.replace("side", "sides"),
         &[
             "points.csv:2: found kind, sides, distance_mm, push_angle_deg; needed side, distance_mm, push_angle_deg or \
-             push_chord_deg, each once; did you mean `side` by `sides`?",
+             push_chord_deg, each once; `sides` is not known; did you mean `side`?",
         ],
     );
     data(
@@ -241,6 +241,10 @@ fn wrong_input_is_refused_before_any_file_is_made() {
     place.write("points.csv", "side,distance_mm,push_angle_deg\ncb,15,18\n");
     let few = "2 free parameters need as many points: points.csv has 1 that detach";
     refused(&["--free", "taper,pole_radius_mm"], &[few]);
+    for command in [&["fit", "--free", "taper"][..], &["curve"]] {
+        let run = place.run(&[command, &["-", "--data", "-"]].concat());
+        run.assert_refused(&["--data -: standard input is the scene, and can be read once"]);
+    }
     place
         .run(&[
             "fit",

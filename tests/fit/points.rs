@@ -73,8 +73,11 @@ fn what_is_wrong_is_told() {
         let why = with(old, new);
         assert!(why.starts_with(&said), "{why}");
     }
-    let hint = "; did you mean `distance_mm` by `distance`?";
+    let hint = "; `distance` is not known; did you mean `distance_mm`?";
     assert!(with("distance_mm", "distance").ends_with(hint));
+    let unit = "; `distance_cm` is not known; values must be in mm: convert them, and use the name `distance_mm`";
+    assert!(with("distance_mm", "distance_cm").ends_with(unit));
+    assert!(with("side", "\u{1b}[31mside").contains(r"found \u{1b}[31mside"));
     assert_eq!(
         with("cb,", "left,"),
         "p.csv:2: side = left: must be cb or cf"
@@ -83,7 +86,10 @@ fn what_is_wrong_is_told() {
         with("slip-off", "slip"),
         "p.csv:2: kind = slip: must be slip-off, pull-off or empty"
     );
-    for (number, must) in [("15.5", "distance_mm"), ("0.5\n", "sd_deg")] {
+    for (number, name, must) in [
+        ("15.5", "distance_mm", "a positive number"),
+        ("0.5\n", "sd_deg", "a number of at least 1e-6"),
+    ] {
         for bad in ["far", "", "0", "-1", "nan", "inf", "1e999"] {
             let new = if number.ends_with('\n') {
                 format!("{bad}\n")
@@ -92,7 +98,7 @@ fn what_is_wrong_is_told() {
             };
             assert_eq!(
                 with(number, &new),
-                format!("p.csv:2: {must} = {bad}: must be a positive number")
+                format!("p.csv:2: {name} = {bad}: must be {must}")
             );
         }
     }
@@ -107,9 +113,19 @@ fn what_is_wrong_is_told() {
         "p.csv:3: has 4 cells: must have 5, one a column"
     );
     assert_eq!(
-        with("cf,12", "cf,12,12"),
+        with("cf,12", "cf,12,far"),
         "p.csv:3: has 6 cells: must have 5, one a column"
     );
+    let commas = "; where numbers have decimal commas, separate columns by `;`";
+    assert_eq!(
+        with("cb,15.5", "cb,15,66"),
+        format!("p.csv:2: has 6 cells: must have 5, one a column{commas}")
+    );
+    assert_eq!(
+        with("cf,12,-41,,0.7", "cf"),
+        "p.csv:3: has 1 cell: must have 5, one a column"
+    );
+    assert!(with("0.5\n", "1e-7\n").ends_with("sd_deg = 1e-7: must be a number of at least 1e-6"));
     let long = with("cb,", &format!("{},", "x".repeat(100_000)));
     assert!(long.len() < 200, "{long}");
 }
@@ -134,6 +150,8 @@ fn separators_decimal_commas_and_encodings() {
         &semicolons.replace(';', "\t"),
         &GOOD.replace("cb", "CB").replace("cf", "Cf"),
         &GOOD.replace("side", "\"side\"").replace('\n', "\r\n"),
+        &GOOD.replace('\n', "\r"),
+        &GOOD.replace('\n', ",,\n").replace("deg,,", "deg"),
     ] {
         let marked = format!("\u{feff}{text}");
         read(text.as_bytes().to_vec());
@@ -156,8 +174,24 @@ fn separators_decimal_commas_and_encodings() {
         "p.csv:3: distance_mm = 12.0: must be a positive number; this column has decimal commas";
     refused(mixed.as_bytes(), said);
     let quoted = GOOD.replace("15.5", "\"15,5\"");
-    let said = "p.csv:2: distance_mm = 15,5: must be a positive number";
+    let said = "p.csv:2: distance_mm = 15,5: must be a positive number; where numbers have decimal commas, separate columns by `;`";
     refused(quoted.as_bytes(), said);
+}
+
+/// A carriage return alone ends a line; of as many semicolons as commas, semicolons separate columns.
+#[test]
+fn lines_and_columns_of_rare_files() {
+    let header = "side;distance_mm;push_angle_deg;a,b,c";
+    let text = format!("{header}\rcb;15,5;16;\r# none\rcf;12;far;\r");
+    let why = "p.csv:4: push_angle_deg = far: must be a number between -360 and 360";
+    assert_eq!(refused(&text), why);
+    let declared = format!("sep=;\n{header}\ncb;15,5;far;\n");
+    assert!(refused(&declared).starts_with("p.csv:3: push_angle_deg = far"));
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("p.csv");
+    std::fs::write(&path, b"side\rcb\xff").unwrap();
+    let why = Points::read(&path).unwrap_err().to_string();
+    assert!(why.ends_with("p.csv:2: not UTF-8 text: byte 0xFF"), "{why}");
 }
 
 /// Columns that are not used may hold anything, line breaks too.
@@ -166,7 +200,7 @@ fn columns_that_are_not_used_are_noted_once() {
     let text = "rat,side,sd,distance_mm,push_angle_deg,note,\nA,cb,1,15.5,16,\"two\nlines\",\n,,,,,,\n \nB,cf,1,12,-41,,\n";
     let text = text.replace("\n \n", "\n\n");
     let points = Points::parse(&text, "p.csv").unwrap();
-    let note = "p.csv:1: columns that are not used: rat, sd, note; did you mean `sd_deg` by `sd`?";
+    let note = "p.csv:1: columns that are not used: rat, sd, note; `sd` is not known; did you mean `sd_deg`?";
     assert_eq!(points.note.as_deref(), Some(note));
     let lines: Vec<usize> = points.points.iter().map(|point| point.line).collect();
     assert_eq!((lines, points.have_deviations), (vec![2, 6], false));

@@ -229,7 +229,7 @@ fn a_bad_csv_file_is_named_with_its_line() {
     for (csv, why) in [
         (
             "arc_length_mm,radius\n0,30\n",
-            "radii.csv:1: found arc_length_mm, radius; needed arc_length_mm, radius_um, each once; did you mean `radius_um`",
+            "radii.csv:1: found arc_length_mm, radius; needed arc_length_mm, radius_um, each once; `radius` is not known; did you mean `radius_um`",
         ),
         (
             "arc_length_mm,radius_um\n0,30\n1,thin\n",
@@ -237,7 +237,7 @@ fn a_bad_csv_file_is_named_with_its_line() {
         ),
         (
             "arc_length_mm,radius_um\n0,30\n1\n",
-            "radii.csv:3: has 1 cells: must have 2, one a column",
+            "radii.csv:3: has 1 cell: must have 2, one a column",
         ),
         (
             "arc_length_mm,radius_um\n# a remark\n0,30\n\n# another\n20,nan\n",
