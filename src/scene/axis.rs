@@ -7,7 +7,7 @@ use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
 use serde::de::{Deserializer, MapAccess, SeqAccess, Visitor};
 use toml::Spanned;
 
-use super::error::Fault;
+use super::error::{DECIMAL_POINTS, Fault};
 use super::limits::{Limits, Number};
 
 /// More values than this on one axis are a slip of the pen, and would be refused before they are made.
@@ -62,7 +62,11 @@ fn listed(list: &[Number], key: &str, limits: &Limits) -> Result<Vec<f64>, Fault
         let key = format!("{key}[{i}]");
         let value = limits.check(&key, number)?;
         if let Some(before) = values.last().filter(|before| value <= **before) {
-            let must = format!("must be greater than the value before it ({before})");
+            // `10,5` was meant as one number.
+            let is_tight = i > 0 && list[i - 1].span().end + 1 == number.span().start;
+            let is_comma = is_tight && [*before, value].iter().all(|own| own.fract() == 0.0);
+            let hint = if is_comma { DECIMAL_POINTS } else { "" };
+            let must = format!("must be greater than the value before it ({before}){hint}");
             return Err(Fault::new(key, number.span(), must));
         }
         values.push(value);

@@ -10,12 +10,13 @@ use super::deviations;
 use super::error::Fault;
 use super::file::{OutputTable, SceneTable, WhiskerTable};
 use super::grid::{FARTHEST, Grid, NEAREST};
-use super::limits::{Limits, MOST_STRETCH, STIFFEST_TIP, friction_limits};
+use super::limits::{Limits, MOST_STRETCH, STIFFEST_TIP, digits, friction_limits};
 use super::parameter::Parameter;
 use super::profile;
 use super::setup::Setup;
 use super::shape;
 use super::sweep;
+use super::warnings::{LENGTH_MM, LENGTH_UNITS, MODULUS_GPA, MODULUS_UNITS, other_unit};
 use super::whisker::{Curvature, Pole, Whisker};
 
 /// More than any disk holds: a stored cell takes about 20 bytes.
@@ -91,8 +92,12 @@ fn title(title: &Spanned<String>) -> Result<String, Fault> {
 fn whisker(table: &WhiskerTable) -> Result<Whisker, Fault> {
     let length_mm = sweep::length_limits().check("whisker.length_mm", &table.length_mm)?;
     let radii = profile::radii(table, length_mm)?;
+    let youngs_modulus = &table.youngs_modulus_gpa;
+    let unit = other_unit(*youngs_modulus.get_ref(), MODULUS_GPA, &MODULUS_UNITS);
+    let unit = unit.map(|unit| format!("is it in {unit}?"));
     let youngs_modulus_gpa = Limits::between(1e-6, 1e4)
-        .check("whisker.youngs_modulus_gpa", &table.youngs_modulus_gpa)?;
+        .remarks(unit)
+        .check("whisker.youngs_modulus_gpa", youngs_modulus)?;
     let (curvature, euler_spiral) = match &table.curvature {
         Some(table) => shape::shape(table, length_mm)?,
         None => (None, None),
@@ -143,7 +148,10 @@ fn grid(table: &SceneTable, [shortest, longest]: [f64; 2]) -> Result<Grid, Fault
     let push_angle_deg = axis::values(&axes.push_angle_deg, "grid.push_angle_deg", &turn)?;
     let near = ("length_mm / 1000", longest / NEAREST);
     let far = ("10 * length_mm", FARTHEST * shortest);
-    let reach = Limits::between(near, far);
+    let unit = other_unit(longest, LENGTH_MM, &LENGTH_UNITS);
+    let unit = unit.filter(|_| !(LENGTH_MM[0]..=LENGTH_MM[1]).contains(&longest));
+    let unit = unit.map(|unit| format!("is length_mm = {} in {unit}?", digits(longest)));
+    let reach = Limits::between(near, far).remarks(unit);
     let distance_mm = axis::values(&axes.distance_mm, "grid.distance_mm", &reach)?;
     let sweep = sweep::axes(table, [shortest, longest])?;
 

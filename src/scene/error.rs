@@ -54,11 +54,22 @@ impl SceneError {
             }
             None => shortened(why.message()),
         };
-        let number = why.span().and_then(|span| decimal_comma(text, span.start));
-        let hint = number.map_or_else(String::new, |number| {
-            format!("; write a decimal point, not a comma: {number}")
-        });
-        Self::at(origin, text, why.span(), message + &hint)
+        let hint = match why.span() {
+            Some(span) if why.message().starts_with("invalid length") => {
+                has_tight_comma(&text[span]).then(|| DECIMAL_POINTS.to_owned())
+            }
+            Some(span) if !why.message().starts_with("unknown field") => {
+                let number = decimal_comma(text, span.start);
+                number.map(|number| format!("; write a decimal point, not a comma: {number}"))
+            }
+            _ => None,
+        };
+        Self::at(
+            origin,
+            text,
+            why.span(),
+            message + &hint.unwrap_or_default(),
+        )
     }
 
     /// An error about the file as a whole.
@@ -103,14 +114,29 @@ fn suggestion(found: &str, expected: &str) -> String {
     did_you_mean(found, expected.iter().map(String::as_str))
 }
 
-/// The number with a decimal comma that a line of `text` gives a key, with a point; `place` is anywhere in the line.
+/// The end of a message about a list whose numbers seem to have decimal commas.
+pub(super) const DECIMAL_POINTS: &str = "; numbers have decimal points, and commas separate values";
+
+/// Whether a comma stands between two digits.
+fn has_tight_comma(text: &str) -> bool {
+    let digit = |byte: &u8| byte.is_ascii_digit();
+    let mut windows = text.as_bytes().windows(3);
+    windows.any(|three| three[1] == b',' && digit(&three[0]) && digit(&three[2]))
+}
+
+/// The number with a decimal comma that a line of `text` gives a key, with a point; `place` is anywhere in the line. In
+/// quotes, nothing else stands.
 fn decimal_comma(text: &str, place: usize) -> Option<String> {
     let start = text.get(..place)?.rfind('\n').map_or(0, |end| end + 1);
     let line = text[start..].lines().next()?;
     line.split('=').skip(1).find_map(|value| {
-        let value = value.trim_start().trim_start_matches(['"', '\'']);
-        let is_other = |c: char| !(c.is_ascii_digit() || "+-.,eE".contains(c));
-        let number = value.split(is_other).next()?.trim_end_matches(',');
+        let value = value.trim_start();
+        let number = if let Some(quote) = value.chars().next().filter(|c| "\"'".contains(*c)) {
+            value[1..].split_once(quote)?.0
+        } else {
+            let is_other = |c: char| !(c.is_ascii_digit() || "+-.,eE".contains(c));
+            value.split(is_other).next()?.trim_end_matches(',')
+        };
         let with_point = number.replacen(',', ".", 1);
         let is_number = number.contains(',') && with_point.parse::<f64>().is_ok();
         is_number.then_some(with_point)
@@ -178,4 +204,27 @@ impl Fault {
 /// A value that fits into a sentence; a list, a table or a long text is shown by the marked line alone.
 fn is_short(value: &str) -> bool {
     value.len() <= 40 && !value.contains('\n') && !value.starts_with(['[', '{'])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::suggestion;
+    use serde::de::value::Error;
+
+    /// The keys are read from the text of serde.
+    #[test]
+    fn messages_of_serde_have_keys_in_backticks() {
+        let lists: [&'static [&str]; 3] = [
+            &["length_mm"],
+            &["length_mm", "title"],
+            &["title", "length_mm", "grid"],
+        ];
+        for known in lists {
+            let why: Error = serde::de::Error::unknown_field("lenght_mm", known);
+            let why = why.to_string();
+            let (found, expected) = why.rsplit_once(", expected ").unwrap_or_default();
+            let hint = suggestion(found, expected);
+            assert_eq!(hint, "; did you mean `length_mm`?", "{why}");
+        }
+    }
 }

@@ -13,9 +13,9 @@ pub(super) type Number = Spanned<f64>;
 /// Of Coulomb's coefficient: the whiskers of rats on steel have about 0.5. Up to here no end of 25,000 random whiskers was
 /// unknown (`benches/NOTES.md`).
 pub(super) fn friction_limits() -> Limits {
-    Limits::between(0.0, 1.0).remark(
+    Limits::between(0.0, 1.0).remarks([
         "with more, whiskers coil around the pole for turns on end, and not all ends are known",
-    )
+    ])
 }
 
 /// Measured ratios lie between 0.7 and 1.4.
@@ -49,9 +49,11 @@ impl Limits {
         }
     }
 
-    /// The same limits with a remark at the end of their message.
-    pub fn remark(mut self, remark: &str) -> Self {
-        self.must = format!("{}; {remark}", self.must);
+    /// Adds remarks to the end of the message.
+    pub fn remarks(mut self, remarks: impl IntoIterator<Item = impl fmt::Display>) -> Self {
+        for remark in remarks {
+            self.must = format!("{}; {remark}", self.must);
+        }
         self
     }
 

@@ -22,7 +22,7 @@ pub struct Setup {
     pub name: String,
     /// The file as it was read.
     pub text: String,
-    /// What the CSV file of its radii has that is not used, for people.
+    /// Message that names unused columns of the CSV file of its radii.
     pub note: Option<String>,
 }
 

@@ -65,7 +65,7 @@ fn parabola(
                 ("10 * length_mm", far)
             };
             Limits::below(("-10 * length_mm", -far), end)
-                .remark("farther out, the chord from the base would not grow along the whisker")
+                .remarks(["farther out, the chord from the base would not grow along the whisker"])
                 .check("whisker.curvature.vertex_mm", number)?
         }
         None => 0.0,
@@ -78,7 +78,7 @@ fn parabola(
 
 pub(super) fn parabola_limits(length_mm: f64) -> Limits {
     Limits::between(0.0, ("10 / length_mm", 10.0 / length_mm))
-        .remark("a whisker bent toward the other side is the same one mirrored")
+        .remarks(["a whisker bent toward the other side is the same one mirrored"])
 }
 
 /// Coefficients next to 0 would underflow in f32 without bending anything.

@@ -7,8 +7,34 @@ use super::setup::Setup;
 /// Radius over length. Whiskers of rats lie between 1e-4 (at the tip) and 0.01; a thicker rod is no beam.
 const SLENDER: [f64; 2] = [1e-5, 0.1];
 
-/// Young's modulus in GPa, from rubber to fibres of carbon. Whiskers of rats have 1 to 8.
-const MODULUS_GPA: [f64; 2] = [0.1, 100.0];
+/// Young's modulus in GPa of hair, polymers and light metals. Whiskers of rats have 1 to 8.
+pub(super) const MODULUS_GPA: [f64; 2] = [0.1, 100.0];
+
+/// Other units of the modulus, in GPa.
+pub(super) const MODULUS_UNITS: [(&str, f64); 4] =
+    [("Pa", 1e-9), ("kPa", 1e-6), ("MPa", 1e-3), ("TPa", 1e3)];
+
+/// Length in mm. Whiskers of rats have 5 to 60.
+pub(super) const LENGTH_MM: [f64; 2] = [1.0, 200.0];
+
+/// Other units of the length, in mm.
+pub(super) const LENGTH_UNITS: [(&str, f64); 3] = [("um", 1e-3), ("cm", 10.0), ("m", 1e3)];
+
+/// Other units of radii and lengths that change their ratio, and by which factor.
+const SLENDER_UNITS: [(&str, f64); 2] = [
+    ("mm, or the length in um", 1e3),
+    ("nm, or the length in m", 1e-3),
+];
+
+/// Other units of one number that change the force, and by which factor.
+const FORCE_UNITS: [(&str, f64); 6] = [
+    ("the radii in mm", 1e12),
+    ("the length in um", 1e6),
+    ("the modulus in TPa", 1e3),
+    ("the radii in nm", 1e-12),
+    ("the length in m", 1e-6),
+    ("the modulus in MPa", 1e-3),
+];
 
 /// Forces in uN, from below the noise of any sensor to a kilonewton.
 const FORCE_UN: [f64; 2] = [1e-6, 1e9];
@@ -36,8 +62,11 @@ impl Setup {
     /// Numbers that look as if they were in another unit: one line each, with key, value, unit and what is expected.
     ///
     /// These are radii below 1e-5 or above 0.1 of the length, a Young's modulus outside 0.1 to 100 GPa, and forces outside
-    /// 1e-6 to 1e9 uN. All values of sweep axes count; of measured radii the largest one does. The force is `E I / L^2` with the second moment of area at the base: a
-    /// cylinder bends by 1 radian under twice that force across its tip, to first order.
+    /// 1e-6 to 1e9 uN. All values of sweep axes count; of measured radii the largest one does. A message names another unit
+    /// only if the number in that unit is as expected.
+    ///
+    /// The force is `E I / L^2` with the second moment of area at the base: a cylinder bends by 1 radian under twice that
+    /// force across its tip, to first order.
     ///
     /// ```
     /// use whiskmap::scene::Scene;
@@ -88,11 +117,13 @@ impl Setup {
 
     fn modulus(&self) -> Option<String> {
         let gpa = self.whisker.youngs_modulus_gpa;
-        let unit = ["TPa", "MPa"][beyond(gpa, MODULUS_GPA)?];
+        let unit = unexpected(gpa, MODULUS_GPA, &MODULUS_UNITS)?;
+        let hint = unit.map(|unit| format!("; is it in {unit}?"));
+        let hint = hint.unwrap_or_default();
         let key = Parameter::YoungsModulusGpa.key();
         let [gpa, least, most] = [gpa, MODULUS_GPA[0], MODULUS_GPA[1]].map(digits);
         Some(format!(
-            "{key} = {gpa} GPa: expected {least} to {most} GPa; is it in {unit}?"
+            "{key} = {gpa} GPa: expected {least} to {most} GPa{hint}"
         ))
     }
 
@@ -101,11 +132,13 @@ impl Setup {
         self.corner_whiskers().find_map(|own| {
             let whisker = own.whisker;
             let force_un = whisker.units().force_un;
-            let others = [
-                "the radii in mm, the length in um or the modulus in TPa",
-                "the radii in nm, the length in m or the modulus in MPa",
-            ];
-            let others = others[beyond(force_un, FORCE_UN)?];
+            unexpected(force_un, FORCE_UN, &FORCE_UNITS)?;
+            let others = other_units(force_un, FORCE_UN, &FORCE_UNITS);
+            let others = others.collect::<Vec<_>>().join(" or ");
+            let hint = match others.as_str() {
+                "" => String::new(),
+                others => format!("; are {others}?"),
+            };
             let numbers = [
                 whisker.youngs_modulus_gpa,
                 whisker.base_radius_um,
@@ -115,7 +148,7 @@ impl Setup {
             let [least, most] = FORCE_UN.map(|force| format!("{force:e}"));
             Some(format!(
                 "forces of about {force_un:.1e} uN (E I / L^2 of {gpa} GPa, {um} um and {mm} mm): expected {least} to {most} \
-                 uN; are {others}?"
+                 uN{hint}"
             ))
         })
     }
@@ -128,20 +161,44 @@ fn thickness(radius: &SceneNumber, length: &SceneNumber) -> Option<String> {
     let extremes = [(thinnest_um, longest_mm), (thickest_um, shortest_mm)];
     extremes.into_iter().find_map(|(um, mm)| {
         let ratio = um * 1e-3 / mm;
-        let other = ["mm, or the length in um", "nm, or the length in m"][beyond(ratio, SLENDER)?];
+        let other = unexpected(ratio, SLENDER, &SLENDER_UNITS)?;
+        let hint = other.map(|other| format!("; is it in {other}?"));
+        let hint = hint.unwrap_or_default();
         let [um, mm, least, most] = [um, mm, SLENDER[0], SLENDER[1]].map(digits);
         Some(format!(
-            "{} = {um} um: expected {least} to {most} of {} = {mm} mm, is {ratio:.1e}; is it in {other}?",
+            "{} = {um} um: expected {least} to {most} of {} = {mm} mm, is {ratio:.1e}{hint}",
             radius.key, length.key
         ))
     })
 }
 
-/// The end of `range` that `value` is beyond: 0 the lower, 1 the upper; `None` within.
-fn beyond(value: f64, [least, most]: [f64; 2]) -> Option<usize> {
-    match value {
-        low if low < least => Some(0),
-        high if high > most => Some(1),
-        _ => None,
-    }
+/// The other unit in which a `value` out of the `expected` range would be in it, if any; `None` for a value in it.
+fn unexpected(
+    value: f64,
+    expected: [f64; 2],
+    units: &[(&'static str, f64)],
+) -> Option<Option<&'static str>> {
+    let [least, most] = expected;
+    let is_beyond = value < least || value > most;
+    is_beyond.then(|| other_unit(value, expected, units))
+}
+
+/// The first of the `units` with which `value` is within `expected`; each has its size in the unit of the value.
+pub(super) fn other_unit(
+    value: f64,
+    expected: [f64; 2],
+    units: &[(&'static str, f64)],
+) -> Option<&'static str> {
+    other_units(value, expected, units).next()
+}
+
+/// The `units` with which `value` is within `expected`.
+fn other_units(
+    value: f64,
+    [least, most]: [f64; 2],
+    units: &[(&'static str, f64)],
+) -> impl Iterator<Item = &'static str> {
+    let fitting = units.iter();
+    let fitting = fitting.filter(move |(_, size)| (least..=most).contains(&(value * size)));
+    fitting.map(|(unit, _)| *unit)
 }

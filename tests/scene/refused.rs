@@ -151,6 +151,22 @@ fn a_byte_order_mark_and_windows_line_ends_do_no_harm() {
     );
 }
 
+/// Commas of texts and of unknown keys are no decimal commas, and lists with spaces are lists.
+#[test]
+fn hints_about_commas_are_not_given_elsewhere() {
+    for (line, text) in [
+        (1, "titel = \"1,5 mm\""),
+        (1, "title = \"1,5"),
+        (5, "tip_radius = \"1,5\""),
+        (14, "distance_mm = [10, 5]"),
+        (14, "distance_mm = [7.5,7.5]"),
+    ] {
+        let why = parse(&with_line(line, text)).unwrap_err();
+        let is_named = ["not a comma", "decimal points"].map(|hint| why.contains(hint));
+        assert!(!is_named[0] && !is_named[1], "{why}");
+    }
+}
+
 /// However long a value or a key is, the message quotes its beginning and its end.
 #[test]
 fn long_lines_are_cut_around_the_place() {
