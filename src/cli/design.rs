@@ -86,7 +86,7 @@ impl Options {
         };
         if let Some(must) = other {
             return Err(Failure::Input(format!(
-                "{option} {}: a push angle of {must}",
+                "{option} {} deg: a push angle of {must}",
                 digits(push_angle_deg)
             )));
         }

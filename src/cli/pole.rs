@@ -66,8 +66,8 @@ pub fn read(
             let [distance, nearest, farthest, radius] =
                 [distance, nearest, farthest, radius].map(digits);
             return Err(Failure::Input(format!(
-                "--distance {distance}: must be between {nearest} (length_mm / 1000) and {farthest} (10 * length_mm), \
-                 and more than {radius} (pole.radius_mm)"
+                "--distance {distance} mm: must be between {nearest} mm (length_mm / 1000) and {farthest} mm (10 * length_mm), \
+                 and more than {radius} mm (pole.radius_mm)"
             )));
         }
     }
@@ -85,6 +85,6 @@ pub fn title(scene: &Scene, distances_mm: &[f64]) -> String {
 pub fn refuse(distance_mm: f64, why: NoState) -> Failure {
     match why {
         NoState::Lost { .. } => Failure::State(why),
-        _ => Failure::Input(format!("--distance {distance_mm}: {why}")),
+        _ => Failure::Input(format!("--distance {distance_mm} mm: {why}")),
     }
 }

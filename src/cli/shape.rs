@@ -66,7 +66,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     let push_deg = options.push_angle;
     if !(-360.0..=360.0).contains(&push_deg) {
         return Err(Failure::Input(format!(
-            "--push-angle {}: must be between -360 and 360",
+            "--push-angle {} deg: must be between -360 deg and 360 deg",
             digits(push_deg)
         )));
     }
@@ -75,7 +75,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     let stable = options.branch == Part::Stable;
     let refused = |why| match why {
         NoState::OutOfReach { .. } | NoState::Lost { .. } => refuse(options.pole.distance, why),
-        _ => Failure::Input(format!("--push-angle {push_deg}: {why}")),
+        _ => Failure::Input(format!("--push-angle {push_deg} deg: {why}")),
     };
     let branch =
         Branch::new(&whisker, &scene.pole, side, options.pole.distance).map_err(refused)?;

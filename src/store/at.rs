@@ -1,6 +1,7 @@
 //! Values wanted on axes.
 
 use crate::input::Quantity;
+use crate::scene::digits;
 use std::str::FromStr;
 
 /// A value wanted on an axis.
@@ -39,18 +40,31 @@ impl FromStr for At {
 /// four digits.
 const ROUNDED: f64 = 5e-4;
 
-/// Whether `wanted` is at most half a step beyond the axis of these `values`.
-pub(super) fn is_near(values: &[f64], wanted: f64) -> bool {
-    let half_steps = match values {
+/// Checks that `wanted` is at most half a step beyond the axis `name` of these `values`.
+pub(super) fn check_near(name: &str, values: &[f64], wanted: f64) -> Result<(), String> {
+    let (first, last) = (values[0], values[values.len() - 1]);
+    let [below, above] = match values {
         [only] => [ROUNDED * only.abs(); 2],
-        [first, second, ..] => {
-            let [last, before] = [1, 2].map(|back| values[values.len() - back]);
-            [second - first, last - before].map(|step| step / 2.0)
-        }
-        [] => return false,
+        _ => [values[1] - first, last - values[values.len() - 2]].map(|step| step / 2.0),
     };
-    let [below, above] = half_steps;
-    values[0] - below <= wanted && wanted <= values[values.len() - 1] + above
+    if first - below <= wanted && wanted <= last + above {
+        return Ok(());
+    }
+    let [wanted, first, last] = [wanted, first, last].map(|own| with_unit(name, own));
+    Err(match values {
+        [_] => format!("{wanted} is not on the axis, which has one value, {first}"),
+        _ => format!(
+            "{wanted} is more than half a step beyond the axis, which goes from {first} to {last}"
+        ),
+    })
+}
+
+/// A value of the axis `name`, with the unit of a length or an angle.
+pub(super) fn with_unit(name: &str, value: f64) -> String {
+    match Quantity::of(name).unit() {
+        Some(unit) => format!("{} {unit}", digits(value)),
+        None => digits(value),
+    }
 }
 
 /// The place of the value nearest to `wanted`.
@@ -59,4 +73,23 @@ pub(super) fn nearest(values: &[f64], wanted: f64) -> usize {
     let places = values.iter().enumerate();
     let nearest = places.min_by(|(_, a), (_, b)| apart(a).total_cmp(&apart(b)));
     nearest.map_or(0, |(place, _)| place)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::check_near;
+
+    #[test]
+    fn values_beyond_an_axis_are_refused_with_its_unit() {
+        let why = |name, values: &[f64], wanted| check_near(name, values, wanted).unwrap_err();
+        assert_eq!(
+            why("distance_mm", &[15.66], 15.7),
+            "15.7 mm is not on the axis, which has one value, 15.66 mm"
+        );
+        assert_eq!(
+            why("friction", &[0.0, 0.2], 0.4),
+            "0.4 is more than half a step beyond the axis, which goes from 0 to 0.2"
+        );
+        assert_eq!(check_near("taper", &[0.5, 0.9], 1.1), Ok(()));
+    }
 }

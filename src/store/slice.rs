@@ -1,6 +1,6 @@
 //! A part of a map or a store: what is left of its axes where a value is chosen on some of them.
 
-use super::at::{At, is_near, nearest};
+use super::at::{At, check_near, nearest, with_unit};
 use super::{Channels, Error, Layout, Panel, STATE_CHANNELS, Samples, Stored, StoredMap};
 use crate::input::did_you_mean;
 use crate::scene::{Grid, Scene, digits};
@@ -76,17 +76,12 @@ impl Slice {
         let index = nearest(values, at.value);
         let value = values[index];
         if exact && value != at.value {
-            let [wanted, value] = [at.value, value].map(digits);
+            let [wanted, value] = [at.value, value].map(|own| with_unit(name, own));
             return Err(format!(
                 "{wanted} is no value of the axis; the nearest is {value}"
             ));
         }
-        if !is_near(values, at.value) {
-            let [wanted, first, last] = [at.value, values[0], values[values.len() - 1]].map(digits);
-            return Err(format!(
-                "{wanted} is more than half a step beyond the axis, which goes from {first} to {last}"
-            ));
-        }
+        check_near(name, values, at.value)?;
         if self.chosen.iter().any(|(other, _)| *other == name) {
             return Err("is given twice".to_owned());
         }

@@ -129,7 +129,7 @@ fn several_poles_share_a_table_and_a_plot() {
         }
     }
     let far = place.run(&["branch", "scene.toml", "--distance", "10,25"]);
-    far.assert_refused(&["--distance 25: out of reach: the tip of the resting whisker is 19.6"]);
+    far.assert_refused(&["--distance 25 mm: out of reach: the tip of the resting whisker is 19.6"]);
     let wide = place.run(&["branch", "scene.toml", "--distance", "10,1000"]);
-    wide.assert_refused(&["--distance 1000: must be between"]);
+    wide.assert_refused(&["--distance 1000 mm: must be between"]);
 }

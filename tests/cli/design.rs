@@ -140,11 +140,11 @@ fn what_cannot_be_designed_is_refused() {
     }
     refused(
         &["--slip-off", "-9", "--side", "cb"],
-        &["--slip-off -9: a push angle of --side cb must be positive"],
+        &["--slip-off -9 deg: a push angle of --side cb must be positive"],
     );
     refused(
         &["--pull-off", "9", "--side", "cf"],
-        &["--pull-off 9: a push angle of --side cf must be negative"],
+        &["--pull-off 9 deg: a push angle of --side cf must be negative"],
     );
     let other = |scene: &str, name: &str, parts: &[&str]| {
         let words = [
@@ -190,5 +190,5 @@ fn what_cannot_be_designed_is_refused() {
     ];
     place
         .run(&far)
-        .assert_refused(&["--distance 1000000000: must be between"]);
+        .assert_refused(&["--distance 1000000000 mm: must be between"]);
 }

@@ -100,12 +100,16 @@ fn a_slice_is_what_the_store_has_there() {
             "push_angle_deg; did you mean `friction`?",
         ),
         (
+            &["--at=distance_cm=1.5", "-o", "s.csv"],
+            "; values must be in mm: convert them, and use the name `distance_mm`",
+        ),
+        (
             &["--at=distance_mm=150", "-o", "s.csv"],
-            "--at distance_mm: 150 is more than half a step beyond the axis, which goes from 2 to 20",
+            "--at distance_mm: 150 mm is more than half a step beyond the axis, which goes from 2 mm to 20 mm",
         ),
         (
             &["--at=distance_mm=3cm", "-o", "s.csv"],
-            "--at distance_mm: 30 is more than half a step beyond the axis",
+            "--at distance_mm: 30 mm is more than half a step beyond the axis",
         ),
         (
             &["--at=push_angle_deg=5mm", "-o", "s.csv"],

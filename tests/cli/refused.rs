@@ -227,10 +227,10 @@ fn arguments_out_of_range() {
         let run = place.run(&[command, &["--points", "2.5"]].concat());
         run.assert_refused(&["'2.5'", "must be a whole number between", "and 1000000"]);
     }
-    let far = "--distance 1e99: must be between 0.02 (length_mm / 1000) and 200 (10 * length_mm)";
+    let far = "--distance 1e99 mm: must be between 0.02 mm (length_mm / 1000) and 200 mm (10 * length_mm)";
     let branch = ["branch", "scene.toml", "--distance", "1e99"];
     place.run(&branch).assert_refused(&[far]);
-    let turned = "--push-angle 1e99: must be between";
+    let turned = "--push-angle 1e99 deg: must be between";
     let shape = [&shape[..5], &["1e99"]].concat();
     place.run(&shape).assert_refused(&[turned]);
     map(&["--channels", "regme,force_un"])

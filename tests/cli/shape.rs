@@ -45,16 +45,16 @@ fn states_that_do_not_exist_have_a_reason() {
         ];
         place.run(&[&arguments[..], more].concat())
     };
-    shape("15.66", "20", &[]).assert_refused(&["--push-angle 20: slipped off at 15.6094"]);
+    shape("15.66", "20", &[]).assert_refused(&["--push-angle 20 deg: slipped off at 15.6094"]);
     // The whisker has moved away from the pole.
     for (push, side, stays) in [
         ("-5", "cb", "between 0.000000000 and 15.6094"),
         ("5", "cf", "between -24.91"),
     ] {
-        let lost = format!("--push-angle {push}: lost touch");
+        let lost = format!("--push-angle {push} deg: lost touch");
         shape("15.66", push, &["--side", side]).assert_refused(&[&lost, stays]);
     }
-    shape("19.5", "4", &[]).assert_refused(&["--push-angle 4: pulled off at 2."]);
+    shape("19.5", "4", &[]).assert_refused(&["--push-angle 4 deg: pulled off at 2."]);
     shape("19.5", "1", &["--branch=unstable"])
         .assert_refused(&["no unstable state: pulled off at 2."]);
     shape("15.66", "-80", &["--branch=unstable"])

@@ -108,7 +108,7 @@ fn wrong_arguments_are_refused_before_any_work() {
     let branch = |distance| place.run(&["branch", "scene.toml", "--distance", distance]);
     for distance in ["0", "0.25", "200.1"] {
         branch(distance).assert_refused(&[
-            &format!("--distance {distance}: must be between 0.02"),
+            &format!("--distance {distance} mm: must be between 0.02 mm"),
             "and more than 0.25",
         ]);
     }
@@ -147,7 +147,7 @@ fn wrong_arguments_are_refused_before_any_work() {
     ];
     place
         .run(&push)
-        .assert_refused(&["--push-angle 1000000000: must be between -360 and 360"]);
+        .assert_refused(&["--push-angle 1000000000 deg: must be between -360 deg and 360 deg"]);
     for few in [
         &[&CB[..], &["--points", "2"]].concat(),
         &[&push[..5], &["1", "--points", "1"]].concat(),

@@ -41,6 +41,27 @@ fn distances_and_angles_take_units() {
     assert_eq!(branch("10,1.5cm"), branch("10,15"));
 }
 
+/// Messages give values in the unit of the option, whatever the unit of the argument.
+#[test]
+fn messages_name_units() {
+    let place = Place::with(SCENE);
+    for (distance, angle, said) in [
+        ("15", "7rad", "--push-angle 401.07"),
+        ("15", "7rad", " deg: must be between -360 deg and 360 deg"),
+        ("1m", "5", "--distance 1000 mm: must be between 0.02 mm"),
+    ] {
+        let words = [
+            "shape",
+            "scene.toml",
+            "--distance",
+            distance,
+            "--push-angle",
+            angle,
+        ];
+        place.run(&words).assert_refused(&[said]);
+    }
+}
+
 /// Each command that reads a scene warns, once.
 #[test]
 fn numbers_in_other_units_are_warned_of() {
