@@ -232,7 +232,7 @@ fn a_map_in_memory_is_limited_by_all_its_panels() {
     let refused = whiskmap::map(&large, whiskmap::Options::default()).unwrap_err();
     assert_eq!(
         refused.to_string(),
-        "grid: 400 panels of 250000 cells take 5545 MiB in memory: must be at most 4096 MiB; \
+        "grid: 400 panels of 250000 cells take 5546 MiB in memory: must be at most 4096 MiB; \
          take one panel at a time with `for_each_panel`, or lower the counts of the axes"
     );
     let one = Scene::parse(include_str!("../scenes/cone.toml"), "cone.toml").unwrap();

@@ -129,7 +129,7 @@ impl Plan {
             return Err(PlanError::Panel {
                 push_angles,
                 distances,
-                needed: bytes >> 20,
+                needed: bytes.div_ceil(1 << 20),
             });
         }
         let corners: Vec<Rod> = scene
@@ -167,7 +167,7 @@ impl Plan {
             return Err(PlanError::AllPanels {
                 whiskers: plan.whiskers,
                 cells,
-                needed: bytes >> 20,
+                needed: bytes.div_ceil(1 << 20),
             });
         }
         Ok(Self { bytes, ..plan })
