@@ -109,8 +109,8 @@ impl Map {
 /// ```
 ///
 /// # Errors
-/// When the panels of all whiskers take more than [`MEMORY_LIMIT`](crate::plan::MEMORY_LIMIT), for which
-/// [`for_each_panel`] is there; when the tolerance cannot be kept, or there is no GPU where one was asked for.
+/// When the panels of all whiskers take more than [`MEMORY_LIMIT`](crate::plan::MEMORY_LIMIT): use [`for_each_panel`] then.
+/// When the tolerance cannot be kept, or there is no GPU although one is required.
 pub fn map(scene: &Scene, options: Options) -> Result<Map, Error> {
     let plan = Plan::in_memory(scene)?;
     let mut panels = Vec::with_capacity(plan.whiskers);

@@ -54,8 +54,8 @@ pub struct Options {
     pub threads: Option<u32>,
     #[command(flatten)]
     tolerance: Tolerance,
-    /// Channels to compute and store, by names with commas between them; with friction, those of a state bring status
-    /// [default: all]
+    /// Channels to compute and store, by names with commas between them. With friction, load channels are stored with
+    /// `status` [default: all]
     #[arg(long, value_name = "LIST", value_parser = Channels::from_str)]
     channels: Option<Channels>,
     /// What to write

@@ -23,8 +23,11 @@ Examples:
   whiskmap render outputs/cone.exr -o - | display
   whiskmap render outputs/sweep.zarr --at pole_radius_mm=0.25 --at friction=0.2
 
-A picture has at most two sweep axes: choose a value of each other one by --at. An SVG has the cells as pixels, and text and lines as such. The ends of --range are in the unit that the channel's \
-name ends in, or lengths and angles with a unit, such as 5mm,1cm; the colour bar shows them in the unit that suits them.")]
+A picture has at most two sweep axes: choose a value of each other one by --at. An SVG has the cells as pixels, and text \
+and lines as such.
+
+The ends of --range are in the unit that the channel's name ends in, or lengths and angles with a unit, such as 5mm,1cm; \
+the colour bar shows them in the unit that suits them.")]
 pub struct Options {
     /// Map or store written by `whiskmap map`
     file: PathBuf,

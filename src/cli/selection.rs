@@ -13,7 +13,7 @@ use whiskmap::store::{At, Slice, Stored};
 /// Options that choose a part.
 #[derive(Debug, Args)]
 pub struct Selection {
-    /// Value of an axis to stay at, with or without a unit, such as distance_mm=1.5cm: the nearest on the axis is taken
+    /// Select the nearest value on an axis, with or without a unit, such as distance_mm=1.5cm
     #[arg(long, value_name = "AXIS=VALUE", value_parser = At::from_str, allow_hyphen_values = true)]
     at: Vec<At>,
     /// Take the values of --at alone, not the nearest

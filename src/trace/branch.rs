@@ -47,7 +47,7 @@ row! {
         pub det: f64,
         /// first-touch; slip-off, pull-off (stable end); second-fold, tip (unstable end).
         pub mark: Option<Mark>,
-        /// With friction, how the contact slides: tip; loads are off at base, sticks.
+        /// With friction, the sliding direction: tip; loads are off at base, sticks.
         pub sliding: Option<Sliding>,
     }
 }

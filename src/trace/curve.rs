@@ -55,7 +55,7 @@ row! {
         pub contact_angle_deg: Option<f64>,
         /// Remaining error relative to the distance of the pole.
         pub residual: Option<f64>,
-        /// With friction, how the contact would slide: tip; loads are off at base.
+        /// With friction, the sliding direction: tip; loads are off at base.
         pub sliding: Option<Sliding>,
     }
 }

@@ -34,7 +34,8 @@ pub struct Options {
     source: PathBuf,
     #[command(flatten)]
     selection: Selection,
-    /// Channel to extract, more than one if repeated; with friction, one of a state brings status, but for an array [default: all]
+    /// Channel to extract, more than one if repeated. With friction, load channels are stored with `status`, except in an
+    /// array [default: all]
     #[arg(long, value_name = "NAME")]
     channel: Vec<String>,
     /// What to write: a table, an array of one channel, a store or a map, by its ending .csv, .npy, .zarr or .exr
