@@ -81,15 +81,22 @@ mod tests {
 
     #[test]
     fn values_beyond_an_axis_are_refused_with_its_unit() {
-        let why = |name, values: &[f64], wanted| check_near(name, values, wanted).unwrap_err();
-        assert_eq!(
-            why("distance_mm", &[15.66], 15.7),
-            "15.7 mm is not on the axis, which has one value, 15.66 mm"
-        );
-        assert_eq!(
-            why("friction", &[0.0, 0.2], 0.4),
-            "0.4 is more than half a step beyond the axis, which goes from 0 to 0.2"
-        );
+        for (name, values, wanted, why) in [
+            (
+                "distance_mm",
+                [15.66].as_slice(),
+                15.7,
+                "15.7 mm is not on the axis, which has one value, 15.66 mm",
+            ),
+            (
+                "friction",
+                &[0.0, 0.2],
+                0.4,
+                "0.4 is more than half a step beyond the axis, which goes from 0 to 0.2",
+            ),
+        ] {
+            assert_eq!(check_near(name, values, wanted), Err(why.to_owned()));
+        }
         assert_eq!(check_near("taper", &[0.5, 0.9], 1.1), Ok(()));
     }
 }
