@@ -8,8 +8,8 @@ use std::fmt;
 /// ends of a push go from a few degrees to 90.
 const LARGEST_RMS_DEG: f64 = 5.0;
 
-/// Largest RMS as a fraction of the range of the measured angles, 0 included, which is the angle at first touch: repeated
-/// measurements at one distance differ by their errors alone.
+/// Largest RMS as a fraction of the range of the measured angles, 0 included: 0 is the angle at first touch. Without it,
+/// repeated measurements at one distance would have a range of nothing but their errors.
 const LARGEST_PART: f64 = 1.0 / 3.0;
 
 /// How far the reduced chi-square of right deviations may be above 1, in its own standard deviations `sqrt(2 / freedom)`.
