@@ -109,15 +109,21 @@ impl ZarrStore {
                     Owner::Nobody | Owner::This => Ok(()),
                 }
             }
-            Err(Error::Read(_, why)) if why.kind() == io::ErrorKind::NotFound => match self.owner()
-            {
-                Owner::Other => Err(Error::OtherBlocks(self.path.clone())),
-                Owner::Nobody if !is_empty(&self.path) => {
-                    let why = format!("it has files, but no {METADATA}");
-                    Err(Error::NotAStore(self.path.clone(), why))
+            Err(Error::Read(_, why)) if why.kind() == io::ErrorKind::NotFound => {
+                let (owner, is_empty) = (self.owner(), is_empty(&self.path));
+                // Another process may have created it meanwhile: the root first.
+                if Self::is_at(&self.path) {
+                    return self.agree();
                 }
-                Owner::Nobody | Owner::This => Ok(()),
-            },
+                match owner {
+                    Owner::Other => Err(Error::OtherBlocks(self.path.clone())),
+                    Owner::Nobody if !is_empty => {
+                        let why = format!("it has files, but no {METADATA}");
+                        Err(Error::NotAStore(self.path.clone(), why))
+                    }
+                    Owner::Nobody | Owner::This => Ok(()),
+                }
+            }
             Err(Error::NotAStore(..) | Error::Damaged(..))
                 if self.may_exist && self.owner() == Owner::This =>
             {
