@@ -7,6 +7,8 @@
 mod bench;
 mod branch;
 mod curve;
+#[cfg(unix)]
+mod damage;
 mod data;
 mod design;
 mod engine;

@@ -130,7 +130,7 @@ fn what_is_wrong_is_told() {
     assert!(long.len() < 200, "{long}");
 }
 
-/// The same table, as programs of several countries save it.
+/// One table in the formats of spreadsheet programs of several countries.
 #[test]
 fn separators_decimal_commas_and_encodings() {
     let wanted = Points::parse(GOOD, "p.csv").unwrap();

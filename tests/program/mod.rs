@@ -48,7 +48,7 @@ impl Place {
         Command::from_std(self.plain_command(arguments))
     }
 
-    /// The same as the standard library has it, with streams left to be set.
+    /// The program as a command of the standard library, with streams left to be set.
     pub fn plain_command(&self, arguments: &[&str]) -> std::process::Command {
         let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_whiskmap"));
         command

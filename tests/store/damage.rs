@@ -306,7 +306,7 @@ fn a_store_has_one_scene_version_engine_arithmetic_and_accuracy() {
     assert!(why.contains("differs in `tolerances`"), "{why}");
 }
 
-/// Of two threads that create a store at the same moment with two engines, one succeeds.
+/// Two threads create a store at the same moment with two engines: one succeeds.
 #[test]
 fn of_two_engines_that_create_a_store_one_succeeds() {
     let folder = tempfile::tempdir().unwrap();

@@ -2,7 +2,8 @@
 
 use super::array::Array;
 use super::check::{Owner, metadata_fault};
-use super::metadata::{self, AGREED, IDENTITY};
+use super::identity::AGREED;
+use super::metadata::{self, IDENTITY};
 use super::read::open_regular;
 use super::{METADATA, ZarrStore};
 use crate::store::{Error, Output, check_links};
@@ -18,7 +19,7 @@ impl ZarrStore {
     /// Creates the store, or joins the one that is there, and restores metadata that are missing or damaged. Returns the
     /// damaged files that it has replaced.
     ///
-    /// Of several processes that create a store at the same time one succeeds, and the others join it.
+    /// If several processes create a store at the same time, one creates it, and the others join it.
     ///
     /// # Errors
     ///

@@ -1,9 +1,18 @@
 //! The identity of a store: a hash of everything that its bytes depend on, and of each file of its blocks.
 
-use super::metadata::AGREED;
 use crate::store::attributes::sorted;
 use serde_json::{Map, Value};
 use twox_hash::XxHash3_128;
+
+/// The attributes in which all runs that fill a store must agree; the first that differs is named.
+pub(super) const AGREED: [&str; 6] = [
+    "whiskmap_version",
+    "engine",
+    "arithmetic",
+    "tolerances",
+    "channels",
+    "scene",
+];
 
 /// The XXH3-128 hash of the attributes in which all runs that fill a store agree.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

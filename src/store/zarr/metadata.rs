@@ -2,7 +2,7 @@
 
 use super::array::{Array, about};
 use super::blocks::Blocks;
-use super::identity::Identity;
+use super::identity::{AGREED, Identity};
 use super::kind::{Kind, NOT_COMPUTED};
 use crate::classify::{Regime, Status};
 use crate::scene::{Grid, Setup};
@@ -173,16 +173,6 @@ pub(super) fn coordinates(grid: &Grid) -> Result<Vec<(Array, Vec<u8>)>, String> 
     ));
     Ok(all)
 }
-
-/// The attributes in which all runs that fill a store must agree, before those that follow from them.
-pub(super) const AGREED: [&str; 6] = [
-    "whiskmap_version",
-    "engine",
-    "arithmetic",
-    "tolerances",
-    "channels",
-    "scene",
-];
 
 /// The attributes of a store, which are the same on every machine of its arithmetic.
 pub(super) fn attributes(about: &Description<'_>, scene: &Setup) -> Map<String, Value> {

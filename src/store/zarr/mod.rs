@@ -97,7 +97,7 @@ impl ZarrStore {
             return Err(Error::OtherVersion(path.to_owned(), version.to_owned()));
         }
         if text(metadata::IDENTITY)? != Identity::of(&attributes).text() {
-            let names = metadata::AGREED.join(", ");
+            let names = identity::AGREED.join(", ");
             let why = format!(
                 "its `identity` does not fit its attributes {names}: one of them was changed"
             );
