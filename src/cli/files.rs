@@ -14,8 +14,8 @@ pub const STDOUT: &str = "-";
 #[derive(Debug, Default)]
 pub struct Files {
     inputs: Vec<(PathBuf, FileId)>,
-    /// Option and path of each output.
-    outputs: Vec<(String, FileId)>,
+    /// Option and path of each output for messages, and the path.
+    outputs: Vec<(String, PathBuf, FileId)>,
 }
 
 impl Files {
@@ -81,7 +81,7 @@ impl Files {
         let own = format!("{option} {}", path.display());
         for (input, of_input) in &self.inputs {
             let is = match of_input {
-                same if *same == id => "is",
+                same if *same == id && FileId::is_confirmed(input, path) => "is",
                 folder if folders.contains(folder) => "is in",
                 _ => continue,
             };
@@ -90,12 +90,15 @@ impl Files {
                 "{own}: {is} the input {input}; name another file"
             )));
         }
-        if let Some((other, _)) = self.outputs.iter().find(|(_, other)| *other == id) {
+        let is_same = |(_, place, other): &&(String, PathBuf, FileId)| {
+            *other == id && FileId::is_confirmed(place, path)
+        };
+        if let Some((other, ..)) = self.outputs.iter().find(is_same) {
             return Err(Failure::Input(format!(
                 "{other} and {own}: must be two files"
             )));
         }
-        self.outputs.push((own, id));
+        self.outputs.push((own, path.to_owned(), id));
         Ok(())
     }
 }

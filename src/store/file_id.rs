@@ -1,6 +1,6 @@
 //! Identity of files: hard links, symbolic links and different spellings of a path name one file.
 
-use std::fs;
+use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 
 /// Identity of standard output, or of a regular file or a folder, which need not exist yet.
@@ -30,16 +30,22 @@ impl FileId {
         let id = match fs::metadata(path) {
             Ok(about) if !about.is_file() && !about.is_dir() => return None,
             #[cfg(unix)]
-            Ok(about) => {
-                use std::os::unix::fs::MetadataExt;
-                Id::Inode {
-                    device: about.dev(),
-                    inode: about.ino(),
-                }
-            }
+            Ok(about) => inode(&about),
             _ => Id::Path(resolved(path)?),
         };
         Some(Self(id))
+    }
+
+    /// Returns false if two paths with equal identities lead to two files after all: while another process replaces files, the
+    /// inode of a removed file may be that of the next new one. Both files are held open to be compared.
+    #[must_use]
+    pub fn is_confirmed(one: &Path, other: &Path) -> bool {
+        let open = |path| File::open(path).and_then(|file| Ok((file.metadata()?, file)));
+        match (open(one), open(other)) {
+            #[cfg(unix)]
+            (Ok((one, _one)), Ok((other, _other))) => inode(&one) == inode(&other),
+            _ => true,
+        }
     }
 
     /// Identity of the file at standard input, where a file is redirected to it.
@@ -57,6 +63,15 @@ impl FileId {
     }
 }
 
+#[cfg(unix)]
+fn inode(about: &fs::Metadata) -> Id {
+    use std::os::unix::fs::MetadataExt;
+    Id::Inode {
+        device: about.dev(),
+        inode: about.ino(),
+    }
+}
+
 /// The canonical path of something that need not exist: of its innermost part that does, with the rest as it is.
 fn resolved(path: &Path) -> Option<PathBuf> {
     let path = std::path::absolute(path).ok()?;
@@ -71,5 +86,24 @@ pub(super) fn folder_of(path: &Path) -> &Path {
     match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
         _ => Path::new("."),
+    }
+}
+
+#[cfg(all(test, unix))]
+#[allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_two_names_of_one_file_are_confirmed() {
+        let folder = tempfile::tempdir().unwrap();
+        let [one, hard, other] = ["one", "hard", "other"].map(|name| folder.path().join(name));
+        fs::write(&one, "").unwrap();
+        fs::hard_link(&one, &hard).unwrap();
+        assert!(FileId::is_confirmed(&one, &hard));
+        // What cannot be opened cannot be told apart.
+        assert!(FileId::is_confirmed(&one, &other));
+        fs::write(&other, "").unwrap();
+        assert!(!FileId::is_confirmed(&one, &other));
     }
 }

@@ -181,7 +181,7 @@ pub(super) fn prefix() -> String {
 }
 
 /// The host in the name of a temporary file; any other name has none.
-fn host_of(name: &str) -> Option<&str> {
+pub(super) fn host_of(name: &str) -> Option<&str> {
     let (host, random) = name.strip_prefix(PREFIX)?.split_once(DELIMITER)?;
     let is_random = random.len() == RANDOM && random.chars().all(|c| c.is_ascii_alphanumeric());
     (is_random && host.chars().all(is_of_host)).then_some(host)

@@ -1,6 +1,7 @@
 //! A folder that appears under its name when it is complete.
 
 use super::file_id::folder_of;
+use super::target::check_links;
 use super::unfinished::{Listed, RANDOM, prefix};
 use std::fs;
 use std::io;
@@ -20,8 +21,9 @@ impl UnfinishedFolder {
     ///
     /// # Errors
     ///
-    /// The folder of `target` does not exist or is not writable.
+    /// The folder of `target` does not exist, is not writable, or lies behind a link that must not be followed.
     pub fn create(target: &Path) -> io::Result<Self> {
+        check_links(folder_of(target))?;
         let prefix = prefix();
         let mut builder = tempfile::Builder::new();
         builder.prefix(&prefix).rand_bytes(RANDOM);

@@ -7,7 +7,8 @@ use std::os::unix::process::CommandExt;
 use std::process::Command;
 
 tests! {
-    Root: files_and_links_of_others, leftovers_of_others_stay;
+    Root: files_and_links_of_others, leftovers_of_others_stay,
+        folders_behind_links_of_others;
 }
 
 /// A user that is neither root nor the one who runs the tests.
@@ -58,6 +59,48 @@ fn files_and_links_of_others() {
     fs::set_permissions(place.path(""), Permissions::from_mode(0o755)).unwrap();
     good("link.csv");
     assert!(place.bytes("ours.csv").len() > 1000 && place.path("link.csv").is_symlink());
+}
+
+/// Whose link leads to the folder of an output matters as much as whose link leads to a file.
+fn folders_behind_links_of_others() {
+    let place = Place::with(SCENE);
+    fs::set_permissions(place.path(""), Permissions::from_mode(0o1777)).unwrap();
+    fs::create_dir(place.path("private")).unwrap();
+    symlink("private", place.path("out")).unwrap();
+    lchown(place.path("out"), Some(STRANGER), Some(STRANGER)).unwrap();
+    let must = "out is a symbolic link of user 54321 in a folder that others may write to";
+    let map = ["map", "scene.toml", "--engine=cpu", "-o", "out"];
+    let refused = |arguments: &[&str]| {
+        let run = place.run(arguments);
+        assert!(run.code != Some(0) && run.err.contains(must), "{run:?}");
+    };
+    refused(&map);
+    refused(&[&map[..], &["--format=zarr"]].concat());
+    let none = fs::read_dir(place.path("private")).unwrap().next();
+    assert!(none.is_none(), "{none:?}");
+
+    // A damaged block behind such a link is not removed.
+    let run = place.run(&[
+        "map",
+        "scene.toml",
+        "--engine=cpu",
+        "-o",
+        ".",
+        "--format=zarr",
+    ]);
+    assert_eq!(run.code, Some(0), "{run:?}");
+    let regimes = place.path("scene.zarr/regime");
+    fs::rename(&regimes, place.path("private/regime")).unwrap();
+    fs::set_permissions(place.path("scene.zarr"), Permissions::from_mode(0o1777)).unwrap();
+    symlink("../private/regime", &regimes).unwrap();
+    lchown(&regimes, Some(STRANGER), Some(STRANGER)).unwrap();
+    fs::write(place.path("private/regime/c.0.0"), "damaged").unwrap();
+    let run = place.run(&["status", "scene.zarr", "--repair"]);
+    assert!(
+        run.code != Some(0) && run.err.contains("regime is a symbolic link of user 54321"),
+        "{run:?}"
+    );
+    assert_eq!(place.bytes("private/regime/c.0.0"), b"damaged");
 }
 
 fn leftovers_of_others_stay() {

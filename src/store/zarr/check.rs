@@ -7,7 +7,7 @@ use super::kind::NOT_COMPUTED;
 use super::metadata::CELLS;
 use super::read::open_regular;
 use crate::classify::Regime;
-use crate::store::Error;
+use crate::store::{Error, check_links};
 use rayon::prelude::*;
 use std::fs;
 use std::io::{self, Read};
@@ -149,7 +149,8 @@ impl ZarrStore {
         // Without the last file the block is not there, whatever becomes of the others.
         for array in self.arrays.iter().rev() {
             let file = self.file(array, block);
-            match fs::remove_file(&file) {
+            let folder = self.path.join(&array.name);
+            match check_links(&folder).and_then(|()| fs::remove_file(&file)) {
                 Err(why) if why.kind() != io::ErrorKind::NotFound => {
                     return Err(Error::Write(file, why));
                 }

@@ -6,6 +6,7 @@ use super::identity::AGREED;
 use super::metadata::{self, IDENTITY};
 use super::read::open_regular;
 use super::{METADATA, ZarrStore};
+use crate::store::unfinished::host_of;
 use crate::store::{Error, Output, check_links};
 use serde_json::{Map, Value};
 use std::fs;
@@ -194,7 +195,7 @@ pub(super) fn attributes(path: &Path) -> Result<Map<String, Value>, Error> {
 fn is_empty(folder: &Path) -> bool {
     let names = fs::read_dir(folder).into_iter().flatten().flatten();
     let mut names = names.map(|entry| entry.file_name());
-    names.all(|name| name.to_string_lossy().starts_with(".whiskmap-"))
+    names.all(|name| name.to_str().and_then(host_of).is_some())
 }
 
 /// Writes a file of metadata again. Returns true if it was there.
