@@ -9,7 +9,6 @@ use rayon::prelude::*;
 use std::path::Path;
 use std::str::FromStr;
 use std::time::Instant;
-use whiskmap::account::carried;
 use whiskmap::integrate::Engine;
 use whiskmap::map::{self, Panel};
 use whiskmap::plan::Plan;
@@ -105,7 +104,7 @@ impl Run<'_> {
         let mut packed: Vec<PackedPanel> = Vec::new();
         let mut keep = |panels: Vec<Panel>| {
             let panels = panels.par_iter();
-            let panels = panels.map_init(carried(), |_, panel| store.pack(panel));
+            let panels = panels.map(|panel| store.pack(panel));
             packed.extend(panels.collect::<Result<Vec<_>, _>>()?);
             if let Some((block, whiskers)) = next
                 && packed.len() == whiskers

@@ -1,7 +1,6 @@
 //! What an engine is asked: the cells of some references, with the trajectories of these.
 
 use super::Reference;
-use crate::account::carried;
 use crate::rod::{Effects, Rod};
 use crate::shooting::Resolution;
 use crate::shooting::batch::{InitialCondition, StepStart, step_starts};
@@ -51,7 +50,7 @@ impl Question {
         references: Vec<Reference>,
     ) -> Self {
         let parts = references.par_chunks(TOGETHER);
-        let parts = parts.map_init(carried(), |_, references| {
+        let parts = parts.map(|references| {
             let conditions = references.iter().map(|reference| InitialCondition {
                 rod: &rods[reference.rod as usize],
                 tau: reference.tau,

@@ -7,7 +7,6 @@ use super::panel::RowMut;
 use super::runs::{Run, Source};
 use super::sliding::{self, FoundRow, FoundState};
 use super::{Face, Panel, doubt};
-use crate::account::carried;
 use crate::classify::{Regime, RowBoundary, Status};
 use crate::scene::Swept;
 use crate::shooting::Reader;
@@ -28,7 +27,7 @@ pub fn fill(
     panels
         .par_iter_mut()
         .enumerate()
-        .for_each_init(carried(), |_, (index, panel)| {
+        .for_each(|(index, panel)| {
             let units = whiskers[index].whisker.units();
             let faces_here = index * faces_per_panel..(index + 1) * faces_per_panel;
             // The columns of two faces may be in one row of a panel.
@@ -39,25 +38,22 @@ pub fn fill(
                 let Some(first) = rows.first() else { continue };
                 let face = &faces[number];
                 let into = panel.rows_mut(width, first.row..first.row + rows.len());
-                let found = into
-                    .into_par_iter()
-                    .zip(rows)
-                    .map_init(carried(), |_, (into, row)| {
-                        let reader = Reader::new(units, &face.sheet.rod);
-                        let readings = has_state.then(|| Readings::new(reader, face, row.row));
-                        let sheet = &face.sheet;
-                        let crossings = &sheet.crossings[row.row];
-                        let boundary = RowBoundary::new(sheet.touches(row.row), crossings);
-                        let answers = RowAnswers {
-                            settled,
-                            face,
-                            row,
-                            boundary,
-                            readings,
-                            into,
-                        };
-                        answers.write()
-                    });
+                let found = into.into_par_iter().zip(rows).map(|(into, row)| {
+                    let reader = Reader::new(units, &face.sheet.rod);
+                    let readings = has_state.then(|| Readings::new(reader, face, row.row));
+                    let sheet = &face.sheet;
+                    let crossings = &sheet.crossings[row.row];
+                    let boundary = RowBoundary::new(sheet.touches(row.row), crossings);
+                    let answers = RowAnswers {
+                        settled,
+                        face,
+                        row,
+                        boundary,
+                        readings,
+                        into,
+                    };
+                    answers.write()
+                });
                 let found: Vec<FoundRow> = found.flatten_iter().collect();
                 sliding::mark(face, &found, width, &mut panel.status);
             }

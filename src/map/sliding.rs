@@ -1,7 +1,6 @@
 //! Which states of a map slide as friction is computed for: the others have a status of their own.
 
 use super::Face;
-use crate::account::carried;
 use crate::classify::{Dragged, Regime, Sliding, Status};
 use crate::sheet::{LevelCurve, together};
 use glam::DVec2;
@@ -53,17 +52,14 @@ impl FoundRow {
 
 /// Writes the statuses of the states of `rows` of `face` into those of a panel that is so many cells wide.
 pub fn mark(face: &Face, rows: &[FoundRow], width: usize, status: &mut [u32]) {
-    let marks = rows
-        .par_chunks(together(rows.len()))
-        .map_init(carried(), |_, rows| {
-            let levels: Vec<LevelCurve> =
-                rows.iter().map(|row| face.sheet.level(row.row)).collect();
-            let dragged = Dragged::of(&levels).into_iter();
-            rows.iter().zip(dragged).flat_map(|(row, dragged)| {
-                let marks = row.marks(face, dragged.as_ref()).into_iter();
-                marks.map(|(column, status)| (row.row * width + column, status))
-            })
-        });
+    let marks = rows.par_chunks(together(rows.len())).map(|rows| {
+        let levels: Vec<LevelCurve> = rows.iter().map(|row| face.sheet.level(row.row)).collect();
+        let dragged = Dragged::of(&levels).into_iter();
+        rows.iter().zip(dragged).flat_map(|(row, dragged)| {
+            let marks = row.marks(face, dragged.as_ref()).into_iter();
+            marks.map(|(column, status)| (row.row * width + column, status))
+        })
+    });
     let marks: Vec<(usize, Status)> = marks.flatten_iter().collect();
     for (cell, of_cell) in marks {
         status[cell] = of_cell.code();

@@ -8,7 +8,6 @@ use super::solved::{RowsAsked, Solved};
 use super::stages::{Stage, Stages};
 use super::summary::Audit;
 use super::work::{Place, Work};
-use crate::account::carried;
 use crate::integrate::{Question, on_gpu};
 use crate::refine::{self, RowOfCells, Shot};
 use crate::sheet::Sheet;
@@ -107,7 +106,7 @@ impl<'a> Rows<'a> {
     fn finish(&self, solved: Solved, stages: &Stages) -> (Settled, Audit) {
         let work: Vec<Work> = stages.of(Stage::Guesses, || {
             let rows = self.places.par_iter().enumerate();
-            let work = rows.map_init(carried(), |_, (i, place)| place.work(i, &solved));
+            let work = rows.map(|(i, place)| place.work(i, &solved));
             work.collect()
         });
         let refined = stages.of(Stage::Refinement, || {

@@ -1,7 +1,6 @@
 //! What a run says about itself when it is done.
 
 use super::{Panel, Stage};
-use crate::account::carried;
 use crate::classify::{Regime, Status};
 use crate::integrate::{EngineError, Outcome};
 use rayon::prelude::*;
@@ -101,7 +100,7 @@ impl Summary {
             .zip(panel.status.par_chunks(AT_ONCE));
         let numbers = panel.residual.par_chunks(AT_ONCE);
         let parts = parts.zip(numbers.zip(panel.newton_steps.par_chunks(AT_ONCE)));
-        let parts = parts.map_init(carried(), |_, ((regimes, statuses), (residuals, steps))| {
+        let parts = parts.map(|((regimes, statuses), (residuals, steps))| {
             let mut part = Self::default();
             part.count_cells(regimes, statuses, residuals, steps);
             part

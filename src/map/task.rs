@@ -3,7 +3,6 @@
 use super::Face;
 use super::pushes::Pushes;
 use super::stages::Stages;
-use crate::account::carried;
 use crate::plan::{CELLS_IN_FLIGHT, Plan};
 use crate::scene::{Scene, Swept};
 use crate::sheet::Sheet;
@@ -74,7 +73,7 @@ impl<'a> Task<'a> {
             let sheet = Sheet::new(self.plan.method, &rod, pushes.side, &distances);
             Face { pushes, sheet }
         };
-        let faces = pairs.par_iter().map_init(carried(), |_, pair| face(pair));
+        let faces = pairs.par_iter().map(|pair| face(pair));
         faces.collect()
     }
 }

@@ -11,7 +11,6 @@ mod references;
 
 pub use references::{RowOfCells, references};
 
-use crate::account::carried;
 use crate::sheet::Sheet;
 use crate::shooting::FullState;
 use crate::shooting::batch::{Method, chunk_size};
@@ -124,7 +123,7 @@ pub fn refine(
     cells
         .par_chunks_mut(size)
         .zip(shots.par_chunks(size).zip(starts.par_chunks(size)))
-        .for_each_init(carried(), |_, (cells, (shots, starts))| {
+        .for_each(|(cells, (shots, starts))| {
             refine_chunk(method, sheets, shots, starts, cells);
         });
     cells

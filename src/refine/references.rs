@@ -6,7 +6,6 @@
 
 use super::Shot;
 use super::exact::{Exact, exact};
-use crate::account::carried;
 use crate::integrate::{MOST_TRAJECTORY_STEPS, Reference, RowNumbers};
 use crate::numerics::taylor::around_nodes;
 use crate::numerics::{WIDTH, nearest_turn};
@@ -38,7 +37,7 @@ pub struct RowOfCells<'a> {
 #[must_use]
 pub fn references(method: Method, sheets: &[&Sheet], rows: &[RowOfCells]) -> Vec<Vec<Reference>> {
     let shots = |row: &RowOfCells| node_shots(sheets[row.sheet as usize], row);
-    let shots = rows.par_iter().map_init(carried(), |_, row| shots(row));
+    let shots = rows.par_iter().map(|row| shots(row));
     let shots: Vec<Option<Vec<Shot>>> = shots.collect();
     let flat: Vec<Shot> = shots.iter().flatten().flatten().copied().collect();
     let found = exact(method, sheets, &flat);
@@ -53,7 +52,7 @@ pub fn references(method: Method, sheets: &[&Sheet], rows: &[RowOfCells]) -> Vec
         .collect();
     rows.par_iter()
         .zip(nodes)
-        .map_init(carried(), |_, (row, nodes)| {
+        .map(|(row, nodes)| {
             let found: Option<Vec<Exact>> = found[nodes].iter().copied().collect();
             let sheet = sheets[row.sheet as usize];
             let is_short = |at: &Exact| {

@@ -23,7 +23,6 @@ pub use fold::FoldPoint;
 pub use lattice::guesses::Guess;
 pub use row::{Crossing, Edge, Row};
 
-use crate::account::carried;
 use crate::rod::{Rest, Rod, Side};
 use crate::shooting::ShootingMap;
 use crate::shooting::batch::Method;
@@ -158,7 +157,7 @@ impl Sheet {
         let walked: Vec<Vec<WalkedPiece>> = rows
             .par_chunks(together(distances.len()))
             .zip(crossings.par_chunks_mut(together(distances.len())))
-            .map_init(carried(), |_, rows| walk(rows))
+            .map(|rows| walk(rows))
             .flatten_iter()
             .collect();
         let tip = rod.tau_tip();

@@ -4,7 +4,6 @@ use super::attributes::{self, Description, attribute};
 use super::layout::{self, Channel, Layout, Part, SAMPLE_BYTES};
 use super::tally::{self, Counts};
 use super::{Channels, Error, Output, Panel, header, zip};
-use crate::account::carried;
 use crate::classify::Regime;
 use crate::map::{Audit, EngineCells};
 use crate::scene::Grid;
@@ -118,7 +117,7 @@ impl MapWriter {
         let part = |task: usize| task % of_panel / blocks;
         let chunks: Vec<Vec<u8>> = (0..panels.len() * of_panel)
             .into_par_iter()
-            .map_init(carried(), |_, task| {
+            .map(|task| {
                 let (panel, part) = (task / of_panel, part(task));
                 let channels = &parts[panel][part].channels;
                 self.chunk(first + panel, part, task % blocks, channels)
@@ -143,7 +142,7 @@ impl MapWriter {
     #[must_use]
     pub fn sample(grid: &Grid, channels: Channels, panels: &[Panel]) -> u64 {
         let layout = Layout::of(grid);
-        let packed = panels.par_iter().map_init(carried(), |_, panel| {
+        let packed = panels.par_iter().map(|panel| {
             let parts = layout::parts(panel, channels).into_iter();
             let bytes = parts.map(|part| {
                 let blocks = 0..layout.blocks_per_panel();

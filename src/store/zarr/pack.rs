@@ -3,7 +3,6 @@
 use super::array::Array;
 use super::files::write;
 use super::{ZarrStore, shard};
-use crate::account::carried;
 use crate::classify::Regime;
 use crate::scene::Scene;
 use crate::store::{Channels, Error, Panel, STATE_CHANNELS};
@@ -28,7 +27,7 @@ impl ZarrStore {
             packed.map_err(Error::at(&self.path.join(&array.name), Error::Pack))
         };
         let arrays = self.arrays.par_iter();
-        let arrays = arrays.map_init(carried(), |_, array| chunks(array));
+        let arrays = arrays.map(|array| chunks(array));
         arrays.collect::<Result<_, _>>().map(PackedPanel)
     }
 
@@ -72,7 +71,7 @@ impl ZarrStore {
         };
         let last = self.arrays.len() - 1;
         let others = self.arrays[..last].par_iter().enumerate();
-        others.try_for_each_init(carried(), |_, other| put(other))?;
+        others.try_for_each(|other| put(other))?;
         put((last, &self.arrays[last]))
     }
 }

@@ -20,7 +20,6 @@ pub use output_set::OutputSet;
 pub use steps::{StepStart, step_starts};
 
 use super::Resolution;
-use crate::account::carried;
 use crate::numerics::Unit;
 use crate::rod::{Effects, Rod};
 use rayon::prelude::*;
@@ -160,7 +159,7 @@ impl Batch {
             outputs
                 .par_chunks_mut(size)
                 .zip(conditions.par_chunks(size))
-                .for_each_init(carried(), |_, (outputs, conditions)| {
+                .for_each(|(outputs, conditions)| {
                     self.chunk(conditions, outputs);
                 });
         }

@@ -6,7 +6,6 @@
 use super::block_key::BlockKey;
 use super::kernel::{Block, Steps};
 use super::{InitialCondition, Method, OutputSet, SMALLEST_CHUNK};
-use crate::account::carried;
 use crate::numerics::{Unit, WIDTH};
 use rayon::prelude::*;
 
@@ -45,9 +44,7 @@ pub fn shoot<O: OutputSet>(
             keep(members, compute(members));
         }
     } else {
-        let computed = blocks
-            .par_iter()
-            .map_init(carried(), |_, members| compute(members));
+        let computed = blocks.par_iter().map(|members| compute(members));
         let computed: Vec<_> = computed.collect();
         for (members, computed) in blocks.iter().zip(computed) {
             keep(members, computed);
