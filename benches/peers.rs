@@ -248,6 +248,6 @@ fn cell(pool: &ThreadPool) -> Value {
         "steps": steps.resolution.least,
         "cells": summary.cells(),
         "states": summary.refined,
-        "cpu_seconds": Stage::ALL.map(|(stage, name)| json!({name: summary.cpu_seconds(stage)})),
+        "stage_seconds": Stage::ALL.map(|(stage, name)| json!({name: summary.stage_seconds(stage)})),
     })
 }

@@ -2,7 +2,7 @@
 //! `cargo bench --bench sizes -- [runs]`.
 //!
 //! `scenes/cone.toml` on one thread, without a file: from 64 x 64 cells to 2048 x 2048, then 128 x 128 for each of 1 to 1024
-//! whiskers. Microseconds of the CPU a cell, stage by stage, of the fastest of some runs in turn; a small map is repeated, so that each run
+//! whiskers. Wall microseconds per cell, stage by stage, of the fastest of some runs in turn; a small map is repeated, so that each run
 //! takes long enough for the clock.
 #![allow(
     clippy::print_stdout,
@@ -86,7 +86,7 @@ impl Map {
             let discard = &mut |_| Ok::<(), Infallible>(());
             let Ok(summary) = map::run(&self.scene, &self.plan, None, &mut |_| (), discard);
             for (sum, (stage, _)) in seconds.iter_mut().zip(Stage::ALL) {
-                *sum += summary.cpu_seconds(stage);
+                *sum += summary.stage_seconds(stage);
             }
         }
         let cells = (repeats * self.plan.cells) as f64;

@@ -56,7 +56,7 @@ pub mod uncertainty;
 #[cfg(feature = "fit")]
 pub use front::fit;
 pub use front::{Error, Map, Options, branch, curve, for_each_panel, map, shape};
-pub use whiskmap_mechanics::{account, numerics, rod, shooting};
+pub use whiskmap_mechanics::{numerics, rod, shooting};
 
 /// README's code compiles.
 #[cfg(doctest)]

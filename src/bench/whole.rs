@@ -3,7 +3,6 @@
 use super::gpu::{Candidate, candidates};
 use super::watch::{Timing, median};
 use super::{Report, named, pool};
-use crate::account::thread_time;
 use crate::integrate::gpu::Gpu;
 use crate::integrate::{Engine, EngineError, on_gpu};
 use crate::map::{self, Panel, Stage};
@@ -15,7 +14,6 @@ use serde::Serialize;
 use std::convert::Infallible;
 use std::fmt;
 use std::hint::black_box;
-use std::time::Duration;
 
 /// A whole map by one engine, packed but not written.
 #[derive(Clone, Debug, Serialize)]
@@ -26,33 +24,33 @@ pub struct WholeMap {
     pub seconds: Timing,
     /// What they were spent on.
     pub stages_ms: MapStages,
-    /// CPU time of the host's threads over all cells, in microseconds. Threads of a device in software are not the host's.
+    /// CPU microseconds of the process per cell; 0 where the system has no such clock. A software adapter's threads are included.
     pub host_us_per_cell: f64,
-    /// The part of the host's time, packing included, that a device could still take: guesses and refinement.
+    /// Guesses and refinement as a part of all stages: what an engine could still take over.
     pub device_can_take: f64,
     /// Cells that the CPU refined after the engine had handed them over.
     pub handed_over: u64,
 }
 
-/// Milliseconds of a map for each of the host's threads: their CPU time for the stages, over their number. Medians of the runs.
+/// Wall milliseconds of a map by stage, medians of the runs. Packing and the engine work beside the other stages.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
 pub struct MapStages {
     /// Folds, lattices and boundaries.
     pub sheets: f64,
     /// Guesses from the lattice, of cells that no device solves.
     pub guesses: f64,
-    /// References of rows, and the CPU's part in asking a device about their cells.
-    pub references: f64,
-    /// The engine, from its calls to its answers, on the wall.
+    /// Base points of rows.
+    pub base_points: f64,
+    /// The engine, from its first request to its last response.
     pub device: f64,
     /// Newton's method.
     pub refinement: f64,
-    /// Regimes and units, and the audit's verdicts on a device's cells.
-    pub judging: f64,
+    /// Audit, regimes and units.
+    pub classification: f64,
     /// Packing.
     pub packing: f64,
-    /// What they were not at work.
-    pub idle: f64,
+    /// Waiting for the engine.
+    pub waiting: f64,
 }
 
 /// Which engine is done first with whole maps.
@@ -180,37 +178,27 @@ fn run(scene: &Scene, plan: &Plan, gpu: Option<&mut Gpu>) -> Result<Sample, Engi
         black_box(MapWriter::sample(&scene.grid, plan.channels, &panels));
         Ok::<(), Infallible>(())
     };
-    let before = host_time();
     let Ok(summary) = map::run(scene, plan, engine, &mut |_| (), &mut keep);
-    let host = host_time() - before + summary.engine_host_seconds();
-    let seconds = summary.wall_seconds();
     if let Some(failure) = summary.engine_failure {
         return Err(failure);
     }
-    let threads = rayon::current_num_threads() as f64;
-    let ms = |stage| 1e3 * summary.cpu_seconds(stage) / threads;
+    let ms = |stage| 1e3 * summary.stage_seconds(stage);
     let cells = summary.engine_cells;
     Ok(Sample {
-        seconds,
-        host,
+        seconds: summary.wall_seconds(),
+        host: summary.cpu_seconds().unwrap_or_default(),
         stages: MapStages {
             sheets: ms(Stage::Sheets),
             guesses: ms(Stage::Guesses),
-            references: ms(Stage::References),
+            base_points: ms(Stage::BasePoints),
             device: 1e3 * summary.device_seconds(),
             refinement: ms(Stage::Refinement),
-            judging: ms(Stage::Judging),
+            classification: ms(Stage::Classification),
             packing: ms(Stage::Packing),
-            idle: 1e3 * f64::max(seconds - host / threads, 0.0),
+            waiting: 1e3 * summary.waiting_seconds(),
         },
         handed_over: cells.near_edge + cells.far + cells.missed + cells.not_finite,
     })
-}
-
-/// CPU seconds that the threads of the current pool have had.
-fn host_time() -> f64 {
-    let times = rayon::broadcast(|_| thread_time());
-    times.iter().map(Duration::as_secs_f64).sum()
 }
 
 fn summed_up(engine: String, cells: usize, samples: &[Sample]) -> WholeMap {
@@ -218,15 +206,15 @@ fn summed_up(engine: String, cells: usize, samples: &[Sample]) -> WholeMap {
     let stages = MapStages {
         sheets: of(|run| run.stages.sheets),
         guesses: of(|run| run.stages.guesses),
-        references: of(|run| run.stages.references),
+        base_points: of(|run| run.stages.base_points),
         device: of(|run| run.stages.device),
         refinement: of(|run| run.stages.refinement),
-        judging: of(|run| run.stages.judging),
+        classification: of(|run| run.stages.classification),
         packing: of(|run| run.stages.packing),
-        idle: of(|run| run.stages.idle),
+        waiting: of(|run| run.stages.waiting),
     };
     let for_devices = stages.guesses + stages.refinement;
-    let for_cpus = stages.sheets + stages.references + stages.judging + stages.packing;
+    let for_cpus = stages.sheets + stages.base_points + stages.classification + stages.packing;
     WholeMap {
         engine,
         seconds: Timing::of(samples.iter().map(|run| run.seconds)),

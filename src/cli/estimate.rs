@@ -4,7 +4,6 @@ use super::failure::Failure;
 use clap::ValueEnum;
 use std::convert::Infallible;
 use std::time::Instant;
-use whiskmap::account::Account;
 use whiskmap::integrate::Engine;
 use whiskmap::map::{self, Panel, Stage, Summary};
 use whiskmap::plan::{Plan, SAMPLE_LINES, SAMPLE_VALUES};
@@ -13,7 +12,7 @@ use whiskmap::store::{self, MapWriter, ZarrStore};
 
 /// What a map would take.
 pub struct Estimate {
-    /// CPU seconds on each of the threads, without the files.
+    /// Wall seconds on all threads, without the files.
     pub seconds: f64,
     /// Newton steps per cell, each one trajectory.
     pub steps_per_cell: f64,
@@ -25,7 +24,7 @@ pub struct Files {
     pub format: Format,
     /// Bytes on disk.
     pub bytes: f64,
-    /// CPU seconds on each of the threads to pack them.
+    /// Wall seconds on all threads to pack them.
     pub seconds: f64,
 }
 
@@ -63,25 +62,26 @@ pub fn files(scene: &Scene, plan: &Plan, formats: &[Format]) -> Result<Vec<Files
     let whiskers = scene.thinned(1, SAMPLE_VALUES).whisker_count();
     let lines = (PACKED_CELLS / whiskers).isqrt().max(1);
     let (small, small_plan) = thinned(scene, plan, [lines, lines])?;
-    let packed = formats
-        .iter()
-        .map(|format| (*format, Account::default(), 0));
-    let mut packed: Vec<(Format, Account, u64)> = packed.collect();
-    let mut keep = |panels: Vec<Panel>| {
-        for (format, packing, bytes) in &mut packed {
-            *bytes += packing.of(|| format.pack(&small, &small_plan, &panels))?;
-        }
-        Ok::<(), store::Error>(())
+    let mut groups: Vec<Vec<Panel>> = Vec::new();
+    let mut keep = |panels| {
+        groups.push(panels);
+        Ok::<(), Infallible>(())
     };
-    map::run(&small, &small_plan, None, &mut |_| (), &mut keep)?;
+    let Ok(_) = map::run(&small, &small_plan, None, &mut |_| (), &mut keep);
     let by_cells = plan.cells as f64 / small_plan.cells as f64;
-    let threads = rayon::current_num_threads() as f64;
-    let files = packed.into_iter().map(|(format, packing, bytes)| Files {
-        format,
-        bytes: bytes as f64 * by_cells,
-        seconds: packing.time().as_secs_f64() * by_cells / threads,
+    let packed = formats.iter().map(|format| {
+        let start = Instant::now();
+        let mut bytes = 0;
+        for panels in &groups {
+            bytes += format.pack(&small, &small_plan, panels)?;
+        }
+        Ok(Files {
+            format: *format,
+            bytes: bytes as f64 * by_cells,
+            seconds: start.elapsed().as_secs_f64() * by_cells,
+        })
     });
-    Ok(files.collect())
+    packed.collect()
 }
 
 /// A sample of at most so many push angles and distances, and its plan.
@@ -101,7 +101,7 @@ const FIRST_LINES: usize = 8;
 /// From one sample to the next: so many times as many push angles, and distances.
 const DENSER: usize = 2;
 
-/// Measures samples of `scene` on the CPU alone, each [`DENSER`] than the one before, and scales the last one's CPU time to `plan`: sheets
+/// Measures samples of `scene` on the CPU alone, each [`DENSER`] than the one before, and scales the last one's stages to `plan`: sheets
 /// by whiskers, sides and distances, the rest by cells. All samples, but for the first, take so many `seconds` together, as the ones
 /// before foretell.
 pub fn estimate(scene: &Scene, plan: &Plan, seconds: f64) -> Result<Estimate, Failure> {
@@ -196,11 +196,11 @@ impl Sample {
         };
         let by_rows = rows(scene, plan) / rows(&self.scene, &self.plan);
         let seconds = Stage::ALL.map(|(stage, _)| match stage {
-            Stage::Sheets => self.summary.cpu_seconds(stage) * by_rows,
-            _ => self.summary.cpu_seconds(stage) * self.by_cells(plan),
+            Stage::Sheets => self.summary.stage_seconds(stage) * by_rows,
+            _ => self.summary.stage_seconds(stage) * self.by_cells(plan),
         });
         Estimate {
-            seconds: seconds.iter().sum::<f64>() / rayon::current_num_threads() as f64,
+            seconds: seconds.iter().sum(),
             steps_per_cell: self.summary.steps as f64 / self.summary.cells() as f64,
         }
     }

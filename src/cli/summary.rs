@@ -2,7 +2,6 @@
 
 use std::io::Write;
 use std::path::PathBuf;
-use std::time::Duration;
 use whiskmap::classify::Regime;
 use whiskmap::map::{Stage, Summary};
 use whiskmap::scene::Scene;
@@ -64,15 +63,13 @@ pub fn print(
     )?;
     let rate = summary.cells() as f64 / seconds;
     writeln!(out, "{rate:>12.0}  cells/s, in {seconds:.2} s")?;
-    let stages = Stage::ALL.map(|(stage, name)| (name, summary.cpu_seconds(stage)));
-    let of_stages: f64 = stages.iter().map(|(_, seconds)| seconds).sum();
-    let all = cpu_time().map_or(of_stages, |time| time.as_secs_f64());
-    let other = ("other", f64::max(all - of_stages, 0.0));
-    write!(out, "{all:>12.2}  s of all threads:")?;
-    for (name, seconds) in stages.into_iter().chain([other]) {
-        write!(out, " {name} {seconds:.2}")?;
+    let stages =
+        Stage::ALL.map(|(stage, name)| format!("{name} {:.2}", summary.stage_seconds(stage)));
+    let (wall, stages) = (summary.wall_seconds(), stages.join(", "));
+    writeln!(out, "{wall:>12.2}  s for the stages: {stages}")?;
+    if let Some(cpu) = summary.cpu_seconds() {
+        writeln!(out, "{cpu:>12.2}  CPU s of all threads meanwhile")?;
     }
-    writeln!(out)?;
     if summary.device_seconds() > 0.0 {
         writeln!(
             out,
@@ -85,16 +82,4 @@ pub fn print(
         writeln!(out, "{}", file.display())?;
     }
     Ok(())
-}
-
-/// CPU time of the process, where the system tells.
-#[cfg(unix)]
-fn cpu_time() -> Option<Duration> {
-    let time = rustix::time::clock_gettime(rustix::time::ClockId::ProcessCPUTime);
-    Some(Duration::new(time.tv_sec as u64, time.tv_nsec as u32))
-}
-
-#[cfg(not(unix))]
-const fn cpu_time() -> Option<Duration> {
-    None
 }

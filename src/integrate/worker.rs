@@ -4,7 +4,6 @@
 //! ends after one failure however many cells it has left.
 
 use super::{CellDifference, Engine, EngineError, Question};
-use crate::account::{Account, thread_time};
 use std::collections::VecDeque;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
@@ -19,8 +18,6 @@ struct Reply {
     answers: Result<Vec<CellDifference>, EngineError>,
     /// For which it had something to do since the last reply.
     busy: Duration,
-    /// CPU time of its thread since it began.
-    host: Duration,
 }
 
 /// The thread of an engine, as those see it who ask.
@@ -34,22 +31,15 @@ pub struct Worker {
     pub failure: Option<EngineError>,
     /// For which the engine had something to do.
     pub busy: Duration,
-    /// CPU time of its thread.
-    pub host: Duration,
 }
 
 impl Worker {
-    /// Does `work` with a worker, whose thread it outlives: with `engine`, if there is one, on whose part of the CPU's time `account` is
-    /// kept.
-    pub fn with<R>(
-        engine: Option<&mut dyn Engine>,
-        account: &Account,
-        work: impl FnOnce(Self) -> R,
-    ) -> R {
+    /// Does `work` with a worker for `engine`, whose thread ends before this returns.
+    pub fn with<R>(engine: Option<&mut dyn Engine>, work: impl FnOnce(Self) -> R) -> R {
         thread::scope(|scope| {
             let (questions, asked) = channel();
             let (reply, replies) = channel();
-            let serve = |engine| scope.spawn(move || serve(engine, account, &asked, &reply));
+            let serve = |engine| scope.spawn(move || serve(engine, &asked, &reply));
             let thread = engine.map(serve);
             let done = work(Self {
                 questions: thread.is_some().then_some(questions),
@@ -57,7 +47,6 @@ impl Worker {
                 cells: VecDeque::new(),
                 failure: None,
                 busy: Duration::ZERO,
-                host: Duration::ZERO,
             });
             // A thread that has panicked is a failure by now, or was not needed any more.
             let _ = thread.map(ScopedJoinHandle::join);
@@ -89,7 +78,6 @@ impl Worker {
             return self.give_up(EngineError::Device(ended));
         };
         self.busy += reply.busy;
-        self.host = reply.host;
         match reply.answers {
             Ok(answers) if answers.len() == asked => Some(answers),
             Ok(answers) => {
@@ -114,14 +102,8 @@ impl Worker {
 }
 
 /// Has `engine` answer what it is `asked` until there is nobody to ask, or to reply to. Unless it fails, nothing is left under way.
-fn serve(
-    engine: &mut dyn Engine,
-    account: &Account,
-    asked: &Receiver<Arc<Question>>,
-    reply: &Sender<Reply>,
-) {
+fn serve(engine: &mut dyn Engine, asked: &Receiver<Arc<Question>>, reply: &Sender<Reply>) {
     let (mut under_way, mut is_heard) = (0, true);
-    let begun = thread_time();
     let mut since = Instant::now();
     loop {
         let mut taken_on = Ok(());
@@ -134,20 +116,19 @@ fn serve(
             if under_way == 0 {
                 since = Instant::now();
             }
-            taken_on = account.of(|| engine.ask(question));
+            taken_on = engine.ask(question);
             under_way += 1;
         }
         if under_way == 0 {
             return;
         }
-        let answers = taken_on.and_then(|()| account.of(|| engine.answer()));
+        let answers = taken_on.and_then(|()| engine.answer());
         under_way -= 1;
         let has_failed = answers.is_err();
         let now = Instant::now();
         let said = reply.send(Reply {
             answers,
             busy: now - since,
-            host: thread_time().saturating_sub(begun),
         });
         since = now;
         if has_failed {
@@ -213,7 +194,7 @@ mod tests {
         }
         drop(questions);
         let replies = is_heard.then_some(replies);
-        serve(&mut engine, &Account::default(), &asked, &reply);
+        serve(&mut engine, &asked, &reply);
         let heard = replies.map_or(0, |replies| replies.try_iter().count());
         (engine.under_way, engine.answers, heard)
     }
@@ -236,7 +217,7 @@ mod tests {
             most: 1,
             panics: true,
         };
-        let heard = Worker::with(Some(&mut engine), &Account::default(), |mut worker| {
+        let heard = Worker::with(Some(&mut engine), |mut worker| {
             let answered = [(); 3].map(|()| {
                 worker.ask(Arc::default());
                 worker.answers().is_some()

@@ -27,6 +27,7 @@ pub use panel::Panel;
 use pipeline::Pipeline;
 use pushes::Pushes;
 pub use stages::Stage;
+use stages::{StageTimes, process_time};
 use std::time::Instant;
 pub use summary::{Audit, EngineCells, Summary};
 use task::Task;
@@ -52,15 +53,15 @@ pub fn run<E: Send>(
     settled: &mut dyn FnMut(usize),
     keep: &mut (dyn FnMut(Vec<Panel>) -> Result<(), E> + Send),
 ) -> Result<Summary, E> {
-    let start = Instant::now();
+    let (start, cpu_start) = (Instant::now(), process_time());
     let task = Task::new(scene, plan, engine.is_some());
     let resolution = engine
         .as_ref()
         .map(|own| own.resolution(plan.method.resolution));
-    let account = task.stages.account(Stage::References);
-    let summary = Worker::with(engine, account, |worker| {
+    let mut packing = StageTimes::default();
+    let summary = Worker::with(engine, |worker| {
         let mut pipeline = Pipeline::new(&task, worker, resolution);
-        let mut keep = |panels| task.stages.of(Stage::Packing, || keep(panels));
+        let mut keep = |panels| packing.time(Stage::Packing, || keep(panels));
         let mut finished: Option<Vec<Panel>> = None;
         for _ in plan.groups() {
             let (before, mut kept) = (finished.take(), Ok(()));
@@ -74,8 +75,11 @@ pub fn run<E: Send>(
         Ok(pipeline.finish())
     })?;
     Ok(Summary {
-        stages: task.stages.times(),
+        packing: packing.of(Stage::Packing),
         wall: start.elapsed(),
+        cpu: process_time()
+            .zip(cpu_start)
+            .map(|(end, start)| end - start),
         ..summary
     })
 }

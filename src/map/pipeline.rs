@@ -5,7 +5,7 @@
 
 use super::panel::Panel;
 use super::solved::{RowsAsked, Solved};
-use super::stages::Stage;
+use super::stages::{Stage, StageTimes};
 use super::strip;
 use super::task::{Group, Task};
 use super::{Audit, Summary, answers};
@@ -36,13 +36,17 @@ struct Strips<'a> {
 
 impl<'a> Strips<'a> {
     /// The next one, with references in the steps of `resolution` if there is an engine to ask.
-    fn prepare(&mut self, resolution: Option<Resolution>) -> Option<Strip<'a>> {
+    fn prepare(
+        &mut self,
+        resolution: Option<Resolution>,
+        times: &mut StageTimes,
+    ) -> Option<Strip<'a>> {
         let task = self.task;
         let (group, from) = match self.begun.take() {
             Some(begun) => begun,
             None => {
                 let whiskers = self.groups.next()?;
-                let group = task.stages.of(Stage::Sheets, || task.group(whiskers));
+                let group = times.time(Stage::Sheets, || task.group(whiskers));
                 (Arc::new(group), 0)
             }
         };
@@ -54,7 +58,7 @@ impl<'a> Strips<'a> {
         if let Some(resolution) = resolution {
             let method = task.plan.method;
             let ask = || strip::ask(method, resolution, &task.angles, &group.faces, &rows);
-            asked = task.stages.of(Stage::References, ask);
+            asked = times.time(Stage::BasePoints, ask);
         }
         self.begun = (to < all).then(|| (Arc::clone(&group), to));
         Some(Strip {
@@ -104,8 +108,10 @@ impl<'a> Pipeline<'a> {
     pub fn panels(&mut self, settled: &mut dyn FnMut(usize)) -> Vec<Panel> {
         let mut panels = Vec::new();
         while !self.advance(&mut panels, settled) {}
+        let mut times = self.summary.stages;
         let count = || panels.iter().for_each(|panel| self.summary.count(panel));
-        self.strips.task.stages.of(Stage::Judging, count);
+        times.time(Stage::Classification, count);
+        self.summary.stages = times;
         panels
     }
 
@@ -119,7 +125,6 @@ impl<'a> Pipeline<'a> {
         } = self;
         Summary {
             device: worker.busy,
-            engine_host: worker.host,
             engine_failure: worker.failure,
             waiting,
             ..summary
@@ -131,7 +136,7 @@ impl<'a> Pipeline<'a> {
         let ahead = if self.worker.is_working() { AHEAD } else { 0 };
         while self.under_way.len() <= ahead {
             let resolution = self.resolution.filter(|_| self.worker.is_working());
-            let Some(strip) = self.strips.prepare(resolution) else {
+            let Some(strip) = self.strips.prepare(resolution, &mut self.summary.stages) else {
                 break;
             };
             if strip.is_asked() {
@@ -152,8 +157,7 @@ impl<'a> Pipeline<'a> {
         let (cells, is_last) = (strip.cells(), strip.is_last);
         let has_failed = self.resolution.map(|_| self.worker.failure.is_some());
         let summary = &mut self.summary;
-        let finish = || strip.finish(task, differences.flatten(), has_failed, panels, summary);
-        let audit = task.stages.of(Stage::Judging, finish);
+        let audit = strip.finish(task, differences.flatten(), has_failed, panels, summary);
         settled(cells);
         if audit.differing > 0 {
             // Who has been wrong once is not asked again, and not believed.
@@ -195,13 +199,20 @@ impl Strip<'_> {
         let asked = self.asked;
         let solved = differences.map(|differences| Solved { asked, differences });
         let solved = solved.unwrap_or_default();
-        let (settled, audit) =
-            strip::settle(task.plan.method, faces, &self.rows, solved, &task.stages);
+        let (settled, audit) = strip::settle(
+            task.plan.method,
+            faces,
+            &self.rows,
+            solved,
+            &mut summary.stages,
+        );
         summary.audit += audit;
         if let Some(has_failed) = has_failed {
             settled.count(has_failed || audit.differing > 0, &mut summary.engine_cells);
         }
-        answers::fill(width, whiskers, faces, task.sides.len(), &settled, panels);
+        let sides = task.sides.len();
+        let fill = || answers::fill(width, whiskers, faces, sides, &settled, panels);
+        summary.stages.time(Stage::Classification, fill);
         audit
     }
 }

@@ -1,54 +1,63 @@
-//! The stages of a run. They overlap, so that each has CPU time and none a time of its own on the wall.
+//! The stages of a run and their wall seconds.
 
-use crate::account::Account;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
-/// The stages of a run.
+/// A stage of a run. Stages follow each other for one row batch; only packing runs beside the others.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stage {
-    /// Folds, lattices and boundaries.
+    /// Folds, lattices and exact row boundaries.
     Sheets,
+    /// Base points of rows and the trajectories that an engine gets with them.
+    BasePoints,
     /// Guesses from the lattice.
     Guesses,
-    /// References of rows, and the CPU's part in asking an engine about their cells.
-    References,
     /// Newton's method in `f64`.
     Refinement,
-    /// Regimes and units, and the audit's verdicts on an engine's cells.
-    Judging,
-    /// What keeps the panels: it packs and writes them while the next ones are computed.
+    /// Audit, regimes, and values in map units.
+    Classification,
+    /// Packing and writing of finished panels while the next ones are computed.
     Packing,
 }
 
 impl Stage {
-    /// Every stage, in order, and its name.
+    /// Every stage with its name, in order.
     pub const ALL: [(Self, &str); 6] = [
         (Self::Sheets, "sheets"),
+        (Self::BasePoints, "base points"),
         (Self::Guesses, "guesses"),
-        (Self::References, "references"),
         (Self::Refinement, "refinement"),
-        (Self::Judging, "judging"),
+        (Self::Classification, "classification"),
         (Self::Packing, "packing"),
     ];
 }
 
-/// CPU time of the stages of a run under way.
-#[derive(Default)]
-pub struct Stages([Account; Stage::ALL.len()]);
+/// Wall time per stage, in the order of [`Stage::ALL`].
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct StageTimes([Duration; Stage::ALL.len()]);
 
-impl Stages {
-    /// Does `work` for `stage`.
-    pub fn of<R>(&self, stage: Stage, work: impl FnOnce() -> R) -> R {
-        self.0[stage as usize].of(work)
+impl StageTimes {
+    /// Does `work` and adds its wall time to `stage`.
+    pub fn time<R>(&mut self, stage: Stage, work: impl FnOnce() -> R) -> R {
+        let begun = Instant::now();
+        let done = work();
+        self.0[stage as usize] += begun.elapsed();
+        done
     }
 
-    /// That of `stage`.
-    pub const fn account(&self, stage: Stage) -> &Account {
-        &self.0[stage as usize]
+    /// Wall time of `stage`.
+    pub const fn of(&self, stage: Stage) -> Duration {
+        self.0[stage as usize]
     }
+}
 
-    /// What each stage has taken up to now.
-    pub fn times(&self) -> [Duration; Stage::ALL.len()] {
-        self.0.each_ref().map(Account::time)
-    }
+/// CPU time of this process since it started; `None` where the system has no such clock.
+#[cfg(unix)]
+pub(super) fn process_time() -> Option<Duration> {
+    let time = rustix::time::clock_gettime(rustix::time::ClockId::ProcessCPUTime);
+    Some(Duration::new(time.tv_sec as u64, time.tv_nsec as u32))
+}
+
+#[cfg(not(unix))]
+pub(super) const fn process_time() -> Option<Duration> {
+    None
 }

@@ -5,11 +5,11 @@ use super::audit::{self, Said};
 use super::cells::{Settled, SettledRow};
 use super::runs::Source;
 use super::solved::{RowsAsked, Solved};
-use super::stages::{Stage, Stages};
+use super::stages::{Stage, StageTimes};
 use super::summary::Audit;
 use super::work::{Place, Work};
 use crate::integrate::{Question, on_gpu};
-use crate::refine::{self, RowOfCells, Shot};
+use crate::refine::{self, Refined, RowOfCells, Shot};
 use crate::sheet::Sheet;
 use crate::shooting::Resolution;
 use crate::shooting::batch::Method;
@@ -37,13 +37,13 @@ pub fn settle(
     faces: &[Face],
     rows: &[(usize, usize)],
     solved: Solved,
-    stages: &Stages,
+    times: &mut StageTimes,
 ) -> (Settled, Audit) {
     let rows = Rows::new(method, faces, rows);
-    let (mut settled, mut audit) = rows.finish(solved, stages);
+    let (mut settled, mut audit) = rows.finish(solved, times);
     if audit.differing > 0 {
         audit.turned_over = settled.solved();
-        settled = rows.finish(Solved::default(), stages).0;
+        settled = rows.finish(Solved::default(), times).0;
     }
     (settled, audit)
 }
@@ -103,17 +103,24 @@ impl<'a> Rows<'a> {
     }
 
     /// Refines what an engine has left, and a sample of what it has not.
-    fn finish(&self, solved: Solved, stages: &Stages) -> (Settled, Audit) {
-        let work: Vec<Work> = stages.of(Stage::Guesses, || {
+    fn finish(&self, solved: Solved, times: &mut StageTimes) -> (Settled, Audit) {
+        let work: Vec<Work> = times.time(Stage::Guesses, || {
             let rows = self.places.par_iter().enumerate();
             let work = rows.map(|(i, place)| place.work(i, &solved));
             work.collect()
         });
-        let refined = stages.of(Stage::Refinement, || {
+        let refined = times.time(Stage::Refinement, || {
             let shots: Vec<Shot> = work.iter().flat_map(|row| &row.shots).copied().collect();
             let starts: Vec<_> = shots.iter().map(|shot| (shot.tau, shot.load)).collect();
             refine::refine(self.method, &self.sheets, &shots, &starts)
         });
+        times.time(Stage::Classification, || {
+            self.settled(solved, work, refined)
+        })
+    }
+
+    /// Puts refined cells into their rows, and compares the audited ones.
+    fn settled(&self, solved: Solved, work: Vec<Work>, refined: Vec<Refined>) -> (Settled, Audit) {
         let references = &solved.asked.question.references;
         let mut audit = Audit::default();
         let mut rows = Vec::with_capacity(self.places.len());

@@ -1,5 +1,6 @@
 //! What a run says about itself when it is done.
 
+use super::stages::StageTimes;
 use super::{Panel, Stage};
 use crate::classify::{Regime, Status};
 use crate::integrate::{EngineError, Outcome};
@@ -84,10 +85,11 @@ pub struct Summary {
     pub audit: Audit,
     /// Why the CPU went on in the engine's stead, if it did.
     pub engine_failure: Option<EngineError>,
-    pub(super) stages: [Duration; Stage::ALL.len()],
+    pub(super) stages: StageTimes,
+    pub(super) packing: Duration,
     pub(super) wall: Duration,
+    pub(super) cpu: Option<Duration>,
     pub(super) device: Duration,
-    pub(super) engine_host: Duration,
     pub(super) waiting: Duration,
 }
 
@@ -148,22 +150,25 @@ impl Summary {
         self.regimes[Regime::ALL.len() - 1]
     }
 
-    /// CPU seconds of `stage`, over all threads. What a thread spends on another stage while it waits for its part of one is the other's.
+    /// Wall seconds of `stage`. All stages but [`Stage::Packing`] follow each other.
     #[must_use]
-    pub fn cpu_seconds(&self, stage: Stage) -> f64 {
-        self.stages[stage as usize].as_secs_f64()
+    pub const fn stage_seconds(&self, stage: Stage) -> f64 {
+        match stage {
+            Stage::Packing => self.packing.as_secs_f64(),
+            _ => self.stages.of(stage).as_secs_f64(),
+        }
+    }
+
+    /// CPU seconds of the process during the run, over all its threads; `None` where the system has no such clock.
+    #[must_use]
+    pub fn cpu_seconds(&self) -> Option<f64> {
+        self.cpu.as_ref().map(Duration::as_secs_f64)
     }
 
     /// Seconds from the first sheet to the last panel kept.
     #[must_use]
     pub const fn wall_seconds(&self) -> f64 {
         self.wall.as_secs_f64()
-    }
-
-    /// CPU seconds of the engine's own thread, which are among those of [`Stage::References`].
-    #[must_use]
-    pub const fn engine_host_seconds(&self) -> f64 {
-        self.engine_host.as_secs_f64()
     }
 
     /// Seconds for which the engine worked on what it was asked, beside the stages.

@@ -2,7 +2,6 @@
 
 use super::Face;
 use super::pushes::Pushes;
-use super::stages::Stages;
 use crate::plan::{CELLS_IN_FLIGHT, Plan};
 use crate::scene::{Scene, Swept};
 use crate::sheet::Sheet;
@@ -22,8 +21,6 @@ pub struct Task<'a> {
     pub sides: Vec<Pushes>,
     /// Signed push angles of the columns of all sides.
     pub angles: Arc<[f64]>,
-    /// What its stages take of the CPU.
-    pub stages: Stages,
 }
 
 impl<'a> Task<'a> {
@@ -50,7 +47,6 @@ impl<'a> Task<'a> {
             rows_at_once,
             sides,
             angles: angles.into(),
-            stages: Stages::default(),
         }
     }
 

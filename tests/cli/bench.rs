@@ -130,7 +130,7 @@ fn tables_fit_a_terminal_and_pictures_are_drawn() {
     let widest = rows.map(|line| line.chars().count()).max();
     assert!(widest <= Some(80), "{}", run.out);
     assert!(run.out.contains("\n* "), "{}", run.out);
-    for line in ["for devices: ", "idle: ", "verdict: "] {
+    for line in ["for devices: ", "waiting: ", "verdict: "] {
         let start = format!("\n{line}");
         assert_eq!(run.out.matches(&start).count(), 1, "{}", run.out);
     }

@@ -17,7 +17,7 @@ fn a_map_end_to_end() {
     assert!(counts.iter().all(|cells| *cells > 0), "{run:?}");
     assert_eq!(counts.iter().sum::<u64>(), 24 * 24, "{run:?}");
     assert!(run.out.starts_with("A small map\n"), "{run:?}");
-    assert!(run.out.contains(" s of all threads: sheets "), "{run:?}");
+    assert!(run.out.contains(" s for the stages: sheets "), "{run:?}");
     assert!(run.out.contains("scene.exr\n"), "{run:?}");
     assert!(run.out.ends_with("scene.png\n"), "{run:?}");
 

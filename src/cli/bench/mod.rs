@@ -30,10 +30,9 @@ the angle. Times, also of the stages, are medians of at least 5 runs after one t
 the fastest run, and ! marks rows where that is more than 20 %.
 
 Then every engine computes whole maps of the scene, at most 1024 x 1024 cells (--quick: 256 x 256) and two values per sweep axis, \
-in turn, packed but not written. host is the CPU time a cell of all threads but those of a device in software; for devices \
-the part of it, in guesses and refinement, that a device could still take. Of the stages are shown the CPU's milliseconds, over the \
-threads, and idle is when a thread does not compute; references, with what is packed for them, are those of a GPU engine, and device \
-is its time from call to answers, beside the others. \
+in turn, packed but not written. host is the CPU time per cell of all threads, those of a software adapter included; for devices \
+is the part of the stages, guesses and refinement, that a device could still take over. Stages are wall milliseconds; points are \
+the base points of rows, which only a GPU engine needs. device and packing run beside the other stages, and waiting is for the device. \
 The verdict compares the CPU engine with the fastest GPU engine.")]
 pub struct Options {
     /// Scene file; - reads it from standard input

@@ -116,28 +116,28 @@ fn maps(out: &mut impl Write, report: &Report) -> io::Result<()> {
     }
     writeln!(
         out,
-        "\nms               sheets guesses   refs  device refining judging packing    idle"
+        "\nms               sheets  points  device waiting guesses refining classes packing"
     )?;
     for map in &report.maps {
         let stages = &map.stages_ms;
         writeln!(
             out,
-            "{:16} {:6.1} {:7.1} {:6.1} {:7.1} {:8.1} {:7.1} {:7.1} {:7.1}",
+            "{:16} {:6.1} {:7.1} {:7.1} {:7.1} {:7.1} {:8.1} {:7.1} {:7.1}",
             map.engine,
             stages.sheets,
-            stages.guesses,
-            stages.references,
+            stages.base_points,
             stages.device,
+            stages.waiting,
+            stages.guesses,
             stages.refinement,
-            stages.judging,
-            stages.packing,
-            stages.idle
+            stages.classification,
+            stages.packing
         )?;
     }
     writeln!(
         out,
-        "\nfor devices: part of the host's CPU time that a GPU could take over\n\
-         idle: milliseconds a thread has no CPU time: it waits, or others use the core"
+        "\nfor devices: part of the stages that a GPU could take over\n\
+         waiting: for the GPU; device and packing run beside the other stages"
     )?;
     match &report.verdict {
         None => writeln!(out, "verdict: no GPU engine was measured"),

@@ -97,7 +97,8 @@ impl Device {
             submission_index: Some(submission),
             timeout: Some(PATIENCE),
         };
-        let waited = guarded(|| self.handle.poll(waiting).map_err(|error| error.to_string()));
+        let handle = &self.handle;
+        let waited = guarded(|| handle.poll(waiting).map_err(|error| error.to_string()));
         self.check()?;
         waited.flatten().map(drop).map_err(EngineError::Device)
     }

@@ -23,7 +23,7 @@ mod stamps;
 
 pub use adapters::{AdapterReport, adapters, named, preferred};
 pub use flight::Times;
-pub use guard::is_guarded;
+pub use guard::DRIVER_CALL;
 pub use precision::Precision;
 
 use super::{CellDifference, Description, Engine, EngineError, Question};

@@ -1,7 +1,6 @@
 //! The mechanics by themselves: no scene, no map, no device.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-mod accounts;
 mod batches;
 mod bytes;
 mod contact;
