@@ -13,7 +13,7 @@ use naga::back::pipeline_constants::process_overrides;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use naga::{Block, Expression, Function, Handle, Literal, Module, Statement};
 use std::time::Instant;
-use whiskmap::integrate::gpu::{Precision, shaders};
+use whiskmap::engine::gpu::{Precision, shaders};
 use whiskmap::rod::Effects;
 use whiskmap::shooting::ShootingMap;
 use whiskmap::shooting::batch::{Batch, InitialCondition, Method};

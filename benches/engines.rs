@@ -14,8 +14,8 @@ use random_rods::{USUAL, conditions};
 use std::convert::Infallible;
 use std::hint::black_box;
 use std::path::Path;
-use whiskmap::integrate::Engine;
-use whiskmap::integrate::gpu::{Gpu, Precision};
+use whiskmap::engine::Engine;
+use whiskmap::engine::gpu::{Gpu, Precision};
 use whiskmap::map;
 use whiskmap::numerics::Unit;
 use whiskmap::plan::Plan;
@@ -143,7 +143,7 @@ fn files(criterion: &mut Criterion) {
     let folder = tempfile::tempdir().expect("there is a folder for temporary files");
     let about = Description {
         scene: &scene,
-        engine: &whiskmap::integrate::Description::of(None),
+        engine: &whiskmap::engine::EngineDescription::of(None),
         tolerances: &serde_json::json!({}),
         channels: whiskmap::map::Channels::ALL,
         arithmetic: "fma",

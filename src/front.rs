@@ -2,11 +2,11 @@
 
 use crate::accuracy::cheapest;
 use crate::classify::Regime;
+use crate::engine::EngineError;
+#[cfg(feature = "gpu")]
+use crate::engine::gpu::{Gpu, Precision};
 #[cfg(feature = "fit")]
 use crate::fit::{self, Fit};
-use crate::integrate::EngineError;
-#[cfg(feature = "gpu")]
-use crate::integrate::gpu::{Gpu, Precision};
 use crate::map::{self as stages, Panel, STATE_CHANNELS, Summary};
 #[cfg(feature = "fit")]
 use crate::measured::Points;

@@ -26,11 +26,11 @@ pub mod accuracy;
 pub mod bench;
 pub mod classify;
 pub mod design;
+pub mod engine;
 #[cfg(feature = "fit")]
 pub mod fit;
 mod front;
 pub mod input;
-pub mod integrate;
 pub mod map;
 pub mod measured;
 #[cfg(feature = "render")]

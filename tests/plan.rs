@@ -4,7 +4,7 @@
 use std::collections::VecDeque;
 use std::convert::Infallible;
 use std::sync::Arc;
-use whiskmap::integrate::{CellDifference, Description, Engine, EngineError, Outcome, Question};
+use whiskmap::engine::{CellDifference, Engine, EngineDescription, EngineError, Outcome, Question};
 use whiskmap::map::{self, EngineCells, Panel, STATE_CHANNELS};
 use whiskmap::plan::{MEMORY_LIMIT, Plan, effects};
 use whiskmap::scene::Scene;
@@ -19,8 +19,8 @@ struct Counting {
 }
 
 impl Engine for Counting {
-    fn describe(&self) -> Description {
-        Description::of(None)
+    fn describe(&self) -> EngineDescription {
+        EngineDescription::of(None)
     }
 
     fn goal(&self) -> f64 {

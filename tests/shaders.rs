@@ -10,7 +10,7 @@ mod effect_sets;
 use naga::back::PipelineConstants;
 use naga::back::pipeline_constants::process_overrides;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
-use whiskmap::integrate::gpu::{Precision, shaders};
+use whiskmap::engine::gpu::{Precision, shaders};
 use whiskmap::rod::Effects;
 
 const PRECISIONS: [Precision; 2] = [Precision::F32, Precision::F64];

@@ -5,7 +5,7 @@ use super::solver::{Hit, Solver};
 use super::task::{Task, places};
 use super::watch::watch;
 use super::{Engine, Measurement, Report, Rung, Stages, pool};
-use crate::integrate::EngineError;
+use crate::engine::EngineError;
 use crate::numerics::Unit;
 use crate::shooting::Resolution;
 use crate::shooting::batch::flops_of_nystrom8;

@@ -3,8 +3,8 @@
 use super::task::{Task, faces, magnitudes};
 use super::watch::watch;
 use super::{Engine, Measurement, Report, Rung, Stages};
-use crate::integrate::gpu::{Gpu, Precision, adapters};
-use crate::integrate::{Engine as _, EngineError, Outcome, Question, Reference, on_gpu};
+use crate::engine::gpu::{Gpu, Precision, adapters};
+use crate::engine::{BasePoint, Engine as _, EngineError, Outcome, Question, on_gpu};
 use crate::refine::{RowOfCells, references};
 use crate::rod::Rod;
 use crate::scene::Scene;
@@ -83,7 +83,7 @@ type Point = (usize, (f64, f64));
 struct Side {
     rods: [Rod; 1],
     pushes: Arc<[f64]>,
-    references: Vec<Reference>,
+    references: Vec<BasePoint>,
     /// Of each cell of the references, its shot in the task, if it has one.
     shots: Vec<Option<usize>>,
 }

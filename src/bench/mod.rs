@@ -20,7 +20,7 @@ pub use task::{Errors, Spread};
 pub use watch::{NOISY, Timing};
 pub use whole::{MapStages, Verdict, WholeMap};
 
-use crate::integrate::EngineError;
+use crate::engine::EngineError;
 use crate::plan::SAMPLE_VALUES;
 use crate::scene::Scene;
 use serde::Serialize;

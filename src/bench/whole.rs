@@ -3,8 +3,8 @@
 use super::gpu::{Candidate, candidates};
 use super::watch::{Timing, median};
 use super::{Report, named, pool};
-use crate::integrate::gpu::Gpu;
-use crate::integrate::{Engine, EngineError, on_gpu};
+use crate::engine::gpu::Gpu;
+use crate::engine::{Engine, EngineError, on_gpu};
 use crate::map::{self, Panel, Stage};
 use crate::numerics::Unit;
 use crate::plan::Plan;

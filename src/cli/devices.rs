@@ -3,14 +3,14 @@
 use super::engine::chosen;
 use super::failure::Failure;
 use std::io::Write;
-use whiskmap::integrate::Description;
-use whiskmap::integrate::gpu::{Precision, adapters};
+use whiskmap::engine::EngineDescription;
+use whiskmap::engine::gpu::{Precision, adapters};
 
 /// Runs `devices`.
 pub fn run() -> Result<(), Failure> {
     let mut out = std::io::stdout().lock();
     let reports = adapters();
-    let cpu = Description::of(None);
+    let cpu = EngineDescription::of(None);
     let cpu = format!("{} on {}", cpu.engine, cpu.adapter);
     if reports.is_empty() {
         writeln!(out, "no GPU adapter found")?;

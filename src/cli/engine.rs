@@ -4,8 +4,8 @@ use super::estimate::{compare, estimate};
 use super::failure::Failure;
 use clap::{Args, ValueEnum};
 use std::env;
-use whiskmap::integrate::gpu::{AdapterReport, Gpu, Precision, adapters, named, preferred};
-use whiskmap::integrate::{Description, Engine, EngineError, on_gpu};
+use whiskmap::engine::gpu::{AdapterReport, Gpu, Precision, adapters, named, preferred};
+use whiskmap::engine::{Engine, EngineDescription, EngineError, on_gpu};
 use whiskmap::plan::Plan;
 use whiskmap::scene::Scene;
 
@@ -140,7 +140,7 @@ impl EngineOptions {
         let mut engine = Some(gpu);
         match compare(scene, plan, &mut engine, COMPARISON) {
             Ok([cpu, gpu]) if gpu < cpu => {
-                let alone = Description::of(None);
+                let alone = EngineDescription::of(None);
                 let alone = format!("{} on {}", alone.engine, alone.adapter);
                 Ok((engine, format!("auto: {:.1} times {alone}", cpu / gpu)))
             }

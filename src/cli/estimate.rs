@@ -4,7 +4,7 @@ use super::failure::Failure;
 use clap::ValueEnum;
 use std::convert::Infallible;
 use std::time::Instant;
-use whiskmap::integrate::Engine;
+use whiskmap::engine::Engine;
 use whiskmap::map::{self, Panel, Stage, Summary};
 use whiskmap::plan::{Plan, SAMPLE_LINES, SAMPLE_VALUES};
 use whiskmap::scene::Scene;

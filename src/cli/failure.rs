@@ -3,10 +3,10 @@
 use std::io::{self, IsTerminal, Write};
 use std::path::PathBuf;
 use std::process::ExitCode;
+use whiskmap::engine::EngineError;
+use whiskmap::engine::gpu::DRIVER_CALL;
 use whiskmap::fit;
 use whiskmap::input::CsvError;
-use whiskmap::integrate::EngineError;
-use whiskmap::integrate::gpu::DRIVER_CALL;
 use whiskmap::plan::PlanError;
 use whiskmap::render;
 use whiskmap::scene::SceneError;

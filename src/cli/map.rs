@@ -16,7 +16,7 @@ use std::path::PathBuf;
 use std::str::FromStr;
 use std::time::Instant;
 use whiskmap::accuracy::{Accuracy, BOUNDED};
-use whiskmap::integrate::Engine;
+use whiskmap::engine::Engine;
 use whiskmap::map;
 use whiskmap::numerics::ArithmeticClass;
 use whiskmap::plan::{Channels, Plan};
@@ -91,7 +91,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     let channels = options.channels.unwrap_or(Channels::ALL);
     plan.channels = channels.with_marks(scene.has_friction());
     let (mut engine, why) = options.engine.open(&scene, &plan, left_deg)?;
-    let solver = whiskmap::integrate::Description::of(engine.as_deref());
+    let solver = whiskmap::engine::EngineDescription::of(engine.as_deref());
     let about = Description {
         scene: &scene,
         engine: &solver,

@@ -7,7 +7,7 @@ use clap::Args;
 use indicatif::DecimalBytes;
 use std::io::Write;
 use std::path::PathBuf;
-use whiskmap::integrate::on_gpu;
+use whiskmap::engine::on_gpu;
 use whiskmap::plan::{Cost, Plan, ROD_STATES, effects};
 use whiskmap::scene::Scene;
 

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use std::path::Path;
 use std::str::FromStr;
 use std::time::Instant;
-use whiskmap::integrate::Engine;
+use whiskmap::engine::Engine;
 use whiskmap::map::{self, Panel};
 use whiskmap::plan::Plan;
 use whiskmap::scene::Scene;

@@ -2,9 +2,9 @@
 
 use super::cells::{Cell, State};
 use super::channels::{Numbers, channels, of_cell, of_reference};
-use super::{Face, STATE_CHANNELS};
+use super::{STATE_CHANNELS, WhiskerSide};
 use crate::classify::{Regime, RowBoundary, Status};
-use crate::integrate::Reference;
+use crate::engine::BasePoint;
 use crate::sheet::Sheet;
 use crate::shooting::Reader;
 use glam::DVec2;
@@ -16,12 +16,12 @@ pub struct Readings<'a> {
     of_one: Numbers,
     touch: f64,
     /// The reference that was read last.
-    reference: Option<(&'a Reference, Numbers)>,
+    reference: Option<(&'a BasePoint, Numbers)>,
 }
 
 impl<'a> Readings<'a> {
     /// On `row` of `face`.
-    pub fn new(reader: Reader, face: &Face, row: usize) -> Self {
+    pub fn new(reader: Reader, face: &WhiskerSide, row: usize) -> Self {
         Self {
             of_one: channels(&reader.of_one(face.sheet.side.sign())),
             touch: face.sheet.rows[row].touch,
@@ -53,7 +53,7 @@ impl<'a> Readings<'a> {
     }
 
     /// The channels of `reference`, and what a difference of one is there.
-    pub fn of_reference(&mut self, reference: &'a Reference) -> [Numbers; 2] {
+    pub fn of_reference(&mut self, reference: &'a BasePoint) -> [Numbers; 2] {
         let known = self
             .reference
             .filter(|(known, _)| std::ptr::eq(*known, reference));

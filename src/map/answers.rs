@@ -6,7 +6,7 @@ use super::channels::number;
 use super::panel::RowMut;
 use super::runs::{Run, Source};
 use super::sliding::{self, FoundRow, FoundState};
-use super::{Face, Panel, doubt};
+use super::{Panel, WhiskerSide, doubt};
 use crate::classify::{Regime, RowBoundary, Status};
 use crate::scene::Swept;
 use crate::shooting::Reader;
@@ -16,7 +16,7 @@ use rayon::prelude::*;
 pub fn fill(
     width: usize,
     whiskers: &[Swept],
-    faces: &[Face],
+    faces: &[WhiskerSide],
     faces_per_panel: usize,
     settled: &Settled,
     panels: &mut [Panel],
@@ -63,7 +63,7 @@ pub fn fill(
 /// The answers of a row.
 struct RowAnswers<'a> {
     settled: &'a Settled,
-    face: &'a Face<'a>,
+    face: &'a WhiskerSide<'a>,
     row: &'a SettledRow,
     boundary: RowBoundary,
     /// None where no channel of a state is wanted.

@@ -1,7 +1,7 @@
 //! Looking over an engine's shoulder: a sample of its cells, computed once more in `f64`.
 
 use super::channels::{Numbers, channels, of_cell, of_reference};
-use crate::integrate::{CellDifference, Reference};
+use crate::engine::{BasePoint, CellDifference};
 use crate::refine::{End, Refined};
 use crate::rod::Units;
 use crate::sheet::Sheet;
@@ -69,9 +69,9 @@ fn mixed(z: u64) -> u64 {
 /// What an engine says of a cell: a difference from one of the references of its row.
 pub struct Said<'a> {
     /// The references of the row.
-    pub row: &'a [Reference],
+    pub row: &'a [BasePoint],
     /// That of the cell.
-    pub reference: &'a Reference,
+    pub reference: &'a BasePoint,
     /// The difference.
     pub difference: &'a CellDifference,
 }

@@ -1,11 +1,11 @@
 //! Settled cells: where the answer of each comes from.
 
-use super::Face;
-use super::pushes::Push;
+use super::WhiskerSide;
+use super::columns::Push;
 use super::runs::{Run, Source};
 use super::summary::EngineCells;
 use crate::classify::{RowBoundary, Status, TIE};
-use crate::integrate::{CellDifference, Question, Reference};
+use crate::engine::{BasePoint, CellDifference, Question};
 use crate::refine::{ContactState, End, Refined};
 use crate::sheet::Row;
 use std::sync::Arc;
@@ -56,7 +56,7 @@ pub enum State<'a> {
     /// In `f64`, to the last one if there were several.
     Refined(ContactState),
     /// By an engine, as it differs from a reference.
-    Different(&'a Reference, &'a CellDifference),
+    Different(&'a BasePoint, &'a CellDifference),
 }
 
 impl Cell<'_> {
@@ -87,7 +87,7 @@ impl Settled {
     /// The cells of a `run` of `row` of `face`.
     pub fn cells<'a>(
         &'a self,
-        face: &'a Face,
+        face: &'a WhiskerSide,
         row: usize,
         run: &Run,
     ) -> impl Iterator<Item = Cell<'a>> + 'a {

@@ -1,7 +1,7 @@
 //! The numbers of a state by channel, in the units of the map.
 
 use super::STATE_CHANNELS;
-use crate::integrate::{CellDifference, Reference};
+use crate::engine::{BasePoint, CellDifference};
 use crate::shooting::{Reader, Reading};
 
 /// The place of the force among the channels.
@@ -26,8 +26,8 @@ pub fn channels(reading: &Reading) -> Numbers {
 }
 
 /// The channels of `reference`, which is in contact since first touch in the direction `touch`.
-pub fn of_reference(reader: &Reader, reference: &Reference, touch: f64) -> Numbers {
-    let Reference {
+pub fn of_reference(reader: &Reader, reference: &BasePoint, touch: f64) -> Numbers {
+    let BasePoint {
         tau, state, push, ..
     } = reference;
     channels(&reader.read(*tau, &state.full, touch, *push))

@@ -5,10 +5,10 @@ mod answers;
 mod audit;
 mod cells;
 mod channels;
+mod columns;
 mod doubt;
 mod panel;
 mod pipeline;
-mod pushes;
 mod runs;
 mod sliding;
 mod solved;
@@ -18,14 +18,14 @@ mod summary;
 mod task;
 mod work;
 
-use crate::integrate::{Engine, Worker};
+use crate::engine::{Engine, Worker};
 use crate::plan::Plan;
 pub use crate::plan::{Channels, STATE_CHANNELS};
 use crate::scene::Scene;
 use crate::sheet::Sheet;
+use columns::SideColumns;
 pub use panel::Panel;
 use pipeline::Pipeline;
-use pushes::Pushes;
 pub use stages::Stage;
 use stages::{StageTimes, process_time};
 use std::time::Instant;
@@ -33,8 +33,8 @@ pub use summary::{Audit, EngineCells, Summary};
 use task::Task;
 
 /// One side of one whisker.
-struct Face<'a> {
-    pushes: &'a Pushes,
+struct WhiskerSide<'a> {
+    pushes: &'a SideColumns,
     sheet: Sheet,
 }
 

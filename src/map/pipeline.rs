@@ -9,7 +9,7 @@ use super::stages::{Stage, StageTimes};
 use super::strip;
 use super::task::{Group, Task};
 use super::{Audit, Summary, answers};
-use crate::integrate::{CellDifference, Worker};
+use crate::engine::{CellDifference, Worker};
 use crate::shooting::Resolution;
 use std::collections::VecDeque;
 use std::ops::Range;

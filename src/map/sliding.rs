@@ -1,6 +1,6 @@
 //! Which states of a map slide as friction is computed for: the others have a status of their own.
 
-use super::Face;
+use super::WhiskerSide;
 use crate::classify::{Dragged, Regime, Sliding, Status};
 use crate::sheet::{LevelCurve, together};
 use glam::DVec2;
@@ -27,7 +27,7 @@ pub struct FoundRow {
 impl FoundRow {
     /// Columns of the states that do not slide toward the tip, and what their statuses become. Where it is not known what a push makes of
     /// the contact, it counts as sticking.
-    fn marks(&self, face: &Face, dragged: Option<&Dragged>) -> Vec<(usize, Status)> {
+    fn marks(&self, face: &WhiskerSide, dragged: Option<&Dragged>) -> Vec<(usize, Status)> {
         let (sheet, states) = (&face.sheet, &self.states);
         let is_led_to = |state: &&FoundState| state.regime == Regime::Contact;
         let led_to = states.iter().filter(is_led_to).map(|state| {
@@ -51,7 +51,7 @@ impl FoundRow {
 }
 
 /// Writes the statuses of the states of `rows` of `face` into those of a panel that is so many cells wide.
-pub fn mark(face: &Face, rows: &[FoundRow], width: usize, status: &mut [u32]) {
+pub fn mark(face: &WhiskerSide, rows: &[FoundRow], width: usize, status: &mut [u32]) {
     let marks = rows.par_chunks(together(rows.len())).map(|rows| {
         let levels: Vec<LevelCurve> = rows.iter().map(|row| face.sheet.level(row.row)).collect();
         let dragged = Dragged::of(&levels).into_iter();

@@ -1,6 +1,6 @@
 //! What an engine is asked about some rows, and what it makes of them.
 
-use crate::integrate::{CellDifference, Question};
+use crate::engine::{CellDifference, Question};
 use std::ops::Range;
 use std::sync::Arc;
 

@@ -1,6 +1,6 @@
 //! Some rows, from an engine if there is one, beside references along each row; all other cells from the sheet's guesses by refinement.
 
-use super::Face;
+use super::WhiskerSide;
 use super::audit::{self, Said};
 use super::cells::{Settled, SettledRow};
 use super::runs::Source;
@@ -8,7 +8,7 @@ use super::solved::{RowsAsked, Solved};
 use super::stages::{Stage, StageTimes};
 use super::summary::Audit;
 use super::work::{Place, Work};
-use crate::integrate::{Question, on_gpu};
+use crate::engine::{Question, on_gpu};
 use crate::refine::{self, Refined, RowOfCells, Shot};
 use crate::sheet::Sheet;
 use crate::shooting::Resolution;
@@ -22,7 +22,7 @@ pub fn ask(
     method: Method,
     resolution: Resolution,
     pushes: &Arc<[f64]>,
-    faces: &[Face],
+    faces: &[WhiskerSide],
     rows: &[(usize, usize)],
 ) -> RowsAsked {
     match on_gpu(method.effects) {
@@ -34,7 +34,7 @@ pub fn ask(
 /// Settles the cells of `rows`, pairs of a face and a row of its panel, with what an engine made of them as long as that holds.
 pub fn settle(
     method: Method,
-    faces: &[Face],
+    faces: &[WhiskerSide],
     rows: &[(usize, usize)],
     solved: Solved,
     times: &mut StageTimes,
@@ -56,7 +56,7 @@ struct Rows<'a> {
 }
 
 impl<'a> Rows<'a> {
-    fn new(method: Method, faces: &'a [Face<'a>], rows: &[(usize, usize)]) -> Self {
+    fn new(method: Method, faces: &'a [WhiskerSide<'a>], rows: &[(usize, usize)]) -> Self {
         let taking_part = |&i: &usize| rows.iter().any(|row| row.0 == i);
         let used: Vec<usize> = (0..faces.len()).filter(taking_part).collect();
         let place = |&(index, row): &(usize, usize)| Place {

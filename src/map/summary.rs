@@ -3,7 +3,7 @@
 use super::stages::StageTimes;
 use super::{Panel, Stage};
 use crate::classify::{Regime, Status};
-use crate::integrate::{EngineError, Outcome};
+use crate::engine::{EngineError, Outcome};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::time::Duration;

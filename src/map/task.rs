@@ -1,7 +1,7 @@
 //! What all strips of a run share: the scene, the plan, the push angles; and the sheets of a group of whiskers.
 
-use super::Face;
-use super::pushes::Pushes;
+use super::WhiskerSide;
+use super::columns::SideColumns;
 use crate::plan::{CELLS_IN_FLIGHT, Plan};
 use crate::scene::{Scene, Swept};
 use crate::sheet::Sheet;
@@ -18,7 +18,7 @@ pub struct Task<'a> {
     pub scene: &'a Scene,
     pub plan: &'a Plan,
     pub rows_at_once: usize,
-    pub sides: Vec<Pushes>,
+    pub sides: Vec<SideColumns>,
     /// Signed push angles of the columns of all sides.
     pub angles: Arc<[f64]>,
 }
@@ -33,11 +33,11 @@ impl<'a> Task<'a> {
             let rows = cells.min(CELLS_IN_FLIGHT) / scene.grid.push_angle_deg.len();
             rows.max(1)
         };
-        let mut sides: Vec<Pushes> = Vec::new();
+        let mut sides: Vec<SideColumns> = Vec::new();
         let mut angles: Vec<f64> = Vec::new();
         for side in &plan.sides {
             // A row has fewer columns than `u32` can count.
-            let side = Pushes::new(&scene.grid.push_angle_deg, *side, angles.len() as u32);
+            let side = SideColumns::new(&scene.grid.push_angle_deg, *side, angles.len() as u32);
             angles.extend(side.columns.iter().map(|push| push.angle));
             sides.push(side);
         }
@@ -58,16 +58,16 @@ impl<'a> Task<'a> {
     }
 
     /// Every side of every whisker, in order.
-    fn faces(&self, whiskers: &[Swept]) -> Vec<Face<'_>> {
+    fn faces(&self, whiskers: &[Swept]) -> Vec<WhiskerSide<'_>> {
         let of_whisker = |swept| self.sides.iter().map(move |side| (swept, side));
-        let pairs: Vec<(&Swept, &Pushes)> = whiskers.iter().flat_map(of_whisker).collect();
+        let pairs: Vec<(&Swept, &SideColumns)> = whiskers.iter().flat_map(of_whisker).collect();
         let face = |&(swept, pushes): &(&Swept, _)| {
-            let pushes: &Pushes = pushes;
+            let pushes: &SideColumns = pushes;
             let rod = swept.rod(pushes.side);
             let distances = self.scene.grid.distance_mm.iter();
             let distances: Vec<f64> = distances.map(|d| d / swept.whisker.length_mm).collect();
             let sheet = Sheet::new(self.plan.method, &rod, pushes.side, &distances);
-            Face { pushes, sheet }
+            WhiskerSide { pushes, sheet }
         };
         let faces = pairs.par_iter().map(|pair| face(pair));
         faces.collect()
@@ -77,5 +77,5 @@ impl<'a> Task<'a> {
 /// Whiskers whose panels are kept together.
 pub struct Group<'a> {
     pub whiskers: Vec<Swept>,
-    pub faces: Vec<Face<'a>>,
+    pub faces: Vec<WhiskerSide<'a>>,
 }

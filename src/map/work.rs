@@ -1,18 +1,18 @@
 //! What is left to do for a row once an engine has answered: the cells that it has left, and the sample of the audit.
 
-use super::Face;
+use super::WhiskerSide;
 use super::audit::Sample;
-use super::pushes::Pushes;
+use super::columns::SideColumns;
 use super::runs::{self, Run, Source};
 use super::solved::Solved;
-use crate::integrate::CellDifference;
+use crate::engine::CellDifference;
 use crate::refine::Shot;
 use crate::sheet::Guess;
 use std::ops::Range;
 
 /// A row of a face.
 pub struct Place<'a> {
-    pub face: &'a Face<'a>,
+    pub face: &'a WhiskerSide<'a>,
     /// Of the face.
     pub index: usize,
     pub row: usize,
@@ -129,7 +129,7 @@ impl Place<'_> {
 
     /// The shots of `cells`, which grow.
     fn shots(&self, cells: impl Iterator<Item = usize> + Clone) -> Vec<Option<Shot>> {
-        let Pushes {
+        let SideColumns {
             columns,
             magnitudes,
             ..

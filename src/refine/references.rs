@@ -6,7 +6,7 @@
 
 use super::Shot;
 use super::exact::{Exact, exact};
-use crate::integrate::{MOST_TRAJECTORY_STEPS, Reference, RowNumbers};
+use crate::engine::{BasePoint, MOST_TRAJECTORY_STEPS, RowTerms};
 use crate::numerics::taylor::around_nodes;
 use crate::numerics::{WIDTH, nearest_turn};
 use crate::rod::Rest;
@@ -35,7 +35,7 @@ pub struct RowOfCells<'a> {
 /// The references of every row, as far as its cells from first touch on go; none where the sheet is walked, where the row does not
 /// begin at first touch, where a trajectory takes more than [`MOST_TRAJECTORY_STEPS`], and where there are too few cells to be worth it.
 #[must_use]
-pub fn references(method: Method, sheets: &[&Sheet], rows: &[RowOfCells]) -> Vec<Vec<Reference>> {
+pub fn references(method: Method, sheets: &[&Sheet], rows: &[RowOfCells]) -> Vec<Vec<BasePoint>> {
     let shots = |row: &RowOfCells| node_shots(sheets[row.sheet as usize], row);
     let shots = rows.par_iter().map(|row| shots(row));
     let shots: Vec<Option<Vec<Shot>>> = shots.collect();
@@ -112,13 +112,13 @@ fn node_shots(sheet: &Sheet, row: &RowOfCells) -> Option<Vec<Shot>> {
 }
 
 /// References at the states of a row, and the cells of each; `None` where the way does not grow with the push angle.
-fn expand(sheet: &Sheet, row: &RowOfCells, found: &[Exact]) -> Option<Vec<Reference>> {
+fn expand(sheet: &Sheet, row: &RowOfCells, found: &[Exact]) -> Option<Vec<BasePoint>> {
     let (last, whole) = end(sheet, row.row)?;
     let sign = sheet.side.sign();
     let touch = sheet.rows[row.row].touch;
     let rest = Rest::new(&sheet.rod);
     let mut ways = [0.0; NODES];
-    let mut numbers = [RowNumbers::default(); NODES];
+    let mut numbers = [RowTerms::default(); NODES];
     let mut before = (0.0, 0.0);
     for (m, Exact { tau, load, state }) in found.iter().enumerate() {
         ways[m] = way(*tau, *load) / whole;
@@ -154,7 +154,7 @@ fn expand(sheet: &Sheet, row: &RowOfCells, found: &[Exact]) -> Option<Vec<Refere
         let to = from + row.pushes[from..].partition_point(|push| *push < until);
         if to > from {
             let Exact { tau, load, state } = found[m];
-            references.push(Reference {
+            references.push(BasePoint {
                 rod: row.sheet,
                 tau,
                 load,

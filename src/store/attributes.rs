@@ -2,7 +2,7 @@
 
 use super::layout::Layout;
 use super::tally::{Counts, regimes, statuses};
-use crate::integrate;
+use crate::engine;
 use crate::map::{Audit, Channels, EngineCells};
 use crate::scene::{Grid, Parameter, Setup, SweepAxis};
 use exr::meta::attribute::{AttributeValue, Text};
@@ -16,7 +16,7 @@ pub struct Description<'a> {
     /// What is simulated.
     pub scene: &'a Setup,
     /// What integrates, and on which device.
-    pub engine: &'a integrate::Description,
+    pub engine: &'a engine::EngineDescription,
     /// Tolerances and step limits.
     pub tolerances: &'a Value,
     /// What is stored of each cell.

@@ -5,7 +5,7 @@
 use crate::random_rods::{Random, rod};
 use rayon::prelude::*;
 use std::sync::Arc;
-use whiskmap::integrate::{CellDifference, Engine, Question, Reference};
+use whiskmap::engine::{BasePoint, CellDifference, Engine, Question};
 use whiskmap::refine::{Refined, RowOfCells, Shot, references, refine};
 use whiskmap::rod::{Effects, Rod, Side};
 use whiskmap::sheet::Sheet;
@@ -25,7 +25,7 @@ pub struct Cells {
     pub rods: Vec<Rod>,
     /// Signed push angles of all columns, in radians.
     pub pushes: Vec<f64>,
-    pub references: Vec<Reference>,
+    pub references: Vec<BasePoint>,
     /// Direction of the pole at first touch, for each reference.
     pub touches: Vec<f64>,
     /// What the refinement is asked for, cell by cell.
@@ -122,7 +122,7 @@ impl Cells {
     }
 
     /// What `engine` is asked about some `references`.
-    pub fn question(&self, engine: &dyn Engine, references: &[Reference]) -> Arc<Question> {
+    pub fn question(&self, engine: &dyn Engine, references: &[BasePoint]) -> Arc<Question> {
         Arc::new(Question::new(
             self.method.effects,
             engine.resolution(self.method.resolution),
@@ -145,7 +145,7 @@ impl Cells {
 
     /// For each cell the index of its reference, and its push angle.
     pub fn places(&self) -> Vec<(usize, f64)> {
-        let of_one = |(index, reference): (usize, &Reference)| {
+        let of_one = |(index, reference): (usize, &BasePoint)| {
             let pushes = &self.pushes[reference.cells.start as usize..reference.cells.end as usize];
             pushes
                 .iter()

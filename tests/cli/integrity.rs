@@ -163,7 +163,7 @@ fn sizes_that_a_store_claims_are_not_allocated() {
     let scene = whiskmap::scene::Scene::parse(huge, "huge.toml").unwrap();
     let about = whiskmap::store::Description {
         scene: &scene,
-        engine: &whiskmap::integrate::Description::of(None),
+        engine: &whiskmap::engine::EngineDescription::of(None),
         tolerances: &serde_json::Value::Null,
         channels: whiskmap::plan::Channels::ALL,
         arithmetic: "fma",

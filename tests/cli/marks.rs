@@ -93,7 +93,7 @@ fn write_without_status(place: &Place) {
     let map = whiskmap::map(&scene, whiskmap::Options::default()).unwrap();
     let about = Description {
         scene: &scene,
-        engine: &whiskmap::integrate::Description::of(None),
+        engine: &whiskmap::engine::EngineDescription::of(None),
         tolerances: &serde_json::json!({}),
         channels: Channels::those(|name| name != "status"),
         arithmetic: "fma",

@@ -6,8 +6,8 @@ use std::collections::VecDeque;
 use std::convert::Infallible;
 use std::path::Path;
 use std::sync::Arc;
-use whiskmap::integrate::gpu::{Gpu, Precision};
-use whiskmap::integrate::{CellDifference, Description, Engine, EngineError, Question};
+use whiskmap::engine::gpu::{Gpu, Precision};
+use whiskmap::engine::{CellDifference, Engine, EngineDescription, EngineError, Question};
 use whiskmap::map::{self, EngineCells, Panel, STATE_CHANNELS, Summary};
 use whiskmap::plan::Plan;
 use whiskmap::scene::Scene;
@@ -109,7 +109,7 @@ impl<F: Call> Watched<F> {
 }
 
 impl<F: Call> Engine for Watched<F> {
-    fn describe(&self) -> Description {
+    fn describe(&self) -> EngineDescription {
         self.gpu.describe()
     }
 

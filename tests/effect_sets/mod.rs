@@ -1,7 +1,7 @@
 //! The sets of effects that there are kernels for.
 #![allow(dead_code, reason = "each test program uses its own share")]
 
-use whiskmap::integrate;
+use whiskmap::engine;
 use whiskmap::rod::Effects;
 
 /// Every set of effects. A profile tapers, whatever `taper` says.
@@ -30,5 +30,5 @@ pub fn all() -> impl Iterator<Item = Effects> {
 
 /// Those that the GPU has kernels for.
 pub fn on_gpu() -> impl Iterator<Item = Effects> {
-    all().filter(|effects| integrate::on_gpu(*effects).is_ok())
+    all().filter(|effects| engine::on_gpu(*effects).is_ok())
 }

@@ -2,7 +2,7 @@
 #![allow(dead_code, reason = "each test program uses its own share")]
 
 use std::fmt::Write;
-use whiskmap::integrate::Engine;
+use whiskmap::engine::Engine;
 use whiskmap::map::{Panel, Summary};
 use whiskmap::scene::Scene;
 

@@ -1,7 +1,7 @@
 //! Which adapter is taken.
 
 use wgpu::{AdapterInfo, Backend, DeviceType};
-use whiskmap::integrate::gpu::{AdapterReport, Precision, named, preferred};
+use whiskmap::engine::gpu::{AdapterReport, Precision, named, preferred};
 
 tests! {
     Nothing:

@@ -4,8 +4,8 @@ use crate::cells::Cells;
 use crate::compute::{open, open_with};
 use crate::kinds::every_kind;
 use crate::random_rods::USUAL;
-use whiskmap::integrate::gpu::{Gpu, Precision, shaders};
-use whiskmap::integrate::{CellDifference, Reference};
+use whiskmap::engine::gpu::{Gpu, Precision, shaders};
+use whiskmap::engine::{BasePoint, CellDifference};
 use whiskmap::rod::Rod;
 use whiskmap::shooting::ShootingMap;
 use whiskmap::shooting::batch::{Batch, InitialCondition, Method};
@@ -18,10 +18,10 @@ tests! {
 }
 
 /// The `(tau, load)` of a cell on a rod.
-type Place = fn(&Rod, &Reference, &CellDifference) -> (f64, f64);
+type Place = fn(&Rod, &BasePoint, &CellDifference) -> (f64, f64);
 
 /// From arclength and force.
-fn from_numbers(rod: &Rod, reference: &Reference, cell: &CellDifference) -> (f64, f64) {
+fn from_numbers(rod: &Rod, reference: &BasePoint, cell: &CellDifference) -> (f64, f64) {
     cell.point(rod, reference)
 }
 
@@ -39,7 +39,7 @@ fn telling_all() -> String {
     text.replace(before, numbers)
 }
 
-fn from_parts(_: &Rod, reference: &Reference, cell: &CellDifference) -> (f64, f64) {
+fn from_parts(_: &Rod, reference: &BasePoint, cell: &CellDifference) -> (f64, f64) {
     let [a, b, c, d, ..] = cell.numbers.map(f64::from);
     (reference.tau + (a + b), reference.load + (c + d))
 }
@@ -65,7 +65,7 @@ impl Seen {
                 let reference = &cells.references[reference];
                 let (tau, load) = place(rod, reference, cell);
                 found.push(InitialCondition { rod, tau, load });
-                let Reference { tau, load, .. } = *reference;
+                let BasePoint { tau, load, .. } = *reference;
                 before.push(InitialCondition { rod, tau, load });
                 wanted.push((shot.pole, f64::from(cell.residual)));
             }

@@ -4,8 +4,8 @@ use crate::cells::Cells;
 use crate::compute::{compute, open};
 use crate::random_rods::USUAL;
 use std::sync::Arc;
-use whiskmap::integrate::gpu::{Gpu, Precision, adapters, preferred};
-use whiskmap::integrate::{CellDifference, Engine, Outcome, Reference};
+use whiskmap::engine::gpu::{Gpu, Precision, adapters, preferred};
+use whiskmap::engine::{BasePoint, CellDifference, Engine, Outcome};
 use whiskmap::plan::STATE_CHANNELS;
 use whiskmap::scene::Scene;
 
@@ -87,7 +87,7 @@ fn spoilt(
     cells: &Cells,
     gpu: &mut Gpu,
     spoilt: usize,
-    spoil: fn(&mut Reference),
+    spoil: fn(&mut BasePoint),
 ) -> Vec<CellDifference> {
     let mut references = cells.references.clone();
     spoil(&mut references[spoilt]);
@@ -99,7 +99,7 @@ fn no_number_hurts_only_its_own_cells(precision: Precision) {
     let number = cells.references.len() / 2;
     let mut gpu = open(precision);
     let sound = cells.solve(&mut gpu);
-    type Spoil = fn(&mut Reference);
+    type Spoil = fn(&mut BasePoint);
     let spoils: [(&str, Spoil); 8] = [
         ("tau", |r| r.tau = f64::NAN),
         ("load", |r| r.load = f64::INFINITY),

@@ -7,8 +7,8 @@ use crate::random::{always_the_same, cases};
 use proptest::prelude::*;
 use std::cell::RefCell;
 use std::fmt::Write;
-use whiskmap::integrate::Engine;
-use whiskmap::integrate::gpu::{Gpu, Precision};
+use whiskmap::engine::Engine;
+use whiskmap::engine::gpu::{Gpu, Precision};
 use whiskmap::map::{EngineCells, Panel, STATE_CHANNELS, Summary};
 
 tests! {

@@ -48,8 +48,8 @@ mod strangers;
 
 use libtest_mimic::{Arguments, Completion, Trial};
 use std::process::ExitCode;
-use whiskmap::integrate::EngineError;
-use whiskmap::integrate::gpu::{Gpu, Precision};
+use whiskmap::engine::EngineError;
+use whiskmap::engine::gpu::{Gpu, Precision};
 
 /// A test by what it needs.
 #[derive(Clone, Copy)]

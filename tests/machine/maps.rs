@@ -3,8 +3,8 @@
 use crate::compute::{
     assert_close, assert_identical, assert_no_load_at_touch, compute, open, shipped, works,
 };
-use whiskmap::integrate::gpu::Precision;
-use whiskmap::integrate::on_gpu;
+use whiskmap::engine::gpu::Precision;
+use whiskmap::engine::on_gpu;
 use whiskmap::map::EngineCells;
 use whiskmap::plan::Plan;
 use whiskmap::scene::Scene;

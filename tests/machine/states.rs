@@ -5,8 +5,8 @@ use crate::compute::{open, open_with};
 use crate::kinds::every_kind;
 use crate::random_rods::USUAL;
 
-use whiskmap::integrate::Reference;
-use whiskmap::integrate::gpu::{Gpu, Precision, shaders};
+use whiskmap::engine::BasePoint;
+use whiskmap::engine::gpu::{Gpu, Precision, shaders};
 use whiskmap::plan::STATE_CHANNELS;
 use whiskmap::refine::{End, Refined};
 use whiskmap::rod::Units;
@@ -88,7 +88,7 @@ fn compare(cells: &Cells, gpu: &mut Gpu) -> Seen {
         }
         let rod = shot.rod as usize;
         let reader = Reader::new(NO_UNITS, &cells.rods[rod]);
-        let Reference {
+        let BasePoint {
             tau,
             state,
             push: at,

@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 use std::path::Path;
 use std::sync::LazyLock;
 use whiskmap::classify::Regime;
-use whiskmap::integrate;
+use whiskmap::engine;
 use whiskmap::map::{Audit, Channels, EngineCells, Panel, STATE_CHANNELS};
 use whiskmap::scene::{Grid, Parameter, Pole, Setup, SweepAxis, Whisker};
 use whiskmap::store::{Counts, Description, MapWriter};
@@ -113,7 +113,7 @@ pub fn panel(scene: &Setup, index: usize) -> Panel {
 }
 
 /// An engine whose adapter is not all ASCII.
-static ENGINE: LazyLock<integrate::Description> = LazyLock::new(|| integrate::Description {
+static ENGINE: LazyLock<engine::EngineDescription> = LazyLock::new(|| engine::EngineDescription {
     engine: "cpu f64".to_owned(),
     adapter: "a \u{201c}card\u{201d}".to_owned(),
 });

@@ -284,7 +284,7 @@ fn a_store_has_one_scene_version_engine_arithmetic_and_accuracy() {
         why.contains("differs in `arithmetic`: fma there, no-fma here (with and without"),
         "{why}"
     );
-    let engine = whiskmap::integrate::Description {
+    let engine = whiskmap::engine::EngineDescription {
         engine: "gpu f32".to_owned(),
         adapter: String::new(),
     };
@@ -315,7 +315,7 @@ fn of_two_engines_that_create_a_store_one_succeeds() {
         let path = folder.path().join(format!("{race}.zarr"));
         let start = std::sync::Barrier::new(2);
         let create = |name: &str| {
-            let engine = whiskmap::integrate::Description {
+            let engine = whiskmap::engine::EngineDescription {
                 engine: name.to_owned(),
                 adapter: String::new(),
             };

@@ -11,7 +11,7 @@ use super::selection::{Selection, channels, with_marks};
 use clap::Args;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
-use whiskmap::integrate;
+use whiskmap::engine;
 use whiskmap::map::{Audit, Channels, EngineCells};
 use whiskmap::scene::{LONGEST_TITLE, Scene, Setup};
 use whiskmap::store::{Description, MapWriter, Slice, UnfinishedFolder, ZarrStore};
@@ -163,7 +163,7 @@ fn scene(slice: &Slice) -> Result<Scene, Failure> {
 
 /// What computed the whole, and how exactly.
 struct Origin {
-    engine: integrate::Description,
+    engine: engine::EngineDescription,
     arithmetic: String,
     tolerances: serde_json::Value,
 }
@@ -174,7 +174,7 @@ impl Origin {
             let text = slice.stored().attribute(name)?;
             Ok::<_, whiskmap::store::Error>(text.as_str().unwrap_or_default().to_owned())
         };
-        let engine = integrate::Description {
+        let engine = engine::EngineDescription {
             engine: text("engine")?,
             // A store, which many machines may have filled, has none.
             adapter: text("adapter").unwrap_or_default(),

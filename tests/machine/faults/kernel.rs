@@ -4,8 +4,8 @@ use super::{assert_same, cone};
 use crate::compute::{
     all_cells, assert_identical, compute, compute_as, handed_over, open, open_with, works,
 };
-use whiskmap::integrate::EngineError;
-use whiskmap::integrate::gpu::{Gpu, Precision, shaders};
+use whiskmap::engine::EngineError;
+use whiskmap::engine::gpu::{Gpu, Precision, shaders};
 use whiskmap::map::{EngineCells, Panel, Summary};
 use whiskmap::plan::Plan;
 use whiskmap::scene::Scene;

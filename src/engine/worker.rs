@@ -141,7 +141,7 @@ fn serve(engine: &mut dyn Engine, asked: &Receiver<Arc<Question>>, reply: &Sende
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::integrate::Description;
+    use crate::engine::EngineDescription;
     use crate::shooting::Resolution;
 
     /// Has so many questions to answer, and fails, or panics, after so many answers.
@@ -153,8 +153,8 @@ mod tests {
     }
 
     impl Engine for Counting {
-        fn describe(&self) -> Description {
-            Description::of(None)
+        fn describe(&self) -> EngineDescription {
+            EngineDescription::of(None)
         }
 
         fn goal(&self) -> f64 {

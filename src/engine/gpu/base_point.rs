@@ -3,7 +3,7 @@
 use super::Precision;
 use super::asked::Part;
 use super::bytes::{Scalar, halves};
-use crate::integrate::{MOST_TRAJECTORY_STEPS, POWERS, Question, Reference, Trajectory};
+use crate::engine::{BasePoint, MOST_TRAJECTORY_STEPS, POWERS, Question, Trajectory};
 use crate::rod::{Rest, Rod, arclength};
 use crate::shooting::StateDerivative;
 use crate::shooting::batch::StepStart;
@@ -56,7 +56,7 @@ pub fn packed<T: Scalar>(question: &Question, part: Part, most_steps: usize) -> 
     let mut packed = Packed::default();
     packed
         .references
-        .reserve(references.len() * size_of::<GpuReference<T>>());
+        .reserve(references.len() * size_of::<GpuBasePoint<T>>());
     let mut starts = question.starts[part.starts].iter();
     let (mut first_group, mut steps_here) = (0, 0);
     for (index, (reference, trajectory)) in (0..).zip(references.iter().zip(trajectories)) {
@@ -67,7 +67,7 @@ pub fn packed<T: Scalar>(question: &Question, part: Part, most_steps: usize) -> 
         }
         let rod = &question.rods[reference.rod as usize];
         // A dispatch has fewer steps than `u32` can count, a question fewer cells.
-        let one = GpuReference::<T>::new(rod, reference, steps_here as u32, trajectory);
+        let one = GpuBasePoint::<T>::new(rod, reference, steps_here as u32, trajectory);
         packed
             .references
             .extend_from_slice(bytemuck::bytes_of(&one));
@@ -118,7 +118,7 @@ impl<T: Scalar> From<&StepStart> for GpuStart<T> {
 /// Quads of numbers, in the order in which shaders read them.
 #[derive(Clone, Copy, Pod, Zeroable)]
 #[repr(C, packed)]
-pub struct GpuReference<T> {
+pub struct GpuBasePoint<T> {
     /// `tau`, load, radius, arclength.
     contact: [T; 4],
     /// Taper, bend, and an Euler spiral's numbers.
@@ -150,8 +150,8 @@ pub const PLACES: [(&str, usize); 13] = {
     macro_rules! places {
         ($($name:literal $member:ident)+) => {
             [
-                $(($name, offset_of!(GpuReference<f32>, $member) / size_of::<[f32; 4]>()),)+
-                ("REFERENCE_QUADS", size_of::<GpuReference<f32>>() / size_of::<[f32; 4]>()),
+                $(($name, offset_of!(GpuBasePoint<f32>, $member) / size_of::<[f32; 4]>()),)+
+                ("REFERENCE_QUADS", size_of::<GpuBasePoint<f32>>() / size_of::<[f32; 4]>()),
             ]
         };
     }
@@ -161,9 +161,9 @@ pub const PLACES: [(&str, usize); 13] = {
     )
 };
 
-impl<T: Scalar> GpuReference<T> {
-    fn new(rod: &Rod, reference: &Reference, first_step: u32, trajectory: &Trajectory) -> Self {
-        let Reference {
+impl<T: Scalar> GpuBasePoint<T> {
+    fn new(rod: &Rod, reference: &BasePoint, first_step: u32, trajectory: &Trajectory) -> Self {
+        let BasePoint {
             tau, load, state, ..
         } = reference;
         let s = arclength(rod, *tau);
@@ -207,13 +207,13 @@ impl<T: Scalar> GpuReference<T> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::integrate::gpu::asked::Asked;
+    use crate::engine::gpu::asked::Asked;
     use crate::shooting::FirstVariation;
     use std::sync::Arc;
 
     /// References with so many steps and cells.
     fn question(all: &[(u32, u32)]) -> Question {
-        let reference = |&(_, cells): &(u32, u32)| Reference {
+        let reference = |&(_, cells): &(u32, u32)| BasePoint {
             rod: 0,
             tau: 0.5,
             load: 1.0,
@@ -262,10 +262,10 @@ mod tests {
                         assert_eq!(answer, next);
                         next += count;
                         if before.replace(index) != Some(index) {
-                            let at = index as usize * size_of::<GpuReference<f32>>();
+                            let at = index as usize * size_of::<GpuBasePoint<f32>>();
                             let reference =
-                                &packed.references[at..][..size_of::<GpuReference<f32>>()];
-                            let reference: GpuReference<f32> =
+                                &packed.references[at..][..size_of::<GpuBasePoint<f32>>()];
+                            let reference: GpuBasePoint<f32> =
                                 bytemuck::pod_read_unaligned(reference);
                             let [_, _, count, from] = reference.push;
                             let own = &steps[from as usize..][..count as usize];

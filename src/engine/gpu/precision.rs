@@ -1,6 +1,6 @@
 //! `f32` or `f64` in the shaders, and what follows from it.
 
-use super::reference::GpuStart;
+use super::base_point::GpuStart;
 use crate::shooting::Resolution;
 use std::fmt;
 

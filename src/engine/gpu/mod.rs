@@ -8,6 +8,7 @@
 
 mod adapters;
 mod asked;
+mod base_point;
 mod bytes;
 mod device;
 mod flight;
@@ -17,7 +18,6 @@ mod pace;
 mod peak;
 mod pipeline;
 mod precision;
-mod reference;
 pub mod shaders;
 mod stamps;
 
@@ -26,7 +26,7 @@ pub use flight::Times;
 pub use guard::DRIVER_CALL;
 pub use precision::Precision;
 
-use super::{CellDifference, Description, Engine, EngineError, Question};
+use super::{CellDifference, Engine, EngineDescription, EngineError, Question};
 use crate::rod::Effects;
 use crate::shooting::Resolution;
 use asked::Asked;
@@ -219,9 +219,9 @@ impl Gpu {
 }
 
 impl Engine for Gpu {
-    fn describe(&self) -> Description {
+    fn describe(&self) -> EngineDescription {
         let info = &self.device.info;
-        Description {
+        EngineDescription {
             engine: format!("gpu {}", self.precision),
             adapter: format!(
                 "{}, {}, {} {}",

@@ -5,7 +5,7 @@
 
 use std::thread;
 
-/// Name of the threads whose panics become an [`EngineError`](crate::integrate::EngineError).
+/// Name of the threads whose panics become an [`EngineError`](crate::engine::EngineError).
 pub const DRIVER_CALL: &str = "driver call";
 
 /// Returns the result of `call`, or the message with which it panicked.

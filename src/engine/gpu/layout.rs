@@ -2,9 +2,9 @@
 
 use super::Precision;
 use super::asked::Part;
+use super::base_point::{Packed, packed};
 use super::bytes::{Scalar, bytes, halves};
-use super::reference::{Packed, packed};
-use crate::integrate::{CellDifference, Outcome, Question};
+use crate::engine::{CellDifference, Outcome, Question};
 use crate::plan::STATE_CHANNELS;
 use bytemuck::{Pod, Zeroable};
 
@@ -87,8 +87,8 @@ impl From<GpuCell> for CellDifference {
 #[allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 mod tests {
     use super::*;
-    use crate::integrate::gpu::reference::GpuStart;
-    use crate::integrate::gpu::shaders;
+    use crate::engine::gpu::base_point::GpuStart;
+    use crate::engine::gpu::shaders;
     use naga::TypeInner;
     use std::mem::offset_of;
 

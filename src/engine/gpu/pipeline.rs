@@ -1,9 +1,9 @@
 //! Shaders, compiled.
 
+use super::base_point::WORKGROUP;
 use super::device::Device;
 use super::layout::BufferLayout;
 use super::pace::Pace;
-use super::reference::WORKGROUP;
 use super::shaders::overrides;
 use super::{EngineError, Precision};
 use crate::rod::Effects;

@@ -17,7 +17,7 @@ pub struct Push {
 
 /// Columns with growing magnitudes of their push angles.
 #[derive(Clone, Debug)]
-pub struct Pushes {
+pub struct SideColumns {
     /// The side that they push to.
     pub side: Side,
     /// The columns.
@@ -28,7 +28,7 @@ pub struct Pushes {
     pub first: u32,
 }
 
-impl Pushes {
+impl SideColumns {
     /// Those of `push_angle_deg`, which grow, that are on `side`; `first` is the number of columns on the sides before.
     pub fn new(push_angle_deg: &[f64], side: Side, first: u32) -> Self {
         let all = push_angle_deg.iter().enumerate();
@@ -90,7 +90,7 @@ mod tests {
     fn columns_go_away_from_no_push() {
         let all = [-70.0, -1e-9, -0.0, 0.0, 30.0];
         let columns = |side| {
-            let pushes = Pushes::new(&all, side, 0);
+            let pushes = SideColumns::new(&all, side, 0);
             pushes
                 .columns
                 .iter()
@@ -99,19 +99,19 @@ mod tests {
         };
         assert_eq!(columns(Side::Cf), [1, 0]);
         assert_eq!(columns(Side::Cb), [2, 3, 4]);
-        let span = |side, cells| Pushes::new(&all, side, 0).span(cells);
+        let span = |side, cells| SideColumns::new(&all, side, 0).span(cells);
         assert_eq!(span(Side::Cf, 0..2), 0..2);
         assert_eq!(span(Side::Cf, 1..2), 0..1);
         assert_eq!(span(Side::Cb, 1..3), 3..5);
         let written = |side, cells| {
             let mut row = [0.0; 5];
-            Pushes::new(&all, side, 0).write(&mut row, &cells, |i| 1.0 + i as f32);
+            SideColumns::new(&all, side, 0).write(&mut row, &cells, |i| 1.0 + i as f32);
             row
         };
         assert_eq!(written(Side::Cf, 0..2), [2.0, 1.0, 0.0, 0.0, 0.0]);
         assert_eq!(written(Side::Cb, 1..3), [0.0, 0.0, 0.0, 1.0, 2.0]);
-        Pushes::new(&all, Side::Cb, 0).write(&mut [], &(0..1), |_| unreachable!());
-        let Push { angle, turn, .. } = Pushes::new(&all, Side::Cf, 0).columns[1];
+        SideColumns::new(&all, Side::Cb, 0).write(&mut [], &(0..1), |_| unreachable!());
+        let Push { angle, turn, .. } = SideColumns::new(&all, Side::Cf, 0).columns[1];
         assert!(
             (turn.to_angle() - angle).abs() < 1e-15 && (angle + 1.2217304763960306).abs() < 1e-15
         );

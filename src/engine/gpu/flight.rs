@@ -1,11 +1,11 @@
 //! A submission under way, in buffers that are used again and again.
 
 use super::EngineError;
+use super::base_point::Packed;
 use super::device::{Device, answer};
 use super::layout::BufferLayout;
-use super::reference::Packed;
 use super::stamps::Stamps;
-use crate::integrate::CellDifference;
+use crate::engine::CellDifference;
 use std::ops::Range;
 use std::time::{Duration, Instant};
 use wgpu::BufferUsages as Usage;

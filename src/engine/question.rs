@@ -1,6 +1,6 @@
 //! What an engine is asked: the cells of some references, with the trajectories of these.
 
-use super::Reference;
+use super::BasePoint;
 use crate::rod::{Effects, Rod};
 use crate::shooting::Resolution;
 use crate::shooting::batch::{InitialCondition, StepStart, step_starts};
@@ -23,7 +23,7 @@ pub struct Question {
     /// Signed push angles, in radians.
     pub pushes: Arc<[f64]>,
     /// The references; answers are in the order of their cells.
-    pub references: Vec<Reference>,
+    pub references: Vec<BasePoint>,
     /// The trajectory of each.
     pub trajectories: Vec<Trajectory>,
     /// Where their steps start, one trajectory after the other.
@@ -47,7 +47,7 @@ impl Question {
         resolution: Resolution,
         rods: Vec<Rod>,
         pushes: Arc<[f64]>,
-        references: Vec<Reference>,
+        references: Vec<BasePoint>,
     ) -> Self {
         let parts = references.par_chunks(TOGETHER);
         let parts = parts.map(|references| {

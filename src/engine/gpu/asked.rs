@@ -1,6 +1,6 @@
 //! A question under way: it is sent in parts, and answered in their order.
 
-use crate::integrate::{CellDifference, Question};
+use crate::engine::{CellDifference, Question};
 use std::ops::Range;
 use std::sync::Arc;
 

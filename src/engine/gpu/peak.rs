@@ -1,7 +1,7 @@
 //! What the device could do at best.
 
+use super::base_point::WORKGROUP;
 use super::pipeline::compile;
-use super::reference::WORKGROUP;
 use super::{EngineError, Gpu, shaders};
 use std::time::Instant;
 

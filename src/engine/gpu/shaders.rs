@@ -1,8 +1,8 @@
 //! The shaders' text: whole pieces in order, after one that Rust writes.
 
 use super::Precision;
+use super::base_point::{PLACES, WORKGROUP};
 use super::layout::OUTCOMES;
-use super::reference::{PLACES, WORKGROUP};
 use crate::plan::STATE_CHANNELS;
 use crate::rod::Effects;
 use crate::shooting::{REST_TANGENT, REST_TERMS};

@@ -1,6 +1,6 @@
 //! Engines: what solves whole cells in place of the refinement, thousands at once.
 //!
-//! A row of a map comes with [`Reference`]s, exact states along it. An engine integrates what is different in a cell, takes
+//! A row of a map comes with [`BasePoint`]s, exact states along it. An engine integrates what is different in a cell, takes
 //! Newton's step from there, and answers with the difference of everything that people want to know, and with a bound on the
 //! miss. Cells that it does not vouch for, it hands over by an [`Outcome`]: they are refined in `f64`. So are rows without
 //! references, and a sample of all others.
@@ -25,11 +25,11 @@ pub const POWERS: usize = 12;
 
 /// What is known along a row: push angle, `tau`, the direction of the point of the resting whisker that is as far from the base as the
 /// contact, and the derivatives of `(ln D, phi)` by `tau` and by load.
-pub type RowNumbers = [f64; 7];
+pub type RowTerms = [f64; 7];
 
 /// A state of a row of cells, exact, and its neighbourhood on the row.
 #[derive(Clone, Debug)]
-pub struct Reference {
+pub struct BasePoint {
     /// Which of the rods of the question.
     pub rod: u32,
     /// `tau` of the contact.
@@ -43,7 +43,7 @@ pub struct Reference {
     /// The signed load over the row parameter, which is `load tau^2` over that at the end of the row.
     pub per_way: f64,
     /// Taylor polynomials of the row in the row parameter, less its value here.
-    pub row: [RowNumbers; POWERS],
+    pub row: [RowTerms; POWERS],
     /// The cells next to it: those at these of the question's push angles.
     pub cells: Range<u32>,
 }
@@ -62,7 +62,7 @@ pub struct CellDifference {
 impl CellDifference {
     /// `(tau, load)` of a cell of `reference`, whose rod is `rod`.
     #[must_use]
-    pub fn point(&self, rod: &Rod, reference: &Reference) -> (f64, f64) {
+    pub fn point(&self, rod: &Rod, reference: &BasePoint) -> (f64, f64) {
         let [arc, _, force, ..] = self.numbers.map(f64::from);
         let tau = rod.tau(arclength(rod, reference.tau) + arc);
         let load = (reference.state.full.force + force) / rod.radius(tau).powi(2);
@@ -109,14 +109,14 @@ impl Outcome {
 
 /// What solves a map, for people and for the record.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Description {
+pub struct EngineDescription {
     /// `cpu f64`, `gpu f32`, `gpu f64`.
     pub engine: String,
     /// Processor or adapter, with driver.
     pub adapter: String,
 }
 
-impl Description {
+impl EngineDescription {
     /// Of `engine`, or of the CPU alone.
     #[must_use]
     pub fn of(engine: Option<&dyn Engine>) -> Self {
@@ -131,7 +131,7 @@ impl Description {
 /// Something that solves cells, on any thread.
 pub trait Engine: Send {
     /// Which engine this is.
-    fn describe(&self) -> Description;
+    fn describe(&self) -> EngineDescription;
 
     /// The largest bound on the miss of a cell that it vouches for, in whisker lengths.
     fn goal(&self) -> f64;
