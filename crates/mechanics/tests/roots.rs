@@ -241,3 +241,20 @@ fn polynomials_go_through_their_values() {
         }
     }
 }
+
+#[test]
+fn halving_knows_signs_alone() {
+    for [below, above] in [[0.0, 1.0], [1.0, 0.0]] {
+        let mut bracket = Bracket { below, above };
+        let is_below = |x: f64| Ok::<bool, ()>((x < 0.3) == (below < above));
+        assert_eq!(bracket.halve(1e-3, is_below), Ok(()));
+        assert!((bracket.below - bracket.above).abs() <= 1e-3 && bracket.contains(0.3));
+        assert_eq!(bracket.halve(0.0, is_below), Ok(()));
+        assert!((bracket.below - bracket.above).abs() <= f64::EPSILON && bracket.contains(0.3));
+    }
+    let mut bracket = UNIT;
+    assert_eq!(
+        bracket.halve(0.0, |x| if x < 0.9 { Ok(true) } else { Err(x) }),
+        Err(0.9375)
+    );
+}

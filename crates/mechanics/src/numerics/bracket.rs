@@ -79,6 +79,29 @@ impl Bracket {
         self.newton(self.middle(), |_| 0.0, iterate).x
     }
 
+    /// Halves the bracket until its ends are at most `width` apart or neighbouring numbers. `is_below` decides which end
+    /// moves to the middle; its first error ends the search and is returned. It serves where a function is known by its
+    /// sign alone.
+    ///
+    /// # Errors
+    ///
+    /// The error of `is_below`.
+    pub fn halve<E>(
+        &mut self,
+        width: f64,
+        mut is_below: impl FnMut(f64) -> Result<bool, E>,
+    ) -> Result<(), E> {
+        while (self.above - self.below).abs() > width && self.is_inside(self.middle()) {
+            let middle = self.middle();
+            if is_below(middle)? {
+                self.below = middle;
+            } else {
+                self.above = middle;
+            }
+        }
+        Ok(())
+    }
+
     /// Newton's method, or one of its kind, from `start`. `iterate` tells the value at a place, and which place it proposes
     /// next. A proposed step inside the bracket, no longer than `last_step` allows where it begins, is the last one.
     pub fn newton(

@@ -1,6 +1,7 @@
 //! Numbers, and what can be said of them without a whisker: scalars and SIMD lanes, vectors, polynomials, roots.
 
 mod bracket;
+pub mod chebyshev;
 mod complex;
 pub mod gauss;
 pub mod lobatto;
