@@ -33,6 +33,7 @@ mod front;
 pub mod input;
 pub mod map;
 pub mod measured;
+mod newton;
 #[cfg(feature = "render")]
 #[allow(
     clippy::disallowed_methods,

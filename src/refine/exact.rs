@@ -2,10 +2,13 @@
 
 use super::newton::verdict;
 use super::{ContactState, End, Shot};
-use crate::rod::arclength;
+use crate::newton::{BatchNewton, NewtonOutcome, NewtonStep, Problem};
+use crate::rod::{Rod, arclength};
 use crate::sheet::Sheet;
-use crate::shooting::batch::{Batch, InitialCondition, Method};
+use crate::shooting::batch::{Method, chunk_size};
 use crate::shooting::{FirstVariation, limited};
+use glam::DVec2;
+use rayon::prelude::*;
 
 /// A state, exact but for rounding.
 #[derive(Clone, Copy, Debug)]
@@ -22,47 +25,68 @@ pub struct Exact {
 /// below rounding.
 const EXTRAPOLATED_STEP: f64 = 3e-8;
 
-/// Newton steps at most.
-const ROUNDS: u32 = 8;
+/// Most trajectories of a state.
+const TRAJECTORIES: u32 = 8;
 
-/// The states of `shots` by Newton's method; `None` where there is none on the sheet.
-pub fn exact(method: Method, sheets: &[&Sheet], shots: &[Shot]) -> Vec<Option<Exact>> {
-    let mut found = vec![None; shots.len()];
-    let mut open: Vec<(usize, f64, f64)> = shots
-        .iter()
-        .enumerate()
-        .map(|(i, shot)| (i, shot.tau, shot.load))
-        .collect();
-    for _ in 0..ROUNDS {
-        let condition = |&(i, tau, load): &(usize, f64, f64)| InitialCondition {
-            rod: &sheets[shots[i].rod as usize].rod,
-            tau,
-            load,
-        };
-        let conditions: Vec<InitialCondition> = open.iter().map(condition).collect();
-        let states = Batch::new(method).shoot::<FirstVariation>(&conditions);
-        let mut left = Vec::new();
-        for ((i, tau, load), mut state) in open.into_iter().zip(states) {
-            let (shot, map) = (&shots[i], state.full.map);
-            let sheet = sheets[shot.rod as usize];
-            let s = arclength(&sheet.rod, tau);
-            let (step, length) = limited(map.solve(map.residual(shot.pole)), s, load);
-            let (tau, load) = (tau + step.x, load + step.y);
-            if length <= EXTRAPOLATED_STEP {
-                state.full = state.extrapolated(step);
-                let reached = ContactState {
-                    tau,
-                    load,
-                    full: state.full,
-                    residual: 0.0,
-                };
-                let is_solved = verdict(sheet, shot, &reached) == End::Solved;
-                found[i] = is_solved.then_some(Exact { tau, load, state });
-            } else if step.is_finite() && tau > 0.0 {
-                left.push((i, tau, load));
-            }
-        }
-        open = left;
+/// The state of a whisker whose pole is where a shot wants it, to rounding.
+struct NodeProblem<'a> {
+    sheet: &'a Sheet,
+    pole: DVec2,
+    derivatives: FirstVariation,
+}
+
+impl<'a> Problem<'a> for NodeProblem<'a> {
+    type Output = FirstVariation;
+
+    fn rod(&self) -> &'a Rod {
+        &self.sheet.rod
     }
-    found
+
+    fn step(&mut self, at: DVec2, here: &FirstVariation) -> NewtonStep {
+        self.derivatives = *here;
+        let map = &here.full.map;
+        let s = arclength(&self.sheet.rod, at.x);
+        let (step, length) = limited(map.solve(map.residual(self.pole)), s, at.y);
+        if length <= EXTRAPOLATED_STEP {
+            NewtonStep::Extrapolate(step)
+        } else {
+            NewtonStep::Shoot(at + step)
+        }
+    }
+}
+
+/// The states of `shots`, each on the sheet `sheets[shot.rod]`; `None` where Newton's method fails, or leads off the sheet.
+pub fn exact(method: Method, sheets: &[&Sheet], shots: &[Shot]) -> Vec<Option<Exact>> {
+    let problem = |shot: &Shot| NodeProblem {
+        sheet: sheets[shot.rod as usize],
+        pole: shot.pole,
+        derivatives: FirstVariation::default(),
+    };
+    let solve = |shots: &[Shot]| {
+        let mut problems: Vec<NodeProblem> = shots.iter().map(problem).collect();
+        let starts = shots.iter().map(|shot| DVec2::new(shot.tau, shot.load));
+        let iterates = BatchNewton::new(method, TRAJECTORIES).solve(&mut problems, starts);
+        let solved = problems.into_iter().zip(iterates).zip(shots);
+        let solved = solved.map(|((problem, iterate), shot)| {
+            let reached = ContactState {
+                tau: iterate.point.x,
+                load: iterate.point.y,
+                full: iterate.state,
+                residual: 0.0,
+            };
+            let has_converged = iterate.outcome == NewtonOutcome::Converged;
+            let is_solved = has_converged && verdict(problem.sheet, shot, &reached) == End::Solved;
+            is_solved.then_some(Exact {
+                tau: reached.tau,
+                load: reached.load,
+                state: FirstVariation {
+                    full: reached.full,
+                    ..problem.derivatives
+                },
+            })
+        });
+        solved.collect::<Vec<_>>()
+    };
+    let chunks = shots.par_chunks(chunk_size(shots.len()));
+    chunks.flat_map_iter(solve).collect()
 }

@@ -136,27 +136,25 @@ fn refine_chunk(
     starts: &[(f64, f64)],
     cells: &mut [Refined],
 ) {
-    let all = starts.iter().copied().enumerate().collect();
-    newton(method, sheets, shots, all, STEPS, cells);
+    let starts = starts.iter().map(|(tau, load)| DVec2::new(*tau, *load));
+    let all: Vec<(usize, DVec2)> = starts.enumerate().collect();
+    newton(method, sheets, shots, &all, STEPS, cells);
     let failed = (0..cells.len()).filter(|&i| cells[i].end == End::NotConverged);
     let failed: Vec<usize> = failed.collect();
     let failed_shots: Vec<Shot> = failed.iter().map(|&i| shots[i]).collect();
     let verdicts = near_fold::decide(method, sheets, &failed_shots);
-    let (mut again, mut steps_before) = (Vec::new(), Vec::new());
-    for (i, verdict) in failed.into_iter().zip(verdicts) {
+    let mut again = Vec::new();
+    for (&i, verdict) in failed.iter().zip(verdicts) {
         match verdict {
             Verdict::Beyond => cells[i].end = End::BeyondFold,
-            Verdict::Start(start) => {
-                steps_before.push((i, cells[i].steps));
-                cells[i] = Refined::default();
-                again.push((i, start));
-            }
+            Verdict::Start(start) => again.push((i, start)),
             Verdict::Unknown => {}
         }
     }
-    newton(method, sheets, shots, again, STEPS_NEAR_FOLD, cells);
-    for (i, steps) in steps_before {
-        cells[i].steps += steps;
+    let steps_before: Vec<u32> = again.iter().map(|(i, _)| cells[*i].steps).collect();
+    newton(method, sheets, shots, &again, STEPS_NEAR_FOLD, cells);
+    for ((i, _), steps) in again.iter().zip(steps_before) {
+        cells[*i].steps += steps;
     }
 }
 

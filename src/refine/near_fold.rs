@@ -6,7 +6,7 @@
 
 use super::Shot;
 use crate::numerics::nearest_turn;
-use crate::sheet::{Edge, EdgeProblem, Sheet, edge_newton};
+use crate::sheet::{Edge, EdgeProblem, EdgeStart, Sheet, edge_newton};
 use crate::shooting::SecondVariation;
 use crate::shooting::batch::Method;
 use glam::DVec2;
@@ -16,8 +16,8 @@ use glam::DVec2;
 pub enum Verdict {
     /// No solution: the wanted direction lies beyond the fold.
     Beyond,
-    /// Newton's method should start here, at `(tau, load)`.
-    Start((f64, f64)),
+    /// Newton's method should start at this `(tau, load)`.
+    Start(DVec2),
     /// The fold was not found.
     Unknown,
 }
@@ -34,8 +34,10 @@ pub fn decide(method: Method, sheets: &[&Sheet], shots: &[Shot]) -> Vec<Verdict>
             second: None,
         })
         .collect();
-    let folds = edge_newton(method, &problems).into_iter().zip(shots);
+    let folds = edge_newton(method, EdgeStart::Coarse, &problems);
     folds
+        .into_iter()
+        .zip(shots)
         .map(|(fold, shot)| {
             if fold.has_converged {
                 compare(sheets[shot.rod as usize], shot, fold.point, &fold.here)
@@ -58,6 +60,5 @@ fn compare(sheet: &Sheet, shot: &Shot, point: DVec2, here: &SecondVariation) -> 
     let det_slope = here.det_gradient().dot(along);
     // dphi/deta = -det, with eta counted in units of `along`.
     let eta = det_slope.signum() * (2.0 * left / det_slope.abs()).sqrt();
-    let start = point + eta * along;
-    Verdict::Start((start.x, start.y))
+    Verdict::Start(point + eta * along)
 }

@@ -1,10 +1,12 @@
 //! Newton's method on many cells at once, and when it may stop.
 
 use super::{ContactState, End, GOAL, Refined, Shot, TOLERANCE};
+use crate::newton::{BatchNewton, NewtonOutcome, NewtonStep, Problem};
 use crate::rod::{Rod, arclength};
 use crate::sheet::Sheet;
-use crate::shooting::batch::{Batch, InitialCondition, Method};
+use crate::shooting::batch::Method;
 use crate::shooting::{FirstVariation, limited};
+use glam::DVec2;
 
 /// The longest Newton step, as [`limited`] measures it, at whose end the state is extrapolated instead of integrated.
 const EXTRAPOLATED_STEP: f64 = 1.5e-7;
@@ -27,84 +29,86 @@ const CLEAR_OF_FOLD: f64 = 1e-5;
 /// Derivatives are good enough to extrapolate from this [`Resolution::least`](crate::shooting::Resolution::least) on.
 const LEAST_STEPS: u32 = 5;
 
+/// The state of a whisker whose pole is where a shot wants it.
+struct CellProblem<'a> {
+    sheet: &'a Sheet,
+    pole: DVec2,
+    /// Whether derivatives are good enough to extrapolate from them.
+    may_extrapolate: bool,
+    /// How far the last iterate misses the pole, in whisker lengths; a bound where it is extrapolated.
+    residual: f64,
+}
+
+impl<'a> Problem<'a> for CellProblem<'a> {
+    type Output = FirstVariation;
+
+    fn rod(&self) -> &'a Rod {
+        &self.sheet.rod
+    }
+
+    fn step(&mut self, at: DVec2, here: &FirstVariation) -> NewtonStep {
+        let map = &here.full.map;
+        let before = std::mem::replace(&mut self.residual, map.pole.distance(self.pole));
+        if self.residual <= GOAL {
+            return NewtonStep::Accept;
+        }
+        let rod = &self.sheet.rod;
+        let s = arclength(rod, at.x);
+        let (step, length) = limited(map.solve(map.residual(self.pole)), s, at.y);
+        let columns = map.by_tau.length() * map.by_load.length();
+        let is_short = length <= EXTRAPOLATED_STEP && map.det() > CLEAR_OF_FOLD * columns;
+        if is_short && self.may_extrapolate {
+            let beside = Beside::the_cone(rod, at.x, s);
+            if at.y.abs() * s * s * beside.softness <= LARGEST_Q
+                && length * length * beside.left <= EXTRAPOLATED_STEP * EXTRAPOLATED_STEP
+            {
+                let left = LEFT_BY_STEP * beside.left * length * length;
+                self.residual = left * (s + map.pole.length()) + ROUNDING;
+                return NewtonStep::Extrapolate(step);
+            }
+        }
+        let is_stuck = self.residual <= TOLERANCE && self.residual > 0.5 * before;
+        if is_stuck {
+            NewtonStep::Accept
+        } else {
+            NewtonStep::Shoot(at + step)
+        }
+    }
+}
+
 /// Newton's method with at most `most` steps for each of the `open` cells: its index, and where it starts.
 pub fn newton(
     method: Method,
     sheets: &[&Sheet],
     shots: &[Shot],
-    mut open: Vec<(usize, (f64, f64))>,
+    open: &[(usize, DVec2)],
     most: u32,
     cells: &mut [Refined],
 ) {
-    for steps in 0..=most {
-        if open.is_empty() {
-            break;
-        }
-        let condition = |(i, (tau, load)): (usize, (f64, f64))| InitialCondition {
-            rod: &sheets[shots[i].rod as usize].rod,
-            tau,
-            load,
+    let problem = |&(i, _): &(usize, DVec2)| CellProblem {
+        sheet: sheets[shots[i].rod as usize],
+        pole: shots[i].pole,
+        may_extrapolate: method.resolution.least >= LEAST_STEPS,
+        residual: f64::INFINITY,
+    };
+    let mut problems: Vec<CellProblem> = open.iter().map(problem).collect();
+    let starts = open.iter().map(|(_, start)| *start);
+    let iterates = BatchNewton::new(method, most + 1).solve(&mut problems, starts);
+    for ((problem, iterate), (i, _)) in problems.iter().zip(iterates).zip(open) {
+        let state = ContactState {
+            tau: iterate.point.x,
+            load: iterate.point.y,
+            full: iterate.state,
+            residual: problem.residual,
         };
-        let conditions = open.iter().copied().map(condition);
-        let mut left = Vec::new();
-        Batch::new(method).for_each::<FirstVariation>(conditions, |place, variation| {
-            let i = open[place].0;
-            let condition = condition(open[place]);
-            let full = variation.full;
-            let residual = full.map.pole.distance(shots[i].pole);
-            let state = ContactState {
-                tau: condition.tau,
-                load: condition.load,
-                full,
-                residual,
-            };
-            let s = arclength(condition.rod, condition.tau);
-            let step = full.map.solve(full.map.residual(shots[i].pole));
-            let (step, length) = limited(step, s, condition.load);
-            let sheet = sheets[shots[i].rod as usize];
-            let columns = full.map.by_tau.length() * full.map.by_load.length();
-            let bending = condition.load.abs() * s * s;
-            let may_be_last = residual > GOAL
-                && length <= EXTRAPOLATED_STEP
-                && method.resolution.least >= LEAST_STEPS
-                && full.map.det() > CLEAR_OF_FOLD * columns;
-            let beside = match may_be_last {
-                true => Beside::the_cone(condition.rod, condition.tau, s),
-                false => Beside::CONE,
-            };
-            let is_last = may_be_last
-                && bending * beside.softness <= LARGEST_Q
-                && length * length * beside.left <= EXTRAPOLATED_STEP * EXTRAPOLATED_STEP;
-            if is_last {
-                let state = ContactState {
-                    tau: condition.tau + step.x,
-                    load: condition.load + step.y,
-                    full: variation.extrapolated(step),
-                    residual: LEFT_BY_STEP
-                        * beside.left
-                        * length
-                        * length
-                        * (s + full.map.pole.length())
-                        + ROUNDING,
-                };
-                let (end, steps) = (verdict(sheet, &shots[i], &state), steps + 1);
-                cells[i] = Refined { state, steps, end };
-                return;
-            }
-            let before = cells[i].state.residual;
-            let stuck = residual <= TOLERANCE && residual > 0.5 * before;
-            let has_converged = residual <= GOAL || stuck;
-            let end = match has_converged {
-                true => verdict(sheet, &shots[i], &state),
-                false => End::NotConverged,
-            };
-            cells[i] = Refined { state, steps, end };
-            let next = (condition.tau + step.x, condition.load + step.y);
-            if !has_converged && step.is_finite() && next.0 > 0.0 {
-                left.push((i, next));
-            }
-        });
-        open = left;
+        cells[*i] = Refined {
+            state,
+            steps: iterate.steps,
+            end: match iterate.outcome {
+                NewtonOutcome::Converged => verdict(problem.sheet, &shots[*i], &state),
+                _ => End::NotConverged,
+            },
+        };
     }
 }
 

@@ -18,7 +18,7 @@ mod row;
 
 pub use continuation::level_curve::{LevelCurve, Node, ON_CURVE};
 pub use continuation::{Continuation, NODE_MISS, continuations};
-pub use edges::edge_newton::{EdgeIterate, EdgeProblem, edge_newton};
+pub use edges::edge_newton::{EdgeIterate, EdgeProblem, EdgeStart, edge_newton};
 pub use fold::FoldPoint;
 pub use lattice::guesses::Guess;
 pub use row::{Crossing, Edge, Row};

@@ -1,8 +1,8 @@
 //! Where level curves meet the edges of the sheet, between two of their nodes.
 
-use crate::sheet::continuation::corrector::{Corrector, correct};
+use crate::sheet::continuation::corrector::correct;
 use crate::sheet::continuation::level_curve::{LevelCurve, Node, ON_CURVE};
-use crate::sheet::edges::edge_newton::{EdgeProblem, edge_newton_unpadded};
+use crate::sheet::edges::edge_newton::{EdgeProblem, EdgeStart, edge_newton};
 use crate::sheet::row::Edge;
 use glam::DVec2;
 
@@ -146,19 +146,17 @@ fn edges(chords: &[(&Chord, Edge)]) -> Vec<Option<Node>> {
         .iter()
         .map(|(chord, edge)| chord.problem(*edge))
         .collect();
-    let iterates = edge_newton_unpadded(first.level.method, &problems);
+    let iterates = edge_newton(first.level.method, EdgeStart::Fine, &problems);
     // At a fold rounding can leave Newton's method a little beside the curve; at the tip it is on it.
-    let correctors = chords
-        .iter()
-        .zip(&iterates)
-        .map(|((chord, edge), iterate)| {
-            let tolerance = match edge {
-                Edge::Fold => ON_CURVE,
-                Edge::Tip => TIP_MISS,
-            };
-            Corrector::new(chord.level, iterate.point, tolerance)
-        });
-    let corrected = correct(correctors.collect());
+    let points = chords.iter().zip(&iterates);
+    let points = points.map(|((chord, edge), iterate)| {
+        let tolerance = match edge {
+            Edge::Fold => ON_CURVE,
+            Edge::Tip => TIP_MISS,
+        };
+        (chord.level, iterate.point, tolerance)
+    });
+    let corrected = correct(&points.collect::<Vec<_>>());
     chords
         .iter()
         .zip(iterates.iter().zip(corrected))

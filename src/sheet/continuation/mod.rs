@@ -5,14 +5,15 @@ pub mod level_curve;
 mod meeting;
 pub mod pieces;
 mod states;
-mod walk;
+mod stepper;
 pub mod walked;
 
-use crate::sheet::continuation::corrector::{Correction, shoot};
+use crate::newton::BatchNewton;
 use crate::sheet::continuation::level_curve::{LevelCurve, Node, ON_CURVE};
 use crate::sheet::continuation::meeting::{Meeting, meet};
-use crate::sheet::continuation::walk::Walk;
+use crate::sheet::continuation::stepper::Stepper;
 use crate::sheet::row::{Edge, STEEP};
+use glam::DVec2;
 
 /// What `ln D` may miss at a node between the ends that only tells the way, and about where states are.
 pub const NODE_MISS: f64 = 1e-8;
@@ -90,64 +91,50 @@ fn follow_surely(
     ended
 }
 
-fn follow<'a>(
-    starts: Vec<(&'a LevelCurve, Node)>,
+fn follow(
+    starts: Vec<(&LevelCurve, Node)>,
     past_fold: bool,
     miss: f64,
 ) -> Vec<Option<Continuation>> {
     let mut ended = vec![None; starts.len()];
-    let walk = |(index, (level, start))| Walk::new(index, level, start, miss);
-    let mut open: Vec<Walk> = starts.into_iter().enumerate().map(walk).collect();
+    let Some((first, _)) = starts.first() else {
+        return ended;
+    };
+    let newton = BatchNewton::new(first.method, u32::MAX);
+    let stepper = |(index, (level, start))| Stepper::new(index, level, start, miss);
+    let mut open: Vec<Stepper> = starts.into_iter().enumerate().map(stepper).collect();
     while !open.is_empty() {
-        let at_edges = to_edges(std::mem::take(&mut open));
-        let chord = |(walk, next): &(Walk<'a>, Node)| walk.chord(*next);
-        let meetings = meet(&at_edges.iter().map(chord).collect::<Vec<_>>());
-        for ((mut walk, next), meeting) in at_edges.into_iter().zip(meetings) {
-            match meeting {
-                Meeting::None => open.extend(walk.go_on(next)),
-                Meeting::Unclear => open.extend(walk.shorten()),
-                Meeting::Edge(edge, node) => {
-                    let is_first_fold = walk.end_at(edge, node);
-                    if is_first_fold && past_fold {
-                        open.extend(walk.set_out());
-                    } else {
-                        ended[walk.index] = Some(Continuation {
-                            nodes: walk.nodes,
-                            fold: walk.fold,
-                            end: edge,
-                        });
-                    }
+        // All run until the chord to their next node may meet an edge, or until they fail, so that the edge Newtons share batches, too.
+        let predicted: Vec<DVec2> = open.iter().map(|stepper| stepper.predicted).collect();
+        newton.solve(&mut open, predicted);
+        let at_edges = std::mem::take(&mut open).into_iter();
+        let at_edges =
+            at_edges.filter_map(|mut stepper| Some((stepper.candidate.take()?, stepper)));
+        let at_edges: Vec<(Node, Stepper)> = at_edges.collect();
+        let chords = at_edges.iter().map(|(next, stepper)| stepper.chord(*next));
+        let meetings = meet(&chords.collect::<Vec<_>>());
+        for ((next, mut stepper), meeting) in at_edges.into_iter().zip(meetings) {
+            let may_go_on = match meeting {
+                Meeting::None => stepper.add(next),
+                Meeting::Unclear => stepper.shorten(),
+                Meeting::Edge(edge, node) if stepper.end_at(edge, node) && past_fold => {
+                    stepper.advance()
                 }
+                Meeting::Edge(edge, _) => {
+                    ended[stepper.index] = Some(Continuation {
+                        nodes: std::mem::take(&mut stepper.nodes),
+                        fold: stepper.fold,
+                        end: edge,
+                    });
+                    false
+                }
+            };
+            if may_go_on {
+                open.push(stepper);
             }
         }
     }
     ended
-}
-
-/// All walks to where the chord to their next node may meet an edge, but for those that get lost. They wait for each other there, so that
-/// what finds the edges shares batches, too.
-fn to_edges(mut open: Vec<Walk>) -> Vec<(Walk, Node)> {
-    let mut at_edges = Vec::new();
-    while !open.is_empty() {
-        let shots = shoot(open.iter().map(|walk| &walk.corrector));
-        for (mut walk, shot) in std::mem::take(&mut open).into_iter().zip(shots) {
-            let next = match walk.corrector.advance(&shot) {
-                Correction::Open => {
-                    open.push(walk);
-                    continue;
-                }
-                Correction::Done(point, full) => walk.next(point, full),
-                Correction::Lost => None,
-            };
-            match next {
-                Some(next) if walk.chord(next).may_graze() => open.extend(walk.shorten()),
-                Some(next) if walk.chord(next).may_meet() => at_edges.push((walk, next)),
-                Some(next) => open.extend(walk.go_on(next)),
-                None => open.extend(walk.shorten()),
-            }
-        }
-    }
-    at_edges
 }
 
 #[cfg(test)]

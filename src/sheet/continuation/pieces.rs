@@ -2,7 +2,7 @@
 //! level curve of a row is then in several pieces, whose push angles may overlap.
 
 use crate::sheet::continuation::level_curve::{LevelCurve, Node};
-use crate::sheet::continuation::walk::MOST_PUSH;
+use crate::sheet::continuation::stepper::MOST_PUSH;
 use crate::sheet::continuation::{Continuation, NODE_MISS, continuations};
 use crate::sheet::row::Crossing;
 

@@ -2,10 +2,11 @@
 
 use crate::numerics::{Root, illinois};
 use crate::rod::arclength;
-use crate::sheet::continuation::corrector::{Corrector, correct, shoot};
+use crate::sheet::continuation::corrector::correct;
 use crate::sheet::continuation::level_curve::{LevelCurve, Node, ON_CURVE};
 use crate::sheet::row::Crossing;
-use crate::shooting::FullState;
+use crate::shooting::batch::{Batch, InitialCondition};
+use crate::shooting::{FirstVariation, FullState};
 use glam::DVec2;
 
 /// How much more rounding leaves next to states of a scaled load `q` than [`ON_CURVE`], per `q`: 1.4e-14 at 38 was too little, of 800
@@ -17,8 +18,14 @@ impl LevelCurve {
     #[must_use]
     pub fn touch(&self) -> Option<Node> {
         let at_touch = self.row.first_touch(&self.rod);
-        let full = shoot(&[Corrector::new(self, at_touch, ON_CURVE)])
-            .first()?
+        let condition = InitialCondition {
+            rod: &self.rod,
+            tau: at_touch.x,
+            load: at_touch.y,
+        };
+        let full = Batch::new(self.method)
+            .shoot::<FirstVariation>(&[condition])
+            .pop()?
             .full;
         Some(Node {
             push: 0.0,
@@ -75,7 +82,7 @@ impl LevelCurve {
     /// Brings every point onto the curve, to `tolerance` in `ln D` or to rounding; `None` where that fails.
     #[must_use]
     pub fn correct(&self, points: &[DVec2], tolerance: f64) -> Vec<Option<(DVec2, FullState)>> {
-        let corrector = |point: &DVec2| Corrector::new(self, *point, tolerance);
-        correct(points.iter().map(corrector).collect())
+        let point = |point: &DVec2| (self, *point, tolerance);
+        correct(&points.iter().map(point).collect::<Vec<_>>())
     }
 }

@@ -9,7 +9,7 @@ use crate::rod::{Rod, Side};
 use crate::sheet::edges::Edges;
 use crate::sheet::edges::bisection::{Between, Point, bisect};
 use crate::sheet::edges::edge_newton::{
-    EdgeIterate, EdgeProblem, edge_newton_fine, edge_newton_predicted,
+    EdgeIterate, EdgeProblem, EdgeStart, edge_newton, edge_newton_predicted,
 };
 use crate::sheet::edges::predictor::{Prediction, Sample};
 use crate::sheet::row::{Crossing, Edge, REACH_SLACK, Row};
@@ -177,7 +177,7 @@ fn correct(
             ..problems[i]
         })
         .collect();
-    let finer = edge_newton_fine(method.doubled(), &again);
+    let finer = edge_newton(method.doubled(), EdgeStart::Shared, &again);
     for (i, iterate) in steep.into_iter().zip(&finer) {
         let c = &candidates[i];
         let found = reached((c, iterate));

@@ -1,6 +1,7 @@
 //! Edge Newton, the corrector: solves for the point of an edge at which the pole is at a distance. On the fold edge two equations
 //! hold, `D` and `det = 0`, for contact and load; on the tip edge `D` alone, for the load.
 
+use crate::newton::{BatchNewton, NewtonOutcome, NewtonStep, Problem, Sharing};
 use crate::rod::{Rod, arclength};
 use crate::sheet::edges::predictor::SecondDerivatives;
 use crate::sheet::row::Edge;
@@ -23,7 +24,7 @@ pub struct EdgeProblem<'a> {
     pub second: Option<SecondDerivatives>,
 }
 
-/// Where Newton's method stands.
+/// Where Newton's method ended.
 #[derive(Clone, Copy, Debug)]
 pub struct EdgeIterate {
     /// `(tau, load)`.
@@ -32,53 +33,101 @@ pub struct EdgeIterate {
     pub here: SecondVariation,
     /// What is missing in `ln D`.
     pub miss: f64,
-    /// How far it still is, as [`limited`] measures lengths: the square of the last step, or the step not taken any more.
+    /// The remaining step, as [`limited`] measures lengths: the square of the last step, or the step that was not taken.
     pub left: f64,
     /// Whether a step was short enough to be the last one.
     pub has_converged: bool,
 }
 
-/// Iterations at the coarse resolution: from the guess of a cell next to the fold they lead to its error.
-const COARSE_ITERATIONS: usize = 2;
+/// Rounds at the coarse resolution: from the guess of a cell next to the fold they lead to its error.
+const COARSE_ROUNDS: u32 = 2;
 
-/// Iterations at the method's own resolution; 1 or 2 are the rule.
-const FINE_ITERATIONS: usize = 20;
+/// Most trajectories at the method's own resolution; 1 or 2 are the rule.
+const TRAJECTORIES: u32 = 20;
 
-/// The length of a step that needs no trajectory at its end: what is left after it is its square, and second derivatives
-/// tell the rest to its cube.
+/// The length of a step that needs no trajectory at its end. Its square is left, and second derivatives determine the end to its cube.
 const LAST_EDGE_STEP: f64 = 3e-7;
 
-/// How far off, relatively, predicted second derivatives are at the most; 1e-3 is the rule.
+/// The largest relative error of predicted second derivatives; 1e-3 is the rule.
 const SECOND_OFF: f64 = 1e-2;
 
-/// Solves all `problems`, first at the coarse resolution; the caller judges what is left in `miss` and `left`. Trajectories are not
-/// padded: which problems next to the folds of a map come together depends on its strips, and no answer may.
-#[must_use]
-pub fn edge_newton(method: Method, problems: &[EdgeProblem]) -> Vec<EdgeIterate> {
-    iterate(method, problems, COARSE_ITERATIONS, Batch::new)
+/// Which trajectories an edge Newton shoots.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum EdgeStart {
+    /// The first ones are coarse: for starts next to the edge, such as the guesses of cells.
+    Coarse,
+    /// All have the method's resolution: for good starts, and for whiskers that coil up under friction, where the coarse resolution
+    /// leads astray.
+    Fine,
+    /// All have the method's resolution and share padded blocks: for the batches of a sheet, which do not depend on row batches.
+    Shared,
 }
 
-/// The same at the method's own resolution throughout: for starts that are good already, and for whiskers that friction lets
-/// coil up, where the coarse one leads astray.
-#[must_use]
-pub fn edge_newton_fine(method: Method, problems: &[EdgeProblem]) -> Vec<EdgeIterate> {
-    iterate(method, problems, 0, |method| Batch::new(method).padded())
+/// An edge point on its way.
+struct EdgeSearch<'a, 'b> {
+    problem: &'b EdgeProblem<'a>,
+    left: f64,
 }
 
-/// The same, and each answer is as if it were computed alone.
-#[must_use]
-pub fn edge_newton_unpadded(method: Method, problems: &[EdgeProblem]) -> Vec<EdgeIterate> {
-    iterate(method, problems, 0, Batch::new)
+impl<'a> Problem<'a> for EdgeSearch<'a, '_> {
+    type Output = SecondVariation;
+
+    fn rod(&self) -> &'a Rod {
+        self.problem.rod
+    }
+
+    fn step(&mut self, at: DVec2, here: &SecondVariation) -> NewtonStep {
+        let (step, length) = self.problem.step(at, here);
+        if length <= LAST_EDGE_STEP {
+            self.left = length * length;
+            NewtonStep::Extrapolate(step)
+        } else {
+            self.left = length;
+            NewtonStep::Shoot(at + step)
+        }
+    }
 }
 
-/// The same from predictions. With their second derivatives most need a single trajectory, with first derivatives; toward the tip
-/// those by the load are enough.
+/// Solves all `problems`. What is left of each is in `miss` and `left`.
+#[must_use]
+pub fn edge_newton(method: Method, start: EdgeStart, problems: &[EdgeProblem]) -> Vec<EdgeIterate> {
+    let newton = BatchNewton::new(method, TRAJECTORIES);
+    let newton = match start {
+        EdgeStart::Coarse => BatchNewton {
+            coarse_rounds: COARSE_ROUNDS,
+            most_trajectories: COARSE_ROUNDS + TRAJECTORIES,
+            ..newton
+        },
+        EdgeStart::Fine => newton,
+        EdgeStart::Shared => BatchNewton {
+            sharing: Sharing::Open,
+            ..newton
+        },
+    };
+    let search = |problem| EdgeSearch { problem, left: 0.0 };
+    let mut searches: Vec<EdgeSearch> = problems.iter().map(search).collect();
+    let iterates = newton.solve(&mut searches, problems.iter().map(|problem| problem.start));
+    let ended = searches.iter().zip(iterates);
+    let ended = ended.map(|(search, iterate)| EdgeIterate {
+        point: iterate.point,
+        here: iterate.state,
+        miss: search.problem.miss(&iterate.state),
+        left: search.left,
+        has_converged: iterate.outcome == NewtonOutcome::Converged,
+    });
+    ended.collect()
+}
+
+/// Solves all `problems` from predictions. With predicted second derivatives, most need a single trajectory with first derivatives;
+/// toward the tip those by the load are enough. This is one step of another kernel, not a loop.
 #[must_use]
 pub fn edge_newton_predicted(method: Method, problems: &[EdgeProblem]) -> Vec<EdgeIterate> {
-    let conditions: Vec<InitialCondition> = problems
-        .iter()
-        .map(|problem| condition(problem, problem.start))
-        .collect();
+    let conditions = problems.iter().map(|problem| InitialCondition {
+        rod: problem.rod,
+        tau: problem.start.x,
+        load: problem.start.y,
+    });
+    let conditions: Vec<InitialCondition> = conditions.collect();
     let maps = Batch::new(method)
         .padded()
         .shoot::<ShootingMap>(&conditions);
@@ -92,97 +141,49 @@ pub fn edge_newton_predicted(method: Method, problems: &[EdgeProblem]) -> Vec<Ed
             by_tau_load,
             by_load_load,
         };
-        let last_step = problem.second.map(|_| LAST_EDGE_STEP);
-        let (mut iterate, next) = newton_step(problem, problem.start, &here, last_step);
-        if iterate.has_converged {
-            iterate.left += SECOND_OFF * iterate.left.sqrt();
-        } else {
+        let (step, length) = problem.step(problem.start, &here);
+        let there = here.extrapolated(step);
+        let is_last = problem.second.is_some() && length <= LAST_EDGE_STEP;
+        if !is_last {
             // A long step, or one of unknown second derivatives, can lead astray.
-            let is_good = problem.second.is_some() && iterate.left < SECOND_OFF;
-            let start = if is_good { next } else { problem.start };
+            let is_good = problem.second.is_some() && length < SECOND_OFF;
+            let start = problem.start + if is_good { step } else { DVec2::ZERO };
             open.push(i);
             again.push(EdgeProblem { start, ..*problem });
         }
-        iterates.push(iterate);
+        let left = length * length;
+        iterates.push(EdgeIterate {
+            point: problem.start + step,
+            here: there,
+            miss: problem.miss(&there),
+            left: left + SECOND_OFF * left.sqrt(),
+            has_converged: is_last,
+        });
     }
-    for (i, iterate) in open.into_iter().zip(edge_newton_fine(method, &again)) {
+    for (i, iterate) in open
+        .into_iter()
+        .zip(edge_newton(method, EdgeStart::Shared, &again))
+    {
         iterates[i] = iterate;
     }
     iterates
 }
 
-fn condition<'a>(problem: &EdgeProblem<'a>, point: DVec2) -> InitialCondition<'a> {
-    InitialCondition {
-        rod: problem.rod,
-        tau: point.x,
-        load: point.y,
+impl EdgeProblem<'_> {
+    /// What is missing in `ln D` where the pole is `here`.
+    fn miss(&self, here: &SecondVariation) -> f64 {
+        libm::log(self.pole_distance / here.map.pole.length())
     }
-}
 
-fn iterate(
-    method: Method,
-    problems: &[EdgeProblem],
-    coarse_iterations: usize,
-    batch: fn(Method) -> Batch,
-) -> Vec<EdgeIterate> {
-    let mut points: Vec<DVec2> = problems.iter().map(|problem| problem.start).collect();
-    let mut iterates: Vec<Option<EdgeIterate>> = vec![None; problems.len()];
-    let mut open: Vec<usize> = (0..problems.len()).collect();
-    for iteration in 0..coarse_iterations + FINE_ITERATIONS {
-        if open.is_empty() {
-            break;
-        }
-        let is_coarse = iteration < coarse_iterations;
-        let method = if is_coarse { method.coarsely() } else { method };
-        let last_step = (!is_coarse).then_some(LAST_EDGE_STEP);
-        let conditions: Vec<InitialCondition> = open
-            .iter()
-            .map(|&i| condition(&problems[i], points[i]))
-            .collect();
-        let shots: Vec<SecondVariation> = batch(method).shoot(&conditions);
-        let mut shots = shots.into_iter();
-        open.retain(|&i| {
-            let Some(here) = shots.next() else {
-                return false;
-            };
-            let (iterate, next) = newton_step(&problems[i], points[i], &here, last_step);
-            points[i] = next;
-            iterates[i] = Some(iterate);
-            !iterate.has_converged && next.is_finite() && next.x > 0.0
-        });
+    /// The next step from `at`, where the pole is `here`, and its length.
+    fn step(&self, at: DVec2, here: &SecondVariation) -> (DVec2, f64) {
+        let miss = self.miss(here);
+        let step = match self.edge {
+            Edge::Fold => fold_step(here, miss),
+            Edge::Tip => DVec2::new(0.0, load_step(here, miss)),
+        };
+        limited(step, arclength(self.rod, at.x), at.y)
     }
-    iterates.into_iter().flatten().collect()
-}
-
-/// The iterate at `point`, where the pole is `here`, and the next point. A step of at most `last_step` is taken already: the iterate
-/// is then the one at its end.
-fn newton_step(
-    problem: &EdgeProblem,
-    point: DVec2,
-    here: &SecondVariation,
-    last_step: Option<f64>,
-) -> (EdgeIterate, DVec2) {
-    let miss = |here: &SecondVariation| libm::log(problem.pole_distance / here.map.pole.length());
-    let step = match problem.edge {
-        Edge::Fold => fold_step(here, miss(here)),
-        Edge::Tip => DVec2::new(0.0, load_step(here, miss(here))),
-    };
-    let (step, length) = limited(step, arclength(problem.rod, point.x), point.y);
-    let next = point + step;
-    let has_converged = last_step.is_some_and(|last| length <= last);
-    let (point, here, left) = if has_converged {
-        (next, here.extrapolated(step), length * length)
-    } else {
-        (point, *here, length)
-    };
-    let iterate = EdgeIterate {
-        point,
-        here,
-        miss: miss(&here),
-        left,
-        has_converged,
-    };
-    (iterate, next)
 }
 
 /// The step in load toward the point at the same contact whose `ln D` is larger by `miss`, to second order: where the distance is
@@ -229,11 +230,15 @@ mod tests {
                 second: None,
             };
             if edge == Edge::Tip {
-                let at_start = [condition(&problem, start)];
+                let at_start = [InitialCondition {
+                    rod: &rod,
+                    tau: start.x,
+                    load: start.y,
+                }];
                 let here = Batch::new(method).shoot::<SecondVariation>(&at_start)[0];
                 problem.pole_distance = here.map.pole.length();
             }
-            let known = edge_newton_fine(method, &[problem])[0];
+            let known = edge_newton(method, EdgeStart::Shared, &[problem])[0];
             assert!(known.has_converged && known.miss.abs() < 1e-12, "{edge:?}");
             let here = &known.here;
             let seconds = [here.by_tau_tau, here.by_tau_load, here.by_load_load];

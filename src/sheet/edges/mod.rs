@@ -111,7 +111,7 @@ mod tests {
     use super::*;
     use crate::numerics::lobatto::LOBATTO_COUNT;
     use crate::rod::{Rest, Side};
-    use crate::sheet::edges::edge_newton::{EdgeProblem, edge_newton_fine};
+    use crate::sheet::edges::edge_newton::{EdgeProblem, EdgeStart, edge_newton};
     use crate::sheet::fold::contact_nodes::SPACING;
     use crate::sheet::row::Edge;
     use crate::sheet::row::Row;
@@ -149,7 +149,7 @@ mod tests {
                         start: DVec2::new(predicted.tau, predicted.load),
                         second: None,
                     };
-                    let found = edge_newton_fine(method, &[problem])[0];
+                    let found = edge_newton(method, EdgeStart::Shared, &[problem])[0];
                     let away = (found.point / problem.start - DVec2::ONE).abs();
                     assert!(
                         found.has_converged && away.max_element() < 1e-7,

@@ -4,6 +4,7 @@ mod change;
 pub mod contact_nodes;
 pub mod coordinate;
 
+use crate::newton::{BatchNewton, NewtonStep, Problem, Sharing};
 use crate::numerics::Bracket;
 use crate::numerics::newton_form::{Polynomial, RootProblem, stencil};
 use crate::rod::{Rod, Side, arclength};
@@ -49,13 +50,13 @@ const STEP_LEFT: f64 = 1e-5;
 /// The Newton step in load, relative to it, that needs no trajectory at its end: its square is left.
 const LAST_LOAD_STEP: f64 = 1e-6;
 
-/// Where the march is given up.
-const LARGEST_Q: f64 = 1e4;
+/// The `q` at which the march is given up.
+const MARCH_END: f64 = 1e4;
 
-/// Rounds of Newton's method; bisection alone would need 50.
-const POLISH_ROUNDS: usize = 60;
+/// Most trajectories of a fold; bisection alone would need 50.
+const POLISH_TRAJECTORIES: u32 = 60;
 
-/// First folds of `rod` at the contacts `taus`; `None` where there is none up to [`LARGEST_Q`], or no stable state at first
+/// First folds of `rod` at the contacts `taus`; `None` where there is none up to [`MARCH_END`], or no stable state at first
 /// touch.
 pub fn first_folds(method: Method, rod: &Rod, side: Side, taus: &[f64]) -> Vec<Option<FoldPoint>> {
     let begin = if rod.profile.is_none() && rod.gradient >= 0.0 {
@@ -100,7 +101,7 @@ fn march(method: Method, rod: &Rod, side: Side, taus: &[f64], begin: f64) -> Vec
         })
         .collect();
     let (mut samples, mut step) = (Vec::new(), FIRST_SPACING);
-    while !open.is_empty() && samples.last().is_none_or(|q| *q < LARGEST_Q) {
+    while !open.is_empty() && samples.last().is_none_or(|q| *q < MARCH_END) {
         let from = samples.len();
         let first = samples.last().map_or(begin, |q| q + step);
         samples.extend((0..SAMPLES).map(|i| step.mul_add(i as f64, first)));
@@ -170,68 +171,69 @@ fn root(samples: &[f64], dets: &[f64], at: usize) -> f64 {
     samples[at] + part * (samples[at + 1] - samples[at])
 }
 
-/// Newton's method on `det(load) = 0` inside the brackets.
+/// The load at which `det` vanishes inside a bracket.
+struct FoldProblem<'a> {
+    rod: &'a Rod,
+    /// Of `-det`.
+    loads: Bracket,
+}
+
+impl<'a> Problem<'a> for FoldProblem<'a> {
+    type Output = SecondVariation;
+
+    fn rod(&self) -> &'a Rod {
+        self.rod
+    }
+
+    fn step(&mut self, at: DVec2, here: &SecondVariation) -> NewtonStep {
+        let det = here.map.det();
+        let newton = at.y - det / here.det_gradient().y;
+        let step = newton - at.y;
+        if step.abs() <= LAST_LOAD_STEP * at.y.abs() {
+            return NewtonStep::Extrapolate(DVec2::new(0.0, step));
+        }
+        let next = self.loads.next(at.y, -det, newton);
+        if next == at.y {
+            NewtonStep::Accept
+        } else {
+            NewtonStep::Shoot(DVec2::new(at.x, next))
+        }
+    }
+}
+
+/// Solves `det(load) = 0` inside the brackets.
 fn polish(method: Method, rod: &Rod, marched: Vec<Option<Marched>>) -> Vec<Option<FoldPoint>> {
-    let mut points = vec![None; marched.len()];
-    let mut all: Vec<(usize, Marched)> = marched
+    let found: Vec<Marched> = marched.iter().flatten().copied().collect();
+    let problem = |marched: &Marched| FoldProblem {
+        rod,
+        loads: marched.loads,
+    };
+    let newton = BatchNewton {
+        // Solved folds stay in the batch: with fewer steps, at the tip of a perfect cone, `det` may have its root elsewhere. Along a
+        // profile each trajectory takes steps of its own.
+        sharing: match rod.profile {
+            Some(_) => Sharing::Open,
+            None => Sharing::All,
+        },
+        ..BatchNewton::new(method, POLISH_TRAJECTORIES)
+    };
+    let mut problems: Vec<FoldProblem> = found.iter().map(problem).collect();
+    let starts = found.iter().map(|fold| DVec2::new(fold.tau, fold.guess));
+    let mut iterates = newton.solve(&mut problems, starts).into_iter();
+    let mut fold = |_: Marched| {
+        let iterate = iterates.next()?;
+        let variation = iterate.state;
+        // A bracket that closed on something else than a root, or did not close, is no fold.
+        let step = variation.map.det() / variation.det_gradient().y;
+        let is_fold = step.abs() <= STEP_LEFT * iterate.point.y.abs();
+        is_fold.then_some(FoldPoint {
+            tau: iterate.point.x,
+            load: iterate.point.y,
+            variation,
+        })
+    };
+    marched
         .into_iter()
-        .enumerate()
-        .filter_map(|(i, marched)| Some((i, marched?)))
-        .collect();
-    let mut is_open = vec![true; all.len()];
-    for _ in 0..POLISH_ROUNDS {
-        if !is_open.contains(&true) {
-            break;
-        }
-        // Those that are done stay in the batch, because with fewer steps, at the tip of a perfect cone, `det` may have its root
-        // elsewhere; but not along a profile, where each takes steps of its own.
-        if rod.profile.is_some() {
-            let mut still = is_open.iter().copied();
-            all.retain(|_| still.next().unwrap_or(false));
-            is_open.retain(|open| *open);
-        }
-        let conditions: Vec<InitialCondition> = all
-            .iter()
-            .map(|(_, marched)| InitialCondition {
-                rod,
-                tau: marched.tau,
-                load: marched.guess,
-            })
-            .collect();
-        let variations = Batch::new(method)
-            .padded()
-            .shoot::<SecondVariation>(&conditions);
-        for (((i, marched), is_open), variation) in all.iter_mut().zip(&mut is_open).zip(variations)
-        {
-            if !*is_open {
-                continue;
-            }
-            let Marched { tau, loads, guess } = marched;
-            let det = variation.map.det();
-            let newton = *guess - det / variation.det_gradient().y;
-            let step = newton - *guess;
-            let is_last = step.abs() <= LAST_LOAD_STEP * guess.abs();
-            let (load, variation) = if is_last {
-                (newton, variation.extrapolated(DVec2::new(0.0, step)))
-            } else {
-                (*guess, variation)
-            };
-            points[*i] = Some(FoldPoint {
-                tau: *tau,
-                load,
-                variation,
-            });
-            let next = loads.next(*guess, -det, newton);
-            *is_open = !is_last && next != *guess;
-            *guess = next;
-        }
-    }
-    // A bracket that closed on something else than a root, or did not close, is no fold.
-    for point in &mut points {
-        *point = point.filter(|fold| {
-            let step = fold.variation.map.det() / fold.variation.det_gradient().y;
-            step.abs() <= STEP_LEFT * fold.load.abs()
-        });
-    }
-    points
+        .map(|marched| marched.and_then(&mut fold))
+        .collect()
 }

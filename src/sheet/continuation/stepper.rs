@@ -1,29 +1,31 @@
-//! A continuation on its way from node to node.
+//! A continuation in progress: predictor and corrector, from node to node.
 
-use crate::sheet::continuation::corrector::Corrector;
+use crate::newton::{NewtonStep, Problem};
+use crate::rod::Rod;
+use crate::sheet::continuation::corrector::{Corrector, TRAJECTORIES};
 use crate::sheet::continuation::level_curve::{LevelCurve, Node};
 use crate::sheet::continuation::meeting::Chord;
 use crate::sheet::row::Edge;
-use crate::shooting::FullState;
+use crate::shooting::{FirstVariation, FullState};
 use glam::DVec2;
 use std::f64::consts::TAU;
 
 /// Nodes are about this far apart.
 const NODE_DISTANCE: f64 = 0.05;
 
-/// Neighbouring chords make at most this angle, unless they are short, so that their length is that of the curve.
+/// The largest angle between neighbouring chords that are not short, so that their length is that of the curve.
 const SHARPEST_TURN: f64 = 0.1;
 
-/// Chords shorter than this may turn as they like: after a longer one, no step is short enough not to.
+/// Chords shorter than this may make any angle: after a longer one, no step is short enough for a small angle.
 const SHORT: f64 = 0.01 * NODE_DISTANCE;
 
 /// The first step of the continuation, relative to contact and load.
 const FIRST_ARC_STEP: f64 = 0.05;
 
-/// A step that has become this short leads nowhere.
+/// A continuation whose step is shorter than this has failed.
 const SHORTEST_ARC_STEP: f64 = 1e-9;
 
-/// A predictor bends where the direction has changed by less than this since the node before.
+/// A predictor uses the curvature between two nodes whose directions differ by less than this.
 const MOST_BEND: f64 = 0.25;
 
 /// The largest push angle of a node, in radians: nine turns. Push angles of maps are at most one turn, and the largest detachment
@@ -34,73 +36,81 @@ pub const MOST_PUSH: f64 = 9.0 * TAU;
 /// Most nodes: no branch known has more than 300.
 const MOST_NODES: usize = 10_000;
 
-/// A continuation on its way.
-pub struct Walk<'a> {
-    /// Which one.
+/// A continuation in progress. As a [`Problem`] it takes one step after another, until a chord may meet an edge.
+pub struct Stepper<'a> {
+    /// Its index among the curves followed together.
     pub index: usize,
     level: &'a LevelCurve,
     /// From the start on.
     pub nodes: Vec<Node>,
     /// Index of the first fold.
     pub fold: Option<usize>,
+    /// The node after the last one, where the chord to it may meet an edge.
+    pub candidate: Option<Node>,
     step: f64,
     /// The steps from node to node, up to the last one; none across an edge.
     steps: Vec<f64>,
-    /// What a node may miss.
+    /// What `ln D` may miss at a node.
     miss: f64,
     /// The direction at the last node, in parts of the scale.
     along: DVec2,
-    /// The next node on its way to the curve.
-    pub corrector: Corrector<'a>,
+    /// The predicted next node, from which the corrector starts.
+    pub predicted: DVec2,
+    corrector: Corrector<'a>,
+    /// Trajectories of the corrector.
+    trajectories: u32,
 }
 
-impl<'a> Walk<'a> {
-    /// Begins at `start`; nodes may `miss` the curve by so much in `ln D`.
+impl<'a> Stepper<'a> {
+    /// Starts at `start`; nodes may miss the curve by `miss` in `ln D`.
     pub fn new(index: usize, level: &'a LevelCurve, start: Node, miss: f64) -> Self {
-        let mut walk = Self {
+        let mut stepper = Self {
             index,
             level,
             nodes: vec![start],
             fold: None,
+            candidate: None,
             step: FIRST_ARC_STEP,
             steps: Vec::new(),
             miss,
             along: DVec2::ZERO,
-            corrector: Corrector::new(level, start.point, miss),
+            predicted: start.point,
+            corrector: Corrector::new(level, miss),
+            trajectories: 0,
         };
-        walk.predict();
-        walk
+        stepper.predict();
+        stepper
     }
 
-    /// Sets out for the next node; `None` where it is lost.
-    pub fn set_out(mut self) -> Option<Self> {
+    /// Predicts the next node; false where the continuation ends without an edge.
+    pub fn advance(&mut self) -> bool {
         self.predict();
         let is_within = self.nodes.len() < MOST_NODES && self.last().push.abs() <= MOST_PUSH;
-        (is_within && self.step > SHORTEST_ARC_STEP).then_some(self)
+        is_within && self.step > SHORTEST_ARC_STEP
     }
 
-    /// The same with a shorter step.
-    pub fn shorten(mut self) -> Option<Self> {
+    /// Predicts the next node with half the step; false where the step is too short.
+    pub fn shorten(&mut self) -> bool {
         self.step *= 0.5;
-        self.set_out()
+        self.advance()
     }
 
     fn last(&self) -> &Node {
         &self.nodes[self.nodes.len() - 1]
     }
 
-    /// The next node at a point of the curve, where that is the way, and not too far.
-    pub fn next(&self, point: DVec2, full: FullState) -> Option<Node> {
+    /// The next node at a point of the curve, if it lies ahead and is not too far.
+    fn next(&self, point: DVec2, full: FullState) -> Option<Node> {
         let next = self.level.next(self.last(), self.along, (point, full))?;
         self.fits(&next).then_some(next)
     }
 
-    /// Predicts the next node: the curve goes on as it has gone through up to three nodes.
+    /// Predicts the next node by the polynomial through up to three nodes and their tangents.
     fn predict(&mut self) {
         let (level, step) = (self.level, self.step);
         let mut moved = step * level.velocity(self.last());
-        let ways = self.nodes.windows(2).rev().zip(self.steps.iter().rev());
-        let mut bends = ways.map_while(|(nodes, length)| {
+        let chords = self.nodes.windows(2).rev().zip(self.steps.iter().rev());
+        let mut bends = chords.map_while(|(nodes, length)| {
             let [from, to] = [&nodes[0], &nodes[1]];
             let turned = level.direction(to) - level.direction(from);
             let bend = (level.velocity(to) - level.velocity(from)) / *length;
@@ -113,12 +123,13 @@ impl<'a> Walk<'a> {
                 moved += step * step * (step / 3.0 + 0.5 * length) * change;
             }
         }
-        let point = self.last().point + moved;
+        self.predicted = self.last().point + moved;
         self.along = level.direction(self.last());
-        self.corrector = Corrector::new(level, point, self.miss);
+        self.corrector = Corrector::new(level, self.miss);
+        self.trajectories = 0;
     }
 
-    /// From the last node to `next`.
+    /// The chord from the last node to `next`.
     pub fn chord(&self, next: Node) -> Chord<'a> {
         Chord::new(self.level, *self.last(), next, self.fold.is_none())
     }
@@ -134,16 +145,16 @@ impl<'a> Walk<'a> {
         chord.length() < 2.0 * NODE_DISTANCE && (turn < SHARPEST_TURN || chord.length() < SHORT)
     }
 
-    /// Goes on to `next`, and sets out for the one after it.
-    pub fn go_on(mut self, next: Node) -> Option<Self> {
+    /// Adds the node `next` and predicts the one after it; false where the continuation ends without an edge.
+    pub fn add(&mut self, next: Node) -> bool {
         let length = self.level.length(self.last(), &next);
         self.steps.push(self.step);
         self.step *= (NODE_DISTANCE / length).clamp(0.5, 2.0);
         self.nodes.push(next);
-        self.set_out()
+        self.advance()
     }
 
-    /// Ends at an edge; whether that is the first fold.
+    /// Adds the node of an edge; whether that is the first fold.
     pub fn end_at(&mut self, edge: Edge, node: Node) -> bool {
         // Two nodes next to each other are a poor base for interpolation.
         if let [.., before, last] = &self.nodes[..]
@@ -159,5 +170,43 @@ impl<'a> Walk<'a> {
             self.fold = Some(self.nodes.len() - 1);
         }
         is_first_fold
+    }
+}
+
+impl<'a> Problem<'a> for Stepper<'a> {
+    type Output = FirstVariation;
+
+    fn rod(&self) -> &'a Rod {
+        &self.level.rod
+    }
+
+    fn step(&mut self, at: DVec2, here: &FirstVariation) -> NewtonStep {
+        self.trajectories += 1;
+        let next = match self.corrector.step(at, here) {
+            NewtonStep::Accept => self.next(at, here.full),
+            NewtonStep::Extrapolate(step) => self.next(at + step, here.extrapolated(step)),
+            NewtonStep::Shoot(next) if next.x > 0.0 && self.trajectories < TRAJECTORIES => {
+                return NewtonStep::Shoot(next);
+            }
+            NewtonStep::Shoot(_) | NewtonStep::Fail => None,
+        };
+        let chord = next.map(|next| (next, self.chord(next)));
+        let mut may_go_on = match chord {
+            Some((next, chord)) if !chord.may_graze() => {
+                if chord.may_meet() {
+                    self.candidate = Some(next);
+                    return NewtonStep::Accept;
+                }
+                self.add(next)
+            }
+            _ => self.shorten(),
+        };
+        while may_go_on && self.predicted.x <= 0.0 {
+            may_go_on = self.shorten();
+        }
+        match may_go_on {
+            true => NewtonStep::Shoot(self.predicted),
+            false => NewtonStep::Fail,
+        }
     }
 }
