@@ -25,7 +25,7 @@ use whiskmap::scene::Scene;
 use whiskmap::sheet::Sheet;
 use whiskmap::shooting::batch::{Batch, InitialCondition, Method};
 use whiskmap::shooting::{FirstVariation, Resolution, SecondVariation, ShootingMap};
-use whiskmap::store::{Audit, Description, EngineCells, Error, MapWriter, Panel};
+use whiskmap::store::{Audit, Description, EngineCells, Error, MapWriter, Panel, TemporaryFiles};
 
 const TRAJECTORIES: usize = 16_384;
 
@@ -149,7 +149,7 @@ fn files(criterion: &mut Criterion) {
         arithmetic: "fma",
     };
     let write = |path: &Path| -> Result<(), Error> {
-        let mut writer = MapWriter::create(path, &about)?;
+        let mut writer = MapWriter::create(path, &about, &TemporaryFiles::default())?;
         writer.write_panels(std::slice::from_ref(&panel))?;
         writer.finish(EngineCells::default(), Audit::default())?;
         Ok(())

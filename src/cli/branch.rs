@@ -102,11 +102,10 @@ const PUSH: BranchAxis = BranchAxis {
 };
 
 /// Runs `branch`.
-pub fn run(options: &Options) -> Result<(), Failure> {
+pub fn run(options: &Options, files: &mut Files) -> Result<(), Failure> {
     let distances = &options.poles.distance;
-    let mut files = Files::default();
-    let (scene, whisker) = pole::read(&mut files, &options.poles.scene, "branch", distances)?;
-    let mut outputs = options.outputs.open(&mut files)?;
+    let (scene, whisker) = pole::read(files, &options.poles.scene, "branch", distances)?;
+    let mut outputs = options.outputs.open(files)?;
     let sides: &[Side] = match options.side {
         Choice::Cb => &[Side::Cb],
         Choice::Cf => &[Side::Cf],

@@ -70,8 +70,7 @@ pub struct Options {
 }
 
 /// Runs `curve`.
-pub fn run(options: &Options) -> Result<(), Failure> {
-    let mut files = Files::default();
+pub fn run(options: &Options, files: &mut Files) -> Result<(), Failure> {
     if let Some(data) = &options.data {
         data::check_stdin(&options.scene, data)?;
     }
@@ -84,10 +83,10 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         )));
     }
     if let Some(path) = &options.data {
-        return beside_points(options, &scene, path, &mut files);
+        return beside_points(options, &scene, path, files);
     }
     let draws = options.sampling.draw(&scene)?;
-    let mut outputs = options.outputs.open(&mut files)?;
+    let mut outputs = options.outputs.open(files)?;
     let accuracy = options.tolerance.choose(&scene, &Side::BOTH)?;
     let resolution = accuracy.map_or(Resolution::FINE, |accuracy| accuracy.resolution);
     if let Some(draws) = draws {

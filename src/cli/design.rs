@@ -100,12 +100,11 @@ impl Options {
 }
 
 /// Runs `design`.
-pub fn run(options: &Options) -> Result<(), Failure> {
+pub fn run(options: &Options, files: &mut Files) -> Result<(), Failure> {
     let target = options.target()?;
-    let mut files = Files::default();
     let (path, distance) = (&options.pole.scene, options.pole.distance);
-    let (scene, _) = pole::read(&mut files, path, "design", &[distance])?;
-    let (_, picture) = open(&mut files, "--plot", None, options.plot.as_deref())?;
+    let (scene, _) = pole::read(files, path, "design", &[distance])?;
+    let (_, picture) = open(files, "--plot", None, options.plot.as_deref())?;
     let found = design::design(&scene, options.parameter, &target);
     let found = found.map_err(|why| match why {
         NoDesign::Sweep(_) => Failure::Input(why.to_string()),

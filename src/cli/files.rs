@@ -5,20 +5,35 @@ use super::scene;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use whiskmap::scene::Scene;
-use whiskmap::store::{FileId, Output};
+use whiskmap::store::{FileId, Output, TemporaryFiles};
 
 /// Path that stands for standard input or output.
 pub const STDOUT: &str = "-";
 
 /// Inputs and outputs of one command. Inputs are declared before outputs are opened.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct Files {
+    temporary: TemporaryFiles,
     inputs: Vec<(PathBuf, FileId)>,
     /// Option and path of each output for messages, and the path.
     outputs: Vec<(String, PathBuf, FileId)>,
 }
 
 impl Files {
+    /// No inputs and outputs yet; `temporary` has the files of outputs until they are finished.
+    pub fn new(temporary: TemporaryFiles) -> Self {
+        Self {
+            temporary,
+            inputs: Vec::new(),
+            outputs: Vec::new(),
+        }
+    }
+
+    /// The temporary files of the outputs.
+    pub fn temporary(&self) -> &TemporaryFiles {
+        &self.temporary
+    }
+
     /// Reads a scene and declares its files.
     pub fn scene(&mut self, path: &Path) -> Result<Scene, Failure> {
         let scene = scene::read(path)?;
@@ -51,7 +66,9 @@ impl Files {
             return Ok(output);
         }
         let advice = "name a file that can be written";
-        let output = Output::create(path).map_err(impossible(option, path, advice))?;
+        let output = Output::create(path, &self.temporary);
+        let output = output.map_err(impossible(option, path, advice))?;
+        output.remove_leftovers();
         let folders = output.target().map(FileId::of_folders);
         self.claim(option, path, output.id(), &folders.unwrap_or_default())?;
         Ok(output)
@@ -65,6 +82,13 @@ impl Files {
     pub fn store(&mut self, option: &str, path: &Path) -> Result<(), Failure> {
         check_folder(option, path)?;
         self.claim(option, path, FileId::of(path), &FileId::of_folders(path))
+    }
+
+    /// Makes the folder that `option` names, and checks that files can be made in it.
+    pub fn folder(&self, option: &str, path: &Path) -> Result<(), Failure> {
+        check_folder(option, path)?;
+        let made = std::fs::create_dir_all(path).and_then(|()| self.temporary.prepare(path));
+        made.map_err(impossible(option, path, FOLDER_ADVICE))
     }
 
     /// Adds an output, unless it or one of its `folders` is an input, or it is another output.
@@ -101,13 +125,6 @@ impl Files {
         self.outputs.push((own, path.to_owned(), id));
         Ok(())
     }
-}
-
-/// Makes the folder that `option` names, and checks that files can be made in it.
-pub fn folder(option: &str, path: &Path) -> Result<(), Failure> {
-    check_folder(option, path)?;
-    let made = std::fs::create_dir_all(path).and_then(|()| Output::probe(path));
-    made.map_err(impossible(option, path, FOLDER_ADVICE))
 }
 
 const FOLDER_ADVICE: &str = "give a folder that can be written";

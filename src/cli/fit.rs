@@ -49,12 +49,11 @@ pub struct Options {
 }
 
 /// Runs `fit`.
-pub fn run(options: &Options) -> Result<(), Failure> {
-    let mut files = Files::default();
+pub fn run(options: &Options, files: &mut Files) -> Result<(), Failure> {
     data::check_stdin(&options.scene, &options.data)?;
     let scene = files.scene(&options.scene)?;
     check_single(&scene, "fit")?;
-    let points = data::read(&mut files, &options.data)?;
+    let points = data::read(files, &options.data)?;
     let mut open = |option, path: &Option<PathBuf>| {
         let output = path.as_deref().map(|path| files.output(option, path));
         output.transpose()

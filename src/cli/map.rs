@@ -4,7 +4,7 @@ use super::disk;
 use super::engine::{EngineOptions, bound_deg};
 use super::estimate::Format;
 use super::failure::{Failure, check_resolved, say};
-use super::files::{self, Files};
+use super::files::Files;
 use super::numbers::whole;
 use super::picture::save;
 use super::progress::Progress;
@@ -76,8 +76,7 @@ pub struct Options {
 }
 
 /// Runs `map`.
-pub fn run(options: &Options) -> Result<(), Failure> {
-    let mut files = Files::default();
+pub fn run(options: &Options, files: &mut Files) -> Result<(), Failure> {
     let scene = files.scene(&options.scene)?;
     options.check(&scene)?;
     let mut plan = Plan::new(&scene)?;
@@ -99,7 +98,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         channels: plan.channels,
         arithmetic: ArithmeticClass::detect().name(),
     };
-    files::folder("--output", &options.output)?;
+    files.folder("--output", &options.output)?;
     if options.format == Format::Zarr {
         let path = options.output.join(format!("{}.zarr", scene.name));
         files.store("--output", &path)?;
@@ -110,7 +109,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
             engine: engine.as_mut().map(|engine| &mut **engine as _),
             why,
         };
-        return run.fill(&path, &scene, plan, &about);
+        return run.fill(&path, &scene, plan, &about, files.temporary());
     }
     let file = options.output.join(format!("{}.exr", scene.name));
     let picture = (!options.no_png).then(|| file.with_extension("png"));
@@ -133,7 +132,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     ));
 
     let start = Instant::now();
-    let mut writer = MapWriter::create(&file, &about)?;
+    let mut writer = MapWriter::create(&file, &about, files.temporary())?;
     let bar = Progress::over(plan.cells, "cells");
     let engine = engine.as_mut().map(|engine| &mut **engine as _);
     let mut settled = |cells| bar.inc(cells);
@@ -147,7 +146,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     }
     if let Some(picture) = &picture {
         let regimes = render::map(&StoredMap::open(&file)?.into(), &MapOptions::default())?;
-        save(&regimes, picture, render::Format::Png)?;
+        save(&regimes, picture, render::Format::Png, files.temporary())?;
     }
     let written: Vec<PathBuf> = [Some(file), picture].into_iter().flatten().collect();
     print(&scene, &summary, start.elapsed().as_secs_f64(), &written)?;

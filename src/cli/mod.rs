@@ -44,8 +44,10 @@ mod verify;
 
 use clap::{Parser, Subcommand};
 use failure::Failure;
+use files::Files;
 use std::io::{self, Write};
 use std::process::ExitCode;
+use whiskmap::store::TemporaryFiles;
 
 /// Where does a whisker pushed against a pole stay in contact, where does it slip off, where is it pulled off?
 #[derive(Debug, Parser)]
@@ -131,7 +133,8 @@ pub fn main() -> ExitCode {
 /// Installs handlers and makes threads, then runs the command.
 fn start(arguments: &Arguments) -> Result<(), Failure> {
     failure::keep_expected_panics_silent();
-    signals::handle();
+    let temporary = TemporaryFiles::default();
+    signals::handle(temporary.clone());
     let threads = match &arguments.command {
         Command::Map(options) => options.threads,
         _ => None,
@@ -147,28 +150,29 @@ fn start(arguments: &Arguments) -> Result<(), Failure> {
             None => format!("threads for the processor's cores: {error}"),
         })
     })?;
-    pool.install(|| run(&arguments.command))
+    let mut files = Files::new(temporary);
+    pool.install(|| run(&arguments.command, &mut files))
 }
 
 /// Stack of a thread, that of a main thread: drivers of GPUs compile on it.
 const STACK: usize = 8 << 20;
 
-fn run(command: &Command) -> Result<(), Failure> {
+fn run(command: &Command, files: &mut Files) -> Result<(), Failure> {
     match command {
-        Command::Map(options) => map::run(options),
+        Command::Map(options) => map::run(options, files),
         Command::Plan(options) => plan::run(options),
-        Command::Extract(options) => extract::run(options),
-        Command::Status(options) => status::run(options),
+        Command::Extract(options) => extract::run(options, files),
+        Command::Status(options) => status::run(options, files.temporary()),
         Command::Submit(options) => submit::run(options),
-        Command::Render(options) => render::run(options),
-        Command::Curve(options) => curve::run(options),
-        Command::Fit(options) => fit::run(options),
-        Command::Branch(options) => branch::run(options),
-        Command::Shape(options) => shape::run(options),
-        Command::Design(options) => design::run(options),
-        Command::Reproduce(options) => reproduce::run(options),
+        Command::Render(options) => render::run(options, files),
+        Command::Curve(options) => curve::run(options, files),
+        Command::Fit(options) => fit::run(options, files),
+        Command::Branch(options) => branch::run(options, files),
+        Command::Shape(options) => shape::run(options, files),
+        Command::Design(options) => design::run(options, files),
+        Command::Reproduce(options) => reproduce::run(options, files),
         Command::Verify => verify::run(),
-        Command::Bench(options) => bench::run(options),
+        Command::Bench(options) => bench::run(options, files),
         Command::Devices => devices::run(),
     }
 }

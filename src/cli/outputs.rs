@@ -8,7 +8,7 @@ use serde::Serialize;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use whiskmap::render::{Chart, Format, Plot};
-use whiskmap::store::{Output, Table};
+use whiskmap::store::{Output, Table, TemporaryFiles};
 
 /// `--csv` and `--plot`.
 #[derive(Debug, Args)]
@@ -85,6 +85,7 @@ pub struct PlotFile {
     path: PathBuf,
     format: Format,
     is_regular: bool,
+    temporary: TemporaryFiles,
 }
 
 impl PlotFile {
@@ -96,7 +97,7 @@ impl PlotFile {
             columns: 1,
             ..Chart::default()
         };
-        save(&chart.picture(), &self.path, self.format)
+        save(&chart.picture(), &self.path, self.format, &self.temporary)
     }
 }
 
@@ -119,6 +120,7 @@ pub fn open(
         path: path.to_owned(),
         format,
         is_regular: place.is_regular(),
+        temporary: files.temporary().clone(),
     });
     Ok((output, picture))
 }

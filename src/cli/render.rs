@@ -70,9 +70,8 @@ fn range(text: &str, channel: &str) -> Result<[f64; 2], Failure> {
 }
 
 /// Runs `render`.
-pub fn run(options: &Options) -> Result<(), Failure> {
-    let mut files = Files::default();
-    let map = options.selection.open(&mut files, &options.file)?;
+pub fn run(options: &Options, files: &mut Files) -> Result<(), Failure> {
+    let map = options.selection.open(files, &options.file)?;
     let channel = options.channel.as_deref();
     if let Some(name) = &options.channel {
         let drawn = channels(&map, std::slice::from_ref(name))?;
@@ -82,7 +81,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     let range = ends
         .map(|(text, channel)| range(text, channel))
         .transpose()?;
-    let target = target(options, &map, &mut files)?;
+    let target = target(options, &map, files)?;
     let picture = render::map(
         &map,
         &MapOptions {
@@ -94,7 +93,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     )?;
     let mut out = std::io::stdout().lock();
     if let Some((path, format)) = target {
-        save(&picture, &path, format)?;
+        save(&picture, &path, format, files.temporary())?;
         writeln!(out, "{}", path.display())?;
     } else {
         warn_of_boxes(&picture);

@@ -2,7 +2,8 @@
 
 use super::data;
 use super::failure::Failure;
-use super::files::{self, Files, unwritten};
+use super::files::{Files, unwritten};
+use super::picture::save;
 use clap::Args;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -82,11 +83,10 @@ fn points(
 }
 
 /// Runs `reproduce`.
-pub fn run(options: &Options) -> Result<(), Failure> {
-    let mut files = Files::default();
-    let measured = options.measurements(&mut files)?;
+pub fn run(options: &Options, files: &mut Files) -> Result<(), Failure> {
+    let measured = options.measurements(files)?;
     let folder = &options.folder;
-    files::folder("DIR", folder)?;
+    files.folder("DIR", folder)?;
     let figures = paper::figures(&measured).map_err(Failure::State)?;
     let picture = |name: &str, ending| folder.join(name).with_extension(ending);
     let table = |name: &str| folder.join(name).with_extension("csv");
@@ -101,12 +101,13 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     for figure in figures {
         for (ending, format) in [("png", Format::Png), ("svg", Format::Svg)] {
             let path = picture(figure.name, ending);
-            figure.chart.picture().save(&path, format)?;
+            save(&figure.chart.picture(), &path, format, files.temporary())?;
             writeln!(out, "{}", path.display())?;
         }
         for (name, write) in &figure.tables {
             let path = table(name);
-            let written = Output::create(&path).map(Table::new).and_then(|mut table| {
+            let output = Output::create(&path, files.temporary());
+            let written = output.map(Table::new).and_then(|mut table| {
                 write(&mut table)?;
                 table.finish()
             });

@@ -59,10 +59,9 @@ enum Part {
 }
 
 /// Runs `shape`.
-pub fn run(options: &Options) -> Result<(), Failure> {
-    let mut files = Files::default();
+pub fn run(options: &Options, files: &mut Files) -> Result<(), Failure> {
     let (path, distance) = (&options.pole.scene, options.pole.distance);
-    let (scene, whisker) = pole::read(&mut files, path, "shape", &[distance])?;
+    let (scene, whisker) = pole::read(files, path, "shape", &[distance])?;
     let push_deg = options.push_angle;
     if !(-360.0..=360.0).contains(&push_deg) {
         return Err(Failure::Input(format!(
@@ -70,7 +69,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
             digits(push_deg)
         )));
     }
-    let mut outputs = options.outputs.open(&mut files)?;
+    let mut outputs = options.outputs.open(files)?;
     let side = options.side.map_or(Side::of_push(push_deg), Side::from);
     let stable = options.branch == Part::Stable;
     let refused = |why| match why {

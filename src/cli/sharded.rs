@@ -13,7 +13,9 @@ use whiskmap::engine::Engine;
 use whiskmap::map::{self, Panel};
 use whiskmap::plan::Plan;
 use whiskmap::scene::Scene;
-use whiskmap::store::{self, BlockState, CheckDepth, Description, PackedPanel, ZarrStore};
+use whiskmap::store::{
+    self, BlockState, CheckDepth, Description, PackedPanel, TemporaryFiles, ZarrStore,
+};
 
 /// The blocks that one of `count` processes computes: every `count`-th.
 #[derive(Clone, Copy, Debug)]
@@ -65,6 +67,7 @@ impl Run<'_> {
         scene: &Scene,
         mut plan: Plan,
         about: &Description<'_>,
+        temporary: &TemporaryFiles,
     ) -> Result<(), Failure> {
         let start = Instant::now();
         let may_exist = self.resume || self.shard.is_some();
@@ -81,7 +84,7 @@ impl Run<'_> {
             let folder = path.parent().unwrap_or(path);
             disk::check(folder, Format::Zarr, scene, &plan, panel * whiskers)?;
         }
-        for file in store.begin()? {
+        for file in store.begin(temporary)? {
             say(&format!(
                 "warning: {} was damaged: written again",
                 file.display()
@@ -109,7 +112,7 @@ impl Run<'_> {
             if let Some((block, whiskers)) = next
                 && packed.len() == whiskers
             {
-                store.write(block, &packed)?;
+                store.write(block, &packed, temporary)?;
                 packed.clear();
                 next = due.next();
             }

@@ -1,6 +1,7 @@
 //! Interrupts: unfinished files are removed, one line says so, and the exit code is 128 and the signal's number.
 
 use std::sync::OnceLock;
+use whiskmap::store::TemporaryFiles;
 
 /// What an interrupted command says at last.
 static ADVICE: OnceLock<&str> = OnceLock::new();
@@ -13,7 +14,7 @@ pub fn advise(advice: &'static str) {
 /// From now on SIGHUP, SIGINT and SIGTERM end the process at once, whatever its threads do. One that is ignored, as `nohup`
 /// has it, stays so.
 #[cfg(unix)]
-pub fn handle() {
+pub fn handle(temporary: TemporaryFiles) {
     use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
     use signal_hook::{iterator::Signals, low_level};
     use std::io::IsTerminal;
@@ -29,7 +30,7 @@ pub fn handle() {
         let Some(signal) = signals.forever().next() else {
             return;
         };
-        whiskmap::store::abandon();
+        temporary.abandon();
         // A terminal's line may hold a progress bar.
         let is_watched = std::io::stderr().is_terminal();
         let start = if is_watched { "\n" } else { "" };
@@ -46,7 +47,7 @@ pub fn handle() {
 
 /// Elsewhere the next run finds what an interrupted one leaves.
 #[cfg(not(unix))]
-pub fn handle() {}
+pub fn handle(_: TemporaryFiles) {}
 
 #[cfg(unix)]
 #[allow(unsafe_code, reason = "no library tells how a signal is handled now")]

@@ -7,7 +7,7 @@ use std::io::Write;
 use std::ops::Range;
 use std::path::PathBuf;
 use whiskmap::classify::Regime;
-use whiskmap::store::{BlockState, CheckDepth, Error, ZarrStore};
+use whiskmap::store::{BlockState, CheckDepth, Error, TemporaryFiles, ZarrStore};
 
 /// Options of `status`.
 #[derive(Debug, Args)]
@@ -85,7 +85,7 @@ impl Found {
 }
 
 /// Runs `status`.
-pub fn run(options: &Options) -> Result<(), Failure> {
+pub fn run(options: &Options, temporary: &TemporaryFiles) -> Result<(), Failure> {
     let store = ZarrStore::open(&options.store)?;
     let is_thorough = options.verify || options.repair;
     let depth = if is_thorough {
@@ -104,7 +104,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     }
     report(&store, &found)?;
     if options.repair {
-        repair(&store, &found, metadata.len())?;
+        repair(&store, &found, metadata.len(), temporary)?;
     }
     let missing = found.missing.iter().map(ExactSizeIterator::len).sum();
     let (damaged, metadata) = (found.damaged.len(), metadata.len());
@@ -151,8 +151,13 @@ fn report(store: &ZarrStore, found: &Found) -> Result<(), Failure> {
 }
 
 /// Removes what is damaged, so that a run computes it again, and writes `metadata` files again.
-fn repair(store: &ZarrStore, found: &Found, metadata: usize) -> Result<(), Failure> {
-    store.restore_metadata()?;
+fn repair(
+    store: &ZarrStore,
+    found: &Found,
+    metadata: usize,
+    temporary: &TemporaryFiles,
+) -> Result<(), Failure> {
+    store.restore_metadata(temporary)?;
     let mut removed = 0;
     for block in &found.damaged {
         removed += usize::from(store.remove_damaged(*block)?);

@@ -3,8 +3,6 @@
 use super::error::Error;
 use super::picture::Picture;
 use super::{bitmap, svg};
-use crate::store::{self, Output};
-use std::io::Write;
 use std::path::Path;
 
 /// The format of a picture.
@@ -40,19 +38,5 @@ impl Picture {
             Format::Png => bitmap::file(self)?,
             Format::Svg => svg::document(self)?.into_bytes(),
         })
-    }
-
-    /// Saves the picture in a file, which appears whole or not at all.
-    ///
-    /// # Errors
-    ///
-    /// The file cannot be written.
-    pub fn save(&self, out: &Path, format: Format) -> Result<(), Error> {
-        let bytes = self.encode(format)?;
-        let written = Output::create(out).and_then(|mut output| {
-            output.write_all(&bytes)?;
-            output.finish()
-        });
-        written.map_err(|cause| store::Error::Write(out.to_owned(), cause).into())
     }
 }

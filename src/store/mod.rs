@@ -23,9 +23,7 @@ mod stored;
 mod table;
 mod tally;
 mod target;
-mod unfinished;
-#[cfg(feature = "zarr")]
-mod unfinished_folder;
+mod temporary;
 mod writer;
 #[cfg(feature = "zarr")]
 mod zarr;
@@ -43,9 +41,9 @@ pub use stored::Stored;
 pub use table::Table;
 pub use tally::Counts;
 pub use target::check_links;
-pub use unfinished::abandon;
+pub use temporary::TemporaryFiles;
 #[cfg(feature = "zarr")]
-pub use unfinished_folder::UnfinishedFolder;
+pub use temporary::TemporaryFolder;
 pub use writer::MapWriter;
 #[cfg(feature = "zarr")]
 pub use zarr::{BlockState, CheckDepth, PackedPanel, ZarrStore};

@@ -2,7 +2,7 @@
 
 use super::file_id::{FileId, folder_of};
 use super::target::Target;
-use super::unfinished::Unfinished;
+use super::temporary::{TemporaryFile, TemporaryFiles};
 use std::fs::File;
 use std::io::{self, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
@@ -19,7 +19,7 @@ pub struct Output(Destination);
 enum Destination {
     Stdout(io::Stdout),
     Regular {
-        unfinished: Unfinished,
+        file: TemporaryFile,
         target: PathBuf,
     },
     /// The bytes are kept in a file without a name until the stream is opened.
@@ -36,16 +36,16 @@ impl Output {
         Self(Destination::Stdout(io::stdout()))
     }
 
-    /// The file that will be at `path` once it is finished; until then its bytes are in a temporary file.
+    /// The file that will be at `path` once it is finished; until then its bytes are in one of the temporary `files`.
     ///
     /// # Errors
     ///
     /// `path` leads to a folder, or to a file that is read-only or whose owner cannot be kept, or through a link that must not be
     /// followed; or its folder does not exist or is not writable.
-    pub fn create(path: &Path) -> io::Result<Self> {
+    pub fn create(path: &Path, files: &TemporaryFiles) -> io::Result<Self> {
         Ok(Self(match Target::of(path)? {
             Target::Regular(target, replaced) => Destination::Regular {
-                unfinished: Unfinished::create(folder_of(&target), replaced.as_ref())?,
+                file: TemporaryFile::create(folder_of(&target), replaced.as_ref(), files)?,
                 target,
             },
             Target::Stream(target) => Destination::Stream {
@@ -55,13 +55,12 @@ impl Output {
         }))
     }
 
-    /// Checks that files can be made in `folder`, and removes those that killed runs have left there.
-    ///
-    /// # Errors
-    ///
-    /// The folder does not exist or is not writable.
-    pub fn probe(folder: &Path) -> io::Result<()> {
-        Unfinished::create(folder, None).map(drop)
+    /// Removes the temporary files that killed processes of the same user left in the folder of a regular file: at once on the
+    /// same host, after a day on another one.
+    pub fn remove_leftovers(&self) {
+        if let Destination::Regular { file, .. } = &self.0 {
+            file.remove_leftovers();
+        }
     }
 
     /// Returns true if a regular file is made or replaced.
@@ -109,7 +108,7 @@ impl Output {
     #[cfg(feature = "zarr")]
     pub(super) fn finish_new(self) -> io::Result<()> {
         self.finish_synced(|output| match output.0 {
-            Destination::Regular { unfinished, target } => unfinished.persist_new(&target),
+            Destination::Regular { file, target } => file.persist_new(&target),
             _ => Err(io::ErrorKind::AlreadyExists.into()),
         })
     }
@@ -117,8 +116,8 @@ impl Output {
     #[cfg(feature = "zarr")]
     fn finish_synced(mut self, finish: fn(Self) -> io::Result<()>) -> io::Result<()> {
         let folder = match &mut self.0 {
-            Destination::Regular { unfinished, target } => {
-                unfinished.file().sync_all()?;
+            Destination::Regular { file, target } => {
+                file.file().sync_all()?;
                 Some(folder_of(target).to_owned())
             }
             _ => None,
@@ -139,7 +138,7 @@ impl Output {
     pub fn finish(self) -> io::Result<()> {
         match self.0 {
             Destination::Stdout(mut stdout) => stdout.flush(),
-            Destination::Regular { unfinished, target } => unfinished.persist(&target),
+            Destination::Regular { file, target } => file.persist(&target),
             Destination::Stream { mut kept, target } => {
                 // What is open for appending is never shortened or overwritten, even where it is a file.
                 let mut stream = File::options().append(true).open(target)?;
@@ -154,7 +153,7 @@ impl Write for Output {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         match &mut self.0 {
             Destination::Stdout(stdout) => stdout.write(bytes),
-            Destination::Regular { unfinished, .. } => unfinished.file().write(bytes),
+            Destination::Regular { file, .. } => file.file().write(bytes),
             Destination::Stream { kept, .. } => kept.write(bytes),
         }
     }
@@ -162,7 +161,7 @@ impl Write for Output {
     fn flush(&mut self) -> io::Result<()> {
         match &mut self.0 {
             Destination::Stdout(stdout) => stdout.flush(),
-            Destination::Regular { unfinished, .. } => unfinished.file().flush(),
+            Destination::Regular { file, .. } => file.file().flush(),
             Destination::Stream { kept, .. } => kept.flush(),
         }
     }
@@ -172,7 +171,7 @@ impl Seek for Output {
     fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
         match &mut self.0 {
             Destination::Stdout(_) => Err(io::ErrorKind::NotSeekable.into()),
-            Destination::Regular { unfinished, .. } => unfinished.file().seek(to),
+            Destination::Regular { file, .. } => file.file().seek(to),
             Destination::Stream { kept, .. } => kept.seek(to),
         }
     }

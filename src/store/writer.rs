@@ -3,7 +3,7 @@
 use super::attributes::{self, Description, attribute};
 use super::layout::{self, Channel, Layout, Part, SAMPLE_BYTES};
 use super::tally::{self, Counts};
-use super::{Channels, Error, Output, Panel, header, zip};
+use super::{Channels, Error, Output, Panel, TemporaryFiles, header, zip};
 use crate::classify::Regime;
 use crate::map::{Audit, EngineCells};
 use crate::scene::Grid;
@@ -39,12 +39,17 @@ pub struct MapWriter {
 }
 
 impl MapWriter {
-    /// Begins the map that will be `path`, with a header of all that is known before the run.
+    /// Begins the map that will be `path`, with a header of all that is known before the run. Until it is finished, its bytes are
+    /// in one of the temporary `files`.
     ///
     /// # Errors
     ///
     /// The folder is not writable, or the map is too large for EXR or has more than two sweep axes.
-    pub fn create(path: &Path, about: &Description<'_>) -> Result<Self, Error> {
+    pub fn create(
+        path: &Path,
+        about: &Description<'_>,
+        files: &TemporaryFiles,
+    ) -> Result<Self, Error> {
         let sweep = &about.scene.grid.sweep;
         if sweep.len() > 2 {
             let names: Vec<&str> = sweep.iter().map(|axis| axis.parameter.axis()).collect();
@@ -73,7 +78,7 @@ impl MapWriter {
             table
         };
         let tables = headers.iter().map(table).collect();
-        let file = Output::create(path).map_err(Error::at(path, Error::Write))?;
+        let file = Output::create(path, files).map_err(Error::at(path, Error::Write))?;
         let mut writer = Self {
             path: path.to_owned(),
             file: BufWriter::new(file),

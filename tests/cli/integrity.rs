@@ -170,7 +170,9 @@ fn sizes_that_a_store_claims_are_not_allocated() {
     };
     let path = place.path("huge.zarr");
     let store = whiskmap::store::ZarrStore::join(&path, &scene, &about, false).unwrap();
-    store.begin().unwrap();
+    store
+        .begin(&whiskmap::store::TemporaryFiles::default())
+        .unwrap();
     for output in ["x.csv", "x.npy", "x.zarr"] {
         let run = in_little_memory(
             &place,

@@ -3,7 +3,7 @@
 use crate::{Place, Run, SCENE};
 use whiskmap::classify::Status;
 use whiskmap::map::Channels;
-use whiskmap::store::{Description, MapWriter, Samples, StoredMap, ZarrStore};
+use whiskmap::store::{Description, MapWriter, Samples, StoredMap, TemporaryFiles, ZarrStore};
 
 /// The small map with or without friction, by its name in a folder of its own.
 fn place(friction: f64) -> Place {
@@ -98,7 +98,8 @@ fn write_without_status(place: &Place) {
         channels: Channels::those(|name| name != "status"),
         arithmetic: "fma",
     };
-    let mut writer = MapWriter::create(&place.path("old.exr"), &about).unwrap();
+    let mut writer =
+        MapWriter::create(&place.path("old.exr"), &about, &TemporaryFiles::default()).unwrap();
     writer.write_panels(&map.panels).unwrap();
     let summary = map.summary;
     writer.finish(summary.engine_cells, summary.audit).unwrap();

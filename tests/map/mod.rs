@@ -8,7 +8,7 @@ use whiskmap::classify::Regime;
 use whiskmap::engine;
 use whiskmap::map::{Audit, Channels, EngineCells, Panel, STATE_CHANNELS};
 use whiskmap::scene::{Grid, Parameter, Pole, Setup, SweepAxis, Whisker};
-use whiskmap::store::{Counts, Description, MapWriter};
+use whiskmap::store::{Counts, Description, MapWriter, TemporaryFiles};
 
 /// `count` values from `first` to `last`.
 pub fn spread(first: f64, last: f64, count: usize) -> Vec<f64> {
@@ -131,7 +131,12 @@ pub fn describe<'a>(scene: &'a Setup, tolerances: &'a Value) -> Description<'a> 
 /// Writes the whole map.
 pub fn write(path: &Path, scene: &Setup) -> Counts {
     let tolerances = json!({"rtol": 0.1 + 0.2});
-    let mut writer = MapWriter::create(path, &describe(scene, &tolerances)).unwrap();
+    let mut writer = MapWriter::create(
+        path,
+        &describe(scene, &tolerances),
+        &TemporaryFiles::default(),
+    )
+    .unwrap();
     let panels: Vec<Panel> = (0..scene.whisker_count())
         .map(|index| panel(scene, index))
         .collect();

@@ -21,7 +21,7 @@ use map::panel;
 use std::collections::BTreeMap;
 use whiskmap::render::{self, MapOptions, Picture};
 use whiskmap::scene::Setup;
-use whiskmap::store::{Audit, EngineCells, MapWriter, Panel, StoredMap};
+use whiskmap::store::{Audit, EngineCells, MapWriter, Panel, StoredMap, TemporaryFiles};
 
 const CONTACT: [u8; 3] = [0x83, 0xc4, 0xa4];
 const SLIP_OFF: [u8; 3] = [0xc8, 0x60, 0x2a];
@@ -54,7 +54,12 @@ fn picture(
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("map.exr");
     let tolerances = serde_json::json!(null);
-    let mut writer = MapWriter::create(&file, &map::describe(scene, &tolerances)).unwrap();
+    let mut writer = MapWriter::create(
+        &file,
+        &map::describe(scene, &tolerances),
+        &TemporaryFiles::default(),
+    )
+    .unwrap();
     writer.write_panels(panels).unwrap();
     writer
         .finish(EngineCells::default(), Audit::default())

@@ -8,7 +8,8 @@ use whiskmap::classify::Regime;
 use whiskmap::map::Channels;
 use whiskmap::scene::Scene;
 use whiskmap::store::{
-    BlockState, CheckDepth, Description, Error, PackedPanel, Samples, StoredMap, ZarrStore,
+    BlockState, CheckDepth, Description, Error, PackedPanel, Samples, StoredMap, TemporaryFiles,
+    ZarrStore,
 };
 
 /// Two blocks of three and one whiskers.
@@ -33,11 +34,13 @@ fn about<'a>(scene: &'a Scene, arithmetic: &'a str) -> Description<'a> {
 fn store(path: &Path, text: &str) -> ZarrStore {
     let scene = Scene::parse(text, "scene.toml").unwrap();
     let store = ZarrStore::join(path, &scene, &about(&scene, "fma"), false).unwrap();
-    store.begin().unwrap();
+    store.begin(&TemporaryFiles::default()).unwrap();
     for block in 0..store.block_count() {
         let panels = store.whiskers(block).map(|whisker| panel(&scene, whisker));
         let packed: Vec<PackedPanel> = panels.map(|panel| store.pack(&panel).unwrap()).collect();
-        store.write(block, &packed).unwrap();
+        store
+            .write(block, &packed, &TemporaryFiles::default())
+            .unwrap();
     }
     store
 }
@@ -257,7 +260,13 @@ fn counts_are_compared_with_the_regimes() {
         .iter()
         .position(|code| *code == Regime::Contact.code());
     panel.regime[contact.unwrap()] = Regime::SlipOff.code();
-    store.write(1, &[store.pack(&panel).unwrap()]).unwrap();
+    store
+        .write(
+            1,
+            &[store.pack(&panel).unwrap()],
+            &TemporaryFiles::default(),
+        )
+        .unwrap();
     assert!(is_sound(&path));
     fs::write(&counts, sound).unwrap();
     let faults = damaged(&store, CheckDepth::Values);
@@ -325,7 +334,9 @@ fn of_two_engines_that_create_a_store_one_succeeds() {
             };
             let store = ZarrStore::join(&path, &scene, &about, true).unwrap();
             start.wait();
-            store.begin().map_err(|why| why.to_string())
+            store
+                .begin(&TemporaryFiles::default())
+                .map_err(|why| why.to_string())
         };
         let results = std::thread::scope(|scope| {
             let both = ["cpu f64", "gpu f32"].map(|name| scope.spawn(move || create(name)));

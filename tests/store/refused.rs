@@ -5,7 +5,7 @@ use super::sweeps;
 use serde_json::json;
 use std::fs;
 use std::path::Path;
-use whiskmap::store::{Audit, EngineCells, Error, MapWriter, Panel, StoredMap};
+use whiskmap::store::{Audit, EngineCells, Error, MapWriter, Panel, StoredMap, TemporaryFiles};
 
 fn listing(folder: &Path) -> Vec<String> {
     let entries = fs::read_dir(folder).unwrap();
@@ -22,14 +22,14 @@ fn a_map_appears_only_when_it_is_finished() {
     let tolerances = json!(null);
     let about = map::describe(&scene, &tolerances);
 
-    let mut dropped = MapWriter::create(&path, &about).unwrap();
+    let mut dropped = MapWriter::create(&path, &about, &TemporaryFiles::default()).unwrap();
     dropped.write_panels(&[panel(&scene, 0)]).unwrap();
     assert_eq!(listing(folder.path()).len(), 1);
     assert!(!path.exists());
     drop(dropped);
     assert!(listing(folder.path()).is_empty());
 
-    let mut short = MapWriter::create(&path, &about).unwrap();
+    let mut short = MapWriter::create(&path, &about, &TemporaryFiles::default()).unwrap();
     short.write_panels(&[panel(&scene, 0)]).unwrap();
     let error = short
         .finish(EngineCells::default(), Audit::default())
@@ -44,7 +44,9 @@ fn a_map_appears_only_when_it_is_finished() {
     StoredMap::open(&path).unwrap();
 
     let nowhere = folder.path().join("no such folder/map.exr");
-    let error = MapWriter::create(&nowhere, &about).unwrap_err().to_string();
+    let error = MapWriter::create(&nowhere, &about, &TemporaryFiles::default())
+        .unwrap_err()
+        .to_string();
     assert!(error.starts_with("cannot write "), "{error}");
 }
 
@@ -67,7 +69,12 @@ fn a_panel_that_does_not_fit_is_refused() {
     let path = folder.path().join("map.exr");
     let scene = scene(5, 4, Some(vec![0.5, 0.9]), None);
     let tolerances = json!(null);
-    let mut writer = MapWriter::create(&path, &map::describe(&scene, &tolerances)).unwrap();
+    let mut writer = MapWriter::create(
+        &path,
+        &map::describe(&scene, &tolerances),
+        &TemporaryFiles::default(),
+    )
+    .unwrap();
     let good = panel(&scene, 0);
     let mut refusal = |panels: &[Panel]| writer.write_panels(panels).unwrap_err().to_string();
     assert_eq!(

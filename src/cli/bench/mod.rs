@@ -49,11 +49,10 @@ pub struct Options {
 }
 
 /// Runs `bench`.
-pub fn run(options: &Options) -> Result<(), Failure> {
-    let mut files = Files::default();
+pub fn run(options: &Options, files: &mut Files) -> Result<(), Failure> {
     let scene = files.scene(&options.scene)?;
     let json = options.json.as_deref();
-    let (output, picture) = open(&mut files, "--json", json, options.plot.as_deref())?;
+    let (output, picture) = open(files, "--json", json, options.plot.as_deref())?;
     let effort = if options.quick {
         Effort::QUICK
     } else {

@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 use whiskmap::engine;
 use whiskmap::map::{Audit, Channels, EngineCells};
 use whiskmap::scene::{LONGEST_TITLE, Scene, Setup};
-use whiskmap::store::{Description, MapWriter, Slice, UnfinishedFolder, ZarrStore};
+use whiskmap::store::{Description, MapWriter, Slice, TemporaryFolder, ZarrStore};
 
 /// Options of `extract`.
 #[derive(Debug, Args)]
@@ -44,20 +44,19 @@ pub struct Options {
 }
 
 /// Runs `extract`.
-pub fn run(options: &Options) -> Result<(), Failure> {
-    let mut files = Files::default();
-    let slice = options.selection.open(&mut files, &options.source)?;
+pub fn run(options: &Options, files: &mut Files) -> Result<(), Failure> {
+    let slice = options.selection.open(files, &options.source)?;
     let channels = channels(&slice, &options.channel)?;
     let marked = with_marks(&options.source, &slice, &channels)?;
     let path = &options.output;
     match path.extension().and_then(|ending| ending.to_str()) {
-        Some("csv") => table(&slice, &marked, path, &mut files)?,
+        Some("csv") => table(&slice, &marked, path, files)?,
         Some("npy") => {
-            array(&slice, &channels, path, &mut files)?;
+            array(&slice, &channels, path, files)?;
             warn_of_marks(&slice, &channels, &marked)?;
         }
-        Some("zarr") => store(&slice, &marked, path, &mut files)?,
-        Some("exr") => map(&slice, &marked, path, &mut files)?,
+        Some("zarr") => store(&slice, &marked, path, files)?,
+        Some("exr") => map(&slice, &marked, path, files)?,
         _ => return refuse(path, "must end in .csv, .npy, .zarr or .exr"),
     }
     writeln!(io::stdout(), "{}", path.display())?;
@@ -98,7 +97,7 @@ fn map(
     };
     let about = origin.describe(&scene, Channels::those(|name| channels.contains(&name)));
     files.output("--output", path)?;
-    let mut writer = MapWriter::create(path, &about)?;
+    let mut writer = MapWriter::create(path, &about, files.temporary())?;
     for whisker in 0..slice.grid().whisker_count() {
         writer.write_panels(&[slice.panel(about.channels, whisker)?])?;
     }
@@ -133,15 +132,16 @@ fn store(
         );
     }
     // A new store appears when it is complete; one that is there is written again, block by block.
-    let folder = (!ZarrStore::is_at(path)).then(|| UnfinishedFolder::create(path));
+    let temporary = files.temporary();
+    let folder = (!ZarrStore::is_at(path)).then(|| TemporaryFolder::create(path, temporary));
     let folder = folder.transpose().map_err(|cause| unwritten(path, cause))?;
-    let place = folder.as_ref().map_or(path, UnfinishedFolder::path);
+    let place = folder.as_ref().map_or(path, TemporaryFolder::path);
     let store = ZarrStore::join(place, &scene, &about, true)?;
-    store.begin()?;
+    store.begin(temporary)?;
     for block in 0..store.block_count() {
         let whiskers = store.whiskers(block);
         let packed = whiskers.map(|whisker| store.pack(&slice.panel(about.channels, whisker)?));
-        store.write(block, &packed.collect::<Result<Vec<_>, _>>()?)?;
+        store.write(block, &packed.collect::<Result<Vec<_>, _>>()?, temporary)?;
     }
     let finished = folder.map_or(Ok(()), |folder| folder.finish(path));
     finished.map_err(|cause| unwritten(path, cause))

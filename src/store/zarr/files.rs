@@ -6,8 +6,8 @@ use super::identity::AGREED;
 use super::metadata::{self, IDENTITY};
 use super::read::open_regular;
 use super::{METADATA, ZarrStore};
-use crate::store::unfinished::host_of;
-use crate::store::{Error, Output, check_links};
+use crate::store::temporary::host_of;
+use crate::store::{Error, Output, TemporaryFiles, check_links};
 use serde_json::{Map, Value};
 use std::fs;
 use std::io::{self, Read, Write};
@@ -17,19 +17,19 @@ use std::path::{Path, PathBuf};
 const MOST_METADATA: u64 = 16 << 20;
 
 impl ZarrStore {
-    /// Creates the store, or joins the one that is there, and restores metadata that are missing or damaged. Returns the
-    /// damaged files that it has replaced.
+    /// Creates the store, or joins the one that is there, restores metadata that are missing or damaged, and removes temporary
+    /// files of killed processes. Returns the damaged files that it has replaced.
     ///
     /// If several processes create a store at the same time, one creates it, and the others join it.
     ///
     /// # Errors
     ///
     /// The store that is there was created with other settings, or must not be there, or one of its folders cannot be written.
-    pub fn begin(&self) -> Result<Vec<PathBuf>, Error> {
+    pub fn begin(&self, temporary: &TemporaryFiles) -> Result<Vec<PathBuf>, Error> {
         let made = check_links(&self.path).and_then(|()| fs::create_dir_all(&self.path));
         made.map_err(Error::at(&self.path, Error::Write))?;
         let root = self.path.join(METADATA);
-        let created = finish(&root, &[self.root()?], Output::finish_new);
+        let created = finish(&root, &[self.root()?], temporary, Output::finish_new);
         match created {
             Err(why) if why.kind() == io::ErrorKind::AlreadyExists => self.agree()?,
             created => created.map_err(Error::at(&root, Error::Write))?,
@@ -39,10 +39,12 @@ impl ZarrStore {
             let made = check_links(&folder).and_then(|()| fs::create_dir_all(&folder));
             made.map_err(Error::at(&folder, Error::Write))?;
         }
-        let restored = self.restore_metadata()?;
+        let restored = self.restore_metadata(temporary)?;
         let folders = self.arrays.iter().map(|array| self.path.join(&array.name));
         for folder in folders.chain([self.path.clone()]) {
-            Output::probe(&folder).map_err(Error::at(&folder, Error::Write))?;
+            temporary
+                .prepare(&folder)
+                .map_err(Error::at(&folder, Error::Write))?;
         }
         Ok(restored)
     }
@@ -52,12 +54,12 @@ impl ZarrStore {
     /// # Errors
     ///
     /// A file cannot be read or written.
-    pub fn restore_metadata(&self) -> Result<Vec<PathBuf>, Error> {
+    pub fn restore_metadata(&self, temporary: &TemporaryFiles) -> Result<Vec<PathBuf>, Error> {
         let (mut damaged, mut failures) = (Vec::new(), Vec::new());
         for (path, bytes) in self.metadata_files()? {
             let restored = match metadata_fault(&path, &bytes) {
                 None => continue,
-                Some(Error::Damaged(..)) => restore(&path, &bytes),
+                Some(Error::Damaged(..)) => restore(&path, &bytes, temporary),
                 Some(why) => Err(why),
             };
             match restored {
@@ -199,11 +201,11 @@ fn is_empty(folder: &Path) -> bool {
 }
 
 /// Writes a file of metadata again. Returns true if it was there.
-fn restore(path: &Path, bytes: &[u8]) -> Result<bool, Error> {
+fn restore(path: &Path, bytes: &[u8], temporary: &TemporaryFiles) -> Result<bool, Error> {
     let was_there = path.exists();
     let folder = path.parent().map_or(Ok(()), fs::create_dir_all);
     folder.map_err(Error::at(path, Error::Write))?;
-    write(path, &[bytes])?;
+    write(path, &[bytes], temporary)?;
     Ok(was_there)
 }
 
@@ -213,17 +215,22 @@ fn json(value: &Value) -> Vec<u8> {
 
 /// Writes a file as a whole, piece by piece, into a folder that is there. It is on the disk before this returns: after a crash,
 /// what is there counts as done.
-pub(super) fn write(path: &Path, pieces: &[impl AsRef<[u8]>]) -> Result<(), Error> {
-    let written = finish(path, pieces, Output::finish_durably);
+pub(super) fn write(
+    path: &Path,
+    pieces: &[impl AsRef<[u8]>],
+    temporary: &TemporaryFiles,
+) -> Result<(), Error> {
+    let written = finish(path, pieces, temporary, Output::finish_durably);
     written.map_err(Error::at(path, Error::Write))
 }
 
 fn finish(
     path: &Path,
     pieces: &[impl AsRef<[u8]>],
+    temporary: &TemporaryFiles,
     finish: fn(Output) -> io::Result<()>,
 ) -> io::Result<()> {
-    let mut output = Output::create(path)?;
+    let mut output = Output::create(path, temporary)?;
     if !output.is_regular() {
         return Err(io::Error::other("it is no regular file"));
     }

@@ -5,7 +5,7 @@ use super::files::write;
 use super::{ZarrStore, shard};
 use crate::classify::Regime;
 use crate::scene::Scene;
-use crate::store::{Channels, Error, Panel, STATE_CHANNELS};
+use crate::store::{Channels, Error, Panel, STATE_CHANNELS, TemporaryFiles};
 use rayon::prelude::*;
 use serde_json::Map;
 use std::borrow::Cow;
@@ -50,7 +50,12 @@ impl ZarrStore {
     /// # Errors
     ///
     /// The disk is full, the folder is not writable, or the store is no longer at its path.
-    pub fn write(&self, block: usize, panels: &[PackedPanel]) -> Result<(), Error> {
+    pub fn write(
+        &self,
+        block: usize,
+        panels: &[PackedPanel],
+        temporary: &TemporaryFiles,
+    ) -> Result<(), Error> {
         self.check_place()?;
         let put = |(index, array): (usize, &Array)| {
             let file = self.file(array, block);
@@ -67,7 +72,7 @@ impl ZarrStore {
             }
             let chunks = slots.into_iter().flatten().map(Vec::as_slice);
             let identity = self.expected(array, &file).identity;
-            write(&file, &shard::assemble(identity, chunks))
+            write(&file, &shard::assemble(identity, chunks), temporary)
         };
         let last = self.arrays.len() - 1;
         let others = self.arrays[..last].par_iter().enumerate();
