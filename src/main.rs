@@ -1,4 +1,4 @@
-//! The command `whiskmap`: see `whiskmap --help`.
+//! The program `whiskmap`: see `whiskmap --help`.
 
 mod cli;
 
@@ -10,11 +10,13 @@ fn main() -> ExitCode {
     cli::main()
 }
 
-/// Vulkan drivers ask for a Wayland display, and its library complains on standard error where this variable is not an
-/// absolute path. In the folder `/` nobody but an administrator makes sockets, so none is found.
+/// Sets `XDG_RUNTIME_DIR` to `/` unless it is an absolute path. This is the only environment variable that the program sets.
+///
+/// Vulkan drivers open a Wayland display, and its library prints an error without an absolute path. Only an administrator can
+/// create sockets in `/`, so no display is found there.
 #[allow(
     unsafe_code,
-    reason = "the environment is changed before there is a thread"
+    reason = "the environment is changed before any thread is started"
 )]
 fn quiet_wayland() {
     const FOLDER: &str = "XDG_RUNTIME_DIR";

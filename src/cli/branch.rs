@@ -1,11 +1,10 @@
 //! `whiskmap branch`.
 
-use super::columns;
+use super::arguments::{column_help, whole};
 use super::failure::Failure;
 use super::files::Files;
-use super::numbers::whole;
-use super::outputs::Outputs;
-use super::pole::{self, Poles, refuse, title};
+use super::outputs::OutputArgs;
+use super::pole::{self, PolesArgs, refuse, title};
 use clap::{Args, ValueEnum};
 use whiskmap::render::{BranchAxis, Ink, Note, Plot, branches};
 use whiskmap::rod::Side;
@@ -18,39 +17,37 @@ Examples:
   whiskmap branch scenes/cone.toml --distance 10,13,15.66 --y force_un --plot force.svg
 
 Points are evenly spaced in push angle, contact angle and arclength together, from first touch (mark: first-touch) on. \
-Stable states end where they meet the unstable ones (slip-off), or with the tip at the pole (pull-off); unstable ones \
-end at a fold of their own (second-fold) or with the tip at the pole (tip). Lengths in det are whisker lengths.";
+Stable states end where they meet the unstable ones (slip-off), or with the tip at the pole (pull-off). Unstable states end \
+at their own fold (second-fold) or with the tip at the pole (tip). Lengths in det are whisker lengths.";
 
-/// Options of `branch`.
 #[derive(Debug, Args)]
 #[command(
     after_help = EXAMPLES,
-    after_long_help = columns::help(EXAMPLES, &[("Columns", BranchPoint::COLUMNS)])
+    after_long_help = column_help(EXAMPLES, &[("Columns", BranchPoint::COLUMNS)])
 )]
-pub struct Options {
+pub struct BranchArgs {
     #[command(flatten)]
-    poles: Poles,
+    poles: PolesArgs,
     /// Side of the whisker that the pole is on
     #[arg(long, value_enum, default_value = "both")]
-    side: Choice,
-    /// Points per side and distance
+    side: SideChoice,
+    /// Number of points per side and distance
     #[arg(long, value_name = "N", default_value = "200", value_parser = whole(3..=1_000_000))]
     points: u32,
-    /// Column that the plot shows upwards
+    /// Column on the vertical axis of the plot
     #[arg(
         long,
         value_name = "COLUMN",
         value_enum,
         default_value = "arc_length_mm"
     )]
-    y: Column,
+    y: BranchColumn,
     #[command(flatten)]
-    outputs: Outputs,
+    outputs: OutputArgs,
 }
 
-/// Sides by name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum Choice {
+enum SideChoice {
     /// Concave backward: the pole is on the convex side
     Cb,
     /// Concave forward: the pole is on the concave side
@@ -62,7 +59,7 @@ enum Choice {
 /// Columns that a plot can show.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 #[value(rename_all = "snake_case")]
-enum Column {
+enum BranchColumn {
     /// Size of the force
     ForceUn,
     /// Moment at the base
@@ -73,7 +70,7 @@ enum Column {
     ArcLengthMm,
 }
 
-impl Column {
+impl BranchColumn {
     fn axis(self) -> BranchAxis {
         match self {
             Self::ForceUn => BranchAxis {
@@ -101,31 +98,30 @@ const PUSH: BranchAxis = BranchAxis {
     value: |point| point.push_angle_deg,
 };
 
-/// Runs `branch`.
-pub fn run(options: &Options, files: &mut Files) -> Result<(), Failure> {
-    let distances = &options.poles.distance;
-    let (scene, whisker) = pole::read(files, &options.poles.scene, "branch", distances)?;
-    let mut outputs = options.outputs.open(files)?;
-    let sides: &[Side] = match options.side {
-        Choice::Cb => &[Side::Cb],
-        Choice::Cf => &[Side::Cf],
-        Choice::Both => &Side::BOTH,
+pub fn run(args: &BranchArgs, files: &mut Files) -> Result<(), Failure> {
+    let distances = &args.poles.distance;
+    let (scene, whisker) = pole::read(files, &args.poles.scene, "branch", distances)?;
+    let mut outputs = args.outputs.open(files)?;
+    let sides: &[Side] = match args.side {
+        SideChoice::Cb => &[Side::Cb],
+        SideChoice::Cf => &[Side::Cf],
+        SideChoice::Both => &Side::BOTH,
     };
     let mut points = Vec::new();
     for &distance in distances {
         for side in sides {
             let branch = Branch::new(&whisker, &scene.pole, *side, distance);
-            let followed = branch.and_then(|branch| branch.points(options.points as usize));
+            let followed = branch.and_then(|branch| branch.points(args.points as usize));
             points.extend(followed.map_err(|why| refuse(distance, why))?);
         }
     }
     outputs.rows(&points)?;
     outputs.finish(title(&scene, distances), || {
-        plot(&points, options.y.axis(), distances.len() > 1)
+        plot(&points, args.y.axis(), distances.len() > 1)
     })
 }
 
-/// The plot; with several poles, each detachment has its distance above it.
+/// Plots branches; with several poles, labels each detachment with its distance.
 fn plot(points: &[BranchPoint], y: BranchAxis, has_distances: bool) -> Plot {
     let mut plot = branches("", &[(Ink::Black, points)], [PUSH, y]);
     let is_end = |point: &&BranchPoint| matches!(point.mark, Some(Mark::SlipOff | Mark::PullOff));

@@ -1,20 +1,19 @@
 //! `whiskmap curve`.
 
-use super::columns;
+use super::arguments::column_help;
 use super::data;
-use super::failure::{Failure, check_resolved, say};
+use super::failure::{Failure, check_resolved, message};
 use super::files::Files;
-use super::outputs::{Opened, Outputs};
+use super::outputs::{OpenOutputs, OutputArgs};
 use super::pole::check_single;
 use super::progress::Progress;
-use super::theory::{AXES, CHORD, own_curve, theory};
-use super::tolerance::Tolerance;
-use super::uncertainty::{self, Sampling};
+use super::tolerance::ToleranceArgs;
+use super::uncertainty::{self, SampleArgs};
 use clap::Args;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use whiskmap::measured::{Angle, Compared};
-use whiskmap::render::{Plot, measured};
+use whiskmap::render::{CurveAxis, Ends, Plot, Stroke, curves, measured};
 use whiskmap::rod::Side;
 use whiskmap::scene::{Place, Scene, Swept};
 use whiskmap::shooting::Resolution;
@@ -30,17 +29,19 @@ Examples:
   whiskmap curve scenes/cone.toml --data scenes/cone_points.csv --plot points.svg
   whiskmap curve scenes/uncertain.toml --samples 500 --csv bands.csv --plot bands.svg
 
-One line per side and distance of the scene, CF before CB; angles are positive for CB and negative for CF. Ends \
-without values are out of reach, or unresolved, which is said on standard error. A scene with sweep axes, such as \
-grid.taper, gives the curve of every whisker, with a leading column for each; a plot shows one whisker.
+The table has one line per side and distance of the scene, CF before CB. Angles are positive for CB and negative for CF. \
+Lines without values are out of reach or unresolved; standard error gives the number of unresolved ones. For a scene with \
+sweep axes, such as grid.taper, the table has the curve of every whisker, with a leading column for each axis. A plot shows \
+one whisker.
 
-With --data the table has the measured points in place of the curve: a CSV file with the columns side (cb or cf), \
-distance_mm, push_angle_deg or push_chord_deg, and maybe kind (slip-off, pull-off or empty) and sd_deg. The plot has them \
-on the curve, slip-offs as open circles and pull-offs as filled ones. Their RMS and bias are told on standard error.
+With --data, the table has measured points instead of the curve. They are read from a CSV file with the columns side (cb or \
+cf), distance_mm, push_angle_deg or push_chord_deg, and optionally kind (slip-off, pull-off or empty) and sd_deg. The plot \
+shows them on the curve, slip-offs as open circles and pull-offs as filled ones. Their RMS and bias are printed on standard \
+error.
 
-With --samples, whiskers are drawn with the standard deviations of the scene's [uncertainty], independently and normally; \
-a draw that the scene's limits refuse is drawn again, and standard error says how often. Percentiles are linear between \
-neighbouring samples. Equal seeds give equal samples, whatever the number of threads.";
+With --samples, whiskers are drawn from the standard deviations in the scene's [uncertainty], independently and with normal \
+distributions. A draw outside the limits of the scene is repeated; standard error gives the number of such draws. \
+Percentiles are linear between neighbouring samples. The samples depend on the seed alone, not on the number of threads.";
 
 const TABLES: &[(&str, &[(&str, &str)])] = &[
     ("Columns", Detachment::COLUMNS),
@@ -49,45 +50,45 @@ const TABLES: &[(&str, &[(&str, &str)])] = &[
     ("Columns with --samples", Spread::COLUMNS),
 ];
 
-/// Options of `curve`.
 #[derive(Debug, Args)]
-#[command(after_help = EXAMPLES, after_long_help = columns::help(EXAMPLES, TABLES))]
-pub struct Options {
-    /// Scene file; - reads it from standard input
+#[command(after_help = EXAMPLES, after_long_help = column_help(EXAMPLES, TABLES))]
+pub struct CurveArgs {
+    /// Scene file; - is standard input
     scene: PathBuf,
-    /// Tell only where slip-off turns into pull-off, or why it does not
+    /// Print only where slip-off turns into pull-off, or why it does not
     #[arg(long, conflicts_with_all = ["plot", "tolerance", "samples"])]
     corner: bool,
-    /// Measured detachments to compare with the curve; - reads them from standard input
+    /// Compare the measured detachments in FILE with the curve; - is standard input
     #[arg(long, value_name = "FILE", conflicts_with_all = ["corner", "tolerance", "samples"])]
     data: Option<PathBuf>,
     #[command(flatten)]
-    sampling: Sampling,
+    sampling: SampleArgs,
     #[command(flatten)]
-    tolerance: Tolerance,
+    tolerance: ToleranceArgs,
     #[command(flatten)]
-    outputs: Outputs,
+    outputs: OutputArgs,
 }
 
-/// Runs `curve`.
-pub fn run(options: &Options, files: &mut Files) -> Result<(), Failure> {
-    if let Some(data) = &options.data {
-        data::check_stdin(&options.scene, data)?;
+pub fn run(args: &CurveArgs, files: &mut Files) -> Result<(), Failure> {
+    if let Some(data) = &args.data {
+        data::check_stdin(&args.scene, data)?;
     }
-    let scene = files.scene(&options.scene)?;
+    let scene = files.scene(&args.scene)?;
     let whiskers = scene.whisker_count();
-    if options.outputs.has_plot() && whiskers > 1 {
+    if args.outputs.has_plot() && whiskers > 1 {
+        let keys = scene.grid.sweep.iter();
+        let keys = keys.map(|axis| format!("grid.{}", axis.parameter.axis()));
+        let keys = keys.collect::<Vec<_>>().join(", ");
         return Err(Failure::Input(format!(
-            "--plot: the scene sweeps {whiskers} whiskers over {}; a plot shows one",
-            axes(&scene)
+            "--plot: the scene sweeps {whiskers} whiskers over {keys}; a plot shows one"
         )));
     }
-    if let Some(path) = &options.data {
-        return beside_points(options, &scene, path, files);
+    if let Some(path) = &args.data {
+        return compare(args, &scene, path, files);
     }
-    let draws = options.sampling.draw(&scene)?;
-    let mut outputs = options.outputs.open(files)?;
-    let accuracy = options.tolerance.choose(&scene, &Side::BOTH)?;
+    let draws = args.sampling.draw(&scene)?;
+    let mut outputs = args.outputs.open(files)?;
+    let accuracy = args.tolerance.choose(&scene, &Side::BOTH)?;
     let resolution = accuracy.map_or(Resolution::FINE, |accuracy| accuracy.resolution);
     if let Some(draws) = draws {
         return uncertainty::run(&scene, &draws, resolution, outputs);
@@ -95,11 +96,11 @@ pub fn run(options: &Options, files: &mut Files) -> Result<(), Failure> {
     let mut drawn = Vec::new();
     let (mut unresolved, mut all) = (0, 0);
     let distances = &scene.grid.distance_mm;
-    let of_side = if options.corner { 1 } else { distances.len() };
+    let of_side = if args.corner { 1 } else { distances.len() };
     let bar = Progress::over(whiskers * Side::BOTH.len() * of_side, "ends");
     let at_once = trace::whiskers_at_once(distances.len());
     for group in scene.whisker_groups(at_once) {
-        if options.corner {
+        if args.corner {
             let corner = |own: &Swept, side| {
                 let corner = trace::corner(&own.whisker, &own.pole, side);
                 bar.inc(1);
@@ -119,28 +120,19 @@ pub fn run(options: &Options, files: &mut Files) -> Result<(), Failure> {
         let kinds = kinds.filter(|kind| *kind == DetachmentKind::Unresolved);
         unresolved += kinds.count() as u64;
         all += rows.len() as u64;
-        if options.outputs.has_plot() {
+        if args.outputs.has_plot() {
             drawn.extend(rows.into_iter().map(|(_, row)| row));
         }
     }
     bar.finish();
-    outputs.finish(scene.title.clone(), || theory(&drawn, AXES))?;
+    outputs.finish(scene.title.clone(), || plot(&drawn, AXES))?;
     check_resolved(unresolved, all, "ends", "the column `kind`")
-}
-
-/// The sweep axes by their keys.
-fn axes(scene: &Scene) -> String {
-    let keys = scene.grid.sweep.iter();
-    let keys: Vec<String> = keys
-        .map(|axis| format!("grid.{}", axis.parameter.axis()))
-        .collect();
-    keys.join(", ")
 }
 
 /// Writes the rows of some whiskers, with a leading column for each sweep axis.
 fn write<R: Serialize>(
     scene: &Scene,
-    outputs: &mut Opened,
+    outputs: &mut OpenOutputs,
     rows: &[(Place, R)],
 ) -> Result<(), Failure> {
     if scene.is_sweep() {
@@ -151,17 +143,12 @@ fn write<R: Serialize>(
 }
 
 /// Compares the measured points of the file at `path` with the curve.
-fn beside_points(
-    options: &Options,
-    scene: &Scene,
-    path: &Path,
-    files: &mut Files,
-) -> Result<(), Failure> {
+fn compare(args: &CurveArgs, scene: &Scene, path: &Path, files: &mut Files) -> Result<(), Failure> {
     check_single(scene, "curve --data")?;
     let points = data::read(files, path)?;
     let Swept { whisker, pole, .. } = scene.first_whisker();
     points.check_reach(&whisker, &pole)?;
-    let mut outputs = options.outputs.open(files)?;
+    let mut outputs = args.outputs.open(files)?;
     let comparison = points.beside(&whisker, &pole);
     data::name_left_out(&points, &comparison);
     let rows = &comparison.rows;
@@ -173,7 +160,7 @@ fn beside_points(
         };
         Plot {
             dots: measured(rows),
-            ..own_curve(scene, Resolution::FINE, axes)
+            ..scene_curve(scene, Resolution::FINE, axes)
         }
     })?;
     if comparison.count() == 0 {
@@ -184,7 +171,43 @@ fn beside_points(
         });
     }
     for (name, value) in data::summary(&comparison) {
-        say(&format!("{name}: {value}"));
+        message(&format!("{name}: {value}"));
     }
     Ok(())
 }
+
+/// Plots the detachment curve of the scene's first whisker.
+pub fn scene_curve(scene: &Scene, resolution: Resolution, axes: [CurveAxis; 2]) -> Plot {
+    let Swept { whisker, pole, .. } = scene.first_whisker();
+    let distances = &scene.grid.distance_mm;
+    let of_side = |side| trace::curve_at(resolution, &whisker, &pole, side, distances);
+    let ends: Vec<Detachment> = Side::BOTH.into_iter().flat_map(of_side).collect();
+    plot(&ends, axes)
+}
+
+fn plot(rows: &[Detachment], axes: [CurveAxis; 2]) -> Plot {
+    let ends = Ends {
+        rows,
+        stroke: Stroke::Solid,
+        name: "",
+    };
+    curves("", &[ends], axes)
+}
+
+/// Horizontal and vertical axis of a plot.
+pub const AXES: [CurveAxis; 2] = [
+    CurveAxis {
+        label: "distance at first touch (mm)",
+        value: |end| Some(end.distance_mm),
+    },
+    CurveAxis {
+        label: "push angle at detachment (deg)   CF < 0 < CB",
+        value: |end| end.push_angle_deg,
+    },
+];
+
+/// Vertical axis for measured chord angles.
+const CHORD: CurveAxis = CurveAxis {
+    label: "chord angle at detachment (deg)   CF < 0 < CB",
+    value: |end| end.push_chord_deg,
+};

@@ -1,34 +1,33 @@
-//! `--data`: measured detachments, and what is said of them.
+//! `--data`: measured detachments, and messages about them.
 
-use super::failure::{Failure, say};
+use super::failure::{Failure, message};
 use super::files::{Files, STDOUT};
 use std::path::Path;
 use whiskmap::measured::{Comparison, Points};
 use whiskmap::scene::digits;
 
-/// Refuses to read both the scene and the points from standard input.
+/// Returns an error if both the scene and the points are standard input.
 pub fn check_stdin(scene: &Path, data: &Path) -> Result<(), Failure> {
     if [scene, data] == [Path::new(STDOUT); 2] {
-        let what = "--data -: standard input is the scene, and can be read once; name a file";
-        return Err(Failure::Input(what.to_owned()));
+        let why = "--data -: standard input is the scene, and can be read once; name a file";
+        return Err(Failure::Input(why.to_owned()));
     }
     Ok(())
 }
 
-/// Reads the points of `path`, an input; columns that are not used, and points whose angle has the sign of the other side, are
-/// named on standard error.
+/// Reads the points of the input `path`. Prints unused columns, and the number of points whose angle has the other side's sign.
 pub fn read(files: &mut Files, path: &Path) -> Result<Points, Failure> {
     let points = Points::read(path)?;
     files.input(path);
     if let Some(note) = &points.note {
-        say(&format!("note: {note}"));
+        message(&format!("note: {note}"));
     }
     let all = points.points.len();
     let signs = points.points.iter();
     let crossed = signs.filter(|point| point.side.sign() * point.angle_deg < 0.0);
     let crossed = crossed.count();
     if crossed > 0 {
-        say(&format!(
+        message(&format!(
             "warning: {crossed} of {all} points in {} have an angle of the other side's sign: it is positive for cb, negative \
              for cf",
             points.origin
@@ -37,10 +36,10 @@ pub fn read(files: &mut Files, path: &Path) -> Result<Points, Failure> {
     Ok(points)
 }
 
-/// Names the points that are left out because the theory has no detachment for them.
+/// Prints the points that are left out because their side never detaches by theory.
 pub fn name_left_out(points: &Points, comparison: &Comparison) {
     for row in comparison.left_out() {
-        say(&format!(
+        message(&format!(
             "warning: {}:{}: left out: by theory this side never detaches at {} mm",
             points.origin,
             row.line,
@@ -49,7 +48,7 @@ pub fn name_left_out(points: &Points, comparison: &Comparison) {
     }
 }
 
-/// How well points and theory agree, line by line.
+/// Returns name and value of each figure of a comparison: number of points, RMS, bias.
 pub fn summary(comparison: &Comparison) -> Vec<(&'static str, String)> {
     let count = format!(
         "{}, {} left out, {} of another kind than predicted",

@@ -1,12 +1,10 @@
 //! `whiskmap design`.
 
+use super::arguments::{SideName, angle, parameter};
 use super::failure::Failure;
 use super::files::Files;
-use super::numbers::angle;
 use super::outputs::open;
-use super::parameter::parameter;
-use super::pole::{self, Pole, title};
-use super::side::OneSide;
+use super::pole::{self, PoleArgs, title};
 use clap::Args;
 use std::io::{self, Write};
 use std::path::PathBuf;
@@ -16,44 +14,41 @@ use whiskmap::rod::Side;
 use whiskmap::scene::{Parameter, digits};
 use whiskmap::trace::DetachmentKind;
 
-const EXAMPLES: &str = "\
+#[derive(Debug, Args)]
+#[command(after_help = "\
 Examples:
   whiskmap design scenes/robot.toml --distance 60 --side cb --slip-off 30deg --for taper --plot taper.svg
   whiskmap design scenes/robot.toml --distance 60 --slip-off -50deg --for parabola_per_mm
   whiskmap design scenes/cylinder.toml --distance 19 --pull-off 40deg --for length_mm
 
-Every value that makes the whisker detach so, one a line, to 1e-9 of itself; where two solutions nearly meet, to the root of \
-the rounding. All that the scene accepts is tried, in 128 places (in a wide range half of them even in the logarithm); a \
-pair of solutions between two of them is found where the push angle turns back only once there. Without any solution the \
-exit code is 1, and standard error says what can be reached. The scene's grid does not matter.";
-
-/// Options of `design`.
-#[derive(Debug, Args)]
-#[command(after_help = EXAMPLES)]
-pub struct Options {
+Each line is one value that makes the whisker detach at that angle, with a relative error of 1e-9; where two solutions nearly \
+merge, with the root of the rounding error. The search covers the whole range that the scene accepts with 128 values; in a \
+wide range, half of them are spaced logarithmically. A pair of solutions between two of these values is found if the push \
+angle turns back only once there. Without any solution the exit code is 1, and standard error gives the possible push \
+angles. The scene's grid is ignored.")]
+pub struct DesignArgs {
     #[command(flatten)]
-    pole: Pole,
-    /// Side of the whisker that the pole is on [default: that of the angle's sign]
+    pole: PoleArgs,
+    /// Side of the whisker that the pole is on [default: by the sign of the angle]
     #[arg(long, value_enum)]
-    side: Option<OneSide>,
+    side: Option<SideName>,
     #[command(flatten)]
-    end: End,
-    /// Number of the scene to choose
+    end: EndArgs,
+    /// Parameter of the scene to vary
     #[arg(long = "for", value_name = "NAME", value_parser = parameter())]
     parameter: Parameter,
-    /// Picture of the push angle over that number to write, PNG or SVG by its ending
+    /// Plot the push angle against the parameter to FILE; the ending selects PNG or SVG
     #[arg(long, value_name = "FILE")]
     plot: Option<PathBuf>,
 }
 
-/// How the push is to end.
 #[derive(Debug, Args)]
 #[group(required = true, multiple = false)]
-struct End {
-    /// Push angle at which it slips off, such as 30deg, 30°, 30 or 0.5rad: positive CB, negative CF
+struct EndArgs {
+    /// Push angle of the slip-off, such as 30deg, 30°, 30 or 0.5rad: positive CB, negative CF
     #[arg(long, value_name = "ANGLE", allow_hyphen_values = true, value_parser = push)]
     slip_off: Option<f64>,
-    /// Push angle at which it is pulled off
+    /// Push angle of the pull-off
     #[arg(long, value_name = "ANGLE", allow_hyphen_values = true, value_parser = push)]
     pull_off: Option<f64>,
 }
@@ -67,28 +62,23 @@ fn push(text: &str) -> Result<f64, String> {
     }
 }
 
-impl Options {
-    /// What is asked for.
+impl DesignArgs {
     fn target(&self) -> Result<Target, Failure> {
-        let (option, kind, push_angle_deg) = match (self.end.slip_off, self.end.pull_off) {
-            (Some(push), _) => ("--slip-off", DetachmentKind::SlipOff, push),
-            (None, push) => (
-                "--pull-off",
-                DetachmentKind::PullOff,
-                push.unwrap_or(f64::NAN),
-            ),
+        let (option, kind, push) = match (self.end.slip_off, self.end.pull_off) {
+            (Some(push), _) => ("--slip-off", DetachmentKind::SlipOff, Some(push)),
+            (None, push) => ("--pull-off", DetachmentKind::PullOff, push),
         };
+        let push_angle_deg = push.unwrap_or(f64::NAN);
         let side = Side::of_push(push_angle_deg);
         let other = match (self.side, side) {
-            (Some(OneSide::Cf), Side::Cb) => Some("--side cf must be negative"),
-            (Some(OneSide::Cb), Side::Cf) => Some("--side cb must be positive"),
+            (Some(SideName::Cf), Side::Cb) => Some("--side cf must be negative"),
+            (Some(SideName::Cb), Side::Cf) => Some("--side cb must be positive"),
             _ => None,
         };
         if let Some(must) = other {
-            return Err(Failure::Input(format!(
-                "{option} {} deg: a push angle of {must}",
-                digits(push_angle_deg)
-            )));
+            let push = digits(push_angle_deg);
+            let why = format!("{option} {push} deg: a push angle of {must}");
+            return Err(Failure::Input(why));
         }
         Ok(Target {
             distance_mm: self.pole.distance,
@@ -99,31 +89,26 @@ impl Options {
     }
 }
 
-/// Runs `design`.
-pub fn run(options: &Options, files: &mut Files) -> Result<(), Failure> {
-    let target = options.target()?;
-    let (path, distance) = (&options.pole.scene, options.pole.distance);
+pub fn run(args: &DesignArgs, files: &mut Files) -> Result<(), Failure> {
+    let target = args.target()?;
+    let (path, distance) = (&args.pole.scene, args.pole.distance);
     let (scene, _) = pole::read(files, path, "design", &[distance])?;
-    let (_, picture) = open(files, "--plot", None, options.plot.as_deref())?;
-    let found = design::design(&scene, options.parameter, &target);
+    let (_, picture) = open(files, "--plot", None, args.plot.as_deref())?;
+    let found = design::design(&scene, args.parameter, &target);
     let found = found.map_err(|why| match why {
         NoDesign::Sweep(_) => Failure::Input(why.to_string()),
         NoDesign::Lacking { .. } | NoDesign::Fixed { .. } => {
-            let scene = options.pole.scene.display();
-            Failure::Input(format!("{scene}: --for {why}"))
+            Failure::Input(format!("{}: --for {why}", path.display()))
         }
         NoDesign::Distance(why) => Failure::Scene(why),
     })?;
     if let Some(picture) = picture {
-        let plot = designs(options.parameter, &target, &found);
-        picture.save(title(&scene, &[options.pole.distance]), plot)?;
+        let plot = designs(args.parameter, &target, &found);
+        picture.save(title(&scene, &[distance]), plot)?;
     }
     if found.values.is_empty() {
-        return Err(Failure::NoValue(reached(
-            options.parameter,
-            &target,
-            &found,
-        )));
+        let why = unreached(args.parameter, &target, &found);
+        return Err(Failure::NoValue(why));
     }
     let mut out = io::stdout().lock();
     for value in &found.values {
@@ -132,8 +117,8 @@ pub fn run(options: &Options, files: &mut Files) -> Result<(), Failure> {
     Ok(())
 }
 
-/// What can be reached where nothing does what is asked for.
-fn reached(parameter: Parameter, target: &Target, design: &Design) -> String {
+/// Returns the message for a target without a solution, with the push angles that are possible.
+fn unreached(parameter: Parameter, target: &Target, design: &Design) -> String {
     let name = parameter.name();
     let [from, to] = design.range.map(digits);
     let ways = [
@@ -143,7 +128,7 @@ fn reached(parameter: Parameter, target: &Target, design: &Design) -> String {
     let reached = ways.iter().filter_map(|(kind, way)| {
         let [low, high] = design.reached_deg(*kind)?;
         Some(if high - low < 1e-6 {
-            format!("it {way} at {low:.6} deg whatever the value")
+            format!("it {way} at {low:.6} deg for every value")
         } else {
             format!("it {way} between {low:.6} and {high:.6} deg")
         })
@@ -153,10 +138,10 @@ fn reached(parameter: Parameter, target: &Target, design: &Design) -> String {
         nothing if nothing.is_empty() => "it does not reach the pole".to_owned(),
         reached => reached,
     };
-    let asked = match target.kind {
+    let wanted = match target.kind {
         DetachmentKind::PullOff => "pulls the whisker off",
         _ => "makes the whisker slip off",
     };
     let push = digits(target.push_angle_deg);
-    format!("no {name} between {from} and {to} {asked} at {push} deg: {reached}")
+    format!("no {name} between {from} and {to} {wanted} at {push} deg: {reached}")
 }

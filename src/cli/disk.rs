@@ -1,20 +1,20 @@
-//! Whether a disk has room for what will be written.
+//! Check of free disk space before a map is written.
 
-use super::estimate::{Format, files};
+use super::estimate::{MapFormat, files};
 use super::failure::Failure;
 use indicatif::DecimalBytes;
 use std::path::Path;
 use whiskmap::plan::Plan;
 use whiskmap::scene::Scene;
 
-/// Bytes of a channel of a cell that is not packed.
-const SAMPLE_BYTES: u64 = 4;
+/// Bytes of one value that is not packed.
+const VALUE_BYTES: u64 = 4;
 
-/// Refuses to write so many `cells` of a map below `folder` where the disk cannot hold them. Only if it could not hold
-/// them unpacked is a sample computed and packed.
+/// Returns an error if the disk of `folder` has too little space for `cells` of a map. Their size is estimated from a packed
+/// sample, which is only computed if the unpacked cells would not fit.
 pub fn check(
     folder: &Path,
-    format: Format,
+    format: MapFormat,
     scene: &Scene,
     plan: &Plan,
     cells: usize,
@@ -23,7 +23,7 @@ pub fn check(
         return Ok(());
     };
     let channels = plan.channels.names().count() as u64;
-    if cells as u64 * channels * SAMPLE_BYTES <= free {
+    if cells as u64 * channels * VALUE_BYTES <= free {
         return Ok(());
     }
     let share = cells as f64 / plan.cells as f64;
@@ -33,11 +33,11 @@ pub fn check(
     refused(folder, needed, free).map_or(Ok(()), |message| Err(Failure::Input(message)))
 }
 
-/// Why a folder cannot take so many bytes, if it cannot.
+/// Returns the message for `needed` bytes, if fewer are `free`.
 fn refused(folder: &Path, needed: u64, free: u64) -> Option<String> {
     (needed > free).then(|| {
         format!(
-            "--output {}: the map needs about {}, {} are free; give a folder with more room, or --force",
+            "--output {}: the map needs about {}, but {} are free; give a folder with more space, or --force",
             folder.display(),
             DecimalBytes(needed),
             DecimalBytes(free)
@@ -45,7 +45,7 @@ fn refused(folder: &Path, needed: u64, free: u64) -> Option<String> {
     })
 }
 
-/// Bytes that are left below `folder` for this user, where the system tells.
+/// Free bytes for this user on the disk of `folder`; `None` if the system has no answer.
 #[cfg(unix)]
 fn free(folder: &Path) -> Option<u64> {
     let disk = rustix::fs::statvfs(folder).ok()?;
@@ -68,7 +68,7 @@ mod tests {
         assert_eq!(
             refused(2_250_000_000).as_deref(),
             Some(
-                "--output maps: the map needs about 2.25 GB, 1.50 GB are free; give a folder with more room, or --force"
+                "--output maps: the map needs about 2.25 GB, but 1.50 GB are free; give a folder with more space, or --force"
             )
         );
     }

@@ -1,4 +1,4 @@
-//! Which engine a command takes.
+//! Selection of the engine.
 
 use super::estimate::{compare, estimate};
 use super::failure::Failure;
@@ -9,93 +9,98 @@ use whiskmap::engine::{Engine, EngineDescription, EngineError, on_gpu};
 use whiskmap::plan::Plan;
 use whiskmap::scene::Scene;
 
-/// Engines by name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum Choice {
-    /// The faster one on a sample of the scene
+enum EngineChoice {
+    /// The faster engine on a sample of the scene
     Auto,
     /// f64 on all cores
     Cpu,
-    /// Compute shaders on an adapter, a software one too
+    /// Compute shaders on an adapter, also a software adapter
     Gpu,
 }
 
-/// Options that choose an engine.
 #[derive(Debug, Args)]
-pub struct EngineOptions {
-    /// What solves the cells
+pub struct EngineArgs {
+    /// Engine that solves the cells
     #[arg(long, value_enum, default_value = "auto")]
-    engine: Choice,
-    /// Scalar of the shaders [default: f32]
+    engine: EngineChoice,
+    /// Floating-point type of the shaders [default: f32]
     #[arg(long, value_enum)]
     precision: Option<Precision>,
-    /// Adapter of the GPU, by its number or a part of its name in `whiskmap devices` [default: the one marked there]
+    /// GPU adapter, by its number or a part of its name in `whiskmap devices` [default: the one marked there]
     #[arg(long, value_name = "N|NAME")]
     adapter: Option<String>,
 }
 
-/// What solves cells, nothing for the CPU alone, and in one line why it was taken.
-pub type Opened = (Option<Box<dyn Engine>>, String);
+/// Engine that solves cells, `None` for the CPU alone, and the reason for the choice in one line.
+pub type OpenEngine = (Option<Box<dyn Engine>>, String);
 
-/// Seconds that samples may take to see whether a GPU is worth starting.
+/// Seconds for samples that show whether a GPU is worth opening.
 const FIRST_LOOK: f64 = 0.01;
 
-/// Seconds that samples may take to compare it with the CPU, unless the smallest ones take longer.
+/// Seconds for samples that compare GPU and CPU, unless the smallest ones take longer.
 const COMPARISON: f64 = 0.04;
 
-/// Seconds from nothing to the first answer of a GPU, measured on lavapipe: a map that takes the CPU less does not wait for one.
+/// Seconds from opening a GPU to its first response, measured on lavapipe. A map that takes the CPU less opens no GPU.
 const OPENING: f64 = 0.1;
 
-impl EngineOptions {
-    /// Opens the engine for a map of `scene` as in `plan`, with push angles exact to `tolerance_deg`, if that was asked.
+impl EngineArgs {
+    /// Opens the engine for a map of `scene` as in `plan`, whose push angles must be exact to `tolerance_deg`, if given.
     pub fn open(
         &self,
         scene: &Scene,
         plan: &Plan,
         tolerance_deg: Option<f64>,
-    ) -> Result<Opened, Failure> {
-        let asked = || "asked for".to_owned();
-        match (self.engine, self.precision, &self.adapter) {
-            (Choice::Cpu, Some(Precision::F32), _) => Err(Failure::Input(
+    ) -> Result<OpenEngine, Failure> {
+        let why = match (self.engine, self.precision, &self.adapter) {
+            (EngineChoice::Cpu, Some(Precision::F32), _) => {
                 "--precision f32: the CPU engine computes in f64; allowed with --engine gpu"
-                    .to_owned(),
-            )),
-            (Choice::Auto, Some(Precision::F32), _) => Err(Failure::Input(
-                "--precision f32: --engine auto may take the CPU engine, which computes in f64; allowed with --engine gpu"
-                    .to_owned(),
-            )),
-            (Choice::Cpu, _, Some(adapter)) => Err(Failure::Input(format!(
+                    .to_owned()
+            }
+            (EngineChoice::Auto, Some(Precision::F32), _) => {
+                "--precision f32: --engine auto may select the CPU engine, which computes in f64; allowed with --engine gpu"
+                    .to_owned()
+            }
+            (EngineChoice::Cpu, _, Some(adapter)) => format!(
                 "--adapter {adapter}: the CPU engine has none; allowed with --engine gpu and --engine auto"
-            ))),
-            (Choice::Cpu, ..) => Ok((None, asked())),
-            (Choice::Gpu | Choice::Auto, ..) => {
-                // Who names an adapter is told that there is none, even where it would not be used.
-                if self.adapter.is_some() || env::var_os(NAME).is_some() {
-                    self.adapter()?;
-                }
-                match (self.engine, self.refusal(scene, plan, tolerance_deg)) {
-                    (Choice::Auto, Some(why)) => Ok((None, format!("auto: {why}"))),
-                    (Choice::Auto, None) => self.faster(scene, plan),
-                    (_, Some(why)) => Ok((None, format!("a GPU was asked for, but {why}"))),
-                    (_, None) => self.asked_for().map(|gpu| (Some(gpu), asked())),
-                }
+            ),
+            (EngineChoice::Cpu, ..) => return Ok((None, "selected by --engine".to_owned())),
+            (EngineChoice::Gpu | EngineChoice::Auto, ..) => {
+                return self.open_gpu_or_auto(scene, plan, tolerance_deg);
+            }
+        };
+        Err(Failure::Input(why))
+    }
+
+    fn open_gpu_or_auto(
+        &self,
+        scene: &Scene,
+        plan: &Plan,
+        tolerance_deg: Option<f64>,
+    ) -> Result<OpenEngine, Failure> {
+        // A named adapter that does not exist is an error, even if it would not be used.
+        if self.adapter.is_some() || env::var_os(NAME).is_some() {
+            self.adapter()?;
+        }
+        match (self.engine, self.refusal(scene, plan, tolerance_deg)) {
+            (EngineChoice::Auto, Some(why)) => Ok((None, format!("auto: {why}"))),
+            (EngineChoice::Auto, None) => self.faster(scene, plan),
+            (_, Some(why)) => Ok((None, format!("--engine gpu is not possible: {why}"))),
+            (_, None) => {
+                let adapter = self.adapter()?.map(|(index, _)| index);
+                let gpu = self.gpu(adapter).map_err(|error| match error {
+                    EngineError::Unsupported { .. } => Failure::Input(format!(
+                        "--engine gpu --precision {}: {error}; --precision f32 works on every adapter",
+                        self.precision()
+                    )),
+                    error => error.into(),
+                })?;
+                Ok((Some(gpu), "selected by --engine".to_owned()))
             }
         }
     }
 
-    /// The GPU that was asked for.
-    fn asked_for(&self) -> Result<Box<dyn Engine>, Failure> {
-        let adapter = self.adapter()?.map(|(index, _)| index);
-        self.gpu(adapter).map_err(|error| match error {
-            EngineError::Unsupported { .. } => Failure::Input(format!(
-                "--engine gpu --precision {}: {error}; --precision f32 works on every adapter",
-                self.precision()
-            )),
-            error => error.into(),
-        })
-    }
-
-    /// Why the CPU solves every cell whatever a GPU can.
+    /// Returns the reason why the CPU solves every cell, on any GPU.
     fn refusal(&self, scene: &Scene, plan: &Plan, tolerance_deg: Option<f64>) -> Option<String> {
         if let Err(why) = on_gpu(plan.method.effects) {
             return Some(why.to_owned());
@@ -111,7 +116,7 @@ impl EngineOptions {
         self.precision.unwrap_or(Precision::F32)
     }
 
-    /// The adapter that a GPU engine takes, if there is any, and its name.
+    /// Returns index and name of the adapter of a GPU engine, if there is one.
     fn adapter(&self) -> Result<Option<(usize, String)>, Failure> {
         let reports = adapters();
         let index = chosen(&reports, self.adapter.as_deref(), self.precision())?;
@@ -126,10 +131,11 @@ impl EngineOptions {
         gpu.map(|gpu| Box::new(gpu) as _)
     }
 
-    /// The engine that is expected to be done first with `plan`, by what samples of `scene` take.
-    fn faster(&self, scene: &Scene, plan: &Plan) -> Result<Opened, Failure> {
+    /// Opens the engine that is faster for `plan`, as estimated from samples of `scene`.
+    fn faster(&self, scene: &Scene, plan: &Plan) -> Result<OpenEngine, Failure> {
         if estimate(scene, plan, FIRST_LOOK)?.seconds < OPENING {
-            return Ok((None, "auto: done before a GPU has started".to_owned()));
+            let why = "auto: the CPU is done before a GPU has started";
+            return Ok((None, why.to_owned()));
         }
         let (index, name) = self.adapter()?.unzip();
         let gpu = match self.gpu(index) {
@@ -151,39 +157,36 @@ impl EngineOptions {
     }
 }
 
-/// To how many degrees an engine bounds push angles: its `goal`, as seen from the base at the nearest distance.
+/// Returns the bound on push angles in degrees for an engine with this `goal`, at the nearest distance.
 pub fn bound_deg(scene: &Scene, goal: f64) -> f64 {
-    let nearest = scene
-        .grid
-        .distance_mm
-        .iter()
-        .copied()
-        .fold(f64::INFINITY, f64::min);
+    let distances = scene.grid.distance_mm.iter();
+    let nearest = distances.copied().fold(f64::INFINITY, f64::min);
     let lengths = scene.corner_whiskers().map(|own| own.whisker.length_mm);
     let longest = lengths.fold(0.0, f64::max);
     (goal * longest / nearest).to_degrees()
 }
 
-/// The variable by which other programs that use wgpu choose an adapter, too.
+/// Environment variable that also other programs with wgpu use to select an adapter.
 const NAME: &str = "WGPU_ADAPTER_NAME";
 
-/// Which adapter is taken: the one `asked` for, the one named by `WGPU_ADAPTER_NAME`, or else the preferred one; `None` without any.
+/// Returns the index of the `wanted` adapter, else of the one named by `WGPU_ADAPTER_NAME`, else of the preferred one; `None`
+/// without an adapter.
 ///
 /// # Errors
-/// When the one that was asked for or named is not among the `reports`.
+///
+/// If the wanted or named adapter is not among the `reports`.
 pub fn chosen(
     reports: &[AdapterReport],
-    asked: Option<&str>,
+    wanted: Option<&str>,
     precision: Precision,
 ) -> Result<Option<usize>, Failure> {
-    let (what, found) = match (asked, env::var(NAME)) {
-        (Some(asked), _) => {
-            let number = asked.parse::<usize>().ok();
-            let found = match number {
-                Some(number) => (number < reports.len()).then_some(number),
-                None => named(reports, asked, precision),
+    let (what, found) = match (wanted, env::var(NAME)) {
+        (Some(wanted), _) => {
+            let found = match wanted.parse::<usize>() {
+                Ok(number) => (number < reports.len()).then_some(number),
+                Err(_) => named(reports, wanted, precision),
             };
-            (format!("--adapter {asked}"), found)
+            (format!("--adapter {wanted}"), found)
         }
         (None, Ok(name)) => (format!("{NAME}={name}"), named(reports, &name, precision)),
         (None, Err(_)) => {
@@ -202,7 +205,6 @@ pub fn chosen(
         [] => "there is none".to_owned(),
         list => format!("must be one of {}", list.join(", ")),
     };
-    Err(Failure::Input(format!(
-        "{what}: no such GPU adapter; {allowed}"
-    )))
+    let why = format!("{what}: no such GPU adapter; {allowed}");
+    Err(Failure::Input(why))
 }

@@ -1,4 +1,4 @@
-//! What a map would take, measured: samples of it are computed and thrown away.
+//! Estimated cost of a map, from samples that are computed and discarded.
 
 use super::failure::Failure;
 use clap::ValueEnum;
@@ -10,42 +10,40 @@ use whiskmap::plan::{Plan, SAMPLE_LINES, SAMPLE_VALUES};
 use whiskmap::scene::Scene;
 use whiskmap::store::{self, MapWriter, ZarrStore};
 
-/// What a map would take.
-pub struct Estimate {
-    /// Wall seconds on all threads, without the files.
+/// Estimated cost of a map without its files.
+pub struct MapCost {
+    /// Wall seconds on all threads.
     pub seconds: f64,
     /// Newton steps per cell, each one trajectory.
     pub steps_per_cell: f64,
 }
 
-/// What the files of a map take.
-pub struct Files {
-    /// Their format.
-    pub format: Format,
+/// Estimated cost of the files of a map.
+pub struct FileCost {
+    pub format: MapFormat,
     /// Bytes on disk.
     pub bytes: f64,
     /// Wall seconds on all threads to pack them.
     pub seconds: f64,
 }
 
-/// Formats of a map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Format {
+pub enum MapFormat {
     /// One OpenEXR file, and a picture of it
     Exr,
     /// A Zarr store, for any number of axes, runs and machines
     Zarr,
 }
 
-impl Format {
-    /// Those that can hold a map of `scene`.
+impl MapFormat {
+    /// Returns the formats that can hold a map of `scene`.
     pub fn of(scene: &Scene) -> Vec<Self> {
         let mut formats = vec![Self::Exr, Self::Zarr];
         formats.retain(|format| *format == Self::Zarr || scene.grid.sweep.len() <= 2);
         formats
     }
 
-    /// Packs some panels of `scene`, and tells how many bytes they take.
+    /// Packs some panels of `scene`, and returns the number of bytes.
     fn pack(self, scene: &Scene, plan: &Plan, panels: &[Panel]) -> Result<u64, store::Error> {
         match self {
             Self::Exr => Ok(MapWriter::sample(&scene.grid, plan.channels, panels)),
@@ -54,11 +52,11 @@ impl Format {
     }
 }
 
-/// Cells of the sample that is packed, about: many lines, because the closer cells are, the better they pack.
+/// Approximate number of cells of the packed sample. It has many lines, because denser cells pack better.
 const PACKED_CELLS: usize = 1 << 18;
 
-/// What the files of `plan` would take in these `formats`, from a packed sample.
-pub fn files(scene: &Scene, plan: &Plan, formats: &[Format]) -> Result<Vec<Files>, Failure> {
+/// Estimates the cost of the files of `plan` in these `formats`, from a packed sample.
+pub fn files(scene: &Scene, plan: &Plan, formats: &[MapFormat]) -> Result<Vec<FileCost>, Failure> {
     let whiskers = scene.thinned(1, SAMPLE_VALUES).whisker_count();
     let lines = (PACKED_CELLS / whiskers).isqrt().max(1);
     let (small, small_plan) = thinned(scene, plan, [lines, lines])?;
@@ -75,7 +73,7 @@ pub fn files(scene: &Scene, plan: &Plan, formats: &[Format]) -> Result<Vec<Files
         for panels in &groups {
             bytes += format.pack(&small, &small_plan, panels)?;
         }
-        Ok(Files {
+        Ok(FileCost {
             format: *format,
             bytes: bytes as f64 * by_cells,
             seconds: start.elapsed().as_secs_f64() * by_cells,
@@ -84,7 +82,7 @@ pub fn files(scene: &Scene, plan: &Plan, formats: &[Format]) -> Result<Vec<Files
     packed.collect()
 }
 
-/// A sample of at most so many push angles and distances, and its plan.
+/// Returns a sample of at most these numbers of push angles and distances, and its plan.
 fn thinned(scene: &Scene, plan: &Plan, lines: [usize; 2]) -> Result<(Scene, Plan), Failure> {
     let small = scene.thinned_to(lines, SAMPLE_VALUES);
     let small_plan = Plan {
@@ -95,20 +93,21 @@ fn thinned(scene: &Scene, plan: &Plan, lines: [usize; 2]) -> Result<(Scene, Plan
     Ok((small, small_plan))
 }
 
-/// Lines of the first sample.
+/// Push angles and distances of the first sample.
 const FIRST_LINES: usize = 8;
 
-/// From one sample to the next: so many times as many push angles, and distances.
+/// Ratio of the numbers of push angles, and of distances, of successive samples.
 const DENSER: usize = 2;
 
-/// Measures samples of `scene` on the CPU alone, each [`DENSER`] than the one before, and scales the last one's stages to `plan`: sheets
-/// by whiskers, sides and distances, the rest by cells. All samples, but for the first, take so many `seconds` together, as the ones
-/// before foretell.
-pub fn estimate(scene: &Scene, plan: &Plan, seconds: f64) -> Result<Estimate, Failure> {
+/// Estimates the cost of `plan` on the CPU alone, from samples of increasing density.
+///
+/// The stages of the last sample are scaled: sheets by whiskers, sides and distances, the others by cells. The samples take
+/// about `seconds` together, unless the first one takes longer.
+pub fn estimate(scene: &Scene, plan: &Plan, seconds: f64) -> Result<MapCost, Failure> {
     let (mut lines, mut left) = (FIRST_LINES, seconds);
     loop {
         let start = Instant::now();
-        let sample = measured(scene, plan, &mut None, [lines, lines])?;
+        let sample = MapSample::measure(scene, plan, &mut None, [lines, lines])?;
         let last = start.elapsed().as_secs_f64();
         left -= last;
         match denser(lines, last, left) {
@@ -118,31 +117,35 @@ pub fn estimate(scene: &Scene, plan: &Plan, seconds: f64) -> Result<Estimate, Fa
     }
 }
 
-/// Most push angles of a sample for an engine, whose references cost the same for a row of few cells as for one of many.
+/// Most push angles of a sample for an engine, whose base points cost the same for any number of cells in a row.
 const WIDE: usize = 2048;
 
-/// Rounds for which [`compare`] keeps time: one alone may have been held up.
+/// Timed rounds of [`compare`]: a single one may be disturbed.
 const ROUNDS: f64 = 3.0;
 
-/// Seconds that `plan` would take the CPU alone, and with `engine`, scaled by cells: samples in turn, as dense as so many `seconds` in all
-/// allow, and of each the fastest. Before them `engine` has one that does not count, for which it compiles.
+/// Estimates the seconds of `plan` on the CPU alone, and with `engine`, scaled by cells.
+///
+/// Samples are timed in turn, as dense as `seconds` in all allow; the fastest of each counts. A first sample, in which `engine`
+/// compiles, does not count.
 ///
 /// # Errors
-/// When the engine fails.
+///
+/// If the engine fails.
 pub fn compare(
     scene: &Scene,
     plan: &Plan,
     engine: &mut Option<Box<dyn Engine>>,
     seconds: f64,
 ) -> Result<[f64; 2], Failure> {
-    measured(scene, plan, engine, [WIDE, FIRST_LINES])?;
+    MapSample::measure(scene, plan, engine, [WIDE, FIRST_LINES])?;
     let (mut lines, mut left) = (FIRST_LINES, seconds);
     let mut fastest = [f64::INFINITY; 2];
     loop {
         let start = Instant::now();
-        let cpu = measured(scene, plan, &mut None, [WIDE, lines])?;
-        let with_engine = measured(scene, plan, engine, [WIDE, lines])?;
-        let seconds = [cpu, with_engine].map(|sample| sample.wall_seconds(plan));
+        let cpu = MapSample::measure(scene, plan, &mut None, [WIDE, lines])?;
+        let with_engine = MapSample::measure(scene, plan, engine, [WIDE, lines])?;
+        let seconds =
+            [cpu, with_engine].map(|sample| sample.summary.wall_seconds() * sample.by_cells(plan));
         fastest = [0, 1].map(|i| f64::min(fastest[i], seconds[i]));
         let last = start.elapsed().as_secs_f64();
         left -= last;
@@ -154,43 +157,42 @@ pub fn compare(
     }
 }
 
-/// The lines of the samples after some that took `last` seconds, with so many `left`; none where those are the last.
+/// Returns the lines of the next samples if the last ones took `last` seconds and `left` remain; `None` if they were the last.
 fn denser(lines: usize, last: f64, left: f64) -> Option<usize> {
     let is_short = last * (DENSER * DENSER) as f64 <= left;
     (is_short && lines < SAMPLE_LINES).then_some(lines * DENSER)
 }
 
-/// A sample of a map.
-struct Sample {
+/// Computed sample of a map.
+struct MapSample {
     scene: Scene,
     plan: Plan,
     summary: Summary,
 }
 
-/// Measures a sample of at most so many push angles and distances.
-fn measured(
-    scene: &Scene,
-    plan: &Plan,
-    engine: &mut Option<Box<dyn Engine>>,
-    lines: [usize; 2],
-) -> Result<Sample, Failure> {
-    let (scene, plan) = thinned(scene, plan, lines)?;
-    let engine = engine.as_mut().map(|engine| &mut **engine as _);
-    let discard = &mut |_| Ok::<(), Infallible>(());
-    let Ok(summary) = map::run(&scene, &plan, engine, &mut |_| (), discard);
-    match summary.engine_failure {
-        Some(failure) => Err(failure.into()),
-        None => Ok(Sample {
-            scene,
-            plan,
-            summary,
-        }),
+impl MapSample {
+    /// Computes a sample of at most these numbers of push angles and distances.
+    fn measure(
+        scene: &Scene,
+        plan: &Plan,
+        engine: &mut Option<Box<dyn Engine>>,
+        lines: [usize; 2],
+    ) -> Result<Self, Failure> {
+        let (scene, plan) = thinned(scene, plan, lines)?;
+        let engine = engine.as_mut().map(|engine| &mut **engine as _);
+        let discard = &mut |_| Ok::<(), Infallible>(());
+        let Ok(summary) = map::run(&scene, &plan, engine, &mut |_| (), discard);
+        match summary.engine_failure {
+            Some(failure) => Err(failure.into()),
+            None => Ok(Self {
+                scene,
+                plan,
+                summary,
+            }),
+        }
     }
-}
 
-impl Sample {
-    /// What `plan` of `scene` would take.
-    fn scaled_to(&self, scene: &Scene, plan: &Plan) -> Estimate {
+    fn scaled_to(&self, scene: &Scene, plan: &Plan) -> MapCost {
         let rows = |scene: &Scene, plan: &Plan| {
             (plan.whiskers * plan.sides.len() * scene.grid.distance_mm.len()) as f64
         };
@@ -199,15 +201,10 @@ impl Sample {
             Stage::Sheets => self.summary.stage_seconds(stage) * by_rows,
             _ => self.summary.stage_seconds(stage) * self.by_cells(plan),
         });
-        Estimate {
+        MapCost {
             seconds: seconds.iter().sum(),
             steps_per_cell: self.summary.steps as f64 / self.summary.cells() as f64,
         }
-    }
-
-    /// Seconds that `plan` would take where a row of it is like one of the sample.
-    fn wall_seconds(&self, plan: &Plan) -> f64 {
-        self.summary.wall_seconds() * self.by_cells(plan)
     }
 
     fn by_cells(&self, plan: &Plan) -> f64 {

@@ -1,4 +1,4 @@
-//! What ends a command early, and the exit code for it.
+//! Failures of commands, their messages and exit codes.
 
 use std::io::{self, IsTerminal, Write};
 use std::path::PathBuf;
@@ -13,52 +13,44 @@ use whiskmap::scene::SceneError;
 use whiskmap::store;
 use whiskmap::trace::NoState;
 
-/// An error of a command.
+/// Failure of a command.
 #[derive(Debug, thiserror::Error)]
 pub enum Failure {
-    /// The scene is not valid.
     #[error("{0}")]
     Scene(#[from] SceneError),
-    /// The measured points are not valid.
     #[error(transparent)]
     Points(#[from] CsvError),
-    /// There is no fit.
     #[error(transparent)]
     Fit(#[from] fit::Error),
-    /// The best values are not a fit, and what is not written therefore.
+    /// The best values are not a fit; the text names the output that is therefore not written.
     #[error("{0}{1}")]
     NotAFit(fit::NotAFit, String),
-    /// The scene is too large.
     #[error(transparent)]
     Plan(#[from] PlanError),
-    /// Arguments that cannot be right together with this machine or these files.
+    /// An argument is invalid, alone or with this machine or these files.
     #[error("{0}")]
     Input(String),
-    /// The engine cannot be had.
     #[error(transparent)]
     Engine(#[from] EngineError),
-    /// A stored map could not be read or written.
     #[error(transparent)]
     Store(#[from] store::Error),
-    /// A picture could not be drawn.
     #[error(transparent)]
     Render(#[from] render::Error),
-    /// A solution branch could not be followed.
     #[error(transparent)]
     State(NoState),
-    /// Nothing that was asked for has an answer.
+    /// Every result is unresolved.
     #[error("all {all} {what} are unresolved: see {see}")]
     Unresolved {
         all: u64,
         what: &'static str,
         see: &'static str,
     },
-    /// No value does what was asked for.
+    /// `design` found no value.
     #[error("{0}")]
     NoValue(String),
-    /// A store that lacks something.
+    /// A store has missing or damaged files.
     #[error(
-        "{} is not complete: {missing} blocks are missing, {damaged} are damaged, and {metadata} files of metadata", store.display()
+        "{} is incomplete: {missing} blocks are missing, {damaged} are damaged, and {metadata} files of metadata", store.display()
     )]
     Incomplete {
         store: PathBuf,
@@ -66,13 +58,12 @@ pub enum Failure {
         damaged: usize,
         metadata: usize,
     },
-    /// Numbers are not what they should be.
+    /// Checks of `verify` fail.
     #[error("{failed} of {all} checks fail")]
     Checks { failed: usize, all: usize },
-    /// A file could not be written.
     #[error("cannot write {}: {cause}", path.display())]
     Write { path: PathBuf, cause: io::Error },
-    /// Standard output is gone or full.
+    /// Standard output is closed or full.
     #[error("standard output: {0}")]
     Output(#[from] io::Error),
 }
@@ -90,7 +81,7 @@ impl Failure {
         if is_input { 2 } else { 1 }
     }
 
-    /// Whether the reader of an output has closed it.
+    /// Returns true if the reader of an output has closed it.
     pub fn is_broken_pipe(&self) -> bool {
         match self {
             Self::Output(error) | Self::Write { cause: error, .. } => {
@@ -100,27 +91,28 @@ impl Failure {
         }
     }
 
-    /// Prints the message and gives the exit code.
+    /// Prints the message and returns the exit code.
     pub fn report(&self) -> ExitCode {
         match self {
-            // A reader that has seen enough, like `head`, is no failure of ours.
+            // A reader that stops early, like `head`, is not a failure.
             _ if self.is_broken_pipe() => return ExitCode::SUCCESS,
-            Self::Scene(error) => say(&error.render(color())),
-            _ => say(&format!("error: {self}")),
+            Self::Scene(error) => message(&error.render(color())),
+            _ => message(&format!("error: {self}")),
         }
         ExitCode::from(self.code())
     }
 }
 
-/// A line on standard error, if anybody listens.
-pub fn say(line: &str) {
+/// Prints a line on standard error, and ignores a closed one.
+pub fn message(line: &str) {
     let _ = writeln!(io::stderr(), "{line}");
 }
 
-/// Says how many of `all` answers are unresolved, if any are, and where to `see` which.
+/// Warns if some of `all` results are unresolved; `see` names the place that marks them.
 ///
 /// # Errors
-/// Where all of them are.
+///
+/// If all of them are unresolved.
 pub fn check_resolved(
     unresolved: u64,
     all: u64,
@@ -133,7 +125,7 @@ pub fn check_resolved(
     if unresolved == all {
         return Err(Failure::Unresolved { all, what, see });
     }
-    say(&format!(
+    message(&format!(
         "warning: {unresolved} of {all} {what} are unresolved: see {see}"
     ));
     Ok(())
@@ -149,7 +141,7 @@ pub fn keep_expected_panics_silent() {
     }));
 }
 
-/// Whether messages may be coloured: on a terminal, unless `NO_COLOR` is set.
+/// Returns true if messages are coloured: on a terminal, unless `NO_COLOR` is set.
 fn color() -> bool {
     io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none_or(|v| v.is_empty())
 }

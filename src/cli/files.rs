@@ -1,7 +1,6 @@
-//! The files of a command: each input and output is declared here, so that no output destroys an input or another output.
+//! Inputs and outputs of a command. All are declared here, so that no output destroys an input or another output.
 
-use super::failure::Failure;
-use super::scene;
+use super::failure::{Failure, message};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use whiskmap::scene::Scene;
@@ -20,8 +19,8 @@ pub struct Files {
 }
 
 impl Files {
-    /// No inputs and outputs yet; `temporary` has the files of outputs until they are finished.
-    pub fn new(temporary: TemporaryFiles) -> Self {
+    /// Creates an empty list; `temporary` has the files of outputs until they are finished.
+    pub const fn new(temporary: TemporaryFiles) -> Self {
         Self {
             temporary,
             inputs: Vec::new(),
@@ -29,14 +28,14 @@ impl Files {
         }
     }
 
-    /// The temporary files of the outputs.
-    pub fn temporary(&self) -> &TemporaryFiles {
+    /// Temporary files of the outputs.
+    pub const fn temporary(&self) -> &TemporaryFiles {
         &self.temporary
     }
 
-    /// Reads a scene and declares its files.
+    /// Reads a scene, as [`read_scene`] does, and declares its files.
     pub fn scene(&mut self, path: &Path) -> Result<Scene, Failure> {
-        let scene = scene::read(path)?;
+        let scene = read_scene(path)?;
         self.input(path);
         if let Some(rows) = scene.rows_file() {
             self.input(rows);
@@ -54,11 +53,11 @@ impl Files {
         self.inputs.extend(id.map(|id| (path.to_owned(), id)));
     }
 
-    /// Opens the output that `option` names.
+    /// Opens the output of `option`.
     ///
     /// # Errors
     ///
-    /// It is an input or in one, it is another output, or it cannot be written.
+    /// If the output is an input, is inside one, is another output, or cannot be written.
     pub fn output(&mut self, option: &str, path: &Path) -> Result<Output, Failure> {
         if path == Path::new(STDOUT) {
             let output = Output::stdout();
@@ -74,24 +73,24 @@ impl Files {
         Ok(output)
     }
 
-    /// Declares the store that `option` names, a folder that is there or not.
+    /// Declares the store of `option`, a folder that need not exist.
     ///
     /// # Errors
     ///
-    /// It is an input or in one, or a file.
+    /// If the store is an input, is inside one, or is a file.
     pub fn store(&mut self, option: &str, path: &Path) -> Result<(), Failure> {
         check_folder(option, path)?;
         self.claim(option, path, FileId::of(path), &FileId::of_folders(path))
     }
 
-    /// Makes the folder that `option` names, and checks that files can be made in it.
+    /// Creates the folder of `option`, and checks that files can be created in it.
     pub fn folder(&self, option: &str, path: &Path) -> Result<(), Failure> {
         check_folder(option, path)?;
         let made = std::fs::create_dir_all(path).and_then(|()| self.temporary.prepare(path));
         made.map_err(impossible(option, path, FOLDER_ADVICE))
     }
 
-    /// Adds an output, unless it or one of its `folders` is an input, or it is another output.
+    /// Adds an output, unless the output or one of its `folders` is an input, or the output is another output.
     fn claim(
         &mut self,
         option: &str,
@@ -110,26 +109,36 @@ impl Files {
                 _ => continue,
             };
             let input = input.display();
-            return Err(Failure::Input(format!(
-                "{own}: {is} the input {input}; name another file"
-            )));
+            let why = format!("{own}: {is} the input {input}; name another file");
+            return Err(Failure::Input(why));
         }
         let is_same = |(_, place, other): &&(String, PathBuf, FileId)| {
             *other == id && FileId::is_confirmed(place, path)
         };
         if let Some((other, ..)) = self.outputs.iter().find(is_same) {
-            return Err(Failure::Input(format!(
-                "{other} and {own}: must be two files"
-            )));
+            let why = format!("{other} and {own}: must be two files");
+            return Err(Failure::Input(why));
         }
         self.outputs.push((own, path.to_owned(), id));
         Ok(())
     }
 }
 
+/// Reads a scene; prints notes about unused columns and warnings about values that look like another unit.
+pub fn read_scene(path: &Path) -> Result<Scene, Failure> {
+    let scene = Scene::read(path)?;
+    if let Some(note) = &scene.note {
+        message(&format!("note: {note}"));
+    }
+    for warning in scene.warnings() {
+        message(&format!("warning: {warning}"));
+    }
+    Ok(scene)
+}
+
 const FOLDER_ADVICE: &str = "give a folder that can be written";
 
-/// Checks that `path`, which `option` names, is a folder or can become one.
+/// Checks that the `path` of `option` is a folder or can become one.
 pub fn check_folder(option: &str, path: &Path) -> Result<(), Failure> {
     match path.ancestors().find(|own| own.exists()) {
         Some(file) if !file.is_dir() => Err(Failure::Input(format!(
@@ -145,20 +154,21 @@ fn impossible(option: &str, path: &Path, advice: &str) -> impl FnOnce(io::Error)
     move |error| Failure::Input(format!("{option} {}: {error}; {advice}", path.display()))
 }
 
-/// Writes all of the file at `path`.
+/// Writes the whole file at `path`.
 pub fn write(mut output: Output, path: &Path, text: &str) -> Result<(), Failure> {
     let written = output.write_all(text.as_bytes());
-    let finished = written.and_then(|()| output.finish());
-    finished.map_err(|cause| unwritten(path, cause))
+    written
+        .and_then(|()| output.finish())
+        .map_err(unwritten(path))
 }
 
-/// The failure to write the file at `path`.
-pub fn unwritten(path: &Path, cause: io::Error) -> Failure {
-    if path == Path::new(STDOUT) {
-        return Failure::Output(cause);
-    }
-    Failure::Write {
-        path: path.to_owned(),
-        cause,
+/// Returns a converter of errors from writing the file at `path`.
+pub fn unwritten(path: &Path) -> impl FnOnce(io::Error) -> Failure {
+    move |cause| {
+        if path == Path::new(STDOUT) {
+            return Failure::Output(cause);
+        }
+        let path = path.to_owned();
+        Failure::Write { path, cause }
     }
 }

@@ -1,9 +1,9 @@
 //! `whiskmap fit`.
 
+use super::arguments::parameter;
 use super::data;
-use super::failure::{Failure, say};
+use super::failure::{Failure, message};
 use super::files::{Files, STDOUT, write};
-use super::parameter::parameter;
 use super::pole::check_single;
 use clap::Args;
 use serde_json::{Map, Value, json};
@@ -14,53 +14,51 @@ use whiskmap::measured::Points;
 use whiskmap::scene::{Parameter, digits};
 use whiskmap::store::Output;
 
-/// Options of `fit`.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
   whiskmap fit scenes/cone.toml --data scenes/cone_points.csv --free tip_radius_um,parabola_per_mm
   whiskmap fit scenes/cone.toml --data scenes/cone_points.csv --free tip_radius_um -o fitted.toml --json fit.json
 
-Least squares of measured less predicted angles, from the scene's values on and within its limits. Columns of the data: \
-side (cb or cf), distance_mm, push_angle_deg or push_chord_deg, and maybe kind (slip-off, pull-off or empty) and sd_deg, \
-the standard deviation of the angle. Without it, standard errors are those of points as exact as their residuals tell.
+Minimizes the squares of measured minus predicted angles, from the values of the scene and within its limits. The columns of \
+the data are side (cb or cf), distance_mm, push_angle_deg or push_chord_deg, and optionally kind (slip-off, pull-off or empty) \
+and sd_deg, the standard deviation of the angle. Without sd_deg, the residuals give the standard deviation.
 
-Parameters that the points do not determine are named; youngs_modulus_gpa is always one of them, because no detachment \
-depends on it. Neither these nor parameters at a limit of the scene have a standard error.
+A warning names parameters that the points do not determine. youngs_modulus_gpa is always one of them, because no detachment \
+depends on it. These parameters and parameters at a limit of the scene have no standard error.
 
-The values are not a fit, the exit code is 1 and -o writes nothing where the RMS is more than 5 degrees, or than a third of \
-the range of the measured angles and 0; with sd_deg, only if chi-square is too large for these deviations, too. A reduced \
-chi-square above 400 is never a fit.")]
-pub struct Options {
-    /// Scene file; - reads it from standard input
+The values are not a fit if the RMS is more than 5 degrees, or more than a third of the range of the measured angles and 0; \
+with sd_deg, only if chi-square is also too large for these deviations. A reduced chi-square above 400 is never a fit. Then \
+the exit code is 1 and -o writes nothing.")]
+pub struct FitArgs {
+    /// Scene file; - is standard input
     scene: PathBuf,
-    /// Measured detachments; - reads them from standard input
+    /// Measured detachments; - is standard input
     #[arg(long, value_name = "FILE")]
     data: PathBuf,
-    /// Parameters to fit, with commas in between
+    /// Parameters to fit, separated by commas
     #[arg(long, value_name = "NAMES", required = true, value_delimiter = ',', value_parser = parameter())]
     free: Vec<Parameter>,
-    /// Scene to write, with the fitted values; - is standard output
+    /// Write the scene with the fitted values to FITTED.toml; - is standard output
     #[arg(short, long, value_name = "FITTED.toml")]
     output: Option<PathBuf>,
-    /// Result to write; - is standard output
+    /// Write the result to FILE, as JSON; - is standard output
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
 }
 
-/// Runs `fit`.
-pub fn run(options: &Options, files: &mut Files) -> Result<(), Failure> {
-    data::check_stdin(&options.scene, &options.data)?;
-    let scene = files.scene(&options.scene)?;
+pub fn run(args: &FitArgs, files: &mut Files) -> Result<(), Failure> {
+    data::check_stdin(&args.scene, &args.data)?;
+    let scene = files.scene(&args.scene)?;
     check_single(&scene, "fit")?;
-    let points = data::read(files, &options.data)?;
+    let points = data::read(files, &args.data)?;
     let mut open = |option, path: &Option<PathBuf>| {
         let output = path.as_deref().map(|path| files.output(option, path));
         output.transpose()
     };
-    let toml = open("--output", &options.output)?.zip(options.output.as_deref());
-    let json = open("--json", &options.json)?.zip(options.json.as_deref());
-    let found = fit(&scene, &points, &options.free).map_err(|why| match why {
+    let toml = open("--output", &args.output)?.zip(args.output.as_deref());
+    let json = open("--json", &args.json)?.zip(args.json.as_deref());
+    let found = fit(&scene, &points, &args.free).map_err(|why| match why {
         Error::Lacking { .. } | Error::Twice(..) | Error::Held { .. } => {
             Failure::Input(format!("--free {why}"))
         }
@@ -78,7 +76,7 @@ pub fn run(options: &Options, files: &mut Files) -> Result<(), Failure> {
     );
     match found.not_a_fit {
         Some(why) if printed.as_ref().err().is_none_or(Failure::is_broken_pipe) => {
-            let unwritten = options.output.as_deref().map(|path| match path {
+            let unwritten = args.output.as_deref().map(|path| match path {
                 path if path == Path::new(STDOUT) => {
                     "; no scene is written to standard output".to_owned()
                 }
@@ -90,11 +88,11 @@ pub fn run(options: &Options, files: &mut Files) -> Result<(), Failure> {
     }
 }
 
-/// An output, its path and its text.
-type Written<'a> = ((Output, &'a Path), String);
+/// Output, its path and its text.
+type WrittenFile<'a> = ((Output, &'a Path), String);
 
-/// Writes the outputs. The table and their names go to standard output unless one of them does.
-fn print(title: &str, fit: &Fit, outputs: Vec<Written>) -> Result<(), Failure> {
+/// Writes the outputs. Prints the table and their names on standard output, unless an output is written there.
+fn print(title: &str, fit: &Fit, outputs: Vec<WrittenFile>) -> Result<(), Failure> {
     let mut paths = outputs.iter().map(|((_, path), _)| *path);
     let is_streamed = paths.any(|path| path == Path::new(STDOUT));
     if !is_streamed {
@@ -110,28 +108,28 @@ fn print(title: &str, fit: &Fit, outputs: Vec<Written>) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Names parameters at a limit and those that the points do not determine, and standard deviations that are too small.
+/// Warns of parameters at a limit, parameters that the points do not determine, and too small standard deviations.
 fn warn(points: &Points, fit: &Fit) {
     for estimate in &fit.estimates {
         let name = estimate.parameter.name();
         if estimate.is_at_limit {
-            say(&format!(
+            message(&format!(
                 "warning: {name}: {} is the last value that the scene accepts, so there is no standard error",
                 digits(estimate.value)
             ));
         } else if estimate.standard_error.is_none() && fit.not_a_fit.is_none() {
-            say(&format!("warning: {name}: not determined by these points"));
+            message(&format!("warning: {name}: not determined by these points"));
         }
     }
     if points.have_deviations && !fit.is_explained() && fit.not_a_fit.is_none() {
         let ratio = (fit.chi_square / fit.degrees_of_freedom.max(1) as f64).sqrt();
-        say(&format!(
+        message(&format!(
             "warning: residuals are {ratio:.1} times as large as sd_deg: standard errors are too small by about that factor"
         ));
     }
 }
 
-/// What stands in the table in place of a standard error.
+/// Returns the text of a missing standard error in the table.
 fn no_error(fit: &Fit, estimate: &Estimate) -> &'static str {
     match fit.not_a_fit {
         Some(_) => "not a fit",
@@ -140,7 +138,7 @@ fn no_error(fit: &Fit, estimate: &Estimate) -> &'static str {
     }
 }
 
-/// Values with all their digits, so that they can be read back.
+/// Prints the table, with all digits of the values.
 fn table(title: &str, fit: &Fit) -> io::Result<()> {
     let mut out = io::stdout().lock();
     writeln!(out, "{title}")?;
@@ -187,7 +185,7 @@ fn table(title: &str, fit: &Fit) -> io::Result<()> {
     Ok(())
 }
 
-/// The fit by the names of its parameters.
+/// Returns the fit as JSON, with parameters by name.
 fn document(fit: &Fit) -> Value {
     let names = fit.estimates.iter().map(|own| own.parameter.name());
     let keyed = |values: Vec<Value>| -> Map<String, Value> {

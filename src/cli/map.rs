@@ -1,16 +1,16 @@
 //! `whiskmap map`.
 
+use super::arguments::whole;
 use super::disk;
-use super::engine::{EngineOptions, bound_deg};
-use super::estimate::Format;
-use super::failure::{Failure, check_resolved, say};
+use super::engine::{EngineArgs, bound_deg};
+use super::estimate::MapFormat;
+use super::failure::{Failure, check_resolved, message};
 use super::files::Files;
-use super::numbers::whole;
-use super::picture::save;
+use super::outputs::save;
 use super::progress::Progress;
-use super::sharded::{self, Shard};
+use super::sharded::{Shard, StoreRun};
 use super::summary::print;
-use super::tolerance::Tolerance;
+use super::tolerance::ToleranceArgs;
 use clap::Args;
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -26,7 +26,6 @@ use whiskmap::render::MapOptions;
 use whiskmap::scene::Scene;
 use whiskmap::store::{Description, MapWriter, StoredMap};
 
-/// Options of `map`.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
@@ -39,57 +38,56 @@ Examples:
   whiskmap map scenes/morphology.toml --format zarr --shard 3/8 --resume
   whiskmap map - < my_whisker.toml
 
-A sweep over more than two axes goes to a Zarr store, NAME.zarr, a folder which any number of runs may fill: each run \
-finishes blocks of whiskers, and what is finished stays.")]
-pub struct Options {
-    /// Scene file; - reads it from standard input
+A sweep over more than two axes needs a Zarr store, the folder NAME.zarr. Any number of runs may fill it, each with blocks of \
+whiskers; finished blocks are kept.")]
+pub struct MapArgs {
+    /// Scene file; - is standard input
     scene: PathBuf,
-    /// Folder for the files; it is made if it is missing
+    /// Folder for the files; created if it does not exist
     #[arg(short, long, value_name = "DIR", default_value = "outputs")]
     output: PathBuf,
     #[command(flatten)]
-    engine: EngineOptions,
-    /// Threads of the CPU [default: all cores]
+    engine: EngineArgs,
+    /// Number of CPU threads [default: all cores]
     #[arg(long, value_name = "N", value_parser = whole(1..=1024))]
     pub threads: Option<u32>,
     #[command(flatten)]
-    tolerance: Tolerance,
-    /// Channels to compute and store, by names with commas between them. With friction, load channels are stored with
-    /// `status` [default: all]
+    tolerance: ToleranceArgs,
+    /// Compute and store only these channels, separated by commas; with friction, channels of states come with `status`
+    /// [default: all]
     #[arg(long, value_name = "LIST", value_parser = Channels::from_str)]
     channels: Option<Channels>,
-    /// What to write
+    /// Format of the map
     #[arg(long, value_enum, default_value = "exr")]
-    format: Format,
-    /// Go on with a store: compute only what it lacks
+    format: MapFormat,
+    /// Resume an interrupted sweep: compute only missing and damaged blocks of the store
     #[arg(long)]
     resume: bool,
-    /// Part of a store to compute, from 0/N to N-1/N, each in a process of its own
+    /// Compute one of N parts of a store, from 0/N to N-1/N
     #[arg(long, value_name = "I/N")]
     shard: Option<Shard>,
     /// Write no picture
     #[arg(long)]
     no_png: bool,
-    /// Start although the disk seems to have too little room
+    /// Start even if the disk seems to have too little space
     #[arg(long)]
     force: bool,
 }
 
-/// Runs `map`.
-pub fn run(options: &Options, files: &mut Files) -> Result<(), Failure> {
-    let scene = files.scene(&options.scene)?;
-    options.check(&scene)?;
+pub fn run(args: &MapArgs, files: &mut Files) -> Result<(), Failure> {
+    let scene = files.scene(&args.scene)?;
+    args.check(&scene)?;
     let mut plan = Plan::new(&scene)?;
-    let accuracy = options.tolerance.choose(&scene, &plan.sides)?;
+    let accuracy = args.tolerance.choose(&scene, &plan.sides)?;
     if let Some(accuracy) = &accuracy {
         plan.method.resolution = accuracy.resolution;
     }
-    // What the steps leave of the tolerance.
-    let left_deg = options.tolerance.degrees().zip(accuracy.as_ref());
+    // The part of the tolerance that the steps leave to the engine.
+    let left_deg = args.tolerance.degrees().zip(accuracy.as_ref());
     let left_deg = left_deg.map(|(tolerance, accuracy)| tolerance - accuracy.error_deg);
-    let channels = options.channels.unwrap_or(Channels::ALL);
+    let channels = args.channels.unwrap_or(Channels::ALL);
     plan.channels = channels.with_marks(scene.has_friction());
-    let (mut engine, why) = options.engine.open(&scene, &plan, left_deg)?;
+    let (mut engine, why) = args.engine.open(&scene, &plan, left_deg)?;
     let solver = whiskmap::engine::EngineDescription::of(engine.as_deref());
     let about = Description {
         scene: &scene,
@@ -98,21 +96,21 @@ pub fn run(options: &Options, files: &mut Files) -> Result<(), Failure> {
         channels: plan.channels,
         arithmetic: ArithmeticClass::detect().name(),
     };
-    files.folder("--output", &options.output)?;
-    if options.format == Format::Zarr {
-        let path = options.output.join(format!("{}.zarr", scene.name));
+    files.folder("--output", &args.output)?;
+    if args.format == MapFormat::Zarr {
+        let path = args.output.join(format!("{}.zarr", scene.name));
         files.store("--output", &path)?;
-        let run = sharded::Run {
-            shard: options.shard,
-            resume: options.resume,
-            force: options.force,
+        let run = StoreRun {
+            shard: args.shard,
+            resume: args.resume,
+            force: args.force,
             engine: engine.as_mut().map(|engine| &mut **engine as _),
             why,
         };
         return run.fill(&path, &scene, plan, &about, files.temporary());
     }
-    let file = options.output.join(format!("{}.exr", scene.name));
-    let picture = (!options.no_png).then(|| file.with_extension("png"));
+    let file = args.output.join(format!("{}.exr", scene.name));
+    let picture = (!args.no_png).then(|| file.with_extension("png"));
     let is_regular = files.output("--output", &file)?.is_regular();
     if let Some(picture) = &picture {
         files.output("--output", picture)?;
@@ -123,10 +121,10 @@ pub fn run(options: &Options, files: &mut Files) -> Result<(), Failure> {
             )));
         }
     }
-    if !options.force {
-        disk::check(&options.output, Format::Exr, &scene, &plan, plan.cells)?;
+    if !args.force {
+        disk::check(&args.output, MapFormat::Exr, &scene, &plan, plan.cells)?;
     }
-    say(&format!(
+    message(&format!(
         "engine: {} on {} ({why})",
         solver.engine, solver.adapter
     ));
@@ -142,7 +140,9 @@ pub fn run(options: &Options, files: &mut Files) -> Result<(), Failure> {
     let summary = result?;
     writer.finish(summary.engine_cells, summary.audit)?;
     if let Some(failure) = &summary.engine_failure {
-        say(&format!("warning: {failure}; the CPU went on in its stead"));
+        message(&format!(
+            "warning: {failure}; the CPU solved the remaining cells"
+        ));
     }
     if let Some(picture) = &picture {
         let regimes = render::map(&StoredMap::open(&file)?.into(), &MapOptions::default())?;
@@ -154,10 +154,20 @@ pub fn run(options: &Options, files: &mut Files) -> Result<(), Failure> {
     check_resolved(summary.unresolved(), summary.cells(), "cells", see)
 }
 
-impl Options {
-    /// Finds out whether the format can do what is asked of it.
+impl MapArgs {
+    /// Text that an interrupt adds to its message.
+    pub fn advice(&self) -> &'static str {
+        match self.format {
+            MapFormat::Exr => "",
+            MapFormat::Zarr => {
+                "; finished blocks are kept: resume with the same command and --resume"
+            }
+        }
+    }
+
+    /// Returns an error if the format does not support the options.
     fn check(&self, scene: &Scene) -> Result<(), Failure> {
-        if self.format == Format::Zarr {
+        if self.format == MapFormat::Zarr {
             return Ok(());
         }
         let refuse = |why: String| Err(Failure::Input(format!("{why}; give --format zarr")));
@@ -178,7 +188,7 @@ impl Options {
         let regimes = |channels: Channels| channels.contains("regime");
         if !self.no_png && !self.channels.is_none_or(regimes) {
             return Err(Failure::Input(
-                "--channels: must have regime, of which the picture is drawn; or give --no-png"
+                "--channels: must have regime, which the picture shows; or give --no-png"
                     .to_owned(),
             ));
         }
@@ -186,7 +196,7 @@ impl Options {
     }
 }
 
-/// What the file says of its accuracy: what the CPU leaves, or an engine, and with a tolerance what both leave of the push angle.
+/// Returns the attribute `tolerances` of the file: residuals of the CPU or the engine, and the estimated push-angle error.
 fn tolerances(
     scene: &Scene,
     accuracy: Option<Accuracy>,

@@ -1,11 +1,11 @@
-//! The command line: the only place that prints, and that knows exit codes.
+//! The command line: the only module that prints and knows exit codes.
 //!
-//! Answers go to standard output, everything said along the way to standard error. Exit code 2 is for input
-//! that cannot be right, 1 for what fails while running, 128 and the signal's number for an interrupt.
+//! Results go to standard output, messages to standard error. Exit code 2 is for invalid input, 1 for failures while running,
+//! 128 + the signal's number for interrupts.
 
+mod arguments;
 mod bench;
 mod branch;
-mod columns;
 mod curve;
 mod data;
 mod design;
@@ -18,26 +18,20 @@ mod failure;
 mod files;
 mod fit;
 mod map;
-mod numbers;
 mod outputs;
-mod parameter;
-mod picture;
 mod plan;
 mod pole;
 mod progress;
 mod render;
 mod reproduce;
-mod scene;
 mod selection;
 mod shape;
 mod sharded;
-mod side;
 mod signals;
 mod status;
 mod stdout;
 mod submit;
 mod summary;
-mod theory;
 mod tolerance;
 mod uncertainty;
 mod verify;
@@ -49,7 +43,7 @@ use std::io::{self, Write};
 use std::process::ExitCode;
 use whiskmap::store::TemporaryFiles;
 
-/// Where does a whisker pushed against a pole stay in contact, where does it slip off, where is it pulled off?
+/// Compute where a whisker pushed against a pole stays in contact, slips off or is pulled off
 #[derive(Debug, Parser)]
 #[command(version, arg_required_else_help = true, after_help = EXAMPLES)]
 struct Arguments {
@@ -60,65 +54,65 @@ struct Arguments {
 const EXAMPLES: &str = "\
 Examples:
   whiskmap map scenes/cone.toml                    regime map as outputs/cone.exr and outputs/cone.png
-  whiskmap map scenes/cone.toml --engine gpu       the same, shot by the GPU
-  whiskmap map scenes/morphology.toml --format zarr --shard 0/8   an eighth of a store that many processes fill
-  whiskmap status outputs/morphology.zarr          what it has, and what it lacks
-  whiskmap submit scenes/morphology.toml --shards 8 > sweep.sbatch     the same as a job array for Slurm
+  whiskmap map scenes/cone.toml --engine gpu       the same, computed on the GPU
+  whiskmap map scenes/morphology.toml --format zarr --shard 0/8   one eighth of a Zarr store
+  whiskmap status outputs/morphology.zarr          finished and missing blocks of the store
+  whiskmap submit scenes/morphology.toml --shards 8 > sweep.sbatch     job array for Slurm that fills the store
   whiskmap extract outputs/morphology.zarr --at taper=0.5 -o slice.csv
-  whiskmap plan scenes/cone.toml                   what that would take, without doing it
+  whiskmap plan scenes/cone.toml                   cost of a map: effects, memory, seconds, bytes
   whiskmap render outputs/cone.exr --channel force_un
-  whiskmap curve scenes/cone.toml --plot curve.png where the whisker detaches, distance by distance
+  whiskmap curve scenes/cone.toml --plot curve.png detachment curve
   whiskmap curve scenes/cone.toml --data scenes/cone_points.csv --plot points.svg
   whiskmap fit scenes/cone.toml --data scenes/cone_points.csv --free tip_radius_um
-  whiskmap branch scenes/cone.toml --distance 15.66 stable and unstable states in front of one pole
+  whiskmap branch scenes/cone.toml --distance 15.66 stable and unstable states at one pole
   whiskmap shape scenes/cone.toml --distance 15.66 --push-angle 10 --plot shape.svg
-  whiskmap curve scenes/uncertain.toml --samples 500 --plot bands.png   with the uncertainty of its numbers
-  whiskmap design scenes/robot.toml --distance 60 --slip-off 30deg --for taper   the taper that slips off there
-  whiskmap reproduce                               the theory of the paper's Figs. 1 to 5
-  whiskmap verify                                  every number that is known otherwise
-  whiskmap bench scenes/cone.toml                  what accuracy costs in time, engine by engine
-  whiskmap devices                                 GPU adapters, by number and name";
+  whiskmap curve scenes/uncertain.toml --samples 500 --plot bands.png   detachment curve with its uncertainty
+  whiskmap design scenes/robot.toml --distance 60 --slip-off 30deg --for taper   taper that slips off at 30 degrees
+  whiskmap reproduce                               figures 1 to 5 of the paper
+  whiskmap verify                                  comparison with independently verified values
+  whiskmap bench scenes/cone.toml                  error against time for each engine
+  whiskmap devices                                 GPU adapters, with number and name";
 
 #[derive(Debug, Subcommand)]
 enum Command {
-    /// Compute the regime map of a scene, as EXR and PNG
-    Map(map::Options),
-    /// Say what a map of a scene would take: effects, cells, memory, seconds
-    Plan(plan::Options),
-    /// Take a part of a map or a store, as a table, an array or a map
-    Extract(extract::Options),
-    /// Say what a store has, and what it lacks
-    Status(status::Options),
+    /// Compute the regime map of a scene, as EXR and PNG or as a Zarr store
+    Map(map::MapArgs),
+    /// Estimate the cost of a map: effects, cells, memory, seconds, bytes
+    Plan(plan::PlanArgs),
+    /// Extract a part of a map or a store, as a table, an array, a map or a store
+    Extract(extract::ExtractArgs),
+    /// List finished, missing and damaged blocks of a store
+    Status(status::StatusArgs),
     /// Write a job array for Slurm that fills a store
-    Submit(submit::Options),
-    /// Draw a stored map again, its regimes or any channel
-    Render(render::Options),
+    Submit(submit::SubmitArgs),
+    /// Draw a stored map: its regimes or any channel
+    Render(render::RenderArgs),
     /// Compute the exact detachment curve of a scene, as CSV, PNG or SVG
-    Curve(curve::Options),
+    Curve(curve::CurveArgs),
     /// Fit parameters of a scene to measured detachments
-    Fit(fit::Options),
-    /// Follow the solution branch in front of one pole, through the fold and beyond
-    Branch(branch::Options),
+    Fit(fit::FitArgs),
+    /// Compute the solution branch at one pole, through the fold and beyond
+    Branch(branch::BranchArgs),
     /// Compute the shape of the whisker in one state
-    Shape(shape::Options),
-    /// Find the values of a number of the scene at which the whisker detaches at a given push angle
-    Design(design::Options),
+    Shape(shape::ShapeArgs),
+    /// Find the values of a parameter at which the whisker detaches at a given push angle
+    Design(design::DesignArgs),
     /// Draw the theory of the paper's Figs. 1 to 5, with a table for each panel
-    Reproduce(reproduce::Options),
-    /// Compare with every number that is published, exact, or from an independent solver
+    Reproduce(reproduce::ReproduceArgs),
+    /// Compare with published, exact and independently computed values
     Verify,
-    /// Measure what accuracy costs in time on every engine of this machine
-    Bench(bench::Options),
+    /// Measure error against time on every engine of this machine
+    Bench(bench::BenchArgs),
     /// List the GPU adapters
     Devices,
 }
 
-/// Runs the command that the process was called with.
+/// Parses the arguments, runs the command and returns the exit code.
 pub fn main() -> ExitCode {
     let result = match Arguments::try_parse() {
         Ok(arguments) => stdout::check()
             .map_err(Failure::Output)
-            .and_then(|()| start(&arguments)),
+            .and_then(|()| start(&arguments.command)),
         Err(wrong) if wrong.use_stderr() => wrong.exit(),
         Err(help) => stdout::check()
             .and_then(|()| help.print())
@@ -130,16 +124,19 @@ pub fn main() -> ExitCode {
     }
 }
 
-/// Installs handlers and makes threads, then runs the command.
-fn start(arguments: &Arguments) -> Result<(), Failure> {
+/// Stack of a thread in bytes, as large as that of a main thread: GPU drivers compile on it.
+const STACK: usize = 8 << 20;
+
+/// Installs handlers, starts the threads and runs `command` on one of them.
+fn start(command: &Command) -> Result<(), Failure> {
     failure::keep_expected_panics_silent();
-    let temporary = TemporaryFiles::default();
-    signals::handle(temporary.clone());
-    let threads = match &arguments.command {
-        Command::Map(options) => options.threads,
-        _ => None,
+    let (threads, advice) = match command {
+        Command::Map(args) => (args.threads, args.advice()),
+        _ => (None, ""),
     };
-    // All of a command runs on a thread of the pool: from outside, every piece of parallel work would wake one up first.
+    let temporary = TemporaryFiles::default();
+    signals::handle(temporary.clone(), advice);
+    // The command runs on a thread of the pool: from outside, every parallel call would first wake up a thread.
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(threads.unwrap_or_default() as usize)
         .stack_size(STACK)
@@ -151,28 +148,25 @@ fn start(arguments: &Arguments) -> Result<(), Failure> {
         })
     })?;
     let mut files = Files::new(temporary);
-    pool.install(|| run(&arguments.command, &mut files))
+    pool.install(|| run(command, &mut files))
 }
-
-/// Stack of a thread, that of a main thread: drivers of GPUs compile on it.
-const STACK: usize = 8 << 20;
 
 fn run(command: &Command, files: &mut Files) -> Result<(), Failure> {
     match command {
-        Command::Map(options) => map::run(options, files),
-        Command::Plan(options) => plan::run(options),
-        Command::Extract(options) => extract::run(options, files),
-        Command::Status(options) => status::run(options, files.temporary()),
-        Command::Submit(options) => submit::run(options),
-        Command::Render(options) => render::run(options, files),
-        Command::Curve(options) => curve::run(options, files),
-        Command::Fit(options) => fit::run(options, files),
-        Command::Branch(options) => branch::run(options, files),
-        Command::Shape(options) => shape::run(options, files),
-        Command::Design(options) => design::run(options, files),
-        Command::Reproduce(options) => reproduce::run(options, files),
+        Command::Map(args) => map::run(args, files),
+        Command::Plan(args) => plan::run(args),
+        Command::Extract(args) => extract::run(args, files),
+        Command::Status(args) => status::run(args, files.temporary()),
+        Command::Submit(args) => submit::run(args),
+        Command::Render(args) => render::run(args, files),
+        Command::Curve(args) => curve::run(args, files),
+        Command::Fit(args) => fit::run(args, files),
+        Command::Branch(args) => branch::run(args, files),
+        Command::Shape(args) => shape::run(args, files),
+        Command::Design(args) => design::run(args, files),
+        Command::Reproduce(args) => reproduce::run(args, files),
         Command::Verify => verify::run(),
-        Command::Bench(options) => bench::run(options, files),
+        Command::Bench(args) => bench::run(args, files),
         Command::Devices => devices::run(),
     }
 }

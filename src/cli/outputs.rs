@@ -1,76 +1,71 @@
-//! Where the tables and plots of a command go.
+//! `--csv` and `--plot`, and saving of pictures.
 
-use super::failure::Failure;
+use super::failure::{Failure, message};
 use super::files::{Files, STDOUT, unwritten};
-use super::picture::save;
 use clap::Args;
 use serde::Serialize;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
-use whiskmap::render::{Chart, Format, Plot};
+use whiskmap::render::{Chart, Format, Picture, Plot};
 use whiskmap::store::{Output, Table, TemporaryFiles};
 
-/// `--csv` and `--plot`.
 #[derive(Debug, Args)]
-pub struct Outputs {
-    /// Table to write; - is standard output [default: - unless there is a plot]
+pub struct OutputArgs {
+    /// Write the table to FILE; - is standard output [default: - without --plot]
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
-    /// Picture to write, PNG or SVG by its ending
+    /// Write a picture to FILE; the ending selects PNG or SVG
     #[arg(long, value_name = "FILE")]
     plot: Option<PathBuf>,
 }
 
-/// The outputs of a run, found to be possible before any work.
-pub struct Opened {
+/// Open table and plot of a run.
+pub struct OpenOutputs {
     table: Option<(Table, PathBuf)>,
-    picture: Option<PlotFile>,
-    /// Regular files, to be named when they are there.
+    plot: Option<PlotFile>,
+    /// Regular files, whose names are printed at the end.
     files: Vec<PathBuf>,
 }
 
-impl Outputs {
-    /// Whether a picture is wanted.
+impl OutputArgs {
     pub fn has_plot(&self) -> bool {
         self.plot.is_some()
     }
 
-    /// Opens the table, and finds out whether the picture can be made.
-    pub fn open(&self, files: &mut Files) -> Result<Opened, Failure> {
+    /// Opens the table and checks the plot, before any work.
+    pub fn open(&self, files: &mut Files) -> Result<OpenOutputs, Failure> {
         let stdout = self.plot.is_none().then(|| PathBuf::from(STDOUT));
         let csv = self.csv.clone().or(stdout);
-        let (table, picture) = open(files, "--csv", csv.as_deref(), self.plot.as_deref())?;
+        let (table, plot) = open(files, "--csv", csv.as_deref(), self.plot.as_deref())?;
         let is_regular = table.as_ref().is_some_and(Output::is_regular);
-        let files = [
+        let regular_plot = plot.as_ref().filter(|plot| plot.is_regular);
+        let regular = [
             csv.clone().filter(|_| is_regular),
-            picture
-                .as_ref()
-                .filter(|own| own.is_regular)
-                .map(|own| own.path.clone()),
+            regular_plot.map(|plot| plot.path.clone()),
         ];
-        Ok(Opened {
+        Ok(OpenOutputs {
             table: table.map(Table::new).zip(csv),
-            picture,
-            files: files.into_iter().flatten().collect(),
+            plot,
+            files: regular.into_iter().flatten().collect(),
         })
     }
 }
 
-impl Opened {
+impl OpenOutputs {
     /// Appends rows to the table, if there is one.
     pub fn rows<R: Serialize>(&mut self, rows: impl IntoIterator<Item = R>) -> Result<(), Failure> {
         self.table.as_mut().map_or(Ok(()), |(table, path)| {
-            table.rows(rows).map_err(|cause| unwritten(path, cause))
+            table.rows(rows).map_err(unwritten(path))
         })
     }
 
-    /// Finishes the table, draws the plot below its title, and names the files.
+    /// Finishes the table, draws the plot below its title, and prints the names of the files.
     pub fn finish(self, title: String, plot: impl FnOnce() -> Plot) -> Result<(), Failure> {
         if let Some((table, path)) = self.table {
-            table.finish().map_err(|cause| unwritten(&path, cause))?;
+            table.finish().map_err(unwritten(&path))?;
         }
-        if let Some(picture) = self.picture {
-            picture.save(title, plot())?;
+        if let Some(file) = self.plot {
+            file.save(title, plot())?;
         }
         let mut out = io::stdout().lock();
         for file in self.files {
@@ -80,7 +75,7 @@ impl Opened {
     }
 }
 
-/// `--plot`: a picture that can be made.
+/// File of `--plot`, which can be written.
 pub struct PlotFile {
     path: PathBuf,
     format: Format,
@@ -89,7 +84,7 @@ pub struct PlotFile {
 }
 
 impl PlotFile {
-    /// Draws and writes it: one plot below its title.
+    /// Draws and writes one plot below its title.
     pub fn save(&self, title: String, plot: Plot) -> Result<(), Failure> {
         let chart = Chart {
             title,
@@ -101,7 +96,7 @@ impl PlotFile {
     }
 }
 
-/// Opens the file of `option` and finds out whether the picture can be made.
+/// Opens the file of `option`, and checks that the plot can be written.
 pub fn open(
     files: &mut Files,
     option: &str,
@@ -114,13 +109,42 @@ pub fn open(
     };
     let format = plot.map(format).transpose()?;
     let output = data.map(|path| files.output(option, path)).transpose()?;
-    let place = plot.map(|path| files.output("--plot", path)).transpose()?;
-    let picture = plot.zip(format).zip(place);
-    let picture = picture.map(|((path, format), place)| PlotFile {
+    let target = plot.map(|path| files.output("--plot", path)).transpose()?;
+    let plot = plot.zip(format).zip(target);
+    let plot = plot.map(|((path, format), target)| PlotFile {
         path: path.to_owned(),
         format,
-        is_regular: place.is_regular(),
+        is_regular: target.is_regular(),
         temporary: files.temporary().clone(),
     });
-    Ok((output, picture))
+    Ok((output, plot))
+}
+
+/// Saves a picture; warns if a PNG lacks characters.
+pub fn save(
+    picture: &Picture,
+    path: &Path,
+    format: Format,
+    temporary: &TemporaryFiles,
+) -> Result<(), Failure> {
+    if format == Format::Png {
+        warn_of_boxes(picture);
+    }
+    let bytes = picture.encode(format)?;
+    let output = Output::create(path, temporary);
+    let written = output.and_then(|mut output| {
+        output.write_all(&bytes)?;
+        output.finish()
+    });
+    written.map_err(unwritten(path))
+}
+
+/// Prints the characters of a picture that a PNG shows as boxes.
+pub fn warn_of_boxes(picture: &Picture) {
+    let missing: String = picture.missing_glyphs().into_iter().collect();
+    if !missing.is_empty() {
+        message(&format!(
+            "warning: the built-in font lacks \u{201c}{missing}\u{201d}: the PNG shows boxes; an SVG has the text itself"
+        ));
+    }
 }

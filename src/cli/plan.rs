@@ -1,8 +1,8 @@
 //! `whiskmap plan`.
 
-use super::estimate::{Estimate, Files, Format, estimate, files};
+use super::estimate::{FileCost, MapCost, MapFormat, estimate, files};
 use super::failure::Failure;
-use super::scene;
+use super::files::read_scene;
 use clap::Args;
 use indicatif::DecimalBytes;
 use std::io::Write;
@@ -11,40 +11,40 @@ use whiskmap::engine::on_gpu;
 use whiskmap::plan::{Cost, Plan, ROD_STATES, effects};
 use whiskmap::scene::Scene;
 
-/// Options of `plan`.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
   whiskmap plan scenes/cone.toml
   whiskmap plan - < my_whisker.toml
 
-Sets of effects with kernels of their own cost work at every step of the integration. The others are free: pole \
-radius and friction only change where a trajectory starts, and projection is a faster taper and a steeper modulus gradient. The pole touches the \
-whisker's centre line: the whisker's own thickness does not add to the pole's radius. A GPU divides an engine \
-call into submissions, as many as its speed asks for. Trajectories are those of the cells. They, the seconds and the bytes are \
-scaled up from samples of at most 128 x 128 cells (for the bytes, some 2^18 in all) and two values per sweep axis, fewer where these \
-would take more than some seconds, computed and packed on this machine's CPU and thrown away; nothing is written and no GPU is \
-opened. Seconds are the CPU's over the threads: where these wait, a map takes longer. Files come with the seconds that packing them adds; the picture of an EXR file and the disk's own speed are not in them. \
-A store keeps the packed panels of the block that it is at, too: at most 2 million cells.")]
-pub struct Options {
-    /// Scene file; - reads it from standard input
+Effects with their own kernel add work to every integration step. The others are free: pole radius and friction only change \
+the start of a trajectory, and projection is a faster taper and a steeper modulus gradient. The pole touches the whisker's \
+centre line: the whisker's thickness does not add to the pole's radius. A GPU divides an engine call into submissions \
+according to its speed.
+
+Trajectories of cells, seconds and bytes are scaled up from samples: at most 128 x 128 cells (for the bytes, about 2^18 in \
+all) and two values per sweep axis, fewer if these would take more than some seconds. They are computed and packed on this \
+machine's CPU and discarded. Nothing is written and no GPU is opened. Seconds are wall seconds on all threads. The seconds \
+of a file are the additional time for packing, without its picture and without the disk. A store also keeps the packed \
+panels of its current block: at most 2 million cells.")]
+pub struct PlanArgs {
+    /// Scene file; - is standard input
     scene: PathBuf,
 }
 
-/// Seconds that the samples may take.
+/// Seconds for the samples.
 const SAMPLE_SECONDS: f64 = 2.0;
 
-/// Runs `plan`.
-pub fn run(options: &Options) -> Result<(), Failure> {
-    let scene = scene::read(&options.scene)?;
+pub fn run(args: &PlanArgs) -> Result<(), Failure> {
+    let scene = read_scene(&args.scene)?;
     let plan = Plan::new(&scene)?;
     let estimate = estimate(&scene, &plan, SAMPLE_SECONDS)?;
-    let files = files(&scene, &plan, &Format::of(&scene))?;
+    let files = files(&scene, &plan, &MapFormat::of(&scene))?;
     print(&scene, &plan, &estimate, &files)?;
     Ok(())
 }
 
-fn print(scene: &Scene, plan: &Plan, estimate: &Estimate, files: &[Files]) -> std::io::Result<()> {
+fn print(scene: &Scene, plan: &Plan, cost: &MapCost, files: &[FileCost]) -> std::io::Result<()> {
     let mut out = std::io::stdout().lock();
     writeln!(out, "{}\n", scene.title)?;
     writeln!(out, "{:16}  {:3}  {:12}  why", "effect", "", "cost when on")?;
@@ -76,7 +76,7 @@ fn print(scene: &Scene, plan: &Plan, estimate: &Estimate, files: &[Files]) -> st
         counted(distances, "distance"),
         counted(plan.whiskers, "whisker")
     )?;
-    let steps = estimate.steps_per_cell;
+    let steps = cost.steps_per_cell;
     writeln!(
         out,
         "trajectories  about {:.0} at most: {steps:.2} Newton steps a cell and 1 to confirm",
@@ -102,13 +102,13 @@ fn print(scene: &Scene, plan: &Plan, estimate: &Estimate, files: &[Files]) -> st
     writeln!(
         out,
         "time          about {} s on {} of the CPU engine, without the files",
-        two_digits(estimate.seconds),
+        two_digits(cost.seconds),
         counted(rayon::current_num_threads(), "thread")
     )?;
     for own in files {
         let name = match own.format {
-            Format::Exr => "EXR file",
-            Format::Zarr => "Zarr store",
+            MapFormat::Exr => "EXR file",
+            MapFormat::Zarr => "Zarr store",
         };
         let (bytes, seconds) = (DecimalBytes(own.bytes as u64), two_digits(own.seconds));
         writeln!(out, "{name:12}  about {bytes}, {seconds} s more")?;
@@ -121,7 +121,7 @@ fn counted(count: usize, what: &str) -> String {
     format!("{count} {what}{ending}")
 }
 
-/// A positive number to two digits, at most four of them behind the point.
+/// Formats a positive number with two digits, at most four of them after the point.
 fn two_digits(x: f64) -> String {
     let digits = (1.0 - x.log10().floor()).clamp(0.0, 4.0);
     format!("{x:.*}", digits as usize)

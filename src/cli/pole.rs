@@ -1,14 +1,14 @@
-//! One whisker in front of a pole.
+//! One whisker, and the position of the pole.
 
+use super::arguments::length;
 use super::failure::Failure;
 use super::files::Files;
-use super::numbers::length;
 use clap::Args;
 use std::path::{Path, PathBuf};
 use whiskmap::scene::{Scene, Whisker, digits};
 use whiskmap::trace::NoState;
 
-/// Refuses scenes of several whiskers for `command`.
+/// Returns an error if the scene has several whiskers, for `command`.
 pub fn check_single(scene: &Scene, command: &str) -> Result<(), Failure> {
     let whiskers = scene.whisker_count();
     if whiskers == 1 {
@@ -18,27 +18,25 @@ pub fn check_single(scene: &Scene, command: &str) -> Result<(), Failure> {
     let key = axes.find(|axis| axis.values.len() > 1);
     let key = key.map_or("", |axis| axis.parameter.axis());
     Err(Failure::Input(format!(
-        "grid.{key}: the scene sweeps {whiskers} whiskers; {command} looks at one, so give the axis one value or leave it out"
+        "grid.{key}: the scene sweeps {whiskers} whiskers, but {command} needs one; give the axis one value or omit it"
     )))
 }
 
-/// The scene, and where the pole stands.
 #[derive(Debug, Args)]
-pub struct Pole {
-    /// Scene file; - reads it from standard input
+pub struct PoleArgs {
+    /// Scene file; - is standard input
     pub scene: PathBuf,
     /// Distance from the base to the contact at first touch, in mm or with a unit, such as 1.5cm
     #[arg(long, value_name = "LENGTH", allow_hyphen_values = true, value_parser = length)]
     pub distance: f64,
 }
 
-/// The scene, and where poles stand, one at a time.
 #[derive(Debug, Args)]
-pub struct Poles {
-    /// Scene file; - reads it from standard input
+pub struct PolesArgs {
+    /// Scene file; - is standard input
     pub scene: PathBuf,
-    /// Distance from the base to the contact at first touch, in mm or with a unit, such as 1.5cm; several with commas, or by
-    /// several --distance
+    /// Distance from the base to the contact at first touch, in mm or with a unit, such as 1.5cm; several are separated by
+    /// commas, or given by several --distance
     #[arg(
         long,
         value_name = "LENGTH",
@@ -75,13 +73,13 @@ pub fn read(
     Ok((scene, whisker))
 }
 
-/// The title of a chart of the scene, with poles at these distances.
+/// Title of a chart of the scene, with poles at these distances.
 pub fn title(scene: &Scene, distances_mm: &[f64]) -> String {
     let distances: Vec<String> = distances_mm.iter().map(f64::to_string).collect();
     format!("{}, touched at {} mm", scene.title, distances.join(", "))
 }
 
-/// A state that does not exist was asked for; a continuation that got lost is no fault of the input.
+/// Converts a missing state to a failure: a failed continuation is not invalid input.
 pub fn refuse(distance_mm: f64, why: NoState) -> Failure {
     match why {
         NoState::Lost { .. } => Failure::State(why),

@@ -1,45 +1,42 @@
-//! Progress on standard error: a bar on a terminal, elsewhere a line now and then.
+//! Progress on standard error: a bar on a terminal, elsewhere a line every 30 seconds.
 
-use super::failure::say;
+use super::failure::message;
 use indicatif::{HumanDuration, ProgressBar, ProgressState, ProgressStyle};
 use std::fmt::Write;
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// Progress over some things, such as cells, by any number of threads.
+/// Progress of a count of things, such as cells; any number of threads may advance it.
 pub struct Progress {
     bar: ProgressBar,
-    lines: Mutex<Lines>,
+    lines: Mutex<ProgressLines>,
     start: Instant,
 }
 
 impl Progress {
-    /// Over so many `things`.
     pub fn over(count: usize, things: &'static str) -> Self {
         Self {
             bar: bar(count, things),
-            lines: Mutex::new(Lines::over(count as u64, things)),
+            lines: Mutex::new(ProgressLines::over(count as u64, things)),
             start: Instant::now(),
         }
     }
 
-    /// So many more are done.
     pub fn inc(&self, more: usize) {
         self.bar.inc(more as u64);
         if self.bar.is_hidden() {
             let mut lines = self.lines.lock().unwrap_or_else(PoisonError::into_inner);
             let line = lines.due(self.bar.position(), self.start.elapsed());
-            line.iter().for_each(|line| say(line));
+            line.iter().for_each(|line| message(line));
         }
     }
 
-    /// Removes the bar.
     pub fn finish(&self) {
         self.bar.finish_and_clear();
     }
 }
 
-/// A bar with rate and time left; hidden when standard error is not a terminal.
+/// Creates a bar with rate and time left; it is hidden if standard error is not a terminal.
 fn bar(count: usize, things: &str) -> ProgressBar {
     let rate = |state: &ProgressState, out: &mut dyn Write| {
         let _ = write!(out, "{:.0}", state.per_sec());
@@ -55,18 +52,18 @@ fn bar(count: usize, things: &str) -> ProgressBar {
     bar
 }
 
-/// From one line to the next.
+/// Time from one line to the next.
 const INTERVAL: Duration = Duration::from_secs(30);
 
-/// Where there is no terminal: what to tell, and when.
-struct Lines {
+/// Progress lines for a standard error that is not a terminal.
+struct ProgressLines {
     count: u64,
     things: &'static str,
-    /// When the next line is due, since the start.
+    /// Time of the next line, since the start.
     next: Duration,
 }
 
-impl Lines {
+impl ProgressLines {
     const fn over(count: u64, things: &'static str) -> Self {
         Self {
             count,
@@ -75,7 +72,7 @@ impl Lines {
         }
     }
 
-    /// The line, if one is due, when so many are done at `time` since the start.
+    /// Returns the line that is due at `time` since the start, if any, when `done` are done.
     fn due(&mut self, done: u64, time: Duration) -> Option<String> {
         if time < self.next || done == 0 {
             return None;
@@ -98,8 +95,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_line_every_half_a_minute() {
-        let mut lines = Lines::over(1000, "cells");
+    fn a_line_appears_every_half_minute() {
+        let mut lines = ProgressLines::over(1000, "cells");
         let mut due = |done, seconds| lines.due(done, Duration::from_secs(seconds));
         assert_eq!(due(10, 29), None);
         assert_eq!(due(0, 30), None);

@@ -1,10 +1,10 @@
 //! `whiskmap render`.
 
+use super::arguments::whole;
 use super::failure::Failure;
 use super::files::{Files, STDOUT};
-use super::numbers::whole;
-use super::picture::{save, warn_of_boxes};
-use super::selection::{Selection, channels, with_marks};
+use super::outputs::{save, warn_of_boxes};
+use super::selection::{SelectionArgs, channels, with_marks};
 use clap::Args;
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
@@ -12,7 +12,6 @@ use whiskmap::input::Quantity;
 use whiskmap::render::{self, Format, MapOptions};
 use whiskmap::store::Slice;
 
-/// Options of `render`.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
@@ -23,23 +22,22 @@ Examples:
   whiskmap render outputs/cone.exr -o - | display
   whiskmap render outputs/sweep.zarr --at pole_radius_mm=0.25 --at friction=0.2
 
-A picture has at most two sweep axes: choose a value of each other one by --at. An SVG has the cells as pixels, and text \
-and lines as such.
+A picture has at most two sweep axes; give a value of each other axis with --at. An SVG contains the cells as pixels, and text \
+and lines as vectors.
 
-The ends of --range are in the unit that the channel's name ends in, or lengths and angles with a unit, such as 5mm,1cm; \
-the colour bar shows them in the unit that suits them.")]
-pub struct Options {
+The ends of --range have the unit in the channel's name, or a given unit, such as 5mm,1cm. The colour bar selects its own unit.")]
+pub struct RenderArgs {
     /// Map or store written by `whiskmap map`
     file: PathBuf,
     #[command(flatten)]
-    selection: Selection,
-    /// Channel to draw with a colour bar; without it the regimes are drawn
+    selection: SelectionArgs,
+    /// Draw this channel with a colour bar [default: the regimes]
     #[arg(long, value_name = "NAME")]
     channel: Option<String>,
-    /// Logarithmic colour scale from the 1st percentile of the values above 0; cells at or below 0 stay blank
+    /// Use a logarithmic colour scale from the 1st percentile of the values above 0; cells at or below 0 stay blank
     #[arg(long, requires = "channel")]
     log: bool,
-    /// Ends of the colour bar; values beyond them take the colours of the ends
+    /// Ends of the colour bar; values beyond them have the colours of the ends
     #[arg(
         long,
         value_name = "A,B",
@@ -50,18 +48,18 @@ pub struct Options {
     /// Width of the picture in pixels, from 300 to 8000 [default: by the map, about 1500]
     #[arg(long, value_name = "PX", value_parser = whole(300..=8000))]
     width: Option<u32>,
-    /// Picture to write, PNG or SVG by its ending; - is PNG on standard output [default: beside the map, by its
-    /// name, those of --at and the channel's]
+    /// Write the picture to FILE; the ending selects PNG or SVG; - is PNG on standard output [default: beside the map, named
+    /// by the map, --at and the channel]
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
 }
 
-/// Two numbers with a comma between them, with the unit of the channel or another one.
+/// Parses two numbers that are separated by a comma, in the unit of `channel` or with a unit.
 fn range(text: &str, channel: &str) -> Result<[f64; 2], Failure> {
     let refuse = |why: &str| Failure::Input(format!("--range {text}: {why}"));
     let ends = text.split_once(',');
     let (low, high) =
-        ends.ok_or_else(|| refuse("must be two numbers with a comma between them, such as 0,100"))?;
+        ends.ok_or_else(|| refuse("must be two numbers, separated by a comma, such as 0,100"))?;
     let end = |end: &str| {
         let number = Quantity::of(channel).parse(end);
         number.map_err(|why| refuse(&format!("{end}: {why}")))
@@ -69,26 +67,25 @@ fn range(text: &str, channel: &str) -> Result<[f64; 2], Failure> {
     Ok([end(low)?, end(high)?])
 }
 
-/// Runs `render`.
-pub fn run(options: &Options, files: &mut Files) -> Result<(), Failure> {
-    let map = options.selection.open(files, &options.file)?;
-    let channel = options.channel.as_deref();
-    if let Some(name) = &options.channel {
+pub fn run(args: &RenderArgs, files: &mut Files) -> Result<(), Failure> {
+    let map = args.selection.open(files, &args.file)?;
+    let channel = args.channel.as_deref();
+    if let Some(name) = &args.channel {
         let drawn = channels(&map, std::slice::from_ref(name))?;
-        with_marks(&options.file, &map, &drawn)?;
+        with_marks(&args.file, &map, &drawn)?;
     }
-    let ends = options.range.as_deref().zip(channel);
+    let ends = args.range.as_deref().zip(channel);
     let range = ends
         .map(|(text, channel)| range(text, channel))
         .transpose()?;
-    let target = target(options, &map, files)?;
+    let target = target(args, &map, files)?;
     let picture = render::map(
         &map,
         &MapOptions {
             channel,
-            log: options.log,
+            log: args.log,
             range,
-            width: options.width,
+            width: args.width,
         },
     )?;
     let mut out = std::io::stdout().lock();
@@ -103,18 +100,18 @@ pub fn run(options: &Options, files: &mut Files) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The file to write and its format, found to be possible; `None` is standard output.
+/// Opens the output, and returns its path and format; `None` is standard output.
 fn target(
-    options: &Options,
+    args: &RenderArgs,
     map: &Slice,
     files: &mut Files,
 ) -> Result<Option<(PathBuf, Format)>, Failure> {
-    let path = options.output.clone().unwrap_or_else(|| {
+    let path = args.output.clone().unwrap_or_else(|| {
         let chosen = map.readable();
         let chosen = chosen.map(|(name, value)| format!("{name}={value}"));
-        let parts = chosen.chain(options.channel.clone());
+        let parts = chosen.chain(args.channel.clone());
         let parts: Vec<String> = parts.chain(["png".to_owned()]).collect();
-        options.file.with_extension(parts.join("."))
+        args.file.with_extension(parts.join("."))
     });
     let refuse = |why: &str| {
         let path = path.display();
@@ -122,7 +119,7 @@ fn target(
     };
     if path == Path::new(STDOUT) {
         return if std::io::stdout().is_terminal() {
-            refuse("standard output is a terminal; send it to a file or a program")
+            refuse("standard output is a terminal; redirect it to a file or a program")
         } else {
             Ok(None)
         };

@@ -3,7 +3,7 @@
 use super::data;
 use super::failure::Failure;
 use super::files::{Files, unwritten};
-use super::picture::save;
+use super::outputs::save;
 use clap::Args;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -13,7 +13,6 @@ use whiskmap::render::Format;
 use whiskmap::scene::Whisker;
 use whiskmap::store::{Output, Table};
 
-/// Options of `reproduce`.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
@@ -22,24 +21,24 @@ Examples:
   whiskmap reproduce --fig5c-right scenes/cone_points.csv
 
 Writes fig1, fig2, fig3, fig4d and fig5c as SVG and PNG, and a CSV for each panel. Solid lines are stable states or \
-whiskers, dashed ones unstable states or cylinders; black is slip-off and blue is pull-off, as in the paper. The push \
-angle is the rotation of the base since first touch.")]
-pub struct Options {
-    /// Folder for the files; it is made if it is missing
+whiskers, dashed lines unstable states or cylinders. Slip-off is black and pull-off is blue, as in the paper. The push angle \
+is the rotation of the base since first touch.")]
+pub struct ReproduceArgs {
+    /// Folder for the files; created if it does not exist
     #[arg(value_name = "DIR", default_value = "outputs")]
     folder: PathBuf,
-    /// Measured detachments for Fig. 4D, drawn as circles: slip-offs open, pull-offs filled; as curve --data reads them
+    /// Add measured detachments to Fig. 4D, in the format of curve --data: slip-offs as open circles, pull-offs as filled ones
     #[arg(long, value_name = "FILE")]
     fig4d: Option<PathBuf>,
-    /// The same for the whisker on the left of Fig. 5C
+    /// Add measured detachments to the left panel of Fig. 5C
     #[arg(long, value_name = "FILE")]
     fig5c_left: Option<PathBuf>,
-    /// The same for the one on the right
+    /// Add measured detachments to the right panel of Fig. 5C
     #[arg(long, value_name = "FILE")]
     fig5c_right: Option<PathBuf>,
 }
 
-impl Options {
+impl ReproduceArgs {
     fn measurements(&self, files: &mut Files) -> Result<Measurements, Failure> {
         Ok(Measurements {
             fig4d: points(files, "--fig4d", self.fig4d.as_deref(), &FIG4_WHISKER)?,
@@ -59,8 +58,8 @@ impl Options {
     }
 }
 
-/// The points of a file, if there is one, all within reach of the resting `whisker`, which reaches farthest in its panel. The
-/// figures show push angles.
+/// Reads the points of a file, if there is one. All must be push angles within reach of the resting `whisker`, the longest of its
+/// panel.
 fn points(
     files: &mut Files,
     option: &str,
@@ -82,10 +81,9 @@ fn points(
     }
 }
 
-/// Runs `reproduce`.
-pub fn run(options: &Options, files: &mut Files) -> Result<(), Failure> {
-    let measured = options.measurements(files)?;
-    let folder = &options.folder;
+pub fn run(args: &ReproduceArgs, files: &mut Files) -> Result<(), Failure> {
+    let measured = args.measurements(files)?;
+    let folder = &args.folder;
     files.folder("DIR", folder)?;
     let figures = paper::figures(&measured).map_err(Failure::State)?;
     let picture = |name: &str, ending| folder.join(name).with_extension(ending);
@@ -111,7 +109,7 @@ pub fn run(options: &Options, files: &mut Files) -> Result<(), Failure> {
                 write(&mut table)?;
                 table.finish()
             });
-            written.map_err(|cause| unwritten(&path, cause))?;
+            written.map_err(unwritten(&path))?;
             writeln!(out, "{}", path.display())?;
         }
     }

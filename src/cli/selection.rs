@@ -1,6 +1,6 @@
-//! `--at` and `--channel`: which part of a map or a store a command takes.
+//! `--at` and `--channel`: the selected part of a map or a store.
 
-use super::failure::{Failure, say};
+use super::failure::{Failure, message};
 use super::files::Files;
 use clap::Args;
 use std::path::Path;
@@ -10,25 +10,24 @@ use whiskmap::map::Channels;
 use whiskmap::scene::digits;
 use whiskmap::store::{At, Slice, Stored};
 
-/// Options that choose a part.
 #[derive(Debug, Args)]
-pub struct Selection {
-    /// Select the nearest value on an axis, with or without a unit, such as distance_mm=1.5cm
+pub struct SelectionArgs {
+    /// Select the nearest value on an axis; the value may have a unit, such as distance_mm=1.5cm
     #[arg(long, value_name = "AXIS=VALUE", value_parser = At::from_str, allow_hyphen_values = true)]
     at: Vec<At>,
-    /// Take the values of --at alone, not the nearest
+    /// Accept only values on the axis in --at, not the nearest
     #[arg(long)]
     exact: bool,
 }
 
-impl Selection {
-    /// Opens the part of `source`, an input, and says which values were taken.
+impl SelectionArgs {
+    /// Opens the selected part of the input `source`, and prints the selected values.
     pub fn open(&self, files: &mut Files, source: &Path) -> Result<Slice, Failure> {
         let stored = Stored::open(source)?;
         files.input(source);
         if let Some(version) = stored.foreign_version()? {
-            say(&format!(
-                "warning: {} was written by whiskmap {version}, not by {}; what it holds may mean something else",
+            message(&format!(
+                "warning: {} was written by whiskmap {version}, not by {}; its channels may have another meaning",
                 source.display(),
                 env!("CARGO_PKG_VERSION")
             ));
@@ -36,13 +35,13 @@ impl Selection {
         let slice = Slice::new(stored, &self.at, self.exact);
         let slice = slice.map_err(|why| Failure::Input(format!("--at {why}")))?;
         for (name, value) in slice.chosen() {
-            say(&format!("{name} = {}", digits(*value)));
+            message(&format!("{name} = {}", digits(*value)));
         }
         Ok(slice)
     }
 }
 
-/// The `channels` of the slice of `source`, and with friction the one that marks their states; warns if it is missing.
+/// Returns `channels` of the slice of `source`, with friction also `status`; warns if the slice has no `status`.
 pub fn with_marks(
     source: &Path,
     slice: &Slice,
@@ -52,9 +51,9 @@ pub fn with_marks(
     let has_friction = chosen.has_state() && slice.has_friction()?;
     let known = slice.channels();
     if has_friction && !known.contains(&"status") {
-        say(&format!(
-            "warning: {} has friction, but no channel status: where the contact slides toward the base or sticks, \
-             contact, force and moment are off, unmarked",
+        message(&format!(
+            "warning: {} has friction, but no channel status: states whose contact slides toward the base or sticks have \
+             inexact contacts, forces and moments, and are not marked",
             source.display()
         ));
     }
@@ -62,16 +61,16 @@ pub fn with_marks(
     Ok(marked.names().filter(|name| known.contains(name)).collect())
 }
 
-/// The channels that were `asked` for, or all.
-pub fn channels(slice: &Slice, asked: &[String]) -> Result<Vec<&'static str>, Failure> {
+/// Returns the `wanted` channels, or all if there are none.
+pub fn channels(slice: &Slice, wanted: &[String]) -> Result<Vec<&'static str>, Failure> {
     let known = slice.channels();
-    if let Some(name) = asked.iter().find(|name| !known.contains(&name.as_str())) {
+    if let Some(name) = wanted.iter().find(|name| !known.contains(&name.as_str())) {
         let hint = did_you_mean(name, known.iter().copied());
         let known = known.join(", ");
         return Err(Failure::Input(format!(
             "--channel {name}: must be one of {known}{hint}"
         )));
     }
-    let is_wanted = |name: &&str| asked.is_empty() || asked.iter().any(|own| own == name);
+    let is_wanted = |name: &&str| wanted.is_empty() || wanted.iter().any(|own| own == name);
     Ok(known.into_iter().filter(is_wanted).collect())
 }

@@ -1,10 +1,10 @@
-//! `whiskmap map --format zarr`: a run fills some blocks of a store.
+//! `whiskmap map --format zarr`: computation of some blocks of a store.
 
-use super::estimate::Format;
-use super::failure::{Failure, check_resolved, say};
+use super::disk;
+use super::estimate::MapFormat;
+use super::failure::{Failure, check_resolved, message};
 use super::progress::Progress;
 use super::summary::print;
-use super::{disk, signals};
 use rayon::prelude::*;
 use std::path::Path;
 use std::str::FromStr;
@@ -13,11 +13,9 @@ use whiskmap::engine::Engine;
 use whiskmap::map::{self, Panel};
 use whiskmap::plan::Plan;
 use whiskmap::scene::Scene;
-use whiskmap::store::{
-    self, BlockState, CheckDepth, Description, PackedPanel, TemporaryFiles, ZarrStore,
-};
+use whiskmap::store::{self, BlockState, CheckDepth, Description, PackedPanel, TemporaryFiles, ZarrStore};
 
-/// The blocks that one of `count` processes computes: every `count`-th.
+/// Blocks of one of `count` processes: every `count`-th block.
 #[derive(Clone, Copy, Debug)]
 pub struct Shard {
     index: usize,
@@ -45,22 +43,22 @@ impl FromStr for Shard {
     }
 }
 
-/// What a run does to a store.
-pub struct Run<'a> {
-    /// The part of it that the run computes; all without it.
+/// Settings of one run that fills a store.
+pub struct StoreRun<'a> {
+    /// Part of the store to compute; `None` for all.
     pub shard: Option<Shard>,
-    /// Whether blocks that are there are left as they are.
+    /// Whether finished blocks are kept.
     pub resume: bool,
-    /// Whether it starts although the disk seems to have too little room.
+    /// Whether the run starts on a disk with too little space.
     pub force: bool,
-    /// What solves cells in place of the refinement.
+    /// Engine that solves cells; `None` for the CPU alone.
     pub engine: Option<&'a mut dyn Engine>,
-    /// Why it was taken.
+    /// Reason for the engine.
     pub why: String,
 }
 
-impl Run<'_> {
-    /// Computes the blocks that are due, and writes each when it is done.
+impl StoreRun<'_> {
+    /// Computes the blocks of this run, and writes each as soon as it is finished.
     pub fn fill(
         self,
         path: &Path,
@@ -82,22 +80,21 @@ impl Run<'_> {
         let whiskers: usize = plan.parts.iter().map(ExactSizeIterator::len).sum();
         if !self.force {
             let folder = path.parent().unwrap_or(path);
-            disk::check(folder, Format::Zarr, scene, &plan, panel * whiskers)?;
+            disk::check(folder, MapFormat::Zarr, scene, &plan, panel * whiskers)?;
         }
         for file in store.begin(temporary)? {
-            say(&format!(
-                "warning: {} was damaged: written again",
+            message(&format!(
+                "warning: {} was damaged: rewritten",
                 file.display()
             ));
         }
-        say(&format!(
+        message(&format!(
             "engine: {} ({}); blocks: {} of {}",
             about.engine.engine,
             self.why,
             blocks.len(),
             store.block_count()
         ));
-        signals::advise("finished blocks stay: go on by the same command with --resume");
 
         let bar = Progress::over(panel * whiskers, "cells");
         let mut due = blocks
@@ -123,7 +120,9 @@ impl Run<'_> {
         bar.finish();
         let summary = result?;
         if let Some(failure) = &summary.engine_failure {
-            say(&format!("warning: {failure}; the CPU went on in its stead"));
+            message(&format!(
+                "warning: {failure}; the CPU solved the remaining cells"
+            ));
         }
         print(
             scene,
@@ -136,8 +135,11 @@ impl Run<'_> {
     }
 }
 
-/// The `blocks` that are missing or damaged, each damaged file with a warning. A file that cannot be read may be whole: it ends
-/// the run.
+/// Returns the missing and damaged ones of `blocks`, and warns of each damaged file.
+///
+/// # Errors
+///
+/// If a file cannot be read, because it may be complete.
 fn unfinished(store: &ZarrStore, blocks: Vec<usize>) -> Result<Vec<usize>, Failure> {
     let states: Vec<BlockState> = blocks
         .par_iter()
@@ -150,7 +152,7 @@ fn unfinished(store: &ZarrStore, blocks: Vec<usize>) -> Result<Vec<usize>, Failu
             BlockState::Missing => {}
             BlockState::Damaged(faults) => {
                 for fault in faults {
-                    say(&format!("warning: {fault}: its block is computed again"));
+                    message(&format!("warning: {fault}: its block is recomputed"));
                 }
             }
             BlockState::Unreadable(faults) => {

@@ -1,20 +1,11 @@
-//! Interrupts: unfinished files are removed, one line says so, and the exit code is 128 and the signal's number.
+//! Interrupts: remove unfinished files, print one line, exit with 128 + the signal's number.
 
-use std::sync::OnceLock;
 use whiskmap::store::TemporaryFiles;
 
-/// What an interrupted command says at last.
-static ADVICE: OnceLock<&str> = OnceLock::new();
-
-/// From now on an interrupt ends with this `advice`.
-pub fn advise(advice: &'static str) {
-    let _ = ADVICE.set(advice);
-}
-
-/// From now on SIGHUP, SIGINT and SIGTERM end the process at once, whatever its threads do. One that is ignored, as `nohup`
-/// has it, stays so.
+/// Ends the process on SIGHUP, SIGINT or SIGTERM, removes the `temporary` files, and prints `advice`. A signal that is ignored, for
+/// example by `nohup`, stays ignored.
 #[cfg(unix)]
-pub fn handle(temporary: TemporaryFiles) {
+pub fn handle(temporary: TemporaryFiles, advice: &'static str) {
     use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
     use signal_hook::{iterator::Signals, low_level};
     use std::io::IsTerminal;
@@ -22,7 +13,7 @@ pub fn handle(temporary: TemporaryFiles) {
     let handled = [SIGHUP, SIGINT, SIGTERM]
         .into_iter()
         .filter(|signal| !is_ignored(*signal));
-    // Without handlers the system's own end the process, and the next run finds what it leaves.
+    // Without handlers, the default action ends the process, and the next run removes its leftovers.
     let Ok(mut signals) = Signals::new(handled) else {
         return;
     };
@@ -31,26 +22,26 @@ pub fn handle(temporary: TemporaryFiles) {
             return;
         };
         temporary.abandon();
-        // A terminal's line may hold a progress bar.
+        // The current line of a terminal may be a progress bar.
         let is_watched = std::io::stderr().is_terminal();
         let start = if is_watched { "\n" } else { "" };
         let name = low_level::signal_name(signal).unwrap_or("a signal");
-        super::failure::say(&format!(
-            "{start}error: interrupted by {name}; unfinished files are removed{}",
-            ADVICE
-                .get()
-                .map_or_else(String::new, |advice| format!("; {advice}"))
+        super::failure::message(&format!(
+            "{start}error: interrupted by {name}; unfinished files are removed{advice}"
         ));
         low_level::exit(128 + signal);
     });
 }
 
-/// Elsewhere the next run finds what an interrupted one leaves.
+/// Does nothing on other systems: the next run removes the leftovers of an interrupted run.
 #[cfg(not(unix))]
-pub fn handle(_: TemporaryFiles) {}
+pub fn handle(_: TemporaryFiles, _: &'static str) {}
 
 #[cfg(unix)]
-#[allow(unsafe_code, reason = "no library tells how a signal is handled now")]
+#[allow(
+    unsafe_code,
+    reason = "no library returns the present action of a signal"
+)]
 fn is_ignored(signal: i32) -> bool {
     // SAFETY: zeros are a valid `sigaction`, and with no new action the call only writes the present one into it.
     unsafe {

@@ -1,6 +1,6 @@
 //! `whiskmap status`.
 
-use super::failure::{Failure, say};
+use super::failure::{Failure, message};
 use clap::Args;
 use rayon::prelude::*;
 use std::io::Write;
@@ -9,7 +9,6 @@ use std::path::PathBuf;
 use whiskmap::classify::Regime;
 use whiskmap::store::{BlockState, CheckDepth, Error, TemporaryFiles, ZarrStore};
 
-/// Options of `status`.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
@@ -17,22 +16,22 @@ Examples:
   whiskmap status outputs/sweep.zarr --verify
   whiskmap status outputs/sweep.zarr --repair
 
-The exit code is 0 only when every block is there and no file is damaged. Without --verify, the length and the index of each \
-file are checked. After --repair, `whiskmap map --resume` computes the removed blocks again.")]
-pub struct Options {
+The exit code is 0 only if every block is finished and no file is damaged. Without --verify, only identity, length and index \
+of each file are checked. After --repair, `whiskmap map --resume` recomputes the removed blocks.")]
+pub struct StatusArgs {
     /// Store written by `whiskmap map --format zarr`
     store: PathBuf,
     /// Decode every file, and compare metadata and coordinates with the scene
     #[arg(long)]
     verify: bool,
-    /// Verify, remove damaged blocks, and write damaged metadata again
+    /// Verify, remove damaged blocks, and rewrite damaged metadata
     #[arg(long)]
     repair: bool,
 }
 
 /// Blocks of a store by their state.
 #[derive(Default)]
-struct Found {
+struct StoreBlocks {
     done: usize,
     missing: Vec<Range<usize>>,
     damaged: Vec<usize>,
@@ -40,10 +39,10 @@ struct Found {
     regimes: [u64; Regime::ALL.len()],
 }
 
-/// Blocks that are checked side by side.
+/// Number of blocks that are checked in parallel.
 const TOGETHER: usize = 4096;
 
-impl Found {
+impl StoreBlocks {
     fn in_store(store: &ZarrStore, depth: CheckDepth) -> Self {
         let mut found = Self::default();
         let all = store.block_count();
@@ -84,43 +83,42 @@ impl Found {
     }
 }
 
-/// Runs `status`.
-pub fn run(options: &Options, temporary: &TemporaryFiles) -> Result<(), Failure> {
-    let store = ZarrStore::open(&options.store)?;
-    let is_thorough = options.verify || options.repair;
+pub fn run(args: &StatusArgs, temporary: &TemporaryFiles) -> Result<(), Failure> {
+    let store = ZarrStore::open(&args.store)?;
+    let is_thorough = args.verify || args.repair;
     let depth = if is_thorough {
         CheckDepth::Values
     } else {
         CheckDepth::Structure
     };
     let metadata = match store.metadata_faults() {
-        // Without --verify, a store of another version is no failure.
+        // Without --verify, a store of another version is not a failure.
         Err(Error::OtherVersion(..)) if !is_thorough => Vec::new(),
         faults => faults?,
     };
-    let found = Found::in_store(&store, depth);
+    let found = StoreBlocks::in_store(&store, depth);
     for fault in metadata.iter().chain(&found.faults) {
-        say(&format!("error: {fault}"));
+        message(&format!("error: {fault}"));
     }
     report(&store, &found)?;
-    if options.repair {
+    if args.repair {
         repair(&store, &found, metadata.len(), temporary)?;
     }
     let missing = found.missing.iter().map(ExactSizeIterator::len).sum();
     let (damaged, metadata) = (found.damaged.len(), metadata.len());
-    let is_sound = missing == 0 && damaged == 0 && (metadata == 0 || options.repair);
+    let is_sound = missing == 0 && damaged == 0 && (metadata == 0 || args.repair);
     if is_sound {
         return Ok(());
     }
     Err(Failure::Incomplete {
-        store: options.store.clone(),
+        store: args.store.clone(),
         missing,
         damaged,
         metadata,
     })
 }
 
-fn report(store: &ZarrStore, found: &Found) -> Result<(), Failure> {
+fn report(store: &ZarrStore, found: &StoreBlocks) -> Result<(), Failure> {
     let panel = store.grid().push_angle_deg.len() * store.grid().distance_mm.len();
     let cells = panel * store.grid().whisker_count();
     let mut out = std::io::stdout().lock();
@@ -150,10 +148,10 @@ fn report(store: &ZarrStore, found: &Found) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Removes what is damaged, so that a run computes it again, and writes `metadata` files again.
+/// Removes damaged blocks, rewrites metadata, and prints the numbers of both.
 fn repair(
     store: &ZarrStore,
-    found: &Found,
+    found: &StoreBlocks,
     metadata: usize,
     temporary: &TemporaryFiles,
 ) -> Result<(), Failure> {
@@ -163,12 +161,12 @@ fn repair(
         removed += usize::from(store.remove_damaged(*block)?);
     }
     let mut out = std::io::stdout().lock();
-    writeln!(out, "metadata written again: {metadata}")?;
+    writeln!(out, "metadata rewritten: {metadata}")?;
     writeln!(out, "blocks removed: {removed}")?;
     Ok(())
 }
 
-/// Runs of numbers, such as `0-3, 7`.
+/// Formats runs of numbers, such as `0-3, 7`.
 fn ranges(runs: &[Range<usize>]) -> String {
     let runs = runs.iter().map(|run| match run.len() {
         1 => run.start.to_string(),

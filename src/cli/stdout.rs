@@ -1,13 +1,11 @@
-//! Detects a standard output that was closed when the process began. Before `main`, Rust's runtime opens `/dev/null` in its
-//! place, and every write to that succeeds.
+//! Detection of a standard output that was closed when the process began.
+//!
+//! Before `main`, Rust's runtime opens `/dev/null` in its place, and every write to that succeeds. Only a constructor runs
+//! earlier, and a constructor has no arguments, so its finding is in a static.
 
 use std::io;
 
-/// Checks that standard output was open when the process began.
-///
-/// # Errors
-///
-/// It was closed, so nothing that a command prints would be read.
+/// Returns an error if standard output was closed when the process began.
 #[cfg(unix)]
 pub fn check() -> io::Result<()> {
     if WAS_CLOSED.load(Ordering::Relaxed) {
@@ -16,7 +14,7 @@ pub fn check() -> io::Result<()> {
     Ok(())
 }
 
-/// Elsewhere a closed standard output is not noticed.
+/// Returns no error on other systems, which cannot detect a closed standard output.
 #[cfg(not(unix))]
 pub fn check() -> io::Result<()> {
     Ok(())
@@ -25,14 +23,15 @@ pub fn check() -> io::Result<()> {
 #[cfg(unix)]
 use std::sync::atomic::{AtomicBool, Ordering};
 
+/// Written once by the constructor, read by [`check`] alone.
 #[cfg(unix)]
 static WAS_CLOSED: AtomicBool = AtomicBool::new(false);
 
-/// The system calls this function before Rust's runtime begins.
+/// Constructor that the system calls before Rust's runtime starts.
 #[cfg(unix)]
 #[allow(
     unsafe_code,
-    reason = "only a constructor runs before Rust's runtime, and no safe function looks at a descriptor that may be closed"
+    reason = "only a constructor runs before Rust's runtime, and no safe function reads a descriptor that may be closed"
 )]
 #[used]
 // SAFETY: this section holds pointers to functions without arguments, and this is one that needs no runtime.

@@ -1,15 +1,13 @@
-//! `whiskmap submit`: a sweep as a job array of Slurm.
+//! `whiskmap submit`: job array for Slurm.
 
+use super::arguments::whole;
 use super::failure::Failure;
-use super::files::check_folder;
-use super::numbers::whole;
-use super::scene;
+use super::files::{check_folder, read_scene};
 use clap::{Args, Parser};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use whiskmap::store::ZarrStore;
 
-/// Options of `submit`.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
@@ -17,12 +15,12 @@ Examples:
   whiskmap submit scenes/morphology.toml --shards 8 --partition short --time 1:00:00 --cpus-per-task 4 > sweep.sbatch
   whiskmap submit scenes/morphology.toml --shards 8 -o /scratch/maps -- --channels regime,force_un > sweep.sbatch
 
-`sbatch sweep.sbatch` then fills the store; every node must see the scene, the folder and this program. Submitted again, the \
-script computes what is missing. Other options go to sbatch itself, before the script's name.")]
-pub struct Options {
+`sbatch sweep.sbatch` then fills the store. The scene, the folder and this program must be visible to every node. A second \
+submission of the script computes missing blocks. Give other options to sbatch, before the script's name.")]
+pub struct SubmitArgs {
     /// Scene file
     scene: PathBuf,
-    /// Number of tasks, each of which computes one shard: at most one for each block of the store
+    /// Number of tasks, at most one per block of the store; each computes one shard
     #[arg(long, value_name = "N", value_parser = whole(1..=1_000_000))]
     shards: u32,
     /// Folder for the store
@@ -31,10 +29,10 @@ pub struct Options {
     /// Partition of the cluster
     #[arg(long, value_name = "NAME", value_parser = word)]
     partition: Option<String>,
-    /// Most time of a task, such as 30:00 or 1-12:00:00
+    /// Time limit of a task, such as 30:00 or 1-12:00:00
     #[arg(long, value_name = "TIME", value_parser = word)]
     time: Option<String>,
-    /// Threads of a task
+    /// Number of threads of a task
     #[arg(long, value_name = "N", value_parser = whole(1..=1024))]
     cpus_per_task: Option<u32>,
     /// Memory of a task, such as 500M
@@ -45,7 +43,7 @@ pub struct Options {
     map: Vec<String>,
 }
 
-/// A value of Slurm's options, which has no blank.
+/// Parses the value of an option of Slurm.
 fn word(text: &str) -> Result<String, String> {
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_.,:+".contains(c);
     if !text.is_empty() && text.chars().all(is_plain) {
@@ -55,30 +53,29 @@ fn word(text: &str) -> Result<String, String> {
     }
 }
 
-/// Runs `submit`.
-pub fn run(options: &Options) -> Result<(), Failure> {
-    if options.scene == Path::new("-") {
-        let why = "scene -: must be a file, which every task reads";
+pub fn run(args: &SubmitArgs) -> Result<(), Failure> {
+    if args.scene == Path::new("-") {
+        let why = "scene -: must be a file, because every task reads it";
         return Err(Failure::Input(why.to_owned()));
     }
-    let scene = scene::read(&options.scene)?;
+    let scene = read_scene(&args.scene)?;
     let blocks = ZarrStore::blocks(&scene.grid);
-    if options.shards as usize > blocks {
+    if args.shards as usize > blocks {
         return Err(Failure::Input(format!(
             "--shards {}: must be at most {blocks}, the number of blocks of this sweep",
-            options.shards
+            args.shards
         )));
     }
-    let store = options.output.join(format!("{}.zarr", scene.name));
-    check_folder("--output", &options.output)?;
+    let store = args.output.join(format!("{}.zarr", scene.name));
+    check_folder("--output", &args.output)?;
     check_folder("--output", &store)?;
-    let script = options.script(&scene.name)?;
-    check(&options.map)?;
+    let script = args.script(&scene.name)?;
+    check(&args.map)?;
     io::stdout().lock().write_all(script.as_bytes())?;
     Ok(())
 }
 
-/// Finds out whether `map` takes its own options, beside those that the script gives it.
+/// Returns an error if `map` does not accept its `own` options together with those of the script.
 fn check(own: &[String]) -> Result<(), Failure> {
     let given = "whiskmap map SCENE -o=DIR --format=zarr --shard=0/1 --resume --threads=1";
     let all = given.split(' ').chain(own.iter().map(String::as_str));
@@ -92,8 +89,8 @@ fn check(own: &[String]) -> Result<(), Failure> {
         })
 }
 
-impl Options {
-    /// The script, for a store called `name`.
+impl SubmitArgs {
+    /// Returns the script for a store of this `name`.
     fn script(&self, name: &str) -> Result<String, Failure> {
         let program = std::env::current_exe()?;
         let folder = absolute("--output", &self.output)?;
@@ -119,7 +116,7 @@ impl Options {
         let resources = resources.concat();
         let partition = self.partition.as_ref();
         let partition = partition.map_or_else(String::new, |name| format!(" --partition={name}"));
-        // What nodes would choose by themselves may differ.
+        // `auto` may select different engines on different nodes.
         let is_chosen = self.map.iter().any(|own| own.starts_with("--engine"));
         let engine = if is_chosen { "" } else { " --engine cpu" };
         let own = self
@@ -136,10 +133,10 @@ impl Options {
 #SBATCH --requeue
 #SBATCH --open-mode=append
 {resources}
-# Whoever computes a block of the store, and however often, it is the same: tasks may
-# be killed, requeued or submitted again.
+# The bytes of a block do not depend on the task that computes it: tasks may be
+# interrupted, requeued or submitted again.
 
-# When all tasks have ended, a last job verifies the store, and fails if anything is
+# When all tasks have ended, a last job verifies the store. It fails if a block is
 # missing or damaged.
 if [ "$SLURM_ARRAY_TASK_ID" = "$SLURM_ARRAY_TASK_MIN" ]; then
     sbatch --job-name={job}-status --dependency="afterany:$SLURM_ARRAY_JOB_ID"{partition} \
@@ -153,13 +150,13 @@ exec {program} map {scene} -o {folder} --format zarr{engine}{own} \
     }
 }
 
-/// Where a path leads from any folder.
+/// Returns an absolute path.
 fn absolute(what: &str, path: &Path) -> Result<PathBuf, Failure> {
     let absolute = std::path::absolute(path);
     absolute.map_err(|why| Failure::Input(format!("{what} {}: {why}", path.display())))
 }
 
-/// A path as a word of the shell.
+/// Returns a path as one word of the shell.
 fn quoted(what: &str, path: &Path) -> Result<String, Failure> {
     let text = path
         .to_str()
@@ -167,12 +164,12 @@ fn quoted(what: &str, path: &Path) -> Result<String, Failure> {
     text.map(word_of_shell).ok_or_else(|| {
         let path = path.display();
         Failure::Input(format!(
-            "{what} {path:?}: must be UTF-8 without line breaks, for a script"
+            "{what} {path:?}: must be UTF-8 without line breaks"
         ))
     })
 }
 
-/// A text as one word of the shell, in quotes if it needs them.
+/// Returns a text as one word of the shell, quoted if necessary.
 fn word_of_shell(text: &str) -> String {
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "/-_.,:+=@%".contains(c);
     if !text.is_empty() && text.chars().all(is_plain) {

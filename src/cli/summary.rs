@@ -1,4 +1,4 @@
-//! What a run of `map` has done, on standard output.
+//! Summary of a run of `map` on standard output.
 
 use std::io::Write;
 use std::path::PathBuf;
@@ -6,7 +6,7 @@ use whiskmap::classify::Regime;
 use whiskmap::map::{Stage, Summary};
 use whiskmap::scene::Scene;
 
-/// Prints the `summary` of a map that took so many `seconds`, files included, and the `files` written.
+/// Prints the `summary` of a map that took `seconds`, including files, and the names of the written `files`.
 pub fn print(
     scene: &Scene,
     summary: &Summary,
@@ -32,7 +32,7 @@ pub fn print(
         (engine.solved, "solved by the engine"),
         (
             engine.near_edge + engine.far + engine.missed + engine.not_finite,
-            "handed over by the engine, and refined in f64",
+            "not certified by the engine, and refined in f64",
         ),
         (
             engine.on_cpu_instead,
@@ -41,15 +41,15 @@ pub fn print(
         (summary.audit.cells, "of the engine's cells audited in f64"),
         (
             summary.audit.differing,
-            "of them differed by more than they may",
+            "of them differed by more than the audit allows",
         ),
         (
             summary.toward_base,
-            "slide toward the base, against the friction assumed: force and moment are off",
+            "slide toward the base, against the assumed friction: force and moment are inexact",
         ),
         (
             summary.sticking,
-            "stick where they were dragged before, with less friction than assumed: contact, force and moment are off",
+            "stick at an earlier position, with less friction than assumed: contact, force and moment are inexact",
         ),
     ] {
         if cells > 0 {

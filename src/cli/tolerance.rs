@@ -1,57 +1,55 @@
-//! `--tolerance`: how exact is exact enough.
+//! `--tolerance`: the largest error of push angles.
 
-use super::failure::{Failure, say};
-use super::numbers;
+use super::arguments;
+use super::failure::{Failure, message};
 use clap::Args;
 use whiskmap::accuracy::{Accuracy, BOUNDED, cheapest};
 use whiskmap::rod::Side;
 use whiskmap::scene::Scene;
 
-/// The option.
 #[derive(Debug, Args)]
-pub struct Tolerance {
-    /// Largest error of push angles, such as 1e-6deg; takes the cheapest steps that the program's own estimate allows
+pub struct ToleranceArgs {
+    /// Maximum push-angle error, such as 1e-6deg; selects the cheapest steps whose estimated error is below it
     /// [default: the finest steps, without an estimate]
     ///
-    /// It bounds where states stand in front of their pole (the push angle, and the distance, of which a part counts as
-    /// that many radians) and where they detach. It does not bound contact angles, arclengths, forces and moments: next
-    /// to a fold they change with the square root of the push angle that is left.
+    /// The tolerance bounds the push angle of states and detachments, and the relative error of the distance, in radians. It
+    /// does not bound contact angles, arclengths, forces and moments: next to a fold, they change with the square root of the
+    /// remaining push angle.
     #[arg(long, value_name = "ANGLE", value_parser = degrees)]
     tolerance: Option<f64>,
 }
 
-/// Below, rounding is all that is left; above, a map says nothing.
+/// Allowed tolerances, in degrees: smaller ones are below the rounding error, larger ones give meaningless maps.
 const RANGE: std::ops::RangeInclusive<f64> = 1e-10..=1.0;
 
-/// Makes two digits no less than the number.
+/// Factor after which a number, rounded to two digits, is not below its former value.
 const ROUNDED_UP: f64 = 1.06;
 
 fn degrees(text: &str) -> Result<f64, String> {
-    match numbers::angle(text)? {
+    match arguments::angle(text)? {
         degrees if RANGE.contains(&degrees) => Ok(degrees),
         _ => Err("must be between 1e-10deg and 1deg".to_owned()),
     }
 }
 
-impl Tolerance {
-    /// The largest error, if one was given.
+impl ToleranceArgs {
     pub const fn degrees(&self) -> Option<f64> {
         self.tolerance
     }
 
-    /// What is enough for `sides` of the scene, if that was asked; said on standard error.
+    /// Returns and prints the accuracy that meets the tolerance on `sides` of the scene; `None` without a tolerance.
     pub fn choose(&self, scene: &Scene, sides: &[Side]) -> Result<Option<Accuracy>, Failure> {
         let Some(tolerance_deg) = self.tolerance else {
             return Ok(None);
         };
         let found = cheapest(scene, sides, tolerance_deg).map_err(|finest| {
             Failure::Input(format!(
-                "--tolerance {tolerance_deg:e}deg: must be at least {:.1e}deg, which the finest steps and the residual of \
-                 Newton's method leave by the program's own estimate",
+                "--tolerance {tolerance_deg:e}deg: must be at least {:.1e}deg, the estimated error of the finest steps and \
+                 of the residual of Newton's method",
                 ROUNDED_UP * finest.error_deg
             ))
         })?;
-        say(&format!(
+        message(&format!(
             "accuracy: {} steps of order 8 at the fold, fewer below; estimated error {:.1e} deg of {tolerance_deg:.1e} allowed \
              in {BOUNDED}",
             found.resolution.least, found.error_deg

@@ -4,7 +4,6 @@ use super::failure::Failure;
 use std::io::Write;
 use whiskmap::paper::{Expected, Verdict, checks};
 
-/// Runs `verify`.
 pub fn run() -> Result<(), Failure> {
     let checks = checks();
     let mut out = std::io::stdout().lock();
@@ -14,7 +13,7 @@ pub fn run() -> Result<(), Failure> {
     writeln!(
         out,
         "{:case$}  {:quantity$}  {:11}  {:>15}  {:>17}  {:>10}  {:>9}",
-        "case", "quantity", "known from", "expected", "computed", "difference", "allowed"
+        "case", "quantity", "source", "expected", "computed", "difference", "allowed"
     )?;
     for check in &checks {
         let (expected, allowed) = match check.expected {
@@ -46,7 +45,7 @@ pub fn run() -> Result<(), Failure> {
     };
     writeln!(
         out,
-        "{} of {} checks pass; {} DIFFERS: an independent solver contradicts the source, too",
+        "{} of {} checks pass; {} DIFFERS: an independent solver also contradicts the source",
         count(Verdict::Pass),
         checks.len(),
         count(Verdict::Differs)

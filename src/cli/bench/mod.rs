@@ -3,7 +3,7 @@
 mod plot;
 mod tables;
 
-use super::failure::{Failure, say};
+use super::failure::{Failure, message};
 use super::files::{Files, STDOUT, write};
 use super::outputs::open;
 use clap::Args;
@@ -13,47 +13,44 @@ use std::path::{Path, PathBuf};
 use tables::tables;
 use whiskmap::bench::{self, Effort};
 
-/// Options of `bench`.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
   whiskmap bench scenes/cone.toml
   whiskmap bench scenes/cone.toml --quick --json bench.json --plot bench.svg
 
-A sample of the scene's states, at most 128 x 128 cells and two values per sweep axis, is solved by every engine: the CPU \
-with one number at a time, with vectors on one thread and on all, from 3 to 30 steps of order 8 at the fold, fewer below; \
-each GPU adapter in f32 and, where it can, in f64, by differences from references along each row; the references are made \
-before, and cells that it hands over do not count. \
-Errors are judged with four times the default steps: the push angle that a state really belongs to, the arc length \
-of its contact in whisker lengths, and its force. * marks the rows that no other beats in time and in the worst error of \
-the angle. Times, also of the stages, are medians of at least 5 runs after one that does not count; +- is the slowest less \
-the fastest run, and ! marks rows where that is more than 20 %.
+Every engine solves a sample of the scene's states: at most 128 x 128 cells and two values per sweep axis. The CPU computes \
+scalars, vectors on one thread and vectors on all threads, with 3 to 30 steps of order 8 at the fold, fewer below. Each GPU \
+adapter computes in f32 and, if supported, in f64, as differences from exact base points along each row. The time for base \
+points and cells that the GPU cannot certify do not count. Errors are differences from four times the default steps: of the \
+push angle, of the contact's arclength in whisker lengths, and of its force. * marks rows that no other row beats in time and \
+worst push-angle error. Times are medians of at least 5 runs after one that does not count. +- is the difference of the slowest \
+and the fastest run; ! marks rows in which it is more than 20 %.
 
-Then every engine computes whole maps of the scene, at most 1024 x 1024 cells (--quick: 256 x 256) and two values per sweep axis, \
-in turn, packed but not written. host is the CPU time per cell of all threads, those of a software adapter included; for devices \
-is the part of the stages, guesses and refinement, that a device could still take over. Stages are wall milliseconds; points are \
-the base points of rows, which only a GPU engine needs. device and packing run beside the other stages, and waiting is for the device. \
-The verdict compares the CPU engine with the fastest GPU engine.")]
-pub struct Options {
-    /// Scene file; - reads it from standard input
+Then every engine computes whole maps in turn, packed but not written: at most 1024 x 1024 cells (--quick: 256 x 256) and two \
+values per sweep axis. host is the CPU time per cell of all threads, including those of a software adapter. for devices is the \
+part of the stages, guesses and refinement, that a device could still compute. Stages are wall milliseconds. points are the base \
+points of rows, which only a GPU engine needs. device and packing overlap the other stages; waiting is for the device. The \
+verdict compares the CPU engine with the fastest GPU engine.")]
+pub struct BenchArgs {
+    /// Scene file; - is standard input
     scene: PathBuf,
-    /// Everything measured, as JSON; - is standard output, in place of the tables
+    /// Write all measurements to FILE, as JSON; - is standard output, without the tables
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
-    /// Picture of error against time, PNG or SVG by its ending
+    /// Plot error against time to FILE; the ending selects PNG or SVG
     #[arg(long, value_name = "FILE")]
     plot: Option<PathBuf>,
-    /// A smaller sample and fewer runs
+    /// Use a smaller sample and fewer runs
     #[arg(long)]
     quick: bool,
 }
 
-/// Runs `bench`.
-pub fn run(options: &Options, files: &mut Files) -> Result<(), Failure> {
-    let scene = files.scene(&options.scene)?;
-    let json = options.json.as_deref();
-    let (output, picture) = open(files, "--json", json, options.plot.as_deref())?;
-    let effort = if options.quick {
+pub fn run(args: &BenchArgs, files: &mut Files) -> Result<(), Failure> {
+    let scene = files.scene(&args.scene)?;
+    let json = args.json.as_deref();
+    let (output, picture) = open(files, "--json", json, args.plot.as_deref())?;
+    let effort = if args.quick {
         Effort::QUICK
     } else {
         Effort::FULL
@@ -61,7 +58,7 @@ pub fn run(options: &Options, files: &mut Files) -> Result<(), Failure> {
     let watched = std::io::stderr().is_terminal();
     let report = bench::run(&scene, effort, &mut |next| {
         if watched {
-            say(&format!("measuring {next}"));
+            message(&format!("measuring {next}"));
         }
     })?;
     let report = report.ok_or_else(|| {

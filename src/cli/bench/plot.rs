@@ -1,9 +1,9 @@
-//! The picture of `whiskmap bench`.
+//! Plot of `whiskmap bench`.
 
 use whiskmap::bench::{Measurement, NOISY, named};
 use whiskmap::render::{Dot, Ink, Line, Plot, Stroke};
 
-/// Error against time, a line per engine and integrator.
+/// Plots error against time, with one line per engine and integrator.
 pub fn plot(rows: &[Measurement]) -> Plot {
     let looks = [
         (Ink::Grey, Stroke::Solid),
@@ -20,7 +20,7 @@ pub fn plot(rows: &[Measurement]) -> Plot {
         let engine = named(&rows[0].engine, rows[0].threads);
         let name = format!("{engine}, {}", rows[0].rung.integrator);
         lines.push(Line::new(
-            rows.iter().map(place).collect(),
+            rows.iter().map(point).collect(),
             ink,
             stroke,
             name,
@@ -37,12 +37,12 @@ pub fn plot(rows: &[Measurement]) -> Plot {
     }
 }
 
-/// Time and error of a row.
-fn place(row: &Measurement) -> [f64; 2] {
+/// Time per state in microseconds, and worst push-angle error in degrees.
+fn point(row: &Measurement) -> [f64; 2] {
     [row.us_per_state, row.errors.angle_deg.worst]
 }
 
-/// The dot on a row of an engine whose line has this `ink`: a ring in the same ink if the row is noisy, black if no other row beats it.
+/// Returns the dot of a row, if it has one: open and in the `ink` of its line if the row is noisy, black if no other row beats it.
 fn dot(row: &Measurement, ink: Ink) -> Option<Dot> {
     let (ink, name) = match (row.pareto, row.seconds.is_noisy) {
         (true, false) => (Ink::Black, "no other is faster and closer".to_owned()),
@@ -54,7 +54,7 @@ fn dot(row: &Measurement, ink: Ink) -> Option<Dot> {
         (false, false) => return None,
     };
     Some(Dot {
-        at: place(row),
+        at: point(row),
         ink,
         open: row.seconds.is_noisy,
         name: Some(name),

@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 use whiskmap::bench::{NOISY, Report, Timing, named};
 
-/// Prints what was measured: at most 80 columns, but for the adapters' names.
+/// Prints all measurements in at most 80 columns, except the names of adapters.
 pub fn tables(report: &Report) -> io::Result<()> {
     let mut out = io::stdout().lock();
     writeln!(out, "{}: {} states\n", report.scene, report.states)?;
@@ -95,7 +95,7 @@ pub fn tables(report: &Report) -> io::Result<()> {
     Ok(())
 }
 
-/// Whole maps, and the verdict on them.
+/// Prints the table of whole maps, and the verdict.
 fn maps(out: &mut impl Write, report: &Report) -> io::Result<()> {
     writeln!(
         out,
@@ -145,7 +145,7 @@ fn maps(out: &mut impl Write, report: &Report) -> io::Result<()> {
     }
 }
 
-/// The spread of a timing in percent, marked where it is noisy.
+/// Formats the spread of a timing in percent; `!` marks a noisy one.
 fn spread(timing: &Timing) -> String {
     let mark = if timing.is_noisy { "!" } else { " " };
     format!("{:4.0}{mark}", 100.0 * timing.spread)

@@ -1,6 +1,6 @@
-//! A channel of a slice as an array of NumPy.
+//! One channel of a slice as a NumPy array.
 
-use super::super::failure::{Failure, say};
+use super::super::failure::{Failure, message};
 use super::super::files::{Files, unwritten};
 use super::refuse;
 use std::io::{BufWriter, IntoInnerError, Write};
@@ -8,7 +8,7 @@ use std::path::Path;
 use whiskmap::classify::Status;
 use whiskmap::store::{Output, Samples, Slice};
 
-/// Writes the only one of `channels`.
+/// Writes the only channel of `channels`.
 pub fn array(
     slice: &Slice,
     channels: &[&'static str],
@@ -38,14 +38,14 @@ pub fn array(
         let written = file
             .write_all(&header)
             .and_then(|()| file.write_all(&bytes));
-        written.map_err(|cause| unwritten(path, cause))?;
+        written.map_err(unwritten(path))?;
     }
     let output = file.into_inner().map_err(IntoInnerError::into_error);
     let done = output.and_then(Output::finish);
-    done.map_err(|cause| unwritten(path, cause))
+    done.map_err(unwritten(path))
 }
 
-/// Warns of an array whose states `status` marks: an array has one channel, so the marks are not in it.
+/// Prints the number of inexact states in an array. The array does not contain `status`, which marks them.
 pub fn warn_of_marks(
     slice: &Slice,
     channels: &[&'static str],
@@ -64,19 +64,19 @@ pub fn warn_of_marks(
     }
     if off > 0 {
         let [sliding, sticking] = marks;
-        say(&format!(
-            "warning: {off} of {cells} cells of {} are off: their friction is not as assumed; --channel status marks them by {sliding} and {sticking}",
+        message(&format!(
+            "warning: {off} of {cells} cells of {} are inexact: their friction is not as assumed; --channel status marks them with {sliding} and {sticking}",
             channels.join(", ")
         ));
     }
     Ok(())
 }
 
-/// What precedes the values in a file of NumPy, version 1.0.
+/// Returns the header of a NumPy file, version 1.0.
 fn npy(kind: &str, shape: &[usize]) -> Vec<u8> {
     let sizes: String = shape.iter().map(|size| format!("{size},")).collect();
     let about = format!("{{'descr': '{kind}', 'fortran_order': False, 'shape': ({sizes}), }}");
-    // The values begin at a multiple of 64 bytes, after a line's end.
+    // The values begin at a multiple of 64 bytes, after a line break.
     let length = (about.len() + 11).next_multiple_of(64) - 10;
     let mut header = b"\x93NUMPY\x01\x00".to_vec();
     header.extend((length as u16).to_le_bytes());

@@ -7,7 +7,7 @@ use self::array::{array, warn_of_marks};
 use self::table::table;
 use super::failure::Failure;
 use super::files::{Files, unwritten};
-use super::selection::{Selection, channels, with_marks};
+use super::selection::{SelectionArgs, channels, with_marks};
 use clap::Args;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -16,7 +16,6 @@ use whiskmap::map::{Audit, Channels, EngineCells};
 use whiskmap::scene::{LONGEST_TITLE, Scene, Setup};
 use whiskmap::store::{Description, MapWriter, Slice, TemporaryFolder, ZarrStore};
 
-/// Options of `extract`.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
@@ -26,29 +25,28 @@ Examples:
   whiskmap extract outputs/sweep.zarr -o map.exr
   whiskmap extract outputs/cone.exr --at distance_mm=15.66 --channel regime --channel force_un -o row.csv
 
-A table has a line for each cell, with the values of all axes first; a quantity that there is not is left empty. An array \
-has the axes that are left, in the order of the grid, then distance and push angle. A store keeps every axis, those of \
---at with one value. A map has at most two sweep axes.")]
-pub struct Options {
+A table has one line per cell, with the values of all axes first; missing values are empty. An array has the remaining axes in \
+the order of the grid, then distance and push angle. A store keeps every axis; the axes of --at have one value. A map has at \
+most two sweep axes.")]
+pub struct ExtractArgs {
     /// Map or store written by `whiskmap map`
     source: PathBuf,
     #[command(flatten)]
-    selection: Selection,
-    /// Channel to extract, more than one if repeated. With friction, load channels are stored with `status`, except in an
-    /// array [default: all]
+    selection: SelectionArgs,
+    /// Extract this channel; may be repeated. With friction, channels of states come with `status`, except in an array
+    /// [default: all]
     #[arg(long, value_name = "NAME")]
     channel: Vec<String>,
-    /// What to write: a table, an array of one channel, a store or a map, by its ending .csv, .npy, .zarr or .exr
+    /// Write FILE; the ending selects a table (.csv), an array of one channel (.npy), a store (.zarr) or a map (.exr)
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
 }
 
-/// Runs `extract`.
-pub fn run(options: &Options, files: &mut Files) -> Result<(), Failure> {
-    let slice = options.selection.open(files, &options.source)?;
-    let channels = channels(&slice, &options.channel)?;
-    let marked = with_marks(&options.source, &slice, &channels)?;
-    let path = &options.output;
+pub fn run(args: &ExtractArgs, files: &mut Files) -> Result<(), Failure> {
+    let slice = args.selection.open(files, &args.source)?;
+    let channels = channels(&slice, &args.channel)?;
+    let marked = with_marks(&args.source, &slice, &channels)?;
+    let path = &args.output;
     match path.extension().and_then(|ending| ending.to_str()) {
         Some("csv") => table(&slice, &marked, path, files)?,
         Some("npy") => {
@@ -86,11 +84,11 @@ fn map(
     if axes.len() > 2 {
         let axes = axes.join(", ");
         let why = format!(
-            "a map has room for two sweep axes, there are {axes}; give --at for the others"
+            "a map holds at most two sweep axes, the slice has {axes}; give --at for the others"
         );
         return refuse(path, &why);
     }
-    let (scene, origin) = (scene(slice)?, Origin::of(slice)?);
+    let (scene, origin) = (scene(slice)?, MapOrigin::of(slice)?);
     let scene = Setup {
         grid: slice.grid().clone(),
         ..Setup::clone(&scene)
@@ -117,7 +115,7 @@ fn store(
             "a store needs the channel regime; name a .csv or .npy",
         );
     }
-    let (scene, origin) = (scene(slice)?, Origin::of(slice)?);
+    let (scene, origin) = (scene(slice)?, MapOrigin::of(slice)?);
     let chosen = Channels::those(|name| channels.contains(&name));
     let about = origin.describe(&scene, chosen.with("regime"));
     files.store("--output", path)?;
@@ -128,13 +126,13 @@ fn store(
     if !ZarrStore::is_at(path) && !is_free {
         return refuse(
             path,
-            "is there, and neither a store nor an empty folder; name another",
+            "exists, and is neither a store nor an empty folder; give another name",
         );
     }
-    // A new store appears when it is complete; one that is there is written again, block by block.
+    // A new store appears when it is complete; an existing one is rewritten block by block.
     let temporary = files.temporary();
     let folder = (!ZarrStore::is_at(path)).then(|| TemporaryFolder::create(path, temporary));
-    let folder = folder.transpose().map_err(|cause| unwritten(path, cause))?;
+    let folder = folder.transpose().map_err(unwritten(path))?;
     let place = folder.as_ref().map_or(path, TemporaryFolder::path);
     let store = ZarrStore::join(place, &scene, &about, true)?;
     store.begin(temporary)?;
@@ -144,15 +142,15 @@ fn store(
         store.write(block, &packed.collect::<Result<Vec<_>, _>>()?, temporary)?;
     }
     let finished = folder.map_or(Ok(()), |folder| folder.finish(path));
-    finished.map_err(|cause| unwritten(path, cause))
+    finished.map_err(unwritten(path))
 }
 
-/// The scene of the slice, in which each chosen axis has one value.
+/// Returns the scene of the slice, in which each selected axis has one value.
 fn scene(slice: &Slice) -> Result<Scene, Failure> {
     let text = slice.stored().attribute("scene")?;
     let text = text.as_str().unwrap_or_default();
     let mut scene = Scene::parse(text, "the scene of the map")?;
-    // The chosen values may make the longest title longer.
+    // The selected values can extend a title beyond its limit.
     let title: String = slice.title().chars().take(LONGEST_TITLE).collect();
     scene = scene.with("title", title)?;
     for (axis, value) in slice.chosen() {
@@ -161,14 +159,14 @@ fn scene(slice: &Slice) -> Result<Scene, Failure> {
     Ok(scene)
 }
 
-/// What computed the whole, and how exactly.
-struct Origin {
+/// Engine, arithmetic and tolerances of the whole map.
+struct MapOrigin {
     engine: engine::EngineDescription,
     arithmetic: String,
     tolerances: serde_json::Value,
 }
 
-impl Origin {
+impl MapOrigin {
     fn of(slice: &Slice) -> Result<Self, Failure> {
         let text = |name: &str| {
             let text = slice.stored().attribute(name)?;
@@ -176,7 +174,7 @@ impl Origin {
         };
         let engine = engine::EngineDescription {
             engine: text("engine")?,
-            // A store, which many machines may have filled, has none.
+            // A store has no adapter, because many machines may have filled it.
             adapter: text("adapter").unwrap_or_default(),
         };
         Ok(Self {

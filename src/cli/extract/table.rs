@@ -1,4 +1,4 @@
-//! A slice as a table: a line for each cell.
+//! A slice as a table with one line per cell.
 
 use super::super::failure::Failure;
 use super::super::files::{Files, unwritten};
@@ -6,18 +6,17 @@ use serde::ser::{Serialize, SerializeStruct, Serializer};
 use std::path::Path;
 use whiskmap::store::{Samples, Slice, Table};
 
-/// A line of a table.
-struct Line<'a> {
+struct CellLine<'a> {
     axes: &'a [(&'static str, f64)],
     channels: &'a [&'static str],
     samples: &'a [Samples],
     cell: usize,
 }
 
-impl Serialize for Line<'_> {
+impl Serialize for CellLine<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let count = self.axes.len() + self.channels.len();
-        let mut columns = serializer.serialize_struct("Line", count)?;
+        let mut columns = serializer.serialize_struct("CellLine", count)?;
         for (name, value) in self.axes {
             columns.serialize_field(name, value)?;
         }
@@ -34,7 +33,6 @@ impl Serialize for Line<'_> {
     }
 }
 
-/// Writes the table of a slice.
 pub fn table(
     slice: &Slice,
     channels: &[&'static str],
@@ -54,14 +52,14 @@ pub fn table(
             let mut axes = place.clone();
             axes.push(("distance_mm", *distance));
             axes.push(("push_angle_deg", *push_angle));
-            let line = Line {
+            let line = CellLine {
                 axes: &axes,
                 channels,
                 samples: &samples,
                 cell,
             };
-            table.rows([line]).map_err(|cause| unwritten(path, cause))?;
+            table.rows([line]).map_err(unwritten(path))?;
         }
     }
-    table.finish().map_err(|cause| unwritten(path, cause))
+    table.finish().map_err(unwritten(path))
 }

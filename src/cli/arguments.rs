@@ -1,0 +1,69 @@
+//! Parsers of argument values, and help texts about columns.
+
+use clap::ValueEnum;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use std::fmt::Write;
+use std::ops::RangeInclusive;
+use whiskmap::input::Quantity;
+use whiskmap::rod::Side;
+use whiskmap::scene::Parameter;
+
+/// Parses a length in millimetres, or with a unit.
+pub fn length(text: &str) -> Result<f64, String> {
+    Quantity::LengthMm.parse(text)
+}
+
+/// Parses an angle in degrees, or with a unit.
+pub fn angle(text: &str) -> Result<f64, String> {
+    Quantity::AngleDeg.parse(text)
+}
+
+/// Returns a parser of whole numbers within `range`.
+pub fn whole(range: RangeInclusive<u32>) -> impl Fn(&str) -> Result<u32, String> + Clone {
+    move |text| {
+        let number = text.parse().ok().filter(|number| range.contains(number));
+        let (least, most) = (range.start(), range.end());
+        number.ok_or_else(|| format!("must be a whole number between {least} and {most}"))
+    }
+}
+
+/// Returns a parser of the names of scene parameters.
+pub fn parameter() -> impl TypedValueParser<Value = Parameter> {
+    PossibleValuesParser::new(Parameter::ALL.map(Parameter::name)).try_map(|name| {
+        let unknown = || format!("there is no {name}");
+        Parameter::named(&name).ok_or_else(unknown)
+    })
+}
+
+/// Side of the whisker that the pole is on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum SideName {
+    /// Concave backward: the pole is on the convex side
+    Cb,
+    /// Concave forward: the pole is on the concave side
+    Cf,
+}
+
+impl From<SideName> for Side {
+    fn from(side: SideName) -> Self {
+        match side {
+            SideName::Cb => Self::Cb,
+            SideName::Cf => Self::Cf,
+        }
+    }
+}
+
+/// Returns `examples`, followed by the columns and meanings of each titled table.
+pub fn column_help(examples: &str, tables: &[(&str, &[(&str, &str)])]) -> String {
+    let mut help = examples.to_owned();
+    for (title, columns) in tables {
+        let wide = columns.iter().map(|(name, _)| name.len()).max();
+        let wide = wide.unwrap_or_default();
+        // Writing to a String cannot fail.
+        let _ = write!(help, "\n\n{title}:");
+        for (name, meaning) in *columns {
+            let _ = write!(help, "\n  {name:wide$} {meaning}");
+        }
+    }
+    help
+}
