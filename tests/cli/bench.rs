@@ -1,4 +1,4 @@
-//! `whiskmap bench`: what it says must hang together; what it measures is the machine's.
+//! `whiskmap bench`: consistency of its tables and JSON, not the measured times.
 
 use crate::traces::good;
 use crate::{Place, SCENE};
@@ -11,7 +11,7 @@ fn numbers(rows: &[Value], key: &str) -> Vec<f64> {
 
 #[test]
 fn errors_fall_from_rung_to_rung() {
-    // Rows of few cells have no references, so that a GPU would have none to solve.
+    // Rows with few cells have no base points, so a GPU would solve no cell.
     let place = Place::with(&SCENE.replace("to = 70, count = 24", "to = 70, count = 48"));
     let run = good(&place, &["bench", "scene.toml", "--quick", "--json", "-"]);
     let report: Value = serde_json::from_str(&run.out).unwrap();
@@ -28,7 +28,7 @@ fn errors_fall_from_rung_to_rung() {
             .collect();
         let is_cpu = engine["threads"].is_u64();
         let errors = numbers(&own, "/errors/angle_deg/worst");
-        // The last two rungs of the CPU's ladder are at the rounding; what a GPU makes of a cell has none: measured 3e-6 in `f32`.
+        // The last two rungs of the CPU are at the rounding error. A GPU has no such rung: measured 3e-6 in `f32`.
         let (rungs, falling, exact) = if is_cpu { (8, 6, 1e-9) } else { (1, 1, 1e-5) };
         assert_eq!(errors.len(), rungs, "{engine}: {errors:?}");
         assert!(
@@ -64,7 +64,7 @@ fn errors_fall_from_rung_to_rung() {
     }
     let ends = report["detachments"].as_array().unwrap();
     let errors = numbers(ends, "/angle_deg/worst");
-    // A sheet's few trajectories share blocks, so that two coarse rungs can take the same steps.
+    // The few trajectories of a sheet share blocks, so two coarse rungs can take the same steps.
     assert!(errors[..6].is_sorted_by(|a, b| a >= b), "{errors:?}");
     assert!(
         errors[..6].windows(3).all(|few| few[0] > few[2]),
@@ -82,7 +82,7 @@ fn errors_fall_from_rung_to_rung() {
     maps_hang_together(maps, &report["verdict"]);
 }
 
-/// What is said of whole maps, that of the CPU engine first, and of which engine is faster.
+/// Checks the values of whole maps, with the CPU engine first, and the verdict.
 fn maps_hang_together(maps: &[Value], verdict: &Value) {
     for part in numbers(maps, "/device_can_take") {
         assert!(part > 0.0 && part < 1.0, "{maps:?}");
@@ -110,7 +110,7 @@ fn maps_hang_together(maps: &[Value], verdict: &Value) {
 #[test]
 fn tables_fit_a_terminal_and_pictures_are_drawn() {
     let place = Place::with(SCENE);
-    // A link stays where it is.
+    // The link is kept.
     #[cfg(unix)]
     std::os::unix::fs::symlink("real.json", place.path("b.json")).unwrap();
     let run = good(
@@ -139,7 +139,7 @@ fn tables_fit_a_terminal_and_pictures_are_drawn() {
     assert_eq!(json["scene"], "A small map");
     let picture = String::from_utf8(place.bytes("b.svg")).unwrap();
     assert!(picture.contains("What accuracy costs"));
-    // Numbers, no logarithms.
+    // Axis labels are numbers, not logarithms.
     for text in ["time per state (\u{b5}s)", "1e\u{2212}8"] {
         assert!(picture.contains(&format!(">{text}<")), "{text}");
     }

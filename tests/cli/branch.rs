@@ -19,7 +19,7 @@ fn a_branch_has_as_many_points_as_asked_for() {
     assert_eq!(cells(&both.out, BRANCH).len(), 400);
 }
 
-/// The push angle of the fold, as printed, is a state, whichever way degrees are rounded.
+/// The printed push angle of the fold has a state, whichever way it is rounded.
 #[test]
 fn the_fold_can_be_asked_for() {
     let place = Place::with(SCENE);

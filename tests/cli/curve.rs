@@ -6,7 +6,7 @@ use whiskmap::rod::Side;
 use whiskmap::scene::Scene;
 use whiskmap::trace::curve;
 
-/// Every number comes back with its last bit.
+/// Every value of the table has all its bits.
 #[test]
 fn a_curve_is_a_table_of_exact_numbers() {
     let place = Place::with(SCENE);

@@ -1,4 +1,4 @@
-//! Stores that are damaged, or whose files are not theirs.
+//! Damaged stores, and stores with files of other stores.
 
 use crate::integrity::SMALL;
 use crate::store::{SWEEP, assert_same, files, good, map};
@@ -53,7 +53,7 @@ fn torn_and_missing_files_are_found_and_computed_again() {
     assert_same(&place, "whole", "out");
 }
 
-/// Every file of metadata, removed and overwritten with zeros.
+/// Each file of metadata is removed, then overwritten with zeros.
 #[test]
 fn metadata_are_compared_with_the_scene_and_written_again() {
     let place = Place::with(SMALL);
@@ -81,7 +81,7 @@ fn metadata_are_compared_with_the_scene_and_written_again() {
                 }
             };
             spoil();
-            // Without its root it is no store.
+            // Without its root, the folder is not a store.
             let code = if is_root { 2 } else { 1 };
             let run = status(&place, "--verify");
             run.assert_said(code, name.file_name().unwrap().to_str().unwrap());
@@ -123,12 +123,12 @@ fn an_edited_scene_is_found_and_the_scene_of_the_run_written_again() {
     }
     let run = good(&place, "out", &["--resume"]);
     assert!(
-        run.err.contains("zarr.json was damaged: written again"),
+        run.err.contains("zarr.json was damaged: rewritten"),
         "{run:?}"
     );
     assert_same(&place, "whole", "out");
 
-    // Another run must not take the blocks for its own, nor overwrite them.
+    // A run with other settings must not accept or overwrite the blocks.
     let other = SMALL.replace("base_radius_um = 30.0", "base_radius_um = 31.0");
     for damage in ["", "no JSON"] {
         fs::remove_file(&root).unwrap();
@@ -146,7 +146,7 @@ fn an_edited_scene_is_found_and_the_scene_of_the_run_written_again() {
     }
 }
 
-/// Blocks of a store whose root was replaced by another one's: the root is wrong, so no block is removed or overwritten.
+/// The root of a store is replaced by another store's root. No block is removed or overwritten.
 #[test]
 fn blocks_under_a_wrong_root_stay() {
     let place = Place::with(SMALL);

@@ -17,7 +17,7 @@ pub fn place() -> Place {
     place
 }
 
-/// The curve with the points, and `more` options.
+/// Runs `curve --data` with `more` options.
 pub fn curve(place: &Place, more: &[&str]) -> Run {
     let arguments = ["curve", "scene.toml", "--data", "points.csv"];
     place.run(&[&arguments, more].concat())
@@ -52,7 +52,7 @@ fn points_beside_the_curve() {
         assert!(svg.contains(&format!(">{name}<")), "{name}");
     }
 
-    // The same angles of the chord lie on the curve of chord angles.
+    // Chord angles are compared with the curve of chord angles.
     place.write(
         "points.csv",
         "side,distance_mm,push_chord_deg\ncb,15.66,15.14\n",

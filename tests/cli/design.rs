@@ -12,12 +12,12 @@ const TAPER: [&str; 6] = [
     "taper",
 ];
 
-/// What a run with more arguments leaves.
+/// Runs `design` with more arguments.
 fn run(place: &Place, more: &[&str]) -> crate::Run {
     place.run(&[&TAPER[..], more].concat())
 }
 
-/// Every line is a number that, put into the scene, detaches as asked.
+/// A scene with the value of each line detaches at the target.
 #[test]
 fn a_value_is_a_line() {
     let place = Place::with(SCENE);
@@ -38,7 +38,7 @@ fn a_value_is_a_line() {
         (end[4].parse::<f64>().unwrap() - 20.0).abs() < 1e-9,
         "{curve}"
     );
-    // The picture changes nothing, and has one dot at the solution.
+    // The plot does not change the result, and has one dot at the solution.
     let plotted = run(&place, &["--slip-off", "20deg", "--plot", "p.svg"]);
     assert_eq!((plotted.code, plotted.out), (Some(0), found.out.clone()));
     let svg = String::from_utf8(place.bytes("p.svg")).unwrap();
@@ -48,7 +48,7 @@ fn a_value_is_a_line() {
         2,
         "the dot, and its sample in the legend"
     );
-    // The same angle in other words; the side is that of its sign.
+    // The angle in another unit; its sign gives the side.
     for angle in ["20", "20 deg", "20°", "0.3490658503988659rad"] {
         assert_eq!(
             run(&place, &["--slip-off", angle]).out,
@@ -107,7 +107,7 @@ fn what_is_out_of_reach_says_what_is_not() {
     let stiff = place.run(&stiff);
     assert_eq!(stiff.code, Some(1), "{stiff:?}");
     assert!(
-        stiff.err.contains("it slips off at 15.6") && stiff.err.contains("whatever the value"),
+        stiff.err.contains("it slips off at 15.6") && stiff.err.contains("for every value"),
         "{stiff:?}"
     );
 }

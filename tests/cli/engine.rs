@@ -1,4 +1,4 @@
-//! Which engine and which adapter a map takes.
+//! Selection of engine and adapter by `map`.
 
 use crate::{Place, Run, SCENE};
 
@@ -15,7 +15,7 @@ fn auto_does_not_start_a_gpu_for_a_small_map() {
     let said = said(&run);
     assert!(said.starts_with("cpu f64 on "), "{said}");
     assert!(
-        said.ends_with("(auto: done before a GPU has started)"),
+        said.ends_with("(auto: the CPU is done before a GPU has started)"),
         "{said}"
     );
 }

@@ -6,7 +6,7 @@ use std::fs;
 use whiskmap::scene::Parameter;
 use whiskmap::store::{StoredMap, ZarrStore};
 
-/// Values of a table or a list of bytes against those of the store.
+/// Compares values of a table or an array with those of the store.
 #[test]
 fn a_slice_is_what_the_store_has_there() {
     let place = Place::with(SWEEP);
@@ -87,7 +87,7 @@ fn a_slice_is_what_the_store_has_there() {
     for (arguments, said) in [
         (
             &["-o", "s.exr"][..],
-            "room for two sweep axes, there are taper, friction, pole_radius_mm",
+            "a map holds at most two sweep axes, the slice has taper, friction, pole_radius_mm",
         ),
         (&["-o", "s.npy"], "give one --channel"),
         (&["-o", "s.txt"], "must end in .csv, .npy, .zarr or .exr"),
@@ -133,7 +133,7 @@ fn a_slice_is_what_the_store_has_there() {
     }
 }
 
-/// The map of a slice is that of the scene with this value, but for what the whole sweep makes of the order of rounding.
+/// The map of a slice equals the map of the scene with this value, up to rounding.
 #[test]
 fn a_map_of_a_slice_can_be_drawn() {
     let place = Place::with(SWEEP);
@@ -177,7 +177,7 @@ fn a_map_of_a_slice_can_be_drawn() {
     );
 }
 
-/// A store of a slice is one like any other: it says which scene it is of, and can be sliced and drawn again.
+/// A store of a slice is a complete store: it contains its scene, and can be sliced and drawn.
 #[test]
 fn a_store_of_a_slice_has_the_values_of_the_whole() {
     let place = Place::with(SWEEP);
@@ -226,7 +226,7 @@ fn a_store_of_a_slice_has_the_values_of_the_whole() {
         }
     }
 
-    // Of the slice, of a map, twice the same; but not another one in its place.
+    // A repeated run rewrites an equal store, but does not replace another one.
     extract(
         "slice.zarr",
         &["--at=taper=1", "--exact", "-o", "again.zarr"],
@@ -262,7 +262,7 @@ fn a_store_of_a_slice_has_the_values_of_the_whole() {
     assert_eq!(place.run(&draw).code, Some(0));
 }
 
-/// The chosen value would make it longer than a scene may have it.
+/// The selected value would make the title longer than allowed.
 #[test]
 fn the_longest_title_is_extracted() {
     let title = "t".repeat(1000);

@@ -1,4 +1,4 @@
-//! Where files go: devices, pipes and links stay what they are, full disks are said, any name does.
+//! Output files: devices, pipes, links, full disks, unusual names.
 
 use crate::traces::{CURVE, good};
 use crate::{Place, Run, SCENE, names};
@@ -8,13 +8,13 @@ use std::process::{Command, Stdio};
 use std::time::Duration;
 
 impl Place {
-    /// A named pipe.
+    /// Creates a named pipe.
     pub fn pipe(&self, name: &str) {
         let made = Command::new("mkfifo").arg(self.path(name)).status();
         assert!(made.unwrap().success());
     }
 
-    /// Runs the program and reads the pipe `name` meanwhile, which must stay a pipe.
+    /// Runs the program and reads the pipe `name`, which must remain a pipe.
     fn piped(&self, arguments: &[&str], name: &str) -> Vec<u8> {
         let mut child = self.plain_command(arguments);
         let child = child.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn();
@@ -40,7 +40,7 @@ fn a_pipe_gets_what_a_file_gets() {
         let found = place.piped(&[&SHAPE[..], &[option, &pipe]].concat(), &pipe);
         assert!(found == expected, "{name}");
     }
-    // EXR is not written in one go, and no picture can be drawn of what is gone.
+    // An EXR file is not written sequentially, and a picture needs the file.
     place.map(&["scene.toml", "--no-png"]);
     let expected = place.bytes("outputs/scene.exr");
     fs::create_dir(place.path("piped")).unwrap();
@@ -54,7 +54,7 @@ fn a_pipe_gets_what_a_file_gets() {
     assert_eq!(names(&place.path("piped")), ["scene.exr"]);
 }
 
-/// Nobody reads the pipe.
+/// The pipe has no reader.
 #[test]
 fn other_errors_come_before_a_pipe_is_opened() {
     let place = Place::with(SCENE);
@@ -67,7 +67,7 @@ fn other_errors_come_before_a_pipe_is_opened() {
     Run::of(&command.output().unwrap()).assert_refused(&["slipped off"]);
 }
 
-/// `/dev/stdout` by another name, so that a program that replaced it would do no harm.
+/// The path is a link to `/dev/stdout`, which a faulty program could replace without harm.
 #[test]
 fn standard_output_has_a_name() {
     let place = Place::with(SCENE);
@@ -76,7 +76,7 @@ fn standard_output_has_a_name() {
     let streamed = good(&place, &SHAPE).out;
     assert_eq!(good(&place, &to).out, streamed);
 
-    // Redirected to a file that has something in it already.
+    // Standard output is redirected to a file that is not empty.
     place.write("log", "before\n");
     let log = File::options()
         .append(true)
@@ -159,14 +159,14 @@ fn links_stay_and_their_files_are_made_or_replaced() {
     place
         .run(&lost)
         .assert_refused(&["--csv lost.csv: No such file"]);
-    // A link and what it points to are one file.
+    // A link and its target are one file.
     symlink("p.svg", place.path("t.svg")).unwrap();
     place
         .run(&["curve", "scene.toml", "--csv=t.svg", "--plot=p.svg"])
         .assert_refused(&["--csv t.svg and --plot p.svg: must be two files"]);
 }
 
-/// A limit on the size of files stands for the disk's end; the shell has signals of it ignored.
+/// A limit on the file size simulates a full disk; the shell ignores its signal.
 #[test]
 fn a_full_disk_is_said_in_one_line() {
     let place = Place::with(SCENE);
@@ -220,7 +220,7 @@ fn scenes_have_any_name() {
     }
 }
 
-/// A pipe that nobody writes into would never open.
+/// Opening a pipe without a writer would block forever.
 #[test]
 fn a_pipe_is_no_map() {
     let place = Place::with(SCENE);
@@ -229,7 +229,7 @@ fn a_pipe_is_no_map() {
     run.assert_refused(&["map.exr is no regular file"]);
 }
 
-/// Nobody writes into the pipe: opening it would never end.
+/// Opening a pipe without a writer would block forever.
 #[test]
 fn a_pipe_holds_no_radii() {
     let measured = "[whisker]\nprofile.rows = \"radii.csv\"";
@@ -240,7 +240,7 @@ fn a_pipe_holds_no_radii() {
         .run(&["curve", "scene.toml"])
         .assert_refused(&["whisker.profile.rows = \"radii.csv\": must name a regular file"]);
 
-    // A store whose scene was changed so that it names the pipe: no command opens it.
+    // The scene of the store names the pipe: no command opens it.
     place.write("scene.toml", crate::store::SWEEP);
     crate::store::good(&place, ".", &["--shard", "1/8"]);
     let root = String::from_utf8(place.bytes("scene.zarr/zarr.json")).unwrap();
@@ -260,7 +260,7 @@ fn a_pipe_holds_no_radii() {
     }
 }
 
-/// A scene that its user names may come from a program; a folder or an endless device is no scene, and holds no points.
+/// A scene given by the user may come from a pipe. A folder or an endless device contains neither a scene nor points.
 #[test]
 fn what_a_user_names_is_read_to_its_end_or_refused() {
     let place = Place::with(SCENE);

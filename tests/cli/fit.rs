@@ -95,7 +95,7 @@ fn table_scene_and_document_agree() {
             .contains("points compared: 6, 0 left out, 0 of another kind than predicted\n")
     );
 
-    // The fitted scene is where the next fit stays; the same run makes the same bytes.
+    // A second fit stays at the fitted scene; equal runs write equal bytes.
     let bytes = place.bytes("fit.json");
     fit(&place, &[&free[..], &files].concat());
     assert!(bytes == place.bytes("fit.json"), "not deterministic");

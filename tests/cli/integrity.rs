@@ -137,7 +137,7 @@ fn a_failed_extract_leaves_no_store() {
     let run = place.run(&["extract", "out/scene.zarr", "-o", "full.zarr"]);
     run.assert_said(
         2,
-        "full.zarr: is there, and neither a store nor an empty folder",
+        "full.zarr: exists, and is neither a store nor an empty folder",
     );
     assert_eq!(crate::names(&place.path("full.zarr")), ["notes.txt"]);
 }

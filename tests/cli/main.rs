@@ -1,4 +1,4 @@
-//! The program as its users run it: arguments, files, messages, exit codes.
+//! Tests of the program: arguments, files, messages, exit codes.
 #![allow(
     clippy::unwrap_used,
     reason = "a test that cannot set up its files should stop"

@@ -24,7 +24,7 @@ fn a_map_end_to_end() {
     let engine = run.err.strip_prefix("engine: cpu f64 on ");
     let engine = engine.unwrap_or_else(|| panic!("{run:?}"));
     assert_eq!(engine.find('\n'), Some(engine.len() - 1), "{run:?}");
-    assert!(engine.ends_with("(asked for)\n"), "{run:?}");
+    assert!(engine.ends_with("(selected by --engine)\n"), "{run:?}");
 
     let stored = StoredMap::open(&place.path("new/folder/scene.exr")).unwrap();
     assert_eq!(stored.counts.regimes["slip-off"], counts[2]);
@@ -45,7 +45,7 @@ fn the_same_bytes_every_time_and_with_any_number_of_threads() {
         same(&format!("first/{file}"), &format!("one/{file}"));
         same(&format!("one/{file}"), &format!("two/{file}"));
     }
-    // More cells than a strip, and more than a thread's share of it.
+    // More cells than one row batch, and more than one thread's share of it.
     place.write("large.toml", &SCENE.replace("count = 24", "count = 200"));
     for threads in ["1", "2", "3"] {
         place.map(&["large.toml", "-o", threads, "--threads", threads]);
@@ -120,7 +120,7 @@ fn a_reader_that_has_gone_is_no_failure() {
     assert_eq!(names(&place.path("outputs")), ["scene.exr", "scene.png"]);
 }
 
-/// A hinge next to the base: nearer contacts coil up for more turns than are followed.
+/// Radii with a hinge next to the base: the whisker coils up for more turns than continuation follows.
 pub const HINGED: &str = "title = 'A hinge'\n[whisker]\nlength_mm = 20\nyoungs_modulus_gpa = 3\n\
                           profile.rows = [[0, 30], [2, 7.5], [3, 30], [20, 30]]\n\
                           [grid]\npush_angle_deg = [5, 10]\ndistance_mm = [5, 8]\n";
@@ -144,7 +144,7 @@ fn a_map_without_any_answer_is_written_and_fails() {
     assert!(run.err.ends_with(warning), "{run:?}");
 }
 
-/// A file of one part has no list of headers, so its offset table follows the header at once.
+/// In a file of one part, the offset table directly follows the header.
 #[test]
 fn a_map_of_one_part_is_read_by_all() {
     use exr::prelude::{ReadChannels, ReadLayers, read};

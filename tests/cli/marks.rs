@@ -5,7 +5,7 @@ use whiskmap::classify::Status;
 use whiskmap::map::Channels;
 use whiskmap::store::{Description, MapWriter, Samples, StoredMap, TemporaryFiles, ZarrStore};
 
-/// The small map with or without friction, by its name in a folder of its own.
+/// Writes the small map with this friction into its own folder, and returns its name.
 fn place(friction: f64) -> Place {
     Place::with(&SCENE.replace(
         "[grid]",
@@ -34,14 +34,14 @@ fn a_map_with_friction_keeps_the_status_of_loads() {
         let store = ZarrStore::open(&place.path("outputs/scene.zarr")).unwrap();
         assert!(store.channels().names().eq(wanted.iter().copied()));
     }
-    // Verdicts and margins hold with friction, too.
+    // Verdicts and margins are exact with friction, too.
     let place = place(0.3);
     place.map(&["scene.toml", "--no-png", "--channels=regime,margin_deg"]);
     let map = StoredMap::open(&place.path("outputs/scene.exr")).unwrap();
     assert_eq!(map.channels(), ["regime", "margin_deg"]);
 }
 
-/// How many cells of a map are marked.
+/// Returns the number of marked cells of a map.
 fn marked(place: &Place) -> usize {
     let map = StoredMap::open(&place.path("outputs/scene.exr")).unwrap();
     let Samples::U32(codes) = map.read_channel("status").unwrap() else {
@@ -81,7 +81,7 @@ fn a_slice_with_friction_keeps_the_status_of_loads() {
     let marked = marked(&place);
     assert!(marked > 10);
     let run = extract(&["--channel=force_un", "-o", "s.npy"]);
-    let warning = format!("warning: {marked} of 576 cells of force_un are off");
+    let warning = format!("warning: {marked} of 576 cells of force_un are inexact");
     assert!(run.err.starts_with(&warning), "{run:?}");
     assert!(run.err.contains("--channel status"), "{run:?}");
     assert_eq!(extract(&["--channel=regime", "-o", "s.npy"]).err, "");
@@ -140,7 +140,7 @@ fn a_picture_of_loads_is_hatched() {
             assert_eq!(picture.contains(LEGEND), is_hatched && has_loads);
         }
     }
-    // The cells, too, and not only the legend.
+    // The cells are hatched, not only the legend.
     let place = place(0.3);
     place.map(&["scene.toml", "--no-png"]);
     write_without_status(&place);

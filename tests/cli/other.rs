@@ -2,7 +2,7 @@
 
 use crate::{Place, SCENE};
 
-/// A file of an incompatible version may mean other things by the same names.
+/// Channels of an incompatible version may have other meanings.
 #[test]
 fn render_warns_of_another_version() {
     let place = Place::with(SCENE);

@@ -70,7 +70,7 @@ fn figures_show_measured_points() {
         .assert_refused(&["--fig4d chord.csv: has push_chord_deg; must have push_angle_deg"]);
 }
 
-/// As `curve --data` refuses them.
+/// Points beyond reach are refused, as by `curve --data`.
 #[test]
 fn figures_refuse_points_beyond_reach() {
     let place = Place::with(SCENE);

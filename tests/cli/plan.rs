@@ -13,7 +13,7 @@ push_angle_deg = { from = 5, to = 70, count = 8 }
 distance_mm = [5.0, 10.0]
 "#;
 
-/// Runs `plan`, which must succeed, say nothing else, fit a terminal, and leave nothing behind.
+/// Runs `plan`, which must succeed without messages, fit a terminal, and write no file.
 fn plan(place: &Place, scene: &str) -> Run {
     let before = names(&place.path(""));
     let run = place.run(&["plan", scene]);
@@ -24,7 +24,7 @@ fn plan(place: &Place, scene: &str) -> Run {
     run
 }
 
-/// The effects as `name on cost: why`.
+/// Returns the effects as `name on cost: why`.
 fn effects(run: &Run) -> Vec<String> {
     let lines = run.out.split("\n\n").nth(1).unwrap().lines().skip(1);
     let squeezed = lines.map(|line| {
@@ -35,7 +35,7 @@ fn effects(run: &Run) -> Vec<String> {
     squeezed.collect()
 }
 
-/// The line below the effects that begins with `name`.
+/// Returns the line below the effects that begins with `name`.
 fn fact<'a>(run: &'a Run, name: &str) -> &'a str {
     let facts = run.out.split("\n\n").nth(2).unwrap();
     let line = facts.lines().find_map(|line| line.strip_prefix(name));
@@ -88,7 +88,7 @@ fn the_cone_scene() {
     let calls = "4: groups of 1 whisker, 2 sides of 512 rows, 256 rows a call";
     assert_eq!(fact(&run, "GPU calls"), calls);
 
-    // Only the seconds change, and they are a time.
+    // Only the seconds change, and they are positive.
     let same = |run: &Run| run.out.lines().take(16).collect::<Vec<_>>().join("\n");
     let again = plan(&place, "scene.toml");
     assert_eq!(same(&run), same(&again));
@@ -100,7 +100,7 @@ fn the_cone_scene() {
     );
 }
 
-/// Bytes of a file of this `format`, as `plan` says.
+/// Returns the bytes of a file of this `format`, as `plan` prints them.
 fn bytes(run: &Run, format: &str) -> f64 {
     let said: Vec<&str> = fact(run, format).split([' ', ',']).collect();
     let unit = ["B", "kB", "MB", "GB"];
@@ -108,7 +108,7 @@ fn bytes(run: &Run, format: &str) -> f64 {
     said[1].parse::<f64>().unwrap() * 1000_f64.powi(unit as i32)
 }
 
-/// Bytes of all files below a folder.
+/// Returns the bytes of all files below a folder.
 fn size(path: &std::path::Path) -> u64 {
     let files = || path.read_dir().unwrap().map(|entry| entry.unwrap().path());
     if path.is_dir() {
@@ -118,7 +118,7 @@ fn size(path: &std::path::Path) -> u64 {
     }
 }
 
-/// Of 9 whiskers 4 are packed, and of these all lines. What is missing are headers: 4 KB, and 15 files of metadata.
+/// The sample is 4 of 9 whiskers with all their lines. The estimate lacks headers: 4 KB, and 15 files of metadata.
 #[test]
 fn the_size_of_files_is_foretold() {
     let sweep = STRAIGHT.replace("tip_radius_um = 30\n", "");
@@ -153,7 +153,7 @@ fn everything_on() {
         .filter(|line| !line.contains(" | on | "))
         .map(|line| line.split(" | ").next().unwrap())
         .collect();
-    // They stand in for taper and parabola.
+    // Measured radii and the spiral replace taper and parabola.
     assert_eq!(off, ["measured radii", "euler spiral"], "{run:?}");
 }
 
@@ -170,7 +170,7 @@ fn a_sweep_names_its_axes() {
     assert_eq!(fact(&run, "cells"), cells);
 }
 
-/// Held all at once, these whiskers took 24 GB.
+/// All whiskers together would take 24 GB.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_large_sweep_is_never_held() {
@@ -193,7 +193,7 @@ fn a_large_sweep_is_never_held() {
     assert_eq!(run.code, Some(0), "{run:?}");
     let cells = "268435456: 1 push angle x 1 distance x 268435456 whiskers";
     assert_eq!(fact(&run, "cells"), cells);
-    // It ends when nobody reads on.
+    // `plan` ends when its reader ends.
     let run = bounded("\"$0\" curve scene.toml | head -n 2");
     assert_eq!((run.out.lines().count(), &*run.err), (2, ""), "{run:?}");
 }

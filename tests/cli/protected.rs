@@ -1,4 +1,4 @@
-//! Nothing that is not an output of the run is overwritten or removed.
+//! Protection of files that are not outputs of the run.
 
 use crate::data::DATA;
 use crate::traces::good;
@@ -10,7 +10,7 @@ use std::process::{Command, Stdio};
 const MAP: [&str; 4] = ["map", "scene.toml", "--engine=cpu", "-o"];
 
 impl Place {
-    /// The run is refused for its output `option`, and changes no file.
+    /// Checks that the run is refused for its output `option`, and changes no file.
     fn keeps(&self, arguments: &[&str], parts: &[&str]) {
         let before = self.all();
         let run = self.run(arguments);
@@ -18,7 +18,7 @@ impl Place {
         assert!(self.all() == before, "{run:?}");
     }
 
-    /// Name and bytes of every file.
+    /// Returns name and bytes of every file.
     fn all(&self) -> Vec<(String, Vec<u8>)> {
         let names = names(&self.path(""));
         let files = names.into_iter().filter(|name| self.path(name).is_file());
@@ -69,7 +69,7 @@ fn no_output_is_an_input() {
     place.keeps(&[&figure[..], &["fig4d.csv"]].concat(), &parts);
 }
 
-/// A scene by the name of its map, the file of its radii, and standard input.
+/// The inputs are a scene named like its map, the file of its radii, and standard input.
 #[test]
 fn no_output_is_a_file_of_the_scene() {
     let rows = "[whisker.profile]\nrows = \"radii.csv\"\n[pole]";
@@ -215,7 +215,7 @@ fn a_replaced_file_keeps_its_mode_and_a_read_only_one_is_refused() {
     }
 }
 
-/// Name of this host as it is in the names of temporary files.
+/// Returns the name of this host, as in the names of temporary files.
 fn host() -> String {
     let name = Command::new("uname").arg("-n").output().unwrap().stdout;
     let name = String::from_utf8(name).unwrap();
@@ -254,7 +254,7 @@ fn only_leftovers_are_removed() {
     assert_eq!(names(&place.path("")), kept);
 }
 
-/// Each run sweeps the folder that the others write to.
+/// Each run removes leftovers in the folder to which the others write.
 #[test]
 fn runs_at_once_write_the_same_files() {
     let place = Place::with(SCENE);

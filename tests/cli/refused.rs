@@ -1,11 +1,11 @@
-//! Wrong input is refused in one message, with exit code 2, before any file is made.
+//! Invalid input: one message, exit code 2, no file created.
 
 use crate::{Place, Run, SCENE, names};
 use std::fs;
 use std::io::{BufRead, BufReader};
 use std::process::Stdio;
 
-/// Runs `map` on [`SCENE`] with `line` in place of the line that begins like it; the message has all of `parts`.
+/// Runs `map` on [`SCENE`] with `line` instead of the line with the same key; the message must have all `parts`.
 fn refused(line: &str, parts: &[&str]) {
     let key = line.split('=').next().unwrap();
     let lines = SCENE.lines();
@@ -106,7 +106,7 @@ fn maps_too_large_to_compute() {
     assert_eq!(names(&place.path("")), ["scene.toml"]);
 }
 
-/// A map of more bytes than any disk of a machine that runs tests has.
+/// The map is larger than the disk of any machine that runs tests.
 #[test]
 fn maps_too_large_for_the_disk() {
     let axes = "friction = { from = 0, to = 0.5, count = 1000 }\n\
@@ -117,7 +117,7 @@ fn maps_too_large_for_the_disk() {
         let run = place.run(&["map", "scene.toml", "--engine=cpu", "--format", format]);
         run.assert_refused(&[
             "--output outputs: the map needs about ",
-            " are free; give a folder with more room, or --force",
+            " are free; give a folder with more space, or --force",
         ]);
         assert_eq!(names(&place.path("outputs")), [""; 0]);
     }
@@ -147,7 +147,7 @@ fn output_folders_that_cannot_be_used() {
     assert_eq!(names(&place.path("")), ["scene.toml"]);
 }
 
-/// Nobody makes files in `/proc`, not even an administrator.
+/// Nobody can create files in `/proc`, not even an administrator.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_folder_that_takes_no_files() {
@@ -156,7 +156,7 @@ fn a_folder_that_takes_no_files() {
     run.assert_refused(&["--output /proc: ", "give a folder that can be written"]);
 }
 
-/// An administrator may write to any folder, so that the program runs as another user then.
+/// An administrator may write to any folder, so the test then runs the program as another user.
 #[cfg(unix)]
 #[test]
 fn a_folder_without_permission() {

@@ -43,7 +43,7 @@ fn every_channel_can_be_drawn() {
     );
 }
 
-/// A part of a store is drawn like the map of that part.
+/// The picture of a part of a store equals that of the part's map.
 #[cfg(unix)]
 #[test]
 fn stores_and_parts_are_drawn_like_maps() {
@@ -74,7 +74,7 @@ fn stores_and_parts_are_drawn_like_maps() {
             "{channel:?}"
         );
     }
-    // One whisker of a map of several, and one distance.
+    // One whisker of several in a map, and one distance.
     run(&[
         "extract",
         "scene.zarr",
@@ -143,7 +143,7 @@ fn render_refuses_what_is_no_map() {
     assert_eq!(names(&place.path("outputs")), ["cut.exr", "scene.exr"]);
 }
 
-/// A place with a map in it.
+/// Returns a folder with a map.
 fn mapped(scene: &str) -> Place {
     let place = Place::with(scene);
     place.map(&["scene.toml", "--no-png"]);

@@ -68,7 +68,7 @@ fn states_that_do_not_exist_have_a_reason() {
     assert_eq!(names(&place.path("")), ["scene.toml"]);
 }
 
-/// Where the contact slides toward the base, friction is computed the wrong way: a warning, a column, a line.
+/// A contact that slides toward the base is reported by a warning, a column, and a line of the summary.
 #[test]
 fn sliding_toward_the_base_is_told() {
     let rough = SCENE.replace("[grid]", "[contact]\nfriction = 0.3\n[grid]");
@@ -95,7 +95,7 @@ fn sliding_toward_the_base_is_told() {
     }
     let map = place.map(&["scene.toml", "--no-png"]);
     map.assert_settled();
-    let told = "slide toward the base, against the friction assumed: force and moment are off";
+    let told = "slide toward the base, against the assumed friction: force and moment are inexact";
     assert!(map.count(told) > 10, "{map:?}");
     place.write("scene.toml", SCENE);
     assert!(!place.map(&["scene.toml", "--no-png"]).out.contains("slide"));

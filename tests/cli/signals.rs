@@ -1,11 +1,11 @@
-//! Interrupted and killed runs leave nothing, at the latest when the next one comes.
+//! Leftovers of interrupted runs, which the next run removes.
 
 use crate::{Place, Run, SCENE, names};
 use std::fs;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, SystemTime};
 
-/// A sweep that takes minutes.
+/// Scene of a sweep that takes minutes.
 fn long() -> String {
     let axes = "taper = { from = 0, to = 0.9, count = 400 }\ncurvature_per_mm = { from = 0, to = 0.04, count = 400 }";
     let scene = SCENE
@@ -15,7 +15,7 @@ fn long() -> String {
     format!("{}\n{axes}\n", scene.join("\n"))
 }
 
-/// A run in the middle of its work: its unfinished file is in `folder`.
+/// Starts a run, and waits until its unfinished file is in `folder`.
 fn begun(place: &Place, command: &mut Command, folder: &str) -> Child {
     let mut child = command
         .stdout(Stdio::piped())
@@ -62,8 +62,7 @@ fn an_interrupted_run_cleans_up() {
     }
 }
 
-/// A run that waits for the reader of a pipe keeps its table in a file without a name. Handlers are there before it reads its
-/// scene.
+/// A run that waits for the reader of a pipe has its table in an unnamed file. It installs handlers before it reads its scene.
 #[test]
 fn a_waiting_run_is_interrupted_and_an_ignored_signal_is_not_handled() {
     let place = Place::with(SCENE);
@@ -85,7 +84,7 @@ fn a_waiting_run_is_interrupted_and_an_ignored_signal_is_not_handled() {
     assert_eq!(child.wait_with_output().unwrap().status.code(), Some(143));
     assert_eq!(names(&place.path("tmp")), [""; 0]);
 
-    // As `nohup` starts it.
+    // `nohup` ignores the signal.
     let mut shell = Command::new("sh");
     shell.args([
         "-c",
@@ -109,14 +108,14 @@ fn what_a_killed_run_leaves_is_removed_by_the_next_one() {
         &mut place.plain_command(&["map", "scene.toml", "--engine=cpu"]),
         "outputs",
     );
-    // What has its process is left alone.
+    // Files of running processes are kept.
     place.map(&["small.toml"]);
     let left = unfinished(&place, "outputs");
     assert_eq!(left.len(), 1);
     killed.kill().unwrap();
     killed.wait().unwrap();
     assert_eq!(unfinished(&place, "outputs"), left);
-    // Other hosts may see no lock of ours, and we none of theirs, but theirs grow old, by whatever clock.
+    // Locks of other hosts are not visible, so the age of their files decides, by the clock of the file server.
     let hour = Duration::from_secs(3600);
     let now = SystemTime::now();
     let dates = [now - 23 * hour, now - 25 * hour, now + 48 * hour];

@@ -1,4 +1,4 @@
-//! `whiskmap map --format zarr` and `whiskmap status`: whoever fills a store, and however often, it is the same.
+//! `whiskmap map --format zarr` and `whiskmap status`: equal bytes for any processes, order and interruptions.
 
 use crate::{Place, Run};
 use std::collections::BTreeMap;
@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use whiskmap::store::{StoredMap, ZarrStore};
 
-/// Eight blocks of three whiskers.
+/// Scene of eight blocks with three whiskers each.
 pub const SWEEP: &str = r#"title = "A sweep in blocks"
 [whisker]
 length_mm = 20
@@ -33,7 +33,7 @@ pub fn good(place: &Place, folder: &str, options: &[&str]) -> Run {
     run
 }
 
-/// Every file below a folder, with its bytes.
+/// Returns every file below a folder, with its bytes.
 pub fn files(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     let mut found = BTreeMap::new();
     let mut folders = vec![folder.to_owned()];
@@ -115,7 +115,7 @@ fn any_shards_in_any_order_give_one_store() {
         "{run:?}"
     );
 
-    // Twice, at once, and what is there once more.
+    // Two runs at once, then a repeated one.
     let spawn = |shard| {
         let arguments = [&MAP[..], &["parts", shard]].concat();
         let mut command = place.plain_command(&arguments);
@@ -133,7 +133,7 @@ fn any_shards_in_any_order_give_one_store() {
     assert_same(&place, "whole", "parts");
 }
 
-/// A run that has finished so many blocks, and is at work on the next one.
+/// Starts a run, and waits until it has finished `count` blocks.
 pub fn begun(place: &Place, folder: &str, blocks: usize) -> Child {
     let arguments = [&MAP[..], &[folder, "--resume", "--threads=1"]].concat();
     let mut command = place.plain_command(&arguments);
@@ -156,7 +156,7 @@ fn a_killed_run_goes_on_where_it_was() {
     let place = Place::with(SWEEP);
     good(&place, "whole", &[]);
     for blocks in 0..7 {
-        // With no block asked for it is killed before, or while, the store is begun.
+        // With a count of 0, it is killed before or during the creation of the store.
         let mut child = begun(&place, "killed", blocks);
         child.kill().unwrap();
         child.wait().unwrap();
@@ -166,7 +166,7 @@ fn a_killed_run_goes_on_where_it_was() {
     assert_same(&place, "whole", "killed");
 }
 
-/// The kernel stops a writer in the middle of a file, by a signal or, where that is ignored, by an error like a full disk's.
+/// The kernel stops a writer in the middle of a file, by a signal or, if it is ignored, by an error as on a full disk.
 #[test]
 fn a_file_that_grows_too_large_is_never_there_in_part() {
     let place = Place::with(SWEEP);
@@ -195,7 +195,7 @@ pub fn is_hidden(path: &Path) -> bool {
     path.file_name().unwrap().to_str().unwrap().starts_with('.')
 }
 
-/// What is there of the store in the folder `torn` is whole, and a run that goes on finishes it.
+/// Checks that all files of the store in the folder `torn` are complete, and that a resumed run finishes it.
 fn goes_on(place: &Place) {
     let whole = files(&place.path("whole"));
     for name in files(&place.path("torn")).keys() {
@@ -219,7 +219,7 @@ fn an_interrupted_run_says_how_to_go_on() {
     crate::signals::send("TERM", &child);
     let run = Run::of(&child.wait_with_output().unwrap());
     assert_eq!(run.code, Some(143), "{run:?}");
-    let said = "interrupted by SIGTERM; unfinished files are removed; finished blocks stay: go on by the same command with --resume\n";
+    let said = "interrupted by SIGTERM; unfinished files are removed; finished blocks are kept: resume with the same command and --resume\n";
     assert!(run.err.ends_with(said), "{run:?}");
     assert!(!files(&place.path("out")).keys().any(|path| is_hidden(path)));
     good(&place, "out", &["--resume"]);
@@ -249,7 +249,7 @@ fn a_store_is_not_continued_otherwise_than_it_was_begun() {
         .assert_refused(&["is not a store of whiskmap"]);
 }
 
-/// `/sys` is a folder in which nobody makes files, not even root.
+/// Nobody can create files in `/sys`, not even root.
 #[test]
 fn a_store_that_cannot_be_written_is_said_before_any_work() {
     let place = Place::with(SWEEP);

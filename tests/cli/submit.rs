@@ -1,4 +1,4 @@
-//! `whiskmap submit`: a script that Slurm runs; here a shell does, task by task. `tests/cluster` has a real Slurm.
+//! `whiskmap submit`: the script, run by a shell task by task. `tests/cluster` runs it on Slurm.
 
 use crate::store::{SWEEP, assert_same, good};
 use crate::{Place, Run};
@@ -7,7 +7,7 @@ use std::os::unix::fs::PermissionsExt;
 use std::path::Path;
 use std::process::Command;
 
-/// Runs a script in the shell, with these variables; `sbatch` notes how it is called.
+/// Runs a script in the shell with these variables; a fake `sbatch` records its arguments.
 fn shell(place: &Place, script: &[&str], variables: &[(&str, &str)]) -> Run {
     let tools = place.path("tools");
     fs::create_dir_all(&tools).unwrap();
@@ -61,7 +61,7 @@ fn the_tasks_of_the_script_fill_the_store_and_a_last_job_tells() {
     assert!(run.out.lines().count() < 25, "{run:?}");
     place.write("sweep.sbatch", &run.out);
 
-    // From another folder, as nodes may; one task twice, as if requeued.
+    // From another folder, and one task twice, as after a requeue.
     for task in ["2", "0", "0", "1"] {
         let variables = [
             ("SLURM_ARRAY_JOB_ID", "7"),
@@ -149,7 +149,7 @@ fn submit_refuses_what_no_task_could_do() {
     scene("wrong.toml").assert_refused(&["length_mm = -20"]);
 }
 
-/// The lines of the pages for GNU parallel and Kubernetes.
+/// The lines for GNU parallel and Kubernetes in the documentation run.
 #[test]
 fn other_schedulers_fill_the_store_as_the_pages_say() {
     let page = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/sweeps.md");
@@ -171,7 +171,7 @@ fn other_schedulers_fill_the_store_as_the_pages_say() {
         fs::remove_dir_all(place.path("found")).unwrap();
     };
 
-    // Where there is no GNU parallel, a loop with its `{}`.
+    // Without GNU parallel, a loop replaces `{}`.
     let parallel = "command -v parallel || parallel() {
         while [ \"$1\" != whiskmap ]; do shift; done
         while read -r line; do eval \"$(echo \"$@\" | sed \"s/{}/$line/g\")\" || return; done
@@ -185,7 +185,7 @@ fn other_schedulers_fill_the_store_as_the_pages_say() {
     );
     as_whole();
 
-    // Of the indexed job, its command for each index.
+    // The command of the indexed job runs for each index.
     let job = block("JOB_COMPLETION_INDEX");
     let command = job.split('\'').nth(1).unwrap();
     assert!(job.contains("completionMode: Indexed") && job.contains("completions: 8"));

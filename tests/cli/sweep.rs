@@ -71,7 +71,7 @@ fn every_panel_is_the_map_of_its_whisker() {
         place.map(&["single.toml", "--no-png"]).assert_settled();
         let single = StoredMap::open(&place.path("outputs/single.exr")).unwrap();
         for channel in sweep.channels() {
-            // How many steps it took depends on which cells were computed together.
+            // The number of steps depends on the cells that were computed together.
             if channel != "newton_steps" {
                 same(channel, &sweep, index, &single);
             }
@@ -79,7 +79,7 @@ fn every_panel_is_the_map_of_its_whisker() {
     }
 }
 
-/// Codes are equal; quantities are equal to rounding, measured by the largest of the panel.
+/// Checks that codes are equal, and quantities up to rounding, relative to the largest of the panel.
 fn same(channel: &str, sweep: &StoredMap, index: usize, single: &StoredMap) {
     let panel: Vec<f64> = sweep.read_panel(channel, index).unwrap().values().collect();
     let alone: Vec<f64> = single.read_panel(channel, 0).unwrap().values().collect();
@@ -87,7 +87,7 @@ fn same(channel: &str, sweep: &StoredMap, index: usize, single: &StoredMap) {
     let largest = finite.map(|value| value.abs()).fold(0.0, f64::max);
     let allowed = match channel {
         "regime" | "status" => 0.0,
-        // Rounding decides whether a residual is measured or a bound: only whether there is one can be compared.
+        // Rounding decides whether a residual is measured or a bound, so only its presence is compared.
         "residual" => f64::INFINITY,
         _ => 1e-6 * largest,
     };

@@ -18,7 +18,7 @@ fn it_says_what_it_picked_and_keeps_it_with_the_map() {
     assert_eq!(tolerances["bounded"], BOUNDED);
 }
 
-/// Coarser steps, other numbers; not by more than was allowed.
+/// Coarser steps change the results by at most the tolerance.
 #[test]
 fn a_curve_is_as_exact_as_asked() {
     let place = Place::with(SCENE);
@@ -55,7 +55,7 @@ fn what_is_no_tolerance_is_refused() {
         assert_eq!(run.code, Some(2), "{text}: {run:?}");
         assert!(run.err.contains(why), "{text}: {}", run.err);
     }
-    // The nearest pole is at a tenth of the length: a residual of 1e-12 is 6e-10 degrees there.
+    // The nearest pole is at a tenth of the length: there, a residual of 1e-12 is 6e-10 degrees.
     let run = place.run(&["curve", "scene.toml", "--tolerance", "1e-10deg"]);
     run.assert_refused(&["must be at least", "e-10deg, which the finest steps"]);
 }

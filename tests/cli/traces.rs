@@ -1,4 +1,4 @@
-//! What `whiskmap curve`, `branch` and `shape` have in common: where tables and plots go, what is refused.
+//! Common behaviour of `whiskmap curve`, `branch` and `shape`: tables, plots, refused input.
 
 use crate::{Place, Run, SCENE, names};
 
@@ -12,7 +12,7 @@ pub const SPREAD: &str = "side,distance_mm,kind,push_angle_deg,slip_off,pull_off
                       p50_deg,p75_deg,p95_deg,mean_deg,sd_deg,sd_first_order_deg";
 pub const CB: [&str; 5] = ["branch", "scene.toml", "--distance", "15.66", "--side=cb"];
 
-/// Runs the program, which must succeed and say nothing else.
+/// Runs the program, which must succeed without messages.
 pub fn good(place: &Place, arguments: &[&str]) -> Run {
     let run = place.run(arguments);
     assert_eq!(
@@ -23,7 +23,7 @@ pub fn good(place: &Place, arguments: &[&str]) -> Run {
     run
 }
 
-/// The cells of a table below its header, which must be `header`.
+/// Returns the cells of a table, whose header must be `header`.
 pub fn cells<'a>(text: &'a str, header: &str) -> Vec<Vec<&'a str>> {
     let mut lines = text.lines();
     assert_eq!(lines.next(), Some(header));
@@ -55,7 +55,7 @@ fn tables_and_plots_go_where_they_are_told() {
         assert_eq!(run.out, "t.csv\np.PNG\n");
         assert_eq!(place.bytes("t.csv"), streamed.as_bytes());
         assert!(place.bytes("p.PNG").starts_with(b"\x89PNG"));
-        // A plot alone leaves standard output to its name.
+        // With only a plot, standard output has its name.
         assert_eq!(
             good(&place, &[arguments, &["--plot", "p.svg"]].concat()).out,
             "p.svg\n"
@@ -69,7 +69,7 @@ fn tables_and_plots_go_where_they_are_told() {
     assert_eq!(names(&place.path("")), left);
 }
 
-/// `--help` defines every column of every table, in its order, and nothing else.
+/// `--help` defines every column of every table in order, and no other column.
 #[test]
 fn help_defines_the_columns() {
     let place = Place::with(SCENE);

@@ -30,7 +30,7 @@ fn a_spread_is_a_table_and_bands() {
             "{row:?}"
         );
     }
-    // The seed is 1 where it is not given.
+    // The default seed is 1.
     let seeded = |seed| good(&place, &[&sample[..], &["--seed", seed]].concat()).out;
     assert_eq!(seeded("1"), run.out);
     assert_ne!(seeded("2"), run.out);
@@ -43,7 +43,7 @@ fn a_spread_is_a_table_and_bands() {
     assert!(svg.contains(">5 to 95 % of samples<") && svg.contains(">25 to 75 % of samples<"));
 }
 
-/// What does not draw whiskers does not look at the table, nor does what reads a stored scene.
+/// Commands that draw no whiskers ignore the table, also in stored scenes.
 #[test]
 fn other_commands_leave_the_table_alone() {
     let place = uncertain();
@@ -77,7 +77,7 @@ fn draws_outside_of_the_limits_are_told() {
     let place = Place::with(&format!("{SCENE}[uncertainty]\ntip_radius_um = 1.5\n"));
     let run = place.run(&["curve", "scene.toml", "--samples", "50"]);
     assert_eq!(run.code, Some(0), "{run:?}");
-    let told = "draws were outside of the scene's limits, and were drawn again\n";
+    let told = "draws were outside the scene's limits and were repeated\n";
     assert!(
         run.err.starts_with("note: ") && run.err.ends_with(told),
         "{run:?}"

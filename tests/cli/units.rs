@@ -1,4 +1,4 @@
-//! Units of options, and warnings about numbers of a scene that look like numbers in another unit.
+//! Units of options, and warnings about values that look like another unit.
 
 use crate::{Place, SCENE};
 
@@ -41,7 +41,7 @@ fn distances_and_angles_take_units() {
     assert_eq!(branch("10,1.5cm"), branch("10,15"));
 }
 
-/// Messages give values in the unit of the option, whatever the unit of the argument.
+/// Messages give values in the unit of the option, for any unit of the argument.
 #[test]
 fn messages_name_units() {
     let place = Place::with(SCENE);

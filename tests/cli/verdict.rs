@@ -1,11 +1,11 @@
-//! `whiskmap fit`: what is not a fit, and tables as other programs write them.
+//! `whiskmap fit`: best values that are not a fit, and tables of other programs.
 
 use crate::data::{DATA, place};
 use crate::fit::{FIT, fit, json};
 use crate::{Run, names};
 use serde_json::Value;
 
-/// Degrees are asked for; radians have an exit code, and no files but the document.
+/// Data in radians are not a fit: exit code 1, and no file except the JSON.
 #[test]
 fn what_is_not_a_fit_says_so() {
     let place = place();
@@ -52,14 +52,14 @@ fn what_is_not_a_fit_says_so() {
     let both = [&FIT[..], &more[..2], &["-o", "-", "--json", "fit.json"]].concat();
     assert!(place.run(&both).out.ends_with("\nfit.json\n"));
 
-    // The reader of standard output is gone.
+    // The reader of standard output has ended.
     let (reader, writer) = std::io::pipe().unwrap();
     drop(reader);
     let mut closed = place.plain_command(&[&FIT[..], &more[..2]].concat());
     let run = Run::of(&closed.stdout(writer).output().unwrap());
     run.assert_said(1, "error: not a fit: RMS ");
 
-    // Deviations may be too small for a good fit.
+    // Deviations can be too small for a good fit.
     place.write(
         "points.csv",
         &DATA
@@ -79,7 +79,7 @@ fn what_is_not_a_fit_says_so() {
     );
 }
 
-/// The tables of other programs: separators, decimal commas, UTF-16, capital letters, more columns.
+/// Tables of other programs are read: separators, decimal commas, UTF-16, capital letters, more columns.
 #[test]
 fn tables_of_other_programs_are_read() {
     let place = place();

@@ -1,11 +1,10 @@
 #!/usr/bin/env bash
 # A sweep on Slurm that loses a node: a controller and two virtual nodes on this machine run the script of `whiskmap submit`, one
-# node is killed in the middle of a task, and the store must be, file by file, that of a single process. Takes the program from
-# the first argument, or builds it. Installs Slurm on Debian and Ubuntu; where that cannot be done it says so and exits with 0,
+# node is killed in the middle of a task, and the store must be, file by file, that of a single process. x# the first argument, or builds it. Installs Slurm on Debian and Ubuntu; where that cannot be done it says so and exits with 0,
 # or with 1 if WHISKMAP_REQUIRE_CLUSTER=1.
 set -euo pipefail
 here="$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)"
-limit=900 # seconds for anything that is waited for
+limit=900 # seconds for each wait
 
 installed() { command -v slurmctld && command -v slurmd && command -v munged; } >/dev/null
 install() {
@@ -28,7 +27,7 @@ fi
 scratch="$(mktemp -d)"
 export SLURM_CONF="$scratch/slurm.conf"
 
-# The processes of this sweep, daemons and tasks, that have this line in their environment, too.
+# Prints the processes of this sweep, daemons and tasks; with an argument, those with this line in their environment.
 of_sweep() {
     local environment pid
     for environment in $(grep -lzxF "SLURM_CONF=$SLURM_CONF" /proc/[0-9]*/environ 2>/dev/null); do
@@ -40,7 +39,7 @@ of_sweep() {
 clean_up() {
     local status=$?
     if [ "$status" != 0 ]; then
-        echo "FAILED; what was said:"
+        echo "FAILED; recent output:"
         squeue || true
         tail -n 20 "$scratch"/*.log "$scratch"/jobs/*.out || true
     fi
@@ -55,15 +54,14 @@ wait_until() {
     local end=$((SECONDS + limit))
     until "$@"; do
         if [ "$SECONDS" -ge "$end" ]; then
-            echo "after $limit s still not: $*"
+            echo "timeout after $limit s: $*"
             exit 1
         fi
         sleep 0.05
     done
 }
 
-# 1. A controller and two nodes, without systemd, cgroups or a database. A node is lost when it is said to be, not when a busy
-#    machine is late to answer. A task is requeued when its credential has expired.
+# 1. A controller and two nodes, without systemd, cgroups or a database. x#    machine is late to answer. A task is requeued when its credential has expired.
 host="$(hostname -s)"
 port=$((20000 + $$ % 3000 * 3))
 mkdir "$scratch/state" "$scratch/jobs"
@@ -103,7 +101,7 @@ slurmctld -D -c -f "$SLURM_CONF" 2>"$scratch/slurmctld.log" &
 slurmd -D -c -f "$SLURM_CONF" -N n1 2>"$scratch/slurmd-n1.log" &
 slurmd -D -c -f "$SLURM_CONF" -N n2 2>"$scratch/slurmd-n2.log" &
 n2=$!
-disown -a # bash would tell of their end
+disown -a # bash would print their end
 is_up() { [ "$(sinfo -h -t idle -o %D 2>/dev/null)" = 2 ]; }
 wait_until is_up
 
@@ -137,7 +135,7 @@ kill -KILL "$n2" "$(sed -n 's/^PPid:\t//p' "/proc/$task/status")" "$task"
 scontrol update NodeName=n2 State=DOWN Reason=killed
 echo "killed node n2 and, in its middle, shard $shard"
 
-# 4. Slurm begins that task again, on the other node; all end well, the closing status too, which comes last.
+# 4. Slurm restarts that task, on the other node; all tasks and the closing status succeed.
 is_over() { jobs="$(squeue -h 2>/dev/null)" && [ -z "$jobs" ]; }
 wait_until is_over
 all="$(scontrol -o show job)"
@@ -146,8 +144,8 @@ grep -q "ArrayTaskId=$shard .*Restarts=[1-9]" <<<"$all"
 grep -q "blocks: 1 of 16" "slurm-${job}_$shard.out"
 grep -q " 16  of 16 blocks" "slurm-${job}_status.out"
 
-# 5. The store of one process is the same.
+# 5. The store of a single process is equal.
 "$whiskmap" map "$here/sweep.toml" -o "$scratch/whole" --format zarr --engine cpu --channels regime,force_un >/dev/null
 "$whiskmap" status "$shared/sweep.zarr" --verify
 diff -r "$scratch/whole/sweep.zarr" "$shared/sweep.zarr"
-echo "the store is that of a single process, byte for byte"
+echo "the store equals that of a single process"

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Compares whiskmap with AUTO-07p, on the paper's own boundary-value problem. Takes the program from the first
-# argument, or builds it. Installs AUTO on Debian and Ubuntu; where that cannot be done it says so and exits with 0,
-# or with 1 if WHISKMAP_REQUIRE_PEERS=1.
+# Compares whiskmap with AUTO-07p on the paper's boundary-value problem. The program is the first argument; without it, it is
+# built. AUTO is installed on Debian and Ubuntu. Without AUTO, the script prints a message and exits with 0, or with 1 if
+# WHISKMAP_REQUIRE_PEERS=1.
 set -euo pipefail
 here="$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)"
 

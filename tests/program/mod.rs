@@ -1,4 +1,4 @@
-//! The program in a folder of its own, and the output of its runs.
+//! Runs of the program in a temporary folder, and their output.
 #![allow(dead_code, reason = "each test program uses its own share")]
 #![allow(clippy::panic, reason = "a test fails by panicking")]
 
@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::process::Output;
 use tempfile::TempDir;
 
-/// A whisker that shows every regime but two within a split second.
+/// Scene with all regimes except two, which takes a fraction of a second.
 pub const SCENE: &str = r#"title = "A small map"
 [whisker]
 length_mm = 20
@@ -24,11 +24,11 @@ push_angle_deg = { from = -70, to = 70, count = 24 }
 distance_mm = { from = 2, to = 20, count = 24 }
 "#;
 
-/// A folder with scenes in it, and the program to be run there.
+/// Temporary folder in which the program runs.
 pub struct Place(TempDir);
 
 impl Place {
-    /// A folder with `text` as `scene.toml`.
+    /// Creates a folder with `text` as `scene.toml`.
     pub fn with(text: &str) -> Self {
         let place = Self(tempfile::tempdir().unwrap());
         place.write("scene.toml", text);
@@ -43,18 +43,18 @@ impl Place {
         fs::write(self.path(name), text).unwrap();
     }
 
-    /// The program, not yet run.
+    /// Returns a command that runs the program.
     pub fn command(&self, arguments: &[&str]) -> Command {
         Command::from_std(self.plain_command(arguments))
     }
 
-    /// The program as a command of the standard library, with streams left to be set.
+    /// Returns a command of the standard library, whose streams can be set.
     pub fn plain_command(&self, arguments: &[&str]) -> std::process::Command {
         let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_whiskmap"));
         command
             .args(arguments)
             .current_dir(self.0.path())
-            // Where it is not set, the libraries of software adapters complain on standard error.
+            // The program must not print the errors of libraries that need this variable.
             .env_remove("XDG_RUNTIME_DIR");
         command
     }
@@ -76,7 +76,7 @@ impl Place {
     }
 }
 
-/// Names of what is in a folder, in order; nothing where there is no folder.
+/// Returns the sorted names of the entries of a folder; none without a folder.
 pub fn names(folder: &Path) -> Vec<String> {
     let mut names: Vec<String> = fs::read_dir(folder)
         .into_iter()
@@ -87,7 +87,7 @@ pub fn names(folder: &Path) -> Vec<String> {
     names
 }
 
-/// What a run of the program left behind.
+/// Exit code and output of a run.
 #[derive(Debug)]
 pub struct Run {
     pub code: Option<i32>,
@@ -106,7 +106,7 @@ impl Run {
         run
     }
 
-    /// The number before `what` in the summary.
+    /// Returns the number before `what` in the summary.
     pub fn count(&self, what: &str) -> u64 {
         let line = self
             .out
@@ -119,20 +119,20 @@ impl Run {
             .unwrap()
     }
 
-    /// Every cell has an answer, and it is that of its row.
+    /// Checks that no cell is unresolved, and that no cell contradicts its row.
     pub fn assert_settled(&self) {
         assert_eq!(self.count("unresolved"), 0, "{self:?}");
         let disagreements = "disagreements between cells and boundaries";
         assert_eq!(self.count(disagreements), 0, "{self:?}");
     }
 
-    /// It ended with this exit code, and said this.
+    /// Checks the exit code, and that standard error contains `said`.
     pub fn assert_said(&self, code: i32, said: &str) {
         assert_eq!(self.code, Some(code), "{self:?}");
         assert!(self.err.contains(said), "{self:?}");
     }
 
-    /// Refused as wrong input: exit code 2, nothing on standard output, one message that says all of `parts`.
+    /// Checks for invalid input: exit code 2, no standard output, one message with all `parts`.
     pub fn assert_refused(&self, parts: &[&str]) {
         assert_eq!(self.code, Some(2), "{self:?}");
         assert_eq!(self.out, "", "{self:?}");
