@@ -13,7 +13,9 @@ use whiskmap::engine::Engine;
 use whiskmap::map::{self, Panel};
 use whiskmap::plan::Plan;
 use whiskmap::scene::Scene;
-use whiskmap::store::{self, BlockState, CheckDepth, Description, PackedPanel, TemporaryFiles, ZarrStore};
+use whiskmap::store::{
+    self, BlockState, CheckDepth, Description, PackedPanel, TemporaryFiles, ZarrStore,
+};
 
 /// Blocks of one of `count` processes: every `count`-th block.
 #[derive(Clone, Copy, Debug)]
