@@ -55,7 +55,7 @@ fn cells_are_where_their_values_are() {
         }
     }
     let zero = body(&pixels, 72.5 / 105.0, 0.25);
-    assert_eq!(zero, WHITE, "the line at 0");
+    assert!(zero.iter().all(|channel| *channel > 0xe0), "the line at 0");
 }
 
 #[test]
