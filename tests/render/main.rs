@@ -14,7 +14,7 @@ use drawn::Pixels;
 use map::panel;
 use std::collections::BTreeMap;
 use whiskmap::render::{self, MapOptions, Picture, RenderError};
-use whiskmap::scene::Setup;
+use whiskmap::scene::SceneData;
 use whiskmap::store::{Audit, EngineCells, MapWriter, Panel, StoredMap, TemporaryFiles};
 
 const CONTACT: [u8; 3] = [0x83, 0xc4, 0xa4];
@@ -34,7 +34,11 @@ fn colours(picture: &Pixels) -> BTreeMap<[u8; 3], usize> {
 }
 
 /// Writes the panels of a map and draws it.
-fn picture(scene: &Setup, panels: &[Panel], options: &MapOptions) -> Result<Picture, RenderError> {
+fn picture(
+    scene: &SceneData,
+    panels: &[Panel],
+    options: &MapOptions,
+) -> Result<Picture, RenderError> {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("map.exr");
     let tolerances = serde_json::json!(null);
@@ -52,7 +56,7 @@ fn picture(scene: &Setup, panels: &[Panel], options: &MapOptions) -> Result<Pict
 }
 
 /// Draws one channel of a map, or the regimes.
-fn draw(scene: &Setup, panels: &[Panel], channel: Option<&str>) -> Pixels {
+fn draw(scene: &SceneData, panels: &[Panel], channel: Option<&str>) -> Pixels {
     let options = MapOptions {
         channel,
         ..MapOptions::default()
@@ -61,7 +65,7 @@ fn draw(scene: &Setup, panels: &[Panel], channel: Option<&str>) -> Pixels {
 }
 
 /// A panel all of whose regimes are `regime` and whose quantities are all `value`.
-fn flat(scene: &Setup, regime: &[u32], value: f32) -> Panel {
+fn flat(scene: &SceneData, regime: &[u32], value: f32) -> Panel {
     let mut flat = panel(scene, 0);
     let cells = flat.regime.len();
     flat.regime = regime.to_vec();

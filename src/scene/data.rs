@@ -1,16 +1,17 @@
-//! What a scene holds, as plain data.
+//! Data of a scene, and the whiskers of its sweep.
 
 use super::deviations::Deviations;
 use super::grid::{FARTHEST, Grid, NEAREST, Place};
 use super::parameter::Parameter;
+use super::toml::SceneText;
 use super::whisker::{Curvature, Pole, Swept, Whisker};
 
-/// What a [`Scene`](super::Scene) holds. It says nothing of whether the values are right; only a scene does.
+/// Data of a scene. Only a [`Scene`](super::Scene) guarantees that the values are valid.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Setup {
+pub struct SceneData {
     /// One line for people.
     pub title: String,
-    /// The whisker as the file describes it, and the first one of a sweep; [`Setup::whiskers`] yields those to simulate.
+    /// The whisker as the file describes it, and the first one of a sweep; [`SceneData::whiskers`] yields those to simulate.
     pub whisker: Whisker,
     /// The pole, and the first one of a sweep.
     pub pole: Pole,
@@ -20,13 +21,11 @@ pub struct Setup {
     pub uncertainty: Option<Deviations>,
     /// Stem of the output files.
     pub name: String,
-    /// The file as it was read.
-    pub text: String,
-    /// Message that names unused columns of the CSV file of its radii.
-    pub note: Option<String>,
+    /// The scene as TOML.
+    pub text: SceneText,
 }
 
-impl Setup {
+impl SceneData {
     /// The scene's whisker and pole with the values of `place` in place of their own. A taper gives the tip its radius; the
     /// vertex of a curvature axis is the whisker's own, or 0 where its file gives none.
     #[must_use]
