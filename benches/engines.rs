@@ -8,14 +8,14 @@ mod cells;
 #[path = "../tests/random_rods/mod.rs"]
 mod random_rods;
 
-use cells::Cells;
+use cells::{RandomRows, solve};
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use random_rods::{USUAL, conditions};
 use std::convert::Infallible;
 use std::hint::black_box;
 use std::path::Path;
-use whiskmap::engine::Engine;
 use whiskmap::engine::gpu::{Gpu, Precision};
+use whiskmap::engine::{Cpu, Engine};
 use whiskmap::map;
 use whiskmap::numerics::Unit;
 use whiskmap::plan::Plan;
@@ -61,25 +61,22 @@ fn integrators(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// Every engine by the number of whiskers in a call; the CPU starts from the sheets' guesses, a GPU from references.
+/// Every engine by the number of cells in a batch.
 fn engines(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("engines");
-    let mut engines: Vec<Box<dyn Engine>> = Vec::new();
+    let mut engines: Vec<Box<dyn Engine>> = vec![Box::new(Cpu::default())];
     for precision in [Precision::F32, Precision::F64] {
         // Without a driver the CPU is measured alone.
         engines.extend(Gpu::new(precision).map(|gpu| Box::new(gpu) as Box<dyn Engine>));
     }
     for whiskers in [1, 32, 512] {
-        let cells = Cells::random(USUAL, whiskers, 2, |_, _| ());
-        let size = cells.shots.len();
-        group.throughput(Throughput::Elements(size as u64));
-        group.bench_function(BenchmarkId::new("cpu f64", size), |b| {
-            b.iter(|| black_box(&cells).refined());
-        });
+        let rows = RandomRows::new(USUAL, whiskers, 2, |_, _| ());
         for engine in &mut engines {
+            let batch = rows.batch(engine.as_ref());
+            group.throughput(Throughput::Elements(batch.cells() as u64));
             let name = engine.describe().engine;
-            group.bench_function(BenchmarkId::new(name, size), |b| {
-                b.iter(|| black_box(&cells).solve(engine.as_mut()));
+            group.bench_function(BenchmarkId::new(name, batch.cells()), |b| {
+                b.iter(|| solve(engine.as_mut(), black_box(&batch)));
             });
         }
     }

@@ -177,7 +177,7 @@ fn solve(push: real, steps: u32) -> Cell {
         bends = abs(2.0 * rod.bend * by.x) * min(1.0, 0.37 / (rod.taper * tau + 1e-9));
     }
     if largest > 0.4 || bends > FARTHEST_REST || abs(load) * s * s > LARGEST_Q {
-        cell.outcome = FAR;
+        cell.outcome = OUTSIDE_TRUST;
     }
     if residual > GOAL * min(1.0, 2.0 * s) || step_length > LONGEST_STEP {
         cell.outcome = MISSED;

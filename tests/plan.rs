@@ -4,18 +4,16 @@
 use std::collections::VecDeque;
 use std::convert::Infallible;
 use std::sync::Arc;
-use whiskmap::engine::{CellDifference, Engine, EngineDescription, EngineError, Outcome, Question};
+use whiskmap::engine::{Cells, Engine, EngineDescription, EngineError, Outcome, RowBatch};
 use whiskmap::map::{self, EngineCells, Panel, STATE_CHANNELS};
 use whiskmap::plan::{MEMORY_LIMIT, Plan, effects};
 use whiskmap::scene::Scene;
-use whiskmap::shooting::Resolution;
 
-/// Counts its calls, and hands all cells over.
+/// Counts its batches, and certifies no cell.
 #[derive(Default)]
 struct Counting {
     calls: usize,
-    /// Cells of the questions without answers.
-    asked: VecDeque<usize>,
+    submitted: VecDeque<Arc<RowBatch>>,
 }
 
 impl Engine for Counting {
@@ -23,27 +21,24 @@ impl Engine for Counting {
         EngineDescription::of(None)
     }
 
-    fn goal(&self) -> f64 {
+    fn residual_bound(&self) -> f64 {
         1.0
     }
 
-    fn resolution(&self, resolution: Resolution) -> Resolution {
-        resolution
-    }
-
-    fn ask(&mut self, question: Arc<Question>) -> Result<(), EngineError> {
+    fn submit(&mut self, batch: Arc<RowBatch>) -> Result<(), EngineError> {
         self.calls += 1;
-        self.asked.push_back(question.cells());
+        self.submitted.push_back(batch);
         Ok(())
     }
 
-    fn answer(&mut self) -> Result<Vec<CellDifference>, EngineError> {
-        let far = CellDifference {
-            numbers: [f32::NAN; STATE_CHANNELS.len()],
-            residual: f32::NAN,
-            outcome: Outcome::Far,
-        };
-        Ok(vec![far; self.asked.pop_front().unwrap()])
+    fn collect(&mut self) -> Result<Cells, EngineError> {
+        let batch = self.submitted.pop_front().unwrap();
+        let mut cells = Cells::new(&batch, Outcome::NoBasePoint);
+        for (base, trajectory) in batch.base_points.iter().zip(&batch.trajectories) {
+            let from = trajectory.first_cell;
+            cells.outcome[from..from + base.cells.len()].fill(Outcome::OutsideTrust);
+        }
+        Ok(cells)
     }
 }
 
@@ -67,18 +62,18 @@ fn kept(push_angles: &str, distances: &str, more: &str) -> (usize, usize) {
     let mut engine = Counting::default();
     let discard = &mut |_| Ok::<(), Infallible>(());
     let Ok(summary) = map::run(&scene, &plan, Some(&mut engine), &mut |_| (), discard);
-    // Rows of few cells have no references, of which an engine could solve any.
+    // Rows of few cells have no base points.
     let is_asked = scene.grid.push_angle_deg.len() > 100;
     assert_eq!(engine.calls, if is_asked { plan.engine_calls } else { 0 });
     assert_eq!(summary.cells(), plan.cells as u64);
     let EngineCells {
-        far,
-        without_reference,
+        outside_trust,
+        without_base_point,
         ..
     } = summary.engine_cells;
     let of_cpu = EngineCells {
-        far,
-        without_reference,
+        outside_trust,
+        without_base_point,
         ..EngineCells::default()
     };
     assert_eq!(summary.engine_cells, of_cpu);

@@ -1,12 +1,12 @@
 //! Every GPU adapter, in `f32` and, where it can, in `f64`: the cells of the scene as differences from references of their rows.
 
-use super::task::{Task, faces, magnitudes};
+use super::task::{Task, faces};
 use super::watch::watch;
 use super::{Engine, Measurement, Report, Rung, Stages};
 use crate::engine::gpu::{Gpu, Precision, adapters};
-use crate::engine::{BasePoint, Engine as _, EngineError, Outcome, Question, on_gpu};
-use crate::refine::{RowOfCells, references};
-use crate::rod::Rod;
+use crate::engine::{
+    Engine as _, EngineError, Outcome, RowBatch, SideColumns, WhiskerSide, on_gpu,
+};
 use crate::scene::Scene;
 use crate::sheet::Sheet;
 use crate::shooting::batch::Method;
@@ -70,57 +70,43 @@ pub fn measure(
     }
 }
 
-/// What the engines are asked for.
+/// The requests to the engines.
 struct Sides {
     method: Method,
     all: Vec<Side>,
 }
 
-/// Its shot, and `(tau, load)`, of a state.
+/// A shot of the task, and `(tau, load)` of its state.
 type Point = (usize, (f64, f64));
 
 /// A whisker on one side.
 struct Side {
-    rods: [Rod; 1],
-    pushes: Arc<[f64]>,
-    references: Vec<BasePoint>,
-    /// Of each cell of the references, its shot in the task, if it has one.
+    batch: RowBatch,
+    /// The shot in the task of each cell, if it has one.
     shots: Vec<Option<usize>>,
 }
 
 impl Sides {
     fn of(scene: &Scene, task: &Task) -> Self {
         let method = Method::fine().with_effects(task.effects);
+        let push_angle_deg = &scene.grid.push_angle_deg;
         let all = faces(scene).into_iter().zip(&task.rods).enumerate();
         let all = all.map(|(index, ((own, side), rod))| {
             let distances = scene.grid.distance_mm.iter();
             let distances: Vec<f64> = distances.map(|d| d / own.whisker.length_mm).collect();
             let sheet = Sheet::new(method, rod, side, &distances);
-            let magnitudes = magnitudes(scene, side);
-            let rows = (0..distances.len()).map(|row| RowOfCells {
-                sheet: 0,
-                row,
-                pushes: &magnitudes,
-                first: 0,
-            });
-            let rows: Vec<RowOfCells> = rows.collect();
-            let by_row = references(method, &[&sheet], &rows);
-            let pushes: Vec<f64> = magnitudes.iter().map(|push| side.sign() * push).collect();
-            let shots = by_row.iter().enumerate().flat_map(|(row, references)| {
-                let cells = references
-                    .iter()
-                    .flat_map(|reference| reference.cells.clone());
-                let pole = |cell: u32| sheet.rows[row].pole(pushes[cell as usize]);
-                cells
-                    .map(|cell| task.shot(index as u32, pole(cell)))
-                    .collect::<Vec<_>>()
-            });
-            Side {
-                rods: [rod.clone()],
-                shots: shots.collect(),
-                references: by_row.into_iter().flatten().collect(),
-                pushes: pushes.into(),
-            }
+            let columns = SideColumns::new(push_angle_deg, side, 0);
+            let pushes: Vec<f64> = columns.columns.iter().map(|own| own.push).collect();
+            let poles = sheet
+                .rows
+                .iter()
+                .flat_map(|row| pushes.iter().map(|push| row.pole(*push)));
+            let shots = poles.map(|pole| task.shot(index as u32, pole)).collect();
+            let rows = (0..distances.len()).map(|row| (0, row));
+            let side = WhiskerSide::new(Arc::new(columns), own.whisker.units(), sheet);
+            let mut batch = RowBatch::new(method, [side].into(), pushes.into(), rows);
+            (batch.has_values, batch.has_points) = (true, true);
+            Side { batch, shots }
         });
         Self {
             method,
@@ -128,33 +114,41 @@ impl Sides {
         }
     }
 
-    /// The states that `gpu` vouches for, and what its stages took.
-    fn solve(&self, gpu: &mut Gpu) -> Result<(Vec<Point>, Stages), EngineError> {
+    /// Adds base points for `gpu`.
+    fn with_base_points(&self, gpu: &Gpu) -> Vec<RowBatch> {
+        let resolution = gpu.resolution(self.method.resolution);
+        let batches = self.all.iter().map(|side| side.batch.clone());
+        batches
+            .map(|batch| batch.with_base_points(resolution))
+            .collect()
+    }
+
+    /// The states that `gpu` solves, and the times of its stages.
+    fn solve(
+        &self,
+        gpu: &mut Gpu,
+        batches: &[RowBatch],
+    ) -> Result<(Vec<Point>, Stages), EngineError> {
         let (mut points, mut stages) = (Vec::new(), Stages::default());
-        for side in &self.all {
+        for (side, batch) in self.all.iter().zip(batches) {
             let begun = Instant::now();
-            let question = Question::new(
-                self.method.effects,
-                gpu.resolution(self.method.resolution),
-                side.rods.to_vec(),
-                Arc::clone(&side.pushes),
-                side.references.clone(),
-            );
+            let mut batch = batch.clone();
+            let base_points = std::mem::take(&mut batch.base_points);
+            batch.set_base_points(base_points, gpu.resolution(self.method.resolution));
             let trajectories = begun.elapsed();
-            let cells = gpu.solve(Arc::new(question))?;
+            gpu.submit(Arc::new(batch))?;
+            let cells = gpu.collect()?;
             let times = gpu.take_times();
             let ms = |duration: Duration| 1e3 * duration.as_secs_f64();
             stages.upload += ms(trajectories + times.upload);
             stages.dispatch += ms(times.dispatch);
             stages.waiting += ms(times.waiting);
             stages.readback += ms(times.readback);
-            let references = side.references.iter();
-            let each = references.flat_map(|own| own.cells.clone().map(move |_| own));
-            for ((cell, reference), shot) in cells.iter().zip(each).zip(&side.shots) {
-                if let (Outcome::Solved, Some(shot)) = (cell.outcome, shot) {
-                    points.push((*shot, cell.point(&side.rods[0], reference)));
-                }
-            }
+            let found = cells.outcome.iter().zip(&cells.points).zip(&side.shots);
+            points.extend(found.filter_map(|((outcome, point), shot)| {
+                let shot = shot.filter(|_| *outcome == Outcome::Solved)?;
+                Some((shot, (point.x, point.y)))
+            }));
         }
         Ok((points, stages))
     }
@@ -169,7 +163,8 @@ fn engine(
 ) -> Result<(), EngineError> {
     let start = Instant::now();
     let mut gpu = Gpu::timed(one.adapter, one.precision)?;
-    sides.solve(&mut gpu)?;
+    let batches = sides.with_base_points(&gpu);
+    sides.solve(&mut gpu, &batches)?;
     let first_result_s = start.elapsed().as_secs_f64();
     let engine = Engine {
         name: one.name.clone(),
@@ -180,7 +175,7 @@ fn engine(
     };
     let mut stages = Vec::new();
     let (seconds, points) = watch(runs, || {
-        let (points, of_run) = sides.solve(&mut gpu)?;
+        let (points, of_run) = sides.solve(&mut gpu, &batches)?;
         stages.push(of_run);
         Ok::<_, EngineError>(points)
     })?;
@@ -192,7 +187,7 @@ fn engine(
     };
     let (shots, points): (Vec<usize>, Vec<(f64, f64)>) = points.into_iter().unzip();
     if points.is_empty() {
-        let failure = format!("{}: no state beside a reference", engine.name);
+        let failure = format!("{}: no state beside a base point", engine.name);
         report.failures.push(failure);
         return Ok(());
     }

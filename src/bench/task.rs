@@ -51,15 +51,6 @@ pub fn faces(scene: &Scene) -> Vec<(Swept, Side)> {
     scene.whiskers().flat_map(both).collect()
 }
 
-/// The push angles of `scene` that are on `side`, growing magnitudes in radians.
-pub fn magnitudes(scene: &Scene, side: Side) -> Vec<f64> {
-    let pushes = scene.grid.push_angle_deg.iter();
-    let ours = pushes.filter(|push| Side::of_push(**push) == side);
-    let mut magnitudes: Vec<f64> = ours.map(|push| push.abs().to_radians()).collect();
-    magnitudes.sort_by(f64::total_cmp);
-    magnitudes
-}
-
 /// A number over all states.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Spread {

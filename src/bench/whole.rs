@@ -28,8 +28,8 @@ pub struct WholeMap {
     pub host_us_per_cell: f64,
     /// Guesses and refinement as a part of all stages: what an engine could still take over.
     pub device_can_take: f64,
-    /// Cells that the CPU refined after the engine had handed them over.
-    pub handed_over: u64,
+    /// Cells that fell back to the CPU.
+    pub fallback: u64,
 }
 
 /// Wall milliseconds of a map by stage, medians of the runs. Packing and the engine work beside the other stages.
@@ -116,7 +116,7 @@ struct Sample {
     seconds: f64,
     host: f64,
     stages: MapStages,
-    handed_over: u64,
+    fallback: u64,
 }
 
 /// Adds maps of `scene` by every engine of the report, on all threads. The engines take turns, so that a busy machine is one for all.
@@ -197,7 +197,7 @@ fn run(scene: &Scene, plan: &Plan, gpu: Option<&mut Gpu>) -> Result<Sample, Engi
             packing: ms(Stage::Packing),
             waiting: 1e3 * summary.waiting_seconds(),
         },
-        handed_over: cells.near_edge + cells.far + cells.missed + cells.not_finite,
+        fallback: cells.fallback(),
     })
 }
 
@@ -221,7 +221,7 @@ fn summed_up(engine: String, cells: usize, samples: &[Sample]) -> WholeMap {
         stages_ms: stages,
         host_us_per_cell: 1e6 * of(|run| run.host) / cells as f64,
         device_can_take: for_devices / (for_devices + for_cpus),
-        handed_over: samples.last().map_or(0, |run| run.handed_over),
+        fallback: samples.last().map_or(0, |run| run.fallback),
     }
 }
 
@@ -236,7 +236,7 @@ mod tests {
             stages_ms: MapStages::default(),
             host_us_per_cell: 0.0,
             device_can_take: 0.0,
-            handed_over: 0,
+            fallback: 0,
         }
     }
 

@@ -146,12 +146,7 @@ pub fn run(args: &MapArgs, files: &mut Files) -> Result<(), Failure> {
     }
     if let Some(picture) = &picture {
         let regimes = render::map(&StoredMap::open(&file)?.into(), &MapOptions::default())?;
-        save(
-            &regimes,
-            picture,
-            render::PictureFormat::Png,
-            files.temporary(),
-        )?;
+        save(&regimes, picture, render::Format::Png, files.temporary())?;
     }
     let written: Vec<PathBuf> = [Some(file), picture].into_iter().flatten().collect();
     print(&scene, &summary, start.elapsed().as_secs_f64(), &written)?;
@@ -207,7 +202,7 @@ fn tolerances(
     accuracy: Option<Accuracy>,
     engine: Option<&dyn Engine>,
 ) -> serde_json::Value {
-    let of_engine = engine.map_or(0.0, Engine::goal);
+    let of_engine = engine.map_or(0.0, Engine::residual_bound);
     let mut tolerances = serde_json::json!({
         "residual_goal_whisker_lengths": GOAL.max(of_engine),
         "residual_accepted_whisker_lengths": TOLERANCE.max(of_engine),

@@ -31,12 +31,12 @@ pub fn print(
     for (cells, what) in [
         (engine.solved, "solved by the engine"),
         (
-            engine.near_edge + engine.far + engine.missed + engine.not_finite,
+            engine.fallback(),
             "not certified by the engine, and refined in f64",
         ),
         (
             engine.on_cpu_instead,
-            "refined in f64 after the engine had failed",
+            "solved by the CPU in f64 after the engine had failed",
         ),
         (summary.audit.cells, "of the engine's cells audited in f64"),
         (

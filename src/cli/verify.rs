@@ -2,7 +2,7 @@
 
 use super::failure::Failure;
 use std::io::Write;
-use whiskmap::paper::{CheckVerdict, ExpectedNumber, checks};
+use whiskmap::paper::{Expected, Verdict, checks};
 
 pub fn run() -> Result<(), Failure> {
     let checks = checks();
@@ -17,10 +17,8 @@ pub fn run() -> Result<(), Failure> {
     )?;
     for check in &checks {
         let (expected, allowed) = match check.expected {
-            ExpectedNumber::Near(value, tolerance) => {
-                (format!("{value}"), format!("{tolerance:.1e}"))
-            }
-            ExpectedNumber::Above(bound) => (format!("> {bound}"), String::new()),
+            Expected::Near(value, tolerance) => (format!("{value}"), format!("{tolerance:.1e}")),
+            Expected::Above(bound) => (format!("> {bound}"), String::new()),
         };
         writeln!(
             out,
@@ -33,9 +31,9 @@ pub fn run() -> Result<(), Failure> {
             format!("{:.1e}", check.difference()),
             allowed,
             match check.verdict() {
-                CheckVerdict::Pass => "PASS",
-                CheckVerdict::Differs => "DIFFERS",
-                CheckVerdict::Fail => "FAIL",
+                Verdict::Pass => "PASS",
+                Verdict::Differs => "DIFFERS",
+                Verdict::Fail => "FAIL",
             }
         )?;
     }
@@ -48,11 +46,11 @@ pub fn run() -> Result<(), Failure> {
     writeln!(
         out,
         "{} of {} checks pass; {} DIFFERS: an independent solver also contradicts the source",
-        count(CheckVerdict::Pass),
+        count(Verdict::Pass),
         checks.len(),
-        count(CheckVerdict::Differs)
+        count(Verdict::Differs)
     )?;
-    let failed = count(CheckVerdict::Fail);
+    let failed = count(Verdict::Fail);
     if failed > 0 {
         return Err(Failure::Checks {
             failed,

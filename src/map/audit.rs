@@ -1,43 +1,41 @@
-//! Looking over an engine's shoulder: a sample of its cells, computed once more in `f64`.
+//! Audit of an engine: a sample of its solved cells is compared with the CPU engine.
 
-use super::channels::{Numbers, channels, of_cell, of_reference};
-use crate::engine::{BasePoint, CellDifference};
-use crate::refine::{End, Refined};
-use crate::rod::Units;
+use super::fallback::places;
+use super::summary::Audit;
+use crate::engine::{BatchRow, Cell, Cells, Outcome, RowBatch, Values, WhiskerSide};
 use crate::sheet::Sheet;
-use crate::shooting::Reader;
 use std::ops::Range;
 
-/// One cell in so many is in the sample.
+/// One of so many cells is audited.
 const ONE_IN: u64 = 256;
 
-/// About the fewest cells of a whisker's side in it, as far as there are any.
+/// Minimum number of audited cells of a whisker side, about.
 const AT_LEAST: u64 = 64;
 
-/// By how much a number may differ, in parts of the largest along the row, or of a radian.
+/// Maximum difference of a value, as a part of the largest along the row or of a radian.
 const TOLERANCE: f64 = 3e-6;
 
-/// Engines vouch for no larger miss of a pole, in whisker lengths.
+/// Maximum residual bound that an engine may certify, in whisker lengths.
 const LARGEST_MISS: f64 = 1e-7;
 
-/// Which cells of a row are in the sample: the same ones in every run, one of each so many.
-pub struct Sample {
+/// The audited cells of a row: the same in every run, one of each `one_in`.
+pub struct AuditSample {
     seed: u64,
     one_in: u64,
 }
 
-impl Sample {
-    /// Of `row` of `sheet`.
+impl AuditSample {
+    /// The sample of `row` of `sheet`, which has so many columns.
     pub fn new(sheet: &Sheet, row: usize, columns: usize) -> Self {
         let cells = (sheet.rows.len() * columns) as u64;
         let distance = sheet.rows[row].pole_distance;
-        let of_whisker = [
+        let whisker = [
             sheet.rod.taper,
             sheet.rod.bend,
             sheet.rod.pole,
             sheet.side.sign(),
         ];
-        let numbers = of_whisker
+        let numbers = whisker
             .map(f64::to_bits)
             .into_iter()
             .chain([distance.to_bits(), row as u64]);
@@ -47,7 +45,7 @@ impl Sample {
         }
     }
 
-    /// Those of `cells` that are in it.
+    /// The audited ones of `cells`.
     pub fn of(&self, cells: Range<usize>) -> impl Iterator<Item = usize> + use<> {
         let Self { seed, one_in } = *self;
         let all = cells.start as u64..cells.end as u64;
@@ -58,7 +56,7 @@ impl Sample {
     }
 }
 
-/// A random-looking number for each number: the generator splitmix64 (G. L. Steele, D. Lea, C. H. Flood, OOPSLA 2014).
+/// Hash of a number: one step of splitmix64 (G. L. Steele, D. Lea, C. H. Flood, OOPSLA 2014).
 fn mixed(z: u64) -> u64 {
     let z = z.wrapping_add(0x9e37_79b9_7f4a_7c15);
     let z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -66,59 +64,62 @@ fn mixed(z: u64) -> u64 {
     z ^ (z >> 31)
 }
 
-/// What an engine says of a cell: a difference from one of the references of its row.
-pub struct Said<'a> {
-    /// The references of the row.
-    pub row: &'a [BasePoint],
-    /// That of the cell.
-    pub reference: &'a BasePoint,
-    /// The difference.
-    pub difference: &'a CellDifference,
-}
-
-/// How many times as much as by the push alone a miss of the pole may show: next to the tip of a cone numbers change faster with its
-/// distance. Measured 1.5 on 2,000 random whiskers.
+/// Factor by which a miss of the pole may change values more than the push does: next to the tip of a cone they change faster with its
+/// distance. Measured at most 1.5 on 2,000 random whiskers.
 const BY_DISTANCE: f64 = 4.0;
 
-/// Whether what is `said` of a solved cell of `row` at the signed `push` is what the refinement says; where that has no answer, nothing is
-/// known against it. A miss of the pole is allowed to show: next to the tip of a cone the contact angle changes up to 200 times as
-/// much as the push.
-pub fn holds(sheet: &Sheet, row: usize, push: f64, said: &Said, refined: &Refined) -> bool {
-    match refined.end {
-        End::NotConverged => return true,
-        End::Solved => {}
-        End::BeyondTip | End::BeyondFold => return false,
+/// Compares the solved `cells` of an engine with those of the `rest` that the CPU `found`.
+pub fn compare(batch: &RowBatch, cells: &Cells, rest: &RowBatch, found: &Cells) -> Audit {
+    let mut audit = Audit::default();
+    let rows = batch.rows.iter().zip(&rest.rows);
+    let rows = rows.flat_map(|(row, part)| part.each().map(move |cell| (row, cell)));
+    for ((row, cell), (index, from)) in rows.zip(places(batch, rest)) {
+        if cells.outcome[index] == Outcome::Solved && found.outcome[from] != Outcome::OffSheet {
+            let holds = holds(batch, row, cell, &cells.get(index), &found.get(from));
+            audit.cells += 1;
+            audit.differing += u64::from(!holds);
+        }
     }
-    let units = Units {
-        length_mm: 1.0,
-        force_un: 1.0,
-        moment_nnm: 1.0,
-    };
-    let reader = Reader::new(units, &sheet.rod);
-    let touch = sheet.rows[row].touch;
-    let of_one = channels(&reader.of_one(sheet.side.sign()));
-    let ours = channels(&reader.read(refined.state.tau, &refined.state.full, touch, push));
-    let reference = of_reference(&reader, said.reference, touch);
-    let theirs = of_cell(&reference, &of_one, said.difference);
-    let of_row = said.row.iter().map(|own| of_reference(&reader, own, touch));
-    let sizes = sizes(of_row.chain([ours]), &of_one);
-    let miss = f64::from(said.difference.residual).min(LARGEST_MISS);
-    let miss_angle = miss / sheet.rows[row].pole_distance;
-    let part_of_turn = (miss_angle / (push - said.reference.push).abs()).min(1.0);
+    audit
+}
+
+/// Returns true if the values `theirs` of the engine agree with `ours` of the CPU, or if the CPU has none. The bound on the residual is
+/// allowed for: next to the tip of a cone the contact angle changes up to 200 times as much as the push.
+fn holds(batch: &RowBatch, row: &BatchRow, cell: usize, theirs: &Cell, ours: &Cell) -> bool {
+    match ours.outcome {
+        Outcome::NotConverged => return true,
+        Outcome::Solved | Outcome::AtTip => {}
+        _ => return false,
+    }
+    let side = &batch.sides[row.side];
+    let push = side.columns.columns[cell].push;
+    let of_row = &batch.trajectories[row.base_points.clone()];
+    let ours = ours.values.map(f64::from);
+    let sizes = sizes(side, of_row.iter().map(|base| base.values).chain([ours]));
+    let miss = f64::from(theirs.residual).min(LARGEST_MISS);
+    let miss_angle = miss / side.sheet.rows[row.row].pole_distance;
+    let column = side.columns.first + cell as u32;
+    let base = batch.base_points[row.base_points.clone()].iter();
+    let base = base
+        .zip(of_row)
+        .find(|(base, _)| base.cells.contains(&column));
     (0..ours.len()).all(|i| {
-        let by_miss = BY_DISTANCE * part_of_turn * (ours[i] - reference[i]).abs();
-        (ours[i] - theirs[i]).abs() <= TOLERANCE * sizes[i] + by_miss
+        let by_miss = base.map_or(0.0, |(base, known)| {
+            let part_of_turn = (miss_angle / (push - base.push).abs()).min(1.0);
+            BY_DISTANCE * part_of_turn * (ours[i] - known.values[i]).abs()
+        });
+        (ours[i] - f64::from(theirs.values[i])).abs() <= TOLERANCE * sizes[i] + by_miss
     })
 }
 
-/// How large the numbers of a row are: components of the force go with the whole, moment and energy with the force and its lever, angles
-/// with a radian.
-fn sizes(row: impl Iterator<Item = Numbers>, of_one: &Numbers) -> Numbers {
-    let of_state = |[arc, _, force, .., distance, _]: Numbers| [arc, force, distance, force * arc];
-    let [arc, force, distance, moment] = row.map(of_state).fold([0.0; 4], |largest, own| {
+/// Sizes of the values of a row: components of the force are as large as the force, moment and energy as the force and its lever, angles
+/// as a radian.
+fn sizes(side: &WhiskerSide, row: impl Iterator<Item = Values>) -> Values {
+    let largest = |[arc, _, force, .., distance, _]: Values| [arc, force, distance, force * arc];
+    let [arc, force, distance, moment] = row.map(largest).fold([0.0; 4], |largest, own| {
         std::array::from_fn(|i| f64::max(largest[i], own[i].abs()))
     });
-    let [_, radian, ..] = *of_one;
+    let [_, radian, ..] = side.unit_values;
     [
         arc, radian, force, force, force, moment, radian, distance, moment,
     ]
@@ -128,11 +129,11 @@ fn sizes(row: impl Iterator<Item = Numbers>, of_one: &Numbers) -> Numbers {
 mod tests {
     use super::*;
 
-    /// One cell of each part of a row, whatever ranges are asked for; in other rows others.
+    /// One cell of each part of a row, whatever the ranges; other cells in other rows.
     #[test]
     fn a_sample_has_a_cell_of_each_part() {
         for one_in in [1, 2, 7, 256] {
-            let sample = |seed| Sample { seed, one_in };
+            let sample = |seed| AuditSample { seed, one_in };
             let all: Vec<usize> = sample(3).of(0..1792).collect();
             let parts: Vec<u64> = all.iter().map(|cell| *cell as u64 / one_in).collect();
             assert_eq!(parts, (0..1792 / one_in).collect::<Vec<_>>());
@@ -148,10 +149,10 @@ mod tests {
         }
     }
 
-    /// Of rows that are shorter than a part, as many cells in all.
+    /// Rows shorter than a part have equally many cells in all.
     #[test]
     fn short_rows_are_sampled_as_often() {
-        let rows = (0..4096).map(|row| Sample {
+        let rows = (0..4096).map(|row| AuditSample {
             seed: mixed(row),
             one_in: 256,
         });

@@ -1,77 +1,75 @@
-//! Cells in doubt, settled once more by continuation along the level curve of their row.
+//! Cells in doubt, solved once more by continuation along the level curve of their row.
 //!
 //! The lattice follows a row from load to load, and its guesses can miss in two places: where a level curve runs almost
 //! along a line of constant load, as near the tip of a perfect cone, and where it turns back, as with friction.
 //! Continuation needs no guesses. It costs some hundred trajectories a row, so only rows with a cell in doubt are followed.
 
-use super::cells::{Cell, State};
-use crate::classify::{RowBoundary, Status};
+use crate::classify::{RowBoundary, TIE};
+use crate::engine::{Cell, Outcome, WhiskerSide};
 use crate::refine::{ContactState, TOLERANCE};
-use crate::sheet::{Edge, LevelCurve, Node, ON_CURVE, Sheet};
+use crate::sheet::{Edge, LevelCurve, Node, ON_CURVE};
 
-/// How far, relative to contact and load, the end of a continuation may be from the boundary's. The two are computed apart, and
-/// the boundary in blocks that may take more steps: they differ by the error of the resolution.
+/// Maximum distance, relative to contact and load, between the ends of a continuation and of the boundary. The two are computed apart,
+/// and the boundary in blocks that may take more steps: they differ by the error of the resolution.
 const SAME_END: f64 = 1e-5;
 
-/// Settles `cells` of `row` again. Cells that no continuation reaches keep what they have.
-pub fn settle<'a, 'b: 'a>(
-    sheet: &Sheet,
+/// Solves `cells` of `row` once more. Cells that no continuation reaches stay as they are.
+pub fn solve(
+    side: &WhiskerSide,
     row: usize,
     boundary: &RowBoundary,
-    cells: impl Iterator<Item = &'a mut Cell<'b>>,
-) {
+    mut cells: Vec<(usize, Cell)>,
+) -> Vec<(usize, Cell)> {
+    let sheet = &side.sheet;
     let level = sheet.level(row);
     let sign = sheet.side.sign();
-    let parts: Vec<Option<Vec<Node>>> = boundary
-        .spans()
-        .iter()
-        .enumerate()
-        .map(|(index, span)| {
-            let start = if sheet.touches(row) && index == 0 {
-                level.touch()?
-            } else {
-                let entry = sheet.crossings[row].iter().find(|c| c.push == span.from)?;
-                level.at_crossing(entry)?
-            };
-            let piece = level.continuation(start, false)?;
-            let end = piece.nodes.last()?.point;
-            let exit = sheet.crossings[row].iter().find(|c| c.push == span.to)?;
-            let apart = (end.x / exit.tau - 1.0).abs() + (end.y / exit.load - 1.0).abs();
-            (apart < SAME_END && piece.end == span.edge).then_some(piece.nodes)
-        })
-        .collect();
-    for cell in cells {
-        let push = cell.push.angle;
+    let pieces = boundary.spans().iter().enumerate().map(|(index, span)| {
+        let start = if sheet.touches(row) && index == 0 {
+            level.touch()?
+        } else {
+            let entry = sheet.crossings[row].iter().find(|c| c.push == span.from)?;
+            level.at_crossing(entry)?
+        };
+        let piece = level.continuation(start, false)?;
+        let end = piece.nodes.last()?.point;
+        let exit = sheet.crossings[row].iter().find(|c| c.push == span.to)?;
+        let apart = (end.x / exit.tau - 1.0).abs() + (end.y / exit.load - 1.0).abs();
+        (apart < SAME_END && piece.end == span.edge).then_some(piece.nodes)
+    });
+    let pieces: Vec<Option<Vec<Node>>> = pieces.collect();
+    for (index, cell) in &mut cells {
+        let push = side.columns.columns[*index].push;
+        let before = *cell;
+        let solved = |state: &ContactState| side.solved(row, push, state, before.steps, true);
         let magnitude = sign * push;
-        let mut spans = boundary.spans().iter().zip(&parts);
-        match spans.find(|(span, _)| span.contains(magnitude)) {
+        let mut spans = boundary.spans().iter().zip(&pieces);
+        let found = match spans.find(|(span, _)| span.contains(magnitude)) {
             Some((span, Some(nodes))) => {
                 let [first, last] = [0, nodes.len() - 1].map(|i| sign * nodes[i].push);
                 if magnitude > last {
-                    cell.status = beyond(span.edge);
-                } else if let Some(node) = level.state_at_push(nodes, sign * magnitude.max(first)) {
-                    let state = state(&level, &node, push);
-                    if state.residual <= TOLERANCE {
-                        cell.status = Status::Solved;
-                        cell.state = State::Refined(state);
-                    }
+                    Some(before.with_outcome(beyond(span.edge)))
+                } else {
+                    let node = level.state_at_push(nodes, sign * magnitude.max(first));
+                    let state = node.map(|node| state(&level, &node, push));
+                    let state = state.filter(|state| state.residual <= TOLERANCE);
+                    state.map(|state| solved(&state))
                 }
             }
             // Every piece of the level curve has been followed from end to end, and none has this push angle.
-            None if parts.iter().all(Option::is_some) => {
+            None if pieces.iter().all(Option::is_some) => {
                 let end = boundary.detachment();
-                cell.status = end.map_or(Status::Outside, |span| beyond(span.edge));
+                let outcome = end.map_or(Outcome::OffSheet, |span| beyond(span.edge));
+                Some(before.with_outcome(outcome))
             }
-            _ => {}
-        }
-        if cell.status != Status::Solved
-            && cell.is_first_touch(boundary)
-            && let Some(touch) = first_touch(&level, push)
-        {
-            cell.status = Status::Solved;
-            cell.state = State::Refined(touch);
-        }
+            _ => None,
+        };
+        let found = found.unwrap_or(before);
+        let is_solved = matches!(found.outcome, Outcome::Solved | Outcome::AtTip);
+        let is_touch = push.abs() <= TIE && boundary.detachment().is_some();
+        let touch = (!is_solved && is_touch).then(|| first_touch(&level, push));
+        *cell = touch.flatten().map_or(found, |state| solved(&state));
     }
+    cells
 }
 
 /// First touch is known from the shape at rest; its residual is the error of the integration, largest at the tip of a cone. A Newton
@@ -90,10 +88,10 @@ fn first_touch(level: &LevelCurve, push: f64) -> Option<ContactState> {
         .min_by(|a, b| a.residual.total_cmp(&b.residual))
 }
 
-fn beyond(edge: Edge) -> Status {
+const fn beyond(edge: Edge) -> Outcome {
     match edge {
-        Edge::Fold => Status::BeyondFold,
-        Edge::Tip => Status::BeyondTip,
+        Edge::Fold => Outcome::BeyondFold,
+        Edge::Tip => Outcome::BeyondTip,
     }
 }
 

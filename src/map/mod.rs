@@ -1,29 +1,20 @@
-//! The stages in order, for a whole scene: sheets, an engine's cells, guesses and refinement of all others, regimes, panels.
+//! The stages in order, for a whole scene: sheets, base points, an engine's cells, the CPU's cells, classification, panels.
 
-mod answer;
-mod answers;
 mod audit;
-mod cells;
-mod channels;
-mod columns;
 mod doubt;
+mod fallback;
 mod panel;
 mod pipeline;
-mod runs;
+mod rows;
 mod sliding;
-mod solved;
 mod stages;
-mod strip;
 mod summary;
 mod task;
-mod work;
 
 use crate::engine::{Engine, Worker};
 use crate::plan::Plan;
 pub use crate::plan::{Channels, STATE_CHANNELS};
 use crate::scene::Scene;
-use crate::sheet::Sheet;
-use columns::SideColumns;
 pub use panel::Panel;
 use pipeline::Pipeline;
 pub use stages::Stage;
@@ -32,25 +23,20 @@ use std::time::Instant;
 pub use summary::{Audit, EngineCells, Summary};
 use task::Task;
 
-/// One side of one whisker.
-struct WhiskerSide<'a> {
-    pushes: &'a SideColumns,
-    sheet: Sheet,
-}
-
-/// Computes the panels of `scene` as `plan` says, on the threads of the current pool, best from within it
-/// (`rayon::ThreadPool::install`): from outside, every stage of every strip of rows wakes it up. `engine`, on a thread of its own, solves
-/// cells in place of the refinement, those of a strip while the threads judge the one before and find the references of those
-/// after; without one, or where it fails, the CPU does it all. `settled` hears how many more cells are settled; `keep` gets the
-/// finished panels, in the order of the sweep, while the next ones are computed: it holds at most one group of them.
+/// Computes the panels of `scene` according to `plan`, on the threads of the current pool; call it within
+/// `rayon::ThreadPool::install`, or every stage of every row batch wakes the pool up.
+///
+/// `engine` solves cells on a thread of its own, some batches ahead; the CPU engine solves all others, and everything after a failure.
+/// `on_progress(n)` is called after `n` more cells are finished. `keep` gets the finished panels in the order of the sweep, while the
+/// next ones are computed: it holds at most one group of them.
 ///
 /// # Errors
-/// What `keep` refuses panels with, which ends the run; a cell without an answer is no error.
+/// The first error of `keep`, which ends the run. A cell without an answer is no error.
 pub fn run<E: Send>(
     scene: &Scene,
     plan: &Plan,
     engine: Option<&mut dyn Engine>,
-    settled: &mut dyn FnMut(usize),
+    on_progress: &mut dyn FnMut(usize),
     keep: &mut (dyn FnMut(Vec<Panel>) -> Result<(), E> + Send),
 ) -> Result<Summary, E> {
     let (start, cpu_start) = (Instant::now(), process_time());
@@ -67,7 +53,7 @@ pub fn run<E: Send>(
             let (before, mut kept) = (finished.take(), Ok(()));
             rayon::in_place_scope(|scope| {
                 scope.spawn(|_| kept = before.map_or(Ok(()), &mut keep));
-                finished = Some(pipeline.panels(settled));
+                finished = Some(pipeline.panels(on_progress));
             });
             kept?;
         }

@@ -1,7 +1,5 @@
 //! One whisker's map.
 
-use super::answer::Answer;
-use super::channels::Numbers;
 use crate::classify::{Regime, Status};
 use crate::plan::{Channels, STATE_CHANNELS};
 use std::ops::Range;
@@ -99,44 +97,4 @@ pub(super) struct RowMut<'a> {
     pub residual: &'a mut [f32],
     pub margin_deg: &'a mut [f32],
     pub newton_steps: &'a mut [u32],
-}
-
-impl RowMut<'_> {
-    /// The answer of one cell.
-    pub fn write(&mut self, column: usize, answer: &Answer) {
-        self.regime[column] = answer.regime.code();
-        self.status[column] = answer.status.code();
-        self.newton_steps[column] = answer.steps;
-        self.residual[column] = answer.residual;
-        self.margin_deg[column] = answer.margin_deg;
-        self.write_state(column, &answer.state);
-    }
-
-    /// The same answer for all `columns`.
-    pub fn fill(&mut self, columns: Range<usize>, answer: &Answer) {
-        self.fill_codes(columns.clone(), answer);
-        self.residual[columns.clone()].fill(answer.residual);
-        self.margin_deg[columns.clone()].fill(answer.margin_deg);
-        for (channel, value) in self.state.iter_mut().zip(answer.state) {
-            if let Some(cells) = channel.get_mut(columns.clone()) {
-                cells.fill(value as f32);
-            }
-        }
-    }
-
-    /// The codes and steps of the same answer for all `columns`.
-    pub fn fill_codes(&mut self, columns: Range<usize>, answer: &Answer) {
-        self.regime[columns.clone()].fill(answer.regime.code());
-        self.status[columns.clone()].fill(answer.status.code());
-        self.newton_steps[columns].fill(answer.steps);
-    }
-
-    /// The numbers of a state.
-    pub fn write_state(&mut self, column: usize, numbers: &Numbers) {
-        for (channel, value) in self.state.iter_mut().zip(numbers) {
-            if let Some(cell) = channel.get_mut(column) {
-                *cell = *value as f32;
-            }
-        }
-    }
 }

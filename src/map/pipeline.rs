@@ -1,113 +1,105 @@
-//! Strips of rows on their way: an engine is asked about the next ones before the threads, which share the work on each, settle one.
+//! The row batches of a run in order. An engine solves the next ones while the threads of the pool complete and classify one.
 //!
-//! Answers are looked at in order, and what an audit finds in a strip is known before those to the next one are, so that no race decides
-//! what becomes of a cell.
+//! Cells are collected in order, and the audit of a batch ends before those of the next one are used, so that no race decides about a cell.
 
+use super::fallback::complete;
 use super::panel::Panel;
-use super::solved::{RowsAsked, Solved};
+use super::rows;
 use super::stages::{Stage, StageTimes};
-use super::strip;
-use super::task::{Group, Task};
-use super::{Audit, Summary, answers};
-use crate::engine::{CellDifference, Worker};
+use super::summary::Summary;
+use super::task::Task;
+use crate::engine::{Cells, Cpu, RowBatch, WhiskerSide, Worker, on_gpu};
 use crate::shooting::Resolution;
 use std::collections::VecDeque;
 use std::ops::Range;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// Some rows of a group that are settled together.
-struct Strip<'a> {
-    group: Arc<Group<'a>>,
-    /// Pairs of a face and a row of its panel.
-    rows: Vec<(usize, usize)>,
-    /// Whether it is the last one of its group.
+/// A batch of a run.
+struct QueuedBatch {
+    batch: Arc<RowBatch>,
+    /// Whether it is the last one of its group of panels.
     is_last: bool,
-    asked: RowsAsked,
 }
 
-/// The strips of a task, in order.
-struct Strips<'a> {
+/// The batches of a run that are still to be made.
+struct Batches<'a> {
     task: &'a Task<'a>,
     groups: Box<dyn Iterator<Item = Range<usize>> + 'a>,
-    /// The group of the last strip, and how many of its rows are in strips.
-    begun: Option<(Arc<Group<'a>>, usize)>,
+    /// The sides of the last batch's group, and the number of their rows in batches.
+    begun: Option<(Arc<[WhiskerSide]>, usize)>,
 }
 
-impl<'a> Strips<'a> {
-    /// The next one, with references in the steps of `resolution` if there is an engine to ask.
-    fn prepare(
+impl Batches<'_> {
+    /// Makes the next batch, with base points in the steps of `resolution` if an engine may solve it.
+    fn next(
         &mut self,
         resolution: Option<Resolution>,
         times: &mut StageTimes,
-    ) -> Option<Strip<'a>> {
-        let task = self.task;
-        let (group, from) = match self.begun.take() {
+    ) -> Option<QueuedBatch> {
+        let (task, method) = (self.task, self.task.plan.method);
+        let (sides, from) = match self.begun.take() {
             Some(begun) => begun,
             None => {
                 let whiskers = self.groups.next()?;
-                let group = times.time(Stage::Sheets, || task.group(whiskers));
-                (Arc::new(group), 0)
+                (times.time(Stage::Sheets, || task.sides(whiskers)), 0)
             }
         };
         let height = task.scene.grid.distance_mm.len();
-        let all = group.faces.len() * height;
+        let all = sides.len() * height;
         let to = all.min(from + task.rows_at_once);
-        let rows: Vec<(usize, usize)> = (from..to).map(|i| (i / height, i % height)).collect();
-        let mut asked = RowsAsked::default();
-        if let Some(resolution) = resolution {
-            let method = task.plan.method;
-            let ask = || strip::ask(method, resolution, &task.angles, &group.faces, &rows);
-            asked = times.time(Stage::BasePoints, ask);
+        let rows = (from..to).map(|i| (i / height, i % height));
+        let pushes = Arc::clone(&task.pushes);
+        let mut batch = RowBatch::new(method, Arc::clone(&sides), pushes, rows);
+        batch.has_values = task.plan.channels.has_state();
+        if let Some(resolution) = resolution.filter(|_| on_gpu(method.effects).is_ok()) {
+            batch = times.time(Stage::BasePoints, || batch.with_base_points(resolution));
         }
-        self.begun = (to < all).then(|| (Arc::clone(&group), to));
-        Some(Strip {
-            group,
-            rows,
+        self.begun = (to < all).then_some((sides, to));
+        Some(QueuedBatch {
+            batch: Arc::new(batch),
             is_last: to == all,
-            asked,
         })
     }
 }
 
-/// Strips that an engine has been asked about while one is settled: one that it solves, and one that waits.
+/// Batches submitted ahead of the one that is completed: one that the engine solves, and one that waits.
 const AHEAD: usize = 2;
 
 /// A run under way.
 pub struct Pipeline<'a> {
     worker: Worker,
-    /// The resolution of references for the engine, if there is one.
+    cpu: Cpu,
+    /// Resolution of base points for the engine, if there is one.
     resolution: Option<Resolution>,
-    strips: Strips<'a>,
-    /// Those whose cells an engine may be at, in order.
-    under_way: VecDeque<Strip<'a>>,
+    batches: Batches<'a>,
+    queue: VecDeque<QueuedBatch>,
     waiting: Duration,
-    /// Counts up to now.
-    pub summary: Summary,
+    summary: Summary,
 }
 
 impl<'a> Pipeline<'a> {
-    /// Before its first strip; `resolution` is that of references for the engine of `worker`.
+    /// A run before its first batch; base points for the engine of `worker` are in the steps of `resolution`.
     pub fn new(task: &'a Task<'a>, worker: Worker, resolution: Option<Resolution>) -> Self {
-        let strips = Strips {
-            task,
-            groups: Box::new(task.plan.groups()),
-            begun: None,
-        };
         Self {
             worker,
+            cpu: Cpu::default(),
             resolution,
-            strips,
-            under_way: VecDeque::new(),
+            batches: Batches {
+                task,
+                groups: Box::new(task.plan.groups()),
+                begun: None,
+            },
+            queue: VecDeque::new(),
             waiting: Duration::ZERO,
             summary: Summary::default(),
         }
     }
 
-    /// The panels of the next group.
-    pub fn panels(&mut self, settled: &mut dyn FnMut(usize)) -> Vec<Panel> {
+    /// Computes the panels of the next group.
+    pub fn panels(&mut self, on_progress: &mut dyn FnMut(usize)) -> Vec<Panel> {
         let mut panels = Vec::new();
-        while !self.advance(&mut panels, settled) {}
+        while !self.advance(&mut panels, on_progress) {}
         let mut times = self.summary.stages;
         let count = || panels.iter().for_each(|panel| self.summary.count(panel));
         times.time(Stage::Classification, count);
@@ -115,104 +107,73 @@ impl<'a> Pipeline<'a> {
         panels
     }
 
-    /// What there is to say in the end.
-    pub fn finish(self) -> Summary {
-        let Self {
-            worker,
-            waiting,
-            summary,
-            ..
-        } = self;
+    /// Ends the run.
+    pub fn finish(mut self) -> Summary {
+        self.summary.stages.add(Stage::Guesses, self.cpu.guesses);
+        self.summary
+            .stages
+            .add(Stage::Refinement, self.cpu.refinement);
         Summary {
-            device: worker.busy,
-            engine_failure: worker.failure,
-            waiting,
-            ..summary
+            device: self.worker.busy,
+            engine_failure: self.worker.failure,
+            waiting: self.waiting,
+            ..self.summary
         }
     }
 
-    /// The next strip is settled, and others get under way. Whether `panels` are complete.
-    fn advance(&mut self, panels: &mut Vec<Panel>, settled: &mut dyn FnMut(usize)) -> bool {
+    /// Submits the next batches, and completes the first of the queue. Returns true if the `panels` are complete.
+    fn advance(&mut self, panels: &mut Vec<Panel>, on_progress: &mut dyn FnMut(usize)) -> bool {
         let ahead = if self.worker.is_working() { AHEAD } else { 0 };
-        while self.under_way.len() <= ahead {
+        while self.queue.len() <= ahead {
             let resolution = self.resolution.filter(|_| self.worker.is_working());
-            let Some(strip) = self.strips.prepare(resolution, &mut self.summary.stages) else {
-                break;
-            };
-            if strip.is_asked() {
-                self.worker.ask(Arc::clone(&strip.asked.question));
+            let next = self.batches.next(resolution, &mut self.summary.stages);
+            let Some(next) = next else { break };
+            if next.is_for_engine() {
+                self.worker.submit(Arc::clone(&next.batch));
             }
-            self.under_way.push_back(strip);
+            self.queue.push_back(next);
         }
-        let Some(strip) = self.under_way.pop_front() else {
+        let Some(first) = self.queue.pop_front() else {
             return true;
         };
-        let differences = strip.is_asked().then(|| {
-            let begun = Instant::now();
-            let answers = self.worker.answers();
-            self.waiting += begun.elapsed();
-            answers
-        });
-        let task = self.strips.task;
-        let (cells, is_last) = (strip.cells(), strip.is_last);
-        let has_failed = self.resolution.map(|_| self.worker.failure.is_some());
-        let summary = &mut self.summary;
-        let audit = strip.finish(task, differences.flatten(), has_failed, panels, summary);
-        settled(cells);
-        if audit.differing > 0 {
-            // Who has been wrong once is not asked again, and not believed.
-            self.worker.distrust(audit.differing, audit.cells);
-        }
-        is_last
-    }
-}
-
-impl Strip<'_> {
-    /// Whether there is something to ask an engine.
-    fn is_asked(&self) -> bool {
-        !self.asked.question.references.is_empty()
+        let begun = Instant::now();
+        let cells = first.is_for_engine().then(|| self.worker.collect());
+        self.waiting += begun.elapsed();
+        self.complete(&first.batch, cells.flatten(), panels);
+        on_progress(first.batch.cells());
+        first.is_last
     }
 
-    /// How many there are.
-    fn cells(&self) -> usize {
-        let columns = |(face, _): &(usize, usize)| self.group.faces[*face].pushes.columns.len();
-        self.rows.iter().map(columns).sum()
-    }
-
-    /// Settles what the engine has left after these `differences`, and writes all cells into `panels`, which are made if there are none;
-    /// `has_failed` is about an engine, if there is or was one.
-    fn finish(
-        self,
-        task: &Task,
-        differences: Option<Vec<CellDifference>>,
-        has_failed: Option<bool>,
-        panels: &mut Vec<Panel>,
-        summary: &mut Summary,
-    ) -> Audit {
-        let Group { whiskers, faces } = &*self.group;
+    /// Completes the `cells` of an engine and writes them into `panels`, which are made if there are none.
+    fn complete(&mut self, batch: &RowBatch, cells: Option<Cells>, panels: &mut Vec<Panel>) {
+        let task = self.batches.task;
         let width = task.scene.grid.push_angle_deg.len();
+        let sides = task.sides_per_panel();
         if panels.is_empty() {
             let cells = width * task.scene.grid.distance_mm.len();
             let panel = |_| Panel::unwritten(cells, task.plan.channels);
-            *panels = whiskers.iter().map(panel).collect();
+            *panels = (0..batch.sides.len() / sides).map(panel).collect();
         }
-        let asked = self.asked;
-        let solved = differences.map(|differences| Solved { asked, differences });
-        let solved = solved.unwrap_or_default();
-        let (settled, audit) = strip::settle(
-            task.plan.method,
-            faces,
-            &self.rows,
-            solved,
-            &mut summary.stages,
-        );
-        summary.audit += audit;
-        if let Some(has_failed) = has_failed {
-            settled.count(has_failed || audit.differing > 0, &mut summary.engine_cells);
+        let summary = &mut self.summary;
+        let has_failed = self.worker.failure.is_some();
+        let mut counts = summary.engine_cells;
+        let done = complete(batch, cells, has_failed, &mut self.cpu, &mut counts);
+        if self.resolution.is_some() {
+            summary.engine_cells = counts;
         }
-        let sides = task.sides.len();
-        let fill = || answers::fill(width, whiskers, faces, sides, &settled, panels);
+        summary.audit += done.audit;
+        let fill = || rows::fill(batch, &done.cells, sides, width, panels);
         summary.stages.time(Stage::Classification, fill);
-        audit
+        if done.audit.differing > 0 {
+            self.worker
+                .fail_audit(done.audit.differing, done.audit.cells);
+        }
+    }
+}
+
+impl QueuedBatch {
+    /// Returns true if an engine can solve some of its cells.
+    fn is_for_engine(&self) -> bool {
+        !self.batch.base_points.is_empty()
     }
 }

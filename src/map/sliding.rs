@@ -1,7 +1,7 @@
 //! Which states of a map slide as friction is computed for: the others have a status of their own.
 
-use super::WhiskerSide;
 use crate::classify::{Dragged, Regime, Sliding, Status};
+use crate::engine::WhiskerSide;
 use crate::sheet::{LevelCurve, together};
 use glam::DVec2;
 use rayon::prelude::*;
@@ -27,8 +27,8 @@ pub struct FoundRow {
 impl FoundRow {
     /// Columns of the states that do not slide toward the tip, and what their statuses become. Where it is not known what a push makes of
     /// the contact, it counts as sticking.
-    fn marks(&self, face: &WhiskerSide, dragged: Option<&Dragged>) -> Vec<(usize, Status)> {
-        let (sheet, states) = (&face.sheet, &self.states);
+    fn marks(&self, side: &WhiskerSide, dragged: Option<&Dragged>) -> Vec<(usize, Status)> {
+        let (sheet, states) = (&side.sheet, &self.states);
         let is_led_to = |state: &&FoundState| state.regime == Regime::Contact;
         let led_to = states.iter().filter(is_led_to).map(|state| {
             let sliding = dragged.map(|dragged| dragged.sliding(state.push));
@@ -50,13 +50,13 @@ impl FoundRow {
     }
 }
 
-/// Writes the statuses of the states of `rows` of `face` into those of a panel that is so many cells wide.
-pub fn mark(face: &WhiskerSide, rows: &[FoundRow], width: usize, status: &mut [u32]) {
+/// Writes the statuses of the states of `rows` of `side` into those of a panel that is `width` cells wide.
+pub fn mark(side: &WhiskerSide, rows: &[FoundRow], width: usize, status: &mut [u32]) {
     let marks = rows.par_chunks(together(rows.len())).map(|rows| {
-        let levels: Vec<LevelCurve> = rows.iter().map(|row| face.sheet.level(row.row)).collect();
+        let levels: Vec<LevelCurve> = rows.iter().map(|row| side.sheet.level(row.row)).collect();
         let dragged = Dragged::of(&levels).into_iter();
         rows.iter().zip(dragged).flat_map(|(row, dragged)| {
-            let marks = row.marks(face, dragged.as_ref()).into_iter();
+            let marks = row.marks(side, dragged.as_ref()).into_iter();
             marks.map(|(column, status)| (row.row * width + column, status))
         })
     });

@@ -40,8 +40,13 @@ impl StageTimes {
     pub fn time<R>(&mut self, stage: Stage, work: impl FnOnce() -> R) -> R {
         let begun = Instant::now();
         let done = work();
-        self.0[stage as usize] += begun.elapsed();
+        self.add(stage, begun.elapsed());
         done
+    }
+
+    /// Adds wall time to `stage`.
+    pub fn add(&mut self, stage: Stage, time: Duration) {
+        self.0[stage as usize] += time;
     }
 
     /// Wall time of `stage`.

@@ -8,46 +8,63 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
 
-/// What became of the cells of a run that an engine was to solve.
+/// Outcomes of the cells of a run with an engine.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct EngineCells {
-    /// Those that it solved.
+    /// Cells that the engine solved.
     pub solved: u64,
-    /// Handed over to the CPU: next to the fold or to the tip.
+    /// Fallback: next to the fold or to the tip.
     pub near_edge: u64,
-    /// Handed over: too different from the nearest reference of their row.
-    pub far: u64,
-    /// Handed over: the bound on their miss was too large.
+    /// Fallback: outside the trust region of the base point.
+    #[serde(rename = "far")]
+    pub outside_trust: u64,
+    /// Fallback: the bound on the residual was too large.
     pub missed: u64,
-    /// Handed over: numbers that are not finite.
+    /// Fallback: numbers that are not finite.
     pub not_finite: u64,
-    /// Those that the engine was not asked for: their row has no references there.
-    pub without_reference: u64,
-    /// Those that it did not solve because it had failed.
+    /// Cells that the engine did not get: their row has no base point there.
+    #[serde(rename = "without_reference")]
+    pub without_base_point: u64,
+    /// Cells that the CPU solved because the engine had failed.
     pub on_cpu_instead: u64,
 }
 
 impl EngineCells {
-    /// Counts a cell.
+    /// Cells that fell back to the CPU because the engine could not certify them.
+    #[must_use]
+    pub const fn fallback(&self) -> u64 {
+        self.near_edge + self.outside_trust + self.missed + self.not_finite
+    }
+
+    /// Counts an outcome of the engine.
     pub(super) fn count(&mut self, outcome: Outcome) {
-        *match outcome {
-            Outcome::Solved => &mut self.solved,
-            Outcome::NearEdge => &mut self.near_edge,
-            Outcome::Far => &mut self.far,
-            Outcome::Missed => &mut self.missed,
-            Outcome::NotFinite => &mut self.not_finite,
-        } += 1;
+        match outcome {
+            Outcome::Solved => self.solved += 1,
+            Outcome::NearEdge => self.near_edge += 1,
+            Outcome::OutsideTrust => self.outside_trust += 1,
+            Outcome::Missed => self.missed += 1,
+            Outcome::NoBasePoint => {}
+            _ => self.not_finite += 1,
+        }
+    }
+
+    /// Counts cells that the engine did not get, because it had failed or had no base point for them.
+    pub(super) const fn add_unasked(&mut self, cells: u64, has_failed: bool) {
+        match has_failed {
+            true => self.on_cpu_instead += cells,
+            false => self.without_base_point += cells,
+        }
     }
 }
 
-/// What came of looking over an engine's shoulder.
+/// Result of the audit of an engine.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Audit {
-    /// Cells computed once more in `f64`.
+    /// Cells solved once more by the CPU.
     pub cells: u64,
-    /// Those of them that differed by more than they may.
+    /// Cells among them that differ by more than the tolerance.
     pub differing: u64,
-    /// Cells that the CPU refined in the engine's stead because one among them differed.
+    /// Cells that the CPU solved in place of the engine because an audited one differed.
     pub turned_over: u64,
 }
 

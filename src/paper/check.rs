@@ -1,81 +1,81 @@
-//! Comparisons of computed numbers with independently known ones.
+//! A number that is known otherwise, and how far ours is from it.
 
 use crate::rod::Side;
 use crate::scene::{Pole, Whisker};
 use crate::trace::{Detachment, curve};
 
-/// An independently known number, and the same number computed.
+/// A number that is known, and the same number computed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Check {
-    /// Whisker, side and pole that the number belongs to.
+    /// Of what.
     pub case: String,
-    /// Name of the number, with its unit.
+    /// Which quantity, with its unit.
     pub quantity: &'static str,
-    /// Source of the known number.
+    /// Where it is known from.
     pub source: &'static str,
-    /// Known value or bound.
-    pub expected: ExpectedNumber,
-    /// Computed value; NaN if there is none.
+    /// What it should be.
+    pub expected: Expected,
+    /// What it is.
     pub computed: f64,
-    /// Whether an independent solver also contradicts the source.
+    /// An independent solver contradicts the source, too.
     pub is_disputed: bool,
 }
 
-/// The result of a check.
+/// What a comparison says.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum CheckVerdict {
-    /// The number agrees with its source.
+pub enum Verdict {
+    /// The number is what it should be.
     Pass,
-    /// The number differs from its source, and so does an independent solver.
+    /// It is not, but neither is an independent solver's.
     Differs,
-    /// The number differs from its source.
+    /// It is not.
     Fail,
 }
 
-/// The value or bound that a number is checked against.
+/// What a number should be.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum ExpectedNumber {
-    /// A value and the allowed difference: half of the last known digit, unless a check says otherwise.
+pub enum Expected {
+    /// A value, up to a tolerance: half of the last digit known, unless a check says otherwise.
     Near(f64, f64),
-    /// A lower bound.
+    /// More than a value.
     Above(f64),
 }
 
 impl Check {
-    /// Returns the distance of the number from its expected value, or from a bound that it violates; 0 if it meets the bound.
+    /// How far the number is from where it should be; 0 inside of an open range.
     #[must_use]
     pub fn difference(&self) -> f64 {
         match self.expected {
-            ExpectedNumber::Near(value, _) => (self.computed - value).abs(),
-            ExpectedNumber::Above(bound) if self.computed > bound => 0.0,
-            ExpectedNumber::Above(bound) => bound - self.computed,
+            Expected::Near(value, _) => (self.computed - value).abs(),
+            Expected::Above(bound) if self.computed > bound => 0.0,
+            Expected::Above(bound) => bound - self.computed,
         }
     }
 
-    /// Compares the number with its source; NaN never passes.
+    /// Whether the number is what it should be; NaN never is.
     #[must_use]
-    pub fn verdict(&self) -> CheckVerdict {
+    pub fn verdict(&self) -> Verdict {
         let passes = match self.expected {
-            ExpectedNumber::Near(_, tolerance) => self.difference() <= tolerance,
-            ExpectedNumber::Above(bound) => self.computed > bound,
+            Expected::Near(_, tolerance) => self.difference() <= tolerance,
+            Expected::Above(bound) => self.computed > bound,
         };
         match passes {
-            true => CheckVerdict::Pass,
-            false if self.is_disputed && self.computed.is_finite() => CheckVerdict::Differs,
-            false => CheckVerdict::Fail,
+            true => Verdict::Pass,
+            false if self.is_disputed && self.computed.is_finite() => Verdict::Differs,
+            false => Verdict::Fail,
         }
     }
 }
 
-/// Sources of known numbers.
-pub const PAPER: &str = "paper";
-pub const AUTO: &str = "AUTO-07p";
-pub const FORWARD: &str = "forward BVP";
-pub const CLOSED: &str = "closed form";
-pub const EXACT: &str = "symmetry";
+/// Where numbers are known from.
+pub(super) const PAPER: &str = "paper";
+pub(super) const AUTO: &str = "AUTO-07p";
+pub(super) const FORWARD: &str = "forward BVP";
+pub(super) const CLOSED: &str = "closed form";
+pub(super) const EXACT: &str = "symmetry";
 
-/// A check of a number against a value, up to a tolerance.
-pub fn near(
+/// A check on a number that should be `expected`, up to a tolerance.
+pub(super) fn near(
     case: impl Into<String>,
     quantity: &'static str,
     source: &'static str,
@@ -86,13 +86,13 @@ pub fn near(
         case: case.into(),
         quantity,
         source,
-        expected: ExpectedNumber::Near(expected, tolerance),
+        expected: Expected::Near(expected, tolerance),
         computed: computed.unwrap_or(f64::NAN),
         is_disputed: false,
     }
 }
 
-/// The detachment at one distance.
-pub fn end(whisker: &Whisker, pole: &Pole, side: Side, distance_mm: f64) -> Detachment {
+/// The end of the push at one distance.
+pub(super) fn end(whisker: &Whisker, pole: &Pole, side: Side, distance_mm: f64) -> Detachment {
     curve(whisker, pole, side, &[distance_mm])[0]
 }

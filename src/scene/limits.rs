@@ -3,36 +3,36 @@
 use std::fmt;
 use std::ops::{Bound, RangeBounds};
 
-use super::error::SceneFault;
+use toml::Spanned;
 
-/// Coulomb's coefficient. The whiskers of rats on steel have about 0.5. Up to 1, every end of 25,000 random whiskers was found
-/// (`benches/NOTES.md`).
-pub(super) fn friction_limits() -> NumberLimits {
-    NumberLimits::between(0.0, 1.0).remarks([
+use super::error::Fault;
+
+/// A number and where the file has it. Integers are numbers too.
+pub(super) type Number = Spanned<f64>;
+
+/// Of Coulomb's coefficient: the whiskers of rats on steel have about 0.5. Up to here no end of 25,000 random whiskers was
+/// unknown (`benches/NOTES.md`).
+pub(super) fn friction_limits() -> Limits {
+    Limits::between(0.0, 1.0).remarks([
         "with more, whiskers coil around the pole for turns on end, and not all ends are known",
     ])
 }
 
-/// Length of a whisker in millimetres.
-pub(super) fn length_limits() -> NumberLimits {
-    NumberLimits::between(1e-3, 1e5)
-}
-
-/// Largest ratio of the moduli at tip and base, and of base and tip. Measured ratios lie between 0.7 and 1.4.
+/// Measured ratios lie between 0.7 and 1.4.
 pub(super) const STIFFEST_TIP: f64 = 20.0;
 
-/// Largest arc stretch.
+/// A whisker that is twice as long as it looks.
 pub(super) const MOST_STRETCH: f64 = 2.0;
 
 /// A range of numbers. NaN is in none, and no range here reaches infinity.
-pub(super) struct NumberLimits {
+pub(super) struct Limits {
     range: (Bound<f64>, Bound<f64>),
     must: String,
 }
 
-impl NumberLimits {
+impl Limits {
     /// Both ends are allowed.
-    pub fn between(min: impl Into<LimitEnd>, max: impl Into<LimitEnd>) -> Self {
+    pub fn between(min: impl Into<End>, max: impl Into<End>) -> Self {
         let (min, max) = (min.into(), max.into());
         Self {
             range: (Bound::Included(min.value), Bound::Included(max.value)),
@@ -41,7 +41,7 @@ impl NumberLimits {
     }
 
     /// The lower end is allowed, the upper one is not.
-    pub fn below(min: impl Into<LimitEnd>, max: impl Into<LimitEnd>) -> Self {
+    pub fn below(min: impl Into<End>, max: impl Into<End>) -> Self {
         let (min, max) = (min.into(), max.into());
         Self {
             range: (Bound::Included(min.value), Bound::Excluded(max.value)),
@@ -57,17 +57,22 @@ impl NumberLimits {
         self
     }
 
-    /// Returns the `value` of `key` if it lies within the limits.
-    pub fn check(&self, key: &str, value: f64) -> Result<f64, SceneFault> {
-        if self.range.contains(&value) {
-            Ok(value)
+    /// The number itself if it lies within.
+    pub fn check(&self, key: &str, number: &Number) -> Result<f64, Fault> {
+        if self.range.contains(number.get_ref()) {
+            Ok(*number.get_ref())
         } else {
-            Err(SceneFault::of_value(key, digits(value), &*self.must))
+            Err(Fault::new(key, number.span(), &*self.must))
         }
+    }
+
+    /// The number if there is one, and it lies within; `absent` otherwise.
+    pub fn check_or(&self, absent: f64, key: &str, number: Option<&Number>) -> Result<f64, Fault> {
+        number.map_or(Ok(absent), |number| self.check(key, number))
     }
 }
 
-/// Formats a number with the fewest digits that identify it, with an exponent where it is very large or small.
+/// The fewest digits that tell a number from all others, with an exponent where it is very large or small.
 #[must_use]
 pub fn digits(value: f64) -> String {
     // `Debug` writes 5e-11 where `Display` writes eleven digits, but also 30.0 for 30.
@@ -75,13 +80,13 @@ pub fn digits(value: f64) -> String {
     digits.trim_end_matches(".0").to_owned()
 }
 
-/// One end of a range: a number, and its meaning if it follows from other numbers.
-pub(super) struct LimitEnd {
+/// One end of a range: a number, and what it stands for if that is not plain.
+pub(super) struct End {
     value: f64,
     meaning: Option<&'static str>,
 }
 
-impl From<f64> for LimitEnd {
+impl From<f64> for End {
     fn from(value: f64) -> Self {
         Self {
             value,
@@ -90,7 +95,7 @@ impl From<f64> for LimitEnd {
     }
 }
 
-impl From<(&'static str, f64)> for LimitEnd {
+impl From<(&'static str, f64)> for End {
     fn from((meaning, value): (&'static str, f64)) -> Self {
         Self {
             value,
@@ -99,7 +104,7 @@ impl From<(&'static str, f64)> for LimitEnd {
     }
 }
 
-impl fmt::Display for LimitEnd {
+impl fmt::Display for End {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let digits = digits(self.value);
         match self.meaning {

@@ -1,40 +1,36 @@
-//! Scenes: checked descriptions of whiskers, poles and grids. An accepted scene is valid everywhere after.
+//! A scene: what to simulate, read from TOML and checked. An accepted scene is valid everywhere after.
 //!
-//! A [`SceneBuilder`] holds the numbers as they are given. `check` turns it into [`SceneData`], and only checked data becomes a
-//! [`Scene`]. `toml` reads builders from files, writes them, and adds the place in the file to what the checks refuse.
+//! Text (`checked`) becomes tables (`file`, `axis`, `rows`), tables become a [`Setup`] (`check`, `sweep`, `limits`), and
+//! whatever is refused becomes one message that points into the text (`error`). Only what was checked is a [`Scene`].
 
 mod axis;
-mod builder;
 mod check;
-mod data;
+mod checked;
 mod deviations;
 mod error;
+mod file;
 mod grid;
 mod limits;
+mod mechanics;
 mod parameter;
 mod profile;
-#[allow(
-    clippy::module_inception,
-    reason = "the type that this module is named after"
-)]
-mod scene;
+mod rows;
+mod setup;
 mod shape;
+mod source;
 mod sweep;
-mod toml;
+mod varied;
 mod warnings;
 mod whisker;
 
 pub(crate) use grid::NEAREST;
 
-pub use axis::{AxisScale, AxisValues};
-pub use builder::SceneBuilder;
 pub use check::LONGEST_TITLE;
-pub use data::SceneData;
+pub use checked::Scene;
 pub use deviations::Deviations;
 pub use error::SceneError;
 pub use grid::{Grid, Place, SweepAxis};
 pub use limits::digits;
 pub use parameter::Parameter;
-pub use scene::Scene;
-pub use toml::SceneText;
+pub use setup::Setup;
 pub use whisker::{Curvature, EulerSpiral, Pole, Swept, Whisker};

@@ -4,7 +4,7 @@ use super::layout::Layout;
 use super::tally::{Counts, regimes, statuses};
 use crate::engine;
 use crate::map::{Audit, Channels, EngineCells};
-use crate::scene::{Grid, Parameter, SceneData, SweepAxis};
+use crate::scene::{Grid, Parameter, Setup, SweepAxis};
 use exr::meta::attribute::{AttributeValue, Text};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
@@ -14,7 +14,7 @@ use std::collections::{BTreeMap, HashMap};
 #[derive(Clone, Copy, Debug)]
 pub struct Description<'a> {
     /// What is simulated.
-    pub scene: &'a SceneData,
+    pub scene: &'a Setup,
     /// What integrates, and on which device.
     pub engine: &'a engine::EngineDescription,
     /// Tolerances and step limits.
@@ -68,7 +68,7 @@ pub(super) fn encode(about: &Description<'_>) -> Attributes {
     let layout = Layout::of(&about.scene.grid);
     let attributes = [
         ("axes", json!(axes(&about.scene.grid))),
-        ("scene", json!(about.scene.text.to_string())),
+        ("scene", json!(about.scene.text)),
         ("title", json!(about.scene.title)),
         ("whiskmap_version", json!(env!("CARGO_PKG_VERSION"))),
         ("engine", json!(about.engine.engine)),
@@ -100,10 +100,10 @@ pub(super) fn counts_width() -> usize {
         engine_cells: EngineCells {
             solved: u64::MAX,
             near_edge: u64::MAX,
-            far: u64::MAX,
+            outside_trust: u64::MAX,
             missed: u64::MAX,
             not_finite: u64::MAX,
-            without_reference: u64::MAX,
+            without_base_point: u64::MAX,
             on_cpu_instead: u64::MAX,
         },
         audit: Audit {

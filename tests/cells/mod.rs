@@ -1,161 +1,116 @@
-//! Cells of random whiskers, as an engine gets them and as the refinement does.
+//! Rows of random whiskers, for engines.
 #![allow(dead_code, reason = "each test program uses its own share")]
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use crate::random_rods::{Random, rod};
 use rayon::prelude::*;
+use std::ops::Range;
 use std::sync::Arc;
-use whiskmap::engine::{BasePoint, CellDifference, Engine, Question};
-use whiskmap::refine::{Refined, RowOfCells, Shot, references, refine};
-use whiskmap::rod::{Effects, Rod, Side};
+use whiskmap::engine::{Cells, Engine, RowBatch, SideColumns, WhiskerSide};
+use whiskmap::rod::{Effects, Rod, Side, Units};
 use whiskmap::sheet::Sheet;
 use whiskmap::shooting::batch::Method;
 
-/// Rows of a whisker, and columns of each.
+/// Rows of a whisker, and columns of each side.
 const ROWS: usize = 4;
 const COLUMNS: usize = 64;
 
 /// The largest push angle, in radians.
 const LARGEST_PUSH: f64 = 1.8;
 
-/// Rows of cells.
-pub struct Cells {
-    pub method: Method,
-    pub sheets: Vec<Sheet>,
-    pub rods: Vec<Rod>,
-    /// Signed push angles of all columns, in radians.
-    pub pushes: Vec<f64>,
-    pub references: Vec<BasePoint>,
-    /// Direction of the pole at first touch, for each reference.
-    pub touches: Vec<f64>,
-    /// What the refinement is asked for, cell by cell.
-    pub shots: Vec<Shot>,
+/// Values as states have them: whisker lengths and `E I_base/L_w^2`, angles in degrees.
+const NO_UNITS: Units = Units {
+    length_mm: 1.0,
+    force_un: 1.0,
+    moment_nnm: 1.0,
+};
+
+/// Rows of random whiskers, each on the side of its pole.
+pub struct RandomRows {
+    method: Method,
+    sides: Arc<[WhiskerSide]>,
+    pushes: Arc<[f64]>,
 }
 
-impl Cells {
-    /// Of `count` random whiskers, which are `changed` first.
-    pub fn random(
+impl RandomRows {
+    /// The rows of `count` random whiskers, which are `changed` first.
+    pub fn new(
         effects: Effects,
         count: usize,
         seed: u64,
         changed: impl Fn(&mut Rod, &mut Random),
     ) -> Self {
         let mut random = Random(seed);
-        let faces = (0..count).map(|_| {
+        let whiskers = (0..count).map(|_| {
             let mut rod = rod(effects, &mut random);
             changed(&mut rod, &mut random);
             let nearest = f64::max(0.15, 1.5 * rod.pole.abs());
             let distances = [(); ROWS].map(|()| random.between(nearest, 1.0));
             (rod, distances)
         });
-        let faces: Vec<(Rod, [f64; ROWS])> = faces.collect();
+        let whiskers: Vec<(Rod, [f64; ROWS])> = whiskers.collect();
         let method = Method::fine().with_effects(effects);
-        let sheets = faces.par_iter().map(|(rod, distances)| {
-            let side = Side::BOTH
-                .into_iter()
-                .find(|side| side.sign() == rod.pole.signum());
-            Sheet::new(method, rod, side.unwrap(), distances)
+        let part = |i: usize| i as f64 / COLUMNS as f64;
+        let magnitudes = (1..=COLUMNS).map(|i| (LARGEST_PUSH * part(i).powi(2)).to_degrees());
+        let magnitudes: Vec<f64> = magnitudes.collect();
+        let backward = magnitudes.iter().rev().map(|push| -push);
+        let push_angle_deg: Vec<f64> = backward.chain(magnitudes.iter().copied()).collect();
+        let mut pushes = Vec::new();
+        let columns = Side::BOTH.map(|side| {
+            let columns = SideColumns::new(&push_angle_deg, side, pushes.len() as u32);
+            pushes.extend(columns.columns.iter().map(|column| column.push));
+            Arc::new(columns)
         });
-        Self::new(method, sheets.collect())
-    }
-
-    fn new(method: Method, sheets: Vec<Sheet>) -> Self {
-        let part = |i: usize| i as f64 / (COLUMNS - 1) as f64;
-        let magnitudes: Vec<f64> = (0..COLUMNS)
-            .map(|i| LARGEST_PUSH * part(i).powi(2))
-            .collect();
-        let both = [Side::Cb, Side::Cf].map(|side| magnitudes.iter().map(move |m| side.sign() * m));
-        let pushes: Vec<f64> = both.into_iter().flatten().collect();
-        let first = |sheet: &Sheet| {
-            if sheet.side == Side::Cb {
-                0
-            } else {
-                COLUMNS as u32
-            }
-        };
-        let rows = sheets.iter().enumerate().flat_map(|(index, sheet)| {
-            let magnitudes = &magnitudes;
-            (0..sheet.rows.len()).map(move |row| RowOfCells {
-                sheet: index as u32,
-                row,
-                pushes: magnitudes,
-                first: first(sheet),
-            })
+        let sides = whiskers.par_iter().map(|(rod, distances)| {
+            let is_ours = |columns: &&Arc<SideColumns>| columns.side.sign() == rod.pole.signum();
+            let columns = columns.iter().find(is_ours).unwrap();
+            let sheet = Sheet::new(method, rod, columns.side, distances);
+            WhiskerSide::new(Arc::clone(columns), NO_UNITS, sheet)
         });
-        let rows: Vec<RowOfCells> = rows.collect();
-        let kept: Vec<&Sheet> = sheets.iter().collect();
-        let (mut of_rows, mut touches, mut shots) = (Vec::new(), Vec::new(), Vec::new());
-        for (row, of_row) in rows.iter().zip(references(method, &kept, &rows)) {
-            let sheet = &sheets[row.sheet as usize];
-            let place = &sheet.rows[row.row];
-            let guesses = sheet.guesses(row.row, magnitudes.iter().copied());
-            for reference in of_row {
-                shots.extend(reference.cells.clone().map(|index| {
-                    let guess = guesses[(index - row.first) as usize].unwrap();
-                    Shot {
-                        rod: row.sheet,
-                        tau: guess.tau,
-                        load: guess.load,
-                        pole: place.pole(pushes[index as usize]),
-                    }
-                }));
-                touches.push(place.touch);
-                of_rows.push(reference);
-            }
-        }
         Self {
             method,
-            rods: sheets.iter().map(|sheet| sheet.rod.clone()).collect(),
-            sheets,
-            pushes,
-            references: of_rows,
-            touches,
-            shots,
+            sides: sides.collect::<Vec<_>>().into(),
+            pushes: pushes.into(),
         }
     }
 
-    /// What `engine` makes of them.
-    pub fn solve(&self, engine: &mut dyn Engine) -> Vec<CellDifference> {
-        engine
-            .solve(self.question(engine, &self.references))
-            .unwrap()
+    /// Number of rows.
+    pub fn len(&self) -> usize {
+        ROWS * self.sides.len()
     }
 
-    /// What `engine` is asked about some `references`.
-    pub fn question(&self, engine: &dyn Engine, references: &[BasePoint]) -> Arc<Question> {
-        Arc::new(Question::new(
-            self.method.effects,
-            engine.resolution(self.method.resolution),
-            self.rods.clone(),
-            self.pushes.as_slice().into(),
-            references.to_vec(),
-        ))
+    /// Some of the rows, with base points for `engine`, values and points.
+    pub fn part(&self, engine: &dyn Engine, rows: Range<usize>) -> RowBatch {
+        let rows = rows.map(|i| (i / ROWS, i % ROWS));
+        let (sides, pushes) = (Arc::clone(&self.sides), Arc::clone(&self.pushes));
+        let mut batch = RowBatch::new(self.method, sides, pushes, rows);
+        batch.has_points = true;
+        batch.with_base_points(engine.resolution(self.method.resolution))
     }
 
-    /// What the refinement makes of them.
-    pub fn refined(&self) -> Vec<Refined> {
-        let sheets: Vec<&Sheet> = self.sheets.iter().collect();
-        let starts: Vec<_> = self
-            .shots
-            .iter()
-            .map(|shot| (shot.tau, shot.load))
-            .collect();
-        refine(self.method, &sheets, &self.shots, &starts)
+    /// All rows.
+    pub fn batch(&self, engine: &dyn Engine) -> RowBatch {
+        self.part(engine, 0..self.len())
     }
+}
 
-    /// For each cell the index of its reference, and its push angle.
-    pub fn places(&self) -> Vec<(usize, f64)> {
-        let of_one = |(index, reference): (usize, &BasePoint)| {
-            let pushes = &self.pushes[reference.cells.start as usize..reference.cells.end as usize];
-            pushes
-                .iter()
-                .map(move |push| (index, *push))
-                .collect::<Vec<_>>()
-        };
-        self.references
-            .iter()
-            .enumerate()
-            .flat_map(of_one)
-            .collect()
+/// The response of `engine` to one batch.
+pub fn solve(engine: &mut dyn Engine, batch: &RowBatch) -> Cells {
+    engine.submit(Arc::new(batch.clone())).unwrap();
+    engine.collect().unwrap()
+}
+
+/// For each cell of a batch of whole rows: its side, its row, its push angle in radians, and its base point.
+pub fn places(batch: &RowBatch) -> Vec<(usize, usize, f64, Option<usize>)> {
+    let mut places = Vec::new();
+    for row in &batch.rows {
+        let columns = &batch.sides[row.side].columns;
+        for (cell, column) in columns.columns.iter().enumerate() {
+            let index = columns.first + cell as u32;
+            let mut bases = row.base_points.clone();
+            let base = bases.find(|base| batch.base_points[*base].cells.contains(&index));
+            places.push((row.side, row.row, column.push, base));
+        }
     }
+    places
 }

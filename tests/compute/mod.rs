@@ -7,10 +7,10 @@ use std::convert::Infallible;
 use std::path::Path;
 use std::sync::Arc;
 use whiskmap::engine::gpu::{Gpu, Precision};
-use whiskmap::engine::{CellDifference, Engine, EngineDescription, EngineError, Question};
+use whiskmap::engine::{Cells, Engine, EngineDescription, EngineError, RowBatch};
 use whiskmap::map::{self, EngineCells, Panel, STATE_CHANNELS, Summary};
 use whiskmap::plan::Plan;
-use whiskmap::scene::{Parameter, Scene};
+use whiskmap::scene::Scene;
 use whiskmap::shooting::Resolution;
 
 /// The map of `scene`: by the CPU alone, or with an engine before it.
@@ -58,20 +58,15 @@ pub fn open_with(precision: Precision, shader: String) -> Gpu {
 
 /// The cells of a run with an engine, whoever solved them, without those of the audit.
 pub fn all_cells(cells: &EngineCells) -> u64 {
-    cells.solved + handed_over(cells) + cells.without_reference + cells.on_cpu_instead
-}
-
-/// Those that the engine left to the CPU, for whatever reason.
-pub fn handed_over(cells: &EngineCells) -> u64 {
-    cells.near_edge + cells.far + cells.missed + cells.not_finite
+    cells.solved + cells.fallback() + cells.without_base_point + cells.on_cpu_instead
 }
 
 /// Whether the engine did its work in a run: maps are right without an engine, too. It must solve `least` of the cells of rows that
-/// have references, and pass its audit.
+/// have base points, and pass its audit.
 pub fn works(summary: &Summary, least: f64) -> Result<(), String> {
     let cells = &summary.engine_cells;
     let found = format!("{cells:?}, {:?}", summary.audit);
-    let asked = cells.solved + handed_over(cells);
+    let asked = cells.solved + cells.fallback();
     let enough = asked > 0 && cells.solved as f64 >= least * asked as f64;
     if summary.engine_failure.is_none() && enough && summary.audit.differing == 0 {
         Ok(())
@@ -80,20 +75,19 @@ pub fn works(summary: &Summary, least: f64) -> Result<(), String> {
     }
 }
 
-/// What an engine answers to a call.
-pub type Answer = Result<Vec<CellDifference>, EngineError>;
+/// The response to a batch.
+pub type Response = Result<Cells, EngineError>;
 
-/// What is done with a call.
-pub trait Call: FnMut(usize, &mut Gpu, &dyn Fn(&mut Gpu) -> Answer) -> Answer + Send {}
+/// A replacement of the response to a batch.
+pub trait Call: FnMut(usize, &mut Gpu, &dyn Fn(&mut Gpu) -> Response) -> Response + Send {}
 
-impl<F: FnMut(usize, &mut Gpu, &dyn Fn(&mut Gpu) -> Answer) -> Answer + Send> Call for F {}
+impl<F: FnMut(usize, &mut Gpu, &dyn Fn(&mut Gpu) -> Response) -> Response + Send> Call for F {}
 
-/// A GPU that is asked one question at a time, and whose calls are looked after: `call` is told the number of each, from 0 on, and how
-/// the GPU answers it.
+/// A GPU that gets one batch at a time. `call` gets the number of each, from 0 on, and how the GPU solves it, and returns the response.
 pub struct Watched<F> {
     gpu: Gpu,
     call: F,
-    asked: VecDeque<Arc<Question>>,
+    submitted: VecDeque<Arc<RowBatch>>,
     pub calls: usize,
 }
 
@@ -102,7 +96,7 @@ impl<F: Call> Watched<F> {
         Self {
             gpu,
             call,
-            asked: VecDeque::new(),
+            submitted: VecDeque::new(),
             calls: 0,
         }
     }
@@ -113,28 +107,31 @@ impl<F: Call> Engine for Watched<F> {
         self.gpu.describe()
     }
 
-    fn goal(&self) -> f64 {
-        self.gpu.goal()
+    fn residual_bound(&self) -> f64 {
+        self.gpu.residual_bound()
     }
 
     fn resolution(&self, resolution: Resolution) -> Resolution {
         self.gpu.resolution(resolution)
     }
 
-    fn ask(&mut self, question: Arc<Question>) -> Result<(), EngineError> {
-        self.asked.push_back(question);
+    fn submit(&mut self, batch: Arc<RowBatch>) -> Result<(), EngineError> {
+        self.submitted.push_back(batch);
         Ok(())
     }
 
-    fn answer(&mut self) -> Answer {
-        let question = self.asked.pop_front().unwrap();
+    fn collect(&mut self) -> Response {
+        let batch = self.submitted.pop_front().unwrap();
         self.calls += 1;
-        let solve = |gpu: &mut Gpu| gpu.solve(Arc::clone(&question));
+        let solve = |gpu: &mut Gpu| {
+            gpu.submit(Arc::clone(&batch))?;
+            gpu.collect()
+        };
         (self.call)(self.calls - 1, &mut self.gpu, &solve)
     }
 }
 
-/// The same, with something done to the device before the call number `at`.
+/// A [`Watched`] GPU with something done to its device before the batch number `at`.
 pub fn sabotaged(
     gpu: Gpu,
     at: usize,
@@ -142,7 +139,7 @@ pub fn sabotaged(
 ) -> Watched<impl Call> {
     Watched::new(
         gpu,
-        move |call, gpu: &mut Gpu, solve: &dyn Fn(&mut Gpu) -> Answer| {
+        move |call, gpu: &mut Gpu, solve: &dyn Fn(&mut Gpu) -> Response| {
             if call == at {
                 sabotage(gpu.device());
             }
@@ -229,22 +226,17 @@ pub fn assert_identical(wanted: &[Panel], found: &[Panel]) {
 pub fn assert_no_load_at_touch(mut solve: impl FnMut(&Scene) -> Panel) {
     let cone = Scene::read("scenes/cone.toml").unwrap();
     let scenes = [
-        cone.with(Parameter::ParabolaPerMm, 0.075),
-        cone.with(Parameter::Friction, 0.3),
-        cone.with(Parameter::TipRadiusUm, 0.0),
+        cone.with("whisker.curvature.parabola_per_mm", 0.075),
+        cone.with("contact.friction", 0.3),
+        cone.with("whisker.tip_radius_um", 0.0),
         Scene::read("scenes/euler_spiral.toml"),
         Scene::read("scenes/measured.toml"),
     ];
     let pushes = [-1e-3, -0.0, 1e-3, 2.0, 5.0];
     let distances = [4.0, 7.0, 11.0, 15.0];
     for scene in scenes {
-        let scene = scene
-            .unwrap()
-            .to_builder()
-            .push_angle_deg(pushes)
-            .build()
-            .unwrap();
-        let scene = scene.to_builder().distance_mm(distances).build().unwrap();
+        let scene = scene.unwrap().with("grid.push_angle_deg", pushes).unwrap();
+        let scene = scene.with("grid.distance_mm", distances).unwrap();
         let panel = solve(&scene);
         for (name, values) in STATE_CHANNELS.iter().zip(&panel.state) {
             let is_load = |kind: &&str| name.contains(*kind);

@@ -1,12 +1,12 @@
 //! Residuals of cells: bounds on how far from the wanted place the pole really is, as a trajectory in `f64` sees it.
 
-use crate::cells::Cells;
+use crate::cells::{RandomRows, places, solve};
 use crate::compute::{open, open_with};
 use crate::kinds::every_kind;
 use crate::random_rods::USUAL;
 use whiskmap::engine::gpu::{Gpu, Precision, shaders};
-use whiskmap::engine::{BasePoint, CellDifference};
-use whiskmap::rod::Rod;
+use whiskmap::engine::{BasePoint, Cells, Outcome};
+use whiskmap::rod::arclength;
 use whiskmap::shooting::ShootingMap;
 use whiskmap::shooting::batch::{Batch, InitialCondition, Method};
 
@@ -17,31 +17,14 @@ tests! {
         a_wrong_shader_breaks_its_bounds;
 }
 
-/// The `(tau, load)` of a cell on a rod.
-type Place = fn(&Rod, &BasePoint, &CellDifference) -> (f64, f64);
-
-/// From arclength and force.
-fn from_numbers(rod: &Rod, reference: &BasePoint, cell: &CellDifference) -> (f64, f64) {
-    cell.point(rod, reference)
-}
-
-/// The shader, made to tell `tau` and load in two parts each: the file's `f32` would hide what `f64` has found.
-fn telling_all() -> String {
-    let text = shaders::cells(Precision::F64);
-    let before = "// Whether all of this holds.";
-    assert_eq!(text.matches(before).count(), 1);
-    let numbers = "
-        cell.numbers[0] = f32(end.x);
-        cell.numbers[1] = f32(end.x - real(cell.numbers[0]));
-        cell.numbers[2] = f32(end.y);
-        cell.numbers[3] = f32(end.y - real(cell.numbers[2]));
-    ";
-    text.replace(before, numbers)
-}
-
-fn from_parts(_: &Rod, reference: &BasePoint, cell: &CellDifference) -> (f64, f64) {
-    let [a, b, c, d, ..] = cell.numbers.map(f64::from);
-    (reference.tau + (a + b), reference.load + (c + d))
+/// The shader with the part of each contact and force that `f32` leaves out, in place of the contact and the force.
+fn remainders() -> String {
+    let mut text = shaders::cells(Precision::F64);
+    for number in ["cell.numbers[0] = f32(", "cell.numbers[2] = f32("] {
+        assert_eq!(text.matches(number).count(), 1);
+        text = text.replace(number, &number.replace("f32(", "remainder("));
+    }
+    text + "fn remainder(x: real) -> f32 { return f32(x - real(f32(x))); }"
 }
 
 /// What was seen of the poles of solved cells.
@@ -56,23 +39,43 @@ struct Seen {
 }
 
 impl Seen {
-    fn of(cells: &Cells, gpu: &mut Gpu, place: Place) -> Self {
-        let answers = cells.solve(gpu);
+    /// Of the cells of `gpu`, whose points get what `rest` adds, if there is one.
+    fn of(rows: &RandomRows, gpu: &mut Gpu, rest: Option<&mut Gpu>) -> Self {
+        let batch = rows.batch(gpu);
+        let cells = solve(gpu, &batch);
+        let rest = rest.map(|rest| solve(rest, &batch));
         let (mut found, mut before, mut wanted) = (Vec::new(), Vec::new(), Vec::new());
-        for ((cell, (reference, _)), shot) in answers.iter().zip(cells.places()).zip(&cells.shots) {
-            if cell.outcome.is_vouched_for() {
-                let rod = &cells.rods[shot.rod as usize];
-                let reference = &cells.references[reference];
-                let (tau, load) = place(rod, reference, cell);
-                found.push(InitialCondition { rod, tau, load });
-                let BasePoint { tau, load, .. } = *reference;
-                before.push(InitialCondition { rod, tau, load });
-                wanted.push((shot.pole, f64::from(cell.residual)));
-            }
+        for (index, (side, row, push, base)) in places(&batch).into_iter().enumerate() {
+            let (Outcome::Solved, Some(base)) = (cells.outcome[index], base) else {
+                continue;
+            };
+            let sheet = &batch.sides[side].sheet;
+            let base = &batch.base_points[base];
+            let rod = &sheet.rod;
+            let numbers = |cells: &Cells| {
+                let [tau, load] = cells.points[index].to_array();
+                [arclength(rod, tau), load * rod.radius(tau).powi(2)]
+            };
+            let [tau, load] = match &rest {
+                None => cells.points[index].to_array(),
+                Some(rest) => {
+                    let whole = numbers(&cells);
+                    let [arc, force] = numbers(rest);
+                    let at_base = arclength(rod, base.tau);
+                    let tau = rod.tau(whole[0] + (arc - at_base));
+                    let force = whole[1] + (force - base.state.full.force);
+                    [tau, force / rod.radius(tau).powi(2)]
+                }
+            };
+            found.push(InitialCondition { rod, tau, load });
+            let BasePoint { tau, load, .. } = *base;
+            before.push(InitialCondition { rod, tau, load });
+            let pole = sheet.rows[row].pole(push);
+            wanted.push((pole, f64::from(cells.residual[index])));
         }
-        let maps = Batch::new(cells.method).shoot::<ShootingMap>(&found);
-        // A cell goes along the steps of its reference, and a trajectory of its own may have more or fewer.
-        let truncated = [&found, &before].map(|conditions| truncation(cells.method, conditions));
+        let maps = Batch::new(batch.method).shoot::<ShootingMap>(&found);
+        // A cell goes along the steps of its base point, and a trajectory of its own may have more or fewer.
+        let truncated = [&found, &before].map(|conditions| truncation(batch.method, conditions));
         let (mut misses, mut of_bound) = (Vec::new(), 0.0_f64);
         for (i, (map, (pole, bound))) in maps.iter().zip(wanted).enumerate() {
             let miss = map.pole.distance(pole);
@@ -104,17 +107,13 @@ fn truncation(method: Method, conditions: &[InitialCondition]) -> Vec<f64> {
 }
 
 fn residuals_are_bounds(precision: Precision) {
-    let (mut gpu, place, median, worst) = match precision {
-        Precision::F32 => (open(precision), from_numbers as Place, 2e-9, 1e-7),
-        Precision::F64 => (
-            open_with(precision, telling_all()),
-            from_parts as Place,
-            1e-14,
-            1e-11,
-        ),
+    let mut gpu = open(precision);
+    let (mut rest, median, worst) = match precision {
+        Precision::F32 => (None, 2e-9, 1e-7),
+        Precision::F64 => (Some(open_with(precision, remainders())), 1e-14, 1e-11),
     };
-    for (name, cells) in every_kind(100) {
-        let seen = Seen::of(&cells, &mut gpu, place);
+    for (name, rows) in every_kind(100) {
+        let seen = Seen::of(&rows, &mut gpu, rest.as_mut());
         let is_close = seen.median_miss < median && seen.worst_miss < worst;
         assert!(
             seen.solved > 1000 && seen.of_bound <= 1.0 && is_close,
@@ -125,7 +124,7 @@ fn residuals_are_bounds(precision: Precision) {
 
 /// A wrong constant anywhere shows.
 fn a_wrong_shader_breaks_its_bounds() {
-    let cells = Cells::random(USUAL, 40, 3, |_, _| ());
+    let rows = RandomRows::new(USUAL, 40, 3, |_, _| ());
     let text = shaders::cells(Precision::F32);
     for (good, bad) in [
         ("(1175.0 / 8064.0) * k3", "(1176.0 / 8064.0) * k3"),
@@ -155,7 +154,7 @@ fn a_wrong_shader_breaks_its_bounds() {
     ] {
         assert_eq!(text.matches(good).count(), 1, "{good}");
         let mut gpu = open_with(Precision::F32, text.replace(good, bad));
-        let seen = Seen::of(&cells, &mut gpu, from_numbers);
+        let seen = Seen::of(&rows, &mut gpu, None);
         assert!(seen.of_bound > 3.0, "{bad}: {seen:?}");
     }
 }

@@ -1,73 +1,154 @@
-//! What holds for every call.
+//! The contract that every engine passes.
 
-use crate::cells::Cells;
+use crate::cells::{RandomRows, places, solve};
 use crate::compute::{compute, open};
 use crate::random_rods::USUAL;
 use std::sync::Arc;
-use whiskmap::engine::gpu::{Gpu, Precision, adapters, preferred};
-use whiskmap::engine::{BasePoint, CellDifference, Engine, Outcome};
+use whiskmap::engine::gpu::{Precision, adapters, preferred};
+use whiskmap::engine::{BasePoint, Cells, Cpu, Engine, Outcome, RowBatch};
 use whiskmap::plan::STATE_CHANNELS;
 use whiskmap::scene::Scene;
+use whiskmap::shooting::ShootingMap;
+use whiskmap::shooting::batch::{Batch, InitialCondition};
 
 tests! {
-    Precision:
-        answers_do_not_depend_on_the_calls_that_they_come_from,
-        answers_do_not_depend_on_what_else_is_under_way,
-        effects_that_a_whisker_lacks_do_no_harm,
-        no_number_hurts_only_its_own_cells,
+    Engine:
+        a_response_does_not_depend_on_the_batch,
+        a_response_does_not_depend_on_what_else_is_submitted,
+        a_response_has_the_columns_wanted,
+        solved_cells_are_those_of_the_cpu,
+        residuals_are_below_the_bound,
         nothing_in_nothing_out;
+    Precision:
+        effects_that_a_whisker_lacks_do_no_harm,
+        a_nan_hurts_only_the_cells_of_its_base_point;
     Adapter:
         the_engine_runs_on_the_preferred_adapter;
 }
 
-fn some() -> Cells {
-    Cells::random(USUAL, 40, 9, |_, _| ())
+fn some() -> RandomRows {
+    RandomRows::new(USUAL, 40, 9, |_, _| ())
 }
 
-/// A cell to the bit.
-fn bits(cell: &CellDifference) -> ([u32; STATE_CHANNELS.len()], u32, Outcome) {
-    let numbers = cell.numbers.map(f32::to_bits);
-    (numbers, cell.residual.to_bits(), cell.outcome)
+/// A cell as bits; only the outcome if it is not solved.
+type CellBits = (
+    Outcome,
+    Option<([u32; STATE_CHANNELS.len()], u32, [u64; 2])>,
+);
+
+fn bits(cells: &Cells) -> Vec<CellBits> {
+    let bits = |index: usize| {
+        let cell = cells.get(index);
+        let numbers = (
+            cell.values.map(f32::to_bits),
+            cell.residual.to_bits(),
+            cell.point.to_array().map(f64::to_bits),
+        );
+        let is_solved = cell.outcome == Outcome::Solved;
+        (cell.outcome, is_solved.then_some(numbers))
+    };
+    (0..cells.len()).map(bits).collect()
 }
 
-fn answers_do_not_depend_on_the_calls_that_they_come_from(precision: Precision) {
-    let cells = some();
-    let mut gpu = open(precision);
-    let at_once: Vec<_> = cells.solve(&mut gpu).iter().map(bits).collect();
-    assert!(at_once.len() > 1000);
-    for size in [1, 7, 64, 1001] {
-        let mut in_groups = Vec::new();
-        for references in cells.references.chunks(size) {
-            let solved = gpu.solve(cells.question(&gpu, references));
-            in_groups.extend(solved.unwrap().iter().map(bits));
+fn solved(cells: &Cells) -> usize {
+    let solved = cells.outcome.iter().filter(|own| **own == Outcome::Solved);
+    solved.count()
+}
+
+fn a_response_does_not_depend_on_the_batch(engine: &mut dyn Engine) {
+    let rows = some();
+    let batch = rows.batch(engine);
+    let whole = solve(engine, &batch);
+    assert!(solved(&whole) > 1000);
+    let whole = bits(&whole);
+    for size in [1, 7, 64] {
+        let mut parts = Vec::new();
+        for from in (0..rows.len()).step_by(size) {
+            let part = rows.part(engine, from..rows.len().min(from + size));
+            parts.extend(bits(&solve(engine, &part)));
         }
-        assert!(in_groups == at_once, "{size} references at once");
+        assert!(parts == whole, "{size} rows at once");
     }
 }
 
-/// Questions that are asked before the ones before them are answered, one of them about nothing, another at other push angles.
-fn answers_do_not_depend_on_what_else_is_under_way(precision: Precision) {
-    let cells = some();
-    let other = Cells::random(USUAL, 3, 2, |_, _| ());
-    let mut gpu = open(precision);
-    let (few, many) = cells.references.split_at(cells.references.len() / 5);
-    let questions = [
-        cells.question(&gpu, few),
-        other.question(&gpu, &other.references),
-        cells.question(&gpu, &[]),
-        cells.question(&gpu, many),
+/// Batches that are submitted before the ones before them are collected, one of them empty, another with other push angles.
+fn a_response_does_not_depend_on_what_else_is_submitted(engine: &mut dyn Engine) {
+    let rows = some();
+    let other = RandomRows::new(USUAL, 3, 2, |_, _| ());
+    let few = rows.len() / 5;
+    let batches = [
+        rows.part(engine, 0..few),
+        other.batch(engine),
+        rows.part(engine, 0..0),
+        rows.part(engine, few..rows.len()),
     ];
-    let of = |answers: Vec<CellDifference>| answers.iter().map(bits).collect::<Vec<_>>();
-    let alone = questions
-        .each_ref()
-        .map(|one| of(gpu.solve(Arc::clone(one)).unwrap()));
-    for one in &questions {
-        gpu.ask(Arc::clone(one)).unwrap();
+    let alone = batches.each_ref().map(|batch| bits(&solve(engine, batch)));
+    for batch in batches {
+        engine.submit(Arc::new(batch)).unwrap();
     }
     for alone in alone {
-        assert!(of(gpu.answer().unwrap()) == alone);
+        assert!(bits(&engine.collect().unwrap()) == alone);
     }
-    assert!(gpu.answer().unwrap().is_empty());
+    assert!(engine.collect().unwrap().is_empty());
+}
+
+fn a_response_has_the_columns_wanted(engine: &mut dyn Engine) {
+    let mut batch = some().part(engine, 0..16);
+    let all = solve(engine, &batch);
+    for (has_values, has_points) in [(true, true), (true, false), (false, true), (false, false)] {
+        (batch.has_values, batch.has_points) = (has_values, has_points);
+        let cells = solve(engine, &batch);
+        assert!(cells.fit(&batch));
+        assert_eq!(cells.values[0].is_empty(), !has_values);
+        assert_eq!(cells.points.is_empty(), !has_points);
+        assert!(cells.outcome == all.outcome && cells.steps == all.steps);
+    }
+}
+
+/// Values agree to what an engine may be off in a map.
+fn solved_cells_are_those_of_the_cpu(engine: &mut dyn Engine) {
+    let batch = some().batch(engine);
+    let (cells, wanted) = (solve(engine, &batch), Cpu::default().solve(&batch));
+    for (values, wanted_values) in cells.values.iter().zip(&wanted.values) {
+        let places = (0..cells.len()).filter(|i| cells.outcome[*i] == Outcome::Solved);
+        let places: Vec<usize> = places.collect();
+        let largest = places.iter().map(|i| wanted_values[*i].abs());
+        let largest = largest.fold(0.0, f32::max);
+        for i in places {
+            assert_eq!(wanted.outcome[i], Outcome::Solved);
+            let apart = (values[i] - wanted_values[i]).abs() / largest;
+            assert!(apart <= crate::compute::WORST, "{apart:.1e}");
+        }
+    }
+}
+
+/// The pole of a solved cell is where its residual says, up to what the integrator leaves.
+fn residuals_are_below_the_bound(engine: &mut dyn Engine) {
+    let batch = some().batch(engine);
+    let cells = solve(engine, &batch);
+    let solved = places(&batch).into_iter().zip(0..);
+    let solved = solved.filter(|(_, i)| cells.outcome[*i] == Outcome::Solved);
+    let solved: Vec<_> = solved.collect();
+    let conditions = solved.iter().map(|((side, ..), i)| InitialCondition {
+        rod: &batch.sides[*side].sheet.rod,
+        tau: cells.points[*i].x,
+        load: cells.points[*i].y,
+    });
+    let conditions: Vec<InitialCondition> = conditions.collect();
+    let maps = Batch::new(batch.method).shoot::<ShootingMap>(&conditions);
+    for (((side, row, push, _), i), map) in solved.into_iter().zip(maps) {
+        let residual = f64::from(cells.residual[i]);
+        assert!(residual <= engine.residual_bound(), "{residual:e}");
+        let pole = batch.sides[side].sheet.rows[row].pole(push);
+        // Points are base points plus differences in `f32`.
+        let miss = map.pole.distance(pole);
+        assert!(miss <= 1e-7, "{miss:e}");
+    }
+}
+
+fn nothing_in_nothing_out(engine: &mut dyn Engine) {
+    let batch = some().part(engine, 0..0);
+    assert!(solve(engine, &batch).is_empty());
 }
 
 /// Sweeps share kernels: a cylinder is integrated as a cone that does not taper, a straight whisker as one that hardly bends.
@@ -79,55 +160,52 @@ fn effects_that_a_whisker_lacks_do_no_harm(precision: Precision) {
     let mut gpu = open(precision);
     let cells = compute(&scene, Some(&mut gpu)).0.engine_cells;
     assert_eq!(cells.not_finite, 0);
-    assert!(cells.solved > 20 * (cells.near_edge + cells.far + cells.missed));
+    assert!(cells.solved > 20 * cells.fallback());
 }
 
-/// The answers if number `spoilt` of the references is spoilt.
+/// The batch with one base point changed.
 fn spoilt(
-    cells: &Cells,
-    gpu: &mut Gpu,
-    spoilt: usize,
+    batch: &RowBatch,
+    engine: &dyn Engine,
+    number: usize,
     spoil: fn(&mut BasePoint),
-) -> Vec<CellDifference> {
-    let mut references = cells.references.clone();
-    spoil(&mut references[spoilt]);
-    gpu.solve(cells.question(gpu, &references)).unwrap()
+) -> RowBatch {
+    let mut batch = batch.clone();
+    let mut base_points = batch.base_points.clone();
+    spoil(&mut base_points[number]);
+    let resolution = engine.resolution(batch.method.resolution);
+    batch.set_base_points(base_points, resolution);
+    batch
 }
 
-fn no_number_hurts_only_its_own_cells(precision: Precision) {
-    let cells = some();
-    let number = cells.references.len() / 2;
+fn a_nan_hurts_only_the_cells_of_its_base_point(precision: Precision) {
     let mut gpu = open(precision);
-    let sound = cells.solve(&mut gpu);
+    let batch = some().batch(&gpu);
+    let number = batch.base_points.len() / 2;
+    let sound = bits(&solve(&mut gpu, &batch));
     type Spoil = fn(&mut BasePoint);
     let spoils: [(&str, Spoil); 8] = [
-        ("tau", |r| r.tau = f64::NAN),
-        ("load", |r| r.load = f64::INFINITY),
-        ("push angle", |r| r.push = f64::NAN),
-        ("way", |r| r.per_way = f64::NAN),
-        ("row", |r| r.row[3][1] = f64::NAN),
-        ("position", |r| r.state.full.position.y = f64::NAN),
-        ("derivative", |r| r.state.by_tau.position.x = f64::INFINITY),
-        ("energy", |r| r.state.full.energy = f64::NAN),
+        ("tau", |base| base.tau = f64::NAN),
+        ("load", |base| base.load = f64::INFINITY),
+        ("push angle", |base| base.push = f64::NAN),
+        ("row parameter", |base| base.per_way = f64::NAN),
+        ("row", |base| base.row[3][1] = f64::NAN),
+        ("position", |base| base.state.full.position.y = f64::NAN),
+        ("derivative", |base| {
+            base.state.by_tau.position.x = f64::INFINITY
+        }),
+        ("energy", |base| base.state.full.energy = f64::NAN),
     ];
     for (what, spoil) in spoils {
-        let answers = spoilt(&cells, &mut gpu, number, spoil);
-        let places = cells.places();
-        for ((cell, sound), (reference, _)) in answers.iter().zip(&sound).zip(places) {
-            if reference == number {
-                assert_eq!(cell.outcome, Outcome::NotFinite, "{what}: {cell:?}");
-            } else {
-                assert_eq!(bits(cell), bits(sound), "{what}");
+        let spoilt = spoilt(&batch, &gpu, number, spoil);
+        let cells = bits(&solve(&mut gpu, &spoilt));
+        for ((cell, sound), (.., base)) in cells.iter().zip(&sound).zip(places(&batch)) {
+            match base == Some(number) {
+                true => assert_eq!(cell.0, Outcome::NotFinite, "{what}"),
+                false => assert_eq!(cell, sound, "{what}"),
             }
         }
     }
-}
-
-fn nothing_in_nothing_out(precision: Precision) {
-    let cells = some();
-    let mut gpu = open(precision);
-    let nothing = gpu.solve(cells.question(&gpu, &[]));
-    assert_eq!(nothing.unwrap(), []);
 }
 
 fn the_engine_runs_on_the_preferred_adapter() {

@@ -13,7 +13,7 @@ use whiskmap::map::{EngineCells, Panel, STATE_CHANNELS, Summary};
 
 tests! {
     Precision:
-        named_cases_are_solved_or_handed_over,
+        named_cases_are_solved_or_fall_back,
         engines_agree_on_random_whiskers;
 }
 
@@ -51,19 +51,19 @@ impl Seen {
         let EngineCells {
             solved,
             near_edge,
-            far,
+            outside_trust,
             missed,
             not_finite,
-            without_reference,
+            without_base_point,
             on_cpu_instead,
         } = more.cells;
         let sum = &mut self.cells;
         sum.solved += solved;
         sum.near_edge += near_edge;
-        sum.far += far;
+        sum.outside_trust += outside_trust;
         sum.missed += missed;
         sum.not_finite += not_finite;
-        sum.without_reference += without_reference;
+        sum.without_base_point += without_base_point;
         sum.on_cpu_instead += on_cpu_instead;
         for (sum, more) in self.apart.iter_mut().zip(more.apart) {
             sum.extend(more);
@@ -94,21 +94,21 @@ impl Seen {
             "{name:36} {:6} {:9} {:5} {:6} {:10} {:12}  {median:7.1e} {worst:7.1e}\n",
             cells.solved,
             cells.near_edge,
-            cells.far,
+            cells.outside_trust,
             cells.missed,
             cells.not_finite,
-            cells.without_reference,
+            cells.without_base_point,
         )
     }
 }
 
-fn named_cases_are_solved_or_handed_over(precision: Precision) {
+fn named_cases_are_solved_or_fall_back(precision: Precision) {
     let mut gpu = open(precision);
     let mut table = format!(
         "What {} makes of hard cases in {precision}, against f64 on the CPU.\n\
          WHISKMAP_WRITE_TABLES=1 cargo test --profile checked --test machine named_cases_are_solved\n\n\
-         solved: by the GPU; handed over to the CPU: next to the fold or to the tip, too far from a reference, for too large a\n\
-         bound, for numbers that are not finite; not asked for: cells of rows without references\n\
+         solved: by the GPU; fallback to the CPU: next to the fold or to the tip, outside the trust region, too large a\n\
+         bound, numbers that are not finite; none: cells without a base point\n\
          apart: how far the states that the GPU solved are from those of the CPU, in parts of a channel's largest value along\n\
          the whisker; the largest median of a channel, and the worst of all\n\n\
          {:36} solved near edge   far missed not finite no reference   median   worst\n",

@@ -1,6 +1,6 @@
 //! Random whiskers of every kind.
 
-use crate::cells::Cells;
+use crate::cells::RandomRows;
 use crate::effect_sets;
 use crate::random_rods::Random;
 use whiskmap::rod::{Effects, Rod};
@@ -50,12 +50,12 @@ fn slender(rod: &mut Rod, random: &mut Random) {
     rod.taper = 1.0 - 10_f64.powf(random.between(-6.0, -2.0));
 }
 
-/// Cells of `count` whiskers of every kind.
-pub fn every_kind(count: usize) -> impl Iterator<Item = (String, Cells)> {
+/// Rows of `count` whiskers of every kind.
+pub fn every_kind(count: usize) -> impl Iterator<Item = (String, RandomRows)> {
     (1..)
         .zip(kinds())
         .map(move |(seed, (name, effects, changed))| {
-            let cells = Cells::random(effects, count, seed, changed);
+            let rows = RandomRows::new(effects, count, seed, changed);
             let Effects {
                 taper,
                 curvature,
@@ -63,6 +63,6 @@ pub fn every_kind(count: usize) -> impl Iterator<Item = (String, Cells)> {
                 ..
             } = effects;
             let name = format!("{name}: taper {taper}, parabola {curvature}, spiral {spiral}");
-            (name, cells)
+            (name, rows)
         })
 }

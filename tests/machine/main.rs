@@ -48,8 +48,8 @@ mod strangers;
 
 use libtest_mimic::{Arguments, Completion, Trial};
 use std::process::ExitCode;
-use whiskmap::engine::EngineError;
 use whiskmap::engine::gpu::{Gpu, Precision};
+use whiskmap::engine::{Cpu, Engine, EngineError};
 
 /// A test by what it needs.
 #[derive(Clone, Copy)]
@@ -60,6 +60,8 @@ pub enum MachineTest {
     Adapter(fn()),
     /// For each precision, an adapter that computes in it.
     Precision(fn(Precision)),
+    /// For each engine, its adapter; the CPU engine needs none.
+    Engine(fn(&mut dyn Engine)),
     /// The library of a Vulkan driver, which a driver that fails calls.
     #[cfg(target_os = "linux")]
     Driver(fn()),
@@ -104,6 +106,18 @@ fn main() -> ExitCode {
                 let missing = (!is_root).then_some("only root can make files of other users");
                 vec![trial(&arguments, name, missing, run)]
             }
+            MachineTest::Engine(run) => {
+                let cpu = format!("{name}::cpu");
+                let cpu = trial(&arguments, &cpu, None, move || run(&mut Cpu::default()));
+                let gpus = [Precision::F32, Precision::F64].iter().zip(&missing);
+                let gpus = gpus.map(|(&precision, missing)| {
+                    let name = format!("{name}::{precision}");
+                    trial(&arguments, &name, missing.as_deref(), move || {
+                        run(&mut compute::open(precision));
+                    })
+                });
+                std::iter::once(cpu).chain(gpus).collect()
+            }
             MachineTest::Precision(run) => [Precision::F32, Precision::F64]
                 .iter()
                 .zip(&missing)
@@ -125,7 +139,7 @@ fn missing_adapter(precision: Precision) -> Option<String> {
         error @ (EngineError::NoAdapter(_) | EngineError::Unsupported { .. }) => {
             Some(error.to_string())
         }
-        EngineError::Device(_) | EngineError::Distrusted { .. } => None,
+        EngineError::Device(_) | EngineError::FailedAudit { .. } => None,
     }
 }
 

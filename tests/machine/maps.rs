@@ -7,7 +7,7 @@ use whiskmap::engine::gpu::Precision;
 use whiskmap::engine::on_gpu;
 use whiskmap::map::EngineCells;
 use whiskmap::plan::Plan;
-use whiskmap::scene::{Parameter, Scene};
+use whiskmap::scene::Scene;
 
 tests! {
     Precision:
@@ -46,17 +46,19 @@ fn first_touch_is_without_a_load(precision: Precision) {
 fn what_an_engine_cannot_is_done_by_the_cpu(precision: Precision) {
     let mut gpu = open(precision);
     let cone = Scene::read("scenes/cone.toml").unwrap().thinned(48, 1);
-    let graded = cone.with(Parameter::ModulusTipToBase, 1.5).unwrap();
+    let graded = cone
+        .with("whisker.modulus_gradient.tip_to_base", 1.5)
+        .unwrap();
     let measured = Scene::read("scenes/measured.toml").unwrap().thinned(48, 1);
     for (scene, why) in [(graded, "a modulus gradient"), (measured, "measured radii")] {
         let effects = Plan::new(&scene).unwrap().method.effects;
         assert!(on_gpu(effects).unwrap_err().contains(why));
         let (_, cpu) = compute(&scene, None);
         let (summary, panels) = compute(&scene, Some(&mut gpu));
-        let without_reference = summary.engine_cells.without_reference;
-        assert!(without_reference > 0);
+        let without_base_point = summary.engine_cells.without_base_point;
+        assert!(without_base_point > 0);
         let only = EngineCells {
-            without_reference,
+            without_base_point,
             ..EngineCells::default()
         };
         assert_eq!(summary.engine_cells, only);

@@ -1,6 +1,6 @@
 //! The strips of a map on their way: the engine solves one while the one before is settled, and no race decides about a cell.
 
-use crate::compute::{Answer, Watched, assert_identical, compute_as, open};
+use crate::compute::{Response, Watched, assert_identical, compute_as, open};
 use std::convert::Infallible;
 use std::sync::mpsc;
 use std::time::Duration;
@@ -17,7 +17,7 @@ tests! {
     Adapter:
         a_strip_is_solved_while_the_one_before_is_settled,
         what_becomes_of_a_cell_does_not_depend_on_threads,
-        answers_that_are_too_few_are_a_failure,
+        a_response_of_too_few_cells_is_a_failure,
         an_engine_goes_from_run_to_run,
         stages_are_one_sequence_beside_an_engine;
 }
@@ -46,7 +46,7 @@ fn a_strip_is_solved_while_the_one_before_is_settled() {
         while other.recv_timeout(Duration::from_secs(60)).unwrap() < until {}
     };
     let ((call_begins, calls), (strip_ends, ends)) = (mpsc::channel(), mpsc::channel());
-    let call = move |before: usize, gpu: &mut Gpu, solve: &dyn Fn(&mut Gpu) -> Answer| {
+    let call = move |before: usize, gpu: &mut Gpu, solve: &dyn Fn(&mut Gpu) -> Response| {
         let cells = solve(gpu)?;
         call_begins.send(before + 1).unwrap();
         if (1..AT_ONCE).contains(&before) {
@@ -75,13 +75,13 @@ fn what_becomes_of_a_cell_does_not_depend_on_threads() {
     let (scene, plan) = in_strips();
     let run = |threads: usize, is_wrong: bool| -> (Summary, Vec<Panel>) {
         let gpu = open(Precision::F32);
-        let call = |before, gpu: &mut Gpu, solve: &dyn Fn(&mut Gpu) -> Answer| {
+        let call = |before, gpu: &mut Gpu, solve: &dyn Fn(&mut Gpu) -> Response| {
             let mut cells = solve(gpu)?;
             if before == 4 && !is_wrong {
                 return Err(EngineError::Device("lost".to_owned()));
             }
             if before == 4 {
-                cells.iter_mut().for_each(|cell| cell.numbers[2] += 0.1);
+                cells.values[2].iter_mut().for_each(|force| *force *= 1.5);
             }
             Ok(cells)
         };
@@ -101,18 +101,18 @@ fn what_becomes_of_a_cell_does_not_depend_on_threads() {
 }
 
 /// An engine that forgets a cell is not believed, and no cell is lost.
-fn answers_that_are_too_few_are_a_failure() {
+fn a_response_of_too_few_cells_is_a_failure() {
     let (scene, plan) = in_strips();
     let gpu = open(Precision::F32);
-    let forget = |_, gpu: &mut Gpu, solve: &dyn Fn(&mut Gpu) -> Answer| {
+    let forget = |_, gpu: &mut Gpu, solve: &dyn Fn(&mut Gpu) -> Response| {
         let mut cells = solve(gpu)?;
-        cells.pop();
+        cells.outcome.pop();
         Ok(cells)
     };
     let mut engine = Watched::new(gpu, forget);
     let (summary, panels) = compute_as(&scene, &plan, Some(&mut engine));
     let failure = summary.engine_failure.unwrap().to_string();
-    assert!(failure.contains("answers for"), "{failure}");
+    assert!(failure.contains("a response of"), "{failure}");
     // It may have answered what was under way, which nobody believes.
     assert!((1..=3).contains(&engine.calls), "{}", engine.calls);
     assert_eq!(summary.engine_cells.solved, 0);

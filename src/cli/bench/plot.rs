@@ -19,8 +19,12 @@ pub fn plot(rows: &[Measurement]) -> Plot {
     for (rows, &(ink, stroke)) in engines.zip(looks.iter().cycle()) {
         let engine = named(&rows[0].engine, rows[0].threads);
         let name = format!("{engine}, {}", rows[0].rung.integrator);
-        let points = rows.iter().map(point).collect();
-        lines.push(Line::new(points, ink, stroke).named(name));
+        lines.push(Line::new(
+            rows.iter().map(point).collect(),
+            ink,
+            stroke,
+            name,
+        ));
         dots.extend(rows.iter().filter_map(|row| dot(row, ink)));
     }
     Plot {

@@ -99,7 +99,7 @@ pub fn tables(report: &Report) -> io::Result<()> {
 fn maps(out: &mut impl Write, report: &Report) -> io::Result<()> {
     writeln!(
         out,
-        "\nwhole maps of {} cells, all threads\n{:20}      ms  +-%  host us/cell  for devices  handed over",
+        "\nwhole maps of {} cells, all threads\n{:20}      ms  +-%  host us/cell  for devices     fallback",
         report.map_cells, ""
     )?;
     for map in &report.maps {
@@ -111,7 +111,7 @@ fn maps(out: &mut impl Write, report: &Report) -> io::Result<()> {
             spread(&map.seconds),
             map.host_us_per_cell,
             100.0 * map.device_can_take,
-            map.handed_over
+            map.fallback
         )?;
     }
     writeln!(

@@ -13,7 +13,7 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use whiskmap::engine;
 use whiskmap::map::{Audit, Channels, EngineCells};
-use whiskmap::scene::{LONGEST_TITLE, Parameter, Scene, SceneData};
+use whiskmap::scene::{LONGEST_TITLE, Scene, Setup};
 use whiskmap::store::{Description, MapWriter, Slice, TemporaryFolder, ZarrStore};
 
 #[derive(Debug, Args)]
@@ -89,9 +89,9 @@ fn map(
         return refuse(path, &why);
     }
     let (scene, origin) = (scene(slice)?, MapOrigin::of(slice)?);
-    let scene = SceneData {
+    let scene = Setup {
         grid: slice.grid().clone(),
-        ..SceneData::clone(&scene)
+        ..Setup::clone(&scene)
     };
     let about = origin.describe(&scene, Channels::those(|name| channels.contains(&name)));
     files.output("--output", path)?;
@@ -149,19 +149,14 @@ fn store(
 fn scene(slice: &Slice) -> Result<Scene, Failure> {
     let text = slice.stored().attribute("scene")?;
     let text = text.as_str().unwrap_or_default();
-    let scene = Scene::parse(text, "the scene of the map")?;
+    let mut scene = Scene::parse(text, "the scene of the map")?;
     // The selected values can extend a title beyond its limit.
     let title: String = slice.title().chars().take(LONGEST_TITLE).collect();
-    let mut builder = scene.to_builder().title(title);
+    scene = scene.with("title", title)?;
     for (axis, value) in slice.chosen() {
-        let mut swept = Parameter::SWEPT.into_iter();
-        builder = match swept.find(|own| own.axis() == *axis) {
-            Some(parameter) => builder.sweep(parameter, [*value]),
-            None if *axis == "push_angle_deg" => builder.push_angle_deg([*value]),
-            None => builder.distance_mm([*value]),
-        };
+        scene = scene.with(&format!("grid.{axis}"), [*value])?;
     }
-    Ok(builder.build()?)
+    Ok(scene)
 }
 
 /// Engine, arithmetic and tolerances of the whole map.
@@ -190,7 +185,7 @@ impl MapOrigin {
         })
     }
 
-    fn describe<'a>(&'a self, scene: &'a SceneData, channels: Channels) -> Description<'a> {
+    fn describe<'a>(&'a self, scene: &'a Setup, channels: Channels) -> Description<'a> {
         Description {
             scene,
             engine: &self.engine,

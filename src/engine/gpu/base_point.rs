@@ -1,9 +1,9 @@
 //! References as bytes, with the steps of their trajectories: structs of `shaders/nystrom8.wgsl` and `shaders/cells.wgsl`.
 
 use super::Precision;
-use super::asked::Part;
 use super::bytes::{Scalar, halves};
-use crate::engine::{BasePoint, MOST_TRAJECTORY_STEPS, POWERS, Question, Trajectory};
+use super::pending::BatchPart;
+use crate::engine::{BasePoint, BaseTrajectory, MOST_TRAJECTORY_STEPS, POWERS, RowBatch};
 use crate::rod::{Rest, Rod, arclength};
 use crate::shooting::StateDerivative;
 use crate::shooting::batch::StepStart;
@@ -30,53 +30,57 @@ const _: () = assert!(
     "shaders/cells.wgsl writes them out"
 );
 
-/// References, ready for some dispatches.
+/// Base points of a batch as bytes, in dispatches.
 #[derive(Debug, Default)]
 pub struct Packed {
-    /// Cells of all of them.
+    /// Number of cells.
     pub cells: usize,
-    /// Their groups, each of one reference; those of a dispatch begin at a multiple of [`ALIGNED`].
+    /// End of the base points in the batch.
+    pub base_points_end: usize,
+    /// Groups of cells of one base point; those of a dispatch begin at a multiple of [`ALIGNED`].
     pub groups: Vec<[u32; 4]>,
-    /// Which groups belong to each dispatch.
+    /// Groups of each dispatch.
     pub dispatches: Vec<Range<usize>>,
-    /// The references.
-    pub references: Vec<u8>,
-    /// The steps of their trajectories, with room for equally many in each dispatch.
+    /// The base points.
+    pub base_points: Vec<u8>,
+    /// Starts of the steps of their trajectories, with equal room in each dispatch.
     pub starts: Vec<u8>,
 }
 
-/// Every device takes a buffer from each 256th byte on.
+/// Alignment of a buffer range in groups: every device takes multiples of 256 bytes.
 const ALIGNED: usize = 256 / size_of::<[u32; 4]>();
 
-/// A `part` of a question, in dispatches with room for `most_steps` each.
-pub fn packed<T: Scalar>(question: &Question, part: Part, most_steps: usize) -> Packed {
-    let references = &question.references[part.references.clone()];
-    let trajectories = &question.trajectories[part.references];
+/// Packs a `part` of a batch into dispatches with room for `most_steps` each.
+pub fn packed<T: Scalar>(batch: &RowBatch, part: BatchPart, most_steps: usize) -> Packed {
     let room = most_steps * size_of::<GpuStart<T>>();
-    let mut packed = Packed::default();
+    let mut packed = Packed {
+        base_points_end: part.base_points.end,
+        ..Packed::default()
+    };
+    let count = part.base_points.len();
     packed
-        .references
-        .reserve(references.len() * size_of::<GpuBasePoint<T>>());
-    let mut starts = question.starts[part.starts].iter();
+        .base_points
+        .reserve(count * size_of::<GpuBasePoint<T>>());
+    let mut starts = batch.starts[part.starts].iter();
     let (mut first_group, mut steps_here) = (0, 0);
-    for (index, (reference, trajectory)) in (0..).zip(references.iter().zip(trajectories)) {
+    for (index, at) in (0..).zip(part.base_points) {
+        let (base, trajectory) = (&batch.base_points[at], &batch.trajectories[at]);
         let steps = trajectory.steps as usize;
         if steps_here + steps > most_steps {
             packed.close(first_group, room);
             (first_group, steps_here) = (packed.groups.len(), 0);
         }
-        let rod = &question.rods[reference.rod as usize];
-        // A dispatch has fewer steps than `u32` can count, a question fewer cells.
-        let one = GpuBasePoint::<T>::new(rod, reference, steps_here as u32, trajectory);
+        // A dispatch has fewer steps, and a batch fewer cells, than `u32` can count.
+        let one = GpuBasePoint::<T>::new(batch.rod(base), base, steps_here as u32, trajectory);
         packed
-            .references
+            .base_points
             .extend_from_slice(bytemuck::bytes_of(&one));
         for start in starts.by_ref().take(steps) {
             let start = GpuStart::<T>::from(start);
             packed.starts.extend_from_slice(bytemuck::bytes_of(&start));
         }
-        for push in reference.cells.clone().step_by(WORKGROUP as usize) {
-            let cells = WORKGROUP.min(reference.cells.end - push);
+        for push in base.cells.clone().step_by(WORKGROUP as usize) {
+            let cells = WORKGROUP.min(base.cells.end - push);
             packed
                 .groups
                 .push([index, push, packed.cells as u32, cells]);
@@ -162,17 +166,17 @@ pub const PLACES: [(&str, usize); 13] = {
 };
 
 impl<T: Scalar> GpuBasePoint<T> {
-    fn new(rod: &Rod, reference: &BasePoint, first_step: u32, trajectory: &Trajectory) -> Self {
+    fn new(rod: &Rod, base: &BasePoint, first_step: u32, trajectory: &BaseTrajectory) -> Self {
         let BasePoint {
             tau, load, state, ..
-        } = reference;
+        } = base;
         let s = arclength(rod, *tau);
         let full = &state.full;
         let numbers =
             |by: &StateDerivative| [by.angle, by.position.x, by.position.y, by.energy].map(T::of);
         let powers = |i: usize| {
             std::array::from_fn(|power| {
-                let term = reference.row.get(power + 1);
+                let term = base.row.get(power + 1);
                 term.map_or(T::of(0.0), |term| T::of(term[i]))
             })
         };
@@ -183,14 +187,14 @@ impl<T: Scalar> GpuBasePoint<T> {
         };
         let rest = Rest::parabola_tangent(rod, s);
         let [k0, k1] = rod.spiral.unwrap_or_default();
-        let [high, low] = halves(reference.push);
+        let [high, low] = halves(base.push);
         let steps = [trajectory.steps, first_step].map(|count| T::of(count.into()));
         Self {
             contact: [*tau, *load, rod.radius(*tau), s].map(T::of),
             rod: [rod.taper, rod.bend, k0, k1].map(T::of),
             places: [to_pole.x, to_pole.y, full.position.x, full.position.y].map(T::of),
             base: [full.tangent.x, full.tangent.y, trajectory.bent, energy].map(T::of),
-            rest: [rest.x, rest.y, rod.tau_tip() - tau, reference.per_way].map(T::of),
+            rest: [rest.x, rest.y, rod.tau_tip() - tau, base.per_way].map(T::of),
             by_tau: numbers(&state.by_tau),
             by_load: numbers(&state.by_load),
             push: [high, low, steps[0], steps[1]],
@@ -198,7 +202,7 @@ impl<T: Scalar> GpuBasePoint<T> {
             tau_by_way: powers(1),
             resting_by_way: powers(2),
             jacobian: std::array::from_fn(|power| {
-                std::array::from_fn(|i| T::of(reference.row[power][3 + i]))
+                std::array::from_fn(|i| T::of(base.row[power][3 + i]))
             }),
         }
     }
@@ -207,13 +211,26 @@ impl<T: Scalar> GpuBasePoint<T> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::engine::gpu::asked::Asked;
+    use crate::engine::gpu::pending::PendingBatch;
+    use crate::engine::{SideColumns, WhiskerSide};
+    use crate::rod::{Side, Units};
+    use crate::sheet::Sheet;
     use crate::shooting::FirstVariation;
+    use crate::shooting::batch::Method;
     use std::sync::Arc;
 
-    /// References with so many steps and cells.
-    fn question(all: &[(u32, u32)]) -> Question {
-        let reference = |&(_, cells): &(u32, u32)| BasePoint {
+    /// Base points with so many steps and cells.
+    fn batch(all: &[(u32, u32)]) -> RowBatch {
+        let (method, rod) = (Method::fine(), Rod::default());
+        let sheet = Sheet::new(method, &rod, Side::Cb, &[0.5]);
+        let columns = Arc::new(SideColumns::new(&[], Side::Cb, 0));
+        let units = Units {
+            length_mm: 1.0,
+            force_un: 1.0,
+            moment_nnm: 1.0,
+        };
+        let sides = [WhiskerSide::new(columns, units, sheet)];
+        let base = |&(_, cells): &(u32, u32)| BasePoint {
             rod: 0,
             tau: 0.5,
             load: 1.0,
@@ -223,33 +240,35 @@ mod tests {
             row: Default::default(),
             cells: 0..cells,
         };
-        let trajectory = |&(steps, _): &(u32, u32)| Trajectory { steps, bent: 0.0 };
+        let trajectory = |&(steps, _): &(u32, u32)| BaseTrajectory {
+            steps,
+            ..BaseTrajectory::default()
+        };
         let count = all.iter().map(|(steps, _)| *steps as usize).sum();
         let start = |radius| StepStart {
             radius: radius as f64,
             ..StepStart::default()
         };
-        Question {
-            rods: vec![Rod::default()],
-            references: all.iter().map(reference).collect(),
+        RowBatch {
+            base_points: all.iter().map(base).collect(),
             trajectories: all.iter().map(trajectory).collect(),
             starts: (0..count).map(start).collect(),
-            ..Question::default()
+            ..RowBatch::new(method, sides.into(), [].into(), [])
         }
     }
 
     /// Every cell is in one group, every step is where its dispatch looks for it, and dispatches begin where devices can.
     #[test]
-    fn parts_of_a_question_are_packed_without_loss() {
+    fn parts_of_a_batch_are_packed_without_loss() {
         let all: Vec<(u32, u32)> = (0..100).map(|i| (1 + i % 7, 1 + i * 13 % 90)).collect();
-        let question = Arc::new(question(&all));
+        let batch = Arc::new(batch(&all));
         let cells: u32 = all.iter().map(|(_, cells)| cells).sum();
         for (most_cells, most_steps) in [(1, 8), (500, 16), (usize::MAX, 64), (usize::MAX, 4096)] {
-            let mut asked = Asked::new(Arc::clone(&question));
-            let (mut answers, mut starts, mut first) = (0, Vec::new(), 0);
-            while asked.is_waiting() {
-                let part = asked.next(most_cells, 5 * most_steps);
-                let packed = packed::<f32>(&question, part.clone(), most_steps);
+            let mut pending = PendingBatch::new(Arc::clone(&batch));
+            let (mut written, mut starts, mut first) = (0, Vec::new(), 0);
+            while pending.is_waiting() {
+                let part = pending.next(most_cells, 5 * most_steps);
+                let packed = packed::<f32>(&batch, part.clone(), most_steps);
                 let room = most_steps * size_of::<GpuStart<f32>>();
                 assert_eq!(packed.starts.len(), packed.dispatches.len() * room);
                 let mut next = 0;
@@ -258,33 +277,28 @@ mod tests {
                     let steps = &packed.starts[number * room..(number + 1) * room];
                     let steps: &[GpuStart<f32>] = bytemuck::cast_slice(steps);
                     let mut before = None;
-                    for &[index, _, answer, count] in &packed.groups[groups.clone()] {
-                        assert_eq!(answer, next);
+                    for &[index, _, cell, count] in &packed.groups[groups.clone()] {
+                        assert_eq!(cell, next);
                         next += count;
                         if before.replace(index) != Some(index) {
-                            let at = index as usize * size_of::<GpuBasePoint<f32>>();
-                            let reference =
-                                &packed.references[at..][..size_of::<GpuBasePoint<f32>>()];
-                            let reference: GpuBasePoint<f32> =
-                                bytemuck::pod_read_unaligned(reference);
-                            let [_, _, count, from] = reference.push;
+                            let size = size_of::<GpuBasePoint<f32>>();
+                            let base = &packed.base_points[index as usize * size..][..size];
+                            let base: GpuBasePoint<f32> = bytemuck::pod_read_unaligned(base);
+                            let [_, _, count, from] = base.push;
                             let own = &steps[from as usize..][..count as usize];
                             starts.extend(own.iter().map(|start| start.place[0]));
                         }
                     }
                 }
                 assert_eq!(packed.cells, next as usize);
-                assert_eq!(part.references.start, first);
-                first = part.references.end;
-                answers += next;
+                assert_eq!(part.base_points.start, first);
+                first = part.base_points.end;
+                assert_eq!(packed.base_points_end, first);
+                written += next;
             }
-            assert_eq!(answers, cells);
-            let wanted: Vec<f32> = question
-                .starts
-                .iter()
-                .map(|start| start.radius as f32)
-                .collect();
-            assert_eq!(starts, wanted);
+            assert_eq!(written, cells);
+            let wanted = batch.starts.iter().map(|start| start.radius as f32);
+            assert!(starts.into_iter().eq(wanted));
         }
     }
 }

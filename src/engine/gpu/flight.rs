@@ -3,9 +3,9 @@
 use super::EngineError;
 use super::base_point::Packed;
 use super::device::{Device, answer};
-use super::layout::BufferLayout;
+use super::layout::{BufferLayout, read_cells};
+use super::pending::PendingBatch;
 use super::stamps::Stamps;
-use crate::engine::CellDifference;
 use std::ops::Range;
 use std::time::{Duration, Instant};
 use wgpu::BufferUsages as Usage;
@@ -40,7 +40,7 @@ pub struct Times {
 pub struct Buffers {
     stamps: Option<Stamps>,
     groups: Option<wgpu::Buffer>,
-    references: Option<wgpu::Buffer>,
+    base_points: Option<wgpu::Buffer>,
     starts: Option<wgpu::Buffer>,
     cells: wgpu::Buffer,
     readback: wgpu::Buffer,
@@ -52,7 +52,7 @@ impl Buffers {
         Ok(Self {
             stamps: Stamps::new(device, call.timed)?,
             groups: None,
-            references: None,
+            base_points: None,
             starts: None,
             cells: device.buffer(
                 "cells",
@@ -67,8 +67,10 @@ impl Buffers {
 /// A submission under way.
 #[derive(Debug)]
 pub struct Flight {
-    /// How many cells.
+    /// Number of cells.
     pub cells: usize,
+    /// End of its base points in the batch.
+    base_points_end: usize,
     /// When it was handed to the queue.
     pub submitted: Instant,
     index: wgpu::SubmissionIndex,
@@ -102,8 +104,8 @@ impl Flight {
         };
         let groups = bytemuck::cast_slice(&packed.groups);
         let groups = device.upload("groups", &mut buffers.groups, groups)?;
-        let references =
-            device.upload("references", &mut buffers.references, &packed.references)?;
+        let base_points =
+            device.upload("base points", &mut buffers.base_points, &packed.base_points)?;
         let starts = device.upload("steps", &mut buffers.starts, &packed.starts)?;
         let pushes = (call.pushes.1 * layout.push) as u64;
         let room = (packed.starts.len() / packed.dispatches.len()) as u64;
@@ -117,7 +119,7 @@ impl Flight {
                     .map(|i| (i * size_of::<[u32; 4]>()) as u64);
                 let entries = [
                     bytes_of(0, groups, groups_here[0]..groups_here[1]),
-                    bytes_of(1, references, 0..packed.references.len() as u64),
+                    bytes_of(1, base_points, 0..packed.base_points.len() as u64),
                     bytes_of(2, starts, steps),
                     bytes_of(3, call.pushes.0, 0..pushes),
                     bytes_of(4, &buffers.cells, 0..bytes),
@@ -153,18 +155,19 @@ impl Flight {
         device.check()?;
         Ok(Self {
             cells: packed.cells,
+            base_points_end: packed.base_points_end,
             submitted,
             index,
             buffers,
         })
     }
 
-    /// Waits for the cells, appends them, and gives the buffers back.
+    /// Waits for the cells, writes them into those of the batch, and returns the buffers.
     pub fn finish(
         self,
         device: &Device,
         layout: &BufferLayout,
-        cells: &mut Vec<CellDifference>,
+        pending: &mut PendingBatch,
         times: &mut Times,
     ) -> Result<Buffers, EngineError> {
         let begun = Instant::now();
@@ -172,9 +175,11 @@ impl Flight {
         let arrived = Instant::now();
         times.waiting += arrived - begun;
         let size = (self.cells * layout.cell) as u64;
+        let base_points = pending.received..self.base_points_end;
         Device::read(&self.buffers.readback, size, |bytes| {
-            (layout.cells)(bytes, cells)
+            read_cells(bytes, &pending.batch, base_points, &mut pending.cells);
         })?;
+        pending.received = self.base_points_end;
         times.readback += arrived.elapsed();
         if let Some(stamps) = &self.buffers.stamps {
             times.dispatch += stamps.read(device)?;

@@ -1,12 +1,15 @@
 //! Push angles and cells as bytes, as `shaders/nystrom8.wgsl` and `shaders/cells.wgsl` have them.
 
 use super::Precision;
-use super::asked::Part;
 use super::base_point::{Packed, packed};
 use super::bytes::{Scalar, bytes, halves};
-use crate::engine::{CellDifference, Outcome, Question};
+use super::pending::BatchPart;
+use crate::engine::{BasePoint, Cells, FORCE, Outcome, RowBatch};
 use crate::plan::STATE_CHANNELS;
+use crate::rod::{Rod, arclength};
 use bytemuck::{Pod, Zeroable};
+use glam::DVec2;
+use std::ops::Range;
 
 /// What buffers hold, for shaders of one precision.
 #[derive(Debug)]
@@ -17,10 +20,8 @@ pub struct BufferLayout {
     pub cell: usize,
     /// Push angles to bytes.
     pub pushes: fn(&[f64]) -> Vec<u8>,
-    /// A part of a question to bytes, with room for so many steps: [`packed`].
-    pub packed: fn(&Question, Part, usize) -> Packed,
-    /// Cells from bytes, appended.
-    pub cells: fn(&[u8], &mut Vec<CellDifference>),
+    /// A part of a batch to bytes, with room for so many steps: [`packed`].
+    pub packed: fn(&RowBatch, BatchPart, usize) -> Packed,
 }
 
 impl BufferLayout {
@@ -38,12 +39,6 @@ impl BufferLayout {
             cell: size_of::<GpuCell>(),
             pushes: |pushes| bytes(pushes.iter().map(|push| halves::<T>(*push))),
             packed: packed::<T>,
-            cells: |bytes, cells| {
-                let each = bytes.chunks_exact(size_of::<GpuCell>());
-                cells.extend(each.map(|cell| {
-                    CellDifference::from(bytemuck::pod_read_unaligned::<GpuCell>(cell))
-                }));
-            },
         }
     }
 }
@@ -53,13 +48,14 @@ pub const OUTCOMES: [(&str, Outcome); 5] = [
     ("NOT_FINITE", Outcome::NotFinite),
     ("SOLVED", Outcome::Solved),
     ("NEAR_EDGE", Outcome::NearEdge),
-    ("FAR", Outcome::Far),
+    ("OUTSIDE_TRUST", Outcome::OutsideTrust),
     ("MISSED", Outcome::Missed),
 ];
 
 #[derive(Clone, Copy, Pod, Zeroable)]
 #[repr(C)]
 struct GpuCell {
+    /// Differences from the base point, in the order of [`STATE_CHANNELS`], in whisker lengths, radians and `E I_base/L_w^2`.
     numbers: [f32; STATE_CHANNELS.len()],
     residual: f32,
     outcome: u32,
@@ -67,18 +63,58 @@ struct GpuCell {
     unused: u32,
 }
 
-impl From<GpuCell> for CellDifference {
-    // Whatever the shader says, a number that is not finite is not a solution.
-    fn from(cell: GpuCell) -> Self {
-        let is_finite = cell.numbers.iter().all(|x| x.is_finite()) && cell.residual.is_finite();
-        let outcome = OUTCOMES
-            .get(cell.outcome as usize)
-            .filter(|_| is_finite)
-            .map_or(Outcome::NotFinite, |&(_, outcome)| outcome);
-        Self {
-            numbers: cell.numbers,
-            residual: cell.residual,
-            outcome,
+impl GpuCell {
+    /// The outcome; a cell with a number that is not finite is no solution.
+    fn outcome(&self) -> Outcome {
+        let is_finite = self.numbers.iter().all(|x| x.is_finite()) && self.residual.is_finite();
+        let coded = OUTCOMES.get(self.outcome as usize).filter(|_| is_finite);
+        coded.map_or(Outcome::NotFinite, |&(_, outcome)| outcome)
+    }
+
+    /// `(tau, load)` on `rod`, beside the base point `base`.
+    fn point(&self, rod: &Rod, base: &BasePoint) -> DVec2 {
+        let [arc, _, force, ..] = self.numbers.map(f64::from);
+        let tau = rod.tau(arclength(rod, base.tau) + arc);
+        DVec2::new(
+            tau,
+            (base.state.full.force + force) / rod.radius(tau).powi(2),
+        )
+    }
+}
+
+/// Writes the cells of some base points of `batch`, which are in `bytes`, into `cells`.
+pub fn read_cells(bytes: &[u8], batch: &RowBatch, base_points: Range<usize>, cells: &mut Cells) {
+    let mut bytes = bytes;
+    for index in base_points {
+        let (base, trajectory) = (&batch.base_points[index], &batch.trajectories[index]);
+        let (own, rest) = bytes.split_at(base.cells.len() * size_of::<GpuCell>());
+        bytes = rest;
+        let own: Vec<GpuCell> = bytemuck::pod_collect_to_vec(own);
+        let into = trajectory.first_cell..trajectory.first_cell + own.len();
+        for (outcome, cell) in cells.outcome[into.clone()].iter_mut().zip(&own) {
+            *outcome = cell.outcome();
+        }
+        cells.steps[into.clone()].fill(1);
+        for (residual, cell) in cells.residual[into.clone()].iter_mut().zip(&own) {
+            *residual = cell.residual;
+        }
+        let unit_values = &batch.sides[base.rod as usize].unit_values;
+        for (i, column) in cells.values.iter_mut().enumerate() {
+            let Some(column) = column.get_mut(into.clone()) else {
+                continue;
+            };
+            let (known, unit) = (trajectory.values[i], unit_values[i]);
+            // The force at first touch is 0 but for rounding.
+            let least = if i == FORCE { 0.0 } else { f64::NEG_INFINITY };
+            for (value, cell) in column.iter_mut().zip(&own) {
+                *value = (known + unit * f64::from(cell.numbers[i])).max(least) as f32;
+            }
+        }
+        if let Some(points) = cells.points.get_mut(into) {
+            let rod = batch.rod(base);
+            for (point, cell) in points.iter_mut().zip(&own) {
+                *point = cell.point(rod, base);
+            }
         }
     }
 }
@@ -148,9 +184,7 @@ mod tests {
                 outcome: code,
                 unused: 0,
             };
-            let mut cells = Vec::new();
-            (BufferLayout::of(Precision::F32).cells)(bytemuck::bytes_of(&cell), &mut cells);
-            assert_eq!(cells[0].outcome, outcome);
+            assert_eq!(cell.outcome(), outcome);
         }
     }
 }

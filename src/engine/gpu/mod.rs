@@ -7,7 +7,6 @@
 //! Absent on purpose: a second try on a lost device. A [`Worker`](super::Worker) does without it.
 
 mod adapters;
-mod asked;
 mod base_point;
 mod bytes;
 mod device;
@@ -16,6 +15,7 @@ mod guard;
 mod layout;
 mod pace;
 mod peak;
+mod pending;
 mod pipeline;
 mod precision;
 pub mod shaders;
@@ -26,13 +26,13 @@ pub use flight::Times;
 pub use guard::DRIVER_CALL;
 pub use precision::Precision;
 
-use super::{CellDifference, Engine, EngineDescription, EngineError, Question};
+use super::{Cells, Engine, EngineDescription, EngineError, RowBatch};
 use crate::rod::Effects;
 use crate::shooting::Resolution;
-use asked::Asked;
 use device::Device;
 use flight::{Buffers, Call, Flight};
 use layout::BufferLayout;
+use pending::PendingBatch;
 use pipeline::Pipeline;
 use std::collections::hash_map::Entry;
 use std::collections::{HashMap, VecDeque};
@@ -51,9 +51,9 @@ pub struct Gpu {
     /// Those of no flight.
     buffers: Vec<Buffers>,
     pipelines: HashMap<Effects, Pipeline>,
-    /// What has been asked and not answered.
-    asked: VecDeque<Asked>,
-    /// The submissions under way, in order, each with whether it has the last cells of its question.
+    /// The batches submitted and not collected.
+    pending: VecDeque<PendingBatch>,
+    /// The submissions under way, in order, each with whether it has the last cells of its batch.
     flights: VecDeque<(Flight, bool)>,
     /// Since when the device has had nothing else to do, as far as is known.
     idle_since: Instant,
@@ -108,7 +108,7 @@ impl Gpu {
             pushes: None,
             buffers: Vec::new(),
             pipelines: HashMap::new(),
-            asked: VecDeque::new(),
+            pending: VecDeque::new(),
             flights: VecDeque::new(),
             idle_since: Instant::now(),
             timed: false,
@@ -144,7 +144,7 @@ impl Gpu {
         let worked = work(self);
         if let Err(failure) = &worked {
             self.failure = Some(failure.clone());
-            self.asked.clear();
+            self.pending.clear();
             self.flights.clear();
         }
         worked
@@ -159,18 +159,18 @@ impl Gpu {
             ..
         } = self;
         while self.flights.len() < IN_FLIGHT
-            && let Some(asked) = self.asked.iter_mut().find(|asked| asked.is_waiting())
+            && let Some(pending) = self.pending.iter_mut().find(|own| own.is_waiting())
         {
             let begun = Instant::now();
-            let question = Arc::clone(&asked.question);
-            let pushes = (layout.pushes)(&question.pushes);
+            let batch = Arc::clone(&pending.batch);
+            let pushes = (layout.pushes)(&batch.pushes);
             let pushes = device.upload("push angles", &mut self.pushes, &pushes)?;
-            let pipeline = match self.pipelines.entry(question.effects) {
+            let pipeline = match self.pipelines.entry(batch.method.effects) {
                 Entry::Occupied(known) => known.into_mut(),
                 Entry::Vacant(new) => {
                     let text = self.shader.clone();
                     let text = text.unwrap_or_else(|| shaders::cells(*precision));
-                    let effects = question.effects;
+                    let effects = batch.method.effects;
                     new.insert(Pipeline::new(device, &text, layout, *precision, effects)?)
                 }
             };
@@ -178,14 +178,14 @@ impl Gpu {
                 device,
                 layout,
                 pipeline: &pipeline.handle,
-                pushes: (pushes, question.pushes.len()),
+                pushes: (pushes, batch.pushes.len()),
                 timed: self.timed,
             };
             let steps = MOST_DISPATCHES * precision.most_steps();
-            let part = asked.next(pipeline.pace.cells, steps);
-            let packed = (layout.packed)(&question, part, precision.most_steps());
+            let part = pending.next(pipeline.pace.cells, steps);
+            let packed = (layout.packed)(&batch, part, precision.most_steps());
             let flight = Flight::submit(&call, self.buffers.pop(), &packed)?;
-            self.flights.push_back((flight, !asked.is_waiting()));
+            self.flights.push_back((flight, !pending.is_waiting()));
             self.times.upload += begun.elapsed();
         }
         Ok(())
@@ -193,19 +193,16 @@ impl Gpu {
 
     /// Waits for the oldest submission.
     fn receive(&mut self) -> Result<(), EngineError> {
-        let asked = self.asked.iter_mut().find(|asked| !asked.is_answered());
-        let (Some(asked), Some((flight, is_last))) = (asked, self.flights.pop_front()) else {
-            let lost = "a question has no submission under way";
+        let pending = self.pending.iter_mut().find(|own| !own.is_done());
+        let (Some(pending), Some((flight, is_last))) = (pending, self.flights.pop_front()) else {
+            let lost = "a batch has no submission under way";
             return Err(EngineError::Device(lost.to_owned()));
         };
-        let Asked {
-            question, cells, ..
-        } = asked;
         let (count, started) = (flight.cells, flight.submitted.max(self.idle_since));
-        let buffers = flight.finish(&self.device, &self.layout, cells, &mut self.times)?;
+        let buffers = flight.finish(&self.device, &self.layout, pending, &mut self.times)?;
         self.buffers.push(buffers);
         self.idle_since = Instant::now();
-        if let Some(Pipeline { pace, .. }) = self.pipelines.get_mut(&question.effects) {
+        if let Some(Pipeline { pace, .. }) = self.pipelines.get_mut(&pending.batch.method.effects) {
             pace.learn(count, is_last, self.idle_since - started);
         }
         Ok(())
@@ -230,7 +227,7 @@ impl Engine for Gpu {
         }
     }
 
-    fn goal(&self) -> f64 {
+    fn residual_bound(&self) -> f64 {
         self.precision.goal()
     }
 
@@ -238,20 +235,20 @@ impl Engine for Gpu {
         self.precision.resolution(resolution)
     }
 
-    fn ask(&mut self, question: Arc<Question>) -> Result<(), EngineError> {
+    fn submit(&mut self, batch: Arc<RowBatch>) -> Result<(), EngineError> {
         self.working(|gpu| {
-            gpu.asked.push_back(Asked::new(question));
+            gpu.pending.push_back(PendingBatch::new(batch));
             gpu.send()
         })
     }
 
-    fn answer(&mut self) -> Result<Vec<CellDifference>, EngineError> {
+    fn collect(&mut self) -> Result<Cells, EngineError> {
         self.working(|gpu| {
             loop {
                 gpu.send()?;
-                if gpu.asked.front().is_none_or(Asked::is_answered) {
-                    let first = gpu.asked.pop_front();
-                    return Ok(first.map_or_else(Vec::new, |first| first.cells));
+                if gpu.pending.front().is_none_or(PendingBatch::is_done) {
+                    let first = gpu.pending.pop_front();
+                    return Ok(first.map_or_else(Cells::default, |first| first.cells));
                 }
                 gpu.receive()?;
             }

@@ -54,7 +54,7 @@ impl Place {
             "ICD": { "library_path": library, "api_version": "1.1.0" },
         });
         fs::write(folder.path().join("icd.json"), manifest.to_string()).unwrap();
-        let text = cone(2).to_toml().replace("count = 512", "count = 128");
+        let text = cone(2).text.replace("count = 512", "count = 128");
         fs::write(folder.path().join("scene.toml"), text).unwrap();
         Self {
             folder,
@@ -139,7 +139,7 @@ fn the_map_is_completed_whatever_fails_while_it_runs() {
             .lines()
             .find(|line| line.starts_with("warning: GPU: device lost"));
         assert!(warning.is_some(), "{fault}: {err}");
-        let line = format!("{all:>12}  refined in f64 after the engine had failed");
+        let line = format!("{all:>12}  solved by the CPU in f64 after the engine had failed");
         assert!(out.contains(&line), "{fault}: {out}");
 
         let map = place.stored();

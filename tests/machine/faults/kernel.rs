@@ -1,9 +1,7 @@
 //! Kernels that are spoilt.
 
 use super::{assert_same, cone};
-use crate::compute::{
-    all_cells, assert_identical, compute, compute_as, handed_over, open, open_with, works,
-};
+use crate::compute::{all_cells, assert_identical, compute, compute_as, open, open_with, works};
 use whiskmap::engine::EngineError;
 use whiskmap::engine::gpu::{Gpu, Precision, shaders};
 use whiskmap::map::{EngineCells, Panel, Summary};
@@ -52,7 +50,7 @@ fn numbers_that_are_none_are_refined_in_f64_and_counted(precision: Precision) {
     works(&sound, SOLVED).unwrap();
     let sound = sound.engine_cells;
     assert_eq!(sound.not_finite, 0);
-    let asked = sound.solved + handed_over(&sound);
+    let asked = sound.solved + sound.fallback();
     for (none, part) in [
         ("wrong.numbers[8] = nan;", 1.0),
         ("wrong.residual = infinite;", 1.0),
@@ -88,12 +86,12 @@ fn a_kernel_that_does_nothing_is_noticed() {
         let (summary, panels) = compute(&scene, Some(&mut gpu));
         let EngineCells {
             not_finite,
-            without_reference,
+            without_base_point,
             ..
         } = summary.engine_cells;
         let only = EngineCells {
             not_finite,
-            without_reference,
+            without_base_point,
             ..EngineCells::default()
         };
         assert!(not_finite > 1000);
@@ -107,12 +105,12 @@ fn a_kernel_that_does_nothing_is_noticed() {
 fn assert_caught(scene: &Scene, gpu: &mut Gpu) {
     let (summary, panels) = at_once(scene, gpu);
     let audit = summary.audit;
-    let distrusted = EngineError::Distrusted {
+    let failed = EngineError::FailedAudit {
         differing: audit.differing,
         cells: audit.cells,
     };
     let failure = summary.engine_failure.unwrap();
-    assert_eq!(failure.to_string(), distrusted.to_string());
+    assert_eq!(failure.to_string(), failed.to_string());
     assert!(
         audit.differing > 0 && audit.turned_over > audit.cells,
         "{audit:?}"

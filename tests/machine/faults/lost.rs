@@ -1,12 +1,12 @@
 //! Devices that are lost: before, between and within the calls of a run.
 
 use super::{assert_same, cone};
-use crate::cells::Cells;
+use crate::cells::{RandomRows, solve};
 use crate::compute::{all_cells, assert_identical, compute, compute_as, open, sabotaged};
 use crate::random_rods::USUAL;
 use std::sync::Arc;
 use whiskmap::engine::gpu::Precision;
-use whiskmap::engine::{CellDifference, Engine, EngineError, Question};
+use whiskmap::engine::{Cells, Engine, EngineError, RowBatch};
 use whiskmap::map::EngineCells;
 use whiskmap::plan::Plan;
 use whiskmap::scene::Scene;
@@ -17,7 +17,7 @@ tests! {
         lost_within_a_call,
         lost_to_another_thread;
     Precision:
-        lost_with_questions_under_way;
+        lost_with_batches_submitted;
 }
 
 /// 16 calls of 8 rows each.
@@ -129,35 +129,33 @@ fn lost_to_another_thread() {
     }
 }
 
-/// Whatever is under way when a device is lost: an answer is right, or it is an error, and so are all after it.
-fn lost_with_questions_under_way(precision: Precision) {
-    let cells = Cells::random(USUAL, 24, 2, |_, _| ());
+/// Whatever is submitted when a device is lost: a response is right, or it is an error, and so are all after it.
+fn lost_with_batches_submitted(precision: Precision) {
+    let rows = RandomRows::new(USUAL, 24, 2, |_, _| ());
     let mut gpu = open(precision);
-    let parts = cells.references.chunks(cells.references.len().div_ceil(4));
-    let questions: Vec<_> = parts.map(|part| cells.question(&gpu, part)).collect();
-    // Numbers that are none are not equal to themselves.
-    let said = |answers: Vec<CellDifference>| format!("{answers:?}");
-    let solve = |one: &Arc<Question>| said(gpu.solve(Arc::clone(one)).unwrap());
-    let alone: Vec<_> = questions.iter().map(solve).collect();
-    for before in 0..questions.len() {
+    let part = rows.len() / 4;
+    let batches = (0..4).map(|i| rows.part(&gpu, i * part..(i + 1) * part));
+    let batches: Vec<RowBatch> = batches.collect();
+    // NaN is not equal to itself.
+    let text = |cells: Cells| format!("{cells:?}");
+    let alone = batches.iter().map(|batch| text(solve(&mut gpu, batch)));
+    let alone: Vec<String> = alone.collect();
+    for before in 0..batches.len() {
         let mut gpu = open(precision);
-        for one in &questions {
-            gpu.ask(Arc::clone(one)).unwrap();
+        for batch in &batches {
+            gpu.submit(Arc::new(batch.clone())).unwrap();
         }
         let mut is_lost = false;
         for (number, alone) in alone.iter().enumerate() {
             if number == before {
                 gpu.device().destroy();
             }
-            match gpu.answer() {
-                Ok(answers) => assert!(!is_lost && said(answers) == *alone),
+            match gpu.collect() {
+                Ok(cells) => assert!(!is_lost && text(cells) == *alone),
                 Err(EngineError::Device(_)) if number >= before => is_lost = true,
                 Err(error) => panic!("{error}"),
             }
         }
-        assert!(
-            is_lost,
-            "the last question cannot have been sent as a whole"
-        );
+        assert!(is_lost, "the last batch cannot have been sent as a whole");
     }
 }

@@ -1,6 +1,0 @@
-//! What stands around the body of a plot or a heat map: heading, axes, ticks and units.
-
-pub mod axes;
-pub mod heading;
-pub mod ticks;
-pub mod units;

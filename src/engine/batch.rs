@@ -1,0 +1,261 @@
+//! The request to an engine: the cells of some rows.
+
+use super::{Values, WhiskerSide};
+use crate::refine::{RowOfCells, references};
+use crate::rod::Rod;
+use crate::sheet::Sheet;
+use crate::shooting::batch::{InitialCondition, Method, StepStart, step_starts};
+use crate::shooting::{FirstVariation, Resolution};
+use rayon::prelude::*;
+use std::ops::Range;
+use std::sync::Arc;
+
+/// Coefficients of a Taylor polynomial along a row.
+pub const POWERS: usize = 12;
+
+/// Maximum number of steps of a base point's trajectory. Most take dozens; a row that needs more gets no base points.
+pub const MOST_TRAJECTORY_STEPS: u32 = 512;
+
+/// Base points per rayon task.
+const CHUNK: usize = 64;
+
+/// Numbers that are expanded along a row: push angle, `tau`, the direction of the point of the resting whisker that is as far from the
+/// base as the contact, and the derivatives of `(ln D, phi)` by `tau` and by load.
+pub type RowTerms = [f64; 7];
+
+/// An exact state of a row, with the Taylor expansion of the row around it.
+#[derive(Clone, Debug)]
+pub struct BasePoint {
+    /// Index of the whisker side in the batch.
+    pub rod: u32,
+    /// `tau` of the contact.
+    pub tau: f64,
+    /// Signed load.
+    pub load: f64,
+    /// Signed push angle since first touch, in radians.
+    pub push: f64,
+    /// The state with its first derivatives, in the frame of the contact.
+    pub state: FirstVariation,
+    /// Signed load over the row parameter `w`, which is `load tau^2` over its value at the end of the row.
+    pub per_way: f64,
+    /// Taylor polynomials of the row in `w`, less its value here.
+    pub row: [RowTerms; POWERS],
+    /// Its cells: indices among the columns of all sides.
+    pub cells: Range<u32>,
+}
+
+/// What an engine needs of a base point beside the point itself.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct BaseTrajectory {
+    /// Steps of the trajectory.
+    pub steps: u32,
+    /// Angle by which bending has turned the base, in radians.
+    pub bent: f64,
+    /// Index of the first cell of the base point among the cells of the batch.
+    pub first_cell: usize,
+    /// Channel values at the base point, in map units.
+    pub values: Values,
+}
+
+/// Cells of a row.
+#[derive(Clone, Debug)]
+pub struct BatchRow {
+    /// Index of the whisker side in the batch.
+    pub side: usize,
+    /// Row of the side's sheet.
+    pub row: usize,
+    /// The cells to solve: growing, disjoint ranges of the side's columns.
+    pub cells: Vec<Range<usize>>,
+    /// Index of the first of them among the cells of the batch.
+    pub first: usize,
+    /// Indices of the base points; empty where the row has none.
+    pub base_points: Range<usize>,
+}
+
+impl BatchRow {
+    /// Number of cells.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.cells.iter().map(Range::len).sum()
+    }
+
+    /// Returns true if there is no cell.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.cells.iter().all(Range::is_empty)
+    }
+
+    /// The cells to solve, in order.
+    pub fn each(&self) -> impl Iterator<Item = usize> + Clone + '_ {
+        self.cells.iter().flat_map(Range::clone)
+    }
+}
+
+/// Cells of some rows, for an [`Engine`](super::Engine).
+#[derive(Clone, Debug)]
+pub struct RowBatch {
+    /// Effects and resolution.
+    pub method: Method,
+    /// The whisker sides.
+    pub sides: Arc<[WhiskerSide]>,
+    /// The rows.
+    pub rows: Vec<BatchRow>,
+    /// Signed push angles of the columns of all sides, in radians.
+    pub pushes: Arc<[f64]>,
+    /// Whether channel values are wanted.
+    pub has_values: bool,
+    /// Whether `(tau, load)` are wanted.
+    pub has_points: bool,
+    /// Base points of all rows; none before [`RowBatch::with_base_points`].
+    pub base_points: Vec<BasePoint>,
+    /// The trajectory of each base point.
+    pub trajectories: Vec<BaseTrajectory>,
+    /// Starts of the steps of these trajectories, one trajectory after the other.
+    pub starts: Vec<StepStart>,
+}
+
+impl RowBatch {
+    /// All cells of `rows`, pairs of a side and a row of its sheet.
+    #[must_use]
+    pub fn new(
+        method: Method,
+        sides: Arc<[WhiskerSide]>,
+        pushes: Arc<[f64]>,
+        rows: impl IntoIterator<Item = (usize, usize)>,
+    ) -> Self {
+        let mut first = 0;
+        let rows = rows.into_iter().map(|(side, row)| {
+            let columns = sides[side].columns.len();
+            first += columns;
+            BatchRow {
+                side,
+                row,
+                cells: vec![0..columns],
+                first: first - columns,
+                base_points: 0..0,
+            }
+        });
+        let rows: Vec<BatchRow> = rows.collect();
+        Self {
+            method,
+            has_values: true,
+            has_points: rows.iter().any(|row| sides[row.side].has_friction()),
+            sides,
+            rows,
+            pushes,
+            base_points: Vec::new(),
+            trajectories: Vec::new(),
+            starts: Vec::new(),
+        }
+    }
+
+    /// A batch of some `cells` of each row, without base points.
+    #[must_use]
+    pub fn only(&self, cells: impl IntoIterator<Item = Vec<Range<usize>>>) -> Self {
+        let mut first = 0;
+        let rows = self.rows.iter().zip(cells).map(|(row, cells)| {
+            let row = BatchRow {
+                cells,
+                first,
+                base_points: 0..0,
+                ..*row
+            };
+            first += row.len();
+            row
+        });
+        Self {
+            method: self.method,
+            sides: Arc::clone(&self.sides),
+            rows: rows.collect(),
+            pushes: Arc::clone(&self.pushes),
+            has_values: self.has_values,
+            has_points: self.has_points,
+            base_points: Vec::new(),
+            trajectories: Vec::new(),
+            starts: Vec::new(),
+        }
+    }
+
+    /// Adds base points to all rows that have them, with trajectories in the steps of `resolution`.
+    #[must_use]
+    pub fn with_base_points(mut self, resolution: Resolution) -> Self {
+        let sheets: Vec<&Sheet> = self.sheets();
+        let rows = self.rows.iter().map(|row| {
+            let columns = &self.sides[row.side].columns;
+            RowOfCells {
+                // Sides of a group are few.
+                sheet: row.side as u32,
+                row: row.row,
+                pushes: &columns.magnitudes,
+                first: columns.first,
+            }
+        });
+        let rows: Vec<RowOfCells> = rows.collect();
+        let found = references(self.method, &sheets, &rows);
+        drop((rows, sheets));
+        let mut base_points = Vec::with_capacity(found.iter().map(Vec::len).sum());
+        for (row, found) in self.rows.iter_mut().zip(found) {
+            let from = base_points.len();
+            base_points.extend(found);
+            row.base_points = from..base_points.len();
+        }
+        self.set_base_points(base_points, resolution);
+        self
+    }
+
+    /// Replaces the base points, which are those of the rows in order, and integrates their trajectories.
+    pub fn set_base_points(&mut self, base_points: Vec<BasePoint>, resolution: Resolution) {
+        let rows = self.rows.iter();
+        let row_of = rows.flat_map(|row| std::iter::repeat_n(row, row.base_points.len()));
+        let pairs: Vec<(&BatchRow, &BasePoint)> = row_of.zip(&base_points).collect();
+        let parts = pairs.par_chunks(CHUNK);
+        let parts = parts.map(|pairs| {
+            let conditions = pairs.iter().map(|(_, base)| InitialCondition {
+                rod: self.rod(base),
+                tau: base.tau,
+                load: base.load,
+            });
+            let conditions: Vec<InitialCondition> = conditions.collect();
+            let steps = conditions.iter().map(|at| {
+                let steps = resolution.steps(at.rod, at.tau, at.load);
+                // A NaN input would request thousands of steps.
+                steps.min(MOST_TRAJECTORY_STEPS)
+            });
+            let steps: Vec<u32> = steps.collect();
+            let (starts, bent) = step_starts(&conditions, &steps);
+            let trajectories = pairs.iter().zip(steps).zip(bent);
+            let trajectories = trajectories.map(|((&(row, base), steps), bent)| {
+                let side = &self.sides[row.side];
+                BaseTrajectory {
+                    steps,
+                    bent,
+                    first_cell: row.first + (base.cells.start - side.columns.first) as usize,
+                    values: side.base_values(row.row, base),
+                }
+            });
+            (trajectories.collect(), starts)
+        });
+        let parts: Vec<(Vec<BaseTrajectory>, Vec<StepStart>)> = parts.collect();
+        let (trajectories, starts): (Vec<_>, Vec<_>) = parts.into_iter().unzip();
+        (self.trajectories, self.starts) = (trajectories.concat(), starts.concat());
+        self.base_points = base_points;
+    }
+
+    /// The rod of a base point.
+    #[must_use]
+    pub fn rod(&self, base: &BasePoint) -> &Rod {
+        &self.sides[base.rod as usize].sheet.rod
+    }
+
+    /// The sheets of all sides.
+    #[must_use]
+    pub fn sheets(&self) -> Vec<&Sheet> {
+        self.sides.iter().map(|side| &side.sheet).collect()
+    }
+
+    /// Number of cells.
+    #[must_use]
+    pub fn cells(&self) -> usize {
+        self.rows.last().map_or(0, |last| last.first + last.len())
+    }
+}

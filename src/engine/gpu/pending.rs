@@ -1,0 +1,71 @@
+//! A batch under way on the device: sent in parts, whose cells come back in the same order.
+
+use crate::engine::{Cells, Outcome, RowBatch};
+use std::ops::Range;
+use std::sync::Arc;
+
+/// A batch under way.
+#[derive(Debug)]
+pub struct PendingBatch {
+    pub batch: Arc<RowBatch>,
+    /// The cells; those that have not come back are [`Outcome::NoBasePoint`].
+    pub cells: Cells,
+    /// Number of base points whose cells have come back.
+    pub received: usize,
+    sent: BatchPart,
+}
+
+/// Some base points of a batch, and the starts of their steps.
+#[derive(Clone, Debug)]
+pub struct BatchPart {
+    pub base_points: Range<usize>,
+    pub starts: Range<usize>,
+}
+
+impl PendingBatch {
+    pub fn new(batch: Arc<RowBatch>) -> Self {
+        Self {
+            cells: Cells::new(&batch, Outcome::NoBasePoint),
+            batch,
+            received: 0,
+            sent: BatchPart {
+                base_points: 0..0,
+                starts: 0..0,
+            },
+        }
+    }
+
+    /// Returns true if a part is still to be sent.
+    pub fn is_waiting(&self) -> bool {
+        self.sent.base_points.end < self.batch.base_points.len()
+    }
+
+    /// Returns true if all cells have come back.
+    pub fn is_done(&self) -> bool {
+        self.received == self.batch.base_points.len()
+    }
+
+    /// The part to send next: at least one base point, at most `cells` cells and about `steps` steps.
+    pub fn next(&mut self, cells: usize, steps: usize) -> BatchPart {
+        let [first, first_start] = [self.sent.base_points.end, self.sent.starts.end];
+        let RowBatch {
+            base_points,
+            trajectories,
+            ..
+        } = &*self.batch;
+        let (mut count, mut cells_here, mut steps_here) = (0, 0, 0);
+        for (base, trajectory) in base_points.iter().zip(trajectories).skip(first) {
+            let cells_with_it = cells_here + base.cells.len();
+            let steps_with_it = steps_here + trajectory.steps as usize;
+            if count > 0 && (cells_with_it > cells || steps_with_it > steps) {
+                break;
+            }
+            (count, cells_here, steps_here) = (count + 1, cells_with_it, steps_with_it);
+        }
+        self.sent = BatchPart {
+            base_points: first..first + count,
+            starts: first_start..first_start + steps_here,
+        };
+        self.sent.clone()
+    }
+}

@@ -1,0 +1,113 @@
+//! One side of one whisker, and the channel values of its states in map units.
+
+use super::{BasePoint, Cell, Outcome, SideColumns};
+use crate::plan::STATE_CHANNELS;
+use crate::refine::ContactState;
+use crate::rod::Units;
+use crate::sheet::Sheet;
+use crate::shooting::{FullState, Reader, Reading};
+use glam::DVec2;
+use std::sync::Arc;
+
+/// Channel values of a state in map units, in the order of [`STATE_CHANNELS`].
+pub type Values = [f64; STATE_CHANNELS.len()];
+
+/// Index of the contact force in [`STATE_CHANNELS`].
+pub const FORCE: usize = 2;
+
+/// One side of one whisker: its sheet, the columns of the map, and the units.
+#[derive(Debug)]
+pub struct WhiskerSide {
+    /// Columns of the map on this side.
+    pub columns: Arc<SideColumns>,
+    /// The stable sheet, with a row per distance of the map.
+    pub sheet: Sheet,
+    /// Channel values of a difference of 1 in whisker lengths, radians, `E I_base/L_w^2` and `E I_base/L_w`.
+    pub unit_values: Values,
+    reader: Reader,
+}
+
+impl WhiskerSide {
+    /// Joins a sheet with the `columns` of its side; values are in `units`.
+    #[must_use]
+    pub fn new(columns: Arc<SideColumns>, units: Units, sheet: Sheet) -> Self {
+        let reader = Reader::new(units, &sheet.rod);
+        Self {
+            unit_values: values(&reader.of_one(sheet.side.sign())),
+            columns,
+            sheet,
+            reader,
+        }
+    }
+
+    /// Returns true if the contact has friction.
+    #[must_use]
+    pub fn has_friction(&self) -> bool {
+        self.sheet.rod.friction != 0.0
+    }
+
+    /// The values of a state of `row` at the signed `push`, in radians.
+    fn values(&self, row: usize, tau: f64, full: &FullState, push: f64) -> Values {
+        let touch = self.sheet.rows[row].touch;
+        values(&self.reader.read(tau, full, touch, push))
+    }
+
+    /// The values at a base point of `row`.
+    #[must_use]
+    pub fn base_values(&self, row: usize, base: &BasePoint) -> Values {
+        self.values(row, base.tau, &base.state.full, base.push)
+    }
+
+    /// The cell of `row` with a solution `state` at the signed `push`, in radians; NaN values unless `has_values`.
+    #[must_use]
+    pub fn solved(
+        &self,
+        row: usize,
+        push: f64,
+        state: &ContactState,
+        steps: u32,
+        has_values: bool,
+    ) -> Cell {
+        let outcome = match state.is_at_tip(&self.sheet) {
+            true => Outcome::AtTip,
+            false => Outcome::Solved,
+        };
+        let values = has_values.then(|| self.values(row, state.tau, &state.full, push));
+        Cell {
+            residual: state.residual as f32,
+            values: values.map_or(Cell::NO_VALUES, |all| all.map(|value| value as f32)),
+            point: DVec2::new(state.tau, state.load),
+            ..Cell::new(outcome, steps)
+        }
+    }
+
+    /// The cell of `row` at first touch: the resting whisker without a load.
+    #[must_use]
+    pub fn first_touch(&self, row: usize, steps: u32) -> Cell {
+        let row = &self.sheet.rows[row];
+        let reading = self
+            .reader
+            .at_first_touch(row.contact.min(row.end), row.touch);
+        Cell {
+            residual: 0.0,
+            values: values(&reading).map(|value| value as f32),
+            point: row.first_touch(&self.sheet.rod),
+            ..Cell::new(Outcome::Solved, steps)
+        }
+    }
+}
+
+/// The channels of a reading, in the order of [`STATE_CHANNELS`].
+fn values(reading: &Reading) -> Values {
+    [
+        reading.arc_length_mm,
+        reading.contact_angle_deg,
+        reading.force_un,
+        reading.base_force_un.x,
+        reading.base_force_un.y,
+        reading.base_moment_nnm,
+        reading.push_chord_deg,
+        reading.contact_distance_mm,
+        reading.energy_nj,
+    ]
+}

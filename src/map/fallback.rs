@@ -1,0 +1,89 @@
+//! The CPU's share of a row batch: cells that an engine has not certified, and the audit of the others.
+
+use super::audit::{self, AuditSample};
+use super::summary::{Audit, EngineCells};
+use crate::engine::{Cells, Cpu, Outcome, RowBatch};
+use rayon::prelude::*;
+use std::ops::Range;
+
+/// What became of a batch.
+pub struct CompletedBatch {
+    /// All cells.
+    pub cells: Cells,
+    /// Result of the audit.
+    pub audit: Audit,
+}
+
+/// Completes the `cells` of an engine on the CPU, or solves all cells there without an engine's. Cells are counted in `counts`: with a
+/// disabled engine (`has_failed`), those without a base point count as solved by the CPU instead.
+pub fn complete(
+    batch: &RowBatch,
+    cells: Option<Cells>,
+    has_failed: bool,
+    cpu: &mut Cpu,
+    counts: &mut EngineCells,
+) -> CompletedBatch {
+    let mut audit = Audit::default();
+    if let Some(mut cells) = cells {
+        let rest = rest(batch, &cells);
+        let found = cpu.solve(&rest);
+        audit = audit::compare(batch, &cells, &rest, &found);
+        let solved = cells.outcome.iter().filter(|own| **own == Outcome::Solved);
+        let solved = solved.count() as u64;
+        if audit.differing == 0 {
+            for outcome in &cells.outcome {
+                counts.count(*outcome);
+            }
+            let mut without = 0;
+            for (index, from) in places(batch, &rest) {
+                if cells.outcome[index] != Outcome::Solved {
+                    let cell = found.get(from);
+                    let is_unasked = cells.outcome[index] == Outcome::NoBasePoint;
+                    without += u64::from(is_unasked && cell.outcome != Outcome::OffSheet);
+                    cells.set(index, &cell);
+                }
+            }
+            counts.add_unasked(without, has_failed);
+            return CompletedBatch { cells, audit };
+        }
+        audit.turned_over = solved;
+    }
+    let cells = cpu.solve(batch);
+    let on_sheet = cells
+        .outcome
+        .iter()
+        .filter(|own| **own != Outcome::OffSheet);
+    let has_failed = has_failed || audit.differing > 0;
+    counts.add_unasked(on_sheet.count() as u64, has_failed);
+    CompletedBatch { cells, audit }
+}
+
+/// The cells that the CPU solves: those that are not certified, and the sample of the audit.
+fn rest(batch: &RowBatch, cells: &Cells) -> RowBatch {
+    let rows = batch.rows.par_iter().map(|row| {
+        let side = &batch.sides[row.side];
+        let outcomes = &cells.outcome[row.first..row.first + row.len()];
+        let sample = AuditSample::new(&side.sheet, row.row, side.columns.len());
+        let mut wanted: Vec<Range<usize>> = Vec::new();
+        let mut from = 0;
+        for run in outcomes.chunk_by(|a, b| (*a == Outcome::Solved) == (*b == Outcome::Solved)) {
+            let cells = from..from + run.len();
+            from = cells.end;
+            match run[0] {
+                Outcome::Solved => wanted.extend(sample.of(cells).map(|cell| cell..cell + 1)),
+                _ => wanted.push(cells),
+            }
+        }
+        wanted
+    });
+    batch.only(rows.collect::<Vec<_>>())
+}
+
+/// Pairs of the index of a cell in the whole `batch` and in the batch of the `rest`.
+pub fn places<'a>(
+    batch: &'a RowBatch,
+    rest: &'a RowBatch,
+) -> impl Iterator<Item = (usize, usize)> + 'a {
+    let rows = batch.rows.iter().zip(&rest.rows);
+    rows.flat_map(|(whole, part)| part.each().map(|cell| whole.first + cell).zip(part.first..))
+}

@@ -1,0 +1,35 @@
+//! Charts show the lines they are given, the same ones as PNG and as SVG. The frame and the lines are read from the SVG
+//! document; the pixels must be there too.
+#![allow(
+    clippy::unwrap_used,
+    reason = "a test that cannot set up its files should stop"
+)]
+
+mod axes;
+mod bands;
+mod documents;
+#[path = "../drawn/mod.rs"]
+mod drawn;
+mod insets;
+mod lines;
+
+use drawn::{Pixels, svg};
+use whiskmap::render::Chart;
+
+const WHITE: [u8; 3] = [255; 3];
+const BLACK: [u8; 3] = [0x22, 0x2b, 0x33];
+const BLUE: [u8; 3] = [0x1c, 0x6c, 0xc4];
+const BODY: [u8; 3] = [0xdc, 0xdd, 0xde];
+
+/// A chart as SVG and as pixels.
+fn both(chart: &Chart) -> (String, Pixels) {
+    (svg(&chart.picture()), Pixels::of(&chart.picture()))
+}
+
+/// A quarter of a circle of radius 100 in a thousand pieces.
+fn arc() -> Vec<[f64; 2]> {
+    let angle = |step: i32| f64::from(step) / 1000.0 * std::f64::consts::FRAC_PI_2;
+    (0..=1000)
+        .map(|step| [100.0 * angle(step).cos(), 100.0 * angle(step).sin()])
+        .collect()
+}
