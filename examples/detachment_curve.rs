@@ -7,7 +7,8 @@ use whiskmap::scene::Scene;
 use whiskmap::{Options, curve};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let scene = Scene::read("scenes/cone.toml")?.with("grid.distance_mm", [5, 10, 15, 19])?;
+    let cone = Scene::read("scenes/cone.toml")?.to_builder();
+    let scene = cone.distance_mm([5.0, 10.0, 15.0, 19.0]).build()?;
     println!("side  distance  how         push angle");
     for (_, end) in curve(&scene, Options::default())? {
         let push = end.push_angle_deg.unwrap_or(f64::NAN);

@@ -52,7 +52,7 @@ pub enum Error {
 pub struct Map {
     /// The axes.
     pub grid: Grid,
-    /// The whiskers' cells, in the order of [`Setup::whiskers`](crate::scene::Setup::whiskers).
+    /// The whiskers' cells, in the order of [`SceneData::whiskers`](crate::scene::SceneData::whiskers).
     pub panels: Vec<Panel>,
     /// Counts and times of the run.
     pub summary: Summary,
@@ -127,7 +127,7 @@ pub fn map(scene: &Scene, options: Options) -> Result<Map, Error> {
 
 /// Computes the regime map of `scene`, and passes one [`Panel`] at a time to `each`, with the index of its whisker.
 ///
-/// Panels come in the order of [`Setup::whiskers`](crate::scene::Setup::whiskers), while the next ones are computed. Memory does not
+/// Panels come in the order of [`SceneData::whiskers`](crate::scene::SceneData::whiskers), while the next ones are computed. Memory does not
 /// grow with the number of whiskers. The first error of `each` ends the run.
 ///
 /// ```
@@ -187,7 +187,7 @@ fn run<E: From<Error> + Send>(
 /// use whiskmap::{Options, scene::Scene};
 ///
 /// let cone = Scene::parse(include_str!("../scenes/cone.toml"), "cone.toml")?;
-/// let curve = whiskmap::curve(&cone.with("grid.distance_mm", [15.6604597633658])?, Options::default())?;
+/// let curve = whiskmap::curve(&cone.to_builder().distance_mm([15.6604597633658]).build()?, Options::default())?;
 /// let (_, cb) = &curve[1];
 /// assert_eq!(cb.kind, DetachmentKind::SlipOff);
 /// assert!(cb.push_angle_deg.is_some_and(|push| (push - 15.60793).abs() < 1e-5));
@@ -254,7 +254,7 @@ pub fn shape(scene: &Scene, distance_mm: f64, push_angle_deg: f64) -> Result<Sha
 ///
 /// let cone = Scene::parse(include_str!("../scenes/cone.toml"), "cone.toml")?;
 /// let points = Points::parse("side,distance_mm,push_angle_deg\ncb,15.6604597633658,15.60793\n", "points.csv")?;
-/// let start = cone.with("whisker.tip_radius_um", 3)?;
+/// let start = cone.with(Parameter::TipRadiusUm, 3.0)?;
 /// let fit = whiskmap::fit(&start, &points, &[Parameter::TipRadiusUm])?;
 /// assert!((fit.estimates[0].value - 1.5).abs() < 1e-5);
 /// # Ok::<(), Box<dyn std::error::Error>>(())

@@ -10,7 +10,7 @@
 //! use whiskmap::{Options, trace::DetachmentKind};
 //!
 //! let scene = Scene::parse(include_str!("../scenes/cone.toml"), "cone.toml")?;
-//! let ends = whiskmap::curve(&scene.with("grid.distance_mm", [10.0, 19.5])?, Options::default())?;
+//! let ends = whiskmap::curve(&scene.to_builder().distance_mm([10.0, 19.5]).build()?, Options::default())?;
 //! let kinds: Vec<DetachmentKind> = ends.iter().map(|(_, end)| end.kind).collect();
 //! assert_eq!(kinds[2..], [DetachmentKind::SlipOff, DetachmentKind::PullOff]); // CB, near and far
 //! # Ok::<(), Box<dyn std::error::Error>>(())

@@ -207,7 +207,11 @@ fn what_cannot_be_asked_for_is_refused() {
         design(&measured, Parameter::Taper, &near),
         Err(NoDesign::Lacking { .. })
     ));
-    let axis = scene.with("grid.curvature_per_mm", [0.004]).unwrap();
+    let axis = scene
+        .to_builder()
+        .sweep(Parameter::ParabolaPerMm, [0.004])
+        .build()
+        .unwrap();
     let why = design(&axis, Parameter::ParabolaPerMm, &asked).unwrap_err();
     assert_eq!(why, NoDesign::Sweep("curvature_per_mm"));
     let far = Target {

@@ -274,7 +274,7 @@ fn a_status_is_that_of_its_own_push() {
         .copied()
         .step_by(7)
         .collect();
-    let sparse = dense.with("grid.push_angle_deg", few).unwrap();
+    let sparse = dense.to_builder().push_angle_deg(few).build().unwrap();
     let [dense, sparse] = [&dense, &sparse].map(|scene| {
         let (_, panels) = compute(scene, None);
         (scene.grid.push_angle_deg.len(), panels[0].status.clone())

@@ -6,7 +6,7 @@ mod compute;
 use compute::{compute, shipped};
 use whiskmap::map::{Panel, STATE_CHANNELS};
 use whiskmap::refine::TOLERANCE;
-use whiskmap::scene::Scene;
+use whiskmap::scene::{Parameter, Scene};
 
 #[test]
 fn shipped_scenes_have_no_doubtful_cell() {
@@ -37,8 +37,16 @@ fn shipped_scenes_have_no_doubtful_cell() {
 
 /// One row of `scene`.
 fn row(scene: &Scene, push_angle_deg: &[f64], distance_mm: f64) -> Panel {
-    let scene = scene.with("grid.push_angle_deg", push_angle_deg).unwrap();
-    let scene = scene.with("grid.distance_mm", [distance_mm]).unwrap();
+    let scene = scene
+        .to_builder()
+        .push_angle_deg(push_angle_deg)
+        .build()
+        .unwrap();
+    let scene = scene
+        .to_builder()
+        .distance_mm([distance_mm])
+        .build()
+        .unwrap();
     compute(&scene, None).1.remove(0)
 }
 
@@ -93,12 +101,12 @@ fn the_base_moment_is_the_slope_of_the_energy() {
 #[test]
 fn first_touch_and_the_tip_are_decided() {
     let cone = Scene::read("scenes/cone.toml").unwrap();
-    let bend = "whisker.curvature.parabola_per_mm";
+    let bend = Parameter::ParabolaPerMm;
     let bent = cone.with(bend, 0.075).unwrap();
     assert_eq!(row(&bent, &[0.0], 18.5).regime, [1]);
 
     let straight = cone.with(bend, 0.0).unwrap();
-    let pointed = straight.with("pole.radius_mm", 0.0).unwrap();
+    let pointed = straight.with(Parameter::PoleRadiusMm, 0.0).unwrap();
     let pushes = [-1e-3, -1e-5, 0.0, 1e-5, 1e-3];
     assert_eq!(row(&pointed, &pushes, 20.0).regime, [3, 3, 1, 3, 3]);
 }

@@ -231,9 +231,11 @@ fn coarse_steps_leave_no_cell_in_doubt() {
                    distance_mm = { from = 16, to = 19.98, count = 1000 }";
     let cone = include_str!("../scenes/cone.toml");
     let pointed = Scene::parse(cone, "cone.toml").unwrap();
-    let pointed = pointed.with("whisker.tip_radius_um", 0).unwrap();
+    let pointed = pointed
+        .with(whiskmap::scene::Parameter::TipRadiusUm, 0.0)
+        .unwrap();
     let pushes: Vec<f64> = (-256..=256).map(|i| 70.0 * f64::from(i) / 256.0).collect();
-    let pointed = pointed.with("grid.push_angle_deg", pushes).unwrap();
+    let pointed = pointed.to_builder().push_angle_deg(pushes).build().unwrap();
     for (scene, tolerances) in [
         (Scene::parse(slender, "slender").unwrap(), [1e-1, 1e-4]),
         (pointed, [1e-1, 1e-3]),

@@ -124,7 +124,7 @@ fn every_row_of_a_profile_varies() {
             let [before, after] = [-1e-4, 1e-4].map(|step| {
                 let mut rows = rows;
                 rows[place][1] += step;
-                let moved = scene.with("whisker.profile.rows", rows).unwrap();
+                let moved = scene.to_builder().profile(rows).build().unwrap();
                 let end = curve(&moved.whisker, &moved.pole, row.side, &[12.0])[0];
                 end.push_angle_deg.unwrap()
             });
@@ -154,8 +154,8 @@ fn equal_seeds_draw_equal_whiskers_on_any_number_of_threads() {
 #[test]
 fn draws_outside_of_the_limits_are_drawn_again() {
     let limit = scene("tip_radius_um = 0.5")
-        .with("whisker.projection.arc_stretch", 1.0)
-        .and_then(|scene| scene.with("whisker.tip_radius_um", 0.0))
+        .with(Parameter::ArcStretch, 1.0)
+        .and_then(|scene| scene.with(Parameter::TipRadiusUm, 0.0))
         .unwrap();
     let draws = Draws::new(&limit, 200, 1).unwrap();
     // Half of all draws; 200 more are expected, give or take 20.
@@ -171,14 +171,16 @@ fn draws_outside_of_the_limits_are_drawn_again() {
 #[test]
 fn ends_out_of_reach_are_counted() {
     let scene = scene("length_mm = 0.5")
-        .with("grid.distance_mm", [19.3])
+        .to_builder()
+        .distance_mm([19.3])
+        .build()
         .unwrap();
     for row in spreads(&scene, 100, 1) {
         assert!(row.out_of_reach > 10 && row.out_of_reach < 90, "{row:?}");
         let all = row.slip_off + row.pull_off + row.out_of_reach + row.unresolved;
         assert_eq!((all, row.unresolved), (100, 0));
     }
-    let never = scene.with("grid.distance_mm", [40]).unwrap();
+    let never = scene.to_builder().distance_mm([40.0]).build().unwrap();
     for row in spreads(&never, 10, 1) {
         assert_eq!(
             (row.kind, row.out_of_reach),
@@ -207,7 +209,11 @@ fn what_cannot_be_drawn_is_refused() {
         distances: 3,
     };
     assert_eq!(why(&many, 10_000_000), too_many);
-    let axis = many.with("grid.curvature_per_mm", [0.02]).unwrap();
+    let axis = many
+        .to_builder()
+        .sweep(Parameter::ParabolaPerMm, [0.02])
+        .build()
+        .unwrap();
     assert_eq!(why(&axis, 10), NoDraws::Sweep("curvature_per_mm"));
     let wide =
         scene("length_mm = 1e5\nbase_radius_um = 1e5\nvertex_mm = 1e5\npole_radius_mm = 1e5");

@@ -2,7 +2,7 @@
 
 use crate::refine::states;
 use crate::rod::{Effects, Rod, Side};
-use crate::scene::{Scene, Setup, Swept};
+use crate::scene::{Scene, SceneData, Swept};
 use crate::sheet::{Edge, Sheet};
 use crate::shooting::batch::{Batch, InitialCondition, Method};
 use crate::shooting::{Resolution, ShootingMap};
@@ -114,7 +114,7 @@ fn worse(a: f64, b: f64) -> f64 {
 
 /// The whiskers at some values of the sweep's axes: at the ends alone where there are many.
 fn whiskers(scene: &Scene) -> Vec<Swept> {
-    let mut few = Setup::clone(scene);
+    let mut few = SceneData::clone(scene);
     let most = if few.grid.sweep.len() > 2 {
         2
     } else {

@@ -126,10 +126,9 @@ fn plot(points: &[BranchPoint], y: BranchAxis, has_distances: bool) -> Plot {
     let mut plot = branches("", &[(Ink::Black, points)], [PUSH, y]);
     let is_end = |point: &&BranchPoint| matches!(point.mark, Some(Mark::SlipOff | Mark::PullOff));
     let ends = points.iter().filter(is_end).filter(|_| has_distances);
-    plot.notes.extend(ends.map(|end| Note {
-        at: [end.push_angle_deg, (y.value)(end)],
-        text: format!("{} mm", end.distance_mm),
-        ..Note::default()
+    plot.notes.extend(ends.map(|end| {
+        let at = [end.push_angle_deg, (y.value)(end)];
+        Note::text(at, format!("{} mm", end.distance_mm))
     }));
     plot
 }

@@ -13,7 +13,7 @@ use clap::Args;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use whiskmap::measured::{Angle, Compared};
-use whiskmap::render::{CurveAxis, Ends, Plot, Stroke, curves, measured};
+use whiskmap::render::{CurveAxis, DrawnCurve, Plot, Stroke, curves, measured};
 use whiskmap::rod::Side;
 use whiskmap::scene::{Place, Scene, Swept};
 use whiskmap::shooting::Resolution;
@@ -186,7 +186,7 @@ pub fn scene_curve(scene: &Scene, resolution: Resolution, axes: [CurveAxis; 2]) 
 }
 
 fn plot(rows: &[Detachment], axes: [CurveAxis; 2]) -> Plot {
-    let ends = Ends {
+    let ends = DrawnCurve {
         rows,
         stroke: Stroke::Solid,
         name: "",

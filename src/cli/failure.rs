@@ -8,7 +8,7 @@ use whiskmap::engine::gpu::DRIVER_CALL;
 use whiskmap::fit;
 use whiskmap::input::CsvError;
 use whiskmap::plan::PlanError;
-use whiskmap::render;
+use whiskmap::render::{EncodeError, RenderError};
 use whiskmap::scene::SceneError;
 use whiskmap::store;
 use whiskmap::trace::NoState;
@@ -35,7 +35,9 @@ pub enum Failure {
     #[error(transparent)]
     Store(#[from] store::Error),
     #[error(transparent)]
-    Render(#[from] render::Error),
+    Render(#[from] RenderError),
+    #[error(transparent)]
+    Encode(#[from] EncodeError),
     #[error(transparent)]
     State(NoState),
     /// Every result is unresolved.
@@ -74,8 +76,10 @@ impl Failure {
             Self::Scene(_) | Self::Points(_) | Self::Plan(_) | Self::Input(_) => true,
             Self::Fit(error) => !matches!(error, fit::Error::NotConverged(_)),
             Self::Store(store::Error::Encode(..))
-            | Self::Render(render::Error::Scale(_) | render::Error::TooManyAxes(_)) => true,
-            Self::Store(error) | Self::Render(render::Error::Store(error)) => error.is_unreadable(),
+            | Self::Render(
+                RenderError::Scale { .. } | RenderError::Codes(_) | RenderError::TooManyAxes(_),
+            ) => true,
+            Self::Store(error) | Self::Render(RenderError::Store(error)) => error.is_unreadable(),
             _ => false,
         };
         if is_input { 2 } else { 1 }

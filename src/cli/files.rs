@@ -127,7 +127,7 @@ impl Files {
 /// Reads a scene; prints notes about unused columns and warnings about values that look like another unit.
 pub fn read_scene(path: &Path) -> Result<Scene, Failure> {
     let scene = Scene::read(path)?;
-    if let Some(note) = &scene.note {
+    if let Some(note) = scene.note() {
         message(&format!("note: {note}"));
     }
     for warning in scene.warnings() {

@@ -68,7 +68,10 @@ pub fn run(args: &FitArgs, files: &mut Files) -> Result<(), Failure> {
     warn(&points, &found);
     let toml = toml.filter(|_| found.not_a_fit.is_none());
     let json = json.map(|place| (place, format!("{:#}\n", document(&found))));
-    let toml = toml.map(|place| (place, found.scene.text.clone()));
+    let values = found.estimates.iter();
+    let values: Vec<_> = values.map(|own| (own.parameter, own.value)).collect();
+    let toml = toml.map(|place| Ok::<_, Failure>((place, scene.to_toml_with(&values)?)));
+    let toml = toml.transpose()?;
     let printed = print(
         &scene.title,
         &found,

@@ -146,7 +146,12 @@ pub fn run(args: &MapArgs, files: &mut Files) -> Result<(), Failure> {
     }
     if let Some(picture) = &picture {
         let regimes = render::map(&StoredMap::open(&file)?.into(), &MapOptions::default())?;
-        save(&regimes, picture, render::Format::Png, files.temporary())?;
+        save(
+            &regimes,
+            picture,
+            render::PictureFormat::Png,
+            files.temporary(),
+        )?;
     }
     let written: Vec<PathBuf> = [Some(file), picture].into_iter().flatten().collect();
     print(&scene, &summary, start.elapsed().as_secs_f64(), &written)?;

@@ -6,7 +6,7 @@ use clap::Args;
 use serde::Serialize;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
-use whiskmap::render::{Chart, Format, Picture, Plot};
+use whiskmap::render::{Chart, Picture, PictureFormat, Plot};
 use whiskmap::store::{Output, Table, TemporaryFiles};
 
 #[derive(Debug, Args)]
@@ -78,7 +78,7 @@ impl OpenOutputs {
 /// File of `--plot`, which can be written.
 pub struct PlotFile {
     path: PathBuf,
-    format: Format,
+    format: PictureFormat,
     is_regular: bool,
     temporary: TemporaryFiles,
 }
@@ -86,12 +86,7 @@ pub struct PlotFile {
 impl PlotFile {
     /// Draws and writes one plot below its title.
     pub fn save(&self, title: String, plot: Plot) -> Result<(), Failure> {
-        let chart = Chart {
-            title,
-            plots: vec![plot],
-            columns: 1,
-            ..Chart::default()
-        };
+        let chart = Chart::single(title, plot);
         save(&chart.picture(), &self.path, self.format, &self.temporary)
     }
 }
@@ -105,7 +100,7 @@ pub fn open(
 ) -> Result<(Option<Output>, Option<PlotFile>), Failure> {
     let format = |path: &Path| {
         let must = || format!("--plot {}: must end in .png or .svg", path.display());
-        Format::of(path).ok_or_else(|| Failure::Input(must()))
+        PictureFormat::of(path).ok_or_else(|| Failure::Input(must()))
     };
     let format = plot.map(format).transpose()?;
     let output = data.map(|path| files.output(option, path)).transpose()?;
@@ -124,10 +119,10 @@ pub fn open(
 pub fn save(
     picture: &Picture,
     path: &Path,
-    format: Format,
+    format: PictureFormat,
     temporary: &TemporaryFiles,
 ) -> Result<(), Failure> {
-    if format == Format::Png {
+    if format == PictureFormat::Png {
         warn_of_boxes(picture);
     }
     let bytes = picture.encode(format)?;

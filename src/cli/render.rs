@@ -9,7 +9,7 @@ use clap::Args;
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use whiskmap::input::Quantity;
-use whiskmap::render::{self, Format, MapOptions};
+use whiskmap::render::{self, MapOptions, PictureFormat};
 use whiskmap::store::Slice;
 
 #[derive(Debug, Args)]
@@ -94,7 +94,7 @@ pub fn run(args: &RenderArgs, files: &mut Files) -> Result<(), Failure> {
         writeln!(out, "{}", path.display())?;
     } else {
         warn_of_boxes(&picture);
-        out.write_all(&picture.encode(Format::Png)?)?;
+        out.write_all(&picture.encode(PictureFormat::Png)?)?;
         out.flush()?;
     }
     Ok(())
@@ -105,7 +105,7 @@ fn target(
     args: &RenderArgs,
     map: &Slice,
     files: &mut Files,
-) -> Result<Option<(PathBuf, Format)>, Failure> {
+) -> Result<Option<(PathBuf, PictureFormat)>, Failure> {
     let path = args.output.clone().unwrap_or_else(|| {
         let chosen = map.readable();
         let chosen = chosen.map(|(name, value)| format!("{name}={value}"));
@@ -125,7 +125,7 @@ fn target(
         };
     }
     files.output("--output", &path)?;
-    match Format::of(&path) {
+    match PictureFormat::of(&path) {
         Some(format) => Ok(Some((path, format))),
         None => refuse("must end in .png or .svg, or be - for PNG on standard output"),
     }

@@ -9,7 +9,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use whiskmap::measured::{Angle, Point};
 use whiskmap::paper::{self, FIG4_WHISKER, FIG5_LEFT, FIG5_RIGHT, Measurements, POLE};
-use whiskmap::render::Format;
+use whiskmap::render::PictureFormat;
 use whiskmap::scene::Whisker;
 use whiskmap::store::{Output, Table};
 
@@ -97,7 +97,7 @@ pub fn run(args: &ReproduceArgs, files: &mut Files) -> Result<(), Failure> {
     }
     let mut out = std::io::stdout().lock();
     for figure in figures {
-        for (ending, format) in [("png", Format::Png), ("svg", Format::Svg)] {
+        for (ending, format) in [("png", PictureFormat::Png), ("svg", PictureFormat::Svg)] {
             let path = picture(figure.name, ending);
             save(&figure.chart.picture(), &path, format, files.temporary())?;
             writeln!(out, "{}", path.display())?;

@@ -7,7 +7,7 @@ use super::outputs::OutputArgs;
 use super::pole::{self, PoleArgs, refuse, title};
 use clap::{Args, ValueEnum};
 use whiskmap::classify::Sliding;
-use whiskmap::render::{Drawn, Ink, Line, Stroke, shapes};
+use whiskmap::render::{DrawnShape, Ink, Line, Stroke, shapes};
 use whiskmap::rod::Side;
 use whiskmap::scene::digits;
 use whiskmap::trace::{Branch, NoState, Shape, ShapePoint};
@@ -90,7 +90,7 @@ pub fn run(args: &ShapeArgs, files: &mut Files) -> Result<(), Failure> {
     } else {
         (Stroke::Dashed, "unstable")
     };
-    let drawn = Drawn {
+    let drawn = DrawnShape {
         shape,
         ink: Ink::Black,
         stroke,
@@ -99,7 +99,7 @@ pub fn run(args: &ShapeArgs, files: &mut Files) -> Result<(), Failure> {
     outputs.finish(title(&scene, &[distance]), || {
         let mut plot = shapes("", &[drawn]);
         let at_rest = Shape::at_rest(&branch, count);
-        let at_rest = Line::new(at_rest, Ink::Grey, Stroke::Solid, "first touch");
+        let at_rest = Line::new(at_rest, Ink::Grey, Stroke::Solid).named("first touch");
         plot.lines.insert(0, at_rest);
         plot
     })

@@ -2,7 +2,7 @@
 
 use super::failure::Failure;
 use std::io::Write;
-use whiskmap::paper::{Expected, Verdict, checks};
+use whiskmap::paper::{CheckVerdict, ExpectedNumber, checks};
 
 pub fn run() -> Result<(), Failure> {
     let checks = checks();
@@ -17,8 +17,10 @@ pub fn run() -> Result<(), Failure> {
     )?;
     for check in &checks {
         let (expected, allowed) = match check.expected {
-            Expected::Near(value, tolerance) => (format!("{value}"), format!("{tolerance:.1e}")),
-            Expected::Above(bound) => (format!("> {bound}"), String::new()),
+            ExpectedNumber::Near(value, tolerance) => {
+                (format!("{value}"), format!("{tolerance:.1e}"))
+            }
+            ExpectedNumber::Above(bound) => (format!("> {bound}"), String::new()),
         };
         writeln!(
             out,
@@ -31,9 +33,9 @@ pub fn run() -> Result<(), Failure> {
             format!("{:.1e}", check.difference()),
             allowed,
             match check.verdict() {
-                Verdict::Pass => "PASS",
-                Verdict::Differs => "DIFFERS",
-                Verdict::Fail => "FAIL",
+                CheckVerdict::Pass => "PASS",
+                CheckVerdict::Differs => "DIFFERS",
+                CheckVerdict::Fail => "FAIL",
             }
         )?;
     }
@@ -46,11 +48,11 @@ pub fn run() -> Result<(), Failure> {
     writeln!(
         out,
         "{} of {} checks pass; {} DIFFERS: an independent solver also contradicts the source",
-        count(Verdict::Pass),
+        count(CheckVerdict::Pass),
         checks.len(),
-        count(Verdict::Differs)
+        count(CheckVerdict::Differs)
     )?;
-    let failed = count(Verdict::Fail);
+    let failed = count(CheckVerdict::Fail);
     if failed > 0 {
         return Err(Failure::Checks {
             failed,

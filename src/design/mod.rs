@@ -126,7 +126,10 @@ pub fn design(scene: &Scene, parameter: Parameter, target: &Target) -> Result<De
         return Err(NoDesign::Lacking { parameter, given });
     };
     // Other distances would limit what is accepted.
-    let scene = &scene.with("grid.distance_mm", [target.distance_mm])?;
+    let scene = &scene
+        .to_builder()
+        .distance_mm([target.distance_mm])
+        .build()?;
     let range = parameter.range(scene);
     if range[1] - range[0] <= 3.0 * EQUAL * value.abs() {
         return Err(NoDesign::Fixed { parameter, value });

@@ -1,81 +1,81 @@
-//! A number that is known otherwise, and how far ours is from it.
+//! Comparisons of computed numbers with independently known ones.
 
 use crate::rod::Side;
 use crate::scene::{Pole, Whisker};
 use crate::trace::{Detachment, curve};
 
-/// A number that is known, and the same number computed.
+/// An independently known number, and the same number computed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Check {
-    /// Of what.
+    /// Whisker, side and pole that the number belongs to.
     pub case: String,
-    /// Which quantity, with its unit.
+    /// Name of the number, with its unit.
     pub quantity: &'static str,
-    /// Where it is known from.
+    /// Source of the known number.
     pub source: &'static str,
-    /// What it should be.
-    pub expected: Expected,
-    /// What it is.
+    /// Known value or bound.
+    pub expected: ExpectedNumber,
+    /// Computed value; NaN if there is none.
     pub computed: f64,
-    /// An independent solver contradicts the source, too.
+    /// Whether an independent solver also contradicts the source.
     pub is_disputed: bool,
 }
 
-/// What a comparison says.
+/// The result of a check.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Verdict {
-    /// The number is what it should be.
+pub enum CheckVerdict {
+    /// The number agrees with its source.
     Pass,
-    /// It is not, but neither is an independent solver's.
+    /// The number differs from its source, and so does an independent solver.
     Differs,
-    /// It is not.
+    /// The number differs from its source.
     Fail,
 }
 
-/// What a number should be.
+/// The value or bound that a number is checked against.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Expected {
-    /// A value, up to a tolerance: half of the last digit known, unless a check says otherwise.
+pub enum ExpectedNumber {
+    /// A value and the allowed difference: half of the last known digit, unless a check says otherwise.
     Near(f64, f64),
-    /// More than a value.
+    /// A lower bound.
     Above(f64),
 }
 
 impl Check {
-    /// How far the number is from where it should be; 0 inside of an open range.
+    /// Returns the distance of the number from its expected value, or from a bound that it violates; 0 if it meets the bound.
     #[must_use]
     pub fn difference(&self) -> f64 {
         match self.expected {
-            Expected::Near(value, _) => (self.computed - value).abs(),
-            Expected::Above(bound) if self.computed > bound => 0.0,
-            Expected::Above(bound) => bound - self.computed,
+            ExpectedNumber::Near(value, _) => (self.computed - value).abs(),
+            ExpectedNumber::Above(bound) if self.computed > bound => 0.0,
+            ExpectedNumber::Above(bound) => bound - self.computed,
         }
     }
 
-    /// Whether the number is what it should be; NaN never is.
+    /// Compares the number with its source; NaN never passes.
     #[must_use]
-    pub fn verdict(&self) -> Verdict {
+    pub fn verdict(&self) -> CheckVerdict {
         let passes = match self.expected {
-            Expected::Near(_, tolerance) => self.difference() <= tolerance,
-            Expected::Above(bound) => self.computed > bound,
+            ExpectedNumber::Near(_, tolerance) => self.difference() <= tolerance,
+            ExpectedNumber::Above(bound) => self.computed > bound,
         };
         match passes {
-            true => Verdict::Pass,
-            false if self.is_disputed && self.computed.is_finite() => Verdict::Differs,
-            false => Verdict::Fail,
+            true => CheckVerdict::Pass,
+            false if self.is_disputed && self.computed.is_finite() => CheckVerdict::Differs,
+            false => CheckVerdict::Fail,
         }
     }
 }
 
-/// Where numbers are known from.
-pub(super) const PAPER: &str = "paper";
-pub(super) const AUTO: &str = "AUTO-07p";
-pub(super) const FORWARD: &str = "forward BVP";
-pub(super) const CLOSED: &str = "closed form";
-pub(super) const EXACT: &str = "symmetry";
+/// Sources of known numbers.
+pub const PAPER: &str = "paper";
+pub const AUTO: &str = "AUTO-07p";
+pub const FORWARD: &str = "forward BVP";
+pub const CLOSED: &str = "closed form";
+pub const EXACT: &str = "symmetry";
 
-/// A check on a number that should be `expected`, up to a tolerance.
-pub(super) fn near(
+/// A check of a number against a value, up to a tolerance.
+pub fn near(
     case: impl Into<String>,
     quantity: &'static str,
     source: &'static str,
@@ -86,13 +86,13 @@ pub(super) fn near(
         case: case.into(),
         quantity,
         source,
-        expected: Expected::Near(expected, tolerance),
+        expected: ExpectedNumber::Near(expected, tolerance),
         computed: computed.unwrap_or(f64::NAN),
         is_disputed: false,
     }
 }
 
-/// The end of the push at one distance.
-pub(super) fn end(whisker: &Whisker, pole: &Pole, side: Side, distance_mm: f64) -> Detachment {
+/// The detachment at one distance.
+pub fn end(whisker: &Whisker, pole: &Pole, side: Side, distance_mm: f64) -> Detachment {
     curve(whisker, pole, side, &[distance_mm])[0]
 }

@@ -61,7 +61,7 @@ fn integrals(beta: f64) -> (f64, f64) {
     (arc, across)
 }
 
-/// Rounds of duplication: each divides the spread of the arguments by 4, and the mean is then as good as exact.
+/// Rounds of duplication. Each divides the spread of the arguments by 4, down to rounding.
 const DUPLICATIONS: usize = 30;
 
 /// `R_F(x, y, z)`: half of `int_0^inf dt/sqrt((t + x)(t + y)(t + z))`.

@@ -8,7 +8,6 @@ use crate::scene::{Pole, Whisker};
 use crate::shooting::Reading;
 use crate::trace::{Branch, DetachmentKind, Found, NoState, corner, curve};
 
-/// The checks.
 pub fn checks() -> Vec<Check> {
     [straight_cylinder(), straight_cone(), symmetries()].concat()
 }
@@ -26,7 +25,8 @@ fn pushed(whisker: &Whisker, distance_mm: f64, push: f64) -> Result<(Found, Read
     Ok((state, branch.read(&state)))
 }
 
-/// Digits from an evaluation of the elliptic integrals by other means; `elastica` gives them to the last one, too.
+/// Checks against the classical elastica. The digits are from an independent evaluation of the elliptic integrals; `elastica`
+/// reproduces all of them.
 fn straight_cylinder() -> Vec<Check> {
     let case = "straight cylinder, point contact";
     let end = end(&STRAIGHT_CYLINDER, &POINT, Side::Cb, 8.0);
@@ -57,7 +57,7 @@ fn straight_cylinder() -> Vec<Check> {
     checks
 }
 
-/// The limit of small loads: `M = 3 E I_base theta (L - a)/(a L)`, `L` the virtual cone's length; the next term is
+/// Checks against the limit of small loads: `M = 3 E I_base theta (L - a)/(a L)`, `L` the virtual cone's length; the next term is
 /// smaller by the square of the angle.
 fn straight_cone() -> Vec<Check> {
     let push = 1e-5;
@@ -83,6 +83,7 @@ fn straight_cone() -> Vec<Check> {
     .collect()
 }
 
+/// Checks of quantities that scaling and mirroring leave alone.
 fn symmetries() -> Vec<Check> {
     let push = |whisker: &Whisker, pole: &Pole, side, d| end(whisker, pole, side, d).push_angle_deg;
     let sum = |a: Option<f64>, b: Option<f64>, sign: f64| Some(a? + sign * b?);

@@ -1,4 +1,4 @@
-//! The paper itself: its whiskers, its numbers, its figures.
+//! The whiskers, numbers and figures of the paper.
 //!
 //! Hires, Pammer, Svoboda and Golomb (2013), "Tapered whiskers are required for active tactile sensation", eLife
 //! 2:e01350.
@@ -11,11 +11,11 @@ mod published;
 mod reference;
 mod whiskers;
 
-pub use check::{Check, Expected, Verdict};
-pub use figures::{Figure, Measurements, Rows, figures};
+pub use check::{Check, CheckVerdict, ExpectedNumber};
+pub use figures::{Figure, Measurements, TableRows, figures};
 pub use whiskers::{FIG4_WHISKER, FIG5_LEFT, FIG5_RIGHT, POLE};
 
-/// Every number that is known otherwise: published, in closed form, or from an independent solver.
+/// Compares computed numbers with published ones, closed forms and independent solvers.
 #[must_use]
 pub fn checks() -> Vec<Check> {
     [published::checks(), exact::checks(), reference::checks()].concat()

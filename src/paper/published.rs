@@ -1,16 +1,15 @@
-//! The numbers of the paper, and the same from AUTO-07p with more digits.
+//! Published numbers of the paper, and more digits of them from AUTO-07p.
 
-use super::check::{AUTO, Check, Expected, FORWARD, PAPER, end, near};
+use super::check::{AUTO, Check, ExpectedNumber, FORWARD, PAPER, end, near};
 use super::whiskers::{CONE, CYLINDER, POLE, pole_distance_mm};
 use crate::rod::Side;
 use crate::scene::Pole;
 use crate::trace::DetachmentKind::{self, PullOff, SlipOff};
 use crate::trace::{Detachment, corner};
 
-/// Where the pole of Fig. 2 touches the cone, nearly.
+/// Distance of the pole of Fig. 2 at first touch of the cone, in mm.
 const TOUCH_MM: f64 = 15.660_459_763_365_8;
 
-/// The checks.
 pub fn checks() -> Vec<Check> {
     let mut checks: Vec<Check> = Side::BOTH
         .map(|side| {
@@ -19,7 +18,7 @@ pub fn checks() -> Vec<Check> {
             near(case, "first touch (mm)", PAPER, (15.7, 0.05), distance)
         })
         .into();
-    // Published, cut rather than rounded: 62.7 for 62.75.
+    // The published value is truncated: 62.7 for 62.75.
     #[rustfmt::skip]
     let fig2 = [
         ("Fig. 2B, cone CB", CONE, SlipOff, "slip-off (deg)", (15.6, 0.05), (15.59975, 5e-6)),
@@ -59,12 +58,12 @@ pub fn checks() -> Vec<Check> {
         near("cone CB", "slip-off turns into pull-off at (mm)", AUTO, (19.09, 5e-3), corner),
         near(at_10, "slip-off (deg)", AUTO, (89.22, 5e-3), cylinder(Side::Cb)),
     ]);
-    // The paper has both beyond 90; in CB, AUTO's 89.22 above agrees with ours.
+    // The paper has both beyond 90; AUTO's 89.22 for CB agrees with ours.
     checks.extend(Side::BOTH.map(|side| Check {
         case: format!("cylinder {}, touched at 10 mm", name(side)),
         quantity: "slip-off, magnitude (deg)",
         source: PAPER,
-        expected: Expected::Above(90.0),
+        expected: ExpectedNumber::Above(90.0),
         computed: cylinder(side).map_or(f64::NAN, f64::abs),
         is_disputed: side == Side::Cb,
     }));
@@ -83,7 +82,7 @@ fn push_if(kind: DetachmentKind, end: &Detachment) -> Option<f64> {
     end.push_angle_deg.filter(|_| end.kind == kind)
 }
 
-/// A forward solution of the boundary-value problem with friction, cone touched at 15.66 mm.
+/// Slip-off with friction, cone touched at 15.66 mm, from a forward solution of the boundary-value problem.
 fn friction() -> impl Iterator<Item = Check> {
     let known = [
         ("cone, friction 0.1", 0.1, 16.2596, -25.8128),

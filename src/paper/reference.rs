@@ -9,9 +9,9 @@ use serde::Deserialize;
 
 const POINTS: &str = include_str!("../../tests/data/detachment.csv");
 
-/// One point; angles in degrees with 9 decimals.
+/// A row of the reference file; angles in degrees with 9 decimals.
 #[derive(Clone, Debug, Deserialize)]
-struct Point {
+struct ReferencePoint {
     length_mm: f64,
     base_radius_um: f64,
     tip_radius_um: f64,
@@ -27,8 +27,8 @@ struct Point {
     arc_length_mm: f64,
 }
 
-impl Point {
-    /// Difference in kind (0 or 1), push angle (degrees) and arclength (whisker lengths).
+impl ReferencePoint {
+    /// Differences in kind (0 or 1), push angle (degrees) and arclength (whisker lengths).
     fn differences(&self) -> [f64; 3] {
         let mut whisker = whisker(
             [self.length_mm, self.base_radius_um, self.tip_radius_um],
@@ -36,10 +36,9 @@ impl Point {
             self.vertex_mm,
         );
         whisker.arc_stretch = self.projection;
-        let side = if self.side == "CB" {
-            Side::Cb
-        } else {
-            Side::Cf
+        let side = match &*self.side {
+            "CB" => Side::Cb,
+            _ => Side::Cf,
         };
         let pole = Pole::smooth(self.pole_radius_mm);
         let end = curve(&whisker, &pole, side, &[self.distance_mm])[0];
@@ -56,16 +55,16 @@ impl Point {
     }
 }
 
-/// The worst differences of all points whose effects are modelled, and how many points there are.
+/// The worst differences of all points with modelled effects, and the number of points.
 pub fn checks() -> Vec<Check> {
-    let points: Vec<Point> = csv::Reader::from_reader(POINTS.as_bytes())
+    let points: Vec<ReferencePoint> = csv::Reader::from_reader(POINTS.as_bytes())
         .deserialize()
         .filter_map(Result::ok)
-        .filter(|point: &Point| point.modulus_gradient == 0.0)
+        .filter(|point: &ReferencePoint| point.modulus_gradient == 0.0)
         .collect();
     let worst = points
         .iter()
-        .map(Point::differences)
+        .map(ReferencePoint::differences)
         .fold([0.0_f64; 3], |worst, differences| {
             std::array::from_fn(|i| worst[i].max(differences[i]))
         });

@@ -6,7 +6,7 @@ use crate::scene::{Curvature, Pole, Whisker};
 /// The paper's pole.
 pub const POLE: Pole = Pole::smooth(0.25);
 
-/// Where Figs. 2 and 3 put the centre of the pole, in the frame of the base at first touch (CB; CF as in Fig. 3).
+/// Centre of the pole in Figs. 2 and 3, in mm, in the frame of the base at first touch (CB; CF as in Fig. 3).
 const fn pole_mm(side: Side) -> [f64; 2] {
     match side {
         Side::Cb => [15.13, 4.29],
@@ -36,7 +36,7 @@ pub const FIG5_RIGHT: Whisker = {
     whisker
 };
 
-/// A whisker with length (mm), base and tip radius (um), parabola coefficient (1/mm) and its vertex (mm).
+/// A whisker with length (mm), base and tip radius (um), parabola coefficient (1/mm) and vertex of the parabola (mm).
 pub const fn whisker([length_mm, base, tip]: [f64; 3], a_per_mm: f64, vertex_mm: f64) -> Whisker {
     Whisker {
         length_mm,
@@ -58,7 +58,7 @@ pub const fn whisker([length_mm, base, tip]: [f64; 3], a_per_mm: f64, vertex_mm:
     }
 }
 
-/// The distance at which the pole of Figs. 2 and 3 first touches `whisker` on one side: the paper's d = 15.7 mm.
+/// The distance in mm at which the pole of Figs. 2 and 3 first touches `whisker` on one side: the paper's d = 15.7 mm.
 pub fn pole_distance_mm(whisker: &Whisker, side: Side) -> f64 {
     let rest = Rest::new(&whisker.rod(&POLE, side));
     let [x, y] = pole_mm(side);

@@ -1,7 +1,7 @@
 //! The effects by name: which are on, and which line of the scene decides it. The only list of them.
 
 use crate::rod::Effects;
-use crate::scene::{Parameter, Scene, Setup, Swept, Whisker};
+use crate::scene::{Parameter, Scene, SceneData, Swept, Whisker};
 
 /// An effect of the scene.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -30,7 +30,7 @@ pub enum Cost {
 /// Every effect; `kernels` are those that the kernels of the run have.
 #[must_use]
 pub fn effects(scene: &Scene, kernels: Effects) -> Vec<Effect> {
-    let Setup { whisker, pole, .. } = &**scene;
+    let SceneData { whisker, pole, .. } = &**scene;
     let why = |parameter: Parameter, own: String| match scene.grid.axis(parameter) {
         Some(values) => swept(&format!("grid.{}", parameter.axis()), values),
         None => own,

@@ -1,35 +1,47 @@
-//! Pictures: maps from the stored file alone, one panel at a time; charts from the lines they are given.
+//! Pictures of maps, curves, branches, shapes and designs, drawn by the crate [`whiskmap_plot`].
 //!
-//! Both are laid out as a [`Picture`], a list of marks, which becomes pixels or an SVG document when it is saved.
-//!
-//! Invariant: the picture of a map shows every cell of the map as it is stored, nearest cell by pixel; nothing is smoothed. Only
-//! the detachment boundary is a curve, drawn from the margins that the cells carry.
+//! This module turns stored maps into heat maps and computed rows into plots: it chooses titles, labels, names and colours. Maps
+//! are read panel by panel.
 
-mod axes;
-mod bands;
-mod bitmap;
-mod chart;
-mod designs;
-mod error;
-mod font;
-mod format;
-mod heading;
+mod boundary;
 mod map;
-mod palette;
-mod picture;
-mod polygons;
-mod strokes;
-mod svg;
-mod ticks;
-mod traces;
-mod units;
+mod plots;
 
-pub use bands::bands;
-pub use chart::{Band, Chart, Disc, Dot, Ink, Inset, Line, Note, Plot, Shade, Stroke};
-pub use designs::designs;
-pub use error::Error;
-pub use font::missing_glyphs;
-pub use format::Format;
 pub use map::{MapOptions, map};
-pub use picture::Picture;
-pub use traces::{Axis, BranchAxis, CurveAxis, Drawn, Ends, branches, curves, measured, shapes};
+pub use plots::{
+    BranchAxis, CurveAxis, DrawnCurve, DrawnShape, PlotAxis, bands, branches, curves, designs,
+    measured, shapes,
+};
+pub use whiskmap_plot::{
+    Band, Chart, Disc, Dot, EncodeError, Ink, Inset, Line, Note, Picture, PictureFormat, Plot,
+    Stroke,
+};
+
+use crate::store;
+use whiskmap_plot::ScaleError;
+
+/// A picture that cannot be drawn. Every message is complete; there is no chain of sources to print.
+#[derive(Debug, thiserror::Error)]
+pub enum RenderError {
+    /// The map lacks what is to be drawn, or it is damaged.
+    #[error(transparent)]
+    Store(#[from] store::Error),
+    /// The channel cannot have the requested colour scale.
+    #[error("colour scale of `{channel}`: {cause}")]
+    Scale {
+        /// Name of the channel.
+        channel: String,
+        /// What is wrong, and what is allowed.
+        cause: ScaleError,
+    },
+    /// A colour scale is requested for a channel of codes.
+    #[error(
+        "colour scale of `{0}`: the channel is made of codes; choose a channel of quantities, such as force_un"
+    )]
+    Codes(String),
+    /// The map has more than two sweep axes; their names.
+    #[error(
+        "a picture has room for two sweep axes, there are {0}; choose a value of each other one by --at"
+    )]
+    TooManyAxes(String),
+}

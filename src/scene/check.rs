@@ -3,109 +3,92 @@
 //! Ranges are wide; they keep units from being mixed up and f32 from overflowing, and they hold wherever
 //! the geometry of first touch is one-to-one. Lengths are measured in lengths of the whisker.
 
-use toml::Spanned;
-
-use super::axis;
+use super::builder::{Numbers, SceneBuilder};
+use super::data::SceneData;
 use super::deviations;
-use super::error::Fault;
-use super::file::{OutputTable, SceneTable, WhiskerTable};
+use super::error::SceneFault;
 use super::grid::{FARTHEST, Grid, NEAREST};
-use super::limits::{Limits, MOST_STRETCH, STIFFEST_TIP, digits, friction_limits};
+use super::limits::{
+    MOST_STRETCH, NumberLimits, STIFFEST_TIP, digits, friction_limits, length_limits,
+};
 use super::parameter::Parameter;
 use super::profile;
-use super::setup::Setup;
 use super::shape;
 use super::sweep;
+use super::toml::SceneText;
 use super::warnings::{LENGTH_MM, LENGTH_UNITS, MODULUS_GPA, MODULUS_UNITS, other_unit};
 use super::whisker::{Curvature, Pole, Whisker};
 
-/// More than any disk holds: a stored cell takes about 20 bytes.
+/// Most cells of a scene: more than any disk holds, as a stored cell takes about 20 bytes.
 const MOST_CELLS: u128 = 1 << 44;
 
-/// The longest title, in characters: many times what fits on a picture.
+/// Longest title in characters: many times what fits on a picture.
 pub const LONGEST_TITLE: usize = 1000;
 
-/// File systems allow 255 bytes; the output adds its own endings.
+/// Longest name of outputs in bytes: file systems allow 255, and outputs add endings.
 const LONGEST_NAME: usize = 200;
 
-/// The scene that the tables describe; `stem` names its output where it does not itself.
-pub(super) fn setup(table: &mut SceneTable, text: &str, stem: &str) -> Result<Setup, Fault> {
-    let title = title(&table.title)?;
-    let lengths_mm = sweep::lengths_mm(table)?;
-    let grid = grid(table, lengths_mm)?;
-    sweep::refuse_at_odds(table)?;
-    let mut refused = Vec::new();
-    let mut corners = 0;
-    for place in sweep::corners(&grid) {
-        table.put(&place);
-        refused.extend(whisker_and_pole(table, &grid).err().zip(Some(place)));
-        corners += 1;
+impl SceneBuilder {
+    /// The data of the scene, with this text.
+    pub(super) fn checked(&self, text: SceneText) -> Result<SceneData, SceneFault> {
+        check_title(&self.title)?;
+        let lengths_mm = sweep::lengths_mm(self)?;
+        let grid = grid(self, lengths_mm)?;
+        sweep::refuse_at_odds(self)?;
+        let at = |numbers: &Numbers| {
+            let whisker = whisker(numbers, self.rows.as_deref())?;
+            let pole = pole(numbers, &whisker, &grid)?;
+            Ok((whisker, pole))
+        };
+        sweep::check_corners(&grid, |place| at(&self.numbers.at(place)).map(drop))?;
+        let (mut whisker, pole) = at(&self.numbers.at(&grid.place(0)))?;
+        if grid.axis(Parameter::ParabolaPerMm).is_none() {
+            whisker.curvature = whisker.curvature.filter(Curvature::bends);
+        }
+        check_name(self.name.as_deref())?;
+        Ok(SceneData {
+            title: self.title.clone(),
+            uncertainty: deviations::checked(self)?,
+            whisker,
+            pole,
+            grid,
+            name: self.name.as_ref().unwrap_or(&self.stem).clone(),
+            text,
+        })
     }
-    if let Some(fault) = sweep::located(refused, corners) {
-        return Err(fault);
-    }
-    table.put(&grid.place(0));
-    let (mut whisker, pole) = whisker_and_pole(table, &grid)?;
-    if grid.axis(Parameter::ParabolaPerMm).is_none() {
-        whisker.curvature = whisker.curvature.filter(Curvature::bends);
-    }
-    let uncertainty = table.uncertainty.as_ref();
-    let uncertainty = uncertainty.map(|own| deviations::deviations(own, text, &whisker));
-    Ok(Setup {
-        title,
-        uncertainty: uncertainty.transpose()?,
-        whisker,
-        pole,
-        grid,
-        name: name(table.output.as_ref(), stem)?,
-        text: text.to_owned(),
-        note: None,
-    })
 }
 
-/// The whisker and the pole of the file; a straight parabola keeps its vertex.
-fn whisker_and_pole(table: &SceneTable, grid: &Grid) -> Result<(Whisker, Pole), Fault> {
-    let whisker = whisker(&table.whisker)?;
-    let radius = table.pole.as_ref().map(|pole| &pole.radius_mm);
-    let friction = table.contact.as_ref().map(|contact| &contact.friction);
-    let pole = Pole {
-        radius_mm: pole_limits(&whisker, grid).check_or(0.0, "pole.radius_mm", radius)?,
-        friction: friction_limits().check_or(0.0, "contact.friction", friction)?,
+fn check_title(title: &str) -> Result<(), SceneFault> {
+    let length = title.chars().count();
+    let must = if title.trim().is_empty() || title.contains(char::is_control) {
+        "must be one line of text".to_owned()
+    } else if length > LONGEST_TITLE {
+        format!("must have at most {LONGEST_TITLE} characters, has {length}")
+    } else {
+        return Ok(());
     };
-    Ok((whisker, pole))
+    Err(SceneFault::new("title", must))
 }
 
-fn title(title: &Spanned<String>) -> Result<String, Fault> {
-    let text = title.get_ref();
-    if text.trim().is_empty() || text.contains(char::is_control) {
-        let must = "must be one line of text";
-        return Err(Fault::new("title", title.span(), must));
-    }
-    let length = text.chars().count();
-    if length > LONGEST_TITLE {
-        let must = format!("must have at most {LONGEST_TITLE} characters, has {length}");
-        return Err(Fault::new("title", title.span(), must));
-    }
-    Ok(text.clone())
-}
-
-fn whisker(table: &WhiskerTable) -> Result<Whisker, Fault> {
-    let length_mm = sweep::length_limits().check("whisker.length_mm", &table.length_mm)?;
-    let radii = profile::radii(table, length_mm)?;
-    let youngs_modulus = &table.youngs_modulus_gpa;
-    let unit = other_unit(*youngs_modulus.get_ref(), MODULUS_GPA, &MODULUS_UNITS);
+fn whisker(numbers: &Numbers, rows: Option<&[[f64; 2]]>) -> Result<Whisker, SceneFault> {
+    let check = |limits: NumberLimits, parameter: Parameter| {
+        let absent = || SceneFault::new(parameter.key(), "is left out");
+        limits.check(parameter.key(), numbers.get(parameter).ok_or_else(absent)?)
+    };
+    let check_or_one = |limits: NumberLimits, parameter: Parameter| {
+        let value = numbers.get(parameter).unwrap_or(1.0);
+        limits.check(parameter.key(), value)
+    };
+    let length_mm = check(length_limits(), Parameter::LengthMm)?;
+    let radii = profile::radii(numbers, rows, length_mm)?;
+    let modulus = numbers.get(Parameter::YoungsModulusGpa);
+    let unit = modulus.and_then(|gpa| other_unit(gpa, MODULUS_GPA, &MODULUS_UNITS));
     let unit = unit.map(|unit| format!("is it in {unit}?"));
-    let youngs_modulus_gpa = Limits::between(1e-6, 1e4)
-        .remarks(unit)
-        .check("whisker.youngs_modulus_gpa", youngs_modulus)?;
-    let (curvature, euler_spiral) = match &table.curvature {
-        Some(table) => shape::shape(table, length_mm)?,
-        None => (None, None),
-    };
-    let ratio = table.modulus_gradient.as_ref().map(|own| &own.tip_to_base);
-    let key = "whisker.modulus_gradient.tip_to_base";
-    let modulus_tip_to_base =
-        Limits::between(1.0 / STIFFEST_TIP, STIFFEST_TIP).check_or(1.0, key, ratio)?;
+    let limits = NumberLimits::between(1e-6, 1e4).remarks(unit);
+    let youngs_modulus_gpa = check(limits, Parameter::YoungsModulusGpa)?;
+    let (curvature, euler_spiral) = shape::shape(numbers, length_mm)?;
+    let limits = NumberLimits::between(1.0 / STIFFEST_TIP, STIFFEST_TIP);
+    let modulus_tip_to_base = check_or_one(limits, Parameter::ModulusTipToBase)?;
     let own_taper = 1.0 - radii.tip_radius_um / radii.base_radius_um;
     let pointed = 1.0 / own_taper;
     let gradient = modulus_tip_to_base - 1.0;
@@ -126,9 +109,7 @@ fn whisker(table: &WhiskerTable) -> Result<Whisker, Fault> {
             end = other;
         }
     }
-    let stretch = table.projection.as_ref().map(|own| &own.arc_stretch);
-    let arc_stretch =
-        Limits::between(1.0, end).check_or(1.0, "whisker.projection.arc_stretch", stretch)?;
+    let arc_stretch = check_or_one(NumberLimits::between(1.0, end), Parameter::ArcStretch)?;
     Ok(Whisker {
         length_mm,
         base_radius_um: radii.base_radius_um,
@@ -142,18 +123,17 @@ fn whisker(table: &WhiskerTable) -> Result<Whisker, Fault> {
     })
 }
 
-fn grid(table: &SceneTable, [shortest, longest]: [f64; 2]) -> Result<Grid, Fault> {
-    let axes = table.grid.get_ref();
-    let turn = Limits::between(-360.0, 360.0);
-    let push_angle_deg = axis::values(&axes.push_angle_deg, "grid.push_angle_deg", &turn)?;
+fn grid(scene: &SceneBuilder, [shortest, longest]: [f64; 2]) -> Result<Grid, SceneFault> {
+    let turn = NumberLimits::between(-360.0, 360.0);
+    let push_angle_deg = scene.push_angle_deg.checked("grid.push_angle_deg", &turn)?;
     let near = ("length_mm / 1000", longest / NEAREST);
     let far = ("10 * length_mm", FARTHEST * shortest);
     let unit = other_unit(longest, LENGTH_MM, &LENGTH_UNITS);
     let unit = unit.filter(|_| !(LENGTH_MM[0]..=LENGTH_MM[1]).contains(&longest));
     let unit = unit.map(|unit| format!("is length_mm = {} in {unit}?", digits(longest)));
-    let reach = Limits::between(near, far).remarks(unit);
-    let distance_mm = axis::values(&axes.distance_mm, "grid.distance_mm", &reach)?;
-    let sweep = sweep::axes(table, [shortest, longest])?;
+    let reach = NumberLimits::between(near, far).remarks(unit);
+    let distance_mm = scene.distance_mm.checked("grid.distance_mm", &reach)?;
+    let sweep = sweep::axes(scene, [shortest, longest])?;
 
     let mut counts = vec![push_angle_deg.len(), distance_mm.len()];
     counts.extend(sweep.iter().map(|axis| axis.values.len()));
@@ -163,7 +143,7 @@ fn grid(table: &SceneTable, [shortest, longest]: [f64; 2]) -> Result<Grid, Fault
     if cells.is_none_or(|cells| cells > MOST_CELLS) {
         let has = cells.map_or_else(String::new, |cells| format!(", has {cells}"));
         let must = format!("must have at most {MOST_CELLS} cells over all axes{has}");
-        return Err(Fault::new("grid", table.grid.span(), must));
+        return Err(SceneFault::new("grid", must));
     }
     Ok(Grid {
         push_angle_deg,
@@ -172,10 +152,10 @@ fn grid(table: &SceneTable, [shortest, longest]: [f64; 2]) -> Result<Grid, Fault
     })
 }
 
-/// Where the pole's rim touches the whisker at rest, the centre is `D` away from the base, and `D^2` grows along the
+/// Checks the pole. Where its rim touches the whisker at rest, the centre is `D` away from the base, and `D^2` grows along the
 /// whisker `1 -+ r kappa` times as fast as the chord's square (the sign is the side). So with `r` below the
 /// whisker's smallest radius of curvature, first touch is one-to-one and the base stays outside the pole.
-fn pole_limits(whisker: &Whisker, grid: &Grid) -> Limits {
+fn pole(numbers: &Numbers, whisker: &Whisker, grid: &Grid) -> Result<Pole, SceneFault> {
     let sharpest = 1.0 / whisker.sharpest_bend_per_mm();
     let nearest = grid.distance_mm[0];
     let end = if sharpest < nearest {
@@ -183,21 +163,28 @@ fn pole_limits(whisker: &Whisker, grid: &Grid) -> Limits {
     } else {
         ("the smallest distance", nearest)
     };
-    Limits::below(0.0, end)
+    let check = |limits: NumberLimits, parameter: Parameter| match numbers.get(parameter) {
+        Some(value) => limits.check(parameter.key(), value),
+        None => Ok(0.0),
+    };
+    Ok(Pole {
+        radius_mm: check(NumberLimits::below(0.0, end), Parameter::PoleRadiusMm)?,
+        friction: check(friction_limits(), Parameter::Friction)?,
+    })
 }
 
-/// The name that the scene gives its output, or else the `stem` of its own file, which is a file's name already.
-fn name(output: Option<&OutputTable>, stem: &str) -> Result<String, Fault> {
-    let Some(name) = output.and_then(|output| output.name.as_ref()) else {
-        return Ok(stem.to_owned());
+/// Checks the name that the scene gives its outputs.
+fn check_name(name: Option<&str>) -> Result<(), SceneFault> {
+    let fits = |name: &str| {
+        (1..=LONGEST_NAME).contains(&name.len())
+            && !name.starts_with('.')
+            && !name.contains(|c: char| c.is_control() || "/\\".contains(c))
     };
-    let text = name.get_ref();
-    let fits = (1..=LONGEST_NAME).contains(&text.len()) && !text.starts_with('.');
-    if fits && !text.contains(|c: char| c.is_control() || "/\\".contains(c)) {
-        return Ok(text.clone());
+    if name.is_none_or(fits) {
+        return Ok(());
     }
     let must = format!(
         "must be the name of a file without its ending: 1 to {LONGEST_NAME} bytes, no slash, no dot first"
     );
-    Err(Fault::new("output.name", name.span(), must))
+    Err(SceneFault::new("output.name", must))
 }

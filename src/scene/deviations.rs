@@ -1,78 +1,75 @@
 //! `[uncertainty]`: standard deviations of the numbers of a scene.
 
-use std::collections::BTreeMap;
-
-use toml::Spanned;
-
-use crate::input::{did_you_mean, shortened};
-
-use super::error::Fault;
-use super::limits::{Limits, Number};
+use super::builder::SceneBuilder;
+use super::error::SceneFault;
+use super::limits::{NumberLimits, digits};
 use super::parameter::Parameter;
-use super::whisker::Whisker;
 
-/// The key of the radii of measured rows.
-const ROWS: &str = "profile_radius_um";
+/// Key of the radii of measured rows.
+pub(super) const ROWS: &str = "profile_radius_um";
 
-/// The largest number that any key of a scene may have.
+/// Largest standard deviation: the largest number that any key of a scene may have.
 const MOST: f64 = 1e5;
 
-/// Standard deviations of numbers of a scene, which vary independently of each other.
+/// Standard deviations of the numbers of a scene. The numbers vary independently of each other.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Deviations {
-    /// Parameters that the scene gives, each with its deviation in its own unit.
+    /// Parameters that the scene gives, each with its standard deviation in the parameter's unit.
     pub parameters: Vec<(Parameter, f64)>,
-    /// Deviation of the radius of every row of `whisker.profile`, where there is one.
+    /// Standard deviation of the radius of every row of `whisker.profile`, in micrometres; `None` without a profile.
     pub profile_radius_um: Option<f64>,
 }
 
-/// The deviations of the table, for the checked `whisker` of the scene with this `text`.
-pub(super) fn deviations(
-    table: &Spanned<BTreeMap<String, Number>>,
-    text: &str,
-    whisker: &Whisker,
-) -> Result<Deviations, Fault> {
-    let fields = table.get_ref();
-    if fields.is_empty() {
+/// Checks the deviations of a scene, if it has any.
+pub(super) fn checked(scene: &SceneBuilder) -> Result<Option<Deviations>, SceneFault> {
+    let Some(deviations) = &scene.uncertainty else {
+        return Ok(None);
+    };
+    let Deviations {
+        parameters,
+        profile_radius_um,
+    } = deviations;
+    if parameters.is_empty() && profile_radius_um.is_none() {
         let must = format!("must have at least one of {}", names());
-        return Err(Fault::new("uncertainty", table.span(), must));
+        return Err(SceneFault::new("uncertainty", must));
     }
-    let scene: toml::Table = toml::from_str(text).unwrap_or_default();
-    let mut deviations = Deviations::default();
-    for (name, number) in fields {
-        let key = format!("uncertainty.{}", shortened(name));
-        let refuse = |must: String| Err(Fault::new(&*key, number.span(), must));
-        let parameter = Parameter::named(name);
-        if parameter.is_none() && name != ROWS {
-            let known = Parameter::ALL.map(Parameter::name);
-            let hint = did_you_mean(name, known.into_iter().chain([ROWS]));
-            return refuse(format!("is not known; must be one of {}{hint}", names()));
-        }
-        let deviation = Limits::between(0.0, MOST).check(&key, number)?;
-        let measured = whisker.profile.is_some();
-        match parameter {
-            None if measured => deviations.profile_radius_um = Some(deviation),
-            None => return refuse("must be left out: there is no whisker.profile".into()),
-            Some(Parameter::LengthMm) if measured => {
-                return refuse("must be left out: whisker.profile.rows end at the length".into());
+    let is_measured = scene.rows.is_some();
+    let has_tip = || {
+        parameters
+            .iter()
+            .any(|(own, _)| *own == Parameter::TipRadiusUm)
+    };
+    let limits = NumberLimits::between(0.0, MOST);
+    for &(parameter, deviation) in parameters {
+        let key = format!("uncertainty.{}", parameter.name());
+        limits.check(&key, deviation)?;
+        let must = match parameter {
+            Parameter::LengthMm if is_measured => "whisker.profile.rows end at the length",
+            Parameter::Taper if has_tip() => {
+                let must = "must be left out beside tip_radius_um: both vary the tip's radius";
+                return Err(SceneFault::of_value(key, digits(deviation), must));
             }
-            Some(Parameter::Taper) if fields.contains_key(Parameter::TipRadiusUm.name()) => {
-                return refuse(
-                    "must be left out beside tip_radius_um: both vary the tip's radius".into(),
-                );
+            _ if scene.given(parameter).is_none() => {
+                &format!("the scene does not give {}", parameter.key())
             }
-            Some(own) if own.number_in(&scene).is_none() => {
-                let at = own.key();
-                return refuse(format!("must be left out: the scene does not give {at}"));
-            }
-            Some(own) => deviations.parameters.push((own, deviation)),
+            _ => continue,
+        };
+        let must = format!("must be left out: {must}");
+        return Err(SceneFault::of_value(key, digits(deviation), must));
+    }
+    if let Some(deviation) = *profile_radius_um {
+        let key = format!("uncertainty.{ROWS}");
+        limits.check(&key, deviation)?;
+        if !is_measured {
+            let must = "must be left out: there is no whisker.profile";
+            return Err(SceneFault::of_value(key, digits(deviation), must));
         }
     }
-    Ok(deviations)
+    Ok(Some(deviations.clone()))
 }
 
-/// Every key of the table.
-fn names() -> String {
+/// Lists every key of the table.
+pub(super) fn names() -> String {
     let names = Parameter::ALL.map(|one| format!("`{}`", one.name()));
     format!("{}, `{ROWS}`", names.join(", "))
 }

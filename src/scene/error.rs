@@ -34,7 +34,7 @@ impl SceneError {
     }
 
     /// What the reader of TOML found, in the words of TOML rather than of Rust.
-    pub(super) fn of_toml(origin: &str, text: &str, why: &toml::de::Error) -> Self {
+    pub(super) fn of_toml(origin: &str, text: &str, why: &toml_edit::de::Error) -> Self {
         let message = match why.message().rsplit_once(", expected ") {
             Some((found, expected)) => {
                 let found = match found {
@@ -72,6 +72,22 @@ impl SceneError {
         )
     }
 
+    /// A refused value: `key = value: must ...`.
+    pub(super) fn of_fault(origin: &str, text: &str, fault: SceneFault) -> Self {
+        let SceneFault { key, value, must } = fault;
+        let message = match value {
+            Some(value) => format!("{key} = {value}: {must}"),
+            None => format!("{key}: {must}"),
+        };
+        Self::at(origin, text, None, message)
+    }
+
+    /// The error with a place in its text.
+    pub(super) fn with_span(mut self, span: Option<Range<usize>>) -> Self {
+        self.span = span.and_then(|span| within_a_line(&self.text, span));
+        self
+    }
+
     /// An error about the file as a whole.
     pub(super) fn whole(origin: &str, message: impl Into<String>) -> Self {
         Self::at(origin, "", None, message)
@@ -87,7 +103,10 @@ impl SceneError {
             Renderer::plain()
         };
         let Some(span) = &self.span else {
-            let message = format!("{}: {}", self.origin, self.message);
+            let message = match self.origin.as_str() {
+                "" => self.message.clone(),
+                origin => format!("{origin}: {}", self.message),
+            };
             let title = Level::ERROR.primary_title(message);
             return renderer.render(&[Group::with_title(title)]);
         };
@@ -118,7 +137,7 @@ fn suggestion(found: &str, expected: &str) -> String {
 pub(super) const DECIMAL_POINTS: &str = "; numbers have decimal points, and commas separate values";
 
 /// Whether a comma stands between two digits.
-fn has_tight_comma(text: &str) -> bool {
+pub(super) fn has_tight_comma(text: &str) -> bool {
     let digit = |byte: &u8| byte.is_ascii_digit();
     let mut windows = text.as_bytes().windows(3);
     windows.any(|three| three[1] == b',' && digit(&three[0]) && digit(&three[2]))
@@ -149,61 +168,34 @@ fn within_a_line(text: &str, span: Range<usize>) -> Option<Range<usize>> {
     Some(span.start..span.start + line.len())
 }
 
-/// What the checks refuse, before the file's name and text join it.
-#[derive(PartialEq)]
-pub(super) struct Fault {
-    key: String,
-    span: Option<Range<usize>>,
-    must: String,
+/// A value that the checks refuse, before the file's name and text join it.
+#[derive(Debug, PartialEq)]
+pub(super) struct SceneFault {
+    /// Key of the value in a scene file.
+    pub key: String,
+    /// The value, if it fits into a sentence.
+    pub value: Option<String>,
+    /// What is wrong, and what is allowed.
+    pub must: String,
 }
 
-impl Fault {
-    /// The value at `span`, which is none where the file has no such value, does not do what it must.
-    pub fn new(
-        key: impl Into<String>,
-        span: impl Into<Option<Range<usize>>>,
-        must: impl Into<String>,
-    ) -> Self {
+impl SceneFault {
+    /// A key whose value is missing, or too long for a sentence.
+    pub fn new(key: impl Into<String>, must: impl Into<String>) -> Self {
         Self {
             key: key.into(),
-            span: span.into(),
+            value: None,
             must: must.into(),
         }
     }
 
-    /// Whether it is the value of `key` that does not.
-    pub fn is_about(&self, key: &str) -> bool {
-        self.key == key
-    }
-
-    /// The same of another key.
-    pub fn renamed(self, key: String) -> Self {
-        Self { key, ..self }
-    }
-
-    /// The same of a sweep's whisker with these `values`.
-    pub fn at(self, values: &str) -> Self {
+    /// A value that is not allowed.
+    pub fn of_value(key: impl Into<String>, value: String, must: impl Into<String>) -> Self {
         Self {
-            must: format!("{}; refused is {values}", self.must),
-            ..self
+            value: Some(value),
+            ..Self::new(key, must)
         }
     }
-
-    /// `key = value: must ...`, with the value as the file writes it.
-    pub fn in_scene(self, origin: &str, text: &str) -> SceneError {
-        let Self { key, span, must } = self;
-        let value = span.clone().and_then(|span| text.get(span));
-        let message = match value.filter(|value| is_short(value)) {
-            Some(value) => format!("{key} = {value}: {must}"),
-            None => format!("{key}: {must}"),
-        };
-        SceneError::at(origin, text, span, message)
-    }
-}
-
-/// A value that fits into a sentence; a list, a table or a long text is shown by the marked line alone.
-fn is_short(value: &str) -> bool {
-    value.len() <= 40 && !value.contains('\n') && !value.starts_with(['[', '{'])
 }
 
 #[cfg(test)]

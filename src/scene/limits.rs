@@ -3,36 +3,36 @@
 use std::fmt;
 use std::ops::{Bound, RangeBounds};
 
-use toml::Spanned;
+use super::error::SceneFault;
 
-use super::error::Fault;
-
-/// A number and where the file has it. Integers are numbers too.
-pub(super) type Number = Spanned<f64>;
-
-/// Of Coulomb's coefficient: the whiskers of rats on steel have about 0.5. Up to here no end of 25,000 random whiskers was
-/// unknown (`benches/NOTES.md`).
-pub(super) fn friction_limits() -> Limits {
-    Limits::between(0.0, 1.0).remarks([
+/// Coulomb's coefficient. The whiskers of rats on steel have about 0.5. Up to 1, every end of 25,000 random whiskers was found
+/// (`benches/NOTES.md`).
+pub(super) fn friction_limits() -> NumberLimits {
+    NumberLimits::between(0.0, 1.0).remarks([
         "with more, whiskers coil around the pole for turns on end, and not all ends are known",
     ])
 }
 
-/// Measured ratios lie between 0.7 and 1.4.
+/// Length of a whisker in millimetres.
+pub(super) fn length_limits() -> NumberLimits {
+    NumberLimits::between(1e-3, 1e5)
+}
+
+/// Largest ratio of the moduli at tip and base, and of base and tip. Measured ratios lie between 0.7 and 1.4.
 pub(super) const STIFFEST_TIP: f64 = 20.0;
 
-/// A whisker that is twice as long as it looks.
+/// Largest arc stretch.
 pub(super) const MOST_STRETCH: f64 = 2.0;
 
 /// A range of numbers. NaN is in none, and no range here reaches infinity.
-pub(super) struct Limits {
+pub(super) struct NumberLimits {
     range: (Bound<f64>, Bound<f64>),
     must: String,
 }
 
-impl Limits {
+impl NumberLimits {
     /// Both ends are allowed.
-    pub fn between(min: impl Into<End>, max: impl Into<End>) -> Self {
+    pub fn between(min: impl Into<LimitEnd>, max: impl Into<LimitEnd>) -> Self {
         let (min, max) = (min.into(), max.into());
         Self {
             range: (Bound::Included(min.value), Bound::Included(max.value)),
@@ -41,7 +41,7 @@ impl Limits {
     }
 
     /// The lower end is allowed, the upper one is not.
-    pub fn below(min: impl Into<End>, max: impl Into<End>) -> Self {
+    pub fn below(min: impl Into<LimitEnd>, max: impl Into<LimitEnd>) -> Self {
         let (min, max) = (min.into(), max.into());
         Self {
             range: (Bound::Included(min.value), Bound::Excluded(max.value)),
@@ -57,22 +57,17 @@ impl Limits {
         self
     }
 
-    /// The number itself if it lies within.
-    pub fn check(&self, key: &str, number: &Number) -> Result<f64, Fault> {
-        if self.range.contains(number.get_ref()) {
-            Ok(*number.get_ref())
+    /// Returns the `value` of `key` if it lies within the limits.
+    pub fn check(&self, key: &str, value: f64) -> Result<f64, SceneFault> {
+        if self.range.contains(&value) {
+            Ok(value)
         } else {
-            Err(Fault::new(key, number.span(), &*self.must))
+            Err(SceneFault::of_value(key, digits(value), &*self.must))
         }
-    }
-
-    /// The number if there is one, and it lies within; `absent` otherwise.
-    pub fn check_or(&self, absent: f64, key: &str, number: Option<&Number>) -> Result<f64, Fault> {
-        number.map_or(Ok(absent), |number| self.check(key, number))
     }
 }
 
-/// The fewest digits that tell a number from all others, with an exponent where it is very large or small.
+/// Formats a number with the fewest digits that identify it, with an exponent where it is very large or small.
 #[must_use]
 pub fn digits(value: f64) -> String {
     // `Debug` writes 5e-11 where `Display` writes eleven digits, but also 30.0 for 30.
@@ -80,13 +75,13 @@ pub fn digits(value: f64) -> String {
     digits.trim_end_matches(".0").to_owned()
 }
 
-/// One end of a range: a number, and what it stands for if that is not plain.
-pub(super) struct End {
+/// One end of a range: a number, and its meaning if it follows from other numbers.
+pub(super) struct LimitEnd {
     value: f64,
     meaning: Option<&'static str>,
 }
 
-impl From<f64> for End {
+impl From<f64> for LimitEnd {
     fn from(value: f64) -> Self {
         Self {
             value,
@@ -95,7 +90,7 @@ impl From<f64> for End {
     }
 }
 
-impl From<(&'static str, f64)> for End {
+impl From<(&'static str, f64)> for LimitEnd {
     fn from((meaning, value): (&'static str, f64)) -> Self {
         Self {
             value,
@@ -104,7 +99,7 @@ impl From<(&'static str, f64)> for End {
     }
 }
 
-impl fmt::Display for End {
+impl fmt::Display for LimitEnd {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let digits = digits(self.value);
         match self.meaning {

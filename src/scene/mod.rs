@@ -1,36 +1,40 @@
-//! A scene: what to simulate, read from TOML and checked. An accepted scene is valid everywhere after.
+//! Scenes: checked descriptions of whiskers, poles and grids. An accepted scene is valid everywhere after.
 //!
-//! Text (`checked`) becomes tables (`file`, `axis`, `rows`), tables become a [`Setup`] (`check`, `sweep`, `limits`), and
-//! whatever is refused becomes one message that points into the text (`error`). Only what was checked is a [`Scene`].
+//! A [`SceneBuilder`] holds the numbers as they are given. `check` turns it into [`SceneData`], and only checked data becomes a
+//! [`Scene`]. `toml` reads builders from files, writes them, and adds the place in the file to what the checks refuse.
 
 mod axis;
+mod builder;
 mod check;
-mod checked;
+mod data;
 mod deviations;
 mod error;
-mod file;
 mod grid;
 mod limits;
-mod mechanics;
 mod parameter;
 mod profile;
-mod rows;
-mod setup;
+#[allow(
+    clippy::module_inception,
+    reason = "the type that this module is named after"
+)]
+mod scene;
 mod shape;
-mod source;
 mod sweep;
-mod varied;
+mod toml;
 mod warnings;
 mod whisker;
 
 pub(crate) use grid::NEAREST;
 
+pub use axis::{AxisScale, AxisValues};
+pub use builder::SceneBuilder;
 pub use check::LONGEST_TITLE;
-pub use checked::Scene;
+pub use data::SceneData;
 pub use deviations::Deviations;
 pub use error::SceneError;
 pub use grid::{Grid, Place, SweepAxis};
 pub use limits::digits;
 pub use parameter::Parameter;
-pub use setup::Setup;
+pub use scene::Scene;
+pub use toml::SceneText;
 pub use whisker::{Curvature, EulerSpiral, Pole, Swept, Whisker};

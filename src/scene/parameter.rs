@@ -49,7 +49,7 @@ parameters! {
     /// let cone = Scene::parse(include_str!("../../scenes/cone.toml"), "cone.toml")?;
     /// let tip = Parameter::TipRadiusUm;
     /// assert_eq!((tip.value(&cone), tip.range(&cone)), (Some(1.5), [0.0, 30.0]));
-    /// assert_eq!(cone.with_parameters(&[(tip, 4.0)])?.whisker.tip_radius_um, 4.0);
+    /// assert_eq!(cone.with(tip, 4.0)?.whisker.tip_radius_um, 4.0);
     /// # Ok::<(), whiskmap::scene::SceneError>(())
     /// ```
     pub enum Parameter {
@@ -110,15 +110,5 @@ impl Parameter {
             Self::ParabolaPerMm => "curvature_per_mm",
             _ => self.name(),
         }
-    }
-
-    /// Its number in the `tables` of a scene file.
-    pub(super) fn number_in(self, tables: &toml::Table) -> Option<f64> {
-        let (path, last) = self.key().rsplit_once('.')?;
-        let mut names = path.split('.');
-        let table = names.try_fold(tables, |table, name| table.get(name)?.as_table());
-        let found = table?.get(last)?;
-        let whole = || Some(found.as_integer()? as f64);
-        found.as_float().or_else(whole)
     }
 }

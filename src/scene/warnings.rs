@@ -1,8 +1,8 @@
 //! Numbers that a scene accepts, but that look like numbers in another unit.
 
+use super::data::SceneData;
 use super::limits::digits;
 use super::parameter::Parameter;
-use super::setup::Setup;
 
 /// Radius over length. Whiskers of rats lie between 1e-4 (at the tip) and 0.01; a thicker rod is no beam.
 const SLENDER: [f64; 2] = [1e-5, 0.1];
@@ -58,7 +58,7 @@ impl SceneNumber {
     }
 }
 
-impl Setup {
+impl SceneData {
     /// Numbers that look as if they were in another unit: one line each, with key, value, unit and what is expected.
     ///
     /// These are radii below 1e-5 or above 0.1 of the length, a Young's modulus outside 0.1 to 100 GPa, and forces outside
@@ -69,11 +69,11 @@ impl Setup {
     /// force across its tip, to first order.
     ///
     /// ```
-    /// use whiskmap::scene::Scene;
+    /// use whiskmap::scene::{Parameter, Scene};
     ///
     /// let cone = Scene::parse(include_str!("../../scenes/cone.toml"), "cone.toml")?;
     /// assert!(cone.warnings().is_empty());
-    /// let warnings = cone.with("whisker.youngs_modulus_gpa", 3000)?.warnings();
+    /// let warnings = cone.with(Parameter::YoungsModulusGpa, 3000.0)?.warnings();
     /// let modulus = "whisker.youngs_modulus_gpa = 3000 GPa: expected 0.1 to 100 GPa; is it in MPa?";
     /// assert_eq!(warnings, [modulus]);
     /// # Ok::<(), whiskmap::scene::SceneError>(())

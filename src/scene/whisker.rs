@@ -1,6 +1,9 @@
 //! What is pushed and what it is pushed against: a whisker at rest and a pole.
 
+use std::sync::Arc;
+
 use super::grid::Place;
+use crate::rod::{RadiusProfile, Rod, Side, Units};
 
 /// One whisker of a sweep, in front of its pole.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,7 +41,44 @@ pub struct Whisker {
     pub arc_stretch: f64,
 }
 
+impl Swept {
+    /// The rod of the whisker with its pole on `side`.
+    #[must_use]
+    pub fn rod(&self, side: Side) -> Rod {
+        self.whisker.rod(&self.pole, side)
+    }
+}
+
 impl Whisker {
+    /// The rod, without units, of this whisker with `pole` on `side`.
+    #[must_use]
+    pub fn rod(&self, pole: &Pole, side: Side) -> Rod {
+        let parabola = self.curvature.unwrap_or_default();
+        let (a, x0) = (parabola.parabola_per_mm, parabola.vertex_mm);
+        Rod {
+            taper: self.taper() * self.arc_stretch,
+            bend: a * self.length_mm,
+            slope: -2.0 * a * x0,
+            pole: side.sign() * pole.radius_mm / self.length_mm,
+            gradient: (self.modulus_tip_to_base - 1.0) * self.arc_stretch,
+            friction: side.sign() * pole.friction,
+            spiral: self.euler_spiral.map(|spiral| {
+                let length = self.length_mm;
+                [spiral.per_mm * length, spiral.per_mm2 * length * length]
+            }),
+            profile: self
+                .profile
+                .as_ref()
+                .map(|rows| Arc::new(RadiusProfile::new(rows, self.arc_stretch))),
+        }
+    }
+
+    /// Units of length, force and moment of this whisker's rod.
+    #[must_use]
+    pub fn units(&self) -> Units {
+        Units::new(self.length_mm, self.base_radius_um, self.youngs_modulus_gpa)
+    }
+
     /// `1 - tip/base radius`: 0 is a cylinder, 1 a perfect cone.
     #[must_use]
     pub fn taper(&self) -> f64 {

@@ -4,7 +4,7 @@ use super::layout::Layout;
 use super::tally::{Counts, regimes, statuses};
 use crate::engine;
 use crate::map::{Audit, Channels, EngineCells};
-use crate::scene::{Grid, Parameter, Setup, SweepAxis};
+use crate::scene::{Grid, Parameter, SceneData, SweepAxis};
 use exr::meta::attribute::{AttributeValue, Text};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
@@ -14,7 +14,7 @@ use std::collections::{BTreeMap, HashMap};
 #[derive(Clone, Copy, Debug)]
 pub struct Description<'a> {
     /// What is simulated.
-    pub scene: &'a Setup,
+    pub scene: &'a SceneData,
     /// What integrates, and on which device.
     pub engine: &'a engine::EngineDescription,
     /// Tolerances and step limits.
@@ -68,7 +68,7 @@ pub(super) fn encode(about: &Description<'_>) -> Attributes {
     let layout = Layout::of(&about.scene.grid);
     let attributes = [
         ("axes", json!(axes(&about.scene.grid))),
-        ("scene", json!(about.scene.text)),
+        ("scene", json!(about.scene.text.to_string())),
         ("title", json!(about.scene.title)),
         ("whiskmap_version", json!(env!("CARGO_PKG_VERSION"))),
         ("engine", json!(about.engine.engine)),

@@ -47,26 +47,22 @@ pub(super) fn varying(scene: &Scene, deviations: &Deviations) -> Vec<Varying> {
 /// # Errors
 /// If the scene would be refused with them.
 pub(super) fn moved(scene: &Scene, steps: &[(Varying, f64)]) -> Result<Scene, SceneError> {
-    let mut values = Vec::new();
+    let mut builder = scene.to_builder();
     let mut rows = rows(scene);
-    let mut has_rows = false;
     for (Varying { source, value, .. }, step) in steps {
         match *source {
-            Source::Parameter(parameter) => values.push((parameter, value + step)),
-            Source::Row(row) => {
-                rows[row][1] = value + step;
-                has_rows = true;
-            }
+            Source::Parameter(parameter) => builder = builder.set(parameter, value + step),
+            Source::Row(row) => rows[row][1] = value + step,
         }
     }
-    if has_rows {
-        scene.with(ROWS, rows)?.with_parameters(&values)
-    } else {
-        scene.with_parameters(&values)
+    if steps
+        .iter()
+        .any(|(one, _)| matches!(one.source, Source::Row(_)))
+    {
+        builder = builder.profile(rows);
     }
+    builder.build()
 }
-
-const ROWS: &str = "whisker.profile.rows";
 
 /// Arclength in millimetres and radius in micrometres of the rows of the profile.
 fn rows(scene: &Scene) -> Vec<[f64; 2]> {

@@ -10,7 +10,7 @@ use whiskmap::engine::gpu::{Gpu, Precision};
 use whiskmap::engine::{Cells, Engine, EngineDescription, EngineError, RowBatch};
 use whiskmap::map::{self, EngineCells, Panel, STATE_CHANNELS, Summary};
 use whiskmap::plan::Plan;
-use whiskmap::scene::Scene;
+use whiskmap::scene::{Parameter, Scene};
 use whiskmap::shooting::Resolution;
 
 /// The map of `scene`: by the CPU alone, or with an engine before it.
@@ -226,17 +226,22 @@ pub fn assert_identical(wanted: &[Panel], found: &[Panel]) {
 pub fn assert_no_load_at_touch(mut solve: impl FnMut(&Scene) -> Panel) {
     let cone = Scene::read("scenes/cone.toml").unwrap();
     let scenes = [
-        cone.with("whisker.curvature.parabola_per_mm", 0.075),
-        cone.with("contact.friction", 0.3),
-        cone.with("whisker.tip_radius_um", 0.0),
+        cone.with(Parameter::ParabolaPerMm, 0.075),
+        cone.with(Parameter::Friction, 0.3),
+        cone.with(Parameter::TipRadiusUm, 0.0),
         Scene::read("scenes/euler_spiral.toml"),
         Scene::read("scenes/measured.toml"),
     ];
     let pushes = [-1e-3, -0.0, 1e-3, 2.0, 5.0];
     let distances = [4.0, 7.0, 11.0, 15.0];
     for scene in scenes {
-        let scene = scene.unwrap().with("grid.push_angle_deg", pushes).unwrap();
-        let scene = scene.with("grid.distance_mm", distances).unwrap();
+        let scene = scene
+            .unwrap()
+            .to_builder()
+            .push_angle_deg(pushes)
+            .build()
+            .unwrap();
+        let scene = scene.to_builder().distance_mm(distances).build().unwrap();
         let panel = solve(&scene);
         for (name, values) in STATE_CHANNELS.iter().zip(&panel.state) {
             let is_load = |kind: &&str| name.contains(*kind);

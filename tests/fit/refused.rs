@@ -35,7 +35,7 @@ fn parameters_that_cannot_be_free() {
 /// The stretch may be 1 to 1/taper, which is 1.000005 here.
 #[test]
 fn a_range_too_narrow_for_a_derivative() {
-    let sharp = cone().with("whisker.tip_radius_um", 1.5e-4).unwrap();
+    let sharp = cone().with(Parameter::TipRadiusUm, 1.5e-4).unwrap();
     assert_eq!(
         message(&sharp, &[ArcStretch]),
         "the fit has not converged: a parameter cannot be changed enough for a derivative: the scene refuses it, or a point is out of reach"
@@ -44,7 +44,7 @@ fn a_range_too_narrow_for_a_derivative() {
 
 #[test]
 fn points_beyond_the_whisker() {
-    let short = cone().with("whisker.length_mm", 19).unwrap();
+    let short = cone().with(Parameter::LengthMm, 19.0).unwrap();
     let said = message(&short, &[TipRadiusUm]);
     assert!(
         said.starts_with(

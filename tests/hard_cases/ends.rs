@@ -52,7 +52,7 @@ pub fn agree(scene: &Scene, end: &Detachment) -> Result<(), TestCaseError> {
     let (before, after) = (push - beside, push + beside);
     let pushes = [before.min(after), before.max(after)];
     let map = whiskmap::map(
-        &scene.with("grid.push_angle_deg", pushes).unwrap(),
+        &scene.to_builder().push_angle_deg(pushes).build().unwrap(),
         Options::default(),
     )
     .unwrap();
@@ -118,7 +118,11 @@ fn every_way_leads_to_the_same_end() {
     let holds = |case: Case| {
         let scene = case.scene();
         for (_, end) in whiskmap::curve(&scene, Options::default()).unwrap() {
-            let alone = scene.with("grid.distance_mm", [end.distance_mm]).unwrap();
+            let alone = scene
+                .to_builder()
+                .distance_mm([end.distance_mm])
+                .build()
+                .unwrap();
             agree(&alone, &end)?;
             ends.set(ends.get() + usize::from(end.push_angle_deg.is_some()));
         }

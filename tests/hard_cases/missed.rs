@@ -115,14 +115,18 @@ fn close_folds_are_not_missed() {
         let vertex_mm = -slope / (2.0 * bend) * case.length_mm;
         let scene = case
             .scene()
-            .with("whisker.curvature.vertex_mm", vertex_mm)
+            .with(whiskmap::scene::Parameter::VertexMm, vertex_mm)
             .unwrap();
         let apart = between_folds(&scene.first_whisker().rod(Side::Cb), contact);
         assert!((0.1..1.6).contains(&apart), "{apart}");
         let mut ends = 0;
         for (_, end) in whiskmap::curve(&scene, Options::default()).unwrap() {
             assert_ne!(end.kind, DetachmentKind::Unresolved, "{end:?}");
-            let alone = scene.with("grid.distance_mm", [end.distance_mm]).unwrap();
+            let alone = scene
+                .to_builder()
+                .distance_mm([end.distance_mm])
+                .build()
+                .unwrap();
             agree(&alone, &end).unwrap();
             ends += usize::from(end.push_angle_deg.is_some());
         }

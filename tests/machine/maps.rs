@@ -7,7 +7,7 @@ use whiskmap::engine::gpu::Precision;
 use whiskmap::engine::on_gpu;
 use whiskmap::map::EngineCells;
 use whiskmap::plan::Plan;
-use whiskmap::scene::Scene;
+use whiskmap::scene::{Parameter, Scene};
 
 tests! {
     Precision:
@@ -46,9 +46,7 @@ fn first_touch_is_without_a_load(precision: Precision) {
 fn what_an_engine_cannot_is_done_by_the_cpu(precision: Precision) {
     let mut gpu = open(precision);
     let cone = Scene::read("scenes/cone.toml").unwrap().thinned(48, 1);
-    let graded = cone
-        .with("whisker.modulus_gradient.tip_to_base", 1.5)
-        .unwrap();
+    let graded = cone.with(Parameter::ModulusTipToBase, 1.5).unwrap();
     let measured = Scene::read("scenes/measured.toml").unwrap().thinned(48, 1);
     for (scene, why) in [(graded, "a modulus gradient"), (measured, "measured radii")] {
         let effects = Plan::new(&scene).unwrap().method.effects;

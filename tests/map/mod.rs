@@ -7,7 +7,7 @@ use std::sync::LazyLock;
 use whiskmap::classify::Regime;
 use whiskmap::engine;
 use whiskmap::map::{Audit, Channels, EngineCells, Panel, STATE_CHANNELS};
-use whiskmap::scene::{Grid, Parameter, Pole, Setup, SweepAxis, Whisker};
+use whiskmap::scene::{Grid, Parameter, Pole, SceneData, SceneText, SweepAxis, Whisker};
 use whiskmap::store::{Counts, Description, MapWriter, TemporaryFiles};
 
 /// `count` values from `first` to `last`.
@@ -24,8 +24,8 @@ pub fn scene(
     distances: usize,
     taper: Option<Vec<f64>>,
     curvature_per_mm: Option<Vec<f64>>,
-) -> Setup {
-    Setup {
+) -> SceneData {
+    SceneData {
         title: "A made-up whisker in front of a pole".to_owned(),
         uncertainty: None,
         whisker: Whisker {
@@ -55,8 +55,7 @@ pub fn scene(
             .collect(),
         },
         name: "made-up".to_owned(),
-        text: "title = \"A made-up whisker\"\n".to_owned(),
-        note: None,
+        text: SceneText::of_source("title = \"A made-up whisker\"\n"),
     }
 }
 
@@ -72,7 +71,7 @@ fn edge(distance: f64, side: f64, index: usize) -> Option<(f64, bool)> {
 }
 
 /// Panel `index` of a map.
-pub fn panel(scene: &Setup, index: usize) -> Panel {
+pub fn panel(scene: &SceneData, index: usize) -> Panel {
     let grid = &scene.grid;
     let cells = grid.push_angle_deg.len() * grid.distance_mm.len();
     let mut panel = Panel {
@@ -118,7 +117,7 @@ static ENGINE: LazyLock<engine::EngineDescription> = LazyLock::new(|| engine::En
     adapter: "a \u{201c}card\u{201d}".to_owned(),
 });
 
-pub fn describe<'a>(scene: &'a Setup, tolerances: &'a Value) -> Description<'a> {
+pub fn describe<'a>(scene: &'a SceneData, tolerances: &'a Value) -> Description<'a> {
     Description {
         scene,
         engine: &ENGINE,
@@ -129,7 +128,7 @@ pub fn describe<'a>(scene: &'a Setup, tolerances: &'a Value) -> Description<'a> 
 }
 
 /// Writes the whole map.
-pub fn write(path: &Path, scene: &Setup) -> Counts {
+pub fn write(path: &Path, scene: &SceneData) -> Counts {
     let tolerances = json!({"rtol": 0.1 + 0.2});
     let mut writer = MapWriter::create(
         path,

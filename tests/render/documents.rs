@@ -4,7 +4,7 @@ use crate::drawn::{Pixels, rasters, svg, well_formed};
 use crate::map::{panel, scene, write};
 use crate::{SLIP_OFF, colours, flat, picture};
 use std::fs;
-use whiskmap::render::{self, MapOptions};
+use whiskmap::render::{self, MapOptions, RenderError};
 use whiskmap::store::{self, Panel, StoredMap};
 
 #[test]
@@ -83,9 +83,61 @@ fn errors_leave_no_picture() {
     assert!(
         matches!(
             error,
-            render::Error::Store(store::Error::UnknownChannel { .. })
+            RenderError::Store(store::Error::UnknownChannel { .. })
         ),
         "{error}"
     );
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+}
+
+#[test]
+fn a_channel_has_its_unit_and_refused_scales_name_it() {
+    let scene = scene(3, 1, None, None);
+    let panels = [flat(&scene, &[1; 3], 2e3)];
+    for (channel, label) in [
+        ("force_un", ">force (mN)<"),
+        ("arc_length_mm", ">arc length (m)<"),
+        ("push_chord_deg", ">push chord (deg)<"),
+        ("base_moment_nnm", ">base moment (\u{b5}N m)<"),
+        ("energy_nj", ">energy (\u{b5}J)<"),
+        ("newton_steps", ">newton steps<"),
+    ] {
+        let options = MapOptions {
+            channel: Some(channel),
+            ..MapOptions::default()
+        };
+        let document = svg(&picture(&scene, &panels, &options).unwrap());
+        assert!(document.contains(label), "{label}");
+    }
+    for (channel, log, range, refused) in [
+        (None, true, None, "`regime`: the channel is made of codes"),
+        (Some("regime"), false, Some([0.0, 1.0]), "made of codes"),
+        (
+            Some("status"),
+            true,
+            None,
+            "`status`: the channel is made of codes",
+        ),
+        (
+            Some("force_un"),
+            false,
+            Some([2.0, 1.0]),
+            "`force_un`: range 2,1: must be",
+        ),
+        (
+            Some("newton_steps"),
+            true,
+            Some([0.0, 1.0]),
+            "begin above 0",
+        ),
+    ] {
+        let options = MapOptions {
+            channel,
+            log,
+            range,
+            width: None,
+        };
+        let error = picture(&scene, &panels, &options).unwrap_err();
+        assert!(error.to_string().contains(refused), "{error}");
+    }
 }

@@ -1,26 +1,20 @@
-//! Pictures show what the map holds. The body of a picture of one whisker is 1280 by 880 pixels, 136 from the left and
-//! 112 from the bottom.
-#![allow(
-    clippy::unwrap_used,
-    reason = "a test that cannot set up its files should stop"
-)]
+//! Pictures of maps show what the maps hold.
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod boundary;
 mod documents;
-#[path = "../drawn/mod.rs"]
+#[path = "../../crates/plot/tests/pictures/drawn.rs"]
 mod drawn;
 #[path = "../map/mod.rs"]
 mod map;
 mod regimes;
-mod scale;
-#[path = "../drawn/vision.rs"]
 mod vision;
 
 use drawn::Pixels;
 use map::panel;
 use std::collections::BTreeMap;
-use whiskmap::render::{self, MapOptions, Picture};
-use whiskmap::scene::Setup;
+use whiskmap::render::{self, MapOptions, Picture, RenderError};
+use whiskmap::scene::SceneData;
 use whiskmap::store::{Audit, EngineCells, MapWriter, Panel, StoredMap, TemporaryFiles};
 
 const CONTACT: [u8; 3] = [0x83, 0xc4, 0xa4];
@@ -29,12 +23,6 @@ const PULL_OFF: [u8; 3] = [0x22, 0x47, 0x8a];
 const OUT_OF_REACH: [u8; 3] = [0xf2, 0xf3, 0xf4];
 const UNRESOLVED: [u8; 3] = [0xf0, 0xe4, 0x42];
 const BLANK: [u8; 3] = [0xdc, 0xdd, 0xde];
-
-/// The pixel at fractions of the body of a picture in its natural size, from the left and from the bottom.
-fn body(picture: &Pixels, across: f64, up: f64) -> [u8; 3] {
-    let y = picture.height as f64 - 112.0 - up * 880.0;
-    picture.at([136.0 + across * 1280.0, y])
-}
 
 /// How many pixels there are of each colour.
 fn colours(picture: &Pixels) -> BTreeMap<[u8; 3], usize> {
@@ -47,10 +35,10 @@ fn colours(picture: &Pixels) -> BTreeMap<[u8; 3], usize> {
 
 /// Writes the panels of a map and draws it.
 fn picture(
-    scene: &Setup,
+    scene: &SceneData,
     panels: &[Panel],
     options: &MapOptions,
-) -> Result<Picture, render::Error> {
+) -> Result<Picture, RenderError> {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("map.exr");
     let tolerances = serde_json::json!(null);
@@ -68,7 +56,7 @@ fn picture(
 }
 
 /// Draws one channel of a map, or the regimes.
-fn draw(scene: &Setup, panels: &[Panel], channel: Option<&str>) -> Pixels {
+fn draw(scene: &SceneData, panels: &[Panel], channel: Option<&str>) -> Pixels {
     let options = MapOptions {
         channel,
         ..MapOptions::default()
@@ -77,7 +65,7 @@ fn draw(scene: &Setup, panels: &[Panel], channel: Option<&str>) -> Pixels {
 }
 
 /// A panel all of whose regimes are `regime` and whose quantities are all `value`.
-fn flat(scene: &Setup, regime: &[u32], value: f32) -> Panel {
+fn flat(scene: &SceneData, regime: &[u32], value: f32) -> Panel {
     let mut flat = panel(scene, 0);
     let cells = flat.regime.len();
     flat.regime = regime.to_vec();

@@ -30,25 +30,21 @@ distance_mm = [3, 12]
 
 #[test]
 fn every_axis_takes_the_place_of_its_number() {
-    for (axis, key, values) in [
-        ("taper", "whisker.tip_radius_um", [0.25, 0.5]),
-        ("tip_radius_um", "whisker.tip_radius_um", [0.0, 7.0]),
-        ("base_radius_um", "whisker.base_radius_um", [10.0, 50.0]),
-        ("length_mm", "whisker.length_mm", [15.0, 30.0]),
-        (
-            "curvature_per_mm",
-            "whisker.curvature.parabola_per_mm",
-            [0.0, 0.04],
-        ),
-        ("vertex_mm", "whisker.curvature.vertex_mm", [-2.0, 3.0]),
-        ("pole_radius_mm", "pole.radius_mm", [0.0, 1.0]),
-        ("friction", "contact.friction", [0.0, 0.5]),
+    for (axis, parameter, values) in [
+        ("taper", Parameter::TipRadiusUm, [0.25, 0.5]),
+        ("tip_radius_um", Parameter::TipRadiusUm, [0.0, 7.0]),
+        ("base_radius_um", Parameter::BaseRadiusUm, [10.0, 50.0]),
+        ("length_mm", Parameter::LengthMm, [15.0, 30.0]),
+        ("curvature_per_mm", Parameter::ParabolaPerMm, [0.0, 0.04]),
+        ("vertex_mm", Parameter::VertexMm, [-2.0, 3.0]),
+        ("pole_radius_mm", Parameter::PoleRadiusMm, [0.0, 1.0]),
+        ("friction", Parameter::Friction, [0.0, 0.5]),
         (
             "modulus_tip_to_base",
-            "whisker.modulus_gradient.tip_to_base",
+            Parameter::ModulusTipToBase,
             [0.5, 2.0],
         ),
-        ("arc_stretch", "whisker.projection.arc_stretch", [1.0, 1.05]),
+        ("arc_stretch", Parameter::ArcStretch, [1.0, 1.05]),
     ] {
         let scene = swept(&format!("{axis} = {values:?}")).unwrap();
         assert_eq!(scene.grid.sweep[0].parameter.axis(), axis);
@@ -62,7 +58,7 @@ fn every_axis_takes_the_place_of_its_number() {
             } else {
                 value
             };
-            let alone = plain.with(key, value).unwrap();
+            let alone = plain.with(parameter, value).unwrap();
             assert_eq!(own.whisker, alone.first_whisker().whisker, "{axis}");
             assert_eq!(own.pole, alone.pole, "{axis}");
             assert_eq!(own.rod(Side::Cf), alone.first_whisker().rod(Side::Cf));

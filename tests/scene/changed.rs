@@ -1,8 +1,8 @@
 //! Scenes with other values, by key and by parameter.
 
-use whiskmap::scene::{Parameter, Scene};
+use whiskmap::scene::{AxisScale, AxisValues, Parameter, Scene, SceneBuilder, SceneData};
 
-use crate::{BASE, parse};
+use crate::{BASE, parse, shipped, sweep};
 
 fn cone() -> Scene {
     Scene::parse(include_str!("../../scenes/cone.toml"), "cone.toml").unwrap()
@@ -11,38 +11,92 @@ fn cone() -> Scene {
 #[test]
 fn a_changed_scene_is_checked_like_its_file() {
     let base = parse(BASE).unwrap();
-    let rough = base.with("contact.friction", 0.4).unwrap();
+    let rough = base.with(Parameter::Friction, 0.4).unwrap();
     assert_eq!(rough.pole.friction, 0.4);
     assert_eq!(
         (&rough.whisker, &rough.grid, &rough.name),
         (&base.whisker, &base.grid, &base.name)
     );
-    assert_eq!(parse(&rough.text).unwrap(), rough);
     let exact = [0.1 + 0.2, 1e-7_f64.mul_add(1.0, 17.0)];
-    assert_eq!(
-        base.with("grid.distance_mm", exact)
-            .unwrap()
-            .grid
-            .distance_mm,
-        exact
-    );
-    for (key, value, said) in [
+    let listed = base.to_builder().distance_mm(exact).build().unwrap();
+    assert_eq!(listed.grid.distance_mm, exact);
+    let why = |builder: SceneBuilder| builder.build().unwrap_err().to_string();
+    for (builder, said) in [
         (
-            "grid.distance_mm",
-            vec![5.0, 2.0],
-            "grid.distance_mm[1] = 2.0: must be greater",
+            base.to_builder().distance_mm([5.0, 2.0]),
+            "error: grid.distance_mm[1] = 2: must be greater than the value before it (5)",
         ),
-        ("pole.radius_mm", vec![1.0], "expected a number"),
         (
-            "pole.radius_mm.more",
-            vec![1.0],
-            "radius_mm is a value, not a table",
+            base.to_builder().set(Parameter::LengthMm, f64::NAN),
+            "error: whisker.length_mm = NaN: must be between 0.001 and 100000",
         ),
-        ("pole.colour", vec![1.0], "unknown field `colour`"),
+        (
+            base.to_builder()
+                .push_angle_deg(AxisValues::linear(5.0, 1.0, 3)),
+            "error: grid.push_angle_deg.to = 1: must be greater than from (5)",
+        ),
+        (
+            base.to_builder().set(Parameter::SpiralPerMm, 0.1),
+            "error: grid.curvature_per_mm: must be left out: the whisker is an Euler spiral",
+        ),
+        (
+            cone().to_builder().set(Parameter::SpiralPerMm, 0.1),
+            "error: whisker.curvature: must have either parabola_per_mm",
+        ),
+        (
+            base.to_builder().sweep(Parameter::YoungsModulusGpa, [1.0]),
+            "error: grid.youngs_modulus_gpa: must be left out: no axis varies it",
+        ),
+        (
+            Scene::builder("empty"),
+            "error: whisker.length_mm: is left out",
+        ),
+        (
+            base.to_builder().set(Parameter::Taper, 1.5),
+            "error: taper = 1.5: must be between 0 and 1",
+        ),
+        (
+            base.to_builder().title("two\nlines"),
+            "error: title: must be one line of text",
+        ),
     ] {
-        let why = base.with(key, value).unwrap_err().to_string();
-        assert!(why.contains(said), "{why}");
+        let why = why(builder);
+        assert!(why.starts_with(said), "{why}");
     }
+}
+
+/// Every scene as text is read back: the shipped ones, and those with a number of every kind.
+#[test]
+fn a_scene_survives_its_own_text() {
+    let all = "[whisker.modulus_gradient]\ntip_to_base = 1.3\n[contact]\nfriction = 0.1\n\
+               [uncertainty]\ntaper = 0.01\nlength_mm = 0.3\n";
+    let full = parse(&format!("{}{all}", sweep())).unwrap_err();
+    assert!(
+        full.contains("does not give whisker.tip_radius_um"),
+        "{full}"
+    );
+    let full = parse(&format!("{BASE}{all}")).unwrap();
+    let shipped = shipped().into_iter().map(|path| Scene::read(path).unwrap());
+    for scene in shipped.chain([full, parse(&sweep()).unwrap()]) {
+        // The same numbers without the source text.
+        let own = scene.to_builder().build().unwrap();
+        let again = Scene::parse(&own.to_toml(), &format!("{}.toml", own.name)).unwrap();
+        assert_eq!(*again, *own, "{}", own.to_toml());
+        let data = SceneData {
+            text: own.text.clone(),
+            ..SceneData::clone(&scene)
+        };
+        assert_eq!(data, *own);
+    }
+    let log = AxisValues::Range {
+        from: 1e-7,
+        to: Some(0.2),
+        count: 7,
+        scale: AxisScale::Log,
+    };
+    let rough = cone().to_builder().sweep(Parameter::Friction, log);
+    let rough = rough.build().unwrap();
+    assert_eq!(parse(&rough.to_toml()).unwrap().grid, rough.grid);
 }
 
 #[test]
@@ -52,11 +106,11 @@ fn parameters_are_read_and_replaced() {
         let Some(own) = parameter.value(&scene) else {
             continue;
         };
-        let same = scene.with_parameters(&[(parameter, own)]).unwrap();
+        let same = scene.with(parameter, own).unwrap();
         assert_eq!(parameter.value(&same), Some(own), "{}", parameter.name());
         let [least, most] = parameter.range(&scene);
         assert!(least <= own && own <= most, "{}", parameter.name());
-        let accepts = |value| scene.with_parameters(&[(parameter, value)]).is_ok();
+        let accepts = |value| scene.with(parameter, value).is_ok();
         assert_eq!(
             [least.next_down(), least, most, most.next_up()].map(accepts),
             [false, true, true, false],
@@ -79,14 +133,19 @@ fn a_taper_is_that_of_the_new_base() {
 }
 
 #[test]
-fn other_values_keep_the_comments() {
+fn rewritten_text_keeps_the_comments() {
     let scene = cone();
-    let other = scene
-        .with_parameters(&[(Parameter::TipRadiusUm, 4.0), (Parameter::Friction, 0.25)])
-        .unwrap();
-    assert_eq!(other.pole.friction, 0.25);
+    let values = [(Parameter::TipRadiusUm, 4.0), (Parameter::Friction, 0.25)];
+    let text = scene.to_toml_with(&values).unwrap();
+    let rough = scene.with_parameters(&values).unwrap();
+    assert_eq!(rough.pole.friction, 0.25);
+    let read = Scene::parse(&text, "cone.toml").unwrap();
+    assert_eq!((&read.whisker, read.pole), (&rough.whisker, rough.pole));
     let expected = scene
-        .text
+        .to_toml()
         .replace("tip_radius_um = 1.5 ", "tip_radius_um = 4.0 ");
-    assert!(other.text.starts_with(&expected), "{}", other.text);
+    assert!(text.starts_with(&expected), "{text}");
+    let tapered = scene.to_toml_with(&[(Parameter::Taper, 0.5)]).unwrap();
+    assert!(tapered.contains("tip_radius_um = 15.0 "), "{tapered}");
+    assert!(scene.to_toml_with(&[(Parameter::Taper, 1.5)]).is_err());
 }

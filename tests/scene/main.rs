@@ -73,9 +73,9 @@ fn every_shipped_scene_is_accepted() {
     for path in shipped() {
         let scene = Scene::read(&path).unwrap_or_else(|why| panic!("{why}"));
         assert_eq!(scene.name, path.file_stem().unwrap().to_str().unwrap());
-        assert_eq!((scene.note.as_deref(), scene.warnings()), (None, vec![]));
+        assert_eq!((scene.note(), scene.warnings()), (None, vec![]));
         if scene.whisker.profile.is_none() {
-            assert_eq!(scene.text, fs::read_to_string(&path).unwrap());
+            assert_eq!(scene.to_toml(), fs::read_to_string(&path).unwrap());
         }
         let side = if scene.name == "morphology" { 96 } else { 512 };
         assert_eq!(scene.grid.push_angle_deg.len(), side, "{}", scene.name);
@@ -235,7 +235,9 @@ fn few_values_stay_and_many_are_represented() {
     let scene = parse(&sweep()).unwrap();
     let pushes: Vec<f64> = (0..16).map(f64::from).collect();
     let thinned = scene
-        .with("grid.push_angle_deg", pushes)
+        .to_builder()
+        .push_angle_deg(pushes)
+        .build()
         .unwrap()
         .thinned(2, 1);
     assert_eq!(thinned.grid.push_angle_deg, [4.0, 12.0]);

@@ -2,7 +2,7 @@
 
 use crate::{POINT, whisker};
 use whiskmap::paper::elastica::{elastica, fold};
-use whiskmap::paper::{Verdict, checks};
+use whiskmap::paper::{CheckVerdict, checks};
 use whiskmap::rod::Side;
 use whiskmap::trace::{Branch, DetachmentKind, curve};
 
@@ -111,15 +111,15 @@ fn every_number_that_is_known_otherwise_is_reproduced() {
     assert!(checks.len() > 30);
     for check in checks {
         let expected = if check.is_disputed {
-            Verdict::Differs
+            CheckVerdict::Differs
         } else {
-            Verdict::Pass
+            CheckVerdict::Pass
         };
         assert_eq!(check.verdict(), expected, "{check:?}");
         let spoilt = whiskmap::paper::Check {
             computed: f64::NAN,
             ..check
         };
-        assert_eq!(spoilt.verdict(), Verdict::Fail, "{spoilt:?}");
+        assert_eq!(spoilt.verdict(), CheckVerdict::Fail, "{spoilt:?}");
     }
 }

@@ -19,12 +19,8 @@ pub fn plot(rows: &[Measurement]) -> Plot {
     for (rows, &(ink, stroke)) in engines.zip(looks.iter().cycle()) {
         let engine = named(&rows[0].engine, rows[0].threads);
         let name = format!("{engine}, {}", rows[0].rung.integrator);
-        lines.push(Line::new(
-            rows.iter().map(point).collect(),
-            ink,
-            stroke,
-            name,
-        ));
+        let points = rows.iter().map(point).collect();
+        lines.push(Line::new(points, ink, stroke).named(name));
         dots.extend(rows.iter().filter_map(|row| dot(row, ink)));
     }
     Plot {

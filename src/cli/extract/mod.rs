@@ -13,7 +13,7 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use whiskmap::engine;
 use whiskmap::map::{Audit, Channels, EngineCells};
-use whiskmap::scene::{LONGEST_TITLE, Scene, Setup};
+use whiskmap::scene::{LONGEST_TITLE, Parameter, Scene, SceneData};
 use whiskmap::store::{Description, MapWriter, Slice, TemporaryFolder, ZarrStore};
 
 #[derive(Debug, Args)]
@@ -89,9 +89,9 @@ fn map(
         return refuse(path, &why);
     }
     let (scene, origin) = (scene(slice)?, MapOrigin::of(slice)?);
-    let scene = Setup {
+    let scene = SceneData {
         grid: slice.grid().clone(),
-        ..Setup::clone(&scene)
+        ..SceneData::clone(&scene)
     };
     let about = origin.describe(&scene, Channels::those(|name| channels.contains(&name)));
     files.output("--output", path)?;
@@ -149,14 +149,19 @@ fn store(
 fn scene(slice: &Slice) -> Result<Scene, Failure> {
     let text = slice.stored().attribute("scene")?;
     let text = text.as_str().unwrap_or_default();
-    let mut scene = Scene::parse(text, "the scene of the map")?;
+    let scene = Scene::parse(text, "the scene of the map")?;
     // The selected values can extend a title beyond its limit.
     let title: String = slice.title().chars().take(LONGEST_TITLE).collect();
-    scene = scene.with("title", title)?;
+    let mut builder = scene.to_builder().title(title);
     for (axis, value) in slice.chosen() {
-        scene = scene.with(&format!("grid.{axis}"), [*value])?;
+        let mut swept = Parameter::SWEPT.into_iter();
+        builder = match swept.find(|own| own.axis() == *axis) {
+            Some(parameter) => builder.sweep(parameter, [*value]),
+            None if *axis == "push_angle_deg" => builder.push_angle_deg([*value]),
+            None => builder.distance_mm([*value]),
+        };
     }
-    Ok(scene)
+    Ok(builder.build()?)
 }
 
 /// Engine, arithmetic and tolerances of the whole map.
@@ -185,7 +190,7 @@ impl MapOrigin {
         })
     }
 
-    fn describe<'a>(&'a self, scene: &'a Setup, channels: Channels) -> Description<'a> {
+    fn describe<'a>(&'a self, scene: &'a SceneData, channels: Channels) -> Description<'a> {
         Description {
             scene,
             engine: &self.engine,

@@ -1,28 +1,28 @@
-//! Detachment curves in the plane of push angle and distance, with measured ends over them.
+//! Detachment curves in the plane of push angle and distance, Figs. 3E, 3J, 4D and 5C, with measured detachments over them.
 
-use super::Panel;
+use super::{Figure, FigurePanel, PUSH, figure};
 use crate::measured::Point;
-use crate::paper::whiskers::POLE;
-use crate::render::{CurveAxis, Dot, Ends, Ink, Line, Stroke, curves};
+use crate::paper::whiskers::{FIG4_HAIR, FIG4_WHISKER, FIG5_LEFT, FIG5_RIGHT, POLE, cylinder_of};
+use crate::render::{CurveAxis, Dot, DrawnCurve, Ink, Line, Stroke, curves};
 use crate::rod::{Rest, Side};
 use crate::scene::Whisker;
 use crate::trace::{Detachment, DetachmentKind, curve};
 use serde::Serialize;
 
-/// Measured detachments, by their push angles, for the panels that can show them; there may be none.
+/// Measured detachments, by push angle, for the panels that show such; each list may be empty.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Measurements {
-    /// Slip-offs are open circles (the whisker's), others filled ones (the hair's).
+    /// Fig. 4D: slip-offs (the whisker's) are open circles, others (the hair's) filled circles.
     pub fig4d: Vec<Point>,
-    /// Open circles.
+    /// Fig. 5C, left: open circles.
     pub fig5c_left: Vec<Point>,
-    /// Open circles.
+    /// Fig. 5C, right: open circles.
     pub fig5c_right: Vec<Point>,
 }
 
-/// A row of a table: the end of a push.
+/// A row of a panel's table.
 #[derive(Clone, Copy, Serialize)]
-pub struct End {
+struct DetachmentRow {
     whisker: &'static str,
     side: Side,
     kind: DetachmentKind,
@@ -33,20 +33,18 @@ pub struct End {
 
 /// Distances per side.
 const DISTANCES: usize = 96;
-/// The nearest pole, as a part of the farthest.
+/// The nearest distance, as a fraction of the farthest.
 const NEAREST: f64 = 0.25;
 
-/// Detachment curves of both sides, up to where the tip of the resting whisker touches the pole. Near there push angles
-/// grow like a root, so that distances are closer together.
-fn ends(whisker: &Whisker) -> Vec<Detachment> {
-    let reach = |side| {
-        let rest = Rest::new(&whisker.rod(&POLE, side));
-        rest.at_arclength(rest.end()).0.length() * whisker.length_mm
-    };
+/// Detachment curves of both sides, up to the distance at which the tip of the resting whisker touches the pole. Push angles grow
+/// like a root near there, so distances are closer together.
+fn detachments(whisker: &Whisker) -> Vec<Detachment> {
     let of_side = |side| {
+        let rest = Rest::new(&whisker.rod(&POLE, side));
+        let reach = rest.at_arclength(rest.end()).0.length() * whisker.length_mm;
         let to_tip = |i: usize| (1.0 - (i + 1) as f64 / DISTANCES as f64).powi(2);
         let distances: Vec<f64> = (0..DISTANCES)
-            .map(|i| reach(side) * (1.0 - (1.0 - NEAREST) * to_tip(i)))
+            .map(|i| reach * (1.0 - (1.0 - NEAREST) * to_tip(i)))
             .collect();
         curve(whisker, &POLE, side, &distances)
     };
@@ -64,26 +62,25 @@ const AXES: [CurveAxis; 2] = [
     },
 ];
 
-/// Detachment curves of whiskers by name, with their strokes.
+/// A panel with the detachment curves of named whiskers.
 pub fn panel(
     letter: &'static str,
     title: &str,
     whiskers: &[(&'static str, &Whisker, Stroke)],
-) -> Panel {
-    let all: Vec<_> = whiskers
-        .iter()
-        .map(|(name, whisker, stroke)| (*name, ends(whisker), *stroke))
-        .collect();
-    let drawn = all.iter().map(|(name, rows, stroke)| Ends {
+) -> FigurePanel {
+    let rows = whiskers.iter().map(|(_, whisker, _)| detachments(whisker));
+    let rows: Vec<_> = rows.collect();
+    let all = || whiskers.iter().zip(&rows);
+    let drawn = all().map(|((name, _, stroke), rows)| DrawnCurve {
         rows,
         stroke: *stroke,
-        name: if all.len() > 1 { name } else { "" },
+        name: if whiskers.len() > 1 { name } else { "" },
     });
     let mut plot = curves(title, &drawn.collect::<Vec<_>>(), AXES);
-    plot.lines
-        .extend(all.iter().map(|(_, rows, stroke)| reach(rows, *stroke)));
-    let rows = all.iter().flat_map(|(whisker, rows, _)| {
-        rows.iter().map(|end| End {
+    let reaches = all().map(|((.., stroke), rows)| reach(rows, *stroke));
+    plot.lines.extend(reaches);
+    let table = all().flat_map(|((whisker, ..), rows)| {
+        rows.iter().map(|end| DetachmentRow {
             whisker,
             side: end.side,
             kind: end.kind,
@@ -92,21 +89,21 @@ pub fn panel(
             contact_distance_mm: end.contact_distance_mm,
         })
     });
-    Panel::new(letter, plot, rows.collect())
+    FigurePanel::new(letter, plot, table.collect())
 }
 
-/// From the farthest end of one side to that of the other: where the region of stable states ends without a detachment.
+/// A line between the farthest detachments of both sides, where the region of stable states ends without a detachment.
 fn reach(rows: &[Detachment], stroke: Stroke) -> Line {
     let farthest = |side| {
         let of_side = rows.iter().rfind(|end| end.side == side)?;
         Some([of_side.push_angle_deg?, of_side.distance_mm])
     };
     let points = Side::BOTH.into_iter().filter_map(farthest).collect();
-    Line::new(points, Ink::Grey, stroke, "first touch at the tip")
+    Line::new(points, Ink::Grey, stroke).named("first touch at the tip")
 }
 
-/// Measured ends as circles.
-pub fn dots(measured: &[Point], is_open: impl Fn(Option<DetachmentKind>) -> bool) -> Vec<Dot> {
+/// Measured detachments as circles.
+fn dots(measured: &[Point], is_open: impl Fn(Option<DetachmentKind>) -> bool) -> Vec<Dot> {
     let dot = |end: &Point| Dot {
         at: [end.angle_deg, end.distance_mm],
         ink: match end.kind {
@@ -118,4 +115,42 @@ pub fn dots(measured: &[Point], is_open: impl Fn(Option<DetachmentKind>) -> bool
         name: Some("measured".to_owned()),
     };
     measured.iter().map(dot).collect()
+}
+
+/// Fig. 4D: a mouse whisker and a human hair.
+pub fn fig4d(measured: &[Point]) -> Figure {
+    let whiskers = [
+        ("mouse whisker", &FIG4_WHISKER, Stroke::Solid),
+        ("human hair", &FIG4_HAIR, Stroke::Dashed),
+    ];
+    let mut panel = panel("D", "", &whiskers);
+    panel.plot.dots = dots(measured, |kind| kind == Some(DetachmentKind::SlipOff));
+    let title = "Fig. 4D: detachment of a mouse whisker and a human hair";
+    let panels = vec![("fig4d".to_owned(), panel)];
+    figure("fig4d", title, vec![PUSH.to_owned()], panels)
+}
+
+/// Fig. 5C: two whiskers of behaving mice, each beside a cylinder.
+pub fn fig5c(measured: &Measurements) -> Figure {
+    #[rustfmt::skip]
+    let panels = [
+        ("fig5c_left", "C", "truncated whisker", &FIG5_LEFT, &measured.fig5c_left),
+        ("fig5c_right", "", "less truncated whisker", &FIG5_RIGHT, &measured.fig5c_right),
+    ];
+    let panels = panels.map(|(table, letter, title, whisker, measured)| {
+        let cylinder = cylinder_of(whisker);
+        let whiskers = [
+            ("whisker", whisker, Stroke::Solid),
+            ("cylinder", &cylinder, Stroke::Dashed),
+        ];
+        let mut panel = panel(letter, title, &whiskers);
+        panel.plot.dots = dots(measured, |_| true);
+        (table.to_owned(), panel)
+    });
+    let title = "Fig. 5C: detachment of two whiskers, and of cylinders of their length and base";
+    let caption = vec![
+        PUSH.to_owned(),
+        "Lengths are the paper's effective ones, in projection; on the right, arclengths are corrected by 3 % (Methods).".to_owned(),
+    ];
+    figure("fig5c", title, caption, panels.into())
 }

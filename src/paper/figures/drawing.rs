@@ -1,34 +1,34 @@
-//! What schematics are drawn of.
+//! Elements of schematics: outlines, arcs and dimension lines.
 
-use crate::render::{Ink, Line, Note, Stroke};
+use crate::render::{Ink, Note};
 use crate::rod::{Rest, Side};
 use crate::scene::{Pole, Whisker};
 use glam::DVec2;
 use serde::Serialize;
 
-/// How much larger radii are drawn than lengths.
+/// Magnification of radii relative to lengths.
 pub const MAGNIFIED: f64 = 50.0;
 
-/// A place on the outline's axis, with the radius there.
+/// A cross-section of a whisker at rest.
 #[derive(Clone, Copy, Serialize)]
-pub struct Section {
+pub struct OutlineSection {
     /// Arclength from the base.
     pub arc_length_mm: f64,
-    /// Along the base's tangent.
+    /// Coordinate along the tangent at the base.
     pub x_mm: f64,
-    /// Across it, to the left.
+    /// Coordinate across the tangent at the base, to its left.
     pub y_mm: f64,
     /// Radius of the whisker.
     pub radius_um: f64,
 }
 
-/// `count` sections of a whisker at rest, evenly spaced from base to tip.
-pub fn sections(whisker: &Whisker, count: usize) -> Vec<Section> {
+/// Returns `count` sections of a whisker at rest, evenly spaced from base to tip.
+pub fn sections(whisker: &Whisker, count: usize) -> Vec<OutlineSection> {
     let rest = Rest::new(&whisker.rod(&Pole::smooth(0.0), Side::Cb));
     let at = |s: f64| {
         let place = rest.at_arclength(s).0 * whisker.length_mm;
         let (base, tip) = (whisker.base_radius_um, whisker.tip_radius_um);
-        Section {
+        OutlineSection {
             arc_length_mm: s * whisker.length_mm,
             x_mm: place.x,
             y_mm: place.y,
@@ -39,8 +39,8 @@ pub fn sections(whisker: &Whisker, count: usize) -> Vec<Section> {
     (0..=last).map(|i| at(i as f64 / last as f64)).collect()
 }
 
-/// The outline around sections, with radii [`MAGNIFIED`].
-pub fn outline(sections: &[Section]) -> Vec<[f64; 2]> {
+/// The closed outline around sections, with radii [`MAGNIFIED`].
+pub fn outline(sections: &[OutlineSection]) -> Vec<[f64; 2]> {
     let places: Vec<DVec2> = sections
         .iter()
         .map(|at| DVec2::new(at.x_mm, at.y_mm))
@@ -56,17 +56,7 @@ pub fn outline(sections: &[Section]) -> Vec<[f64; 2]> {
     left.chain(right).chain([side(0, 1.0)]).collect()
 }
 
-/// A line without a name.
-pub fn line(points: Vec<[f64; 2]>, ink: Ink, stroke: Stroke) -> Line {
-    Line {
-        points,
-        ink,
-        stroke,
-        name: None,
-    }
-}
-
-/// Part of a circle around the origin, between two angles in radians.
+/// An arc around the origin, between two angles in radians.
 pub fn arc(radius: f64, [from, to]: [f64; 2]) -> Vec<[f64; 2]> {
     const STEPS: u32 = 24;
     let angle = |step: u32| (to - from).mul_add(f64::from(step) / f64::from(STEPS), from);
@@ -75,30 +65,12 @@ pub fn arc(radius: f64, [from, to]: [f64; 2]) -> Vec<[f64; 2]> {
         .collect()
 }
 
-/// A text above a point.
-pub fn text(at: [f64; 2], text: &str) -> Note {
-    Note {
-        at,
-        text: text.to_owned(),
-        ..Note::default()
-    }
-}
-
-/// An arrow, with a text at its beginning.
-pub fn arrow(from: [f64; 2], to: [f64; 2], words: &str, ink: Ink) -> Note {
-    Note {
-        to: Some(to),
-        ink,
-        ..text(from, words)
-    }
-}
-
-/// A line with heads at both ends, and a text above its middle.
+/// An arrow with heads at both ends, and a text above its middle.
 pub fn extent(from: [f64; 2], to: [f64; 2], words: &str) -> [Note; 3] {
     let middle = [0, 1].map(|axis| 0.5 * (from[axis] + to[axis]));
     [
-        arrow(from, to, "", Ink::Grey),
-        arrow(to, from, "", Ink::Grey),
-        text(middle, words),
+        Note::arrow(from, to, "", Ink::Grey),
+        Note::arrow(to, from, "", Ink::Grey),
+        Note::text(middle, words),
     ]
 }

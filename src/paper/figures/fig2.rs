@@ -1,21 +1,21 @@
 //! Fig. 2: shapes of a cone and a cylinder in front of one pole, CB.
 
-use super::{Figure, Panel, lettered};
+use super::{Figure, FigurePanel, lettered};
 use crate::paper::whiskers::{CONE, CYLINDER, POLE, pole_distance_mm};
-use crate::render::{Drawn, Ink, Inset, Plot, Stroke, shapes};
+use crate::render::{DrawnShape, Ink, Inset, Plot, Stroke, shapes};
 use crate::rod::Side;
 use crate::scene::Whisker;
 use crate::trace::{Branch, BranchPoint, Mark, NoState, Shape};
 use serde::Serialize;
 
-/// Places along a whisker.
-const PLACES: usize = 200;
-/// The push angle of panels A and C.
+/// Points along a whisker.
+const POINTS: usize = 200;
+/// Push angle of panels A and C, in degrees.
 pub const PUSH_DEG: f64 = 10.0;
 
-/// Which state a place belongs to.
+/// The state of a shape, in the first columns of a panel's table.
 #[derive(Clone, Copy, Serialize)]
-struct State {
+struct ShapeState {
     /// Stable, unstable, saddle-node or pull-off.
     solution: &'static str,
     push_angle_deg: f64,
@@ -39,14 +39,12 @@ pub fn fig2() -> Result<Figure, NoState> {
     let stable = ("stable", PUSH_DEG, Stroke::Solid);
     let unstable = ("unstable", PUSH_DEG, Stroke::Dashed);
     #[rustfmt::skip]
-    let panels = [
-        ("A", "cone: the two solutions", &cone, &[stable, unstable][..]),
-        ("B", "cone: the only solution at the saddle-node", &cone, &[at_slip_off]),
-        ("C", "cylinder: the unstable solution would be longer than the whisker", &cylinder, &[stable]),
-        ("D", "cylinder: the tip has reached the pole", &cylinder, &[at_pull_off]),
+    let panels = vec![
+        panel("A", "cone: the two solutions", &cone, &[stable, unstable])?,
+        panel("B", "cone: the only solution at the saddle-node", &cone, &[at_slip_off])?,
+        panel("C", "cylinder: the unstable solution would be longer than the whisker", &cylinder, &[stable])?,
+        panel("D", "cylinder: the tip has reached the pole", &cylinder, &[at_pull_off])?,
     ];
-    let panels = panels.map(|(letter, title, branch, states)| panel(letter, title, branch, states));
-    let panels: Vec<Panel> = panels.into_iter().collect::<Result<_, _>>()?;
     let chord = |end: &BranchPoint| format!("{:.2}", end.push_chord_deg);
     let caption = vec![
         "Push angle \u{3b8}_p: rotation of the base since first touch, which gives the paper's 15.6 and 62.7 deg;".to_owned(),
@@ -61,18 +59,18 @@ fn panel(
     title: &str,
     branch: &Branch,
     states: &[(&'static str, f64, Stroke)],
-) -> Result<Panel, NoState> {
+) -> Result<FigurePanel, NoState> {
     let mut drawn = Vec::new();
     let mut rows = Vec::new();
     for &(solution, push_angle_deg, stroke) in states {
         let found = branch.state(push_angle_deg.to_radians(), stroke == Stroke::Solid)?;
-        let shape = Shape::new(branch, &found, PLACES);
-        let state = State {
+        let shape = Shape::new(branch, &found, POINTS);
+        let state = ShapeState {
             solution,
             push_angle_deg,
         };
         rows.extend(shape.points.iter().map(|point| (state, *point)));
-        drawn.push(Drawn {
+        drawn.push(DrawnShape {
             shape,
             ink: Ink::Black,
             stroke,
@@ -89,5 +87,5 @@ fn panel(
         inset: Some(inset),
         ..shapes(title, &drawn)
     };
-    Ok(Panel::new(letter, plot, rows))
+    Ok(FigurePanel::new(letter, plot, rows))
 }

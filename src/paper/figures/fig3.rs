@@ -1,10 +1,10 @@
 //! Fig. 3: bifurcation diagrams at one pole, and the detachment curves, of a cone and a cylinder.
 
-use super::drawing::{MAGNIFIED, arrow, line, outline, sections};
+use super::drawing::{MAGNIFIED, outline, sections};
 use super::fig2::{self, PUSH_DEG};
-use super::{Figure, PUSH, Panel, detachment, lettered};
+use super::{Figure, FigurePanel, PUSH, detachment, lettered};
 use crate::paper::whiskers::{CONE, CYLINDER, POLE, pole_distance_mm};
-use crate::render::{BranchAxis, Ink, Plot, Stroke, branches};
+use crate::render::{BranchAxis, Ink, Line, Note, Plot, Stroke, branches};
 use crate::rod::Side;
 use crate::scene::Whisker;
 use crate::trace::{Branch, BranchPoint, Mark, NoState};
@@ -13,32 +13,32 @@ use serde::ser::{SerializeStruct, Serializer};
 
 /// Points per branch.
 const POINTS: usize = 160;
-/// Where the second pole of the cylinder first touches it.
+/// Distance of the second pole of the cylinder.
 const NEAR_MM: f64 = 10.0;
 
-/// Where a state is.
+/// A state on a branch, in the first columns of a table.
 #[derive(Clone, Copy, Serialize)]
-struct State {
+struct BranchState {
     distance_mm: f64,
     side: Side,
     stable: bool,
     push_angle_deg: f64,
 }
 
-/// A column by its name, and what a state has in it.
+/// A column of a table: its name, and its value in a row.
 #[derive(Clone, Copy)]
-struct Column(&'static str, f64);
+struct NamedColumn(&'static str, f64);
 
-impl Serialize for Column {
+impl Serialize for NamedColumn {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut columns = serializer.serialize_struct("Column", 1)?;
+        let mut columns = serializer.serialize_struct("NamedColumn", 1)?;
         columns.serialize_field(self.0, &self.1)?;
         columns.end()
     }
 }
 
 #[derive(Clone, Copy, Serialize)]
-struct Special {
+struct MarkColumn {
     mark: Option<Mark>,
 }
 
@@ -46,7 +46,7 @@ const PUSH_ANGLE: BranchAxis = BranchAxis {
     label: "push angle \u{3b8}_p (deg)",
     value: |point| point.push_angle_deg,
 };
-/// In the axes of Eqs. 8-14, in which the pole stands still and the base turns against the push.
+/// The contact angle in the axes of Eqs. 8-14, in which the pole stands still and the base turns against the push.
 const CONTACT_ANGLE: BranchAxis = BranchAxis {
     label: "contact angle \u{3b8}_obj (deg)",
     value: |point| point.contact_angle_deg - point.push_angle_deg,
@@ -96,7 +96,7 @@ pub fn fig3() -> Result<Figure, NoState> {
     Ok(lettered("fig3", title, caption, panels.collect()))
 }
 
-/// Both branches at one pole, each on its own side of first touch.
+/// The branches of both sides at one pole, each up to its own side of first touch.
 fn states(
     whisker: &Whisker,
     distance_mm: impl Fn(Side) -> f64,
@@ -117,7 +117,7 @@ fn column(
     title: &str,
     poles: &[(Ink, &[BranchPoint])],
     (marked, shift): ([&str; 2], [f64; 2]),
-) -> Result<Vec<Panel>, NoState> {
+) -> Result<Vec<FigurePanel>, NoState> {
     let [schematic, angle, force, contact, ends] = letters;
     let points: Vec<BranchPoint> = poles
         .iter()
@@ -134,49 +134,49 @@ fn column(
         .notes
         .extend(states.iter().zip(marked).map(|(at, letter)| {
             let from = [at[0] + shift[0], at[1] + shift[1]];
-            arrow(from, *at, letter, Ink::Black)
+            Note::arrow(from, *at, letter, Ink::Black)
         }));
     Ok(vec![
         drawing(schematic, name, whisker),
-        Panel::new(
+        FigurePanel::new(
             angle,
             plot(CONTACT_ANGLE),
             rows(&points, "theta_obj_deg", CONTACT_ANGLE),
         ),
-        Panel::new(force, plot(FORCE), rows(&points, "force_un", FORCE)),
-        Panel::new(contact, contacts, rows(&points, "s_obj_mm", CONTACT)),
+        FigurePanel::new(force, plot(FORCE), rows(&points, "force_un", FORCE)),
+        FigurePanel::new(contact, contacts, rows(&points, "s_obj_mm", CONTACT)),
         detachment::panel(ends, name, &[(name, whisker, Stroke::Solid)]),
     ])
 }
 
-/// A table of what a panel shows upwards, in a column of this name.
+/// The table of a panel, with the values of its upright axis in a column of this name.
 fn rows(
     points: &[BranchPoint],
     column: &'static str,
     axis: BranchAxis,
-) -> Vec<(State, Column, Special)> {
+) -> Vec<(BranchState, NamedColumn, MarkColumn)> {
     let row = |point: &BranchPoint| {
-        let state = State {
+        let state = BranchState {
             distance_mm: point.distance_mm,
             side: point.side,
             stable: point.stable,
             push_angle_deg: point.push_angle_deg,
         };
-        let upwards = Column(column, (axis.value)(point));
-        (state, upwards, Special { mark: point.mark })
+        let upwards = NamedColumn(column, (axis.value)(point));
+        (state, upwards, MarkColumn { mark: point.mark })
     };
     points.iter().map(row).collect()
 }
 
-fn drawing(letter: &'static str, name: &str, whisker: &Whisker) -> Panel {
+fn drawing(letter: &'static str, name: &str, whisker: &Whisker) -> FigurePanel {
     let sections = sections(whisker, 101);
     let plot = Plot {
         title: format!("{name}, radii drawn {MAGNIFIED} times as large as lengths"),
         x_label: "x (mm)".to_owned(),
         y_label: "y (mm)".to_owned(),
-        lines: vec![line(outline(&sections), Ink::Black, Stroke::Solid)],
+        lines: vec![Line::new(outline(&sections), Ink::Black, Stroke::Solid)],
         equal_axes: true,
         ..Plot::default()
     };
-    Panel::new(letter, plot, sections)
+    FigurePanel::new(letter, plot, sections)
 }

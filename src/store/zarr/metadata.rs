@@ -5,7 +5,7 @@ use super::blocks::Blocks;
 use super::identity::{AGREED, Identity};
 use super::kind::{Kind, NOT_COMPUTED};
 use crate::classify::{Regime, Status};
-use crate::scene::{Grid, Setup};
+use crate::scene::{Grid, SceneData};
 use crate::store::{Channels, Description};
 use serde_json::{Map, Value, json};
 
@@ -175,14 +175,14 @@ pub(super) fn coordinates(grid: &Grid) -> Result<Vec<(Array, Vec<u8>)>, String> 
 }
 
 /// The attributes of a store, which are the same on every machine of its arithmetic.
-pub(super) fn attributes(about: &Description<'_>, scene: &Setup) -> Map<String, Value> {
+pub(super) fn attributes(about: &Description<'_>, scene: &SceneData) -> Map<String, Value> {
     let agreed = [
         ("whiskmap_version", json!(env!("CARGO_PKG_VERSION"))),
         ("engine", json!(about.engine.engine)),
         ("arithmetic", json!(about.arithmetic)),
         ("tolerances", json!(about.tolerances)),
         ("channels", json!(about.channels.to_string())),
-        ("scene", json!(scene.text)),
+        ("scene", json!(scene.text.to_string())),
     ];
     let agreed = agreed.map(|(name, value)| (name.to_owned(), value));
     completed(&Map::from_iter(agreed), &scene.title)

@@ -54,7 +54,7 @@ impl Place {
             "ICD": { "library_path": library, "api_version": "1.1.0" },
         });
         fs::write(folder.path().join("icd.json"), manifest.to_string()).unwrap();
-        let text = cone(2).text.replace("count = 512", "count = 128");
+        let text = cone(2).to_toml().replace("count = 512", "count = 128");
         fs::write(folder.path().join("scene.toml"), text).unwrap();
         Self {
             folder,

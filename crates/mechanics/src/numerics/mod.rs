@@ -15,6 +15,7 @@ mod vector;
 
 pub use bracket::{Bracket, Root, illinois};
 pub use complex::Complex;
+pub(crate) use real::horner;
 pub use real::{Real, expm1_over_small, hyperbolic_small, rotated_by_small};
 pub use simd::{ArithmeticClass, Lanes, LanesTask, SimdTask, Unit, WIDTH};
 pub use turn::nearest_turn;

@@ -46,6 +46,17 @@ macro_rules! scalar {
 scalar!(f32);
 scalar!(f64);
 
+/// The polynomial in `$x` with these coefficients, the highest one first, by Horner's rule: written out, because a compiler
+/// takes long to unroll many thousands of loops.
+macro_rules! horner {
+    ($x:expr; $highest:expr $(, $next:expr)*) => {{
+        let sum = $highest;
+        $(let sum = sum.mul_add($x, $next);)*
+        sum
+    }};
+}
+pub(crate) use horner;
+
 /// `1/(2k + 1)!` and `1/(2k + 2)!`: at 0.4 the first term left out is below 1e-17.
 const HYPERBOLIC: [[f64; 2]; 7] = {
     let mut terms = [[1.0, 0.5]; 7];
@@ -59,17 +70,29 @@ const HYPERBOLIC: [[f64; 2]; 7] = {
     terms
 };
 
+/// The coefficients of the series `series` of `terms`.
+const fn column<const N: usize>(terms: &[[f64; 2]; N], series: usize) -> [f64; N] {
+    let mut column = [0.0; N];
+    let mut k = 0;
+    while k < N {
+        column[k] = terms[k][series];
+        k += 1;
+    }
+    column
+}
+
 /// `sinh(x)/x` and `(cosh(x) - 1)/x^2` for `|x| <= 0.4`, by their Taylor polynomials: with them
 /// `exp(x) = 1 + x (odd + x even)` and `exp(-x) = 1 - x (odd - x even)`.
 #[inline(always)]
 pub fn hyperbolic_small<T: Real>(x: T) -> [T; 2] {
     let square = x * x;
-    let mut sums = [T::of(0.0); 2];
-    for [odd, even] in HYPERBOLIC.into_iter().rev() {
-        sums[0] = sums[0].mul_add(square, T::of(odd));
-        sums[1] = sums[1].mul_add(square, T::of(even));
+    macro_rules! sum {
+        ($i:literal) => {{
+            let [a, b, c, d, e, f, g] = const { column(&HYPERBOLIC, $i) };
+            horner!(square; T::of(g), T::of(f), T::of(e), T::of(d), T::of(c), T::of(b), T::of(a))
+        }};
     }
-    sums
+    [sum!(0), sum!(1)]
 }
 
 /// `(exp(x) - 1)/x` for `|x| <= 0.4`.
@@ -97,14 +120,15 @@ pub fn rotated_by_small<T: Real>([x, y]: [T; 2], angle: T) -> [T; 2] {
     let square = angle * angle;
     let fourth = square * square;
     // Pairs first: all that follows waits for this.
-    let mut sums = [T::of(0.0); 2];
-    for (i, sum) in sums.iter_mut().enumerate() {
-        let [a, b, c, d, e] = CIRCULAR;
-        let low = square.mul_add(T::of(b[i]), T::of(a[i]));
-        let high = square.mul_add(T::of(d[i]), T::of(c[i]));
-        *sum = fourth.mul_add(fourth.mul_add(T::of(e[i]), high), low);
+    macro_rules! sum {
+        ($i:literal) => {{
+            let [a, b, c, d, e] = const { column(&CIRCULAR, $i) };
+            let low = square.mul_add(T::of(b), T::of(a));
+            let high = square.mul_add(T::of(d), T::of(c));
+            fourth.mul_add(fourth.mul_add(T::of(e), high), low)
+        }};
     }
-    let (sin, versed) = (angle * sums[0], square * sums[1]);
+    let (sin, versed) = (angle * sum!(0), square * sum!(1));
     [
         (-sin).mul_add(y, versed.mul_add(x, x)),
         sin.mul_add(x, versed.mul_add(y, y)),

@@ -21,23 +21,24 @@ impl<T: Real> Vector<T> for () {
     fn times(self, _: T) -> Self {}
 }
 
-impl<T: Real, const N: usize> Vector<T> for [T; N] {
-    #[inline(always)]
-    fn plus(mut self, h: T, k: Self) -> Self {
-        for i in 0..N {
-            self[i] = h.mul_add(k[i], self[i]);
-        }
-        self
-    }
+/// Written out for each length: a compiler takes long to unroll many thousands of loops.
+macro_rules! array {
+    ($($length:literal: $($i:literal)+),+) => {$(
+        impl<T: Real> Vector<T> for [T; $length] {
+            #[inline(always)]
+            fn plus(self, h: T, k: Self) -> Self {
+                [$(h.mul_add(k[$i], self[$i])),+]
+            }
 
-    #[inline(always)]
-    fn times(mut self, h: T) -> Self {
-        for x in &mut self {
-            *x = h * *x;
+            #[inline(always)]
+            fn times(self, h: T) -> Self {
+                [$(h * self[$i]),+]
+            }
         }
-        self
-    }
+    )+};
 }
+
+array!(1: 0, 2: 0 1, 3: 0 1 2, 5: 0 1 2 3 4);
 
 impl<T: Real, A: Vector<T>, B: Vector<T>> Vector<T> for (A, B) {
     #[inline(always)]

@@ -2,12 +2,11 @@
 
 use crate::rod::RadiusProfile;
 use glam::DVec2;
-use serde::Serialize;
+use serde_core::{Serialize, Serializer};
 use std::sync::Arc;
 
 /// The side of the whisker that the pole is on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
-#[serde(rename_all = "lowercase")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Side {
     /// Concave backward: the pole is on the convex side, the force bends the whisker further.
     Cb,
@@ -32,6 +31,17 @@ impl Side {
             Self::Cb => 1.0,
             Self::Cf => -1.0,
         }
+    }
+}
+
+/// `cb` or `cf`. Written out, because a derive macro would delay the compilation of this crate.
+impl Serialize for Side {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let (index, name) = match self {
+            Self::Cb => (0, "cb"),
+            Self::Cf => (1, "cf"),
+        };
+        serializer.serialize_unit_variant("Side", index, name)
     }
 }
 

@@ -1,6 +1,6 @@
 //! Rest shapes.
 
-use crate::numerics::{Real, Vector, rotated_by_small};
+use crate::numerics::{Real, Vector, horner, rotated_by_small};
 use crate::shooting::Section;
 
 /// Curvature at rest.
@@ -132,10 +132,8 @@ impl<T: Real> Intrinsic<T> for Bent<T> {
     #[inline(always)]
     fn turn(course: &Series<T>, along: T) -> Option<T> {
         let x = course.rate * along;
-        let mut sum = course.terms[TERMS - 1];
-        for term in course.terms[..TERMS - 1].iter().rev() {
-            sum = sum.mul_add(x, *term);
-        }
+        let [a, b, c, d, e, f, g, h, i, j, k, l] = course.terms;
+        let sum = horner!(x; l, k, j, i, h, g, f, e, d, c, b, a);
         Some(course.tangent[0] * x * sum)
     }
 

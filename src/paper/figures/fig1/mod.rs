@@ -1,38 +1,41 @@
-//! Fig. 1: what the words mean, drawn of computed states.
+//! Fig. 1: definitions, drawn from computed states.
 
 mod pushed;
 
-use super::drawing::{MAGNIFIED, arc, arrow, extent, line, outline, sections, text};
-use super::{Figure, Panel, lettered};
+use super::drawing::{MAGNIFIED, arc, extent, outline, sections};
+use super::{Figure, FigurePanel, lettered};
 use crate::paper::whiskers::{CONE, FIG5_LEFT, POLE};
-use crate::render::{Disc, Ink, Plot, Stroke};
+use crate::render::{Disc, Ink, Line, Note, Plot, Stroke};
 use crate::rod::Side;
 use crate::scene::Whisker;
 use crate::trace::{Branch, NoState, Shape};
 use glam::DVec2;
 use serde::Serialize;
 
-/// Where the pole of panels B to D first touches the cone.
+/// Distance of the pole of panels B to D at first touch.
 const TOUCH_MM: f64 = 10.0;
-/// Places along a whisker.
-const PLACES: usize = 100;
+/// Points along a whisker.
+const POINTS: usize = 100;
 
-/// A place of one of the whiskers in a panel.
+/// A point of one of the whiskers in a panel, a row of its table.
 #[derive(Clone, Copy, Serialize)]
-struct Place {
+struct WhiskerPoint {
     whisker: &'static str,
     x_mm: f64,
     y_mm: f64,
 }
 
-/// A whisker's rows in the table of a panel.
-fn places(whisker: &'static str, points: &[[f64; 2]]) -> impl Iterator<Item = Place> {
-    let place = move |&[x_mm, y_mm]: &[f64; 2]| Place {
+/// The rows of a whisker in the table of a panel.
+fn whisker_points(
+    whisker: &'static str,
+    points: &[[f64; 2]],
+) -> impl Iterator<Item = WhiskerPoint> {
+    let point = move |&[x_mm, y_mm]: &[f64; 2]| WhiskerPoint {
         whisker,
         x_mm,
         y_mm,
     };
-    points.iter().map(place)
+    points.iter().map(point)
 }
 
 pub fn fig1() -> Result<Figure, NoState> {
@@ -56,8 +59,8 @@ fn drawing(title: &str) -> Plot {
     }
 }
 
-/// A: the truncated cone, and the perfect one that it is a part of.
-fn cone() -> Panel {
+/// A: the truncated cone, and the perfect cone that it is a part of.
+fn cone() -> FigurePanel {
     let straight = Whisker {
         curvature: None,
         ..FIG5_LEFT
@@ -74,32 +77,32 @@ fn cone() -> Panel {
         "a truncated cone; radii drawn {MAGNIFIED} times as large as lengths"
     ));
     plot.lines = vec![
-        line(outline(&sections), Ink::Black, Stroke::Solid),
-        line(virtual_tip, Ink::Grey, Stroke::Dashed),
+        Line::new(outline(&sections), Ink::Black, Stroke::Solid),
+        Line::new(virtual_tip, Ink::Grey, Stroke::Dashed),
     ];
     plot.notes = [
         below(1.2, tip, "L_w"),
         below(2.4, length, "L"),
         [
-            arrow([0.6, 0.0], [0.6, at_base], "", Ink::Grey),
-            arrow([0.6, at_base], [0.6, 0.0], "", Ink::Grey),
-            text([1.7, 0.4], "r_base"),
+            Note::arrow([0.6, 0.0], [0.6, at_base], "", Ink::Grey),
+            Note::arrow([0.6, at_base], [0.6, 0.0], "", Ink::Grey),
+            Note::text([1.7, 0.4], "r_base"),
         ],
         [
-            arrow([tip, 1.4], [tip, at_tip], "tip: r_tip", Ink::Grey),
-            arrow([length, 1.4], [length, 0.1], "virtual tip", Ink::Grey),
-            text([-0.9, -0.6], "base"),
+            Note::arrow([tip, 1.4], [tip, at_tip], "tip: r_tip", Ink::Grey),
+            Note::arrow([length, 1.4], [length, 0.1], "virtual tip", Ink::Grey),
+            Note::text([-0.9, -0.6], "base"),
         ],
     ]
     .concat();
-    Panel::new("A", plot, sections)
+    FigurePanel::new("A", plot, sections)
 }
 
-/// From the drawing of CF to that of CB.
+/// Distance between the drawings of CF and CB.
 const APART_MM: f64 = 24.0;
 
-/// C: resting whiskers at first touch, and where they move.
-fn sides() -> Result<Panel, NoState> {
+/// C: resting whiskers at first touch, and how they move.
+fn sides() -> Result<FigurePanel, NoState> {
     let mut plot = drawing("concave forward (CF, left), concave backward (CB, right)");
     let mut rows = Vec::new();
     for (side, name, words, start) in [
@@ -107,32 +110,29 @@ fn sides() -> Result<Panel, NoState> {
         (Side::Cb, "cb", "CB: \u{3b8}_p > 0", 0.0),
     ] {
         let branch = Branch::new(&CONE, &POLE, side, TOUCH_MM)?;
-        let points = Shape::at_rest(&branch, PLACES);
-        rows.extend(places(name, &points));
-        let moved = |points: &[[f64; 2]]| {
-            points
-                .iter()
-                .map(|[x, y]| [x + start, *y])
-                .collect::<Vec<_>>()
+        let points = Shape::at_rest(&branch, POINTS);
+        rows.extend(whisker_points(name, &points));
+        let moved = |points: &[[f64; 2]]| -> Vec<_> {
+            points.iter().map(|[x, y]| [x + start, *y]).collect()
         };
         let row = branch.row();
         let pole = (row.pole(0.0) * CONE.length_mm).to_array();
-        let seen = DVec2::from(points[4 * PLACES / 5]);
+        let seen = DVec2::from(points[4 * POINTS / 5]);
         // The base turns against the push angle's sign.
-        let way = [0.0, -side.sign() * 0.35].map(|turn| seen.to_angle() + turn);
-        let way = moved(&arc(seen.length(), way));
-        let tip = way.len() - 1;
+        let path = [0.0, -side.sign() * 0.35].map(|turn| seen.to_angle() + turn);
+        let path = moved(&arc(seen.length(), path));
+        let tip = path.len() - 1;
         plot.notes
-            .push(arrow(way[tip - 1], way[tip], "", Ink::Grey));
-        plot.notes.push(text([start + 4.0, 4.0], words));
-        plot.lines.push(line(way, Ink::Grey, Stroke::Solid));
+            .push(Note::arrow(path[tip - 1], path[tip], "", Ink::Grey));
+        plot.notes.push(Note::text([start + 4.0, 4.0], words));
+        plot.lines.push(Line::new(path, Ink::Grey, Stroke::Solid));
         plot.lines
-            .push(line(moved(&points), Ink::Black, Stroke::Solid));
+            .push(Line::new(moved(&points), Ink::Black, Stroke::Solid));
         plot.discs.push(Disc {
             centre: moved(&[pole])[0],
             radius: POLE.radius_mm,
             dark: true,
         });
     }
-    Ok(Panel::new("C", plot, rows))
+    Ok(FigurePanel::new("C", plot, rows))
 }

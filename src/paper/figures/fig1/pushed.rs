@@ -1,49 +1,46 @@
-//! Panels B and D: the whisker pushed into the pole.
+//! Panels B and D of Fig. 1: the whisker pushed into the pole.
 
-use super::{PLACES, TOUCH_MM, drawing, places};
-use crate::paper::figures::Panel;
-use crate::paper::figures::drawing::{arc, arrow, line, text};
+use super::{POINTS, TOUCH_MM, drawing, whisker_points};
+use crate::paper::figures::FigurePanel;
+use crate::paper::figures::drawing::arc;
 use crate::paper::whiskers::{CONE, POLE};
-use crate::render::{Disc, Dot, Ink, Inset, Line, Stroke};
+use crate::render::{Disc, Dot, Ink, Inset, Line, Note, Stroke};
 use crate::rod::{Rest, Side};
 use crate::trace::{Branch, NoState, Part, Shape, ShapePoint};
 use glam::DVec2;
 
-/// The push angle.
+/// Push angle of both panels, in degrees.
 const PUSH_DEG: f64 = 30.0;
 
 /// A whisker pushed CB, in the axes of first touch.
-struct Pushed {
+struct PushedWhisker {
     shape: Shape,
     at_rest: Vec<[f64; 2]>,
     contact: ShapePoint,
-    /// Of the contact from the base, as the crow flies.
+    /// Straight distance of the contact from the base.
     distance_mm: f64,
 }
 
-impl Pushed {
+impl PushedWhisker {
     fn new() -> Result<Self, NoState> {
         let branch = Branch::new(&CONE, &POLE, Side::Cb, TOUCH_MM)?;
         let state = branch.state(PUSH_DEG.to_radians(), true)?;
-        let shape = Shape::new(&branch, &state, PLACES);
+        let shape = Shape::new(&branch, &state, POINTS);
         let at = shape
             .points
             .iter()
             .find(|point| point.part == Part::Contact);
         Ok(Self {
             contact: at.copied().unwrap_or(shape.points[0]),
-            at_rest: Shape::at_rest(&branch, PLACES),
+            at_rest: Shape::at_rest(&branch, POINTS),
             distance_mm: branch.read(&state).contact_distance_mm,
             shape,
         })
     }
 
     fn points(&self) -> Vec<[f64; 2]> {
-        self.shape
-            .points
-            .iter()
-            .map(|point| [point.x_mm, point.y_mm])
-            .collect()
+        let points = self.shape.points.iter();
+        points.map(|point| [point.x_mm, point.y_mm]).collect()
     }
 
     fn pole(&self, dark: bool) -> Disc {
@@ -55,24 +52,23 @@ impl Pushed {
     }
 }
 
-/// From a point, so far in a direction.
+/// The point at a distance from another, in the direction of an angle in radians.
 fn from([x, y]: [f64; 2], length: f64, angle: f64) -> [f64; 2] {
-    [
-        length.mul_add(angle.cos(), x),
-        length.mul_add(angle.sin(), y),
-    ]
+    let (sine, cosine) = angle.sin_cos();
+    [length.mul_add(cosine, x), length.mul_add(sine, y)]
 }
 
 /// B: base, contact, angles and force, with the contact in the inset.
-pub fn contact() -> Result<Panel, NoState> {
-    let pushed = Pushed::new()?;
+pub fn contact() -> Result<FigurePanel, NoState> {
+    let pushed = PushedWhisker::new()?;
     let (base, at) = ([0.0, 0.0], [pushed.contact.x_mm, pushed.contact.y_mm]);
     let angle = pushed.contact.angle_deg.to_radians();
     let (pole, radius) = (pushed.shape.pole_mm, pushed.shape.pole_radius_mm);
-    let some = pushed.shape.points[PLACES / 3];
+    let some = pushed.shape.points[POINTS / 3];
     let middle = [some.x_mm, some.y_mm];
+    let beside_middle = [middle[0] + 0.8, middle[1] - 2.0];
     let turned = -PUSH_DEG.to_radians();
-    let grey = |points, stroke| line(points, Ink::Grey, stroke);
+    let grey = |points, stroke| Line::new(points, Ink::Grey, stroke);
 
     let mut plot = drawing("the whisker in contact; inset: the contact");
     plot.discs = vec![pushed.pole(false)];
@@ -81,7 +77,7 @@ pub fn contact() -> Result<Panel, NoState> {
         grey(vec![base, from(base, 4.5, turned)], Stroke::Dashed),
         grey(arc(3.0, [0.0, turned]), Stroke::Solid),
         grey(vec![base, at], Stroke::Solid),
-        line(pushed.points(), Ink::Black, Stroke::Solid),
+        Line::new(pushed.points(), Ink::Black, Stroke::Solid),
     ];
     let dot = |at| Dot {
         at,
@@ -90,17 +86,12 @@ pub fn contact() -> Result<Panel, NoState> {
     plot.dots = vec![dot(base), dot(middle)];
     let normal = angle + std::f64::consts::FRAC_PI_2;
     plot.notes = vec![
-        text(base, "(x\u{2080}, y\u{2080})"),
-        text([2.2, -3.2], "\u{3b8}\u{2080}"),
-        text(from(base, 6.0, at[1].atan2(at[0])), "d"),
-        arrow(
-            [middle[0] + 0.8, middle[1] - 2.0],
-            middle,
-            "(x(s), y(s)), \u{3b8}(s)",
-            Ink::Grey,
-        ),
-        arrow(at, from(at, 3.0, normal), "", Ink::Blue),
-        text(from(at, 3.0, normal), "F"),
+        Note::text(base, "(x\u{2080}, y\u{2080})"),
+        Note::text([2.2, -3.2], "\u{3b8}\u{2080}"),
+        Note::text(from(base, 6.0, at[1].atan2(at[0])), "d"),
+        Note::arrow(beside_middle, middle, "(x(s), y(s)), \u{3b8}(s)", Ink::Grey),
+        Note::arrow(at, from(at, 3.0, normal), "", Ink::Blue),
+        Note::text(from(at, 3.0, normal), "F"),
     ];
     let beside = |x: f64, y: f64| [x.mul_add(radius, pole[0]), y.mul_add(radius, pole[1])];
     plot.inset = Some(Inset {
@@ -112,25 +103,25 @@ pub fn contact() -> Result<Panel, NoState> {
             grey(arc_at(at, 2.5 * radius, [0.0, angle]), Stroke::Solid),
         ],
         notes: vec![
-            text(from(at, 3.2 * radius, 0.3 * angle), "\u{3b8}_obj"),
-            arrow(beside(-1.9, 2.6), at, "(x_obj, y_obj)", Ink::Grey),
-            arrow(beside(1.2, -3.0), pole, "(x_cen, y_cen)", Ink::Grey),
-            arrow(pole, beside(0.82, -0.57), "", Ink::Black),
-            text(beside(2.6, -1.6), "r_pole"),
+            Note::text(from(at, 3.2 * radius, 0.3 * angle), "\u{3b8}_obj"),
+            Note::arrow(beside(-1.9, 2.6), at, "(x_obj, y_obj)", Ink::Grey),
+            Note::arrow(beside(1.2, -3.0), pole, "(x_cen, y_cen)", Ink::Grey),
+            Note::arrow(pole, beside(0.82, -0.57), "", Ink::Black),
+            Note::text(beside(2.6, -1.6), "r_pole"),
         ],
     });
-    Ok(Panel::new("B", plot, pushed.shape.points))
+    Ok(FigurePanel::new("B", plot, pushed.shape.points))
 }
 
-/// Part of a circle around a point.
+/// An arc around a point, between two angles in radians.
 fn arc_at([x, y]: [f64; 2], radius: f64, ends: [f64; 2]) -> Vec<[f64; 2]> {
     let points = arc(radius, ends).into_iter();
     points.map(|[across, up]| [x + across, y + up]).collect()
 }
 
-/// D: the push angle, between the contacts of the real and of the virtual whisker.
-pub fn push_angle() -> Result<Panel, NoState> {
-    let pushed = Pushed::new()?;
+/// D: the push angle, between the contacts of the real and the virtual whisker.
+pub fn push_angle() -> Result<FigurePanel, NoState> {
+    let pushed = PushedWhisker::new()?;
     let rest = Rest::new(&CONE.rod(&POLE, Side::Cb));
     let turn = DVec2::from_angle(-PUSH_DEG.to_radians());
     let to_mm = |place: DVec2| (turn.rotate(place) * CONE.length_mm).to_array();
@@ -154,31 +145,26 @@ pub fn push_angle() -> Result<Panel, NoState> {
         },
     ];
     let deflected = pushed.points();
-    let rows = places("deflected", &deflected)
-        .chain(places("undeflected", &pushed.at_rest))
-        .chain(places("virtual", &virtual_whisker))
+    let rows = whisker_points("deflected", &deflected)
+        .chain(whisker_points("undeflected", &pushed.at_rest))
+        .chain(whisker_points("virtual", &virtual_whisker))
         .collect();
     plot.lines = vec![
-        line(vec![at, [0.0, 0.0], virtual_at], Ink::Blue, Stroke::Solid),
-        line(arc(6.0, [real, other]), Ink::Blue, Stroke::Solid),
-        Line::new(pushed.at_rest, Ink::Grey, Stroke::Solid, "undeflected"),
-        Line::new(
-            virtual_whisker,
-            Ink::Grey,
-            Stroke::Dashed,
-            "virtual, undeflected",
-        ),
-        Line::new(deflected, Ink::Black, Stroke::Solid, "deflected"),
+        Line::new(vec![at, [0.0, 0.0], virtual_at], Ink::Blue, Stroke::Solid),
+        Line::new(arc(6.0, [real, other]), Ink::Blue, Stroke::Solid),
+        Line::new(pushed.at_rest, Ink::Grey, Stroke::Solid).named("undeflected"),
+        Line::new(virtual_whisker, Ink::Grey, Stroke::Dashed).named("virtual, undeflected"),
+        Line::new(deflected, Ink::Black, Stroke::Solid).named("deflected"),
     ];
     let beside = |[x, y]: [f64; 2], words: &str| {
         let (begin, end) = ([x + 1.8, y - 1.2], [x + 0.35, y - 0.35]);
-        arrow(begin, end, words, Ink::Grey)
+        Note::arrow(begin, end, words, Ink::Grey)
     };
     let between = from([0.0, 0.0], 7.0, 0.5 * (real + other));
     plot.notes = vec![
-        text(between, "\u{3b8}_p"),
+        Note::text(between, "\u{3b8}_p"),
         beside(at, "(x_obj, y_obj)"),
         beside(virtual_at, "(x_virtual, y_virtual)"),
     ];
-    Ok(Panel::new("D", plot, rows))
+    Ok(FigurePanel::new("D", plot, rows))
 }

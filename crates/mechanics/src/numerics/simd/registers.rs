@@ -6,15 +6,31 @@
 //! processor. Vectors cannot outlive the call: neither the task nor its output can name their type, and nothing says that it
 //! is `'static`.
 
-/// Implements `$trait` for registers, one after the other.
+/// A function that is compiled for a unit: `$body` in lanes of the unit.
+///
+/// Each operation on lanes is one such function for all of their registers. Called register by register, the instructions
+/// would be as many more calls in every kernel, and it is their inlining that a kernel's compilation takes its time for.
+macro_rules! compiled_for {
+    ($enabled:literal, ($($argument:ident: $type:ty),*) -> $output:ty $body:block) => {{
+        #[target_feature(enable = $enabled)]
+        #[inline]
+        fn compiled($($argument: $type),*) -> $output $body
+        // SAFETY: lanes exist only where the unit does; see the module.
+        unsafe { compiled($($argument),*) }
+    }};
+}
+
+/// Implements the operator `$trait` for all registers of lanes.
 macro_rules! operator {
-    ($vectors:ident [$($i:tt)+], $trait:ident, $method:ident, $f:ident) => {
+    ($vectors:ident [$($i:tt)+], $enabled:literal, $trait:ident, $method:ident, $f:ident) => {
         impl $trait for $vectors {
             type Output = Self;
             #[inline(always)]
             fn $method(self, other: Self) -> Self {
-                // SAFETY: such values exist only where the unit does; see the module.
-                unsafe { Self($($f(self.$i, other.$i)),+) }
+                let a = self;
+                compiled_for!($enabled, (a: $vectors, other: $vectors) -> $vectors {
+                    $vectors($($f(a.$i, other.$i)),+)
+                })
             }
         }
     };
@@ -29,36 +45,40 @@ macro_rules! vectors {
         #[derive(Clone, Copy)]
         struct $vectors($($register),+);
 
-        operator!($vectors [$($i)+], Add, add, $add);
-        operator!($vectors [$($i)+], Sub, sub, $sub);
-        operator!($vectors [$($i)+], Mul, mul, $mul);
-        operator!($vectors [$($i)+], Div, div, $div);
+        operator!($vectors [$($i)+], $enabled, Add, add, $add);
+        operator!($vectors [$($i)+], $enabled, Sub, sub, $sub);
+        operator!($vectors [$($i)+], $enabled, Mul, mul, $mul);
+        operator!($vectors [$($i)+], $enabled, Div, div, $div);
 
         impl Neg for $vectors {
             type Output = Self;
             #[inline(always)]
             fn neg(self) -> Self {
-                Self::of(-0.0) - self
+                let x = self;
+                compiled_for!($enabled, (x: $vectors) -> $vectors {
+                    $vectors($($sub($splat(-0.0), x.$i)),+)
+                })
             }
         }
 
         impl Real for $vectors {
             #[inline(always)]
             fn of(x: f64) -> Self {
-                // SAFETY: this is called only where the unit exists; see the module.
-                unsafe { Self { $($i: $splat(x)),+ } }
+                compiled_for!($enabled, (x: f64) -> $vectors { $vectors { $($i: $splat(x)),+ } })
             }
 
             #[inline(always)]
             fn mul_add(self, a: Self, b: Self) -> Self {
-                // SAFETY: such values exist only where the unit does; see the module.
-                unsafe { Self($($fma(self.$i, a.$i, b.$i)),+) }
+                let x = self;
+                compiled_for!($enabled, (x: $vectors, a: $vectors, b: $vectors) -> $vectors {
+                    $vectors($($fma(x.$i, a.$i, b.$i)),+)
+                })
             }
 
             #[inline(always)]
             fn sqrt(self) -> Self {
-                // SAFETY: such values exist only where the unit does; see the module.
-                unsafe { Self($($sqrt(self.$i)),+) }
+                let x = self;
+                compiled_for!($enabled, (x: $vectors) -> $vectors { $vectors($($sqrt(x.$i)),+) })
             }
         }
 

@@ -11,7 +11,7 @@ use crate::shooting::{
 /// One condition for every lane.
 pub type Conditions<'a> = [&'a InitialCondition<'a>; WIDTH];
 
-/// What `number` tells of each condition. (`map` of an array is not inlined into functions for a SIMD unit.)
+/// A number of each condition. (`map` of an array is not inlined into functions for a SIMD unit.)
 #[inline(always)]
 pub fn numbers(conditions: &Conditions, number: impl Fn(&InitialCondition) -> f64) -> [f64; WIDTH] {
     let mut numbers = [0.0; WIDTH];

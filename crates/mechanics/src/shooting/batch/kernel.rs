@@ -78,15 +78,25 @@ impl<O: OutputSet> SimdTask for Trajectories<'_, O> {
 
     #[inline(always)]
     fn run<T: Lanes>(self) -> Self::Output {
-        let Self { key, block, .. } = &self;
+        if const { T::LANES == 1 } {
+            let outputs = self.computed::<O::OnOneLane, f64>();
+            return std::array::from_fn(|lane| outputs[lane].into());
+        }
+        self.computed::<O, T>()
+    }
+}
+
+impl<O> Trajectories<'_, O> {
+    /// The outputs `K` of the trajectories.
+    #[inline(always)]
+    fn computed<K: OutputSet, T: Lanes>(&self) -> [K; WIDTH] {
+        let Self { key, block, .. } = self;
         if key.effects.profile {
             return block.in_parts::<T::Narrow, _>(|conditions| {
-                along_profile::<O, T::Narrow>(block.method, key, conditions)
+                along_profile::<K, T::Narrow>(block.method, key, conditions)
             });
         }
-        block.in_parts::<T, _>(|conditions| {
-            by_effects::<Nystrom8, O, T>(block.method, key, conditions)
-        })
+        block.in_parts::<T, _>(|conditions| by_effects::<K, T>(block.method, key, conditions))
     }
 }
 
@@ -131,7 +141,7 @@ fn steps<T: Lanes>(method: Method, conditions: &Conditions) -> [u32; WIDTH] {
 
 /// Integrates with the kernel for the effects of the `key`, without a profile.
 #[inline(always)]
-pub fn by_effects<M: Integrator, O: OutputSet, T: Lanes>(
+fn by_effects<O: OutputSet, T: Lanes>(
     method: Method,
     key: &BlockKey,
     conditions: &Conditions,
@@ -139,36 +149,43 @@ pub fn by_effects<M: Integrator, O: OutputSet, T: Lanes>(
     /// The kernel for a rest shape and a material, with these sensitivities, on a rod that changes along its length or not.
     macro_rules! kernel {
         ($rest:ty, $material:ty, $set:ident, $advances:literal) => {
-            T::outlined(Kernel::<M, O, O::$set<T>, $rest, $material, $advances> {
-                method,
-                key,
-                conditions,
-                of: PhantomData,
-            })
+            T::outlined(
+                Kernel::<Nystrom8, O, O::$set<T>, $rest, $material, $advances> {
+                    method,
+                    key,
+                    conditions,
+                    of: PhantomData,
+                },
+            )
         };
     }
     let Effects {
-        taper,
         curvature,
         spiral,
         gradient,
         ..
     } = key.effects;
-    match (spiral, curvature, gradient, taper) {
-        (true, _, true, _) => kernel!(Spiral<T>, Graded<T>, General, true),
-        (true, _, false, _) => kernel!(Spiral<T>, Uniform, General, true),
-        (false, true, true, _) => kernel!(Bent<T>, Graded<T>, General, true),
-        (false, true, false, true) => kernel!(Bent<T>, Uniform, General, true),
-        (false, true, false, false) => kernel!(Bent<T>, Uniform, General, false),
-        (false, false, true, _) => kernel!(Straight, Graded<T>, General, true),
-        (false, false, false, true) => kernel!(Straight, Uniform, Similar, true),
-        (false, false, false, false) => kernel!(Straight, Uniform, Similar, false),
+    // Where lanes are single numbers, a cylinder is a cone that does not taper: bits are equal, and fewer kernels are compiled.
+    if const { T::LANES > 1 } && !key.effects.advances() {
+        return if curvature {
+            kernel!(Bent<T>, Uniform, General, false)
+        } else {
+            kernel!(Straight, Uniform, Similar, false)
+        };
+    }
+    match (spiral, curvature, gradient) {
+        (true, _, true) => kernel!(Spiral<T>, Graded<T>, General, true),
+        (true, _, false) => kernel!(Spiral<T>, Uniform, General, true),
+        (false, true, true) => kernel!(Bent<T>, Graded<T>, General, true),
+        (false, true, false) => kernel!(Bent<T>, Uniform, General, true),
+        (false, false, true) => kernel!(Straight, Graded<T>, General, true),
+        (false, false, false) => kernel!(Straight, Uniform, Similar, true),
     }
 }
 
 /// The same along a profile, with a gradient or without. By collocation, which is no method of steps all alike.
 #[inline(always)]
-pub fn along_profile<O: OutputSet, T: Lanes>(
+fn along_profile<O: OutputSet, T: Lanes>(
     method: Method,
     key: &BlockKey,
     conditions: &Conditions,

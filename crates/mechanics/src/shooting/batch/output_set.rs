@@ -14,6 +14,10 @@ use glam::DVec2;
 
 /// What a batch computes for each trajectory: the derivatives carried for it, and the outputs from their values at the base.
 pub trait OutputSet: Copy + Default + Send + 'static {
+    /// The set whose kernels compute this one on processors without a SIMD unit: they need not be fast, and each kernel
+    /// takes its time to compile.
+    type OnOneLane: OutputSet + Into<Self>;
+
     /// The derivatives on any rod.
     type General<T: Lanes>: SensitivitySet<T>;
     /// On rods that look the same from each of their points.
@@ -32,7 +36,14 @@ pub trait OutputSet: Copy + Default + Send + 'static {
     fn shoot(unit: Unit, key: BlockKey, block: &Block) -> [Self; WIDTH];
 }
 
+impl From<FirstVariation> for ShootingMap {
+    fn from(variation: FirstVariation) -> Self {
+        variation.full.map
+    }
+}
+
 impl OutputSet for ShootingMap {
+    type OnOneLane = FirstVariation;
     type General<T: Lanes> = GeneralFirst;
     type Similar<T: Lanes> = SimilarFirst;
 
@@ -52,6 +63,7 @@ impl OutputSet for ShootingMap {
 }
 
 impl OutputSet for FirstVariation {
+    type OnOneLane = Self;
     type General<T: Lanes> = Energetic<GeneralFirst>;
     type Similar<T: Lanes> = Energetic<SimilarFirst>;
 
@@ -112,6 +124,7 @@ impl OutputSet for FirstVariation {
 }
 
 impl OutputSet for SecondVariation {
+    type OnOneLane = Self;
     type General<T: Lanes> = GeneralSecond;
     type Similar<T: Lanes> = SimilarSecond;
 

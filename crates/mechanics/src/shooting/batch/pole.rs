@@ -64,7 +64,20 @@ impl<T: Lanes> Centre<T> {
     }
 }
 
-/// What `answer` makes of the numbers of each lane.
+/// Each lane's numbers, as `answer` arranges them. All kernels share this function; it computes nothing.
+#[inline(never)]
+fn transposed<A: Copy + Default, const N: usize>(
+    columns: &[[f64; WIDTH]; N],
+    answer: impl Fn(usize, [f64; N]) -> A,
+) -> [A; WIDTH] {
+    let mut answers = [A::default(); WIDTH];
+    for (lane, slot) in answers.iter_mut().enumerate() {
+        *slot = answer(lane, columns.each_ref().map(|column| column[lane]));
+    }
+    answers
+}
+
+/// Numbers in lanes, as `answer` arranges those of each lane.
 #[inline(always)]
 pub fn spread<T: Lanes, A: Copy + Default, const N: usize>(
     numbers: [T; N],
@@ -74,13 +87,5 @@ pub fn spread<T: Lanes, A: Copy + Default, const N: usize>(
     for (column, number) in columns.iter_mut().zip(numbers) {
         *column = number.unpack();
     }
-    let mut answers = [A::default(); WIDTH];
-    for (lane, slot) in answers.iter_mut().enumerate() {
-        let mut row = [0.0; N];
-        for (number, column) in row.iter_mut().zip(&columns) {
-            *number = column[lane];
-        }
-        *slot = answer(lane, row);
-    }
-    answers
+    transposed(&columns, answer)
 }

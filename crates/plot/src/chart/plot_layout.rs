@@ -1,0 +1,132 @@
+//! One plot: frame, ticks and contents.
+
+use super::viewport::{Viewport, colour, pen};
+use super::window::{Window, drawable, drawable_disc, drawable_span};
+use super::{Band, Dot, Plot, Shade};
+use crate::frame::axes::{Axes, FRAME};
+use crate::frame::heading::{DOT, Heading, LINE, LegendEntry, LegendSymbol};
+use crate::frame::ticks::{self, TickChooser};
+use crate::frame::units;
+use crate::picture::palette::{Fill, Rgb, SHADE_DARK, SHADE_LIGHT, WHITE};
+use crate::picture::{Area, Pen, Picture};
+use std::borrow::Cow;
+
+/// Width of the white ring around a dot.
+const RING: f64 = 2.0;
+
+const fn ground(shade: Shade) -> Rgb {
+    match shade {
+        Shade::Light => SHADE_LIGHT,
+        Shade::Dark => SHADE_DARK,
+    }
+}
+
+/// The pen of an open dot.
+const fn rim(dot: &Dot) -> Pen {
+    Pen::solid(LINE, colour(dot.ink))
+}
+
+/// A plot laid out for a body of a size.
+pub struct PlotLayout<'a> {
+    /// The plot, with all numbers replaced by their logarithms on logarithmic axes.
+    plot: Cow<'a, Plot>,
+    window: Window,
+    pub axes: Axes,
+}
+
+impl<'a> PlotLayout<'a> {
+    /// Chooses ranges, units and ticks for a body of this width and height.
+    pub fn plan(plot: &'a Plot, size: [f64; 2]) -> Self {
+        let plot = match plot.logarithmic {
+            true => Cow::Owned(plot.logarithms()),
+            false => Cow::Borrowed(plot),
+        };
+        let window = Window::of(&plot, size);
+        // The unit of numbers that span many is left alone.
+        let (choose, largest): (TickChooser, _) = match plot.logarithmic {
+            true => (ticks::of_logarithms, [0.0; 2]),
+            false => (ticks::of_numbers, window.largest),
+        };
+        let (x_label, x_unit) = units::readable(&plot.x_label, largest[0]);
+        let (y_label, y_unit) = units::readable(&plot.y_label, largest[1]);
+        let x_ticks = ticks::across(window.x.map(|end| end / x_unit), size[0], choose);
+        let y_ticks = ticks::upwards(window.y.map(|end| end / y_unit), size[1], choose);
+        let axes = Axes::new([(x_ticks, &x_label), (y_ticks, &y_label)], size);
+        Self { plot, window, axes }
+    }
+
+    /// Lays out letter, title and legend for a body of this width with `left` pixels of room beside it.
+    pub fn heading(&self, left: f64, width: f64) -> Heading {
+        let letter = self.plot.letter.as_deref().unwrap_or_default();
+        Heading::plan([letter, &self.plot.title], self.legend(), [left, width])
+    }
+
+    /// Draws the plot into `body`, with `left` pixels of room beside it.
+    pub fn draw(&self, picture: &mut Picture, body: Area, left: f64) {
+        let plot = &*self.plot;
+        let window = self.window;
+        let viewport = Viewport { body, window };
+        for band in &plot.bands {
+            draw_band(picture, &viewport, band);
+        }
+        for disc in plot.discs.iter().filter(|disc| drawable_disc(disc)) {
+            viewport.disc(picture, disc);
+        }
+        for line in &plot.lines {
+            viewport.line(picture, line, false);
+        }
+        for dot in plot.dots.iter().filter(|dot| drawable(dot.at)) {
+            let at = viewport.place(dot.at);
+            match dot.open {
+                true => picture.circle(at, DOT - 0.5 * LINE, WHITE, Some(rim(dot))),
+                false => picture.circle(at, DOT, colour(dot.ink), Some(Pen::solid(RING, WHITE))),
+            }
+        }
+        if let Some(inset) = &plot.inset {
+            viewport.inset(picture, plot, inset);
+        }
+        viewport.notes(picture, &plot.notes);
+        if !plot.bare {
+            picture.frame(body, FRAME);
+            self.axes.draw(picture, body, left);
+        }
+    }
+
+    /// The legend: each name once, with the first symbol that has the name.
+    fn legend(&self) -> Vec<LegendEntry> {
+        let lines = self.plot.lines.iter().map(|line| {
+            let symbol = match line.points[..] {
+                [_] => LegendSymbol::Dot(colour(line.ink)),
+                _ => LegendSymbol::Line(pen(line)),
+            };
+            (symbol, &line.name)
+        });
+        let dots = self.plot.dots.iter().map(|dot| match dot.open {
+            true => (LegendSymbol::Ring(rim(dot)), &dot.name),
+            false => (LegendSymbol::Dot(colour(dot.ink)), &dot.name),
+        });
+        let bands = self.plot.bands.iter().map(|band| {
+            let fill = Fill::plain(ground(band.shade));
+            (LegendSymbol::Swatch(fill), &band.name)
+        });
+        let mut legend: Vec<LegendEntry> = Vec::new();
+        for (symbol, name) in lines.chain(dots).chain(bands) {
+            if let Some(name) = name.as_deref().filter(|name| !name.is_empty())
+                && legend.iter().all(|known| known.name != name)
+            {
+                legend.push(LegendEntry::new(symbol, name));
+            }
+        }
+        legend
+    }
+}
+
+/// Draws the stretches of a band between points that cannot be drawn.
+fn draw_band(picture: &mut Picture, viewport: &Viewport, band: &Band) {
+    for stretch in band.points.split(|point| !drawable_span(*point)) {
+        let there = stretch.iter().map(|[x, from, _]| [*x, *from]);
+        let back = stretch.iter().rev().map(|[x, _, to]| [*x, *to]);
+        let corners = there.chain(back).map(|point| viewport.place(point));
+        picture.polygon(corners.collect(), ground(band.shade));
+    }
+}

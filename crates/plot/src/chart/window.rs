@@ -1,0 +1,212 @@
+//! The ranges that the axes of a plot show.
+
+use super::{Disc, Plot};
+use crate::frame::ticks::fraction;
+use crate::picture::Area;
+
+/// Room beside the data, as a fraction of their extent.
+const MARGIN: f64 = 0.04;
+/// Numbers beyond this are not drawn: their differences would overflow.
+const HUGE: f64 = 1e300;
+/// Numbers below this are shown as zero: their differences would lose digits.
+const TINY: f64 = 1e-290;
+/// Numbers that differ by less, relative to the largest, are shown as equal.
+const EQUAL: f64 = 1e-9;
+
+/// The ranges of both axes, in data units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Window {
+    pub x: [f64; 2],
+    pub y: [f64; 2],
+    /// Largest magnitude on each axis; equal axes share the larger one.
+    pub largest: [f64; 2],
+}
+
+impl Window {
+    /// Chooses ranges that show everything in a plot, for a body of this width and height.
+    pub fn of(plot: &Plot, pixels: [f64; 2]) -> Self {
+        let extents = [0, 1].map(|axis| extent(plot, axis));
+        let [x, y] = if plot.equal_axes {
+            equal_units(extents, pixels)
+        } else if plot.logarithmic {
+            extents.map(widened_logarithms)
+        } else {
+            extents.map(widened)
+        };
+        let mut largest = extents.map(magnitude);
+        if plot.equal_axes {
+            largest = [largest[0].max(largest[1]); 2];
+        }
+        Self { x, y, largest }
+    }
+
+    /// A square around a point, with `half` its side.
+    pub fn square(&self, [x, y]: [f64; 2], half: f64) -> Self {
+        Self {
+            x: [x - half, x + half],
+            y: [y - half, y + half],
+            largest: self.largest,
+        }
+    }
+
+    /// Converts a point to the picture.
+    pub fn place(&self, body: Area, [x, y]: [f64; 2]) -> [f64; 2] {
+        body.point(fraction(self.x, x), fraction(self.y, y))
+    }
+
+    /// The length in pixels of a length along the coarser axis.
+    pub fn pixels(&self, body: Area, length: f64) -> f64 {
+        let across = body.width / (self.x[1] - self.x[0]);
+        let upwards = body.height / (self.y[1] - self.y[0]);
+        length * across.min(upwards)
+    }
+
+    /// Whether the ranges are wide enough to be drawn.
+    pub fn is_open(&self) -> bool {
+        let size = magnitude(self.x).max(magnitude(self.y));
+        size <= HUGE && self.x[1] - self.x[0] > EQUAL * size.max(TINY)
+    }
+
+    pub fn holds(&self, [x, y]: [f64; 2]) -> bool {
+        let inside = |[low, high]: [f64; 2], at: f64| (low..=high).contains(&at);
+        inside(self.x, x) && inside(self.y, y)
+    }
+
+    pub fn holds_disc(&self, disc: &Disc) -> bool {
+        corners(disc).into_iter().all(|corner| self.holds(corner))
+    }
+
+    /// The parts of a polyline inside the window.
+    pub fn clipped(&self, points: &[[f64; 2]]) -> Vec<Vec<[f64; 2]>> {
+        let mut parts: Vec<Vec<[f64; 2]>> = Vec::new();
+        for pair in points.windows(2) {
+            let Some([from, to]) = self.within([pair[0], pair[1]]) else {
+                continue;
+            };
+            match parts.last_mut() {
+                Some(part) if part.last() == Some(&from) => part.push(to),
+                _ => parts.push(vec![from, to]),
+            }
+        }
+        parts
+    }
+
+    /// The part of a segment inside the window (Liang and Barsky 1984).
+    fn within(&self, [from, to]: [[f64; 2]; 2]) -> Option<[[f64; 2]; 2]> {
+        let (mut enters, mut leaves) = (0.0_f64, 1.0_f64);
+        for (axis, [low, high]) in [self.x, self.y].into_iter().enumerate() {
+            let step = to[axis] - from[axis];
+            let ends = [low, high].map(|end| (end - from[axis]) / step);
+            if step == 0.0 {
+                if !(low..=high).contains(&from[axis]) {
+                    return None;
+                }
+            } else {
+                enters = enters.max(ends[0].min(ends[1]));
+                leaves = leaves.min(ends[0].max(ends[1]));
+            }
+        }
+        let at = |part: f64| match part {
+            0.0 => from,
+            1.0 => to,
+            _ => [0, 1].map(|axis| part.mul_add(to[axis] - from[axis], from[axis])),
+        };
+        (enters < leaves).then(|| [at(enters), at(leaves)])
+    }
+}
+
+/// Whether a point is drawn at all.
+pub fn drawable(point: [f64; 2]) -> bool {
+    point.iter().all(|at| at.abs() <= HUGE)
+}
+
+/// Whether both ends of a band are drawn at a point of it.
+pub fn drawable_span([x, from, to]: [f64; 3]) -> bool {
+    drawable([x, from]) && drawable([x, to])
+}
+
+/// The lower left and the upper right corner of the square around a disc.
+fn corners(disc: &Disc) -> [[f64; 2]; 2] {
+    [-disc.radius, disc.radius].map(|radius| disc.centre.map(|at| at + radius))
+}
+
+/// Whether a disc is drawn at all.
+pub fn drawable_disc(disc: &Disc) -> bool {
+    corners(disc).into_iter().all(drawable)
+}
+
+/// The smallest and the largest drawable number along an axis; 0 and 1 if there is none.
+fn extent(plot: &Plot, axis: usize) -> [f64; 2] {
+    let lines = plot
+        .lines
+        .iter()
+        .flat_map(|line| line.points.iter().copied());
+    let bands = plot.bands.iter().flat_map(|band| &band.points);
+    let bands = bands.copied().filter(|point| drawable_span(*point));
+    let edges = bands.flat_map(|[x, from, to]| [[x, from], [x, to]]);
+    let dots = plot.dots.iter().map(|dot| dot.at);
+    let discs = plot.discs.iter().filter(|disc| drawable_disc(disc));
+    let notes = plot.notes.iter();
+    let notes = notes.flat_map(|note| std::iter::once(note.at).chain(note.to));
+    let drawn = lines
+        .chain(edges)
+        .chain(dots)
+        .chain(notes)
+        .filter(|point| drawable(*point))
+        .chain(discs.flat_map(corners));
+    let extent = drawn.fold(None, |extent: Option<[f64; 2]>, point| {
+        let [low, high] = extent.unwrap_or([point[axis]; 2]);
+        Some([low.min(point[axis]), high.max(point[axis])])
+    });
+    extent.unwrap_or([0.0, 1.0])
+}
+
+/// The largest magnitude in a range.
+fn magnitude([low, high]: [f64; 2]) -> f64 {
+    low.abs().max(high.abs())
+}
+
+/// Half the range of an axis all of whose values are equal, given their magnitude.
+fn room(size: f64) -> f64 {
+    if size < TINY { 1.0 } else { 0.1 * size }
+}
+
+/// Adds room to a range, which is never empty afterwards.
+fn widened([low, high]: [f64; 2]) -> [f64; 2] {
+    let size = magnitude([low, high]);
+    if size < TINY || high - low < EQUAL * size {
+        [low - room(size), high + room(size)]
+    } else {
+        let margin = MARGIN * (high - low);
+        [low - margin, high + margin]
+    }
+}
+
+/// Adds room to a range of decimal logarithms: one decade beside equal numbers.
+fn widened_logarithms([low, high]: [f64; 2]) -> [f64; 2] {
+    if high - low < EQUAL {
+        [low - 1.0, high + 1.0]
+    } else {
+        let margin = MARGIN * (high - low);
+        [low - margin, high + margin]
+    }
+}
+
+/// Adds room to both ranges so that a data unit has the same length on both axes.
+fn equal_units(extents: [[f64; 2]; 2], pixels: [f64; 2]) -> [[f64; 2]; 2] {
+    let needed = |axis: usize| {
+        let [low, high] = extents[axis];
+        (high - low) * (1.0 + 2.0 * MARGIN) / pixels[axis]
+    };
+    let size = magnitude(extents[0]).max(magnitude(extents[1]));
+    let least = pixels[0].min(pixels[1]);
+    let mut unit = needed(0).max(needed(1));
+    if size < TINY || unit * least < EQUAL * size {
+        unit = 2.0 * room(size) / least;
+    }
+    [0, 1].map(|axis| {
+        let [low, high] = extents[axis];
+        let (middle, half) = (0.5 * low + 0.5 * high, 0.5 * unit * pixels[axis]);
+        [middle - half, middle + half]
+    })
+}

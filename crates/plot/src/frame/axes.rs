@@ -1,0 +1,75 @@
+//! Ticks and labels around the body of a plot or a heat map.
+
+use super::heading::{LABEL, TICK};
+use super::ticks::Tick;
+use crate::picture::font::{FittedText, fitted};
+use crate::picture::palette::INK;
+use crate::picture::{Anchor, Area, Pen, Picture};
+
+/// Width of frames and ticks.
+pub const FRAME: f64 = 1.5;
+/// Room below a body.
+pub const BELOW: f64 = 112.0;
+/// From the frame to the middle of the lower label, and from the left end of the room to the middle of the upright label.
+const X_LABEL: f64 = 76.0;
+const Y_LABEL: f64 = 34.0;
+
+/// The axes of a body.
+pub struct Axes {
+    x_ticks: Vec<Tick>,
+    y_ticks: Vec<Tick>,
+    x_label: FittedText,
+    y_label: FittedText,
+}
+
+impl Axes {
+    /// Lays out the ticks and the label of both axes, x first, for a body of this width and height. Labels may be empty.
+    pub fn new(
+        [(x_ticks, x_label), (y_ticks, y_label)]: [(Vec<Tick>, &str); 2],
+        [width, height]: [f64; 2],
+    ) -> Self {
+        Self {
+            x_ticks,
+            y_ticks,
+            x_label: fitted(x_label, LABEL, width),
+            y_label: fitted(y_label, LABEL, height),
+        }
+    }
+
+    /// The room that the labels take to the left of the body and to its right.
+    pub fn sides(&self) -> [f64; 2] {
+        let widest = self.y_ticks.iter().map(|tick| tick.width);
+        let widest = widest.fold(0.0, f64::max);
+        let beside = Y_LABEL + 0.6 * LABEL + 16.0;
+        let last = self.x_ticks.last();
+        let end = last.map_or(0.0, |last| 0.5 * last.width);
+        [beside + widest + 15.0, end + 8.0]
+    }
+
+    /// Draws the axes around `body`, with `left` pixels of room beside it. Labels that would overlap are left out.
+    pub fn draw(&self, picture: &mut Picture, body: Area, left: f64) {
+        let pen = Pen::solid(FRAME, INK);
+        let mut free = f64::NEG_INFINITY;
+        for tick in &self.x_ticks {
+            let [x, y] = body.point(tick.at, 0.0);
+            picture.polyline(&[[x, y], [x, y + 8.0]], pen);
+            if x - 0.5 * tick.width > free {
+                picture.text(&tick.label, [x, y + 26.0], TICK, Anchor::Centre);
+                free = x + 0.5 * tick.width + 10.0;
+            }
+        }
+        let mut free = f64::INFINITY;
+        for tick in &self.y_ticks {
+            let [x, y] = body.point(0.0, tick.at);
+            picture.polyline(&[[x - 8.0, y], [x, y]], pen);
+            if y < free {
+                picture.text(&tick.label, [x - 15.0, y], TICK, Anchor::Right);
+                free = y - TICK;
+            }
+        }
+        let [x, y] = body.point(0.5, 0.0);
+        picture.fitted(&self.x_label, [x, y + X_LABEL], Anchor::Centre);
+        let [x, y] = body.point(0.0, 0.5);
+        picture.fitted(&self.y_label, [x - left + Y_LABEL, y], Anchor::Upwards);
+    }
+}

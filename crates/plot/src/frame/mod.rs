@@ -1,0 +1,6 @@
+//! What stands around the body of a plot or a heat map: heading, axes, ticks and units.
+
+pub mod axes;
+pub mod heading;
+pub mod ticks;
+pub mod units;

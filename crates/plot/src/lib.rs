@@ -1,0 +1,41 @@
+//! Charts and heat maps as PNG and SVG, drawn from plain data.
+//!
+//! A [`Chart`] holds plots of lines, bands, dots, discs and notes; a [`HeatMap`] holds panels of cells. Both become a [`Picture`],
+//! which [`Picture::encode`] turns into the bytes of a file. Equal data give equal bytes.
+//!
+//! ```
+//! use whiskmap_plot::{Chart, Dot, Ink, Line, PictureFormat, Plot, Stroke};
+//!
+//! let parabola = (-20..=20).map(|i| 0.1 * f64::from(i)).map(|x| [x, x * x]);
+//! let plot = Plot {
+//!     x_label: "deflection (mm)".to_owned(),
+//!     y_label: "energy (nJ)".to_owned(),
+//!     lines: vec![Line::new(parabola.collect(), Ink::Blue, Stroke::Solid).named("spring")],
+//!     dots: vec![Dot { at: [0.0, 0.0], open: true, name: Some("rest".to_owned()), ..Dot::default() }],
+//!     ..Plot::default()
+//! };
+//! let picture = Chart::single("A spring", plot).picture();
+//! let svg = String::from_utf8(picture.encode(PictureFormat::Svg)?)?;
+//! assert!(svg.starts_with("<?xml") && svg.contains(">deflection (mm)</text>"));
+//! let png = picture.encode(PictureFormat::Png)?;
+//! assert!(png.starts_with(b"\x89PNG"));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! Axes choose their ranges, ticks and units: a label that ends in a unit of length, force, moment or energy, such as `(mm)`,
+//! changes to the unit in which the numbers read best. The font is DejaVu Sans; it is a part of the crate.
+
+mod chart;
+mod frame;
+mod heat_map;
+mod picture;
+
+pub use chart::{Band, Chart, Disc, Dot, Ink, Inset, Line, Note, Plot, Shade, Stroke};
+pub use frame::heading::LegendEntry;
+pub use heat_map::cell_axis::CellAxis;
+pub use heat_map::colour_scale::{ColourScale, ScaleError, ScaleOptions};
+pub use heat_map::summary::ValueSummary;
+pub use heat_map::{HeatMap, PanelAxis, PanelCells, Shading};
+pub use picture::font::missing_glyphs;
+pub use picture::palette::{Fill, Rgb};
+pub use picture::{EncodeError, Picture, PictureFormat};

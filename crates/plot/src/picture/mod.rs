@@ -1,0 +1,232 @@
+//! A picture as plain data: primitives in the order in which they are drawn. It becomes pixels or SVG when it is encoded.
+
+mod bitmap;
+mod coverage;
+pub mod font;
+pub mod palette;
+mod svg;
+
+use font::FittedText;
+use palette::{Fill, INK, Rgb};
+use std::path::Path;
+
+/// Lengths of a dash and of a gap, in pixels along the middle of the line. The round ends of a dash cover one line width of each gap.
+pub const DASHES: [f64; 2] = [14.0, 10.0];
+
+/// A rectangle of the picture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Area {
+    pub left: f64,
+    pub top: f64,
+    pub width: f64,
+    pub height: f64,
+}
+
+impl Area {
+    pub const fn new([left, top]: [f64; 2], [width, height]: [f64; 2]) -> Self {
+        Self {
+            left,
+            top,
+            width,
+            height,
+        }
+    }
+
+    pub fn right(&self) -> f64 {
+        self.left + self.width
+    }
+
+    pub fn bottom(&self) -> f64 {
+        self.top + self.height
+    }
+
+    /// The point at fractions `x` from the left and `y` from the bottom.
+    pub fn point(&self, x: f64, y: f64) -> [f64; 2] {
+        [self.left + x * self.width, self.bottom() - y * self.height]
+    }
+}
+
+/// What a line is drawn with; its ends and corners are round.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pen {
+    pub width: f64,
+    pub colour: Rgb,
+    /// Whether the line has [`DASHES`]; it begins with a whole dash.
+    pub dashed: bool,
+}
+
+impl Pen {
+    pub const fn solid(width: f64, colour: Rgb) -> Self {
+        Self {
+            width,
+            colour,
+            dashed: false,
+        }
+    }
+}
+
+/// Where a text stands relative to its point. Its capitals are centred on the point across the line of writing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Anchor {
+    Left,
+    Centre,
+    Right,
+    /// Centred, running upwards.
+    Upwards,
+}
+
+/// Something drawn. Coordinates and sizes of all but rasters are in the picture's own units.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Primitive {
+    /// A line through points.
+    Polyline(Vec<[f64; 2]>, Pen),
+    /// Corners and fill of an area.
+    Polygon(Vec<[f64; 2]>, Rgb),
+    /// Centre, radius and fill of a circle, and an outline about its edge.
+    Circle([f64; 2], f64, Rgb, Option<Pen>),
+    /// A line of text, its point and its size.
+    Text(String, [f64; 2], f64, Anchor),
+    /// Upper left corner and size in pixels, all of them inside the picture, and their colours row by row.
+    Raster([usize; 2], [usize; 2], Vec<Rgb>),
+}
+
+/// The file format of a picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PictureFormat {
+    /// PNG: pixels.
+    Png,
+    /// SVG 1.1: lines and text as vectors, the cells of heat maps as pixels.
+    Svg,
+}
+
+impl PictureFormat {
+    /// Returns the format for the extension `png` or `svg` of a path, in upper or lower case.
+    #[must_use]
+    pub fn of(path: &Path) -> Option<Self> {
+        match &*path.extension()?.to_str()?.to_ascii_lowercase() {
+            "png" => Some(Self::Png),
+            "svg" => Some(Self::Svg),
+            _ => None,
+        }
+    }
+}
+
+/// The PNG encoder refused the pixels of a picture.
+#[derive(Debug, thiserror::Error)]
+#[error("cannot encode the picture as PNG: {0}")]
+pub struct EncodeError(#[from] png::EncodingError);
+
+/// A picture that has been laid out, to be encoded in any format.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Picture {
+    /// Width and height in units: pixels of a picture in its natural size.
+    size: [f64; 2],
+    /// Pixels per unit.
+    scale: f64,
+    primitives: Vec<Primitive>,
+}
+
+impl Picture {
+    /// An empty white picture of a natural size, enlarged to `width` pixels.
+    pub(crate) fn new(size: [f64; 2], width: Option<u32>) -> Self {
+        let size = size.map(f64::ceil);
+        Self {
+            size,
+            scale: width.map_or(1.0, |width| f64::from(width) / size[0]),
+            primitives: Vec::new(),
+        }
+    }
+
+    /// Returns the bytes of the picture as a file; equal pictures give equal bytes.
+    ///
+    /// # Errors
+    ///
+    /// The PNG encoder refuses the pixels.
+    pub fn encode(&self, format: PictureFormat) -> Result<Vec<u8>, EncodeError> {
+        Ok(match format {
+            PictureFormat::Png => bitmap::file(self)?,
+            PictureFormat::Svg => svg::document(self)?.into_bytes(),
+        })
+    }
+
+    /// Returns the width and height in pixels.
+    #[must_use]
+    pub fn pixels(&self) -> [usize; 2] {
+        self.size
+            .map(|length| (length * self.scale).round().max(1.0) as usize)
+    }
+
+    /// Returns the characters that the built-in font lacks, each once. A PNG shows them as boxes; an SVG has them as text.
+    #[must_use]
+    pub fn missing_glyphs(&self) -> Vec<char> {
+        let texts = self
+            .primitives
+            .iter()
+            .filter_map(|primitive| match primitive {
+                Primitive::Text(text, ..) => Some(text.as_str()),
+                _ => None,
+            });
+        font::missing_glyphs(&texts.collect::<String>())
+    }
+
+    pub(crate) fn polyline(&mut self, points: &[[f64; 2]], pen: Pen) {
+        let line = Primitive::Polyline(points.to_vec(), pen);
+        self.primitives.push(line);
+    }
+
+    /// Draws the outline of an area.
+    pub(crate) fn frame(&mut self, area: Area, width: f64) {
+        let corners = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0), (0.0, 0.0)];
+        let corners = corners.map(|(x, y)| area.point(x, y));
+        self.polyline(&corners, Pen::solid(width, INK));
+    }
+
+    /// Fills a polygon; fewer than three corners draw nothing.
+    pub(crate) fn polygon(&mut self, corners: Vec<[f64; 2]>, fill: Rgb) {
+        if corners.len() > 2 {
+            self.primitives.push(Primitive::Polygon(corners, fill));
+        }
+    }
+
+    pub(crate) fn circle(&mut self, at: [f64; 2], radius: f64, fill: Rgb, outline: Option<Pen>) {
+        let circle = Primitive::Circle(at, radius, fill, outline);
+        self.primitives.push(circle);
+    }
+
+    /// Draws a line of text with blanks for control characters; an empty text draws nothing.
+    pub(crate) fn text(&mut self, text: &str, at: [f64; 2], size: f64, anchor: Anchor) {
+        if !text.is_empty() {
+            let text = text.replace(char::is_control, " ");
+            self.primitives
+                .push(Primitive::Text(text, at, size, anchor));
+        }
+    }
+
+    pub(crate) fn fitted(&mut self, (text, size): &FittedText, at: [f64; 2], anchor: Anchor) {
+        self.text(text, at, *size, anchor);
+    }
+
+    /// Fills an area pixel by pixel; `fill` gets the pixel's fractions from the left and from the bottom.
+    pub(crate) fn raster(&mut self, area: Area, fill: impl Fn(f64, f64) -> Fill) {
+        let ends = [[area.left, area.right()], [area.top, area.bottom()]];
+        let limits = self.pixels();
+        let [across, down] = [0, 1].map(|axis| {
+            let [first, end] = ends[axis].map(|at| (at * self.scale).round().max(0.0) as usize);
+            let first = first.min(limits[axis] - 1);
+            first..end.clamp(first + 1, limits[axis])
+        });
+        let size = [across.len(), down.len()];
+        let mut pixels = Vec::with_capacity(size[0] * size[1]);
+        for y in down.clone() {
+            let up = (down.end - y) as f64 - 0.5;
+            for x in across.clone() {
+                let right = (x - across.start) as f64 + 0.5;
+                let fill = fill(right / size[0] as f64, up / size[1] as f64);
+                pixels.push(fill.at((x + y) as f64 / self.scale));
+            }
+        }
+        let corner = [across.start, down.start];
+        self.primitives
+            .push(Primitive::Raster(corner, size, pixels));
+    }
+}

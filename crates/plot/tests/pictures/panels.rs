@@ -1,0 +1,134 @@
+//! Panels of heat maps: cells, hatching, curves and contact sheets.
+
+use crate::drawn::{Pixels, body, polylines, svg};
+use crate::{BLACK, BLANK, WHITE};
+use std::convert::Infallible;
+use whiskmap_plot::{
+    CellAxis, Fill, HeatMap, LegendEntry, PanelAxis, PanelCells, Picture, Shading,
+};
+
+const RED: [u8; 3] = [200, 0, 0];
+const GREEN: [u8; 3] = [0, 200, 0];
+
+/// A heat map of codes: 0 is red, 1 is green, and others are blank.
+fn coded(x: &[f64], y: &[f64]) -> HeatMap {
+    let fills = [(0, Fill::plain(RED)), (1, Fill::plain(GREEN))];
+    HeatMap {
+        title: "codes".to_owned(),
+        x: CellAxis::new("angle (deg)", x),
+        y: CellAxis::new("distance (mm)", y),
+        panel_axes: [None, None],
+        shading: Shading::Codes {
+            fills: fills.into(),
+            other: Fill::BLANK,
+        },
+        legend: vec![LegendEntry::swatch(Fill::plain(RED), "red")],
+        width: None,
+    }
+}
+
+fn drawn(map: &HeatMap, mut panel: impl FnMut(usize) -> PanelCells) -> Picture {
+    map.picture(|index| Ok::<_, Infallible>(panel(index)))
+        .unwrap()
+}
+
+#[test]
+fn cells_are_where_their_values_are() {
+    // Midpoints between unequal values: the cells are 45, 35 and 25 wide, from -72.5 to 32.5.
+    let map = coded(&[-50.0, -5.0, 20.0], &[5.0, 15.0]);
+    let cells = PanelCells {
+        values: vec![0.0, 1.0, 2.0, 1.0, f64::NAN, 0.0],
+        ..PanelCells::default()
+    };
+    let pixels = Pixels::of(&drawn(&map, |_| cells.clone()));
+    for (x, [lower, upper]) in [
+        (-72.0, [RED, GREEN]),
+        (-28.0, [RED, GREEN]),
+        (-27.0, [GREEN, BLANK]),
+        (7.0, [GREEN, BLANK]),
+        (8.0, [BLANK, RED]),
+        (32.0, [BLANK, RED]),
+    ] {
+        let across = (x + 72.5) / 105.0;
+        for (up, colour) in [(0.01, lower), (0.49, lower), (0.51, upper), (0.99, upper)] {
+            assert_eq!(body(&pixels, across, up), colour, "{x}, {up}");
+        }
+    }
+    let zero = body(&pixels, 72.5 / 105.0, 0.25);
+    assert!(zero.iter().all(|channel| *channel > 0xe0), "the line at 0");
+}
+
+#[test]
+fn missing_cells_are_blank_and_an_empty_map_is_drawn() {
+    for (x, y) in [(&[][..], &[][..]), (&[1.0, 2.0], &[1.0])] {
+        let picture = drawn(&coded(x, y), |_| PanelCells::default());
+        assert_eq!(Pixels::of(&picture).at([200.0, 300.0]), BLANK);
+    }
+}
+
+#[test]
+fn hatched_cells_have_stripes_and_curves_run_where_their_points_are() {
+    let map = coded(&[1.0, 3.0], &[1.0, 3.0]);
+    let cells = PanelCells {
+        values: vec![1.0; 4],
+        hatched: vec![false, false, false, true],
+        curves: vec![vec![[0.5, 0.5], [1.5, 3.5]]],
+    };
+    let picture = drawn(&map, |_| cells.clone());
+    let pixels = Pixels::of(&picture);
+    let stripes = |left: f64| {
+        let row = (0..50).map(|step| body(&pixels, left + f64::from(step) / 1280.0, 0.75));
+        let mut colours: Vec<_> = row.collect();
+        colours.sort_unstable();
+        colours.dedup();
+        colours
+    };
+    assert_eq!(stripes(0.75), [GREEN, WHITE]);
+    assert_eq!(stripes(0.01), [GREEN]);
+    for [x, y] in [[0.5, 0.5], [1.0, 2.0], [1.5, 3.5]] {
+        assert_eq!(body(&pixels, x / 4.0, y / 4.0), BLACK, "{x}, {y}");
+    }
+    let curves = polylines(&svg(&picture));
+    assert!(
+        curves
+            .iter()
+            .filter(|(points, _)| points.len() == 2)
+            .count()
+            > 1
+    );
+}
+
+#[test]
+fn panels_stand_along_their_axes() {
+    let mut map = coded(&[1.0, 2.0], &[1.0, 2.0]);
+    let axis = |label: &str| PanelAxis {
+        label: label.to_owned(),
+        values: vec![0.5, 0.75],
+    };
+    map.panel_axes = [Some(axis("taper")), Some(axis("friction"))];
+    let mut drawn_panels = Vec::new();
+    let picture = drawn(&map, |index| {
+        drawn_panels.push(index);
+        PanelCells {
+            values: vec![[0.0, 1.0, 2.0, 0.0][index]; 4],
+            ..PanelCells::default()
+        }
+    });
+    assert_eq!(drawn_panels, [0, 1, 2, 3]);
+    let pixels = Pixels::of(&picture);
+    let at = |x: usize, y: usize| pixels.at([(168 + x) as f64, (pixels.height - 180 - y) as f64]);
+    assert_eq!([at(200, 200), at(760, 200)], [RED, GREEN]);
+    assert_eq!([at(200, 760), at(760, 760)], [BLANK, RED]);
+    let svg = svg(&picture);
+    for text in [
+        ">taper<",
+        ">friction<",
+        ">0.50<",
+        ">each panel, to the right: angle (deg), 1 to 2<",
+        ">each panel, upwards: distance (mm), 1 to 2<",
+    ] {
+        assert!(svg.contains(text), "{text}");
+    }
+    map.width = Some(700);
+    assert_eq!(drawn(&map, |_| PanelCells::default()).pixels()[0], 700);
+}

@@ -1,0 +1,193 @@
+//! The picture of a stored map: the regimes, or any channel.
+
+use super::RenderError;
+use super::boundary::stretches;
+use crate::classify::{Regime, Status};
+use crate::scene::SweepAxis;
+use crate::store::{STATE_CHANNELS, Samples, Slice};
+use std::collections::BTreeMap;
+use whiskmap_plot::{
+    CellAxis, ColourScale, Fill, HeatMap, LegendEntry, PanelAxis, PanelCells, Picture, Rgb,
+    ScaleOptions, Shading, ValueSummary,
+};
+
+/// How to draw a map.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct MapOptions<'a> {
+    /// Name of the channel. `None` draws the regimes, with the detachment boundary over them.
+    pub channel: Option<&'a str>,
+    /// Whether the colour scale is logarithmic. Values at or below 0 are blank; without a range, the colour bar starts at the 1st
+    /// percentile of the positive values.
+    pub log: bool,
+    /// Ends of the colour bar, in the channel's unit; values beyond them take the colours of the ends.
+    pub range: Option<[f64; 2]>,
+    /// Width in pixels; `None` for the width at which all text can be read.
+    pub width: Option<u32>,
+}
+
+/// Draws a map: codes with a legend, quantities with a colour bar. A map of several whiskers becomes a contact sheet with the first
+/// sweep axis to the right and the second upwards.
+///
+/// # Errors
+///
+/// The map has more than two sweep axes, it lacks the channel, the channel cannot have the requested colour scale, or the map is
+/// damaged.
+pub fn map(map: &Slice, options: &MapOptions<'_>) -> Result<Picture, RenderError> {
+    let grid = map.grid();
+    if grid.sweep.len() > 2 {
+        let axes = grid.sweep.iter().map(|axis| axis.parameter.axis());
+        let axes: Vec<_> = axes.collect();
+        return Err(RenderError::TooManyAxes(axes.join(", ")));
+    }
+    let channel = options.channel.unwrap_or("regime");
+    let (shading, legend) = match map.names(channel) {
+        Some(names) => codes(map, channel, names, options)?,
+        None => quantities(map, channel, options)?,
+    };
+    let has_boundary = channel == "regime" && map.channels().contains(&"margin_deg");
+    let has_marks = has_marks(map, channel)?;
+    let heat_map = HeatMap {
+        title: map.title(),
+        x: CellAxis::new("push angle (deg)   CF < 0 < CB", &grid.push_angle_deg),
+        y: CellAxis::new("distance at first touch (mm)", &grid.distance_mm),
+        panel_axes: grid.atlas().map(|axis| axis.map(panel_axis)),
+        shading,
+        legend,
+        width: options.width,
+    };
+    heat_map.picture(|index| {
+        let mut cells = PanelCells {
+            values: map.read_panel(channel, index)?.values().collect(),
+            ..PanelCells::default()
+        };
+        if has_marks && let Samples::U32(codes) = map.read_panel("status", index)? {
+            cells.hatched = codes.into_iter().map(is_mark).collect();
+        }
+        if has_boundary {
+            cells.curves = stretches(grid, &map.read_panel("margin_deg", index)?);
+        }
+        Ok(cells)
+    })
+}
+
+fn panel_axis(axis: &SweepAxis) -> PanelAxis {
+    let title = axis.parameter.title();
+    PanelAxis {
+        label: match axis.parameter.unit() {
+            "1" => title.to_owned(),
+            unit => format!("{title} ({unit})"),
+        },
+        values: axis.values.clone(),
+    }
+}
+
+/// The fills of a channel of codes, and the legend of the codes that occur.
+fn codes(
+    map: &Slice,
+    channel: &str,
+    names: BTreeMap<u32, String>,
+    options: &MapOptions<'_>,
+) -> Result<(Shading, Vec<LegendEntry>), RenderError> {
+    if options.log || options.range.is_some() {
+        return Err(RenderError::Codes(channel.to_owned()));
+    }
+    let fill = |(place, &code): (usize, &u32)| match channel {
+        "regime" => (code, regime_fill(code)),
+        _ => (code, Fill::qualitative(place)),
+    };
+    let fills: BTreeMap<u32, Fill> = names.keys().enumerate().map(fill).collect();
+    let codes = map.codes(channel)?;
+    let present = names.into_iter().filter(|(code, _)| codes.contains(code));
+    let entry = |(code, name)| LegendEntry::swatch(fills[&code], name);
+    let mut legend: Vec<_> = present.map(entry).collect();
+    if channel == "regime" && has_boundary(map)? {
+        legend.push(LegendEntry::curve("detachment boundary"));
+    }
+    let other = regime_fill(Regime::Unresolved.code());
+    Ok((Shading::Codes { fills, other }, legend))
+}
+
+/// Whether any panel shows a stretch of the detachment boundary.
+fn has_boundary(map: &Slice) -> Result<bool, RenderError> {
+    if !map.channels().contains(&"margin_deg") {
+        return Ok(false);
+    }
+    for index in 0..map.layout().panels() {
+        if !stretches(map.grid(), &map.read_panel("margin_deg", index)?).is_empty() {
+            return Ok(true);
+        }
+    }
+    Ok(false)
+}
+
+/// The fill of a regime's code; an unknown code looks unresolved. Regimes that occur side by side differ by 20 in lightness
+/// (CIE L*): 96, 74, 53 and 31. They and unresolved stay apart for people who lack one of the three cones.
+fn regime_fill(code: u32) -> Fill {
+    const CONTACT: Rgb = [0x83, 0xc4, 0xa4];
+    let known = Regime::ALL.into_iter().find(|known| known.code() == code);
+    match known.unwrap_or(Regime::Unresolved) {
+        Regime::OutOfReach => Fill::plain([0xf2, 0xf3, 0xf4]),
+        Regime::Contact => Fill::plain(CONTACT),
+        Regime::SlipOff => Fill::plain([0xc8, 0x60, 0x2a]),
+        Regime::PullOff => Fill::plain([0x22, 0x47, 0x8a]),
+        Regime::Unreachable => Fill::striped([0xd3, 0xec, 0xdf], CONTACT),
+        Regime::Unresolved => Fill::plain([0xf0, 0xe4, 0x42]),
+    }
+}
+
+/// The colour scale of a channel of quantities, common to all panels, and its legend.
+fn quantities(
+    map: &Slice,
+    channel: &str,
+    options: &MapOptions<'_>,
+) -> Result<(Shading, Vec<LegendEntry>), RenderError> {
+    let mut summary = ValueSummary::default();
+    let mut whole = false;
+    for index in 0..map.layout().panels() {
+        let samples = map.read_panel(channel, index)?;
+        whole = matches!(samples, Samples::U32(_));
+        summary.extend(samples.values());
+    }
+    let scale = ScaleOptions {
+        label: label(channel),
+        blank: "no contact".to_owned(),
+        log: options.log,
+        range: options.range,
+        whole,
+    };
+    let scale = ColourScale::new(&summary, scale).map_err(|cause| RenderError::Scale {
+        channel: channel.to_owned(),
+        cause,
+    })?;
+    let marks = has_marks(map, channel)?.then(|| {
+        let fill = Fill::BLANK.hatched();
+        LegendEntry::swatch(fill, "off: friction is not as assumed")
+    });
+    Ok((Shading::Quantities(scale), marks.into_iter().collect()))
+}
+
+/// Whether the states in `channel` include some whose friction is not the assumed one.
+fn has_marks(map: &Slice, channel: &str) -> Result<bool, RenderError> {
+    let is_marked = STATE_CHANNELS.contains(&channel) && map.channels().contains(&"status");
+    Ok(is_marked && map.codes("status")?.into_iter().any(is_mark))
+}
+
+fn is_mark(code: u32) -> bool {
+    Status::MARKS.iter().any(|status| status.code() == code)
+}
+
+/// The name of a channel in words, with the unit that its last word stands for.
+fn label(channel: &str) -> String {
+    const UNITS: [(&str, &str); 5] = [
+        ("_mm", "mm"),
+        ("_deg", "deg"),
+        ("_un", "\u{b5}N"),
+        ("_nnm", "nN m"),
+        ("_nj", "nJ"),
+    ];
+    let unit = UNITS.iter().find_map(|(suffix, unit)| {
+        let name = channel.strip_suffix(suffix)?;
+        Some(format!("{} ({unit})", name.replace('_', " ")))
+    });
+    unit.unwrap_or_else(|| channel.replace('_', " "))
+}

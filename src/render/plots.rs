@@ -1,0 +1,231 @@
+//! Detachment curves, branches, shapes, designs and spreads as plots.
+//!
+//! Solid lines are stable states, dashed lines unstable states. Slip-off is black and pull-off is blue, as in the paper.
+
+use crate::design::{Design, End, Target};
+use crate::measured::Compared;
+use crate::scene::Parameter;
+use crate::trace::{BranchPoint, Detachment, DetachmentKind, Mark, Shape};
+use crate::uncertainty::Spread;
+use whiskmap_plot::{Band, Disc, Dot, Ink, Line, Plot, Shade, Stroke};
+
+/// An axis of a plot of rows.
+#[derive(Clone, Copy, Debug)]
+pub struct PlotAxis<Row, Value> {
+    /// Label, with its unit.
+    pub label: &'static str,
+    /// Value of a row, in the unit of the label.
+    pub value: fn(&Row) -> Value,
+}
+
+/// An axis of a detachment curve; rows without a value are not drawn.
+pub type CurveAxis = PlotAxis<Detachment, Option<f64>>;
+
+/// An axis of a branch.
+pub type BranchAxis = PlotAxis<BranchPoint, f64>;
+
+/// A detachment curve to draw, and how.
+#[derive(Clone, Copy, Debug)]
+pub struct DrawnCurve<'a> {
+    /// Detachments, one whisker and side after the other, each in order of increasing distance.
+    pub rows: &'a [Detachment],
+    /// Solid or dashed.
+    pub stroke: Stroke,
+    /// Name of the whisker in the legend; may be empty.
+    pub name: &'a str,
+}
+
+/// A plot of detachment curves, a line for each kind of detachment.
+#[must_use]
+pub fn curves(title: &str, all: &[DrawnCurve], [x, y]: [CurveAxis; 2]) -> Plot {
+    let mut plot = empty(title, x.label, y.label);
+    let place = |row: &Detachment| Some([(x.value)(row)?, (y.value)(row)?]);
+    for DrawnCurve { rows, stroke, name } in all {
+        for side in rows.chunk_by(|a, b| a.side == b.side && a.distance_mm < b.distance_mm) {
+            let kinds = side.chunk_by(|a, b| a.kind == b.kind);
+            let parts = kinds.filter_map(|part| {
+                let (ink, kind) = look(part[0].kind)?;
+                let name = match *name {
+                    "" => kind.to_owned(),
+                    name => format!("{name}: {kind}"),
+                };
+                let points = part.iter().filter_map(place).collect();
+                Some(Line::new(points, ink, *stroke).named(name))
+            });
+            plot.lines.extend(joined(parts));
+        }
+    }
+    plot
+}
+
+/// A bifurcation diagram of the branches at each pole, in the ink beside them. Each branch begins at its first touch.
+#[must_use]
+pub fn branches(title: &str, poles: &[(Ink, &[BranchPoint])], [x, y]: [BranchAxis; 2]) -> Plot {
+    let mut plot = empty(title, x.label, y.label);
+    let place = |point: &BranchPoint| [(x.value)(point), (y.value)(point)];
+    for (ink, points) in poles {
+        for branch in points.chunk_by(|_, next| next.mark != Some(Mark::FirstTouch)) {
+            let parts = branch.chunk_by(|a, b| a.stable == b.stable).map(|part| {
+                let (stroke, name) = match part[0].stable {
+                    true => (Stroke::Solid, "stable"),
+                    false => (Stroke::Dashed, "unstable"),
+                };
+                Line::new(part.iter().map(place).collect(), *ink, stroke).named(name)
+            });
+            plot.lines.extend(joined(parts));
+            plot.dots.extend(branch.iter().filter_map(|point| {
+                let (ink, name) = match point.mark? {
+                    Mark::FirstTouch => (*ink, "first touch"),
+                    Mark::SlipOff => (Ink::Black, "slip-off"),
+                    Mark::PullOff => (Ink::Blue, "pull-off"),
+                    Mark::SecondFold => (Ink::Grey, "second fold"),
+                    Mark::Tip => return None,
+                };
+                Some(Dot {
+                    at: place(point),
+                    ink,
+                    open: point.mark == Some(Mark::FirstTouch),
+                    name: Some(name.to_owned()),
+                })
+            }));
+        }
+    }
+    plot
+}
+
+/// Measured detachments as dots at `[distance (mm), angle (deg)]`: slip-off open, pull-off filled, grey where the kind is unknown.
+#[must_use]
+pub fn measured(points: &[Compared]) -> Vec<Dot> {
+    let dots = points.iter().map(|point| {
+        let (ink, open, name) = match point.kind {
+            Some(DetachmentKind::SlipOff) => (Ink::Black, true, "measured slip-off"),
+            Some(DetachmentKind::PullOff) => (Ink::Blue, false, "measured pull-off"),
+            _ => (Ink::Grey, false, "measured"),
+        };
+        Dot {
+            at: [point.distance_mm, point.measured_deg],
+            ink,
+            open,
+            name: Some(name.to_owned()),
+        }
+    });
+    dots.collect()
+}
+
+/// A shape to draw, and how.
+#[derive(Clone, Debug)]
+pub struct DrawnShape {
+    /// The whisker and its pole.
+    pub shape: Shape,
+    /// Colour of the whisker.
+    pub ink: Ink,
+    /// Solid or dashed.
+    pub stroke: Stroke,
+    /// Name in the legend.
+    pub name: String,
+}
+
+/// A plot of whiskers, in mm, in front of the pole of the first one.
+#[must_use]
+pub fn shapes(title: &str, drawn: &[DrawnShape]) -> Plot {
+    let mut plot = empty(title, "x (mm)", "y (mm)");
+    plot.equal_axes = true;
+    plot.lines.extend(drawn.iter().map(|drawn| {
+        let points = drawn.shape.points.iter().map(|p| [p.x_mm, p.y_mm]);
+        Line::new(points.collect(), drawn.ink, drawn.stroke).named(&*drawn.name)
+    }));
+    plot.discs.extend(drawn.first().map(|drawn| Disc {
+        centre: drawn.shape.pole_mm,
+        radius: drawn.shape.pole_radius_mm,
+        dark: false,
+    }));
+    plot
+}
+
+/// A plot of the push angles of a design, with its solutions as dots; over the logarithm of the parameter if its range is wide.
+#[must_use]
+pub fn designs(parameter: Parameter, target: &Target, design: &Design) -> Plot {
+    let (x_label, x): (String, fn(f64) -> f64) = match design.is_wide() {
+        true => (format!("log10 of {}", parameter.name()), f64::log10),
+        false => (parameter.name().to_owned(), |value| value),
+    };
+    let mut plot = empty("", &x_label, "push angle at detachment (deg)");
+    let push = target.push_angle_deg;
+    let wanted = design.range.map(|end| [x(end), push]).to_vec();
+    let wanted = Line::new(wanted, Ink::Grey, Stroke::Dashed);
+    plot.lines.push(wanted.named(format!("{push} deg")));
+    for piece in design.ends.chunk_by(|a, b| a.kind == b.kind) {
+        if let Some((ink, name)) = look(piece[0].kind) {
+            let place = |end: &End| Some([x(end.value), end.push_angle_deg?]);
+            let points = piece.iter().filter_map(place).collect();
+            plot.lines
+                .push(Line::new(points, ink, Stroke::Solid).named(name));
+        }
+    }
+    let ink = look(target.kind).map_or(Ink::Black, |(ink, _)| ink);
+    plot.dots.extend(design.values.iter().map(|value| Dot {
+        at: [x(*value), push],
+        ink,
+        open: false,
+        name: Some("solution".to_owned()),
+    }));
+    plot
+}
+
+/// Bands of push angle (deg) over distance (mm): from the 5th to the 95th percentile, and over them from the 25th to the 75th. `rows`
+/// has one side after the other, each in order of increasing distance.
+#[must_use]
+pub fn bands(rows: &[Spread]) -> Vec<Band> {
+    type Percentiles = fn(&Spread) -> [Option<f64>; 2];
+    let kinds: [(Shade, &str, Percentiles); 2] = [
+        (Shade::Light, "5 to 95 % of samples", |row| {
+            [row.p5_deg, row.p95_deg]
+        }),
+        (Shade::Dark, "25 to 75 % of samples", |row| {
+            [row.p25_deg, row.p75_deg]
+        }),
+    ];
+    let mut bands = Vec::new();
+    for (shade, name, percentiles) in kinds {
+        for side in rows.chunk_by(|a, b| a.side == b.side && a.distance_mm < b.distance_mm) {
+            let point = |row: &Spread| {
+                let [low, high] = percentiles(row).map(|end| end.unwrap_or(f64::NAN));
+                [row.distance_mm, low, high]
+            };
+            bands.push(Band {
+                points: side.iter().map(point).collect(),
+                shade,
+                name: Some(name.to_owned()),
+            });
+        }
+    }
+    bands
+}
+
+/// The ink and the name of a kind of detachment; `None` if there is no detachment.
+const fn look(kind: DetachmentKind) -> Option<(Ink, &'static str)> {
+    match kind {
+        DetachmentKind::SlipOff => Some((Ink::Black, "slip-off")),
+        DetachmentKind::PullOff => Some((Ink::Blue, "pull-off")),
+        DetachmentKind::OutOfReach | DetachmentKind::Unresolved => None,
+    }
+}
+
+fn empty(title: &str, x_label: &str, y_label: &str) -> Plot {
+    Plot {
+        title: title.to_owned(),
+        x_label: x_label.to_owned(),
+        y_label: y_label.to_owned(),
+        ..Plot::default()
+    }
+}
+
+/// Joins lines: each begins where the previous one ends.
+fn joined(parts: impl Iterator<Item = Line>) -> impl Iterator<Item = Line> {
+    let mut end = None;
+    parts.map(move |mut part| {
+        part.points.splice(..0, end);
+        end = part.points.last().copied();
+        part
+    })
+}

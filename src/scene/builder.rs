@@ -1,0 +1,143 @@
+//! The numbers of a scene as they are given, before the checks.
+
+use super::axis::AxisValues;
+use super::deviations::Deviations;
+use super::grid::Place;
+use super::parameter::Parameter;
+
+/// Numbers of a scene by parameter: those that are given.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Numbers([Option<f64>; Parameter::ALL.len()]);
+
+impl Numbers {
+    pub fn get(&self, parameter: Parameter) -> Option<f64> {
+        self.0[parameter as usize]
+    }
+
+    /// Sets a number. A taper takes the place of the radius at the tip, and that of the taper.
+    pub fn set(&mut self, parameter: Parameter, value: f64) {
+        match parameter {
+            Parameter::Taper => self.0[Parameter::TipRadiusUm as usize] = None,
+            Parameter::TipRadiusUm => self.0[Parameter::Taper as usize] = None,
+            _ => {}
+        }
+        self.0[parameter as usize] = Some(value);
+    }
+
+    /// The numbers of the whisker at a place of the sweep.
+    pub fn at(mut self, place: &Place) -> Self {
+        for (parameter, value) in place.values() {
+            self.set(parameter, value);
+        }
+        self
+    }
+
+    /// The radius at the tip, in micrometres: given, or that of a taper from the base.
+    pub fn tip_radius_um(&self) -> Option<f64> {
+        let base = self.get(Parameter::BaseRadiusUm);
+        let tapered = base.zip(self.get(Parameter::Taper));
+        let tapered = tapered.map(|(base, taper)| base * (1.0 - taper));
+        tapered.or(self.get(Parameter::TipRadiusUm))
+    }
+}
+
+/// Description of a scene that is not yet checked.
+///
+/// Required are the length, Young's modulus, the radii at base and tip (or [`SceneBuilder::profile`]), push angles and distances.
+/// A curvature, a pole radius and a friction that are left out are 0; a modulus ratio and an arc stretch are 1.
+///
+/// ```
+/// use whiskmap::scene::{AxisValues, Parameter, Scene};
+///
+/// let scene = Scene::builder("A cone in front of a thin pole")
+///     .set(Parameter::LengthMm, 20.0)
+///     .set(Parameter::BaseRadiusUm, 30.0)
+///     .set(Parameter::Taper, 0.95)
+///     .set(Parameter::YoungsModulusGpa, 3.0)
+///     .set(Parameter::PoleRadiusMm, 0.25)
+///     .push_angle_deg(AxisValues::linear(-70.0, 70.0, 512))
+///     .distance_mm([10.0, 12.5, 15.0])
+///     .sweep(Parameter::ParabolaPerMm, [0.0, 0.02])
+///     .build()?;
+/// assert_eq!(scene.whisker_count(), 2);
+/// let why = scene.to_builder().set(Parameter::LengthMm, -1.0).build().unwrap_err();
+/// assert!(why.to_string().contains("whisker.length_mm = -1: must be between 0.001 and 100000"));
+/// # Ok::<(), whiskmap::scene::SceneError>(())
+/// ```
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SceneBuilder {
+    pub(super) title: String,
+    pub(super) numbers: Numbers,
+    /// Arclength in millimetres and radius in micrometres of measured rows.
+    pub(super) rows: Option<Vec<[f64; 2]>>,
+    pub(super) push_angle_deg: AxisValues,
+    pub(super) distance_mm: AxisValues,
+    pub(super) sweep: Vec<(Parameter, AxisValues)>,
+    pub(super) uncertainty: Option<Deviations>,
+    /// Stem of the output files, if the scene names it.
+    pub(super) name: Option<String>,
+    /// Stem of the output files otherwise.
+    pub(super) stem: String,
+}
+
+impl SceneBuilder {
+    /// Sets the title: one line of text.
+    #[must_use]
+    pub fn title(mut self, title: impl Into<String>) -> Self {
+        self.title = title.into();
+        self
+    }
+
+    /// Sets a number, in the unit of the parameter.
+    #[must_use]
+    pub fn set(mut self, parameter: Parameter, value: f64) -> Self {
+        self.numbers.set(parameter, value);
+        self
+    }
+
+    /// Sets measured radii in place of those at base and tip: arclength in millimetres and radius in micrometres of each row.
+    #[must_use]
+    pub fn profile(mut self, rows: impl Into<Vec<[f64; 2]>>) -> Self {
+        self.rows = Some(rows.into());
+        self
+    }
+
+    /// Sets the push angles, in degrees: negative CF, positive CB.
+    #[must_use]
+    pub fn push_angle_deg(mut self, values: impl Into<AxisValues>) -> Self {
+        self.push_angle_deg = values.into();
+        self
+    }
+
+    /// Sets the distances from the base to the contact at first touch, in millimetres.
+    #[must_use]
+    pub fn distance_mm(mut self, values: impl Into<AxisValues>) -> Self {
+        self.distance_mm = values.into();
+        self
+    }
+
+    /// Sets the axis along which whiskers differ in `parameter`, one of [`Parameter::SWEPT`]; a new axis is the last one.
+    #[must_use]
+    pub fn sweep(mut self, parameter: Parameter, values: impl Into<AxisValues>) -> Self {
+        let values = values.into();
+        match self.sweep.iter_mut().find(|(own, _)| *own == parameter) {
+            Some((_, own)) => *own = values,
+            None => self.sweep.push((parameter, values)),
+        }
+        self
+    }
+
+    /// Sets the standard deviations of the numbers.
+    #[must_use]
+    pub fn uncertainty(mut self, deviations: Deviations) -> Self {
+        self.uncertainty = Some(deviations);
+        self
+    }
+
+    /// Sets the stem of the output files; `scene` by default.
+    #[must_use]
+    pub fn name(mut self, name: impl Into<String>) -> Self {
+        self.name = Some(name.into());
+        self
+    }
+}

@@ -1,0 +1,116 @@
+//! Data of a scene, and the whiskers of its sweep.
+
+use super::deviations::Deviations;
+use super::grid::{FARTHEST, Grid, NEAREST, Place};
+use super::parameter::Parameter;
+use super::toml::SceneText;
+use super::whisker::{Curvature, Pole, Swept, Whisker};
+
+/// Data of a scene. Only a [`Scene`](super::Scene) guarantees that the values are valid.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SceneData {
+    /// One line for people.
+    pub title: String,
+    /// The whisker as the file describes it, and the first one of a sweep; [`SceneData::whiskers`] yields those to simulate.
+    pub whisker: Whisker,
+    /// The pole, and the first one of a sweep.
+    pub pole: Pole,
+    /// The sweep.
+    pub grid: Grid,
+    /// How uncertain its numbers are, where the file says so.
+    pub uncertainty: Option<Deviations>,
+    /// Stem of the output files.
+    pub name: String,
+    /// The scene as TOML.
+    pub text: SceneText,
+}
+
+impl SceneData {
+    /// The scene's whisker and pole with the values of `place` in place of their own. A taper gives the tip its radius; the
+    /// vertex of a curvature axis is the whisker's own, or 0 where its file gives none.
+    #[must_use]
+    pub fn whisker_at(&self, place: Place) -> Swept {
+        let (mut whisker, mut pole) = (self.whisker.clone(), self.pole);
+        let mut curvature = whisker.curvature.unwrap_or_default();
+        for (parameter, value) in place.values() {
+            match parameter {
+                Parameter::LengthMm => whisker.length_mm = value,
+                Parameter::BaseRadiusUm => whisker.base_radius_um = value,
+                Parameter::TipRadiusUm => whisker.tip_radius_um = value,
+                Parameter::ParabolaPerMm => curvature.parabola_per_mm = value,
+                Parameter::VertexMm => curvature.vertex_mm = value,
+                Parameter::ModulusTipToBase => whisker.modulus_tip_to_base = value,
+                Parameter::ArcStretch => whisker.arc_stretch = value,
+                Parameter::PoleRadiusMm => pole.radius_mm = value,
+                Parameter::Friction => pole.friction = value,
+                _ => {}
+            }
+        }
+        if let Some(taper) = place.value(Parameter::Taper) {
+            whisker.tip_radius_um = whisker.base_radius_um * (1.0 - taper);
+        }
+        whisker.curvature = Some(curvature).filter(Curvature::bends);
+        Swept {
+            place,
+            whisker,
+            pole,
+        }
+    }
+
+    /// Every whisker of the sweep, in the order of the atlas: the first axis varies fastest, along its columns. Without axes,
+    /// the one whisker of the file.
+    pub fn whiskers(&self) -> impl Iterator<Item = Swept> {
+        (0..self.whisker_count()).map(|index| self.whisker(index))
+    }
+
+    /// Whisker `index` of the sweep.
+    #[must_use]
+    pub fn whisker(&self, index: usize) -> Swept {
+        self.whisker_at(self.grid.place(index))
+    }
+
+    /// The same, `size` whiskers at a time; the last group has what is left.
+    pub fn whisker_groups(&self, size: usize) -> impl Iterator<Item = Vec<Swept>> {
+        let mut whiskers = self.whiskers();
+        let next = move || -> Vec<_> { whiskers.by_ref().take(size).collect() };
+        std::iter::repeat_with(next).take_while(|group| !group.is_empty())
+    }
+
+    /// How many whiskers the sweep has.
+    #[must_use]
+    pub fn whisker_count(&self) -> usize {
+        self.grid.whisker_count()
+    }
+
+    /// The first whisker of the sweep, or the only one.
+    #[must_use]
+    pub fn first_whisker(&self) -> Swept {
+        self.whisker(0)
+    }
+
+    /// The whiskers at the ends of the sweep axes: an effect that any whisker has, one of these has.
+    pub fn corner_whiskers(&self) -> impl Iterator<Item = Swept> {
+        let ends = self.grid.ends();
+        let corners = 0..ends.whisker_count();
+        corners.map(move |index| self.whisker_at(ends.place(index)))
+    }
+
+    /// Whether any whisker of the sweep has friction with its pole.
+    #[must_use]
+    pub fn has_friction(&self) -> bool {
+        self.corner_whiskers().any(|own| own.pole.friction != 0.0)
+    }
+
+    /// Whether whiskers are swept: whether there is an axis beside push angle and distance.
+    #[must_use]
+    pub fn is_sweep(&self) -> bool {
+        !self.grid.sweep.is_empty()
+    }
+
+    /// The smallest and the largest distance of first touch; it must be more than the pole's radius, too.
+    #[must_use]
+    pub fn distances_mm(&self) -> (f64, f64) {
+        let length = self.whisker.length_mm;
+        (length / NEAREST, FARTHEST * length)
+    }
+}

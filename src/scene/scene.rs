@@ -1,0 +1,212 @@
+//! Scenes that have passed every check.
+
+use std::ops::Deref;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use super::builder::SceneBuilder;
+use super::data::SceneData;
+use super::error::{SceneError, SceneFault};
+use super::limits::NumberLimits;
+use super::parameter::Parameter;
+use super::toml::SceneText;
+
+/// A scene that has passed every check. It dereferences to its [`SceneData`], which only a new scene changes.
+///
+/// ```
+/// use whiskmap::scene::{Parameter, Scene};
+///
+/// let cone = Scene::parse(include_str!("../../scenes/cone.toml"), "cone.toml")?;
+/// let thick = cone.with(Parameter::PoleRadiusMm, 0.5)?;
+/// assert_eq!((cone.pole.radius_mm, thick.pole.radius_mm), (0.25, 0.5));
+/// assert!(cone.with(Parameter::PoleRadiusMm, -1.0).is_err());
+/// let few = cone.to_builder().distance_mm([5.0, 10.0]).build()?;
+/// assert_eq!(few.grid.distance_mm.len(), 2);
+/// # Ok::<(), whiskmap::scene::SceneError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scene {
+    pub(super) data: SceneData,
+    pub(super) builder: Arc<SceneBuilder>,
+    pub(super) rows_file: Option<PathBuf>,
+    pub(super) note: Option<String>,
+}
+
+impl Deref for Scene {
+    type Target = SceneData;
+
+    fn deref(&self) -> &SceneData {
+        &self.data
+    }
+}
+
+impl SceneBuilder {
+    /// Checks the description.
+    ///
+    /// # Errors
+    /// A number that is missing, out of its range or at odds with another one, by the key that it has in a scene file.
+    pub fn build(mut self) -> Result<Scene, SceneError> {
+        let refused = |fault| SceneError::of_fault("", "", fault);
+        if let Some(taper) = self.numbers.get(Parameter::Taper) {
+            // Next to the ends of this range, the rounding of the tip's radius would hide what lies beyond.
+            let limits = NumberLimits::between(0.0, 1.0);
+            limits
+                .check(Parameter::Taper.name(), taper)
+                .map_err(refused)?;
+            let key = Parameter::BaseRadiusUm.key();
+            let absent = || refused(SceneFault::new(key, "is left out, and there is a taper"));
+            let tip_radius_um = self.numbers.tip_radius_um().ok_or_else(absent)?;
+            self.numbers.set(Parameter::TipRadiusUm, tip_radius_um);
+        }
+        let builder = Arc::new(self);
+        let text = SceneText::of_numbers(Arc::clone(&builder));
+        let data = builder.checked(text).map_err(refused)?;
+        Ok(Scene {
+            data,
+            builder,
+            rows_file: None,
+            note: None,
+        })
+    }
+}
+
+impl Scene {
+    /// Starts the description of a scene with this title. Its outputs are called `scene` unless it names them.
+    #[must_use]
+    pub fn builder(title: impl Into<String>) -> SceneBuilder {
+        SceneBuilder {
+            title: title.into(),
+            stem: "scene".to_owned(),
+            ..SceneBuilder::default()
+        }
+    }
+
+    /// The description from which this scene was built.
+    #[must_use]
+    pub fn to_builder(&self) -> SceneBuilder {
+        SceneBuilder::clone(&self.builder)
+    }
+
+    /// The CSV file from which the radii were read, if the scene names one.
+    #[must_use]
+    pub fn rows_file(&self) -> Option<&Path> {
+        self.rows_file.as_deref()
+    }
+
+    /// Message that names unused columns of the CSV file of the radii.
+    #[must_use]
+    pub fn note(&self) -> Option<&str> {
+        self.note.as_deref()
+    }
+
+    /// The scene with another value of a parameter, in the parameter's unit.
+    ///
+    /// # Errors
+    /// If the scene would be refused with it, or a taper is not between 0 and 1.
+    pub fn with(&self, parameter: Parameter, value: f64) -> Result<Self, SceneError> {
+        self.with_parameters(&[(parameter, value)])
+    }
+
+    /// The scene with other values of some parameters. A taper is that of the new radius at the base.
+    ///
+    /// # Errors
+    /// If the scene would be refused with them, or a taper is not between 0 and 1.
+    pub fn with_parameters(&self, values: &[(Parameter, f64)]) -> Result<Self, SceneError> {
+        let mut builder = self.to_builder();
+        for (parameter, value) in values {
+            builder.numbers.set(*parameter, *value);
+        }
+        builder.build()
+    }
+
+    /// The scene with at most `lines` push angles and distances, and at most `values` of each sweep axis, from all over
+    /// the axis. Its text stays that of the whole.
+    #[must_use]
+    pub fn thinned(&self, lines: usize, values: usize) -> Self {
+        self.thinned_to([lines, lines], values)
+    }
+
+    /// The scene with at most so many push angles and distances, and at most `values` of each sweep axis.
+    #[must_use]
+    pub fn thinned_to(&self, [push_angles, distances]: [usize; 2], values: usize) -> Self {
+        let mut thinned = self.clone();
+        let grid = &mut thinned.data.grid;
+        thin(&mut grid.push_angle_deg, push_angles);
+        thin(&mut grid.distance_mm, distances);
+        for axis in &mut grid.sweep {
+            thin(&mut axis.values, values);
+        }
+        thinned
+    }
+}
+
+/// Keeps the middles of at most `most` equal parts.
+fn thin(values: &mut Vec<f64>, most: usize) {
+    let (all, kept) = (values.len(), values.len().min(most));
+    *values = (0..kept)
+        .map(|i| values[(2 * i + 1) * all / (2 * kept)])
+        .collect();
+}
+
+impl SceneBuilder {
+    /// The given value of a parameter. A taper is given with the radius at the tip, whose value this is.
+    pub(super) fn given(&self, parameter: Parameter) -> Option<f64> {
+        let tip = || self.numbers.get(Parameter::TipRadiusUm);
+        let own = self.numbers.get(parameter);
+        own.or_else(|| tip().filter(|_| parameter == Parameter::Taper))
+    }
+}
+
+impl Parameter {
+    /// The parameter's value, if the scene gives it.
+    #[must_use]
+    pub fn value(self, scene: &Scene) -> Option<f64> {
+        let given = scene.builder.given(self)?;
+        Some(match self {
+            Self::Taper => scene.whisker.taper(),
+            _ => given,
+        })
+    }
+
+    /// The names of the parameters that the scene gives, with commas between them.
+    pub(crate) fn given(scene: &Scene) -> String {
+        let all = Self::ALL.into_iter();
+        let given = all.filter(|own| own.value(scene).is_some());
+        given.map(Self::name).collect::<Vec<_>>().join(", ")
+    }
+
+    /// The least and the greatest value that the scene accepts around its own, with all other numbers fixed.
+    ///
+    /// Both are NaN if the scene does not give the parameter.
+    #[must_use]
+    pub fn range(self, scene: &Scene) -> [f64; 2] {
+        let Some(own) = self.value(scene) else {
+            return [f64::NAN; 2];
+        };
+        let accepts = |value: f64| scene.with(self, value).is_ok();
+        [f64::MIN, f64::MAX].map(|beyond| {
+            let [mut inside, mut outside] = [own, beyond].map(rank);
+            while inside.abs_diff(outside) > 1 {
+                let middle = inside.midpoint(outside);
+                if accepts(of_rank(middle)) {
+                    inside = middle;
+                } else {
+                    outside = middle;
+                }
+            }
+            of_rank(inside)
+        })
+    }
+}
+
+/// Rank of a number among all floating-point numbers. Halving ranks finds the end of a range in 64 steps.
+fn rank(value: f64) -> i64 {
+    let bits = value.to_bits().cast_signed();
+    if bits < 0 { i64::MIN - bits } else { bits }
+}
+
+/// The number of a rank.
+fn of_rank(rank: i64) -> f64 {
+    let bits = if rank < 0 { i64::MIN - rank } else { rank };
+    f64::from_bits(bits.cast_unsigned())
+}

@@ -1,0 +1,227 @@
+//! From a file, or text, to a checked scene.
+
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::io::{self, Read};
+use std::ops::Range;
+use std::path::Path;
+use std::sync::Arc;
+
+use serde::Deserialize;
+use toml_edit::de::Deserializer;
+use toml_edit::{Document, Item};
+
+use crate::input::{bounded, did_you_mean, shortened};
+use crate::scene::axis::NOT_GROWING;
+use crate::scene::deviations::{self, Deviations};
+use crate::scene::error::{DECIMAL_POINTS, SceneError, SceneFault, has_tight_comma};
+use crate::scene::limits::digits;
+use crate::scene::parameter::Parameter;
+use crate::scene::profile::KEY as ROWS_KEY;
+use crate::scene::{Scene, SceneBuilder};
+
+use super::rows::{CsvRows, ListedRows};
+use super::tables::SceneTable;
+use super::write::{SceneText, rows_text};
+
+impl Scene {
+    /// Reads and checks a scene file; `-` is standard input. Where the file does not name its output, the
+    /// file's own stem does, or `scene` for standard input. A CSV file that the scene names is looked for beside the scene
+    /// file, and its rows take the place of its name in [`SceneData::text`](super::super::SceneData::text).
+    ///
+    /// # Errors
+    /// If the file cannot be read, is longer than 1 MiB, is not UTF-8, or for the reasons of [`Scene::parse`].
+    pub fn read(path: impl AsRef<Path>) -> Result<Self, SceneError> {
+        let path = path.as_ref();
+        if path == Path::new("-") {
+            return from_source(io::stdin().lock(), "<stdin>", Path::new("scene"));
+        }
+        let origin = path.to_string_lossy();
+        let file = File::open(path).map_err(|why| unreadable(&origin, &why))?;
+        from_source(file, &origin, path)
+    }
+
+    /// Checks the text of a scene and opens no file. Messages call the text `origin`, whose stem is the name of the output
+    /// where the scene gives none.
+    ///
+    /// # Errors
+    /// If the text is not TOML, names a CSV file, has a key too many or too few, or a value that is out of its range or at
+    /// odds with another one.
+    pub fn parse(text: &str, origin: &str) -> Result<Self, SceneError> {
+        checked(text, origin, Path::new(origin), None)
+    }
+}
+
+fn from_source(source: impl Read, origin: &str, path: &Path) -> Result<Scene, SceneError> {
+    let bytes = bounded(source).map_err(|why| unreadable(origin, &why))?;
+    let text = String::from_utf8(bytes).map_err(|why| {
+        let start = why.utf8_error().valid_up_to();
+        let byte = why.as_bytes()[start];
+        // The first bad byte and its stand-in begin at the same place.
+        let shown = String::from_utf8_lossy(why.as_bytes());
+        let span = start..start + char::REPLACEMENT_CHARACTER.len_utf8();
+        let message = format!("not UTF-8 text: byte 0x{byte:02X}");
+        SceneError::at(origin, &shown, Some(span), message)
+    })?;
+    let folder = path.parent().unwrap_or(Path::new(""));
+    checked(&text, origin, path, Some(folder))
+}
+
+fn unreadable(origin: &str, why: &io::Error) -> SceneError {
+    SceneError::whole(origin, format!("cannot be read: {why}"))
+}
+
+/// Checks the text of a scene, which may name CSV files in `folder`.
+fn checked(
+    text: &str,
+    origin: &str,
+    path: &Path,
+    folder: Option<&Path>,
+) -> Result<Scene, SceneError> {
+    let refused = |why: toml_edit::de::Error| SceneError::of_toml(origin, text, &why);
+    let document = Document::parse(text).map_err(|why| refused(why.into()))?;
+    let grid = document.get("grid").and_then(Item::as_table_like);
+    let axes: Vec<String> = grid.map_or_else(Vec::new, |grid| {
+        grid.iter().map(|(axis, _)| axis.to_owned()).collect()
+    });
+    let mut table = SceneTable::deserialize(Deserializer::from(document)).map_err(refused)?;
+    let mut lines = None;
+    let built = build(&mut table, &axes, folder, &mut lines);
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    built
+        .and_then(|(mut builder, csv)| {
+            builder.stem = stem.into_owned();
+            let mut own = text.to_owned();
+            if let Some((csv, span)) = csv.as_ref().zip(place_in(text, ROWS_KEY)) {
+                own.replace_range(span, &rows_text(&csv.values));
+            }
+            Ok(Scene {
+                data: builder.checked(SceneText::of_source(&own))?,
+                builder: Arc::new(builder),
+                rows_file: csv.as_ref().map(|csv| csv.path.clone()),
+                note: csv.and_then(|csv| csv.note),
+            })
+        })
+        .map_err(|fault| located(fault, lines.as_deref(), origin, text))
+}
+
+/// The description that the tables give, with `axes` in the order of the file, and the CSV file that it names. The lines of its
+/// rows are left in `lines`.
+fn build(
+    table: &mut SceneTable,
+    axes: &[String],
+    folder: Option<&Path>,
+    lines: &mut Option<Vec<usize>>,
+) -> Result<(SceneBuilder, Option<CsvRows>), SceneFault> {
+    let numbers = table.numbers();
+    let mut sweep = table.grid.take_sweep();
+    sweep.sort_by_key(|(parameter, _)| axes.iter().position(|axis| axis == parameter.axis()));
+    let curvature = table.whisker.curvature.as_ref();
+    let is_empty = curvature.is_some_and(|own| {
+        own.parabola_per_mm.is_none() && own.vertex_mm.is_none() && own.euler_spiral.is_none()
+    });
+    let bends = |own: &Parameter| [Parameter::ParabolaPerMm, Parameter::VertexMm].contains(own);
+    if is_empty && !sweep.iter().any(|(own, _)| bends(own)) {
+        let must = "must have either parabola_per_mm, and vertex_mm if need be, or euler_spiral";
+        return Err(SceneFault::new("whisker.curvature", must));
+    }
+    let (rows, csv) = match table.whisker.profile.take().map(|profile| profile.rows) {
+        None => (None, None),
+        Some(ListedRows::Listed(rows)) => (Some(rows.into_iter().map(|row| row.0).collect()), None),
+        Some(ListedRows::Named(name)) => {
+            let csv = CsvRows::read(&name, folder);
+            let csv = csv.map_err(|must| SceneFault::new(ROWS_KEY, must))?;
+            *lines = Some(csv.lines.clone());
+            (Some(csv.values.clone()), Some(csv))
+        }
+    };
+    let builder = SceneBuilder {
+        title: std::mem::take(&mut table.title),
+        numbers,
+        rows,
+        push_angle_deg: std::mem::take(&mut table.grid.push_angle_deg),
+        distance_mm: std::mem::take(&mut table.grid.distance_mm),
+        sweep,
+        uncertainty: table.uncertainty.as_ref().map(uncertainty).transpose()?,
+        name: table.output.take().and_then(|output| output.name),
+        stem: String::new(),
+    };
+    Ok((builder, csv))
+}
+
+/// The standard deviations of `[uncertainty]`.
+fn uncertainty(table: &BTreeMap<String, f64>) -> Result<Deviations, SceneFault> {
+    let mut uncertainty = Deviations::default();
+    for (name, &deviation) in table {
+        match Parameter::named(name) {
+            Some(parameter) => uncertainty.parameters.push((parameter, deviation)),
+            None if name == deviations::ROWS => uncertainty.profile_radius_um = Some(deviation),
+            None => {
+                let known = Parameter::ALL.map(Parameter::name);
+                let hint = did_you_mean(name, known.into_iter().chain([deviations::ROWS]));
+                let names = deviations::names();
+                let must = format!("is not known; must be one of {names}{hint}");
+                let key = format!("uncertainty.{}", shortened(name));
+                return Err(SceneFault::of_value(key, digits(deviation), must));
+            }
+        }
+    }
+    Ok(uncertainty)
+}
+
+/// Adds the place in the text to a fault, and the value as the text has it. Rows of a CSV file are named by their `lines`.
+fn located(mut fault: SceneFault, lines: Option<&[usize]>, origin: &str, text: &str) -> SceneError {
+    let row = fault.key.strip_prefix(ROWS_KEY);
+    let row = row.and_then(|row| {
+        row.strip_prefix('[')?
+            .strip_suffix(']')?
+            .parse::<usize>()
+            .ok()
+    });
+    if let Some((lines, row)) = lines.zip(row) {
+        let must = format!("line {}: {}", lines[row], fault.must);
+        fault = SceneFault::new(ROWS_KEY, must);
+    }
+    let span = place_in(text, &fault.key);
+    let value = span.clone().and_then(|span| text.get(span));
+    fault.value = value.filter(|value| is_short(value)).map(str::to_owned);
+    if let (Some(span), Some(value)) = (&span, &fault.value)
+        && fault.must.starts_with(NOT_GROWING)
+        && !fault.must.contains('.')
+        && value.parse::<u64>().is_ok()
+        && has_tight_comma(
+            text.get(span.start.saturating_sub(2)..span.end)
+                .unwrap_or_default(),
+        )
+    {
+        // `10,5` was meant as one number.
+        fault.must.push_str(DECIMAL_POINTS);
+    }
+    SceneError::of_fault(origin, text, fault).with_span(span)
+}
+
+/// Returns true for a value that fits into a sentence. A list, a table or a long text is shown by the marked line alone.
+fn is_short(value: &str) -> bool {
+    value.len() <= 40 && !value.contains('\n') && !value.starts_with(['[', '{'])
+}
+
+/// The place of the value of `key` in the text of a scene, such as `grid.distance_mm[1]` or `grid.friction.from`.
+fn place_in(text: &str, key: &str) -> Option<Range<usize>> {
+    place(Document::parse(text).ok()?.as_item(), key)
+}
+
+fn place(item: &Item, key: &str) -> Option<Range<usize>> {
+    if key.is_empty() {
+        return item.span();
+    }
+    if let Some((index, rest)) = key.strip_prefix('[').and_then(|key| key.split_once(']')) {
+        let value = item.as_array()?.get(index.parse().ok()?)?;
+        return value.span().filter(|_| rest.is_empty());
+    }
+    let key = key.strip_prefix('.').unwrap_or(key);
+    item.as_table_like()?.iter().find_map(|(name, inner)| {
+        let rest = key.strip_prefix(&*shortened(name))?;
+        let is_whole = rest.is_empty() || rest.starts_with(['.', '[']);
+        is_whole.then(|| place(inner, rest))?
+    })
+}

@@ -1,0 +1,171 @@
+//! From the description of a scene to text, and edited text.
+
+use std::fmt::{self, Write};
+use std::sync::Arc;
+
+use toml_edit::{Array, DocumentMut, InlineTable, Item, TableLike, TomlError, Value};
+
+use crate::scene::axis::{AxisScale, AxisValues};
+use crate::scene::deviations::ROWS;
+use crate::scene::error::SceneError;
+use crate::scene::parameter::Parameter;
+use crate::scene::profile::KEY as ROWS_KEY;
+use crate::scene::{Scene, SceneBuilder};
+
+/// TOML text of a scene: the source text of a scene that was read; otherwise it is written from the numbers when it is displayed.
+///
+/// Texts are equal if their characters are.
+#[derive(Clone, Debug)]
+pub struct SceneText(TextSource);
+
+#[derive(Clone, Debug)]
+enum TextSource {
+    Text(Arc<str>),
+    Numbers(Arc<SceneBuilder>),
+}
+
+impl SceneText {
+    /// The text from which a scene was read.
+    #[must_use]
+    pub fn of_source(text: &str) -> Self {
+        Self(TextSource::Text(text.into()))
+    }
+
+    pub(in crate::scene) fn of_numbers(builder: Arc<SceneBuilder>) -> Self {
+        Self(TextSource::Numbers(builder))
+    }
+}
+
+impl PartialEq for SceneText {
+    fn eq(&self, other: &Self) -> bool {
+        self.to_string() == other.to_string()
+    }
+}
+
+impl fmt::Display for SceneText {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match &self.0 {
+            TextSource::Text(text) => f.write_str(text),
+            TextSource::Numbers(builder) => write!(f, "{}", document(builder)),
+        }
+    }
+}
+
+impl Scene {
+    /// The scene as TOML: its source text if it was read, otherwise text that [`Scene::parse`] turns into the same scene.
+    #[must_use]
+    pub fn to_toml(&self) -> String {
+        self.text.to_string()
+    }
+
+    /// The TOML text of this scene with other values of some parameters. Comments and layout stay.
+    ///
+    /// # Errors
+    /// If a value is not allowed, as in [`Scene::with_parameters`].
+    pub fn to_toml_with(&self, values: &[(Parameter, f64)]) -> Result<String, SceneError> {
+        let changed = self.with_parameters(values)?;
+        let document = self.to_toml().parse();
+        let mut document: DocumentMut =
+            document.map_err(|why: TomlError| SceneError::whole(&self.name, why.message()))?;
+        for (parameter, _) in values {
+            let parameter = match parameter {
+                Parameter::Taper => Parameter::TipRadiusUm,
+                own => *own,
+            };
+            if let Some(value) = parameter.value(&changed) {
+                put(document.as_table_mut(), parameter.key(), value);
+            }
+        }
+        Ok(document.to_string())
+    }
+}
+
+fn document(scene: &SceneBuilder) -> DocumentMut {
+    let mut document = DocumentMut::new();
+    let root = document.as_table_mut();
+    put(root, "title", scene.title.as_str());
+    for parameter in Parameter::ALL {
+        if let Some(value) = scene.numbers.get(parameter) {
+            put(root, parameter.key(), value);
+        }
+    }
+    if let Some(rows) = &scene.rows {
+        let rows = rows.iter().map(|row| Array::from_iter(*row));
+        put(root, ROWS_KEY, rows.collect::<Array>());
+    }
+    put(root, "grid.push_angle_deg", &scene.push_angle_deg);
+    put(root, "grid.distance_mm", &scene.distance_mm);
+    for (parameter, values) in &scene.sweep {
+        put(root, &format!("grid.{}", parameter.axis()), values);
+    }
+    if let Some(name) = &scene.name {
+        put(root, "output.name", name.as_str());
+    }
+    if let Some(deviations) = &scene.uncertainty {
+        for (parameter, deviation) in &deviations.parameters {
+            put(
+                root,
+                &format!("uncertainty.{}", parameter.name()),
+                *deviation,
+            );
+        }
+        if let Some(deviation) = deviations.profile_radius_um {
+            put(root, &format!("uncertainty.{ROWS}"), deviation);
+        }
+    }
+    document
+}
+
+/// Sets the value of a key with dots, and keeps what is around a value that is there.
+fn put(mut table: &mut dyn TableLike, key: &str, value: impl Into<Value>) {
+    let (tables, last) = key.rsplit_once('.').unwrap_or(("", key));
+    for name in tables.split('.').filter(|name| !name.is_empty()) {
+        let entry = table.entry(name).or_insert_with(toml_edit::table);
+        match entry.as_table_like_mut() {
+            Some(inner) => table = inner,
+            // A checked scene has a table there.
+            None => return,
+        }
+    }
+    let mut value = value.into();
+    if let Some(before) = table.get(last).and_then(Item::as_value) {
+        *value.decor_mut() = before.decor().clone();
+    }
+    table.insert(last, value.into());
+}
+
+impl From<&AxisValues> for Value {
+    fn from(values: &AxisValues) -> Self {
+        match values {
+            AxisValues::List(list) => Array::from_iter(list.iter().copied()).into(),
+            AxisValues::Range {
+                from,
+                to,
+                count,
+                scale,
+            } => {
+                let mut table = InlineTable::new();
+                table.insert("from", (*from).into());
+                if let Some(to) = *to {
+                    table.insert("to", to.into());
+                }
+                table.insert("count", i64::try_from(*count).unwrap_or(i64::MAX).into());
+                if *scale == AxisScale::Log {
+                    table.insert("scale", "log".into());
+                }
+                table.into()
+            }
+        }
+    }
+}
+
+/// Rows of radii as a list in TOML, a row a line.
+pub(super) fn rows_text(rows: &[[f64; 2]]) -> String {
+    let mut list = String::from("[\n");
+    for [arc_length_mm, radius_um] in rows {
+        // Writing to a String cannot fail.
+        let _ = writeln!(list, "    [{arc_length_mm:?}, {radius_um:?}],");
+    }
+    list.push(']');
+    list
+}
