@@ -1,14 +1,48 @@
-//! The pages of `docs/` and README, command by command: every line of a shell block that calls `whiskmap` runs.
+//! Documentation: commands run, links and paths exist, every column is described, every summary of an item stands alone.
 #![allow(clippy::expect_used, reason = "a test fails by panicking")]
 
 use assert_cmd::Command;
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use whiskmap::measured::Compared;
 use whiskmap::trace::{BranchPoint, Corner, Detachment, ShapePoint};
 use whiskmap::uncertainty::Spread;
 
-/// The calls of `whiskmap` in the shell blocks of a page, without their remarks and where their output goes.
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+/// Returns all files below `folder` with this extension, in order.
+fn files(folder: &Path, extension: &str) -> Vec<PathBuf> {
+    let entries = fs::read_dir(folder).expect("a folder");
+    let mut paths: Vec<PathBuf> = entries.map(|entry| entry.expect("a file").path()).collect();
+    paths.sort();
+    let is_wanted = |path: &PathBuf| path.extension().is_some_and(|own| own == extension);
+    let below = |path: PathBuf| match path.is_dir() {
+        true => files(&path, extension),
+        false => Some(path).filter(is_wanted).into_iter().collect(),
+    };
+    paths.into_iter().flat_map(below).collect()
+}
+
+/// Returns path and text of every page.
+fn pages() -> Vec<(PathBuf, String)> {
+    let names = [
+        "README.md",
+        "ARCHITECTURE.md",
+        "CHANGELOG.md",
+        "CONTRIBUTING.md",
+    ];
+    let paths = names.map(|name| root().join(name)).into_iter();
+    let paths = paths.chain(files(&root().join("docs"), "md"));
+    let read = |path: PathBuf| {
+        let text = fs::read_to_string(&path).expect("a page");
+        (path, text)
+    };
+    paths.map(read).collect()
+}
+
+/// Returns the calls of `whiskmap` in the shell blocks of a page, without comments and redirection.
 fn calls(page: &str) -> Vec<Vec<String>> {
     let blocks = page.split("```sh\n").skip(1);
     let lines = blocks.flat_map(|block| block.split("```").next().unwrap_or_default().lines());
@@ -23,21 +57,15 @@ fn calls(page: &str) -> Vec<Vec<String>> {
 
 #[test]
 fn every_command_of_the_pages_runs() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let place = tempfile::tempdir().expect("a folder");
     fs::create_dir(place.path().join("scenes")).expect("a folder for scenes");
-    for scene in fs::read_dir(root.join("scenes")).expect("scenes") {
+    for scene in fs::read_dir(root().join("scenes")).expect("scenes") {
         let scene = scene.expect("a scene").path();
         let name = scene.file_name().expect("a name");
         fs::copy(&scene, place.path().join("scenes").join(name)).expect("a copy");
     }
-    let docs = fs::read_dir(root.join("docs")).expect("docs");
-    let mut pages: Vec<_> = docs.map(|page| page.expect("a page").path()).collect();
-    pages.sort();
-    pages.insert(0, root.join("README.md"));
     let mut ran = 0;
-    for page in pages {
-        let text = fs::read_to_string(&page).expect("text");
+    for (page, text) in pages() {
         for call in calls(&text) {
             let run = Command::cargo_bin("whiskmap")
                 .expect("the program")
@@ -45,8 +73,8 @@ fn every_command_of_the_pages_runs() {
                 .current_dir(place.path())
                 .output()
                 .expect("a run");
-            let says = String::from_utf8_lossy(&run.stderr);
-            assert!(run.status.success(), "{}: {call:?}: {says}", page.display());
+            let error = String::from_utf8_lossy(&run.stderr);
+            assert!(run.status.success(), "{}: {call:?}: {error}", page.display());
             ran += 1;
         }
     }
@@ -55,8 +83,7 @@ fn every_command_of_the_pages_runs() {
 
 #[test]
 fn every_column_is_on_the_page_of_the_commands() {
-    let page = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/commands.md"));
-    let page = page.expect("docs/commands.md");
+    let page = fs::read_to_string(root().join("docs/commands.md")).expect("docs/commands.md");
     let tables = [
         Detachment::COLUMNS,
         Corner::COLUMNS,
@@ -71,21 +98,106 @@ fn every_column_is_on_the_page_of_the_commands() {
     }
 }
 
+/// Returns the anchor of a heading, as GitHub forms it.
+fn anchor(heading: &str) -> String {
+    let heading = heading.trim_start_matches('#').trim().to_lowercase();
+    let kept = heading.chars().filter(|c| c.is_alphanumeric() || " -_".contains(*c));
+    kept.map(|c| if c == ' ' { '-' } else { c }).collect()
+}
+
 #[test]
-fn links_of_the_pages_lead_somewhere() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let docs = fs::read_dir(root.join("docs")).expect("docs");
-    let pages = docs.map(|page| page.expect("a page").path());
-    for page in pages.chain(["README.md", "ARCHITECTURE.md"].map(|name| root.join(name))) {
-        let text = fs::read_to_string(&page).expect("text");
-        for link in text
-            .split("](")
-            .skip(1)
-            .filter_map(|rest| rest.split(')').next())
-        {
-            let file = page.with_file_name(link.split('#').next().unwrap_or_default());
-            let is_known = link.starts_with("http") || file.exists();
-            assert!(is_known, "{}: {link}", page.display());
+fn links_lead_to_files_and_headings() {
+    for (page, text) in pages() {
+        let links = text.split("](").skip(1);
+        for link in links.filter_map(|rest| rest.split(')').next()) {
+            if link.starts_with("http") {
+                continue;
+            }
+            let (file, heading) = link.split_once('#').unwrap_or((link, ""));
+            let target = page.with_file_name(file);
+            assert!(target.exists(), "{}: {link}", page.display());
+            if !heading.is_empty() {
+                let text = fs::read_to_string(&target).expect("a page");
+                let headings = text.lines().filter(|line| line.starts_with('#'));
+                let is_there = headings.map(anchor).any(|own| own == heading);
+                assert!(is_there, "{}: {link}", page.display());
+            }
         }
     }
+}
+
+/// Words in backticks that end in the name of a file, or in a slash, are paths from the root or from a source folder.
+#[test]
+fn paths_on_pages_about_the_code_exist() {
+    let bases = ["", "src", "crates", "crates/mechanics/src", "tests", "outputs"];
+    for (page, text) in pages() {
+        let name = page.file_name().unwrap_or_default();
+        if name != "ARCHITECTURE.md" && name != "CONTRIBUTING.md" {
+            continue;
+        }
+        for word in text.split('`').skip(1).step_by(2) {
+            let ends = [".rs", ".wgsl", ".sh", ".md", ".toml", "/"];
+            if word.contains(char::is_whitespace) || !ends.iter().any(|end| word.ends_with(end)) {
+                continue;
+            }
+            let exists = bases.iter().any(|base| root().join(base).join(word).exists());
+            assert!(exists, "{}: `{word}`", page.display());
+        }
+    }
+}
+
+#[test]
+fn the_architecture_has_at_most_150_lines() {
+    let text = fs::read_to_string(root().join("ARCHITECTURE.md")).expect("a page");
+    assert!(text.lines().count() <= 150, "{}", text.lines().count());
+}
+
+/// Returns true if a summary does not name its subject.
+fn is_fragment(summary: &str) -> bool {
+    let starts = ["Of", "That of", "Those", "The same"];
+    starts.iter().any(|start| {
+        let rest = summary.strip_prefix(start);
+        rest.is_some_and(|rest| !rest.starts_with(char::is_alphanumeric))
+    })
+}
+
+#[test]
+fn fragments_are_recognized() {
+    for text in ["Of the rod.", "That of `x`.", "Those that do", "The same"] {
+        assert!(is_fragment(text), "{text}");
+    }
+    for text in ["Offset in bytes.", "The sameness", "That off", "Angle of the rod."] {
+        assert!(!is_fragment(text), "{text}");
+    }
+}
+
+/// The first line of each doc comment, and in shaders of each comment, names its subject.
+#[test]
+fn summaries_stand_alone() {
+    let mut found = Vec::new();
+    let mut summaries = 0;
+    let mut folders = vec![root().join("src"), root().join("shaders")];
+    let crates = fs::read_dir(root().join("crates")).expect("crates");
+    folders.extend(crates.map(|own| own.expect("a crate").path().join("src")));
+    for folder in folders {
+        for (extension, markers) in [("rs", &["///", "//!"][..]), ("wgsl", &["//"])] {
+            for path in files(&folder, extension) {
+                let text = fs::read_to_string(&path).expect("a source file");
+                let mut is_first = true;
+                for (number, line) in (1..).zip(text.lines()) {
+                    let marked = |marker: &&str| line.trim_start().strip_prefix(*marker);
+                    let comment = markers.iter().find_map(marked);
+                    if let Some(comment) = comment.filter(|_| is_first) {
+                        summaries += 1;
+                        if is_fragment(comment.trim()) {
+                            found.push(format!("{}:{number}: {line}", path.display()));
+                        }
+                    }
+                    is_first = comment.is_none();
+                }
+            }
+        }
+    }
+    assert!(summaries > 1000, "only {summaries} summaries found");
+    assert!(found.is_empty(), "{}", found.join("\n"));
 }
