@@ -74,7 +74,11 @@ fn every_command_of_the_pages_runs() {
                 .output()
                 .expect("a run");
             let error = String::from_utf8_lossy(&run.stderr);
-            assert!(run.status.success(), "{}: {call:?}: {error}", page.display());
+            assert!(
+                run.status.success(),
+                "{}: {call:?}: {error}",
+                page.display()
+            );
             ran += 1;
         }
     }
@@ -101,7 +105,9 @@ fn every_column_is_on_the_page_of_the_commands() {
 /// Returns the anchor of a heading, as GitHub forms it.
 fn anchor(heading: &str) -> String {
     let heading = heading.trim_start_matches('#').trim().to_lowercase();
-    let kept = heading.chars().filter(|c| c.is_alphanumeric() || " -_".contains(*c));
+    let kept = heading
+        .chars()
+        .filter(|c| c.is_alphanumeric() || " -_".contains(*c));
     kept.map(|c| if c == ' ' { '-' } else { c }).collect()
 }
 
@@ -129,7 +135,14 @@ fn links_lead_to_files_and_headings() {
 /// Words in backticks that end in the name of a file, or in a slash, are paths from the root or from a source folder.
 #[test]
 fn paths_on_pages_about_the_code_exist() {
-    let bases = ["", "src", "crates", "crates/mechanics/src", "tests", "outputs"];
+    let bases = [
+        "",
+        "src",
+        "crates",
+        "crates/mechanics/src",
+        "tests",
+        "outputs",
+    ];
     for (page, text) in pages() {
         let name = page.file_name().unwrap_or_default();
         if name != "ARCHITECTURE.md" && name != "CONTRIBUTING.md" {
@@ -140,7 +153,9 @@ fn paths_on_pages_about_the_code_exist() {
             if word.contains(char::is_whitespace) || !ends.iter().any(|end| word.ends_with(end)) {
                 continue;
             }
-            let exists = bases.iter().any(|base| root().join(base).join(word).exists());
+            let exists = bases
+                .iter()
+                .any(|base| root().join(base).join(word).exists());
             assert!(exists, "{}: `{word}`", page.display());
         }
     }
@@ -166,7 +181,12 @@ fn fragments_are_recognized() {
     for text in ["Of the rod.", "That of `x`.", "Those that do", "The same"] {
         assert!(is_fragment(text), "{text}");
     }
-    for text in ["Offset in bytes.", "The sameness", "That off", "Angle of the rod."] {
+    for text in [
+        "Offset in bytes.",
+        "The sameness",
+        "That off",
+        "Angle of the rod.",
+    ] {
         assert!(!is_fragment(text), "{text}");
     }
 }

@@ -4,12 +4,11 @@ use super::arguments::whole;
 use super::disk;
 use super::engine::{EngineArgs, bound_deg};
 use super::estimate::MapFormat;
-use super::failure::{Failure, check_resolved, message};
+use super::failure::{Failure, message};
 use super::files::Files;
 use super::outputs::save;
-use super::progress::Progress;
 use super::sharded::{Shard, StoreRun};
-use super::summary::print;
+use super::summary::{compute, report};
 use super::tolerance::ToleranceArgs;
 use clap::Args;
 use std::path::PathBuf;
@@ -17,7 +16,6 @@ use std::str::FromStr;
 use std::time::Instant;
 use whiskmap::accuracy::{Accuracy, BOUNDED};
 use whiskmap::engine::Engine;
-use whiskmap::map;
 use whiskmap::numerics::ArithmeticClass;
 use whiskmap::plan::{Channels, Plan};
 use whiskmap::refine::{GOAL, TOLERANCE};
@@ -131,19 +129,10 @@ pub fn run(args: &MapArgs, files: &mut Files) -> Result<(), Failure> {
 
     let start = Instant::now();
     let mut writer = MapWriter::create(&file, &about, files.temporary())?;
-    let bar = Progress::over(plan.cells, "cells");
     let engine = engine.as_mut().map(|engine| &mut **engine as _);
-    let mut settled = |cells| bar.inc(cells);
-    let mut keep = |panels: Vec<_>| writer.write_panels(&panels);
-    let result = map::run(&scene, &plan, engine, &mut settled, &mut keep);
-    bar.finish();
-    let summary = result?;
+    let keep = |panels: Vec<_>| writer.write_panels(&panels);
+    let summary = compute(&scene, &plan, engine, plan.cells, keep)?;
     writer.finish(summary.engine_cells, summary.audit)?;
-    if let Some(failure) = &summary.engine_failure {
-        message(&format!(
-            "warning: {failure}; the CPU solved the remaining cells"
-        ));
-    }
     if let Some(picture) = &picture {
         let regimes = render::map(&StoredMap::open(&file)?.into(), &MapOptions::default())?;
         save(
@@ -154,9 +143,7 @@ pub fn run(args: &MapArgs, files: &mut Files) -> Result<(), Failure> {
         )?;
     }
     let written: Vec<PathBuf> = [Some(file), picture].into_iter().flatten().collect();
-    print(&scene, &summary, start.elapsed().as_secs_f64(), &written)?;
-    let see = "the channel `status`";
-    check_resolved(summary.unresolved(), summary.cells(), "cells", see)
+    report(&scene, &summary, start, &written)
 }
 
 impl MapArgs {

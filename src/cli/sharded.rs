@@ -2,19 +2,18 @@
 
 use super::disk;
 use super::estimate::MapFormat;
-use super::failure::{Failure, check_resolved, message};
-use super::progress::Progress;
-use super::summary::print;
+use super::failure::{Failure, message};
+use super::summary::{compute, report};
 use rayon::prelude::*;
 use std::path::Path;
 use std::str::FromStr;
 use std::time::Instant;
 use whiskmap::engine::Engine;
-use whiskmap::map::{self, Panel};
+use whiskmap::map::Panel;
 use whiskmap::plan::Plan;
 use whiskmap::scene::Scene;
 use whiskmap::store::{
-    self, BlockState, CheckDepth, Description, PackedPanel, TemporaryFiles, ZarrStore,
+    BlockState, CheckDepth, Description, PackedPanel, TemporaryFiles, ZarrStore,
 };
 
 /// Blocks of one of `count` processes: every `count`-th block.
@@ -98,13 +97,12 @@ impl StoreRun<'_> {
             store.block_count()
         ));
 
-        let bar = Progress::over(panel * whiskers, "cells");
         let mut due = blocks
             .iter()
             .map(|block| (*block, store.whiskers(*block).len()));
         let mut next = due.next();
         let mut packed: Vec<PackedPanel> = Vec::new();
-        let mut keep = |panels: Vec<Panel>| {
+        let keep = |panels: Vec<Panel>| {
             let panels = panels.par_iter();
             let panels = panels.map(|panel| store.pack(panel));
             packed.extend(panels.collect::<Result<Vec<_>, _>>()?);
@@ -115,25 +113,10 @@ impl StoreRun<'_> {
                 packed.clear();
                 next = due.next();
             }
-            Ok::<(), store::Error>(())
+            Ok(())
         };
-        let mut settled = |cells| bar.inc(cells);
-        let result = map::run(scene, &plan, self.engine, &mut settled, &mut keep);
-        bar.finish();
-        let summary = result?;
-        if let Some(failure) = &summary.engine_failure {
-            message(&format!(
-                "warning: {failure}; the CPU solved the remaining cells"
-            ));
-        }
-        print(
-            scene,
-            &summary,
-            start.elapsed().as_secs_f64(),
-            &[path.to_owned()],
-        )?;
-        let see = "the channel `status`";
-        check_resolved(summary.unresolved(), summary.cells(), "cells", see)
+        let summary = compute(scene, &plan, self.engine, panel * whiskers, keep)?;
+        report(scene, &summary, start, &[path.to_owned()])
     }
 }
 

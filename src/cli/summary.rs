@@ -1,18 +1,54 @@
 //! Summary of a run of `map` on standard output.
 
-use std::io::Write;
+use super::failure::{Failure, check_resolved, message};
+use super::progress::Progress;
+use std::io::{self, Write};
 use std::path::PathBuf;
+use std::time::Instant;
 use whiskmap::classify::Regime;
-use whiskmap::map::{Stage, Summary};
+use whiskmap::engine::Engine;
+use whiskmap::map::{self, Panel, Stage, Summary};
+use whiskmap::plan::Plan;
 use whiskmap::scene::Scene;
+use whiskmap::store::Error;
 
-/// Prints the `summary` of a map that took `seconds`, including files, and the names of the written `files`.
-pub fn print(
+/// Computes `cells` of `plan` with a progress bar, and passes panels to `keep`; warns if the engine fails.
+pub fn compute(
+    scene: &Scene,
+    plan: &Plan,
+    engine: Option<&mut dyn Engine>,
+    cells: usize,
+    mut keep: impl FnMut(Vec<Panel>) -> Result<(), Error> + Send,
+) -> Result<Summary, Failure> {
+    let bar = Progress::over(cells, "cells");
+    let result = map::run(scene, plan, engine, &mut |cells| bar.inc(cells), &mut keep);
+    bar.finish();
+    let summary = result?;
+    if let Some(failure) = &summary.engine_failure {
+        message(&format!(
+            "warning: {failure}; the CPU solved the remaining cells"
+        ));
+    }
+    Ok(summary)
+}
+
+/// Prints the summary of a map since `start` and the names of its `files`; warns of unresolved cells.
+///
+/// # Errors
+///
+/// If every cell is unresolved.
+pub fn report(
     scene: &Scene,
     summary: &Summary,
-    seconds: f64,
+    start: Instant,
     files: &[PathBuf],
-) -> std::io::Result<()> {
+) -> Result<(), Failure> {
+    print(scene, summary, start.elapsed().as_secs_f64(), files)?;
+    let see = "the channel `status`";
+    check_resolved(summary.unresolved(), summary.cells(), "cells", see)
+}
+
+fn print(scene: &Scene, summary: &Summary, seconds: f64, files: &[PathBuf]) -> io::Result<()> {
     let mut out = std::io::stdout().lock();
     let engine = &summary.engine_cells;
     writeln!(out, "{}", scene.title)?;
