@@ -1,7 +1,6 @@
 //! Parsers of argument values, and help texts about columns.
 
-use clap::ValueEnum;
-use clap::builder::{PossibleValuesParser, TypedValueParser};
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use std::fmt::Write;
 use std::ops::RangeInclusive;
 use whiskmap::input::Quantity;
@@ -35,22 +34,16 @@ pub fn parameter() -> impl TypedValueParser<Value = Parameter> {
     })
 }
 
-/// Side of the whisker that the pole is on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum SideName {
-    /// Concave backward: the pole is on the convex side
-    Cb,
-    /// Concave forward: the pole is on the concave side
-    Cf,
-}
-
-impl From<SideName> for Side {
-    fn from(side: SideName) -> Self {
-        match side {
-            SideName::Cb => Self::Cb,
-            SideName::Cf => Self::Cf,
-        }
-    }
+/// Returns a parser of the side of the whisker that the pole is on.
+pub fn side() -> impl TypedValueParser<Value = Side> {
+    let cb = "Concave backward: the pole is on the convex side";
+    let cf = "Concave forward: the pole is on the concave side";
+    let names = [("cb", cb), ("cf", cf)];
+    let values = names.map(|(name, help)| PossibleValue::new(name).help(help));
+    PossibleValuesParser::new(values).map(|name| match name.as_str() {
+        "cb" => Side::Cb,
+        _ => Side::Cf,
+    })
 }
 
 /// Returns `examples`, followed by the columns and meanings of each titled table.

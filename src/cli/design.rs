@@ -1,6 +1,6 @@
 //! `whiskmap design`.
 
-use super::arguments::{SideName, angle, parameter};
+use super::arguments::{angle, parameter, side};
 use super::failure::Failure;
 use super::files::Files;
 use super::outputs::open;
@@ -30,8 +30,8 @@ pub struct DesignArgs {
     #[command(flatten)]
     pole: PoleArgs,
     /// Side of the whisker that the pole is on [default: by the sign of the angle]
-    #[arg(long, value_enum)]
-    side: Option<SideName>,
+    #[arg(long, value_parser = side())]
+    side: Option<Side>,
     #[command(flatten)]
     end: EndArgs,
     /// Parameter of the scene to vary
@@ -71,8 +71,8 @@ impl DesignArgs {
         let push_angle_deg = push.unwrap_or(f64::NAN);
         let side = Side::of_push(push_angle_deg);
         let other = match (self.side, side) {
-            (Some(SideName::Cf), Side::Cb) => Some("--side cf must be negative"),
-            (Some(SideName::Cb), Side::Cf) => Some("--side cb must be positive"),
+            (Some(Side::Cf), Side::Cb) => Some("--side cf must be negative"),
+            (Some(Side::Cb), Side::Cf) => Some("--side cb must be positive"),
             _ => None,
         };
         if let Some(must) = other {

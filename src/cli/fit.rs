@@ -72,11 +72,8 @@ pub fn run(args: &FitArgs, files: &mut Files) -> Result<(), Failure> {
     let values: Vec<_> = values.map(|own| (own.parameter, own.value)).collect();
     let toml = toml.map(|place| Ok::<_, Failure>((place, scene.to_toml_with(&values)?)));
     let toml = toml.transpose()?;
-    let printed = print(
-        &scene.title,
-        &found,
-        [toml, json].into_iter().flatten().collect(),
-    );
+    let outputs = [toml, json].into_iter().flatten().collect();
+    let printed = print(&scene.title, &found, outputs);
     match found.not_a_fit {
         Some(why) if printed.as_ref().err().is_none_or(Failure::is_broken_pipe) => {
             let unwritten = args.output.as_deref().map(|path| match path {
@@ -148,39 +145,26 @@ fn table(title: &str, fit: &Fit) -> io::Result<()> {
     if fit.not_a_fit.is_some() {
         writeln!(out, "not a fit")?;
     }
-    writeln!(
-        out,
-        "{:19} {:>22} {:>22}",
-        "parameter", "value", "standard error"
-    )?;
+    let mut line =
+        |name: &str, value: &str, error: &str| writeln!(out, "{name:19} {value:>22} {error:>22}");
+    line("parameter", "value", "standard error")?;
     for estimate in &fit.estimates {
         let error = estimate.standard_error.map(digits);
-        writeln!(
-            out,
-            "{:19} {:>22} {:>22}",
-            estimate.parameter.name(),
-            digits(estimate.value),
-            error.as_deref().unwrap_or(no_error(fit, estimate))
-        )?;
+        let error = error.as_deref().unwrap_or(no_error(fit, estimate));
+        line(estimate.parameter.name(), &digits(estimate.value), error)?;
     }
     for (i, estimate) in fit.estimates.iter().enumerate() {
         for (other, correlation) in fit.estimates[..i].iter().zip(&fit.correlation[i]) {
-            let names = [other, estimate].map(|own| own.parameter.name());
-            if let Some(correlation) = correlation {
-                let correlation = digits(*correlation);
-                writeln!(
-                    out,
-                    "correlation of {} and {}: {correlation}",
-                    names[0], names[1]
-                )?;
+            let [first, second] = [other, estimate].map(|own| own.parameter.name());
+            if let Some(correlation) = correlation.map(digits) {
+                writeln!(out, "correlation of {first} and {second}: {correlation}")?;
             }
         }
     }
+    let (chi_square, freedom) = (digits(fit.chi_square), fit.degrees_of_freedom);
     writeln!(
         out,
-        "chi-square: {}, {} degrees of freedom",
-        digits(fit.chi_square),
-        fit.degrees_of_freedom
+        "chi-square: {chi_square}, {freedom} degrees of freedom"
     )?;
     for (name, value) in data::summary(&fit.comparison) {
         writeln!(out, "{name}: {value}")?;

@@ -7,7 +7,7 @@ use super::estimate::MapFormat;
 use super::failure::{Failure, message};
 use super::files::Files;
 use super::outputs::save;
-use super::sharded::{Shard, StoreRun};
+use super::sharded::{self, Shard};
 use super::summary::{compute, report};
 use super::tolerance::ToleranceArgs;
 use clap::Args;
@@ -15,7 +15,7 @@ use std::path::PathBuf;
 use std::str::FromStr;
 use std::time::Instant;
 use whiskmap::accuracy::{Accuracy, BOUNDED};
-use whiskmap::engine::Engine;
+use whiskmap::engine::{Engine, EngineDescription};
 use whiskmap::numerics::ArithmeticClass;
 use whiskmap::plan::{Channels, Plan};
 use whiskmap::refine::{GOAL, TOLERANCE};
@@ -43,7 +43,7 @@ pub struct MapArgs {
     scene: PathBuf,
     /// Folder for the files; created if it does not exist
     #[arg(short, long, value_name = "DIR", default_value = "outputs")]
-    output: PathBuf,
+    pub output: PathBuf,
     #[command(flatten)]
     engine: EngineArgs,
     /// Number of CPU threads [default: all cores]
@@ -60,16 +60,16 @@ pub struct MapArgs {
     format: MapFormat,
     /// Resume an interrupted sweep: compute only missing and damaged blocks of the store
     #[arg(long)]
-    resume: bool,
+    pub resume: bool,
     /// Compute one of N parts of a store, from 0/N to N-1/N
     #[arg(long, value_name = "I/N")]
-    shard: Option<Shard>,
+    pub shard: Option<Shard>,
     /// Write no picture
     #[arg(long)]
     no_png: bool,
     /// Start even if the disk seems to have too little space
     #[arg(long)]
-    force: bool,
+    pub force: bool,
 }
 
 pub fn run(args: &MapArgs, files: &mut Files) -> Result<(), Failure> {
@@ -85,27 +85,18 @@ pub fn run(args: &MapArgs, files: &mut Files) -> Result<(), Failure> {
     let left_deg = left_deg.map(|(tolerance, accuracy)| tolerance - accuracy.error_deg);
     let channels = args.channels.unwrap_or(Channels::ALL);
     plan.channels = channels.with_marks(scene.has_friction());
-    let (mut engine, why) = args.engine.open(&scene, &plan, left_deg)?;
-    let solver = whiskmap::engine::EngineDescription::of(engine.as_deref());
+    let mut engine = args.engine.open(&scene, &plan, left_deg)?;
+    let solver = EngineDescription::of(engine.0.as_deref());
     let about = Description {
         scene: &scene,
         engine: &solver,
-        tolerances: &tolerances(&scene, accuracy, engine.as_deref()),
+        tolerances: &tolerances(&scene, accuracy, engine.0.as_deref()),
         channels: plan.channels,
         arithmetic: ArithmeticClass::detect().name(),
     };
     files.folder("--output", &args.output)?;
     if args.format == MapFormat::Zarr {
-        let path = args.output.join(format!("{}.zarr", scene.name));
-        files.store("--output", &path)?;
-        let run = StoreRun {
-            shard: args.shard,
-            resume: args.resume,
-            force: args.force,
-            engine: engine.as_mut().map(|engine| &mut **engine as _),
-            why,
-        };
-        return run.fill(&path, &scene, plan, &about, files.temporary());
+        return sharded::fill(args, files, &scene, plan, &about, &mut engine);
     }
     let file = args.output.join(format!("{}.exr", scene.name));
     let picture = (!args.no_png).then(|| file.with_extension("png"));
@@ -122,10 +113,9 @@ pub fn run(args: &MapArgs, files: &mut Files) -> Result<(), Failure> {
     if !args.force {
         disk::check(&args.output, MapFormat::Exr, &scene, &plan, plan.cells)?;
     }
-    message(&format!(
-        "engine: {} on {} ({why})",
-        solver.engine, solver.adapter
-    ));
+    let (engine, why) = &mut engine;
+    let (name, adapter) = (&solver.engine, &solver.adapter);
+    message(&format!("engine: {name} on {adapter} ({why})"));
 
     let start = Instant::now();
     let mut writer = MapWriter::create(&file, &about, files.temporary())?;

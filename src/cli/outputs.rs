@@ -22,9 +22,8 @@ pub struct OutputArgs {
 /// Open table and plot of a run.
 pub struct OpenOutputs {
     table: Option<(Table, PathBuf)>,
+    is_regular: bool,
     plot: Option<PlotFile>,
-    /// Regular files, whose names are printed at the end.
-    files: Vec<PathBuf>,
 }
 
 impl OutputArgs {
@@ -37,16 +36,10 @@ impl OutputArgs {
         let stdout = self.plot.is_none().then(|| PathBuf::from(STDOUT));
         let csv = self.csv.clone().or(stdout);
         let (table, plot) = open(files, "--csv", csv.as_deref(), self.plot.as_deref())?;
-        let is_regular = table.as_ref().is_some_and(Output::is_regular);
-        let regular_plot = plot.as_ref().filter(|plot| plot.is_regular);
-        let regular = [
-            csv.clone().filter(|_| is_regular),
-            regular_plot.map(|plot| plot.path.clone()),
-        ];
         Ok(OpenOutputs {
+            is_regular: table.as_ref().is_some_and(Output::is_regular),
             table: table.map(Table::new).zip(csv),
             plot,
-            files: regular.into_iter().flatten().collect(),
         })
     }
 }
@@ -59,19 +52,20 @@ impl OpenOutputs {
         })
     }
 
-    /// Finishes the table, draws the plot below its title, and prints the names of the files.
+    /// Finishes the table, draws the plot below its title, and prints the names of regular files.
     pub fn finish(self, title: String, plot: impl FnOnce() -> Plot) -> Result<(), Failure> {
+        let mut regular = Vec::new();
         if let Some((table, path)) = self.table {
             table.finish().map_err(unwritten(&path))?;
+            regular.extend(Some(path).filter(|_| self.is_regular));
         }
         if let Some(file) = self.plot {
             file.save(title, plot())?;
+            regular.extend(Some(file.path).filter(|_| file.is_regular));
         }
         let mut out = io::stdout().lock();
-        for file in self.files {
-            writeln!(out, "{}", file.display())?;
-        }
-        Ok(())
+        let mut names = regular.iter();
+        Ok(names.try_for_each(|path| writeln!(out, "{}", path.display()))?)
     }
 }
 

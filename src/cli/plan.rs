@@ -68,19 +68,17 @@ fn print(scene: &Scene, plan: &Plan, cost: &MapCost, files: &[FileCost]) -> std:
         states + 2
     )?;
     let distances = scene.grid.distance_mm.len();
-    writeln!(
-        out,
-        "cells         {}: {} x {} x {}",
-        plan.cells,
-        counted(scene.grid.push_angle_deg.len(), "push angle"),
+    let pushes = counted(scene.grid.push_angle_deg.len(), "push angle");
+    let (rows, whiskers) = (
         counted(distances, "distance"),
-        counted(plan.whiskers, "whisker")
-    )?;
-    let steps = cost.steps_per_cell;
+        counted(plan.whiskers, "whisker"),
+    );
+    let (cells, steps) = (plan.cells, cost.steps_per_cell);
+    writeln!(out, "cells         {cells}: {pushes} x {rows} x {whiskers}")?;
+    let most = (steps + 1.0) * cells as f64;
     writeln!(
         out,
-        "trajectories  about {:.0} at most: {steps:.2} Newton steps a cell and 1 to confirm",
-        (steps + 1.0) * plan.cells as f64
+        "trajectories  about {most:.0} at most: {steps:.2} Newton steps a cell and 1 to confirm"
     )?;
     match on_gpu(plan.method.effects) {
         Ok(()) => writeln!(
@@ -94,16 +92,16 @@ fn print(scene: &Scene, plan: &Plan, cost: &MapCost, files: &[FileCost]) -> std:
         )?,
         Err(why) => writeln!(out, "GPU calls     none: {why}")?,
     }
+    let mib = plan.bytes.div_ceil(1 << 20);
     writeln!(
         out,
-        "memory        at most {} MiB for panels and cells in flight",
-        plan.bytes.div_ceil(1 << 20)
+        "memory        at most {mib} MiB for panels and cells in flight"
     )?;
+    let (seconds, threads) = (two_digits(cost.seconds), rayon::current_num_threads());
+    let threads = counted(threads, "thread");
     writeln!(
         out,
-        "time          about {} s on {} of the CPU engine, without the files",
-        two_digits(cost.seconds),
-        counted(rayon::current_num_threads(), "thread")
+        "time          about {seconds} s on {threads} of the CPU engine, without the files"
     )?;
     for own in files {
         let name = match own.format {

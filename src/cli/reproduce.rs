@@ -6,7 +6,7 @@ use super::files::{Files, unwritten};
 use super::outputs::save;
 use clap::Args;
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use whiskmap::measured::{Angle, Point};
 use whiskmap::paper::{self, FIG4_WHISKER, FIG5_LEFT, FIG5_RIGHT, Measurements, POLE};
 use whiskmap::render::PictureFormat;
@@ -40,20 +40,11 @@ pub struct ReproduceArgs {
 
 impl ReproduceArgs {
     fn measurements(&self, files: &mut Files) -> Result<Measurements, Failure> {
+        let mut read = |option, path: &Option<_>, whisker| points(files, option, path, whisker);
         Ok(Measurements {
-            fig4d: points(files, "--fig4d", self.fig4d.as_deref(), &FIG4_WHISKER)?,
-            fig5c_left: points(
-                files,
-                "--fig5c-left",
-                self.fig5c_left.as_deref(),
-                &FIG5_LEFT,
-            )?,
-            fig5c_right: points(
-                files,
-                "--fig5c-right",
-                self.fig5c_right.as_deref(),
-                &FIG5_RIGHT,
-            )?,
+            fig4d: read("--fig4d", &self.fig4d, &FIG4_WHISKER)?,
+            fig5c_left: read("--fig5c-left", &self.fig5c_left, &FIG5_LEFT)?,
+            fig5c_right: read("--fig5c-right", &self.fig5c_right, &FIG5_RIGHT)?,
         })
     }
 }
@@ -63,7 +54,7 @@ impl ReproduceArgs {
 fn points(
     files: &mut Files,
     option: &str,
-    path: Option<&Path>,
+    path: &Option<PathBuf>,
     whisker: &Whisker,
 ) -> Result<Vec<Point>, Failure> {
     let Some(path) = path else {

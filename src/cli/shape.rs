@@ -1,6 +1,6 @@
 //! `whiskmap shape`.
 
-use super::arguments::{SideName, angle, column_help, whole};
+use super::arguments::{angle, column_help, side, whole};
 use super::failure::{Failure, message};
 use super::files::Files;
 use super::outputs::OutputArgs;
@@ -34,8 +34,8 @@ pub struct ShapeArgs {
     push_angle: f64,
     // Unstable states reach push angles of the other sign.
     /// Side of the whisker that the pole is on [default: by the sign of the push angle]
-    #[arg(long, value_enum)]
-    side: Option<SideName>,
+    #[arg(long, value_parser = side())]
+    side: Option<Side>,
     /// Which of the two states below the fold
     #[arg(long, value_enum, default_value = "stable")]
     branch: BranchPart,
@@ -64,7 +64,7 @@ pub fn run(args: &ShapeArgs, files: &mut Files) -> Result<(), Failure> {
         return Err(Failure::Input(why));
     }
     let mut outputs = args.outputs.open(files)?;
-    let side = args.side.map_or(Side::of_push(push_deg), Side::from);
+    let side = args.side.unwrap_or(Side::of_push(push_deg));
     let stable = args.branch == BranchPart::Stable;
     let refused = |why| match why {
         NoState::OutOfReach { .. } | NoState::Lost { .. } => refuse(distance, why),

@@ -1,20 +1,19 @@
 //! `whiskmap map --format zarr`: computation of some blocks of a store.
 
 use super::disk;
+use super::engine::OpenEngine;
 use super::estimate::MapFormat;
 use super::failure::{Failure, message};
+use super::files::Files;
+use super::map::MapArgs;
 use super::summary::{compute, report};
 use rayon::prelude::*;
-use std::path::Path;
 use std::str::FromStr;
 use std::time::Instant;
-use whiskmap::engine::Engine;
 use whiskmap::map::Panel;
 use whiskmap::plan::Plan;
 use whiskmap::scene::Scene;
-use whiskmap::store::{
-    BlockState, CheckDepth, Description, PackedPanel, TemporaryFiles, ZarrStore,
-};
+use whiskmap::store::{BlockState, CheckDepth, Description, PackedPanel, ZarrStore};
 
 /// Blocks of one of `count` processes: every `count`-th block.
 #[derive(Clone, Copy, Debug)]
@@ -44,80 +43,78 @@ impl FromStr for Shard {
     }
 }
 
-/// Settings of one run that fills a store.
-pub struct StoreRun<'a> {
-    /// Part of the store to compute; `None` for all.
-    pub shard: Option<Shard>,
-    /// Whether finished blocks are kept.
-    pub resume: bool,
-    /// Whether the run starts on a disk with too little space.
-    pub force: bool,
-    /// Engine that solves cells; `None` for the CPU alone.
-    pub engine: Option<&'a mut dyn Engine>,
-    /// Reason for the engine.
-    pub why: String,
-}
-
-impl StoreRun<'_> {
-    /// Computes the blocks of this run, and writes each as soon as it is finished.
-    pub fn fill(
-        self,
-        path: &Path,
-        scene: &Scene,
-        mut plan: Plan,
-        about: &Description<'_>,
-        temporary: &TemporaryFiles,
-    ) -> Result<(), Failure> {
-        let start = Instant::now();
-        let may_exist = self.resume || self.shard.is_some();
-        let store = ZarrStore::join(path, scene, about, may_exist)?;
-        let is_ours = |block: &usize| self.shard.is_none_or(|shard| shard.has(*block));
-        let mut blocks: Vec<usize> = (0..store.block_count()).filter(is_ours).collect();
-        if self.resume {
-            blocks = unfinished(&store, blocks)?;
-        }
-        plan.parts = blocks.iter().map(|block| store.whiskers(*block)).collect();
-        let panel = scene.grid.push_angle_deg.len() * scene.grid.distance_mm.len();
-        let whiskers: usize = plan.parts.iter().map(ExactSizeIterator::len).sum();
-        if !self.force {
-            let folder = path.parent().unwrap_or(path);
-            disk::check(folder, MapFormat::Zarr, scene, &plan, panel * whiskers)?;
-        }
-        for file in store.begin(temporary)? {
-            message(&format!(
-                "warning: {} was damaged: rewritten",
-                file.display()
-            ));
-        }
-        message(&format!(
-            "engine: {} ({}); blocks: {} of {}",
-            about.engine.engine,
-            self.why,
-            blocks.len(),
-            store.block_count()
-        ));
-
-        let mut due = blocks
-            .iter()
-            .map(|block| (*block, store.whiskers(*block).len()));
-        let mut next = due.next();
-        let mut packed: Vec<PackedPanel> = Vec::new();
-        let keep = |panels: Vec<Panel>| {
-            let panels = panels.par_iter();
-            let panels = panels.map(|panel| store.pack(panel));
-            packed.extend(panels.collect::<Result<Vec<_>, _>>()?);
-            if let Some((block, whiskers)) = next
-                && packed.len() == whiskers
-            {
-                store.write(block, &packed, temporary)?;
-                packed.clear();
-                next = due.next();
-            }
-            Ok(())
-        };
-        let summary = compute(scene, &plan, self.engine, panel * whiskers, keep)?;
-        report(scene, &summary, start, &[path.to_owned()])
+/// Computes the blocks of this run, and writes each as soon as it is finished.
+pub fn fill(
+    args: &MapArgs,
+    files: &mut Files,
+    scene: &Scene,
+    mut plan: Plan,
+    about: &Description<'_>,
+    (engine, why): &mut OpenEngine,
+) -> Result<(), Failure> {
+    let path = &args.output.join(format!("{}.zarr", scene.name));
+    files.store("--output", path)?;
+    let temporary = files.temporary();
+    let start = Instant::now();
+    let may_exist = args.resume || args.shard.is_some();
+    let store = ZarrStore::join(path, scene, about, may_exist)?;
+    let is_ours = |block: &usize| args.shard.is_none_or(|shard| shard.has(*block));
+    let mut blocks: Vec<usize> = (0..store.block_count()).filter(is_ours).collect();
+    if args.resume {
+        blocks = unfinished(&store, blocks)?;
     }
+    plan.parts = blocks.iter().map(|block| store.whiskers(*block)).collect();
+    let panel = scene.grid.push_angle_deg.len() * scene.grid.distance_mm.len();
+    let whiskers: usize = plan.parts.iter().map(ExactSizeIterator::len).sum();
+    if !args.force {
+        disk::check(
+            &args.output,
+            MapFormat::Zarr,
+            scene,
+            &plan,
+            panel * whiskers,
+        )?;
+    }
+    for file in store.begin(temporary)? {
+        message(&format!(
+            "warning: {} was damaged: rewritten",
+            file.display()
+        ));
+    }
+    message(&format!(
+        "engine: {} ({}); blocks: {} of {}",
+        about.engine.engine,
+        why,
+        blocks.len(),
+        store.block_count()
+    ));
+
+    let mut due = blocks
+        .iter()
+        .map(|block| (*block, store.whiskers(*block).len()));
+    let mut next = due.next();
+    let mut packed: Vec<PackedPanel> = Vec::new();
+    let keep = |panels: Vec<Panel>| {
+        let panels = panels.par_iter();
+        let panels = panels.map(|panel| store.pack(panel));
+        packed.extend(panels.collect::<Result<Vec<_>, _>>()?);
+        if let Some((block, whiskers)) = next
+            && packed.len() == whiskers
+        {
+            store.write(block, &packed, temporary)?;
+            packed.clear();
+            next = due.next();
+        }
+        Ok(())
+    };
+    let summary = compute(
+        scene,
+        &plan,
+        engine.as_mut().map(|engine| &mut **engine as _),
+        panel * whiskers,
+        keep,
+    )?;
+    report(scene, &summary, start, &[path.clone()])
 }
 
 /// Returns the missing and damaged ones of `blocks`, and warns of each damaged file.

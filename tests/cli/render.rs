@@ -217,7 +217,10 @@ fn scale_and_width_are_chosen() {
     let force = ["--channel", "force_un"];
     let refused = |more: &[&str], parts: &[&str]| refused(&[&force[..], more].concat(), parts);
     for range in ["1", "1;2"] {
-        refused(&["--range", range], &[range, "two numbers, separated by a comma"]);
+        refused(
+            &["--range", range],
+            &[range, "two numbers, separated by a comma"],
+        );
     }
     for range in ["a,2", "1,2,3", "0,inf"] {
         refused(&["--range", range], &[range, "must be a number"]);

@@ -57,5 +57,8 @@ fn what_is_no_tolerance_is_refused() {
     }
     // The nearest pole is at a tenth of the length: there, a residual of 1e-12 is 6e-10 degrees.
     let run = place.run(&["curve", "scene.toml", "--tolerance", "1e-10deg"]);
-    run.assert_refused(&["must be at least", "e-10deg, the estimated error of the finest steps"]);
+    run.assert_refused(&[
+        "must be at least",
+        "e-10deg, the estimated error of the finest steps",
+    ]);
 }
