@@ -1,7 +1,7 @@
 //! The request to an engine: the cells of some rows.
 
 use super::{Values, WhiskerSide};
-use crate::refine::{RowOfCells, references};
+use crate::refine::{RowOfCells, base_points};
 use crate::rod::Rod;
 use crate::sheet::Sheet;
 use crate::shooting::batch::{InitialCondition, Method, StepStart, step_starts};
@@ -191,7 +191,7 @@ impl RowBatch {
             }
         });
         let rows: Vec<RowOfCells> = rows.collect();
-        let found = references(self.method, &sheets, &rows);
+        let found = base_points(self.method, &sheets, &rows);
         drop((rows, sheets));
         let mut base_points = Vec::with_capacity(found.iter().map(Vec::len).sum());
         for (row, found) in self.rows.iter_mut().zip(found) {

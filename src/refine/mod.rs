@@ -4,14 +4,14 @@
 //! method fails, the fold at the same distance decides: either the wanted direction lies beyond it, or the
 //! fold's normal form gives the start that Newton's method needs.
 
-mod exact;
+mod base_points;
 mod near_fold;
 mod newton;
-mod references;
+mod row_states;
 
-pub use references::{RowOfCells, references};
+pub use base_points::{RowOfCells, base_points};
 
-use crate::sheet::Sheet;
+use crate::sheet::{Guess, Sheet};
 use crate::shooting::FullState;
 use crate::shooting::batch::{Method, chunk_size};
 use glam::DVec2;
@@ -45,6 +45,17 @@ pub struct Shot {
     pub load: f64,
     /// Wanted centre of the pole in the frame of the base, in whisker lengths.
     pub pole: DVec2,
+}
+
+impl Shot {
+    /// Where Newton's method starts.
+    #[must_use]
+    pub const fn guess(&self) -> Guess {
+        Guess {
+            tau: self.tau,
+            load: self.load,
+        }
+    }
 }
 
 /// What became of a cell.

@@ -3,7 +3,7 @@
 use super::{ContactState, End, GOAL, Refined, Shot, TOLERANCE};
 use crate::newton::{BatchNewton, NewtonOutcome, NewtonStep, Problem};
 use crate::rod::{Rod, arclength};
-use crate::sheet::Sheet;
+use crate::sheet::{Guess, Sheet};
 use crate::shooting::batch::Method;
 use crate::shooting::{FirstVariation, limited};
 use glam::DVec2;
@@ -105,7 +105,7 @@ pub fn newton(
             state,
             steps: iterate.steps,
             end: match iterate.outcome {
-                NewtonOutcome::Converged => verdict(problem.sheet, &shots[*i], &state),
+                NewtonOutcome::Converged => verdict(problem.sheet, shots[*i].guess(), &state),
                 _ => End::NotConverged,
             },
         };
@@ -147,15 +147,15 @@ impl Beside {
 /// everything: a tenth of the way from node to node of a continuation.
 const NEAR: f64 = 0.005;
 
-fn is_near(shot: &Shot, state: &ContactState, s: f64) -> bool {
-    let per_load = shot.load.abs() + 1.0 / (s * s);
-    (state.tau - shot.tau).abs() <= NEAR * s && (state.load - shot.load).abs() <= NEAR * per_load
+fn is_near(guess: Guess, state: &ContactState, s: f64) -> bool {
+    let per_load = guess.load.abs() + 1.0 / (s * s);
+    (state.tau - guess.tau).abs() <= NEAR * s && (state.load - guess.load).abs() <= NEAR * per_load
 }
 
 /// Whether a converged state counts.
-pub fn verdict(sheet: &Sheet, shot: &Shot, state: &ContactState) -> End {
+pub fn verdict(sheet: &Sheet, guess: Guess, state: &ContactState) -> End {
     let s = arclength(&sheet.rod, state.tau);
-    let is_astray = sheet.is_walked() && !is_near(shot, state, s);
+    let is_astray = sheet.is_walked() && !is_near(guess, state, s);
     if is_astray || !sheet.is_stable(state.tau, state.load, &state.full.map) {
         End::NotConverged
     } else if state.tau > sheet.tip[0] && !state.is_at_tip(sheet) {

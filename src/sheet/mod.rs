@@ -15,24 +15,25 @@ mod edges;
 mod fold;
 mod lattice;
 mod row;
+mod span;
 
 pub use continuation::level_curve::{LevelCurve, Node, ON_CURVE};
 pub use continuation::{Continuation, NODE_MISS, continuations};
 pub use edges::edge_newton::{EdgeIterate, EdgeProblem, EdgeStart, edge_newton};
 pub use fold::FoldPoint;
-pub use lattice::guesses::Guess;
 pub use row::{Crossing, Edge, Row};
+pub use span::{Guess, RowSpan, SpanNode};
 
 use crate::rod::{Rest, Rod, Side};
 use crate::shooting::ShootingMap;
 use crate::shooting::batch::Method;
 use continuation::pieces::{StablePiece, WalkedRow, stable_pieces};
-use continuation::walked::WalkedPiece;
 use edges::Edges;
 use edges::crossings::crossings;
 use fold::contact_nodes::{ContactNodes, NARROW_SPACING, SPACING};
 use lattice::Lattice;
 use rayon::prelude::*;
+use std::borrow::Cow;
 
 /// How far below zero the load of an unloaded whisker may come out, relative to the fold's: at the soft tip of a
 /// strongly curved cone the rounding of first touch (1e-13 of the length) is a load of 1e-8.
@@ -69,7 +70,7 @@ enum Guesses {
     /// Samples that show all of the sheet.
     Sampled(Box<Samples>),
     /// Its rows, walked because no samples do; piece by piece.
-    Walked(Vec<Vec<WalkedPiece>>),
+    Walked(Vec<Vec<RowSpan>>),
 }
 
 /// A sheet, sampled.
@@ -149,12 +150,15 @@ impl Sheet {
                 if is_lost || samples.is_none() && !rows[i].is_reached() {
                     crossings[i].push(Crossing::unknown());
                 }
-                let walked = |piece: &StablePiece| WalkedPiece::new(&piece.nodes, side);
-                guesses[i] = found.pieces.iter().map(walked).collect();
+                guesses[i] = found
+                    .pieces
+                    .iter()
+                    .filter_map(|piece| piece.span(side))
+                    .collect();
             }
             guesses
         };
-        let walked: Vec<Vec<WalkedPiece>> = rows
+        let walked: Vec<Vec<RowSpan>> = rows
             .par_chunks(together(distances.len()))
             .zip(crossings.par_chunks_mut(together(distances.len())))
             .map(|rows| walk(rows))
@@ -213,36 +217,37 @@ impl Sheet {
             .map_or(0.0, |samples| 2.0 * samples.edges.tip_error)
     }
 
-    /// Guesses for the cells of `row` at growing `pushes` (magnitudes, in radians); `None` outside the sheet.
-    pub fn guesses(&self, row: usize, pushes: impl Iterator<Item = f64>) -> Vec<Option<Guess>> {
+    /// The stable pieces of `row`: from the lattice, where that is certified, else from the row's continuation.
+    #[must_use]
+    pub fn spans(&self, row: usize) -> Cow<'_, [RowSpan]> {
         match &self.guesses {
             Guesses::Sampled(samples) => {
-                let row = samples
-                    .lattice
-                    .row_curve(&samples.contacts, &self.rows[row]);
-                row.guesses(pushes)
+                let Samples {
+                    contacts, lattice, ..
+                } = &**samples;
+                Cow::Owned(vec![lattice.span(contacts, &self.rows[row])])
             }
-            Guesses::Walked(rows) => {
-                let guess = |push| rows[row].iter().find_map(|piece| piece.guess(push));
-                pushes.map(guess).collect()
-            }
+            Guesses::Walked(rows) => Cow::Borrowed(&rows[row]),
         }
     }
 
-    /// Points of the lattice along `row`, by growing load, with their push angles (magnitudes, in radians); none of a walked sheet.
-    #[must_use]
-    pub fn points(&self, row: usize) -> Vec<(f64, Guess)> {
-        let Some(samples) = self.samples() else {
-            return Vec::new();
+    /// Guesses for the cells of `row` at growing `pushes` (magnitudes, in radians); `None` outside the sheet.
+    pub fn guesses(
+        &self,
+        row: usize,
+        pushes: impl Iterator<Item = f64> + Clone,
+    ) -> Vec<Option<Guess>> {
+        let spans = self.spans(row);
+        let mut guesses = match spans.first() {
+            Some(span) => span.guesses(pushes.clone()),
+            None => pushes.clone().map(|_| None).collect(),
         };
-        let curve = samples
-            .lattice
-            .row_curve(&samples.contacts, &self.rows[row]);
-        let point = |i: usize| {
-            let [tau, load] = [curve.tau[i], curve.load[i]];
-            (curve.push[i], Guess { tau, load })
-        };
-        (0..curve.count).map(point).collect()
+        for span in spans.iter().skip(1) {
+            for (guess, other) in guesses.iter_mut().zip(span.guesses(pushes.clone())) {
+                *guess = guess.or(other);
+            }
+        }
+        guesses
     }
 
     /// Whether a state, as far as the fold goes, is on the sheet: loaded toward the pole, on the stable side of

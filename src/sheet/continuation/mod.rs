@@ -6,7 +6,6 @@ mod meeting;
 pub mod pieces;
 mod states;
 mod stepper;
-pub mod walked;
 
 use crate::newton::BatchNewton;
 use crate::sheet::continuation::level_curve::{LevelCurve, Node, ON_CURVE};

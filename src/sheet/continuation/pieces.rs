@@ -1,10 +1,12 @@
 //! Which crossings of a row belong together. With friction or strong curvature `D` can have a saddle on the edge of the sheet: the
 //! level curve of a row is then in several pieces, whose push angles may overlap.
 
+use crate::rod::Side;
 use crate::sheet::continuation::level_curve::{LevelCurve, Node};
 use crate::sheet::continuation::stepper::MOST_PUSH;
 use crate::sheet::continuation::{Continuation, NODE_MISS, continuations};
 use crate::sheet::row::Crossing;
+use crate::sheet::span::{RowSpan, SpanNode};
 
 /// How far apart, relative to contact and load, two crossings are at most if they are the same.
 const SAME: f64 = 1e-5;
@@ -18,6 +20,20 @@ pub struct StablePiece {
     pub end: Crossing,
     /// Its nodes, in this direction or the other.
     pub nodes: Vec<Node>,
+}
+
+impl StablePiece {
+    /// The piece between its nodes; `None` where the row parameter turns back, or there are too few.
+    pub fn span(&self, side: Side) -> Option<RowSpan> {
+        let node = |node: &Node| SpanNode {
+            w: node.point.y.abs() * node.point.x * node.point.x,
+            push: side.sign() * node.push,
+            tau: node.point.x,
+        };
+        let mut nodes: Vec<SpanNode> = self.nodes.iter().map(node).collect();
+        nodes.sort_by(|a, b| a.push.total_cmp(&b.push));
+        RowSpan::through(side.sign(), nodes)
+    }
 }
 
 /// A row to be walked.

@@ -4,8 +4,7 @@
 //! so many that most guesses are a last Newton step away from the state. A row of a map is a level curve of `D` on the lattice;
 //! along it the push angle grows from first touch to detachment.
 
-pub mod guesses;
-mod row_curve;
+mod row_span;
 
 use crate::numerics::lobatto::{LOBATTO_COUNT, LOBATTO_NODES};
 use crate::numerics::nearest_turn;

@@ -3,6 +3,7 @@
 mod bracket;
 pub mod chebyshev;
 mod complex;
+pub mod divided_differences;
 pub mod gauss;
 pub mod lobatto;
 pub mod newton_form;

@@ -1,0 +1,160 @@
+//! Base points of rows: exact states along a row, beside which an engine integrates cells as differences.
+//!
+//! They lie at Chebyshev points of the row parameter `w`, from first touch to the end of the row. The numbers of a state that are analytic
+//! along the row are known between them by their Chebyshev expansion, which is passed on as Taylor polynomials around each base point.
+
+use super::row_states::{ExactState, RowState, row_states};
+use crate::engine::{BasePoint, MOST_TRAJECTORY_STEPS, RowTerms};
+use crate::numerics::chebyshev::{Chebyshev, chebyshev_points};
+use crate::numerics::{WIDTH, nearest_turn};
+use crate::rod::Rest;
+use crate::sheet::{RowSpan, Sheet};
+use crate::shooting::batch::Method;
+use rayon::prelude::*;
+
+/// Base points of a row: as many as polynomials are expanded around side by side.
+pub const NODES: usize = WIDTH;
+
+/// The cells of a row for an engine.
+#[derive(Clone, Copy, Debug)]
+pub struct RowOfCells<'a> {
+    /// Index of the sheet.
+    pub sheet: u32,
+    /// Index of the row in the sheet.
+    pub row: usize,
+    /// Push angles: growing magnitudes, in radians.
+    pub pushes: &'a [f64],
+    /// The index of the first of them among those of the call.
+    pub first: u32,
+}
+
+/// The base points of every row, for its cells from first touch on. There are none where the row has no span from first touch, where a
+/// trajectory takes more than [`MOST_TRAJECTORY_STEPS`], and for rows with fewer cells than base points.
+#[must_use]
+pub fn base_points(method: Method, sheets: &[&Sheet], rows: &[RowOfCells]) -> Vec<Vec<BasePoint>> {
+    let wanted = rows.par_iter().map(|row| {
+        let span = SpanFromTouch::new(sheets[row.sheet as usize], row.row)?;
+        (row.pushes.len() > NODES).then(|| (span.w_end, span.states()))
+    });
+    let wanted: Vec<Option<(f64, [RowState; NODES])>> = wanted.collect();
+    let flat = wanted.iter().flatten().flat_map(|(_, states)| states);
+    let found = row_states(method, &flat.copied().collect::<Vec<_>>());
+    let mut found = found.chunks(NODES);
+    let rows = rows.iter().zip(wanted);
+    let rows = rows.map(|(row, wanted)| {
+        let (w_end, _) = wanted?;
+        let found: Option<Vec<ExactState>> = found.next()?.iter().copied().collect();
+        Some((row, w_end, found?))
+    });
+    let rows: Vec<Option<(&RowOfCells, f64, Vec<ExactState>)>> = rows.collect();
+    let expanded = rows.into_par_iter().map(|row| {
+        let (row, w_end, found) = row?;
+        let sheet = sheets[row.sheet as usize];
+        let is_short = |at: &ExactState| {
+            let steps = method.resolution.steps(&sheet.rod, at.tau, at.load);
+            steps <= MOST_TRAJECTORY_STEPS
+        };
+        let is_short = found.iter().all(is_short);
+        is_short.then(|| expand(sheet, row, w_end, &found))
+    });
+    expanded.map(Option::unwrap_or_default).collect()
+}
+
+/// The span of a row from first touch to a sound end.
+struct SpanFromTouch<'a> {
+    sheet: &'a Sheet,
+    row: usize,
+    span: RowSpan,
+    /// Signed row parameter at the end.
+    w_end: f64,
+}
+
+impl<'a> SpanFromTouch<'a> {
+    fn new(sheet: &'a Sheet, row: usize) -> Option<Self> {
+        let end = sheet.crossings[row].first()?;
+        // On a lattice, a row with more crossings may be in several pieces.
+        let is_one = sheet.is_walked() || sheet.crossings[row].len() == 1;
+        let is_simple = sheet.touches(row) && is_one && end.is_sound() && !end.is_at_touch();
+        let span = sheet.spans(row).first()?.clone();
+        (is_simple && span.begins_at_touch()).then_some(Self {
+            sheet,
+            row,
+            span,
+            w_end: end.load * end.tau * end.tau,
+        })
+    }
+
+    /// The states at the Chebyshev points of the row parameter.
+    fn states(&self) -> [RowState<'a>; NODES] {
+        let points = chebyshev_points(NODES);
+        std::array::from_fn(|m| {
+            let w = points[m] * self.w_end;
+            let [_, tau] = self.span.at(w.abs());
+            RowState {
+                sheet: self.sheet,
+                row: self.row,
+                w,
+                tau,
+            }
+        })
+    }
+}
+
+/// Base points at the states `found` of a row, each with its cells.
+fn expand(sheet: &Sheet, row: &RowOfCells, w_end: f64, found: &[ExactState]) -> Vec<BasePoint> {
+    let last = sheet.crossings[row.row][0].push;
+    let sign = sheet.side.sign();
+    let touch = sheet.rows[row.row].touch;
+    let rest = Rest::new(&sheet.rod);
+    let mut terms = [RowTerms::default(); NODES];
+    let mut before = (0.0, 0.0);
+    for (terms, ExactState { tau, variation, .. }) in terms.iter_mut().zip(found) {
+        let full = &variation.full;
+        let push = nearest_turn(full.map.pole.to_angle() - touch, before.0);
+        let resting = rest.point_at_distance(full.position.length()).to_angle();
+        let resting = nearest_turn(resting, before.1);
+        before = (push, resting);
+        let (by_tau, by_load) = (full.map.by_tau, full.map.by_load);
+        *terms = [
+            push, *tau, resting, by_tau.x, by_tau.y, by_load.x, by_load.y,
+        ];
+    }
+    let points = std::array::from_fn(|m| chebyshev_points(NODES)[m]);
+    let expanded = Chebyshev::through(&terms).taylor_side_by_side(&points);
+    let mut base_points = Vec::with_capacity(NODES);
+    let mut from = 0;
+    for (m, row_here) in expanded.into_iter().enumerate() {
+        let [push, ..] = terms[m];
+        let until = match points.get(m + 1) {
+            Some(next) => {
+                let half = 0.5 * (next - points[m]);
+                let ahead = row_here
+                    .iter()
+                    .rev()
+                    .fold(0.0, |sum, term| sum * half + term[0]);
+                (sign * ahead).min(last)
+            }
+            None => last,
+        };
+        let to = from + row.pushes[from..].partition_point(|push| *push < until);
+        if to > from {
+            let ExactState {
+                tau,
+                load,
+                variation,
+            } = found[m];
+            base_points.push(BasePoint {
+                rod: row.sheet,
+                tau,
+                load,
+                push,
+                state: variation,
+                per_way: w_end / (tau * tau),
+                row: row_here,
+                cells: row.first + from as u32..row.first + to as u32,
+            });
+        }
+        from = to;
+    }
+    base_points
+}

@@ -1,0 +1,131 @@
+//! Exact states at given row parameters: where a row of constant distance `D` meets `load tau^2 = w`.
+//!
+//! Contact and load are the unknowns of `ln D(tau, load) = ln D_row` and `load tau^2 = w`. Along a stable row `w` grows through the fold,
+//! so that the Jacobian is regular there, too.
+
+use super::newton::verdict;
+use super::{ContactState, End};
+use crate::newton::{BatchNewton, NewtonOutcome, NewtonStep, Problem};
+use crate::rod::{Rod, arclength};
+use crate::sheet::{Guess, Sheet};
+use crate::shooting::batch::{Method, chunk_size};
+use crate::shooting::{FirstVariation, limited};
+use glam::DVec2;
+use rayon::prelude::*;
+
+/// A state of a row to find.
+#[derive(Clone, Copy, Debug)]
+pub struct RowState<'a> {
+    /// The whisker side.
+    pub sheet: &'a Sheet,
+    /// Index of the row.
+    pub row: usize,
+    /// Signed row parameter `load tau^2`.
+    pub w: f64,
+    /// A contact nearby; the load follows from `w`.
+    pub tau: f64,
+}
+
+/// A state, exact but for rounding.
+#[derive(Clone, Copy, Debug)]
+pub struct ExactState {
+    /// `tau` of the contact.
+    pub tau: f64,
+    /// Signed load.
+    pub load: f64,
+    /// The state, with the derivatives of the last trajectory.
+    pub variation: FirstVariation,
+}
+
+/// The longest Newton step whose end is extrapolated. What it leaves is below rounding: all cells of a base point inherit it.
+const EXTRAPOLATED_STEP: f64 = 3e-8;
+
+/// Most trajectories of a state.
+const TRAJECTORIES: u32 = 8;
+
+struct RowProblem<'a> {
+    state: RowState<'a>,
+    ln_distance: f64,
+    derivatives: FirstVariation,
+}
+
+impl<'a> Problem<'a> for RowProblem<'a> {
+    type Output = FirstVariation;
+
+    fn rod(&self) -> &'a Rod {
+        &self.state.sheet.rod
+    }
+
+    fn step(&mut self, at: DVec2, here: &FirstVariation) -> NewtonStep {
+        self.derivatives = *here;
+        let map = &here.full.map;
+        let [by_tau, by_load] = [
+            DVec2::new(map.by_tau.x, 2.0 * at.y * at.x),
+            DVec2::new(map.by_load.x, at.x * at.x),
+        ];
+        let miss = DVec2::new(
+            self.ln_distance - libm::log(map.pole.length()),
+            self.state.w - at.y * at.x * at.x,
+        );
+        let step = DVec2::new(miss.perp_dot(by_load), by_tau.perp_dot(miss));
+        let step = step / by_tau.perp_dot(by_load);
+        let (step, length) = limited(step, arclength(self.rod(), at.x), at.y);
+        if length <= EXTRAPOLATED_STEP {
+            NewtonStep::Extrapolate(step)
+        } else {
+            NewtonStep::Shoot(at + step)
+        }
+    }
+}
+
+/// Finds the `states`; `None` where Newton's method fails, or leads off the stable sheet.
+pub fn row_states(method: Method, states: &[RowState]) -> Vec<Option<ExactState>> {
+    let chunks = states.par_chunks(chunk_size(states.len()));
+    chunks
+        .flat_map_iter(|states| solve(method, states))
+        .collect()
+}
+
+fn solve<'a>(method: Method, states: &[RowState<'a>]) -> Vec<Option<ExactState>> {
+    let problem = |state: &RowState<'a>| RowProblem {
+        ln_distance: libm::log(state.sheet.rows[state.row].pole_distance),
+        state: *state,
+        derivatives: FirstVariation::default(),
+    };
+    let mut problems: Vec<RowProblem> = states.iter().map(problem).collect();
+    let start = |state: &RowState| DVec2::new(state.tau, state.w / (state.tau * state.tau));
+    let newton = BatchNewton::new(method, TRAJECTORIES);
+    let iterates = newton.solve(&mut problems, states.iter().map(start));
+    let exact = problems.iter().zip(iterates);
+    let exact = exact.map(
+        |(
+            RowProblem {
+                state, derivatives, ..
+            },
+            iterate,
+        )| {
+            let reached = ContactState {
+                tau: iterate.point.x,
+                load: iterate.point.y,
+                full: iterate.state,
+                residual: 0.0,
+            };
+            let guess = start(state);
+            let guess = Guess {
+                tau: guess.x,
+                load: guess.y,
+            };
+            let is_solved = iterate.outcome == NewtonOutcome::Converged
+                && verdict(state.sheet, guess, &reached) == End::Solved;
+            is_solved.then_some(ExactState {
+                tau: reached.tau,
+                load: reached.load,
+                variation: FirstVariation {
+                    full: reached.full,
+                    ..*derivatives
+                },
+            })
+        },
+    );
+    exact.collect()
+}
