@@ -1,4 +1,4 @@
-//! The mechanics of one whisker in front of one pole: [`numerics`], the [`rod`], and how it is shot from its contact
+//! The mechanics of one whisker in front of one pole: [`numerics`], the [`rod`], and how it is integrated from its contact
 //! ([`shooting`]). `whiskmap` builds sheets, maps and curves from it.
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]

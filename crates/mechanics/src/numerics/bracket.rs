@@ -1,31 +1,34 @@
-//! Roots of one variable. Newton's method and regula falsi are fast, but may leave for anywhere: two places at which the
-//! function has opposite signs keep them in.
+//! Roots of functions of one variable. A bracket holds two places at which the function has opposite signs.
+//!
+//! [`Bracket::newton`] is the root finder: Newton's method, Halley's or any other that proposes a next place, safeguarded by
+//! bisection. [`Bracket::bisect`] needs values alone, [`Bracket::halve`] signs alone. [`illinois`] is regula falsi, for
+//! functions without slopes whose values are expensive.
 
-/// Most iterations: more than bisection needs between any two numbers of ordinary size.
+/// Largest number of iterations: more than bisection needs between any two numbers of ordinary size.
 const MOST_ITERATIONS: usize = 200;
 
-/// Two places between which a function changes its sign; either may be the smaller number.
+/// Two places between which a function changes its sign. Either may be the smaller number.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Bracket {
-    /// Where the function is negative.
+    /// Place where the function is negative.
     pub below: f64,
-    /// Where it is not, or not known.
+    /// Place where the function is not negative, or NaN.
     pub above: f64,
 }
 
-/// Where an iteration has ended.
+/// Result of a search for a root.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Root {
-    /// The place.
+    /// Place of the root.
     pub x: f64,
-    /// The last step toward it.
+    /// Last step toward the root.
     pub step: f64,
-    /// How often the function was evaluated.
+    /// Number of evaluations of the function.
     pub iterations: usize,
 }
 
 impl Bracket {
-    /// From two places, of which the one with the smaller of the `values` is below.
+    /// The bracket of two places. The place with the smaller of the two `values` is below.
     #[must_use]
     pub fn new([a, b]: [f64; 2], values: [f64; 2]) -> Self {
         let [below, above] = if values[0] <= values[1] {
@@ -36,25 +39,25 @@ impl Bracket {
         Self { below, above }
     }
 
-    /// Half way between the ends.
+    /// The point half way between the ends.
     #[must_use]
     pub fn middle(&self) -> f64 {
         0.5 * (self.below + self.above)
     }
 
-    /// Whether `x` is between the ends, or one of them.
+    /// Returns true if `x` lies between the ends or is one of them.
     #[must_use]
     pub fn contains(&self, x: f64) -> bool {
         (x - self.below) * (x - self.above) <= 0.0
     }
 
-    /// Whether `x` is between the ends, and neither of them.
+    /// Returns true if `x` lies between the ends and is neither of them.
     #[must_use]
     pub fn is_inside(&self, x: f64) -> bool {
         (x - self.below) * (x - self.above) < 0.0
     }
 
-    /// Moves an end to `x`, where the function has this `value`.
+    /// Moves one end to `x`, where the function has this `value`. NaN counts as above.
     pub fn shrink(&mut self, x: f64, value: f64) {
         if value < 0.0 {
             self.below = x;
@@ -63,7 +66,8 @@ impl Bracket {
         }
     }
 
-    /// The same, and the next place to look at: the `proposed` one if it is inside, else the middle.
+    /// Moves one end to `x` as [`Bracket::shrink`] does. Returns the next place to evaluate: `proposed` if the bracket contains
+    /// it, otherwise the middle.
     pub fn next(&mut self, x: f64, value: f64, proposed: f64) -> f64 {
         self.shrink(x, value);
         if self.is_inside(proposed) {
@@ -73,7 +77,7 @@ impl Bracket {
         }
     }
 
-    /// Bisection, to the last digit.
+    /// The root by bisection, to the last digit.
     pub fn bisect(self, mut value: impl FnMut(f64) -> f64) -> f64 {
         let iterate = |x| (value(x), f64::NAN);
         self.newton(self.middle(), |_| 0.0, iterate).x
@@ -102,8 +106,9 @@ impl Bracket {
         Ok(())
     }
 
-    /// Newton's method, or one of its kind, from `start`. `iterate` tells the value at a place, and which place it proposes
-    /// next. A proposed step inside the bracket, no longer than `last_step` allows where it begins, is the last one.
+    /// The root by Newton's method, or by another method of its kind, from `start`. `iterate` returns the value at a place and
+    /// proposes the next place. The iteration ends with a proposed step inside the bracket of at most `last_step(x)`, where `x` is
+    /// the place at which the step begins.
     pub fn newton(
         mut self,
         start: f64,
@@ -134,8 +139,8 @@ impl Bracket {
     }
 }
 
-/// Regula falsi with the Illinois weights: no slope is asked for, so a root that is also an extremum does no harm. The two `ends`
-/// are places with their values. It ends at a value of at most `tolerance`; `None` where `value` fails.
+/// The root by regula falsi with the Illinois weights, without slopes: it also finds a root that is an extremum. The two ends
+/// are `[place, value]`. The iteration ends at a value of at most `tolerance`. Returns `None` if `value` does.
 pub fn illinois(
     [mut kept, mut last]: [[f64; 2]; 2],
     tolerance: f64,
@@ -155,7 +160,7 @@ pub fn illinois(
             });
         }
         if (here < 0.0) == (last[1] < 0.0) {
-            // The end that is kept once more counts half, or it would be kept for ever.
+            // An end that is kept twice counts half; otherwise it would never move.
             kept[1] *= 0.5;
         } else {
             kept = last;

@@ -1,24 +1,24 @@
-//! Complex numbers over any scalar.
+//! Complex numbers over any scalar: the operations that the shooting map needs.
 
 use crate::numerics::Real;
 
-/// `re + i im`.
+/// A complex number `re + i im`.
 #[derive(Clone, Copy, Debug)]
 pub struct Complex<T> {
-    /// Real part.
+    /// The real part.
     pub re: T,
-    /// Imaginary part.
+    /// The imaginary part.
     pub im: T,
 }
 
 impl<T: Real> Complex<T> {
-    /// `re + i im`.
+    /// The number `re + i im`.
     #[inline(always)]
     pub fn new(re: T, im: T) -> Self {
         Self { re, im }
     }
 
-    /// The product.
+    /// The product with `other`.
     #[inline(always)]
     pub fn times(self, other: Self) -> Self {
         Self::new(
@@ -34,7 +34,7 @@ impl<T: Real> Complex<T> {
         Self::new(over * self.re, -over * self.im)
     }
 
-    /// The difference.
+    /// This number less `other`.
     #[inline(always)]
     pub fn minus(self, other: Self) -> Self {
         Self::new(self.re - other.re, self.im - other.im)

@@ -1,11 +1,11 @@
-//! Collocation at Gauss and Legendre's nodes: polynomials through them, integrated with a weight of any shape.
+//! Collocation at five Gauss-Legendre nodes: integrals of the polynomials through them with a weight of any shape.
 
 use crate::numerics::Real;
 
-/// Nodes in a step.
+/// Number of collocation nodes in a step.
 pub const NODES: usize = 5;
 
-/// The nodes on `[0, 1]`.
+/// The collocation nodes on `[0, 1]`.
 pub const AT: [f64; NODES] = [
     0.046_910_077_030_668,
     0.230_765_344_947_158_45,
@@ -14,45 +14,46 @@ pub const AT: [f64; NODES] = [
     0.953_089_922_969_332,
 ];
 
-/// Integrals from the start of a step to every node, and to its end, of the polynomials that are 1 at one node and 0 at the others.
+/// Integrals of the Lagrange polynomials of the nodes, with a weight: `[to][polynomial]`, from the start of the step to each
+/// node and, last, to the end of the step.
 pub type Integrals<T> = [[T; NODES]; NODES + 1];
 
-/// What polynomials are integrated with.
+/// A weight function on `[0, 1]` for integrals.
 pub trait Weight<T> {
-    /// The weight at `x` in `[0, 1]`.
+    /// The value of the weight at `x` in `[0, 1]`.
     fn at(&self, x: f64) -> T;
 }
 
-/// Nodes and weights on `[0, 1]` of the quadrature between neighbouring nodes.
-const WITHIN: [[f64; 2]; 4] = [
+/// Nodes and weights of the Gauss-Legendre quadrature with four nodes on `[0, 1]`, exact up to degree 7.
+pub const QUADRATURE: [[f64; 2]; 4] = [
     [0.069_431_844_202_973_71, 0.173_927_422_568_726_93],
     [0.330_009_478_207_571_87, 0.326_072_577_431_273_07],
     [0.669_990_521_792_428_1, 0.326_072_577_431_273_07],
     [0.930_568_155_797_026_3, 0.173_927_422_568_726_93],
 ];
 
-/// Where the quadrature looks between a node and the one before it (the start, before the first; the end, after the last), and
-/// there the polynomials times its weight.
-struct Look {
+/// A quadrature node between two neighbouring collocation nodes (or an end of the step), and the Lagrange polynomials there
+/// times the quadrature's weight.
+struct QuadratureNode {
     at: f64,
     basis: [f64; NODES],
 }
 
-const LOOKS: [[Look; WITHIN.len()]; NODES + 1] = {
-    const NONE: Look = Look {
+const QUADRATURE_NODES: [[QuadratureNode; QUADRATURE.len()]; NODES + 1] = {
+    const NONE: QuadratureNode = QuadratureNode {
         at: 0.0,
         basis: [0.0; NODES],
     };
-    let mut looks = [const { [NONE; WITHIN.len()] }; NODES + 1];
+    let mut nodes = [const { [NONE; QUADRATURE.len()] }; NODES + 1];
     let mut gap = 0;
     while gap <= NODES {
         let from = if gap == 0 { 0.0 } else { AT[gap - 1] };
         let to = if gap == NODES { 1.0 } else { AT[gap] };
         let mut i = 0;
-        while i < WITHIN.len() {
-            let [node, weight] = WITHIN[i];
+        while i < QUADRATURE.len() {
+            let [node, weight] = QUADRATURE[i];
             let at = from + node * (to - from);
-            looks[gap][i].at = at;
+            nodes[gap][i].at = at;
             let mut j = 0;
             while j < NODES {
                 let mut basis = weight * (to - from);
@@ -63,17 +64,17 @@ const LOOKS: [[Look; WITHIN.len()]; NODES + 1] = {
                     }
                     k += 1;
                 }
-                looks[gap][i].basis[j] = basis;
+                nodes[gap][i].basis[j] = basis;
                 j += 1;
             }
             i += 1;
         }
         gap += 1;
     }
-    looks
+    nodes
 };
 
-/// The integrals where the weight is 1.
+/// The integrals with the weight 1.
 pub const FLAT: Integrals<f64> = {
     let mut flat = [[0.0; NODES]; NODES + 1];
     let mut sum = [0.0; NODES];
@@ -82,8 +83,8 @@ pub const FLAT: Integrals<f64> = {
         let mut j = 0;
         while j < NODES {
             let mut i = 0;
-            while i < WITHIN.len() {
-                sum[j] += LOOKS[gap][i].basis[j];
+            while i < QUADRATURE.len() {
+                sum[j] += QUADRATURE_NODES[gap][i].basis[j];
                 i += 1;
             }
             j += 1;
@@ -99,10 +100,10 @@ pub const FLAT: Integrals<f64> = {
 pub fn integrals<T: Real>(weight: &impl Weight<T>) -> Integrals<T> {
     let mut integrals = [[T::of(0.0); NODES]; NODES + 1];
     let mut sum = [T::of(0.0); NODES];
-    for (looks, integrals) in LOOKS.iter().zip(&mut integrals) {
-        for look in looks {
-            let here = weight.at(look.at);
-            for (sum, basis) in sum.iter_mut().zip(&look.basis) {
+    for (nodes, integrals) in QUADRATURE_NODES.iter().zip(&mut integrals) {
+        for node in nodes {
+            let here = weight.at(node.at);
+            for (sum, basis) in sum.iter_mut().zip(&node.basis) {
                 *sum = here.mul_add(T::of(*basis), *sum);
             }
         }

@@ -1,21 +1,22 @@
-//! Chebyshev-Lobatto nodes on `[0, 1]`: Chebyshev's extreme points, both ends among them, so that one polynomial through all of
-//! them is as good at its ends as in its middle. A polynomial through a part of them is not.
+//! Polynomials through Chebyshev-Lobatto nodes on `[0, 1]`: the extrema of a Chebyshev polynomial, with both ends.
+//!
+//! A polynomial through all nodes is as accurate at the ends as in the middle. A polynomial through some of them is not.
 
 use crate::numerics::newton_form::Polynomial;
 use crate::numerics::{Lanes, SimdTask, Unit};
 use std::f64::consts::FRAC_PI_2;
 use std::sync::LazyLock;
 
-/// How many there are.
+/// Number of nodes.
 pub const LOBATTO_COUNT: usize = 16;
 
-/// The nodes, growing.
+/// The nodes on `[0, 1]`, growing.
 pub static LOBATTO_NODES: LazyLock<[f64; LOBATTO_COUNT]> = LazyLock::new(|| {
     let node = |m: usize| libm::sin(FRAC_PI_2 * m as f64 / (LOBATTO_COUNT - 1) as f64).powi(2);
     std::array::from_fn(node)
 });
 
-/// One over the distance of the node `i` from the node `level` further on, by `level`; 0 where there is none.
+/// `[level][i]`: the inverse distance of the node `i` from the node `i + level`; 0 where there is none.
 static INVERSE_DISTANCES: LazyLock<[[f64; 2 * LOBATTO_COUNT]; LOBATTO_COUNT]> =
     LazyLock::new(|| {
         let mut inverse = [[0.0; 2 * LOBATTO_COUNT]; LOBATTO_COUNT];
@@ -27,10 +28,10 @@ static INVERSE_DISTANCES: LazyLock<[[f64; 2 * LOBATTO_COUNT]; LOBATTO_COUNT]> =
         inverse
     });
 
-/// A polynomial through the nodes, or some neighbours among them.
+/// A polynomial through all nodes, or through some that are neighbours.
 pub type LobattoPolynomial = Polynomial<LOBATTO_COUNT>;
 
-/// The polynomials through the first `count` of some values each: `values[0]` at the node `first`, `values[1]` at the next one, ...
+/// The polynomials through the first `count` of `values[function]`, which are known at the nodes `first`, `first + 1`, ...
 #[must_use]
 pub fn through_lobatto<const N: usize>(
     first: usize,
@@ -49,7 +50,7 @@ pub fn through_lobatto<const N: usize>(
     differences.map(|differences| LobattoPolynomial { nodes, differences })
 }
 
-/// Divided differences of values at neighbouring nodes.
+/// Task that computes the divided differences of `N` functions known at neighbouring nodes.
 struct Differences<const N: usize> {
     first: usize,
     count: usize,
@@ -60,7 +61,7 @@ struct Differences<const N: usize> {
 impl<const N: usize> SimdTask for Differences<N> {
     type Output = [[f64; LOBATTO_COUNT]; N];
 
-    /// Plain loops over all nodes, whatever the count, which the compiler turns into the unit's vectors.
+    /// The loops go over all nodes, whatever the count, so that the compiler turns them into the unit's vectors.
     #[inline(always)]
     fn run<T: Lanes>(self) -> [[f64; LOBATTO_COUNT]; N] {
         let mut differences = [[0.0; LOBATTO_COUNT]; N];

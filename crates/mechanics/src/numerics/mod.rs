@@ -1,4 +1,4 @@
-//! Numbers, and what can be said of them without a whisker: scalars and SIMD lanes, vectors, polynomials, roots.
+//! Numerics without a whisker: scalars and SIMD lanes, vectors, polynomials, roots.
 
 mod bracket;
 pub mod chebyshev;

@@ -1,19 +1,19 @@
-//! Interpolating polynomials in Newton's form. A node may count twice, with a value and a slope (Hermite interpolation): what a
-//! trajectory tells about its neighbours is not computed again.
+//! Interpolating polynomials in Newton's form. A node may count twice, with a value and a slope (Hermite interpolation): the
+//! derivatives that a trajectory carries replace other trajectories.
 
 use crate::numerics::Bracket;
 
-/// A polynomial with `N` terms.
+/// A polynomial with `N` terms in Newton's form.
 #[derive(Clone, Copy, Debug)]
 pub struct Polynomial<const N: usize> {
-    /// Where it interpolates. The term `i` is zero at the nodes before the node `i`.
+    /// Interpolation nodes. The term `i` is zero at the nodes before the node `i`.
     pub nodes: [f64; N],
-    /// Divided differences, the factors of the terms; 0 where there are fewer than `N` nodes.
+    /// Divided differences: the factors of the terms. They are 0 where there are fewer than `N` nodes.
     pub differences: [f64; N],
 }
 
 impl<const N: usize> Polynomial<N> {
-    /// Through `values[0]` at 0, `values[1]` at 1, ...; at most `N` of them count.
+    /// The polynomial through `values[0]` at 0, `values[1]` at 1, ... Values after the first `N` are ignored.
     #[must_use]
     pub fn through(values: &[f64]) -> Self {
         let values: Vec<[f64; 1]> = values.iter().map(|value| [*value]).collect();
@@ -23,7 +23,7 @@ impl<const N: usize> Polynomial<N> {
         }
     }
 
-    /// Value and slope at `t`.
+    /// The value and the slope at `t`.
     #[must_use]
     #[inline]
     pub fn at(&self, t: f64) -> (f64, f64) {
@@ -36,7 +36,8 @@ impl<const N: usize> Polynomial<N> {
         (value, slope)
     }
 
-    /// The root by Newton's method. Its last step is at most `last_step`: the square is left.
+    /// The place where the polynomial has the target value, by Newton's method. The last step is at most `last_step`; the error
+    /// is about its square.
     #[must_use]
     pub fn solve(&self, problem: &RootProblem, last_step: f64) -> f64 {
         let RootProblem {
@@ -57,18 +58,18 @@ impl<const N: usize> Polynomial<N> {
     }
 }
 
-/// Where a function is asked to be `target`.
+/// A target value of a polynomial, and where to search for it.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct RootProblem {
-    /// The value.
+    /// The value to reach.
     pub target: f64,
-    /// Where to start, if it is inside the bracket.
+    /// Place to start from, if the bracket contains it.
     pub near: f64,
-    /// Two places with the target between their values.
+    /// Two places between whose values the target lies.
     pub bracket: Bracket,
 }
 
-/// The nodes 0, 1, ..., of which each counts `each` times.
+/// The nodes 0, 1, ..., each repeated `each` times.
 #[must_use]
 pub const fn even_nodes<const N: usize>(each: usize) -> [f64; N] {
     let mut nodes = [0.0; N];
@@ -80,14 +81,14 @@ pub const fn even_nodes<const N: usize>(each: usize) -> [f64; N] {
     nodes
 }
 
-/// Divided differences of `F` functions at once, known by `values` at the nodes 0, 1, ...: the first ones belong to the polynomials
-/// through the `N` nodes from 0 on, the next ones to those from 1 on, ... Where there are fewer nodes, one goes through all.
+/// Divided differences `[start][term][function]` of `F` functions with `values[node][function]` at the nodes 0, 1, ... The
+/// polynomials of `start` go through the `N` nodes from `start` on. With fewer than `N` nodes there is one start.
 #[must_use]
 pub fn through_values<const F: usize, const N: usize>(values: &[[f64; F]]) -> Vec<[[f64; F]; N]> {
     divided_differences(1, values, &[])
 }
 
-/// The same through `values` and `slopes` at each `N / 2` nodes.
+/// Divided differences as from [`through_values`], for polynomials through the `values` and `slopes` at `N / 2` nodes each.
 #[must_use]
 pub fn through_slopes<const F: usize, const N: usize>(
     values: &[[f64; F]],
@@ -96,7 +97,7 @@ pub fn through_slopes<const F: usize, const N: usize>(
     divided_differences(2, values, slopes)
 }
 
-/// The same with `each` terms for every node.
+/// Divided differences with `each` terms for every node: 1 for values, 2 for values and slopes.
 fn divided_differences<const F: usize, const N: usize>(
     each: usize,
     values: &[[f64; F]],
@@ -127,7 +128,7 @@ fn divided_differences<const F: usize, const N: usize>(
     runs
 }
 
-/// The first of the `around` (or fewer) of `count` nodes that surround the interval `at, at + 1`.
+/// The first of the `around` nodes that surround the interval from `at` to `at + 1`, where there are `count` nodes in all.
 #[must_use]
 pub fn stencil(at: usize, around: usize, count: usize) -> usize {
     at.saturating_sub(around / 2 - 1)

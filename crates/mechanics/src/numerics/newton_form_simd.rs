@@ -1,20 +1,20 @@
-//! Roots of polynomials in Newton's form, side by side: one alone would wait for its own products most of the time.
+//! Roots of polynomials in Newton's form, side by side in SIMD lanes.
 
 use crate::numerics::newton_form::{Polynomial, RootProblem};
 use crate::numerics::{Lanes, SimdTask, Unit, WIDTH};
 
-/// A number for every lane.
+/// One number for each lane.
 pub type Numbers = [f64; WIDTH];
 
-/// Iterations of Newton's method. The last step of each lane tells whether they were enough.
+/// Iterations of Newton's method. The last step of each lane shows if they suffice.
 const ITERATIONS: usize = 3;
 
-/// The divided differences of a polynomial.
+/// Divided differences of the polynomials in all lanes.
 #[derive(Clone, Copy, Debug)]
 pub enum Terms<'a, const N: usize> {
-    /// The same polynomial in every lane.
+    /// All lanes share one polynomial.
     Same(&'a [f64; N]),
-    /// One for each lane.
+    /// Each lane has its own polynomial: `[term][lane]`.
     Each(&'a [Numbers; N]),
 }
 
@@ -28,7 +28,7 @@ impl<const N: usize> Terms<'_, N> {
         }
     }
 
-    /// Value and slope at `t`, in the lanes from `from` on.
+    /// The value and the slope at `t`, in the lanes from `from` on.
     #[inline(always)]
     fn at<T: Lanes>(&self, nodes: &[f64; N], from: usize, t: T) -> (T, T) {
         let (mut value, mut slope): (T, T) = (self.term(N - 1, from), T::of(0.0));
@@ -41,20 +41,20 @@ impl<const N: usize> Terms<'_, N> {
     }
 }
 
-/// Polynomials on the same nodes: one that is solved, and others that are wanted at its root.
+/// Polynomials on common nodes: one to solve, and `M` others to evaluate at its root.
 #[derive(Clone, Copy, Debug)]
 pub struct SimdRoots<'a, const N: usize, const M: usize> {
-    /// The nodes of all of them.
+    /// The nodes of all polynomials.
     pub nodes: &'a [f64; N],
-    /// The polynomial that is solved.
+    /// The polynomial to solve.
     pub terms: Terms<'a, N>,
-    /// Those that are evaluated there.
+    /// The polynomials to evaluate at the root.
     pub others: [Terms<'a, N>; M],
 }
 
 impl<const N: usize, const M: usize> SimdRoots<'_, N, M> {
-    /// The others at the roots of the `problems`, which belong to the lanes from `first` on. What a few iterations side by side do not
-    /// find is solved alone.
+    /// Values `[other][lane]` of the other polynomials at the roots of the `problems`, which belong to the lanes from `first` on.
+    /// A root that a few iterations side by side do not find is solved alone.
     #[must_use]
     pub fn solve(&self, first: usize, problems: &[RootProblem], last_step: f64) -> [Numbers; M] {
         let numbers = |number: fn(&RootProblem) -> f64| {
@@ -90,7 +90,7 @@ impl<const N: usize, const M: usize> SimdRoots<'_, N, M> {
         others
     }
 
-    /// The others at the root of the polynomial of one lane.
+    /// Values of the other polynomials at the root of one lane.
     #[must_use]
     pub fn solve_alone(&self, lane: usize, problem: &RootProblem, last_step: f64) -> [f64; M] {
         let polynomial = |terms: &Terms<N>| Polynomial {
@@ -105,12 +105,12 @@ impl<const N: usize, const M: usize> SimdRoots<'_, N, M> {
     }
 }
 
-/// Newton's method side by side, and what it has come to.
+/// Task and result of Newton's method side by side.
 struct Newton<'a, const N: usize, const M: usize> {
     roots: &'a SimdRoots<'a, N, M>,
     targets: Numbers,
     place: Numbers,
-    /// The last step.
+    /// The last step in each lane.
     step: Numbers,
     others: [Numbers; M],
 }
@@ -143,7 +143,7 @@ impl<const N: usize, const M: usize> SimdTask for Newton<'_, N, M> {
     }
 }
 
-/// The lanes from `from` on.
+/// Lanes with the numbers from index `from` on.
 #[inline(always)]
 pub fn pack<T: Lanes>(numbers: &Numbers, from: usize) -> T {
     let mut lanes = [0.0; WIDTH];
@@ -151,7 +151,7 @@ pub fn pack<T: Lanes>(numbers: &Numbers, from: usize) -> T {
     T::pack(lanes)
 }
 
-/// Sets the numbers from `from` on to those of `lanes`.
+/// Stores `lanes` in the numbers from index `from` on.
 #[inline(always)]
 pub fn keep<T: Lanes>(numbers: &mut Numbers, from: usize, lanes: T) {
     numbers[from..from + T::LANES].copy_from_slice(&lanes.unpack()[..T::LANES]);

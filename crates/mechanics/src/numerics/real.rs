@@ -1,8 +1,8 @@
-//! The scalar that the model is generic over.
+//! The scalar type of all generic code, and elementary functions of small arguments by polynomials.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// A real number, or a bundle of them that is worked on in step.
+/// A real number, or several in SIMD lanes.
 pub trait Real:
     Copy
     + Add<Output = Self>
@@ -11,10 +11,10 @@ pub trait Real:
     + Div<Output = Self>
     + Neg<Output = Self>
 {
-    /// The constant `x` in every lane.
+    /// The constant `x`, in every lane.
     fn of(x: f64) -> Self;
 
-    /// `self * a + b`, fused where the machine fuses it at no cost.
+    /// `self * a + b`, rounded once where the processor does so at no cost.
     fn mul_add(self, a: Self, b: Self) -> Self;
 
     /// The square root.
@@ -57,7 +57,7 @@ macro_rules! horner {
 }
 pub(crate) use horner;
 
-/// `1/(2k + 1)!` and `1/(2k + 2)!`: at 0.4 the first term left out is below 1e-17.
+/// Taylor coefficients `1/(2k + 1)!` and `1/(2k + 2)!`. At 0.4 the first term left out is below 1e-17.
 const HYPERBOLIC: [[f64; 2]; 7] = {
     let mut terms = [[1.0, 0.5]; 7];
     let mut k = 1;
@@ -81,7 +81,7 @@ const fn column<const N: usize>(terms: &[[f64; 2]; N], series: usize) -> [f64; N
     column
 }
 
-/// `sinh(x)/x` and `(cosh(x) - 1)/x^2` for `|x| <= 0.4`, by their Taylor polynomials: with them
+/// `odd = sinh(x)/x` and `even = (cosh(x) - 1)/x^2` for `|x| <= 0.4`, by their Taylor polynomials:
 /// `exp(x) = 1 + x (odd + x even)` and `exp(-x) = 1 - x (odd - x even)`.
 #[inline(always)]
 pub fn hyperbolic_small<T: Real>(x: T) -> [T; 2] {
@@ -102,7 +102,8 @@ pub fn expm1_over_small<T: Real>(x: T) -> T {
     x.mul_add(even, odd)
 }
 
-/// Of `sin(x)/x` and `(cos(x) - 1)/x^2` in `x^2`: at 0.25 the first terms left out are below 3e-14, at 0.5 below 3e-11.
+/// Taylor coefficients of `sin(x)/x` and `(cos(x) - 1)/x^2` in `x^2`. The first terms left out are below 3e-14 at 0.25 and
+/// below 3e-11 at 0.5.
 const CIRCULAR: [[f64; 2]; 5] = {
     let mut terms = [[0.0; 2]; 5];
     let mut k = 0;
@@ -114,12 +115,11 @@ const CIRCULAR: [[f64; 2]; 5] = {
     terms
 };
 
-/// The unit vector rotated by a small `angle`, by the polynomials of sine and cosine.
+/// The unit vector rotated by a small `angle` (radians), by the Taylor polynomials of sine and cosine.
 #[inline(always)]
 pub fn rotated_by_small<T: Real>([x, y]: [T; 2], angle: T) -> [T; 2] {
     let square = angle * angle;
     let fourth = square * square;
-    // Pairs first: all that follows waits for this.
     macro_rules! sum {
         ($i:literal) => {{
             let [a, b, c, d, e] = const { column(&CIRCULAR, $i) };

@@ -1,9 +1,10 @@
-//! Taylor's polynomials around the nodes of an interpolating polynomial, around all of them side by side.
+//! Taylor polynomials of an interpolating polynomial around each of its nodes, side by side in SIMD lanes.
 
 use crate::numerics::newton_form_simd::{Numbers, keep, pack};
 use crate::numerics::{Lanes, SimdTask, Unit, WIDTH};
 
-/// The first `P` Taylor coefficients, around each of the growing `nodes`, of the polynomials through the `values` of `F` functions there.
+/// Taylor coefficients `[node][power][function]` around each of the growing `nodes`, of the polynomials through the
+/// `values[node][function]` of `F` functions.
 #[must_use]
 pub fn around_nodes<const F: usize, const P: usize>(
     nodes: &Numbers,
@@ -35,7 +36,7 @@ fn divided_differences<const F: usize>(
     values
 }
 
-/// Horner's scheme with polynomials in place of numbers, around one node in each lane.
+/// Task: Horner's rule with polynomials in place of numbers, around one node in each lane.
 struct Expansion<'a, const F: usize, const P: usize> {
     nodes: &'a Numbers,
     differences: &'a [[f64; F]; WIDTH],

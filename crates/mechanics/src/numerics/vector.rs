@@ -1,8 +1,8 @@
-//! States of a trajectory as vectors: arrays, pairs of vectors, and the empty state of an absent effect.
+//! States of a trajectory as vectors: arrays, pairs of vectors, and the empty state of an effect that is absent.
 
 use crate::numerics::Real;
 
-/// What an integrator needs of a state.
+/// Vector operations that an integrator needs.
 pub trait Vector<T: Real>: Copy {
     /// `self + h k`.
     #[must_use]

@@ -1,41 +1,41 @@
-//! What the pieces of a profile ask of an integrator, each by its own: most of many pieces hardly bend, and need no more than a step.
+//! Demands of the pieces of a measured profile on an integrator. Most of many pieces hardly bend and need one step.
 //!
-//! A load bends a piece by its compliance and the lever to the contact: how much of the whole that is depends on where the contact is,
-//! so demands are tabulated by reach, as the largest of all contacts of about one distance from the base: those of one reach are within a
-//! factor of `2^(1/4)` of each other.
+//! A load bends a piece in proportion to its compliance and to its lever to the contact. Its share in the whole bending
+//! depends on the contact. Demands are therefore tabulated by reach: a range of contacts whose distances from the base are
+//! within a factor of `2^(1/4)`. A table entry is the largest demand of all contacts of the reach.
 
 use crate::rod::RadiusProfile;
 
-/// Reaches by which the distance from the base halves.
+/// Number of reaches over which the distance from the base halves.
 const REACHES_PER_OCTAVE: f64 = 4.0;
 
-/// Reaches in all; contacts of the last one are within a 4096th of the whisker from the base.
+/// Number of reaches. Contacts of the last one are within a 4096th of the whisker from the base.
 const REACHES: u32 = 49;
 
-/// How far the sheet goes beyond the tip at most, in whisker lengths from the base.
+/// Farthest contact of a sheet beyond the tip, in whisker lengths from the base.
 const BEYOND_TIP: f64 = 1.5;
 
-/// What a piece asks for on the way from contacts of one reach. In `f32`, because it only counts steps.
+/// Demand of one piece for contacts of one reach. It only counts steps, so `f32` suffices.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Demand {
-    /// Its part in the bending that has to be followed: the root of its share in the compliance times its part of the way, or half
-    /// of its share. On a rod that is the same everywhere, its part of the way, about.
+    /// Part of the bending to resolve: the root of the piece's share in the compliance times its share in the length to the
+    /// contact, and at least half of its share in the compliance. On a uniform rod it is about the share in the length.
     pub bending: f32,
-    /// How rough it is: by how much `ln radius` changes over it, times the fifth root of the same product. The levers at five nodes
-    /// feel its compliance to the fifth order (`benches/NOTES.md`).
+    /// Roughness: the change of `ln radius` over the piece, times the fifth root of the product of its two shares. Collocation at
+    /// five nodes depends on the compliance to fifth order (`benches/NOTES.md`).
     pub roughness: f32,
 }
 
-/// The demands of the pieces, by reach.
+/// Demands of all pieces of a profile, by reach.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Demands {
-    /// Piece by piece, from the reach at the tip on.
+    /// `[reach][piece]`, from the reach at the tip on.
     by_reach: Vec<Demand>,
     pieces: usize,
 }
 
 impl Demands {
-    /// Those of the pieces of `profile`, whose scale vanishes at the arclength `end`.
+    /// The demands of the pieces of `profile`. Its cone has the radius 0 at the arclength `end`.
     pub(super) fn new(profile: &RadiusProfile, end: f64) -> Self {
         let pieces = profile.pieces.len();
         let mut by_reach = Vec::with_capacity(REACHES as usize * pieces);
@@ -63,7 +63,7 @@ impl Demands {
             };
             let from = by_reach.len();
             by_reach.extend(shares.iter().zip(ways).zip(&profile.changes).map(demand));
-            // The piece beyond the tip has no length of its own: it asks for as much as any other.
+            // The piece beyond the tip has no length of its own: its demand is the largest of all.
             let most = |one: Demand, other: &Demand| Demand {
                 bending: one.bending.max(other.bending),
                 roughness: one.roughness.max(other.roughness),
@@ -80,7 +80,7 @@ impl Demands {
         ((-REACHES_PER_OCTAVE * libm::log2(s)) as u32).min(REACHES - 1)
     }
 
-    /// That of the piece `k` on the way from a contact of this `reach`.
+    /// The demand of the piece `k` for contacts of this `reach`.
     #[must_use]
     pub fn of(&self, reach: u32, k: usize) -> Demand {
         self.by_reach[reach as usize * self.pieces + k]

@@ -1,42 +1,42 @@
-//! The sets of effects that kernels are made for.
+//! Sets of mechanical effects. Each set has kernels of its own.
 
 use crate::rod::Rod;
 
-/// `beta tau` from which on derivatives by `tau` are carried even where they follow from the base: toward the tip of a cone
-/// they vanish with the radius, and what follows is a small difference (`benches/NOTES.md`).
+/// Smallest `beta tau` at which a straight cone's derivatives by `tau` are integrated. They vanish with the radius toward the
+/// tip, so that the formula from the base's pose cancels (`benches/NOTES.md`).
 const SLENDER: f64 = 1.5;
 
-/// The effects that a scene calls for; each set has kernels of its own.
+/// A set of mechanical effects of a whisker.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Effects {
     /// The stiffness falls toward the tip.
     pub taper: bool,
     /// The whisker is curved at rest, as a parabola.
     pub curvature: bool,
-    /// It is an Euler spiral at rest.
+    /// The whisker is an Euler spiral at rest.
     pub spiral: bool,
     /// The modulus changes along the whisker.
     pub gradient: bool,
-    /// The radii follow a measured profile, the same for all rods.
+    /// The radii follow a measured profile.
     pub profile: bool,
 }
 
 impl Effects {
-    /// Whether something changes along the rod, so that a trajectory must know where it is. Without, a step does not
-    /// advance the section at all.
+    /// Returns true if a property of the rod changes along it, so that integration steps have to advance the cross-section.
     #[must_use]
     pub fn advances(self) -> bool {
         self.taper || self.spiral || self.gradient || self.profile
     }
 
-    /// Whether the rod looks the same from each of its points, but for its size: see `shooting::sensitivity::similar`.
+    /// Returns true if all parts of the rod toward the base are similar but for their size: see
+    /// `shooting::sensitivity::similar`.
     #[must_use]
     pub const fn similar(self) -> bool {
         !(self.curvature || self.spiral || self.gradient || self.profile)
     }
 
-    /// The effects whose kernel is right for contacts up to `beta tau` of `taper_tau`: beyond 1.5 on a straight cone it
-    /// is the one for a gradient, which carries all derivatives.
+    /// The effects of the kernel for a contact at `beta tau = taper_tau`. Beyond 1.5 on a straight cone, `gradient` is set: its
+    /// kernel carries all derivatives.
     #[must_use]
     pub fn reaching(self, taper_tau: f64) -> Self {
         Self {
@@ -45,7 +45,7 @@ impl Effects {
         }
     }
 
-    /// The effects that at least one of `rods` has.
+    /// The effects of at least one of `rods`.
     pub fn of<'a>(rods: impl IntoIterator<Item = &'a Rod>) -> Self {
         rods.into_iter().fold(Self::default(), |set, rod| Self {
             curvature: set.curvature || rod.bend != 0.0,
@@ -54,7 +54,7 @@ impl Effects {
         })
     }
 
-    /// These effects, and those of `rod`: none of its own is missing. No kernel has two rest shapes; that of the rod goes before.
+    /// These effects and all effects of `rod`. No kernel has two rest shapes: the rod's own replaces another one.
     #[inline]
     #[must_use]
     pub fn and(self, rod: &Rod) -> Self {

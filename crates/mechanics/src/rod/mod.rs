@@ -1,4 +1,4 @@
-//! What a whisker is: radius, shape at rest, stiffness, contact, effects, units. Plain `f64`, lengths in whisker lengths.
+//! Properties of a whisker: radius, shape at rest, stiffness, contact, effects, units. Plain `f64`, lengths in whisker lengths.
 
 mod demands;
 mod effects;
@@ -7,7 +7,7 @@ mod radius;
 mod rest;
 #[allow(
     clippy::module_inception,
-    reason = "the file of the type that the room is named after"
+    reason = "the module is named after its main type"
 )]
 mod rod;
 mod units;

@@ -1,26 +1,27 @@
 //! Measured radii: a smooth curve through the rows of a table that rises or falls only where the rows do.
 //!
-//! Cubic pieces between the rows with the slopes of F. N. Fritsch and J. Butland, SIAM J. Sci. Stat. Comput. 5, 300
-//! (1984): continuous with the first derivative. A trajectory is integrated piece by piece, so that no step crosses a
-//! row, where the second derivative jumps, and a Runge-Kutta method keeps its order.
+//! Cubic pieces with the slopes of F. N. Fritsch and J. Butland, SIAM J. Sci. Stat. Comput. 5, 300 (1984) join the rows. The
+//! curve and its first derivative are continuous. Trajectories are integrated piece by piece: no step crosses a row, where
+//! the second derivative jumps.
 
+use crate::numerics::gauss::QUADRATURE;
 use crate::rod::Demands;
 use crate::rod::piece_weights::PieceWeights;
 use crate::rod::rod::{arclength_at, pointed, tau_at};
 
-/// A cubic piece of a profile.
+/// A cubic piece of a measured profile.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Piece {
-    /// Arclength where it begins, in whisker lengths.
+    /// Arclength where the piece begins, in whisker lengths.
     pub from: f64,
-    /// `tau` there, on the cone from the first row to the last.
+    /// `tau` where the piece begins, on the cone from the first row to the last.
     pub tau: f64,
-    /// `radius = c0 + x (c1 + x (c2 + x c3))` with `x = s - from`, over the base radius.
+    /// Coefficients of `radius = c0 + x (c1 + x (c2 + x c3))` with `x = s - from`, over the base radius.
     pub cubic: [f64; 4],
 }
 
 impl Piece {
-    /// Radius at arclength `s` over that at the base.
+    /// Radius at arclength `s` over the base radius.
     #[must_use]
     pub fn radius(&self, s: f64) -> f64 {
         let x = s - self.from;
@@ -28,7 +29,7 @@ impl Piece {
         x.mul_add(x.mul_add(x.mul_add(c3, c2), c1), c0)
     }
 
-    /// Its derivative by the arclength.
+    /// Derivative of the radius over the base radius, by the arclength.
     #[must_use]
     pub fn slope(&self, s: f64) -> f64 {
         let x = s - self.from;
@@ -37,42 +38,34 @@ impl Piece {
     }
 }
 
-/// Radii along a whisker, over that at the base, by arclength in whisker lengths.
+/// Measured radii along a whisker, over the base radius, by arclength in whisker lengths.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RadiusProfile {
-    /// From the base on; the last one continues beyond the last row, as the cone from the first row to the last does.
+    /// Pieces from the base on. The last one lies beyond the last row, with the slope of the cone from the first row to the last.
     pub pieces: Vec<Piece>,
-    /// Per piece: how much `ln radius` changes over it at most, were it as steep along `tau` as where it is steepest.
+    /// Upper bound of the change of `ln radius` over each piece: its steepest slope by `tau` times its length.
     pub changes: Vec<f64>,
-    /// Per piece: its length, in whisker lengths.
+    /// Length of each piece, in whisker lengths.
     pub widths: Vec<f64>,
-    /// What they ask of an integrator.
+    /// Demands of the pieces on an integrator.
     pub demands: Demands,
-    /// Of the cone from the first row to the last, continued.
+    /// Taper of the cone from the first row to the last.
     pub(super) taper: f64,
-    /// Their compliances.
+    /// Tabulated compliances of the pieces.
     pub(super) weights: PieceWeights,
-    /// Per piece: into how many parts its quadrature divides it, along `tau`.
+    /// Number of parts, along `tau`, in the quadrature of each piece.
     parts: Vec<u32>,
-    /// From the base to each piece: the integrals of `radius^-4` and of `s radius^-4`.
+    /// Integrals of `radius^-4` and of `s radius^-4` from the base to each piece.
     compliances: Vec<[f64; 2]>,
 }
 
-/// Places per piece at which its slope is looked at. `|radius'|/radius` peaks where a piece runs out into a thin end, over
-/// a fiftieth of it at a radius that falls to a thousandth.
-const LOOKS: u32 = 256;
-
-/// Nodes and weights of Gauss and Legendre's quadrature on `[0, 1]`, exact up to degree 7.
-const GAUSS: [[f64; 2]; 4] = [
-    [0.069_431_844_202_973_71, 0.173_927_422_568_726_93],
-    [0.330_009_478_207_571_87, 0.326_072_577_431_273_07],
-    [0.669_990_521_792_428_1, 0.326_072_577_431_273_07],
-    [0.930_568_155_797_026_3, 0.173_927_422_568_726_93],
-];
+/// Samples of the slope per piece. `|radius'|/radius` peaks at a thin end of a piece: where the radius falls to a thousandth,
+/// the peak takes a fiftieth of the piece.
+const SLOPE_SAMPLES: u32 = 256;
 
 impl RadiusProfile {
-    /// The profile through `rows` of arclength and radius, as fractions of the whisker's, of a whisker whose real
-    /// arclength is `stretch` times the one in the plane of contact.
+    /// The profile through `rows` of `[arclength, radius]`, over the whisker's length and base radius. The whisker's arclength is
+    /// `stretch` times its arclength in the plane of contact.
     #[must_use]
     pub fn new(rows: &[[f64; 2]], stretch: f64) -> Self {
         let rows: Vec<[f64; 2]> = rows.iter().map(|[s, r]| [s / stretch, *r]).collect();
@@ -107,11 +100,11 @@ impl RadiusProfile {
         let (mut changes, mut parts) = (Vec::new(), Vec::new());
         for (piece, width) in pieces.iter().zip(&widths) {
             let length = tau_at(taper, piece.from + width) - piece.tau;
-            let steepest = (0..=LOOKS)
-                .map(|i| piece.from + width * f64::from(i) / f64::from(LOOKS))
+            let steepest = (0..=SLOPE_SAMPLES)
+                .map(|i| piece.from + width * f64::from(i) / f64::from(SLOPE_SAMPLES))
                 .map(|s| (1.0 - taper * s) * (piece.slope(s) / piece.radius(s)).abs())
                 .fold(0.0, f64::max);
-            // A step is along the cone that the profile lies about, too.
+            // The coordinate `tau` of a step follows the cone, too.
             changes.push(length * steepest.max(taper));
             parts.push((length * steepest).ceil().max(1.0) as u32);
         }
@@ -134,7 +127,7 @@ impl RadiusProfile {
         profile
     }
 
-    /// How far a small load at arclength `s` turns the whisker there: the integral of `(s - x) radius(x)^-4` from the
+    /// Angle by which a small unit load at arclength `s` turns the whisker there: the integral of `(s - x) radius(x)^-4` from the
     /// base to `s`, within a few percent.
     #[must_use]
     pub fn compliance(&self, s: f64) -> f64 {
@@ -143,7 +136,7 @@ impl RadiusProfile {
         s * flat - lever
     }
 
-    /// The part that each piece from the base on has in the compliance at `s`.
+    /// Share of each piece from the base on in the compliance at arclength `s`.
     pub(super) fn shares_at(&self, s: f64) -> impl Iterator<Item = f64> {
         let last = self.piece(s);
         let [flat, lever] = self.up_to(last, s);
@@ -160,13 +153,13 @@ impl RadiusProfile {
         (0..=last).map(move |k| turn(k) / whole)
     }
 
-    /// The integrals from the base to `s`, which lies on piece `k`: by `tau`, along which the radius changes evenly.
+    /// Integrals of `radius^-4` and of `s radius^-4` from the base to `s` on the piece `k`, by quadrature over `tau`.
     fn up_to(&self, k: usize, s: f64) -> [f64; 2] {
         let piece = &self.pieces[k];
         let from = piece.tau;
         let width = (tau_at(self.taper, s) - from) / f64::from(self.parts[k]);
         let nodes = (0..self.parts[k]).flat_map(|part| {
-            GAUSS.map(|[node, weight]| (width.mul_add(f64::from(part) + node, from), weight))
+            QUADRATURE.map(|[node, weight]| (width.mul_add(f64::from(part) + node, from), weight))
         });
         nodes.fold(self.compliances[k], |[flat, lever], (tau, weight)| {
             let scale = libm::exp(-self.taper * tau);
@@ -176,7 +169,7 @@ impl RadiusProfile {
         })
     }
 
-    /// Index of the piece on which arclength `s` lies; a row belongs to the piece that it ends.
+    /// Index of the piece on which the arclength `s` lies. A row belongs to the piece that it ends.
     #[must_use]
     pub fn piece(&self, s: f64) -> usize {
         self.pieces
@@ -184,15 +177,15 @@ impl RadiusProfile {
             .saturating_sub(1)
     }
 
-    /// Radius at arclength `s` over that at the base.
+    /// Radius at arclength `s` over the base radius.
     #[must_use]
     pub fn radius(&self, s: f64) -> f64 {
         self.pieces[self.piece(s)].radius(s)
     }
 }
 
-/// Slopes at the rows. Between secants of one sign their harmonic mean, weighted by the widths; 0 at an extremum; at
-/// the ends that of a parabola, kept monotone.
+/// Slopes at the rows: the harmonic mean of neighbouring secants of one sign, weighted by the widths; 0 at an extremum; at
+/// both ends the slope of a parabola, limited so that the curve stays monotone.
 fn slopes(widths: &[f64], secants: &[f64]) -> Vec<f64> {
     let n = widths.len();
     if n == 1 {

@@ -1,4 +1,4 @@
-//! A whisker and its pole without dimensions.
+//! A whisker and its pole in dimensionless form.
 
 use crate::rod::RadiusProfile;
 use glam::DVec2;
@@ -18,13 +18,13 @@ impl Side {
     /// Both sides, in the order of growing push angle.
     pub const BOTH: [Self; 2] = [Self::Cf, Self::Cb];
 
-    /// The side that a push angle belongs to; first touch itself belongs to CB.
+    /// The side of a push angle. First touch, the angle 0, belongs to CB.
     #[must_use]
     pub fn of_push(push: f64) -> Self {
         if push < 0.0 { Self::Cf } else { Self::Cb }
     }
 
-    /// The sign of push angles, loads and the pole's offset: + CB, - CF.
+    /// Sign of push angles, loads and the pole's offset: +1 for CB, -1 for CF.
     #[must_use]
     pub const fn sign(self) -> f64 {
         match self {
@@ -45,10 +45,10 @@ impl Serialize for Side {
     }
 }
 
-/// One whisker on one side of one pole; lengths in whisker lengths.
+/// One whisker on one side of one pole. Lengths are in whisker lengths.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Rod {
-    /// `beta = 1 - r_tip/r_base`, times the arc stretch; in `[0, 1]`.
+    /// Taper `beta = 1 - r_tip/r_base` times the arc stretch, in `[0, 1]`: 0 is a cylinder, 1 a perfect cone.
     pub taper: f64,
     /// Parabola coefficient `A* = A L_w`, at least 0.
     pub bend: f64,
@@ -56,26 +56,25 @@ pub struct Rod {
     pub slope: f64,
     /// Pole radius with the sign of the side: the pole's centre is at `-pole e2` from the contact.
     pub pole: f64,
-    /// `g` of the modulus `E_base (1 + g s)`; more than -1.
+    /// Gradient `g` of the modulus `E_base (1 + g s)`, larger than -1.
     pub gradient: f64,
-    /// Coulomb's coefficient with the sign of the side: friction over normal force.
+    /// Coulomb's friction coefficient, friction over normal force, with the sign of the side.
     pub friction: f64,
-    /// `[k0, k1]` of an Euler spiral, whose curvature at rest is `k0 + k1 s`, in place of the parabola.
+    /// Coefficients `[k0, k1]` of an Euler spiral with curvature `k0 + k1 s` at rest, in place of the parabola.
     pub spiral: Option<[f64; 2]>,
-    /// Radii in place of those that fall linearly; `taper` is then only the scale of the coordinates.
+    /// Measured radii in place of a linear taper. `taper` is then only the scale of the coordinates.
     pub profile: Option<Arc<RadiusProfile>>,
 }
 
-/// A perfect cone is cut where its radius is this part of the base radius: below, the contact is closer to
-/// the tip than any length that `f64` millimetres of a whisker can tell apart from it in practice.
+/// Radius over the base radius at which a perfect cone is cut. Contacts beyond it cannot be told from the tip in practice.
 pub const PERFECT_CONE_CUT: f64 = 1e-9;
 
-/// Arclength at the tip, in whisker lengths, of a whisker of this taper: 1, but for a perfect cone.
+/// Arclength of the tip for this taper, in whisker lengths: 1, or slightly less for a perfect cone, which is cut.
 pub(crate) fn pointed(taper: f64) -> f64 {
     ((1.0 - PERFECT_CONE_CUT) / taper).min(1.0)
 }
 
-/// See [`Rod::tau`].
+/// `tau` at arclength `s` on a rod of this taper: see [`Rod::tau`].
 pub(crate) fn tau_at(taper: f64, s: f64) -> f64 {
     if taper == 0.0 {
         s
@@ -84,13 +83,13 @@ pub(crate) fn tau_at(taper: f64, s: f64) -> f64 {
     }
 }
 
-/// Arclength at `tau`: `(1 - exp(-beta tau))/beta`, without cancellation.
+/// Arclength at `tau`: `(1 - exp(-beta tau))/beta`, in whisker lengths, without cancellation.
 #[must_use]
 pub fn arclength(rod: &Rod, tau: f64) -> f64 {
     arclength_at(rod.taper, tau)
 }
 
-/// The same on any rod of this taper.
+/// Arclength at `tau` on a rod of this taper: see [`arclength`].
 pub(crate) fn arclength_at(taper: f64, tau: f64) -> f64 {
     if taper == 0.0 {
         tau
@@ -100,7 +99,7 @@ pub(crate) fn arclength_at(taper: f64, tau: f64) -> f64 {
 }
 
 impl Rod {
-    /// Bending stiffness at arclength `s` over that at the base.
+    /// Bending stiffness at arclength `s` over the bending stiffness at the base.
     #[must_use]
     pub fn stiffness(&self, s: f64) -> f64 {
         let radius = match &self.profile {
@@ -110,21 +109,21 @@ impl Rod {
         radius.powi(4) * self.modulus(s)
     }
 
-    /// Whether the radius falls linearly, or not at all, and the modulus is the same everywhere.
+    /// Returns true if the radius falls linearly or is constant, and the modulus is constant.
     #[must_use]
     #[inline]
     pub fn is_uniform_cone(&self) -> bool {
         self.profile.is_none() && self.gradient == 0.0
     }
 
-    /// Index of the piece of its profile on which the arclength `s` lies; 0 without one.
+    /// Index of the piece of the profile on which the arclength `s` lies; 0 without a profile.
     #[must_use]
     #[inline]
     pub fn piece(&self, s: f64) -> usize {
         self.profile.as_ref().map_or(0, |profile| profile.piece(s))
     }
 
-    /// The sharpest bend of the whisker at rest, in radians per whisker length.
+    /// Largest curvature of the whisker at rest, in radians per whisker length.
     #[must_use]
     pub fn sharpest_bend(&self) -> f64 {
         match self.spiral {
@@ -133,7 +132,7 @@ impl Rod {
         }
     }
 
-    /// Modulus at arclength `s` over that at the base.
+    /// Young's modulus at arclength `s` over the modulus at the base.
     #[must_use]
     pub fn modulus(&self, s: f64) -> f64 {
         1.0 + self.gradient * s
@@ -141,33 +140,33 @@ impl Rod {
 
     /// The whisker's unit tangent at the contact, in axes whose second one is along the force.
     ///
-    /// Friction tilts the force from the normal by the angle whose tangent is its coefficient. In axes turned with the
-    /// force the equations are those without friction: the lever `X - friction Y` is the new `X`, but for a factor
-    /// that the force takes up. So friction costs nothing along the trajectory.
+    /// Friction tilts the force from the normal by the angle whose tangent is the friction coefficient. In axes turned with the
+    /// force, the equations are those without friction: the lever `X - friction Y` is the new `X` but for a factor, which the
+    /// force absorbs. Friction therefore adds no work to the integration.
     #[must_use]
     pub fn contact_tangent(&self) -> DVec2 {
         DVec2::new(1.0, self.friction).normalize()
     }
 
-    /// From the contact to the pole's centre, in the same axes.
+    /// Vector from the contact to the pole's centre, in the axes of [`Rod::contact_tangent`].
     #[must_use]
     pub fn to_pole(&self) -> DVec2 {
         -self.pole * self.contact_tangent().perp()
     }
 
-    /// `tau` at arclength `s`: `-ln(1 - beta s)/beta`, the variable in which a tapered rod is smooth.
+    /// `tau` at arclength `s`: `-ln(1 - beta s)/beta`, the coordinate in which a tapered rod is smooth.
     #[must_use]
     pub fn tau(&self, s: f64) -> f64 {
         tau_at(self.taper, s)
     }
 
-    /// `tau` at the tip; a perfect cone ends at [`PERFECT_CONE_CUT`].
+    /// `tau` at the tip. A perfect cone ends at [`PERFECT_CONE_CUT`].
     #[must_use]
     pub fn tau_tip(&self) -> f64 {
         self.tau(pointed(self.taper))
     }
 
-    /// How far a small load at `tau` turns the whisker there, over what it does on the cone with the same base and tip: 1
+    /// Rotation of the whisker at `tau` under a small load there, over the rotation of the cone with the same base and tip; 1
     /// without a profile. Folds of all whiskers lie at similar `|load| s^2 softness`.
     #[must_use]
     pub fn softness(&self, tau: f64) -> f64 {
@@ -179,7 +178,7 @@ impl Rod {
         })
     }
 
-    /// The scale of the coordinates at `tau`: without a profile the radius over the base radius.
+    /// Scale of the coordinates at `tau`: the radius of the cone over the base radius.
     #[must_use]
     pub fn radius(&self, tau: f64) -> f64 {
         libm::exp(-self.taper * tau)

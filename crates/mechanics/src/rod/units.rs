@@ -1,20 +1,20 @@
-//! The units of one whisker.
+//! Units of one whisker.
 
 use std::f64::consts::FRAC_PI_4;
 
-/// The units of one whisker.
+/// Units in which the quantities of one whisker are 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Units {
-    /// Of lengths: the whisker's own.
+    /// Unit of length in millimetres: the whisker's length `L`.
     pub length_mm: f64,
-    /// Of forces: `E I_base/L^2`.
+    /// Unit of force in micronewtons: `E I_base/L^2`.
     pub force_un: f64,
-    /// Of moments and, in nJ, of energies: `E I_base/L`.
+    /// Unit of moment in nanonewton metres, and of energy in nanojoules: `E I_base/L`.
     pub moment_nnm: f64,
 }
 
 impl Units {
-    /// The units of a whisker of this length, base radius and modulus at the base.
+    /// The units of a whisker with this length, base radius and modulus at the base.
     #[must_use]
     pub fn new(length_mm: f64, base_radius_um: f64, youngs_modulus_gpa: f64) -> Self {
         let stiffness = youngs_modulus_gpa * 1e9 * FRAC_PI_4 * (base_radius_um * 1e-6).powi(4);

@@ -1,35 +1,35 @@
-//! The contact, where every trajectory starts, for lanes side by side: exponential and inverse functions by algebra alone,
-//! so that a block of contacts costs about what one costs with the standard library.
+//! The contact, where every trajectory starts, in SIMD lanes. Exponential and inverse functions are computed by algebra, so
+//! that a block of contacts costs about as much as one contact with library functions.
 
 use crate::numerics::{Real, expm1_over_small};
 
-/// What the integration needs to know of the contact.
+/// Start of a trajectory: radius, force, tangent, stiffness and curvature at the contact.
 #[derive(Clone, Copy, Debug)]
 pub struct Contact<T> {
     /// Radius over the base radius.
     pub radius: T,
-    /// The whole force `F L_w^2/(E I_base)`, signed; without friction it is the normal force.
+    /// Signed force `F L_w^2/(E I_base)`, with friction. Without friction it is the normal force.
     pub force: T,
-    /// The whisker's tangent there, see [`Rod::contact_tangent`](crate::rod::Rod::contact_tangent).
+    /// Unit tangent of the whisker, see [`Rod::contact_tangent`](crate::rod::Rod::contact_tangent).
     pub tangent: [T; 2],
-    /// Stiffness over that at the base.
+    /// Bending stiffness over the bending stiffness at the base.
     pub stiffness: T,
     /// Curvature at rest.
     pub curvature: T,
-    /// Its derivative by the arclength.
+    /// Derivative of the curvature at rest by the arclength.
     pub curvature_slope: T,
 }
 
-/// Halvings of the exponent: `expm1_over_small` reaches 0.4, and no whisker is longer than 25.6 in `beta tau`.
+/// Halvings of the exponent: `expm1_over_small` is valid up to 0.4, and `beta tau` of every whisker is at most 25.6.
 const HALVINGS: u32 = 6;
 
-/// Radius over the base radius and arclength at `tau`: `exp(-beta tau)` and `(1 - exp(-beta tau))/beta`, good to 32 times
+/// Radius over the base radius and arclength at `tau`: `exp(-beta tau)` and `(1 - exp(-beta tau))/beta`, to within 32 times
 /// the rounding.
 #[inline(always)]
 pub fn radius_and_arclength<T: Real>(taper: T, tau: T) -> [T; 2] {
     let (one, half) = (T::of(1.0), T::of(0.5));
     let mut part = T::of(-1.0 / f64::from(1 << HALVINGS)) * taper * tau;
-    // (exp(part) - 1)/part, doubled again and again.
+    // (exp(part) - 1)/part, for twice the part in each turn.
     let mut growth = expm1_over_small(part);
     let mut radius = part.mul_add(growth, one);
     for _ in 0..HALVINGS {
@@ -40,14 +40,14 @@ pub fn radius_and_arclength<T: Real>(taper: T, tau: T) -> [T; 2] {
     [radius, tau * growth]
 }
 
-/// The exponential of a number of magnitude 25.6 at most, good to 32 times the rounding.
+/// The exponential of a number of magnitude 25.6 at most, to within 32 times the rounding.
 #[inline(always)]
 pub fn exp<T: Real>(x: T) -> T {
     let [exp, _] = radius_and_arclength(T::of(-1.0), x);
     exp
 }
 
-/// cos and sin of the tangent of the parabola `y = bend x^2 + slope x` at arclength `s`; `at_base` is the [`arc`] of `slope`.
+/// Unit tangent of the parabola `y = bend x^2 + slope x` at arclength `s`; `at_base` is the [`arc`] of `slope`.
 #[inline(always)]
 pub fn parabola_tangent<T: Real>(bend: T, at_base: T, s: T) -> [T; 2] {
     let (one, half) = (T::of(1.0), T::of(0.5));
@@ -82,8 +82,8 @@ pub fn parabola_tangent<T: Real>(bend: T, at_base: T, s: T) -> [T; 2] {
     [cos, t * cos]
 }
 
-/// Coefficients of the series of `atanh(w)/w` in `w^2`. Up to `w = 0.47`, the eighth part of `asinh(30)`, what is left out
-/// is below 1e-16.
+/// Number of coefficients of the series of `atanh(w)/w` in `w^2`. Up to `w = 0.47`, an eighth of `asinh(30)`, the remainder is
+/// below 1e-16.
 const SERIES: u32 = 22;
 
 /// `t sqrt(1 + t^2) + asinh(t)`, by halving the argument of `asinh` three times.
@@ -96,7 +96,7 @@ pub fn arc<T: Real>(t: T) -> T {
     let third = (half * (one + second)).sqrt();
     let w = t / (T::of(8.0) * first * second * third * third);
     let square = w * w;
-    // Even and odd powers of the square apart: two short chains of multiplications instead of a long one.
+    // Even and odd powers of the square: two short chains of multiplications in place of a long one.
     let fourth = square * square;
     let (mut even, mut odd) = (T::of(0.0), T::of(0.0));
     for k in (0..=SERIES / 2).rev() {

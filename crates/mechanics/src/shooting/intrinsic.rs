@@ -1,30 +1,31 @@
-//! Rest shapes.
+//! Rest shapes of the rod: straight, parabola, Euler spiral.
 
 use crate::numerics::{Real, Vector, horner, rotated_by_small};
 use crate::shooting::Section;
 
-/// Curvature at rest.
+/// Curvature of the rod at rest.
 pub trait Intrinsic<T: Real>: Copy {
-    /// What has to be carried along to know it.
+    /// State that a trajectory carries to evaluate the rest shape.
     type State: Vector<T>;
 
-    /// What a step knows of it from its start.
+    /// Rest shape along one step, as known at the start of the step.
     type Course;
 
-    /// `(rho kappa_i, dstate/dsigma)`.
+    /// `(rho kappa_i, dstate/dsigma)` at a cross-section.
     fn rhs(self, section: &Section<T>, state: Self::State) -> (T, Self::State);
 
-    /// The course of a step from a section.
+    /// The rest shape along a step that starts at the section `from`.
     fn course(self, from: &Section<T>, state: Self::State) -> Self::Course;
 
-    /// How far the tangent at rest turns on the way `along`, toward the base and over the radius at the start of the step.
+    /// Rotation of the tangent at rest from the start of the step to `along`: the arclength toward the base over the radius at
+    /// the start. `None` if the rod is straight.
     fn turn(course: &Self::Course, along: T) -> Option<T>;
 
-    /// The state at its end.
+    /// The state at `along`, see [`Intrinsic::turn`].
     fn after(course: &Self::Course, along: T) -> Self::State;
 }
 
-/// Straight at rest: nothing to carry.
+/// A rod that is straight at rest.
 #[derive(Clone, Copy, Debug)]
 pub struct Straight;
 
@@ -49,19 +50,19 @@ impl<T: Real> Intrinsic<T> for Straight {
     fn after((): &(), _: T) {}
 }
 
-/// Parabola at rest: carries cos and sin of the rest tangent, `kappa_i = 2 A cos^3` (paper, Eq. 10).
+/// A parabola at rest: `kappa_i = 2 A cos^3` (paper, Eq. 10). The state is the unit tangent at rest.
 #[derive(Clone, Copy, Debug)]
 pub struct Bent<T> {
-    /// `2 A*`.
+    /// Twice the parabola coefficient, `2 A*`.
     pub twice_bend: T,
 }
 
-/// Terms of the tangent's Taylor series along a parabola. It converges up to `2 A s = pi/4` at least; of a step that bends by
-/// 0.1, 0.2 or 0.4, 1e-13, 1e-9 or 8e-6 is left out.
+/// Number of terms of the tangent's Taylor series along a parabola. It converges up to `2 A s = pi/4` at least. The remainder
+/// of a step that turns by 0.1, 0.2 or 0.4 radians is 1e-13, 1e-9 or 8e-6.
 pub const TERMS: usize = 12;
 
-/// With `k = 2 A cos^2(alpha)`, the tangent's derivatives along a parabola are `cos(alpha) k^n P_n(sin alpha)`, where
-/// `P_1 = 1` and `P_(n+1)(x) = (1 - x^2) P_n'(x) - (2n + 1) x P_n(x)`. These are the coefficients of `P_n/n!`.
+/// Coefficients of the polynomials `P_n/n!`. With `k = 2 A cos^2(alpha)`, the derivatives of the tangent's angle along a
+/// parabola are `cos(alpha) k^n P_n(sin alpha)`, where `P_1 = 1` and `P_(n+1)(x) = (1 - x^2) P_n'(x) - (2n + 1) x P_n(x)`.
 pub const TANGENT: [[f64; TERMS]; TERMS] = {
     let mut rows = [[0.0; TERMS]; TERMS];
     rows[0][0] = 1.0;
@@ -82,7 +83,7 @@ pub const TANGENT: [[f64; TERMS]; TERMS] = {
     rows
 };
 
-/// `P_(N+1)/(N+1)!` at `sin(alpha)`; every other coefficient is 0.
+/// `P_(N+1)/(N+1)!` at `sin(alpha)`. Every other coefficient is 0.
 #[inline(always)]
 fn term<T: Real, const N: usize>(sin: T, square: T) -> T {
     let mut sum = T::of(TANGENT[N][N]);
@@ -94,19 +95,19 @@ fn term<T: Real, const N: usize>(sin: T, square: T) -> T {
     if N % 2 == 1 { sum * sin } else { sum }
 }
 
-/// The Taylor series of the tangent along a parabola.
-pub struct Series<T> {
-    /// The tangent where it starts.
+/// Taylor series of the tangent's angle along a parabola, from the start of a step.
+pub struct ParabolaSeries<T> {
+    /// Unit tangent at the start.
     tangent: [T; 2],
-    /// `k`, with the sign of the way and in its unit.
+    /// `k` per `along`, see [`Intrinsic::turn`].
     rate: T,
-    /// `P_n/n!`.
+    /// `P_n/n!` at the start.
     terms: [T; TERMS],
 }
 
 impl<T: Real> Intrinsic<T> for Bent<T> {
     type State = [T; 2];
-    type Course = Series<T>;
+    type Course = ParabolaSeries<T>;
 
     #[inline(always)]
     fn rhs(self, section: &Section<T>, [cos, sin]: [T; 2]) -> (T, [T; 2]) {
@@ -115,14 +116,14 @@ impl<T: Real> Intrinsic<T> for Bent<T> {
     }
 
     #[inline(always)]
-    fn course(self, from: &Section<T>, tangent: [T; 2]) -> Series<T> {
+    fn course(self, from: &Section<T>, tangent: [T; 2]) -> ParabolaSeries<T> {
         let [cos, sin] = tangent;
         let square = sin * sin;
         macro_rules! terms {
             ($($n:literal)*) => { [$(term::<T, $n>(sin, square)),*] };
         }
         let terms = terms!(0 1 2 3 4 5 6 7 8 9 10 11);
-        Series {
+        ParabolaSeries {
             tangent,
             rate: -from.rho * self.twice_bend * cos * cos,
             terms,
@@ -130,7 +131,7 @@ impl<T: Real> Intrinsic<T> for Bent<T> {
     }
 
     #[inline(always)]
-    fn turn(course: &Series<T>, along: T) -> Option<T> {
+    fn turn(course: &ParabolaSeries<T>, along: T) -> Option<T> {
         let x = course.rate * along;
         let [a, b, c, d, e, f, g, h, i, j, k, l] = course.terms;
         let sum = horner!(x; l, k, j, i, h, g, f, e, d, c, b, a);
@@ -138,7 +139,7 @@ impl<T: Real> Intrinsic<T> for Bent<T> {
     }
 
     #[inline(always)]
-    fn after(course: &Series<T>, along: T) -> [T; 2] {
+    fn after(course: &ParabolaSeries<T>, along: T) -> [T; 2] {
         match Self::turn(course, along) {
             Some(turn) => rotated_by_small(course.tangent, turn),
             None => course.tangent,
@@ -146,19 +147,18 @@ impl<T: Real> Intrinsic<T> for Bent<T> {
     }
 }
 
-/// Euler spiral at rest, `kappa_i = k0 + k1 s` (E. L. Starostin et al., Science Advances 6, eaax5145, 2020): nothing to
-/// carry.
+/// An Euler spiral at rest: `kappa_i = k0 + k1 s` (E. L. Starostin et al., Science Advances 6, eaax5145, 2020).
 #[derive(Clone, Copy, Debug)]
 pub struct Spiral<T> {
-    /// `k0`.
+    /// Curvature at the base, `k0`.
     pub at_base: T,
-    /// `k1`.
+    /// Derivative of the curvature by the arclength, `k1`.
     pub slope: T,
 }
 
 impl<T: Real> Intrinsic<T> for Spiral<T> {
     type State = ();
-    /// The way per `along`, the curvature at its start, and half of how that changes.
+    /// Arclength per `along`, curvature at the start of the step, and half of its derivative.
     type Course = [T; 3];
 
     #[inline(always)]

@@ -1,39 +1,38 @@
-//! What a trajectory tells at the base: the pole as the base sees it, in distance `D` and direction `phi`.
-//!
-//! The coordinates of the sheet are `tau` of the contact and `load = f/rho^2` there.
+//! The shooting map: from the contact's `tau` and `load = f/rho^2` to the pole's distance `D` and direction `phi` in the frame
+//! of the base, with derivatives.
 
 use glam::DVec2;
 
-/// The longest Newton step, relative to the arclength of the contact and to the load (plus 1/s^2, the load's
-/// scale on the sheet).
+/// Longest Newton step, relative to the arclength `s` of the contact and to the load plus `1/s^2`, the load's scale on the
+/// sheet.
 pub const LONGEST_STEP: f64 = 0.25;
 
-/// `step` in `(tau, load)`, shortened as a whole to [`LONGEST_STEP`], and its length before: near a fold the
-/// Jacobian is nearly singular, and the full step would leave the sheet.
+/// `step` in `(tau, load)`, shortened as a whole to [`LONGEST_STEP`], and its relative length before. Near a fold the Jacobian
+/// is nearly singular, and the full step would leave the sheet.
 #[must_use]
 pub fn limited(step: DVec2, s: f64, load: f64) -> (DVec2, f64) {
     let length = (step.x.abs() / s).max(step.y.abs() / (load.abs() + 1.0 / (s * s)));
     (step * (LONGEST_STEP / length).min(1.0), length)
 }
 
-/// Quotient of complex numbers.
+/// The quotient `a/b` of complex numbers.
 fn over(a: DVec2, b: DVec2) -> DVec2 {
     DVec2::new(b.x, -b.y).rotate(a) / b.length_squared()
 }
 
-/// Where the pole is, and how that changes with the contact and the load.
+/// Position of the pole, and its derivatives by contact and load.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ShootingMap {
-    /// Centre of the pole in the frame of the base.
+    /// Centre of the pole in the frame of the base, in whisker lengths.
     pub pole: DVec2,
-    /// `d(ln D, phi)/dtau` at fixed load.
+    /// Derivative `d(ln D, phi)/dtau` at fixed load.
     pub by_tau: DVec2,
-    /// `d(ln D, phi)/dload`.
+    /// Derivative `d(ln D, phi)/dload` at fixed `tau`.
     pub by_load: DVec2,
 }
 
 impl ShootingMap {
-    /// `det d(ln D, phi)/d(tau, load)`: 0 at a fold.
+    /// Jacobian determinant `det d(ln D, phi)/d(tau, load)`: 0 at a fold.
     #[must_use]
     pub fn det(&self) -> f64 {
         self.by_tau.perp_dot(self.by_load)
@@ -54,55 +53,55 @@ impl ShootingMap {
         limited(self.solve(self.residual(wanted)), s, load).0
     }
 
-    /// `P_wanted/P - 1`: what Newton's method cancels. Its length is the miss relative to `D`.
+    /// Residual `P_wanted/P - 1` as a complex number. Its length is the pole's distance from the wanted place, relative to `D`.
     #[must_use]
     pub fn residual(&self, wanted: DVec2) -> DVec2 {
         over(wanted - self.pole, self.pole)
     }
 }
 
-/// A state with everything that a map tells about it. The base is seen from the contact, in axes whose second one is along the
-/// force.
+/// A state of the whisker: pole, pose of the base, force and energy. The frame's origin is the contact; its second axis is
+/// along the force.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FullState {
-    /// Pole and derivatives.
+    /// Pole and first derivatives.
     pub map: ShootingMap,
     /// Unit tangent of the base.
     pub tangent: DVec2,
-    /// Position of the base.
+    /// Position of the base, in whisker lengths.
     pub position: DVec2,
-    /// Force at the contact.
+    /// Force at the contact, in `E I_base/L_w^2`.
     pub force: f64,
     /// Bending energy in `E I_base/L_w`.
     pub energy: f64,
 }
 
-/// How a state changes with a coordinate of the sheet.
+/// Derivative of a state by a coordinate of the sheet.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StateDerivative {
-    /// Of the base's tangent, as an angle.
+    /// Derivative of the angle of the base's tangent.
     pub angle: f64,
-    /// Of its position.
+    /// Derivative of the position of the base.
     pub position: DVec2,
-    /// Of the force.
+    /// Derivative of the force.
     pub force: f64,
-    /// Of the energy.
+    /// Derivative of the energy.
     pub energy: f64,
 }
 
-/// A state, and how it changes with the contact and the load.
+/// A state with its derivatives by contact and load.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FirstVariation {
     /// The state.
     pub full: FullState,
-    /// By `tau` at fixed load.
+    /// Derivative by `tau` at fixed load.
     pub by_tau: StateDerivative,
-    /// By the load.
+    /// Derivative by the load at fixed `tau`.
     pub by_load: StateDerivative,
 }
 
 impl FirstVariation {
-    /// The state `step` further on in `(tau, load)`, to first order.
+    /// The state at a distance `step` in `(tau, load)`, to first order.
     #[must_use]
     pub fn extrapolated(&self, step: DVec2) -> FullState {
         let (full, tau, load) = (self.full, self.by_tau, self.by_load);
@@ -122,22 +121,22 @@ impl FirstVariation {
     }
 }
 
-/// A map with the second derivatives of `(ln D, phi)`.
+/// A shooting map with the second derivatives of `(ln D, phi)`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SecondVariation {
     /// Pole and first derivatives.
     pub map: ShootingMap,
-    /// Twice by `tau`.
+    /// Second derivative of `(ln D, phi)` by `tau`.
     pub by_tau_tau: DVec2,
-    /// By `tau` and load.
+    /// Mixed derivative of `(ln D, phi)` by `tau` and load.
     pub by_tau_load: DVec2,
-    /// Twice by load.
+    /// Second derivative of `(ln D, phi)` by the load.
     pub by_load_load: DVec2,
 }
 
 impl SecondVariation {
-    /// What a trajectory would say `step` further on in `(tau, load)`: the pole to second order, its first derivatives to
-    /// first.
+    /// The variation at a distance `step` in `(tau, load)`: the pole to second order, its first derivatives to first order, the
+    /// second derivatives unchanged.
     #[must_use]
     pub fn extrapolated(&self, step: DVec2) -> Self {
         let ShootingMap {

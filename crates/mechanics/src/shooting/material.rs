@@ -1,32 +1,32 @@
-//! Stiffness along the rod.
+//! Bending stiffness along the rod.
 
 use crate::numerics::Real;
 use crate::shooting::{Section, Stage};
 
-/// Coefficients of the equation that Liouville's transformation leaves, at a stage of a step. With `m^2` the inverse
-/// compliance and `chi = m (theta - theta_0)/f` it is `chi'' = (m''/m) chi - (rho/m) cos(theta)`, see [`Nystrom8`].
-/// `m_0` and `rho_0` are values at the start of the step.
+/// Coefficients at a stage of a step of the equation after Liouville's transformation. With the inverse compliance `m^2` and
+/// `chi = m (theta - theta_0)/f` it is `chi'' = (m''/m) chi - (rho/m) cos(theta)`, see [`Nystrom8`]. `m_0` and `rho_0` are
+/// values at the start of the step.
 ///
 /// [`Nystrom8`]: crate::shooting::Nystrom8
 #[derive(Clone, Copy, Debug)]
 pub struct Liouville<T> {
-    /// `m_0/m`: turns `chi` back into an angle.
+    /// `m_0/m`, which turns `chi` back into an angle.
     pub inverse_scale: T,
     /// `(rho/m)/(rho_0/m_0)`, the factor of `cos(theta)`.
     pub forcing: T,
-    /// `m''/m`, the factor of `chi`; none where it is 0.
+    /// `m''/m`, the factor of `chi`. `None` if it is 0.
     pub potential: Option<T>,
 }
 
-/// How the material stiffens along the rod.
+/// Stiffness of the rod as a function of its cross-section.
 pub trait Material<T: Real>: Copy {
-    /// `rho/S` at a section: what turns a moment into `dtheta/dtau`.
+    /// Compliance `rho/S` at a section: `dtheta/dtau` per moment.
     fn compliance(self, section: &Section<T>) -> T;
 
-    /// The coefficients at a stage of a step that starts at `from`.
+    /// The coefficients at a stage of a step that starts at `from`, on a rod of this taper, if it tapers.
     fn liouville(self, taper: Option<T>, from: &Section<T>, stage: &Stage<T>) -> Liouville<T>;
 
-    /// `m'/m` and `m/m_0` there, which turn `chi'` back into a lever; none where they are 0 and 1.
+    /// `m'/m` and `m/m_0` at a stage, which turn `chi'` back into a lever. `None` if they are 0 and 1.
     fn liouville_scale(
         self,
         taper: Option<T>,
@@ -36,7 +36,7 @@ pub trait Material<T: Real>: Copy {
     ) -> Option<[T; 2]>;
 }
 
-/// The same modulus everywhere: `S = rho^4`.
+/// A constant modulus: `S = rho^4`.
 #[derive(Clone, Copy, Debug)]
 pub struct Uniform;
 
@@ -81,18 +81,18 @@ impl<T: Real> Material<T> for Uniform {
 /// A modulus that is linear in the arclength: `S = rho^4 (1 + g s)`.
 #[derive(Clone, Copy, Debug)]
 pub struct Graded<T> {
-    /// `g`.
+    /// Gradient `g` of the modulus.
     pub gradient: T,
 }
 
 impl<T: Real> Graded<T> {
-    /// `1 + g s`.
+    /// The modulus `1 + g s` over the modulus at the base.
     #[inline(always)]
     fn modulus(self, section: &Section<T>) -> T {
         self.gradient.mul_add(section.arclength, T::of(1.0))
     }
 
-    /// Its inverse at a stage, and how fast its logarithm falls toward the base.
+    /// Inverse modulus at a section, and the rate at which its logarithm falls toward the base.
     #[inline(always)]
     fn fall(self, section: &Section<T>) -> [T; 2] {
         let inverse = T::of(1.0) / self.modulus(section);
@@ -136,20 +136,20 @@ impl<T: Real> Material<T> for Graded<T> {
     }
 }
 
-/// Measured radii, and a modulus that is linear in the arclength: `S = r(s)^4 (1 + g s)` on one cubic piece of `r`. Too rough
-/// for Liouville's transformation: see [`collocate`](crate::shooting::collocate).
+/// Measured radii and a modulus that is linear in the arclength: `S = r(s)^4 (1 + g s)` on one cubic piece of `r`. It is too
+/// rough for Liouville's transformation: see [`collocate`](crate::shooting::collocate).
 #[derive(Clone, Copy, Debug)]
 pub struct Measured<T> {
     /// Arclength where the piece begins.
     pub from: T,
-    /// Coefficients of the radius there.
+    /// Coefficients of the radius by the arclength from there.
     pub cubic: [T; 4],
-    /// `g`; none without.
+    /// Gradient `g` of the modulus. `None` if the modulus is constant.
     pub gradient: Option<T>,
 }
 
 impl<T: Real> Measured<T> {
-    /// `r^-4` at the arclength `s`.
+    /// Compliance `r^-4` at the arclength `s`, for a modulus of 1.
     #[inline(always)]
     pub fn compliance(&self, s: T) -> T {
         let x = s - self.from;

@@ -1,48 +1,48 @@
-//! A state of the whisker in the units of people.
+//! A state of the whisker in physical units.
 
 use super::FullState;
 use crate::numerics::nearest_turn;
 use crate::rod::{Rest, Rod, Units, arclength_at};
 use glam::DVec2;
 
-/// What a person reads off a state. The base frame has its first axis along the base's tangent; force and moment
-/// are those that the pole puts on the base.
+/// A state of the whisker in physical units. The first axis of the base frame is the base's tangent. Force and moment are those
+/// that the pole exerts at the base.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reading {
-    /// From the base to the contact, along the whisker.
+    /// Arc length from the base to the contact, in millimetres.
     pub arc_length_mm: f64,
-    /// Of the whisker's tangent at the contact, from the base's tangent.
+    /// Angle of the whisker's tangent at the contact from the base's tangent, in degrees.
     pub contact_angle_deg: f64,
-    /// Between pole and whisker, normal to both.
+    /// Normal force between pole and whisker, in micronewtons.
     pub force_un: f64,
-    /// In the base frame.
+    /// Force on the base in the base frame, in micronewtons.
     pub base_force_un: DVec2,
-    /// Positive where it turns the base's tangent toward its normal.
+    /// Moment on the base in nanonewton metres, positive if it turns the base's tangent toward its normal.
     pub base_moment_nnm: f64,
-    /// The push angle of the paper's Fig. 1D, between base-contact and the point of the resting whisker that is as
-    /// far from the base.
+    /// Chord angle of the paper's Fig. 1D, in degrees: between the directions from the base to the contact and to the point of the
+    /// resting whisker at the same distance.
     pub push_chord_deg: f64,
-    /// From the base to the contact, as the crow flies.
+    /// Straight distance from the base to the contact, in millimetres.
     pub contact_distance_mm: f64,
-    /// Of bending.
+    /// Bending energy, in nanojoules.
     pub energy_nj: f64,
 }
 
-/// What of a rod is the same in all its states.
+/// Converter of the states of one rod to physical units.
 #[derive(Clone, Copy, Debug)]
 pub struct Reader {
     units: Units,
     taper: f64,
     rest: Rest,
     to_pole: DVec2,
-    /// Of the contact's tangent from the normal of the force.
+    /// Angle of the contact's tangent from the normal of the force, in radians.
     tilt: f64,
-    /// The part of the force that is normal to the whisker.
+    /// Normal force over the whole force.
     normal: f64,
 }
 
 impl Reader {
-    /// What reads the states of `rod` in `units`.
+    /// The converter for the states of `rod` to `units`.
     #[must_use]
     pub fn new(units: Units, rod: &Rod) -> Self {
         let tangent = rod.contact_tangent();
@@ -56,8 +56,8 @@ impl Reader {
         }
     }
 
-    /// What a difference of one in each number of a state, as seen without units, is in a reading: lengths in whisker lengths, angles
-    /// in radians, forces signed with `side` and whole.
+    /// Change of a reading for a change of 1 in each dimensionless number of a state: lengths in whisker lengths, angles in
+    /// radians, whole forces with the sign `side`.
     #[must_use]
     pub fn of_one(&self, side: f64) -> Reading {
         let units = &self.units;
@@ -74,8 +74,8 @@ impl Reader {
         }
     }
 
-    /// The state at first touch: the resting whisker, without a load. The contact is at arclength `contact`, in whisker lengths, and the
-    /// pole in the direction `touch`.
+    /// The reading at first touch: the resting whisker without a load. The contact is at arclength `contact`, in whisker lengths,
+    /// and the pole in the direction `touch`, in radians.
     #[must_use]
     pub fn at_first_touch(&self, contact: f64, touch: f64) -> Reading {
         let (point, tangent) = self.rest.at_arclength(contact);
@@ -91,8 +91,8 @@ impl Reader {
         }
     }
 
-    /// The state `full`, in contact at `tau`, after the signed `push` (radians) since the pole was first touched in the
-    /// direction `touch`.
+    /// The reading of the state `full` with the contact at `tau`, at the signed push angle `push` from first touch in the direction
+    /// `touch`. Both angles are in radians.
     #[must_use]
     pub fn read(&self, tau: f64, full: &FullState, touch: f64, push: f64) -> Reading {
         let units = &self.units;

@@ -1,29 +1,29 @@
-//! How many steps a trajectory takes.
+//! Number of integration steps of a trajectory.
 
 use crate::rod::{Demands, RadiusProfile, Rod, arclength};
 
-/// How finely trajectories are integrated: `least` steps under about the load of a cylinder's fold, and no step along which the
-/// radius of a cone changes by more than a factor `exp(longest)`, the modulus by more than `exp(2 longest)`, or the resting whisker
-/// turns by more than `0.6 longest`.
+/// Step sizes of trajectories: `least` steps at about the load of a cylinder's fold. Along one step, the radius of a cone
+/// changes at most by the factor `exp(longest)`, the modulus by `exp(2 longest)`, and the resting whisker turns at most by
+/// `0.6 longest` radians.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Resolution {
     /// Steps of a straight whisker under `q = 8` with `beta tau = 1`.
     pub least: u32,
-    /// Longest step in `beta tau`, in `3.2 A* tau` and in half the logarithm of the modulus; at most 0.4.
+    /// Longest step in `beta tau`, in `3.2 A* tau` and in half the logarithm of the modulus, at most 0.4.
     pub longest: f64,
-    /// Fewest steps of a piece of a profile: 1, but where errors are to be seen by doubling.
+    /// Fewest steps along a piece of a profile: 1, or more where errors are estimated by doubling.
     pub fewest: u32,
 }
 
 impl Resolution {
-    /// What maps and lines take unless told otherwise: states are off by less than 1e-11 of the length for taper up to 0.99
+    /// Default of maps and lines: errors of states are below 1e-11 whisker lengths for taper up to 0.99
     /// (`tests/mechanics/integrators.rs`).
     pub const FINE: Self = Self::of(20);
 
-    /// What signs and guesses need. Over the stable sheet states are off by less than 1e-6.
+    /// Resolution for signs and guesses: errors of states on the stable sheet are below 1e-6.
     pub const COARSE: Self = Self::of(5);
 
-    /// From cheap to exact, a factor of 6 to 26 in the error apart.
+    /// Resolutions from cheap to exact. Errors of neighbours differ by factors of 6 to 26.
     pub const LADDER: [Self; 8] = [
         Self::of(3),
         Self::of(4),
@@ -35,7 +35,7 @@ impl Resolution {
         Self::of(30),
     ];
 
-    /// So many steps, and none longer than a cone of taper 0.96 takes on average in as many.
+    /// The resolution with `least` steps. No step is longer than the average of as many on a cone of taper 0.96.
     #[must_use]
     pub const fn of(least: u32) -> Self {
         let longest = 3.2 / least as f64;
@@ -46,7 +46,7 @@ impl Resolution {
         }
     }
 
-    /// Twice as fine.
+    /// The resolution with twice as many steps.
     #[must_use]
     pub const fn doubled(self) -> Self {
         Self {
@@ -56,17 +56,17 @@ impl Resolution {
         }
     }
 
-    /// Steps for a trajectory from `tau` under `load` on `rod`; with a profile, those of a piece that did all the bending
-    /// ([`PieceSteps`]).
+    /// Number of steps for a trajectory from `tau` under `load` on `rod`. With a profile it is the number for a piece that does
+    /// all the bending ([`PieceSteps`]).
     ///
-    /// What is needed grows with the root of the load above all, so that a whisker that hardly bends takes a third of the steps.
-    /// The weights are those of 20,000 random trajectories that had to reach 1e-8, 1e-10 and 3e-12 (`benches/NOTES.md`).
+    /// The number grows mainly with the root of the load: a whisker that hardly bends takes a third of the steps. The weights were
+    /// fitted to 20,000 random trajectories with errors of 1e-8, 1e-10 and 3e-12 (`benches/NOTES.md`).
     #[must_use]
     pub fn steps(&self, rod: &Rod, tau: f64, load: f64) -> u32 {
         self.steps_from(rod, tau, load, arclength(rod, tau))
     }
 
-    /// The same where the arclength `s` of the contact is known already.
+    /// Number of steps as from [`Resolution::steps`], for a contact at the known arclength `s`.
     #[inline(always)]
     pub(super) fn steps_from(&self, rod: &Rod, tau: f64, load: f64, s: f64) -> u32 {
         let bend = rod.sharpest_bend();
@@ -87,7 +87,7 @@ impl Resolution {
         self.rounded(weight, fastest * tau)
     }
 
-    /// What the pieces of the profile of `rod` need on the way of a trajectory from `tau` under `load`.
+    /// Steps along the pieces of the profile of `rod` for a trajectory from `tau` under `load`.
     #[must_use]
     pub(super) fn of_pieces(&self, rod: &Rod, tau: f64, load: f64) -> PieceSteps {
         let s = arclength(rod, tau);
@@ -101,23 +101,23 @@ impl Resolution {
         }
     }
 
-    /// Those on a rod of one modulus without a profile, from `tau`, load and arclength: without a branch, so that a compiler
-    /// can work on several at once.
+    /// Number of steps on a rod with a constant modulus and no profile, from `tau`, load and arclength. It has no branch, so that a
+    /// compiler vectorises it.
     #[inline(always)]
     pub(super) fn steps_on_uniform(&self, taper: f64, bend: f64, [tau, load, s]: [f64; 3]) -> u32 {
         let weight = weight(load.abs() * s * s, bend * s) + weight_of_taper(taper * tau);
         self.rounded(weight, fastest(taper, bend) * tau)
     }
 
-    /// At least as many steps as both ask for, up to a number that many trajectories share: three significant bits.
+    /// The larger of both numbers of steps, rounded up to three significant bits, so that many trajectories share it.
     #[allow(
         clippy::cast_possible_truncation,
         clippy::manual_clamp,
-        reason = "the last bits of the sum are the number; NaN becomes the smallest, which `clamp` would let through"
+        reason = "the last bits of the sum are the number; NaN becomes the smallest number, where `clamp` would keep it"
     )]
     #[inline(always)]
     fn rounded(&self, weight: f64, needed: f64) -> u32 {
-        /// Added to a number below, it leaves no bits for fractions.
+        /// Added to a smaller number, it leaves no bits for fractions.
         const WHOLE: f64 = (1_u64 << 52) as f64;
         /// The bits of a mantissa after the first two.
         const REST: u64 = (1 << 50) - 1;
@@ -130,23 +130,23 @@ impl Resolution {
     }
 }
 
-/// What the pieces of a profile need on the way of one trajectory.
+/// Steps along the pieces of a profile for one trajectory.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PieceSteps {
-    /// Steps of a piece that did all the bending.
+    /// Steps of a piece that does all the bending.
     bent: f64,
     /// Steps of a piece as long as the whisker, for its shape at rest and its modulus.
     at_rest: f64,
     /// Steps of a piece of roughness 1.
     rough: f64,
-    /// See [`Resolution`].
+    /// Fewest steps of a piece, see [`Resolution`].
     fewest: u32,
-    /// Of the contact, see [`Demands`].
+    /// Reach of the contact, see [`Demands`].
     reach: u32,
 }
 
 impl PieceSteps {
-    /// How many steps the piece `k` of `profile` takes: by its share in the bending, its length, and how its radius changes.
+    /// Number of steps of the piece `k` of `profile`, by its share in the bending, its length, and the change of its radius.
     #[inline(always)]
     pub(super) fn of(&self, profile: &RadiusProfile, k: usize) -> u32 {
         let demand = profile.demands.of(self.reach, k);
@@ -158,12 +158,12 @@ impl PieceSteps {
     }
 }
 
-/// Of its logarithm, over the whisker.
+/// Change of the logarithm of the modulus over the whisker: an upper bound.
 fn change_of_modulus(rod: &Rod) -> f64 {
     rod.gradient.abs() / (1.0 + rod.gradient).min(1.0)
 }
 
-/// Of the load and of the rest shape, which turns by `bend` between base and contact.
+/// Weight of the scaled load and of the rest shape, which turns by `bend` radians between base and contact.
 #[inline(always)]
 fn weight(bending: f64, bend: f64) -> f64 {
     let root = bending.sqrt();
@@ -171,28 +171,28 @@ fn weight(bending: f64, bend: f64) -> f64 {
     0.28 + 0.195 * root + coiling + 0.18 * bend * bend.min(2.0)
 }
 
-/// The root of a scaled load from which on a whisker coils up, so that the same error counts for more of the distance between base and
-/// pole. Few stable states without friction are beyond it: the first fold of a cone lies at `q` of 24 at most.
+/// Root of the scaled load above which a whisker coils up, so that an error is larger relative to the distance between base and
+/// pole. Few stable states without friction lie above it: the first fold of a cone lies at `q` of 24 at most.
 const COILING: f64 = 4.5;
 
-/// Of the fall of the radius.
+/// Weight of the fall of the radius, `fall = beta tau`.
 #[inline(always)]
 fn weight_of_taper(fall: f64) -> f64 {
     0.17 * fall * fall.min(2.0)
 }
 
-/// What limits the length of a step, per `tau`.
+/// Rate of change along `tau` that limits the length of a step.
 #[inline(always)]
 fn fastest(taper: f64, bend: f64) -> f64 {
     taper.max(1.6 * bend)
 }
 
-/// How many times as many steps collocation takes along a piece that does all the bending as Nystrom's method along a cone: it is of a
-/// lower order (`benches/NOTES.md`).
+/// Steps of collocation along a piece that does all the bending, over the steps of Nystrom's method along a cone: collocation
+/// is of lower order (`benches/NOTES.md`).
 const CONCENTRATED: f64 = 2.2;
 
-/// Steps that a roughness of 1 takes, in parts of `least`.
+/// Steps for a roughness of 1, over `least`.
 const ROUGH: f64 = 1.6;
 
-/// Bounds the work on a trajectory that a lost Newton step has sent far away.
+/// Largest number of steps: it bounds the work on a trajectory that a diverging Newton step has sent far away.
 const MOST: f64 = 8192.0;

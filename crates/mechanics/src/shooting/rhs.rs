@@ -1,43 +1,42 @@
-//! The right-hand sides, in `sigma = tau_contact - tau`: from the contact (0) backward to the base.
+//! The right-hand sides of the rod's equations in `sigma = tau_contact - tau`, from the contact (0) backward to the base.
 //!
-//! With `rho` the radius, `S` the stiffness and `w = rho/S`, `d/dsigma = -rho d/da` turns
-//! `dtheta/da = kappa_i - f X/S` into `dtheta/dsigma = -(rho kappa_i - f X w)`. The unit tangent `(c, s)` stands for `theta`: no
-//! trigonometry in the loop.
+//! With the radius `rho`, the stiffness `S` and `w = rho/S`, `d/dsigma = -rho d/da` turns `dtheta/da = kappa_i - f X/S` into
+//! `dtheta/dsigma = -(rho kappa_i - f X w)`. The unit tangent `(c, s)` replaces `theta`, so that no step needs trigonometry.
 
 use crate::numerics::{Real, Vector};
 use crate::shooting::{Intrinsic, Material};
 
-/// The rod at a place.
+/// A cross-section of the rod.
 #[derive(Clone, Copy, Debug)]
 pub struct Section<T> {
     /// Radius over the base radius, `rho`.
     pub rho: T,
-    /// `1/rho^3`.
+    /// Inverse cube of the radius, `1/rho^3`.
     pub inverse_cube: T,
-    /// Arclength from the base; only kernels that need it carry it.
+    /// Arclength from the base, in whisker lengths.
     pub arclength: T,
 }
 
-/// The rod itself: `c, s, X, Y`, and how far bending has turned it since the contact.
+/// State of the rod: `c, s, X, Y`, and the angle by which bending has turned it since the contact, in radians.
 pub type Planar<T> = [T; 5];
 
-/// Derivatives carried beside the rod: of angles, of the levers that turn them, and of what only adds up.
+/// Derivatives that a trajectory carries beside the rod: of angles, of the levers that turn them, and of integrals.
 pub trait Sensitivity<T: Real>: 'static {
-    /// The angles, and as many levers.
+    /// Derivatives of angles; as many derivatives of levers.
     type Pairs: Vector<T>;
 
-    /// What nothing depends on.
+    /// Integrals, on which no other equation depends.
     type Sums: Vector<T>;
 
-    /// `dangles/dsigma` over the compliance, under the force `f`: derivatives of the moment `f X`.
+    /// `dangles/dsigma` over the compliance under the force `f`: the derivatives of the moment `f X`.
     fn moments(f: T, x: T, levers: Self::Pairs) -> Self::Pairs;
 
-    /// `dlevers/dsigma` and `dsums/dsigma` over the radius: derivatives of `-cos theta` and of `-sin theta`, where the tangent is
-    /// `(c, s)` and bending has turned it by `bent`.
+    /// `dlevers/dsigma` and `dsums/dsigma` over the radius: derivatives of `-cos theta` and `-sin theta` for the tangent `(c, s)`,
+    /// which bending has turned by `bent`.
     fn pull(c: T, s: T, bent: T, angles: Self::Pairs) -> (Self::Pairs, Self::Sums);
 }
 
-/// No derivatives.
+/// The empty set of derivatives: the shape alone.
 #[derive(Clone, Copy, Debug)]
 pub struct Shape;
 
@@ -54,28 +53,28 @@ impl<T: Real> Sensitivity<T> for Shape {
     }
 }
 
-/// Angles, levers and sums.
+/// Carried derivatives: angles, levers and sums.
 pub type Carried<T, S> = (
     <S as Sensitivity<T>>::Pairs,
     (<S as Sensitivity<T>>::Pairs, <S as Sensitivity<T>>::Sums),
 );
 
-/// A trajectory's whole state: rest shape, rod, sensitivities.
+/// State of a trajectory: rest shape, rod, derivatives.
 pub type State<T, I, S> = (<I as Intrinsic<T>>::State, (Planar<T>, Carried<T, S>));
 
-/// Rod, rest shape and sensitivities as one system of equations.
+/// Equations of the rod, its rest shape and its derivatives.
 #[derive(Clone, Copy, Debug)]
 pub struct RodSystem<T, I, C> {
-    /// Load `f`.
+    /// Force `f`.
     pub force: T,
     /// Curvature at rest.
     pub intrinsic: I,
-    /// Stiffness of the material.
+    /// Stiffness along the rod.
     pub material: C,
 }
 
 impl<T: Real, I: Intrinsic<T>, C: Material<T>> RodSystem<T, I, C> {
-    /// `dstate/dsigma`.
+    /// Right-hand side `dstate/dsigma`.
     #[inline(always)]
     pub fn rhs<S: Sensitivity<T>>(
         &self,

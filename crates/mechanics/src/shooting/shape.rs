@@ -1,13 +1,13 @@
-//! A trajectory seen at points along the whisker.
+//! Points along a deflected whisker.
 
 use crate::rod::{Rest, Rod, arclength};
 use crate::shooting::{
-    Backward, Bent, Graded, Intrinsic, Measured, Nystrom8, Resolution, RodSystem, Scales, Section,
-    Shape, Spiral, State, collocate, integrate,
+    BackwardCompliance, Bent, Graded, Intrinsic, Measured, Nystrom8, Resolution, RodSystem, Scales,
+    Section, Shape, Spiral, State, collocate, integrate,
 };
 use glam::DVec2;
 
-/// The whisker at one of its points, as seen from the contact, in axes whose second one is along the force; lengths in whisker
+/// A point of the whisker. The frame's origin is the contact; its second axis is along the force. Lengths are in whisker
 /// lengths.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RodPoint {
@@ -17,14 +17,14 @@ pub struct RodPoint {
     pub position: DVec2,
     /// Unit tangent.
     pub tangent: DVec2,
-    /// `dtheta/ds`.
+    /// Curvature `dtheta/ds`, in radians per whisker length.
     pub curvature: f64,
-    /// Bending moment, in `E I_base/L_w`; 0 beyond the contact.
+    /// Bending moment in `E I_base/L_w`, 0 beyond the contact.
     pub moment: f64,
 }
 
-/// The points at growing arclengths `at` of the whisker in contact at `tau` under `load`; beyond the contact it keeps
-/// its rest shape.
+/// The points at the growing arclengths `at` of the whisker with the contact at `tau` under `load`. Beyond the contact the
+/// whisker keeps its rest shape.
 #[must_use]
 pub fn profile(
     rod: &Rod,
@@ -34,7 +34,7 @@ pub fn profile(
     at: &[f64],
 ) -> Vec<RodPoint> {
     let (radius, contact) = (rod.radius(tau), arclength(rod, tau));
-    let way = Way {
+    let trajectory = ShapeTrajectory {
         rod,
         tau,
         contact,
@@ -44,38 +44,38 @@ pub fn profile(
         resolution,
     };
     match rod.spiral {
-        Some([at_base, slope]) => way.points(Spiral { at_base, slope }, (), at),
+        Some([at_base, slope]) => trajectory.points(Spiral { at_base, slope }, (), at),
         None => {
             let twice_bend = 2.0 * rod.bend;
             let rest = Rest::parabola_tangent(rod, contact).to_array();
-            way.points(Bent { twice_bend }, rest, at)
+            trajectory.points(Bent { twice_bend }, rest, at)
         }
     }
 }
 
-/// How many of the `steps` over `whole` a part of it takes, and how long they are.
+/// Number and length of the steps over a `part` of `whole`, which takes `steps`.
 fn share(steps: u32, whole: f64, part: f64) -> (u32, f64) {
     let steps = ((f64::from(steps) * part / whole).ceil() as u32).max(1);
     (steps, part / f64::from(steps))
 }
 
-/// The way from a contact to the base.
-struct Way<'a> {
+/// A trajectory from a contact to the base, to be evaluated at points between.
+struct ShapeTrajectory<'a> {
     rod: &'a Rod,
     /// `tau` of the contact.
     tau: f64,
     /// Arclength of the contact.
     contact: f64,
-    /// The whole force, signed.
+    /// Signed force, with friction.
     force: f64,
-    /// The whisker's tangent at the contact.
+    /// Unit tangent of the whisker at the contact.
     tangent: DVec2,
-    /// Steps that the whole way would take, or a piece of a profile that did all the bending.
+    /// Steps of the whole trajectory, or of a piece of a profile that does all the bending.
     steps: u32,
     resolution: Resolution,
 }
 
-impl Way<'_> {
+impl ShapeTrajectory<'_> {
     fn points<I: Intrinsic<f64>>(&self, intrinsic: I, rest: I::State, at: &[f64]) -> Vec<RodPoint> {
         let deflected = at.partition_point(|s| *s < self.contact);
         let tangent = self.tangent;
@@ -136,7 +136,7 @@ impl Way<'_> {
                 let scales = Scales::tapered::<Nystrom8>(self.rod.taper, h);
                 let mut section = self.section(from);
                 for _ in 0..steps {
-                    let computed = Backward {
+                    let computed = BackwardCompliance {
                         material: &material,
                         from: section.arclength,
                         length: section.rho * scales.end().along,

@@ -1,16 +1,16 @@
-//! Batches of trajectories that want different numbers of steps: alone, or padded.
+//! Batches of trajectories with different numbers of steps, padded or not.
 
 use std::sync::Arc;
 use whiskmap_mechanics::rod::{RadiusProfile, Rod};
 use whiskmap_mechanics::shooting::batch::{Batch, InitialCondition, Method};
 use whiskmap_mechanics::shooting::{Resolution, SecondVariation, ShootingMap};
 
-/// A test ends soon: its rods may stay until then.
+/// A rod that lives until the test program ends.
 fn kept(rod: Rod) -> &'static Rod {
     Box::leak(Box::new(rod))
 }
 
-/// Contacts from next to the base to the tip, from no load to that of the fold, on slender and blunt whiskers.
+/// Conditions with contacts from the base to the tip, loads from 0 to the fold, on slender and blunt whiskers.
 fn conditions(count: usize) -> Vec<InitialCondition<'static>> {
     let condition = |i: usize| {
         let [along, load, shape] = [0.618, 0.755, 0.570].map(|step| (i as f64 * step).fract());
@@ -34,7 +34,7 @@ fn method(least: u32) -> Method {
     Method::new(Resolution::of(least))
 }
 
-/// The same on whiskers with measured radii, in contact on every piece of them.
+/// Conditions on whiskers with measured radii, with contacts on each piece.
 fn measured(count: usize) -> Vec<InitialCondition<'static>> {
     let rows = [0.0, 0.2, 0.5, 0.7, 1.0].map(|s| [s, 1.0 - 0.8 * s - 0.1 * s * s]);
     let profile = Arc::new(RadiusProfile::new(&rows, 1.0));
@@ -54,9 +54,9 @@ fn measured(count: usize) -> Vec<InitialCondition<'static>> {
     conditions(count).into_iter().map(condition).collect()
 }
 
-/// One after the other, every condition gets the answer that it gets in a batch, once.
+/// A batch has the outputs of its conditions alone, in their order, each once.
 #[test]
-fn each_gets_its_own_answer() {
+fn outputs_keep_the_order_of_conditions() {
     for conditions in [0, 1, 16, 100, 3000]
         .map(conditions)
         .into_iter()
@@ -73,10 +73,10 @@ fn each_gets_its_own_answer() {
     }
 }
 
-/// Who shares a block takes at least the steps that it would take alone: nobody's answer is worse than the worst
-/// alone, but for rounding (4.7e-14 in 20 steps).
+/// A padded trajectory takes at least as many steps as alone. Its error is at most the largest error alone, but for rounding
+/// (4.7e-14 in 20 steps).
 #[test]
-fn padding_does_no_harm() {
+fn padding_keeps_the_accuracy() {
     let few = [1, 15, 16, 17, 300, 3000].map(conditions);
     for conditions in few.into_iter().chain([17, 300].map(measured)) {
         let count = conditions.len();
@@ -103,7 +103,7 @@ fn padding_does_no_harm() {
     }
 }
 
-/// One number of steps for all: then padding is no different at all.
+/// With equal numbers of steps, padding changes no bit.
 #[test]
 fn equals_padded_are_as_if_alone() {
     let one = conditions(7)[6];
@@ -118,7 +118,7 @@ fn equals_padded_are_as_if_alone() {
     );
 }
 
-/// Batches of more than a thread's share, whose blocks are spread over the threads.
+/// The batches are larger than a chunk, so that several threads compute their blocks.
 #[test]
 fn threads_change_nothing() {
     let conditions = conditions(5000);
@@ -135,9 +135,9 @@ fn threads_change_nothing() {
     assert_eq!(one, three);
 }
 
-/// A condition that cannot be computed shares a block, too.
+/// A condition with NaN shares a block with others.
 #[test]
-fn no_number_hurts_only_itself() {
+fn nan_stays_in_its_lane() {
     let sound = conditions(100);
     let method = method(7);
     let expected = Batch::new(method).padded().shoot::<ShootingMap>(&sound);
@@ -152,7 +152,7 @@ fn no_number_hurts_only_itself() {
     }
 }
 
-/// So many rows that a step for each piece is enough: an estimate of the error must still see twice as many.
+/// With many rows one step for each piece suffices. Doubling must still double the steps.
 #[test]
 fn doubling_shows_the_error_of_many_rows() {
     let wave = |s: f64| (1.0 - 0.9 * s) * (1.0 + 0.1 * (150.0 * s).sin());

@@ -1,4 +1,4 @@
-//! Bits of trajectories: equal on all units of one arithmetic class, on every processor and operating system.
+//! Bits of trajectories are equal on all units of one arithmetic class, on every processor and operating system.
 
 use crate::effects::{conditions, rods};
 use whiskmap_mechanics::numerics::{ArithmeticClass, Unit};
@@ -25,7 +25,7 @@ fn hashed<O: OutputSet + std::fmt::Debug>(
         .fold(hash, |hash, output| fnv(hash, &format!("{output:?}")))
 }
 
-/// The hash of numbers of the rods at rest, which no unit computes in lanes.
+/// The hash of numbers of the rods at rest, which are computed without lanes.
 fn at_rest(hash: u64, rods: &[Rod]) -> u64 {
     let places = (1..200).map(|i| f64::from(i) / 200.0);
     let pairs = rods

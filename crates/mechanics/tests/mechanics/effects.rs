@@ -1,4 +1,4 @@
-//! Whatever a method and a batch say, a trajectory has all effects of its rod.
+//! A trajectory has all effects of its rod, whatever its method and batch.
 
 use std::sync::Arc;
 use whiskmap_mechanics::numerics::Unit;
@@ -48,7 +48,7 @@ pub fn rods() -> Vec<Rod> {
     ]
 }
 
-/// Three contacts on each rod, under a load that bends it well.
+/// Three contacts on each rod, under a load that bends it strongly.
 pub fn conditions(rods: &[Rod]) -> Vec<InitialCondition<'_>> {
     let on = |rod| [0.3, 0.55, 0.8].map(|s| (rod, s));
     let pairs = rods.iter().flat_map(on);
@@ -60,7 +60,7 @@ pub fn conditions(rods: &[Rod]) -> Vec<InitialCondition<'_>> {
     pairs.map(condition).collect()
 }
 
-/// In one batch by a method that knows of no effect, every rod is as if alone, padded or not.
+/// In a batch by a method without effects, every rod has the outputs that it has alone, padded or not.
 #[test]
 fn no_effect_is_dropped() {
     let rods = rods();
@@ -77,9 +77,9 @@ fn no_effect_is_dropped() {
     }
 }
 
-/// Effects that a rod has not change no more than rounding, and another rest shape does not replace its own.
+/// Additional effects of the method change rounding alone, and another rest shape does not replace the rod's own.
 #[test]
-fn effects_of_others_change_nothing() {
+fn additional_effects_change_rounding_alone() {
     let rods = rods();
     let all = Effects::of(&rods);
     assert!(all.taper && all.curvature && all.spiral && all.gradient && all.profile);

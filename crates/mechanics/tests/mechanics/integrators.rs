@@ -54,10 +54,10 @@ fn rods() -> Vec<InitialCondition<'static>> {
     conditions
 }
 
-/// What is carried beside a shape.
+/// Carried derivatives of a shape.
 const NOTHING: ((), ((), ())) = ((), ((), ()));
 
-/// Where the trajectory of a straight, smooth cylinder under `load` ends.
+/// Position of the base of a straight cylinder without friction under `load`.
 fn end<M: Integrator>(load: f64, steps: u32) -> DVec2 {
     let system = RodSystem {
         force: load,
@@ -77,8 +77,7 @@ fn end<M: Integrator>(load: f64, steps: u32) -> DVec2 {
     DVec2::new(x, y)
 }
 
-/// Halving the step divides the error by `2^order`; the factor is measured where the error is neither that of
-/// coarse steps nor rounding.
+/// Halving the step divides the error by `2^order`. The factor is measured between the errors of coarse steps and rounding.
 #[test]
 fn integrators_have_their_order() {
     fn order<M: Integrator>(steps: u32) -> f64 {
@@ -93,8 +92,8 @@ fn integrators_have_their_order() {
     );
 }
 
-/// The same in a batch, with every effect that does not exclude another, for the worst of its trajectories. (In fewer steps what
-/// is left out of the rest shape's series falls faster, in more of them there is little but rounding.)
+/// The order of the largest error in a batch whose rods have all compatible effects. (With fewer steps the remainder of the rest
+/// shape's series falls faster; with more steps rounding dominates.)
 #[test]
 fn batches_have_the_order() {
     let conditions = rods();
@@ -110,7 +109,7 @@ fn batches_have_the_order() {
     assert!((7.3..9.0).contains(&order), "{order}");
 }
 
-/// The finest resolution in use is exact to 1e-11 up to taper 0.99.
+/// Errors of the finest resolution in use are below 1e-11 up to taper 0.99.
 #[test]
 fn the_fine_resolution_is_exact() {
     let fine = Method::fine().with_effects(EFFECTS);
@@ -123,7 +122,7 @@ fn the_fine_resolution_is_exact() {
     }
 }
 
-/// A hyper-dual number as a scalar of the model.
+/// A hyper-dual number as the scalar.
 #[derive(Clone, Copy, Debug)]
 struct Dual(HyperDual64);
 
@@ -190,9 +189,9 @@ fn ln_pole(rod: &Rod, tau: HyperDual64, load: HyperDual64) -> [HyperDual64; 2] {
     [ln_distance, wy.atan2(wx) - s.atan2(c)]
 }
 
-/// First and second sensitivities against automatic differentiation of the same equations: both are exact up
-/// to the truncation of 256 RK4 steps (measured: 2e-8 relative). With a gradient the kernel carries all of them; without, those
-/// by the load, and toward the tip (a contact at 0.98 of the steepest cone) all again.
+/// First and second derivatives against automatic differentiation of 256 RK4 steps (measured difference: 2e-8, relative). With a
+/// gradient the kernel carries all derivatives. Without, it carries those by the load, and near the tip (a contact at 0.98 of the
+/// steepest cone) all of them.
 #[test]
 fn sensitivities_agree_with_num_dual() {
     let poles = [(0.0, 3.0), (0.0125, 6.0), (-0.05, -6.0)];
@@ -255,7 +254,7 @@ fn second(rod: &Rod, tau: f64, load: f64, axis: usize, which: usize) -> f64 {
     }
 }
 
-/// Curved rods: derivatives against central differences of one order less (measured: 3e-9 relative).
+/// Derivatives on curved rods against central differences of one order less (measured difference: 3e-9, relative).
 #[test]
 fn sensitivities_of_curved_rods_agree_with_differences() {
     for condition in rods().iter().filter(|condition| condition.rod.bend > 0.0) {

@@ -1,12 +1,14 @@
-//! The mechanics by themselves: no scene, no map, no device.
+//! Tests of the mechanics, without scenes, maps and devices.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod batches;
 mod bytes;
+mod chebyshev;
 mod contact;
 mod effects;
 mod integrators;
 mod radius;
 mod resolution;
 mod rest;
+mod roots;
 mod rough;

@@ -76,7 +76,7 @@ fn a_cone_is_as_compliant_as_by_integration() {
     }
 }
 
-/// A straight cylinder in four pieces of one length: what each adds to the deflection of a contact, by hand.
+/// Shares of four pieces of equal length in the deflection of a straight cylinder, computed by hand.
 #[test]
 fn pieces_share_the_bending() {
     let rows = [0.0, 0.25, 0.5, 0.75, 1.0].map(|s| [s, 1.0]);
@@ -85,18 +85,18 @@ fn pieces_share_the_bending() {
         for k in 0..4 {
             let from = s.min(0.25 * k as f64);
             let to = s.min(from + 0.25);
-            // Under a load the end of a lever turns by the square of its length.
+            // Under a load, the end of a lever turns by the square of its length.
             let share = ((s - from).powi(2) - (s - to).powi(2)) / (s * s);
             let exact = (share * (0.25 / s).min(1.0)).sqrt().max(0.5 * share);
             let found = f64::from(profile.demands.of(Demands::reach(s), k).bending);
-            // Other contacts of the reach have larger ones.
+            // Other contacts of the reach have larger demands.
             assert!(
                 (exact - 1e-6..exact + 0.25).contains(&found),
                 "{s}, {k}: {exact}, {found}"
             );
         }
     }
-    // All of it is bent, and nothing is rough.
+    // The only piece has all the bending and no roughness.
     let sum: f32 = (0..4).map(|k| profile.demands.of(0, k).bending).sum();
     assert!((1.0..1.2).contains(&sum), "{sum}");
     assert!((0..4).all(|k| profile.demands.of(0, k).roughness == 0.0));

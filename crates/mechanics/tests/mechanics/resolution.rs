@@ -3,8 +3,8 @@
 use whiskmap_mechanics::rod::Rod;
 use whiskmap_mechanics::shooting::Resolution;
 
-/// Against whole numbers: the smallest one of three significant bits that is as large. A perfect cone needs `tau` steps of
-/// length 1, where the load asks for none.
+/// Numbers of steps against the smallest integer of three significant bits that is as large. A perfect cone without a load needs
+/// `tau` steps of length 1.
 #[test]
 fn steps_are_rounded_up_to_three_bits() {
     let resolution = Resolution {
@@ -30,7 +30,7 @@ fn steps_are_rounded_up_to_three_bits() {
     assert_eq!(steps(f64::INFINITY), 8192);
 }
 
-/// What the load asks for is rounded like what the length asks for.
+/// The number of steps for the load is rounded like the number for the length.
 #[test]
 fn steps_for_the_load_are_rounded_as_well() {
     let resolution = Resolution {

@@ -3,7 +3,7 @@
 use glam::DVec2;
 use whiskmap_mechanics::rod::{Rest, Rod};
 
-/// With the vertex at the base, and a hair away from it, where Halley's method takes over.
+/// The vertex is at the base, or so near that Halley's method is used.
 #[test]
 fn a_chord_ends_on_the_parabola() {
     for bend in [0.0, 0.02, -0.4, 5.0] {

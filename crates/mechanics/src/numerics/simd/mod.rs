@@ -1,6 +1,6 @@
-//! SIMD lanes as a scalar: numbers worked on in step, and arithmetic compiled for every SIMD unit.
+//! SIMD lanes as a scalar type, and arithmetic compiled for every SIMD unit.
 //!
-//! Each bundle waits for itself most of the time, so that two registers of each kind take hardly longer than one.
+//! Lanes fill two registers: operations wait for their operands most of the time, so two registers take hardly longer than one.
 
 #[cfg(any(target_arch = "aarch64", target_arch = "x86_64"))]
 #[macro_use]
@@ -18,35 +18,35 @@ use std::fmt;
 #[cfg(target_arch = "x86_64")]
 use x86::{Avx2, Avx512};
 
-/// Most lanes of a bundle.
+/// Largest number of lanes of any unit.
 pub const WIDTH: usize = 16;
 
-/// Numbers worked on in step, or one for comparison.
+/// Several numbers on which each operation acts at once, or a single number.
 pub trait Lanes: Real {
-    /// Half as many of the same unit, in one register of each kind: faster where two do not fit into the processor.
+    /// Half as many lanes of the unit, in one register: faster where the values in flight do not fit into all registers.
     type Narrow: Lanes;
 
-    /// How many.
+    /// Number of lanes.
     const LANES: usize;
 
-    /// From the first numbers of an array.
+    /// The first numbers of an array, as lanes.
     fn pack(lanes: [f64; WIDTH]) -> Self;
-    /// To the first numbers of an array.
+    /// An array that begins with the lanes.
     fn unpack(self) -> [f64; WIDTH];
 
-    /// Does `task` in a function of its own: a compiler takes longer for one large function than for many small ones.
+    /// Runs `task` in a function of its own: one large function takes a compiler longer than many small ones.
     #[inline(never)]
     fn outlined<K: LanesTask<Self>>(task: K) -> K::Output {
         task.run()
     }
 }
 
-/// Arithmetic in the lanes `T`.
+/// Arithmetic in lanes of type `T`.
 pub trait LanesTask<T: Lanes> {
-    /// What comes of it.
+    /// The result.
     type Output;
 
-    /// Does it; to be inlined into a function that is compiled for the unit of these lanes.
+    /// Runs the task. It is to be inlined into a function that is compiled for the unit of these lanes.
     fn run(self) -> Self::Output;
 }
 
@@ -66,16 +66,16 @@ impl Lanes for f64 {
     }
 }
 
-/// Arithmetic in lanes.
+/// Arithmetic in lanes of any type.
 pub trait SimdTask {
-    /// What comes of it.
+    /// The result.
     type Output;
 
-    /// Does it with the lanes of one unit; to be inlined into a function that is compiled for that unit.
+    /// Runs the task in the lanes of one unit. It is to be inlined into a function that is compiled for that unit.
     fn run<T: Lanes>(self) -> Self::Output;
 }
 
-/// How `a * b + c` is rounded: all results of one class have the same bits, whatever the unit.
+/// The rounding of `a * b + c`. All units of one class give results with equal bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ArithmeticClass {
     /// Fused: one rounding, of the sum.
@@ -85,13 +85,13 @@ pub enum ArithmeticClass {
 }
 
 impl ArithmeticClass {
-    /// The class of the widest unit of this processor: [`Unit::detect`] chooses it wherever numbers are computed.
+    /// The class of the widest unit of this processor, which [`Unit::detect`] returns.
     #[must_use]
     pub fn detect() -> Self {
         Unit::detect().arithmetic()
     }
 
-    /// The name in a store and in messages: `fma` or `no-fma`.
+    /// The name in stores and messages: `fma` or `no-fma`.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -111,7 +111,7 @@ impl fmt::Display for ArithmeticClass {
 #[derive(Clone, Copy, Debug)]
 pub struct Unit(Instructions);
 
-/// The vector units hold their proof that the processor has them.
+/// The vector units with their tokens, which prove that the processor has them.
 #[derive(Clone, Copy, Debug)]
 enum Instructions {
     #[cfg(target_arch = "x86_64")]
@@ -120,7 +120,7 @@ enum Instructions {
     Avx2(Avx2),
     #[cfg(target_arch = "aarch64")]
     Neon(Neon),
-    /// One number at a time, products rounded before they are added.
+    /// One number at a time. Products are rounded before they are added.
     Scalar,
 }
 
@@ -139,7 +139,7 @@ impl fmt::Display for Unit {
 }
 
 impl Unit {
-    /// The units of this processor, the widest first, the scalar one last.
+    /// The units of this processor, from the widest to the scalar one.
     pub fn all() -> impl Iterator<Item = Self> {
         let units = [
             #[cfg(target_arch = "x86_64")]
@@ -159,13 +159,13 @@ impl Unit {
         Self::all().next().unwrap_or(Self::scalar())
     }
 
-    /// Plain numbers, not fused: what vectors are compared with, and the unit of processors without AVX2 and NEON.
+    /// Plain numbers without fused products: the unit of processors without AVX2 and NEON, and the reference of tests.
     #[must_use]
     pub const fn scalar() -> Self {
         Self(Instructions::Scalar)
     }
 
-    /// The rounding of `mul_add` in this unit's lanes.
+    /// The rounding of `mul_add` in lanes of this unit.
     #[must_use]
     pub const fn arithmetic(self) -> ArithmeticClass {
         match self.0 {
@@ -177,7 +177,7 @@ impl Unit {
         }
     }
 
-    /// Does `task` in this unit's lanes.
+    /// Runs `task` in lanes of this unit.
     #[must_use]
     pub fn run<K: SimdTask>(self, task: K) -> K::Output {
         match self.0 {

@@ -1,15 +1,15 @@
-//! Macros for the vector units: a unit is its token, its registers and the names of its instructions.
+//! Macros that make a vector unit from its token, its registers and the names of its instructions.
 //!
-//! Why the instructions are safe: vectors of a unit are of a type private to the unit's file, so that only generic code makes
-//! them, and only where [`SimdTask::run`](super::SimdTask::run) is called with that type: in a function that enables the unit's
-//! features. The function is called by the unit's token alone, and a token comes from `detect` alone, after a look at the
-//! processor. Vectors cannot outlive the call: neither the task nor its output can name their type, and nothing says that it
-//! is `'static`.
+//! Why the instructions are safe: the vector types of a unit are private to the unit's file, so that only generic code makes
+//! vectors, and only where [`SimdTask::run`](super::SimdTask::run) is called with such a type. That call is in a function that
+//! enables the unit's features, and only the unit's token calls it. Only `detect` makes a token, after it has tested the
+//! processor. Vectors cannot outlive the call: neither the task nor its output can name their type, which nothing declares
+//! `'static`.
 
-/// A function that is compiled for a unit: `$body` in lanes of the unit.
+/// Runs `$body` in a function that is compiled for a unit.
 ///
-/// Each operation on lanes is one such function for all of their registers. Called register by register, the instructions
-/// would be as many more calls in every kernel, and it is their inlining that a kernel's compilation takes its time for.
+/// Each operation on lanes is one such function for all registers. Inlining calls takes most of a kernel's compilation, so
+/// that one call for each register would take much longer.
 macro_rules! compiled_for {
     ($enabled:literal, ($($argument:ident: $type:ty),*) -> $output:ty $body:block) => {{
         #[target_feature(enable = $enabled)]
@@ -121,7 +121,7 @@ macro_rules! vectors {
     };
 }
 
-/// A token that only `detect` makes, and registers of `$each` numbers as lanes, in narrow and in wide vectors.
+/// A unit: its token, which only `detect` makes, and its narrow and wide vectors of registers with `$each` numbers.
 macro_rules! unit {
     (
         $(#[$doc:meta])* $token:ident, $enabled:literal, $detected:ident [$($feature:tt)+],
@@ -137,7 +137,7 @@ macro_rules! unit {
                 ($($detected!($feature))&&+).then_some(Self(()))
             }
 
-            /// Does `task` in this unit's lanes.
+            /// Runs `task` in lanes of this unit.
             pub fn run<K: SimdTask>(self, task: K) -> K::Output {
                 #[target_feature(enable = $enabled)]
                 fn run<K: SimdTask>(task: K) -> K::Output {

@@ -1,5 +1,5 @@
-//! The whisker at rest: a parabola or an Euler spiral, by arclength and by chord, and the pole at first touch. Continued
-//! beyond the tip where a distance asks for it.
+//! The whisker at rest: a parabola or an Euler spiral, by arclength and by chord, and the pole at first touch. The shape
+//! continues beyond the tip for distances that need it.
 
 mod parabola;
 mod spiral;
@@ -11,7 +11,7 @@ use glam::DVec2;
 use parabola::Parabola;
 use spiral::EulerSpiral;
 
-/// The undeflected shape of a [`Rod`], in the frame of the base: origin at the base, first axis its tangent.
+/// The undeflected shape of a [`Rod`] in the frame of the base: the origin is the base, the first axis its tangent.
 #[derive(Clone, Copy, Debug)]
 pub struct Rest {
     form: Form,
@@ -39,13 +39,13 @@ impl Rest {
         }
     }
 
-    /// Arclength at the tip, in whisker lengths: 1, but for a perfect cone, which is cut.
+    /// Arclength of the tip, in whisker lengths: 1, or slightly less for a perfect cone, which is cut.
     #[must_use]
     pub const fn end(&self) -> f64 {
         self.end
     }
 
-    /// cos and sin of the tangent of the parabola of `rod` at arclength `s`, in the frame of the parabola.
+    /// Unit tangent of the parabola of `rod` at arclength `s`, in the frame of the parabola.
     #[must_use]
     #[inline(always)]
     pub fn parabola_tangent(rod: &Rod, s: f64) -> DVec2 {
@@ -58,7 +58,7 @@ impl Rest {
         DVec2::new(cos, slope * cos)
     }
 
-    /// Curvature at arclength `s`.
+    /// Curvature at arclength `s`, in radians per whisker length.
     #[must_use]
     pub fn curvature(&self, s: f64) -> f64 {
         match &self.form {
@@ -100,7 +100,7 @@ impl Rest {
         }
     }
 
-    /// Arclength of the contact, and centre of the pole, when it first touches the whisker at `distance` from the base.
+    /// Arclength of the contact and centre of the pole when it first touches the whisker at `distance` from the base.
     #[must_use]
     pub fn touch_at_distance(&self, distance: f64) -> (f64, DVec2) {
         let (s, point, tangent) = self.at_distance(distance);
@@ -113,8 +113,8 @@ impl Rest {
         self.touch_at_distance(distance).1
     }
 
-    /// The distance from the base at which the pole first touches the whisker when its centre is `pole_distance` from
-    /// the base: the inverse of [`Rest::pole_at_distance`], which grows with the distance (the scene made sure).
+    /// Distance of the first touch from the base when the pole's centre is `pole_distance` from the base: the inverse of
+    /// [`Rest::pole_at_distance`], which grows with the distance in every valid scene.
     #[must_use]
     pub fn distance_of_pole(&self, pole_distance: f64) -> f64 {
         let radius = self.pole.abs();

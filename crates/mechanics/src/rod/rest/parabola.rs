@@ -4,17 +4,17 @@ use crate::numerics::Bracket;
 use crate::rod::Rod;
 use glam::DVec2;
 
-/// `t sqrt(1 + t^2) + asinh(t)`: four times `A` times the arclength from the vertex to the slope `t`.
+/// `t sqrt(1 + t^2) + asinh(t)`: `4 A` times the arclength from the vertex to the slope `t`.
 #[inline(always)]
 fn arc(t: f64) -> f64 {
     let root = (1.0 + t * t).sqrt();
     let size = t.abs();
-    // asinh, accurate to the last digits for small and for large slopes, without the cost of `hypot`.
+    // asinh, accurate to the last digits for small and large slopes, cheaper than with `hypot`.
     let asinh = libm::log1p(size + size * size / (1.0 + root));
     t * root + asinh.copysign(t)
 }
 
-/// The last Halley step, relative to the chord's abscissa: its cube is left, which is rounding.
+/// Largest last Halley step, relative to the abscissa: the error is its cube, which is below rounding.
 const LAST_HALLEY_STEP: f64 = 5e-6;
 
 /// A parabola in the frame of the base.
@@ -22,7 +22,7 @@ const LAST_HALLEY_STEP: f64 = 5e-6;
 pub struct Parabola {
     bend: f64,
     slope: f64,
-    /// cos and sin of the base's tangent in the frame of the parabola.
+    /// Unit tangent of the base in the frame of the parabola.
     base: DVec2,
 }
 
@@ -36,14 +36,14 @@ impl Parabola {
         }
     }
 
-    /// Slope of the parabola at arclength `s`.
+    /// Slope of the parabola in its own frame at arclength `s`.
     #[inline(always)]
     pub fn slope_at(&self, s: f64) -> f64 {
         if self.bend == 0.0 {
             return self.slope;
         }
-        // A start that has the right limits for small and large `z` and is at most 0.5 % off between; from there the
-        // Taylor series of the inverse to degree 6, whose remainder is below 1e-16.
+        // The start has the right limits for small and large `z` and an error of at most 0.5 % between. The Taylor series of
+        // the inverse from there to degree 6 has a remainder below 1e-16.
         let z = 4.0 * self.bend * s + arc(self.slope);
         let size = z.abs();
         let power = 1.0 + z * z * (0.253 + 0.0437 * size + z * z / 256.0);
@@ -70,7 +70,7 @@ impl Parabola {
         2.0 * self.bend / (1.0 + self.slope_at(s).powi(2)).sqrt().powi(3)
     }
 
-    /// Arclength where the parabola has gone `x` along its own axis.
+    /// Arclength at the abscissa `x` of the parabola.
     pub fn arclength_at(&self, x: f64) -> f64 {
         if self.bend == 0.0 {
             return x * (1.0 + self.slope * self.slope).sqrt();
@@ -79,7 +79,7 @@ impl Parabola {
         (arc(t) - arc(self.slope)) / (4.0 * self.bend)
     }
 
-    /// Point and unit tangent where the parabola has gone `x` along its own axis.
+    /// Point and unit tangent at the abscissa `x` of the parabola, in the frame of the base.
     pub fn at(&self, x: f64) -> (DVec2, DVec2) {
         let t = (2.0 * self.bend).mul_add(x, self.slope);
         let point = DVec2::new(x, x * self.bend.mul_add(x, self.slope));
@@ -98,9 +98,9 @@ impl Parabola {
         self.at(x)
     }
 
-    /// How far along the parabola's axis the chord from the base is `chord`: the root of
-    /// `x^2 (1 + (A x + t0)^2) = chord^2`, whose left side grows with `x` (the scene made sure): of a quadratic equation with
-    /// the vertex at the base, else by Halley's method.
+    /// Abscissa of the parabola at which the chord from the base is `chord`: the root of `x^2 (1 + (A x + t0)^2) = chord^2`. The
+    /// left side grows with `x` in every valid scene. With the vertex at the base the equation is quadratic in `x^2`; otherwise
+    /// Halley's method solves it.
     pub fn x_of_chord(&self, chord: f64) -> f64 {
         if self.slope == 0.0 {
             let rise = 2.0 * self.bend * chord;
@@ -116,7 +116,7 @@ impl Parabola {
             let rise = self.bend * x;
             let slope = rise + self.slope;
             let square = 1.0 + slope * slope;
-            // The left side less the right one, and its derivatives, over `2 x` and 2.
+            // The left side less the right one. Its derivatives over `2 x` and 2.
             let miss = x * x * square - chord * chord;
             let first = square + rise * slope;
             let second = first + rise * (3.0 * slope + rise);

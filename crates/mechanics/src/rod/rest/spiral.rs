@@ -1,9 +1,9 @@
-//! The Euler spiral `kappa = k0 + k1 s`, straight on beyond the tip.
+//! The Euler spiral `kappa = k0 + k1 s`, straight beyond the tip.
 
 use crate::numerics::Bracket;
 use glam::DVec2;
 
-/// Nodes and weights of the Gauss-Legendre rule of order 16 on `[-1, 1]`, positive half.
+/// Positive nodes and their weights of the Gauss-Legendre rule with 16 nodes on `[-1, 1]`.
 const GAUSS: [(f64, f64); 8] = [
     (0.095_012_509_837_637_44, 0.189_450_610_455_068_5),
     (0.281_603_550_779_258_9, 0.182_603_415_044_923_58),
@@ -15,7 +15,7 @@ const GAUSS: [(f64, f64); 8] = [
     (0.989_400_934_991_649_9, 0.027_152_459_411_754_096),
 ];
 
-/// The spiral turns by at most this, in radians, per panel of the rule: it is then exact to rounding.
+/// Largest rotation of the spiral per panel of the rule, in radians: the rule is then exact to rounding.
 const TURN_PER_PANEL: f64 = 1.0;
 
 /// An Euler spiral in the frame of the base.
@@ -40,7 +40,7 @@ impl EulerSpiral {
         }
     }
 
-    /// Angle of the tangent at arclength `s`, from the base's.
+    /// Angle of the tangent at arclength `s` from the base's tangent, in radians.
     fn angle(&self, s: f64) -> f64 {
         s * (0.5 * self.k1).mul_add(s, self.k0)
     }
@@ -66,10 +66,10 @@ impl EulerSpiral {
         (point + (s - bent) * tangent, tangent)
     }
 
-    /// Arclength at which the chord from the base is `chord`, which grows along the spiral (the scene made sure).
+    /// Arclength at which the chord from the base is `chord`. The chord grows along the spiral in every valid scene.
     pub fn arclength_of_chord(&self, chord: f64) -> f64 {
         let reach = self.at_arclength(1.0).0.length();
-        // Of the chord less the length, which falls: a length that is exact counts as low.
+        // The function is the chord less the length, which falls.
         let mut bracket = Bracket {
             below: if chord < reach { 1.0 } else { chord + 1.0 },
             above: chord,
@@ -80,7 +80,7 @@ impl EulerSpiral {
             let length = point.length();
             let newton = s - (length - chord) * length / point.dot(tangent);
             let next = bracket.next(s, chord - length, newton);
-            // A step from rounding to rounding, also one to the middle of what is left.
+            // The step is at the level of rounding.
             if (next - s).abs() <= 2.0 * f64::EPSILON * s {
                 return next;
             }

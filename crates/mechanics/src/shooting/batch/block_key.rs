@@ -1,22 +1,22 @@
-//! Which trajectories may share a block.
+//! Keys of blocks: trajectories with equal keys may share a block.
 
 use super::{InitialCondition, Method};
 use crate::rod::Effects;
 use std::sync::Arc;
 
-/// What the trajectories of a block have in common.
+/// Common properties of the trajectories of a block.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct BlockKey {
-    /// Those of the kernel: the method's, and all of the rod's own; a profile only if it is the rod's own.
+    /// Effects of the kernel: those of the method and of the rod. A profile counts only if it is the rod's own.
     pub effects: Effects,
-    /// The address of the profile; 0 without one.
+    /// Address of the profile; 0 without one.
     profile: usize,
-    /// Steps of a trajectory; 0 with a profile, along which each lane takes steps of its own.
+    /// Number of steps of each trajectory; 0 with a profile, along which each lane takes its own steps.
     pub steps: u32,
 }
 
 impl BlockKey {
-    /// That of a condition that takes so many `steps`.
+    /// The key of a condition whose trajectory takes `steps` steps.
     #[inline]
     pub fn new(
         method: Method,
@@ -26,7 +26,7 @@ impl BlockKey {
         let profile = rod.profile.as_ref();
         Self {
             effects: Effects {
-                // Pieces are integrated in a way of their own.
+                // Rods without a profile never use its kernels.
                 profile: profile.is_some(),
                 ..method.effects.and(rod).reaching(rod.taper * tau)
             },
@@ -35,18 +35,18 @@ impl BlockKey {
         }
     }
 
-    /// Whether the two can share a padded block, which takes the steps of the one that needs more.
+    /// Returns true if both can share a padded block, whatever their numbers of steps.
     pub fn may_pad(&self, other: &Self) -> bool {
         let but_steps = |key: &Self| (key.effects, key.profile);
         but_steps(self) == but_steps(other)
     }
 }
 
-/// The keys of a batch.
+/// The different keys of a batch.
 pub struct BlockKeys {
-    /// Each of them once.
+    /// Each key once, in the order of appearance.
     pub all: Vec<BlockKey>,
-    /// The index of the last one with as many steps, give or take multiples of 64.
+    /// `[steps modulo 64]`: the index of the last key with such a number of steps.
     likely: [usize; 64],
 }
 
@@ -60,7 +60,7 @@ impl Default for BlockKeys {
 }
 
 impl BlockKeys {
-    /// The index of `key` among all; it is the last one if it is new.
+    /// The index of `key`. A new key is appended.
     #[inline]
     pub fn index(&mut self, key: BlockKey) -> usize {
         let likely = &mut self.likely[key.steps as usize % 64];

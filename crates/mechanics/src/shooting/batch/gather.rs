@@ -1,4 +1,4 @@
-//! Rest shapes and materials of the rods of a block, side by side in lanes.
+//! Rest shapes and materials of the rods of a block, gathered into lanes.
 
 use crate::numerics::{Lanes, WIDTH};
 use crate::shooting::batch::InitialCondition;
@@ -8,10 +8,10 @@ use crate::shooting::{
     Sensitivity, Spiral, State, Straight, Uniform, integrate,
 };
 
-/// One condition for every lane.
+/// One initial condition for each lane.
 pub type Conditions<'a> = [&'a InitialCondition<'a>; WIDTH];
 
-/// A number of each condition. (`map` of an array is not inlined into functions for a SIMD unit.)
+/// One number of each condition. (`map` of an array is not inlined into functions for a SIMD unit.)
 #[inline(always)]
 pub fn numbers(conditions: &Conditions, number: impl Fn(&InitialCondition) -> f64) -> [f64; WIDTH] {
     let mut numbers = [0.0; WIDTH];
@@ -21,38 +21,38 @@ pub fn numbers(conditions: &Conditions, number: impl Fn(&InitialCondition) -> f6
     numbers
 }
 
-/// The same in lanes.
+/// One number of each condition, in lanes.
 #[inline(always)]
 pub fn lanes<T: Lanes>(conditions: &Conditions, number: impl Fn(&InitialCondition) -> f64) -> T {
     T::pack(numbers(conditions, number))
 }
 
-/// The contacts of a block.
+/// The contacts of a block, in lanes.
 pub struct Contacts<'a, T> {
-    /// Where the trajectories start.
+    /// Initial conditions of the trajectories.
     pub conditions: &'a Conditions<'a>,
-    /// How finely they are integrated.
+    /// Resolution of the integration.
     pub resolution: Resolution,
-    /// In how many steps; 0 along a profile.
+    /// Number of steps; 0 along a profile.
     pub steps: u32,
-    /// `beta` of the rods.
+    /// Taper `beta` of the rods.
     pub taper: T,
-    /// `tau`.
+    /// `tau` of the contacts.
     pub tau: T,
-    /// Scale of the coordinates.
+    /// Scale of the coordinates at the contacts.
     pub radius: T,
-    /// Arclength from the base.
+    /// Arclength of the contacts from the base.
     pub s: T,
-    /// The whole forces, signed.
+    /// Signed forces, with friction.
     pub force: T,
 }
 
-/// A material that can be gathered from the rods of a block, and the way along it.
+/// A material that can be gathered from the rods of a block, with the integration along it.
 pub trait GatherMaterial<T: Lanes> {
-    /// Stiffness at the contacts, over that at the base; `radius` and `s` are those there.
+    /// Bending stiffness at the contacts over the stiffness at the base. `radius` and `s` are those of the contacts.
     fn stiffness(conditions: &Conditions, radius: T, s: T) -> T;
 
-    /// Takes `state` from the `contacts` to the base, on rods that change along their length if it `ADVANCES`.
+    /// The state at the base after `state` at the `contacts`. `ADVANCES` is true for rods that change along their length.
     fn to_base<M: Integrator, I: Intrinsic<T>, S: Sensitivity<T>, const ADVANCES: bool>(
         contacts: &Contacts<T>,
         intrinsic: I,
@@ -60,7 +60,7 @@ pub trait GatherMaterial<T: Lanes> {
     ) -> State<T, I, S>;
 }
 
-/// Steps of one length from the contacts to the base.
+/// The state at the base after `state` at the `contacts`, in steps of equal length.
 #[inline(always)]
 fn evenly<
     M: Integrator,
@@ -131,8 +131,7 @@ impl<T: Lanes> GatherMaterial<T> for Graded<T> {
 
 /// A rest shape that can be gathered from the rods of a block.
 pub trait Gather<T: Lanes>: Intrinsic<T> {
-    /// The rest shape; and at the arclengths `s` the state that is carried along, and the curvature with its derivative by the
-    /// arclength.
+    /// The rest shape, and at the arclengths `s`: its state, and its curvature with the derivative by the arclength.
     fn gather(conditions: &Conditions, s: T) -> (Self, Self::State, [T; 2]);
 }
 

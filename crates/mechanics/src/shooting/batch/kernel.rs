@@ -1,4 +1,4 @@
-//! One specialised kernel per set of effects: no branch on an effect is left inside.
+//! Kernels, each specialised for one set of effects, without branches on effects.
 
 use super::block_key::BlockKey;
 use super::gather::{Conditions, Contacts, Gather, GatherMaterial, lanes, numbers};
@@ -10,7 +10,7 @@ use crate::shooting::sensitivity::{Arrival, SensitivitySet};
 use crate::shooting::{Bent, Graded, Integrator, Measured, Nystrom8, Spiral, Straight, Uniform};
 use std::marker::PhantomData;
 
-/// Up to as many conditions as there are lanes.
+/// Initial conditions of trajectories that are integrated together, at most as many as there are lanes.
 pub struct Block<'a> {
     method: Method,
     /// The lanes after the last condition repeat it.
@@ -32,7 +32,7 @@ impl<'a> Block<'a> {
         }
     }
 
-    /// What `compute` makes of as many conditions as there are lanes in `T`, again and again.
+    /// The results of `compute` for all conditions, which it gets in parts of as many as `T` has lanes.
     #[inline(always)]
     fn in_parts<T: Lanes, A: Copy + Default>(
         &self,
@@ -55,7 +55,7 @@ impl<'a> Block<'a> {
     }
 }
 
-/// The trajectories of a block.
+/// Task that integrates the trajectories of a block.
 pub struct Trajectories<'a, O> {
     key: BlockKey,
     block: &'a Block<'a>,
@@ -63,7 +63,7 @@ pub struct Trajectories<'a, O> {
 }
 
 impl<'a, O> Trajectories<'a, O> {
-    /// Those of `block`, all with this `key`.
+    /// The trajectories of `block`, whose conditions all have this `key`.
     pub const fn new(key: BlockKey, block: &'a Block<'a>) -> Self {
         Self {
             key,
@@ -87,7 +87,7 @@ impl<O: OutputSet> SimdTask for Trajectories<'_, O> {
 }
 
 impl<O> Trajectories<'_, O> {
-    /// The outputs `K` of the trajectories.
+    /// The output set `K` of the trajectories.
     #[inline(always)]
     fn computed<K: OutputSet, T: Lanes>(&self) -> [K; WIDTH] {
         let Self { key, block, .. } = self;
@@ -100,10 +100,10 @@ impl<O> Trajectories<'_, O> {
     }
 }
 
-/// The steps that the trajectories of a block take; 0 along a profile.
-pub struct Steps<'a>(pub &'a Block<'a>);
+/// Task that computes the number of steps of each trajectory of a block; 0 along a profile.
+pub struct StepCounts<'a>(pub &'a Block<'a>);
 
-impl SimdTask for Steps<'_> {
+impl SimdTask for StepCounts<'_> {
     type Output = [u32; WIDTH];
 
     #[inline(always)]
@@ -139,14 +139,14 @@ fn steps<T: Lanes>(method: Method, conditions: &Conditions) -> [u32; WIDTH] {
     steps
 }
 
-/// Integrates with the kernel for the effects of the `key`, without a profile.
+/// Outputs of the kernel for the effects of the `key`, without a profile.
 #[inline(always)]
 fn by_effects<O: OutputSet, T: Lanes>(
     method: Method,
     key: &BlockKey,
     conditions: &Conditions,
 ) -> [O; WIDTH] {
-    /// The kernel for a rest shape and a material, with these sensitivities, on a rod that changes along its length or not.
+    /// Runs the kernel for a rest shape, a material and a set of derivatives, on a rod that changes along its length or not.
     macro_rules! kernel {
         ($rest:ty, $material:ty, $set:ident, $advances:literal) => {
             T::outlined(
@@ -165,7 +165,7 @@ fn by_effects<O: OutputSet, T: Lanes>(
         gradient,
         ..
     } = key.effects;
-    // Where lanes are single numbers, a cylinder is a cone that does not taper: bits are equal, and fewer kernels are compiled.
+    // On one lane a cylinder is a cone of taper 0: the bits are equal, and fewer kernels are compiled.
     if const { T::LANES > 1 } && !key.effects.advances() {
         return if curvature {
             kernel!(Bent<T>, Uniform, General, false)
@@ -183,7 +183,7 @@ fn by_effects<O: OutputSet, T: Lanes>(
     }
 }
 
-/// The same along a profile, with a gradient or without. By collocation, which is no method of steps all alike.
+/// Outputs of the kernel for the effects of the `key` along a profile, by collocation.
 #[inline(always)]
 fn along_profile<O: OutputSet, T: Lanes>(
     method: Method,
@@ -209,7 +209,7 @@ fn along_profile<O: OutputSet, T: Lanes>(
     }
 }
 
-/// Integrates as many trajectories in step as there are lanes.
+/// Task that integrates as many trajectories as there are lanes.
 struct Kernel<'a, M, O, S, I, C, const ADVANCES: bool> {
     method: Method,
     key: &'a BlockKey,
@@ -242,7 +242,7 @@ where
         let [radius, s] = radius_and_arclength(taper, tau);
         let (intrinsic, at_rest, [curvature, curvature_slope]) = I::gather(conditions, s);
         let (zero, one) = (T::of(0.0), T::of(1.0));
-        // The contact's tangent is that of the angle of friction.
+        // See `Rod::contact_tangent`.
         let friction: T = lanes(conditions, |condition| condition.rod.friction);
         let cos = one / friction.mul_add(friction, one).sqrt();
         let contact = Contact {

@@ -1,8 +1,8 @@
-//! The way along measured radii, piece by piece.
+//! Integration along measured radii, piece by piece.
 //!
-//! The pieces of a block are those of one profile. Its contacts may lie on any of them, and take any number of steps along each: the
-//! way begins on the piece nearest to the tip, where lanes wait whose contact is nearer to the base, and on each piece lanes wait that
-//! take fewer steps.
+//! All rods of a block have one profile. Contacts may lie on any piece, and lanes take their own numbers of steps along each.
+//! Integration begins on the piece nearest to the tip. Lanes whose contact is nearer to the base wait there, and on each piece
+//! lanes with fewer steps wait for the others.
 
 use super::InitialCondition;
 use super::gather::{Conditions, Contacts, GatherMaterial, numbers};
@@ -10,25 +10,25 @@ use crate::numerics::gauss::{Integrals, NODES};
 use crate::numerics::{Lanes, Vector, WIDTH};
 use crate::rod::RadiusProfile;
 use crate::shooting::{
-    Backward, Integrator, Intrinsic, Measured, Nystrom8, PieceSteps, RodSystem, Scales, Section,
-    Sensitivity, Stage, State, collocate,
+    BackwardCompliance, Integrator, Intrinsic, Measured, Nystrom8, PieceSteps, RodSystem, Scales,
+    Section, Sensitivity, Stage, State, collocate,
 };
 
-/// What is taken along a piece, lane by lane.
-struct Part {
-    /// Steps; 0 where the contact is nearer to the base.
+/// Integration along one piece: its extent and its steps in each lane.
+struct PieceSpan {
+    /// Number of steps; 0 if the contact is nearer to the base.
     steps: [u32; WIDTH],
-    /// The most of any lane.
+    /// Largest number of steps of any lane.
     most: u32,
-    /// Whether the whole piece is on the way.
+    /// True if the trajectory crosses the whole piece.
     is_whole: [bool; WIDTH],
-    /// `tau` and arclength where it starts: the contact, or the end of the piece.
+    /// `tau` and, in `from`, the arclength where integration along the piece starts: the contact or the end of the piece.
     tau: [f64; WIDTH],
     from: [f64; WIDTH],
 }
 
-impl Part {
-    /// The part of the piece `k` on the way from contacts at `tau` and `s` that take such `steps`.
+impl PieceSpan {
+    /// The span of the piece `k` for contacts at `tau` and `s` with these `steps`.
     #[inline(always)]
     fn new(
         profile: &RadiusProfile,
@@ -39,7 +39,7 @@ impl Part {
     ) -> Self {
         let piece = &profile.pieces[k];
         let end = profile.end_of(k).unwrap_or([f64::INFINITY; 2]);
-        let mut part = Self {
+        let mut span = Self {
             steps: [0; WIDTH],
             most: 0,
             is_whole: [false; WIDTH],
@@ -54,19 +54,19 @@ impl Part {
             if last.0 != *steps {
                 last = (*steps, steps.of(profile, k));
             }
-            part.steps[lane] = last.1;
-            part.most = part.most.max(last.1);
-            part.is_whole[lane] = s[lane] > end[1];
-            [part.tau[lane], part.from[lane]] = if part.is_whole[lane] {
+            span.steps[lane] = last.1;
+            span.most = span.most.max(last.1);
+            span.is_whole[lane] = s[lane] > end[1];
+            [span.tau[lane], span.from[lane]] = if span.is_whole[lane] {
                 end
             } else {
                 [tau[lane], s[lane]]
             };
         }
-        part
+        span
     }
 
-    /// Over how much of `tau` each step goes, down to the `tau` where the piece begins; 0 where none is taken.
+    /// Length of each step in `tau`, to the beginning of the piece at `begin`; 0 without a step.
     #[inline(always)]
     fn step_lengths(&self, begin: f64) -> [f64; WIDTH] {
         let mut lengths = self.tau;
@@ -86,14 +86,14 @@ impl Part {
         takes
     }
 
-    /// The compliance along the step `i` as a weight: from the table of the piece `k` where the whole of it is on the way, else
-    /// computed; 0 in lanes that do not take the step.
+    /// Collocation integrals of the step `i`: from the table of the piece `k` in lanes that cross the whole piece, `computed` in
+    /// others, and 0 in lanes that do not take the step.
     #[inline(always)]
     fn weights<T: Lanes>(
         &self,
         (i, takes): (u32, [f64; WIDTH]),
         (profile, k): (&RadiusProfile, usize),
-        computed: Backward<T>,
+        computed: BackwardCompliance<T>,
     ) -> Integrals<T> {
         let mut weights = [[T::of(0.0); NODES]; NODES + 1];
         let mut left = takes;
@@ -168,8 +168,8 @@ impl<T: Lanes> GatherMaterial<T> for Measured<T> {
         let mut state = start;
         for k in (0..=profile.piece(farthest)).rev() {
             let piece = &profile.pieces[k];
-            let part = Part::new(profile, k, &tau, &s, &needs[..T::LANES]);
-            let from = T::pack(part.from);
+            let span = PieceSpan::new(profile, k, &tau, &s, &needs[..T::LANES]);
+            let from = T::pack(span.from);
             let mut section = Section {
                 rho: one - contacts.taper * from,
                 inverse_cube: zero,
@@ -184,23 +184,23 @@ impl<T: Lanes> GatherMaterial<T> for Measured<T> {
                     gradient,
                 },
             };
-            let h = T::pack(part.step_lengths(piece.tau));
+            let h = T::pack(span.step_lengths(piece.tau));
             let scales = Scales::tapered::<Nystrom8>(contacts.taper, h);
-            for i in 0..part.most {
-                let lanes = part.takes(i);
+            for i in 0..span.most {
+                let lanes = span.takes(i);
                 let takes = T::pack(lanes);
-                // Lanes that wait go nowhere.
+                // Waiting lanes take a step of length 0.
                 let end = Stage {
                     along: takes * scales.end().along,
                     grown: takes.mul_add(scales.end().grown - one, one),
                     ..*scales.end()
                 };
-                let computed = Backward {
+                let computed = BackwardCompliance {
                     material: &system.material,
                     from: section.arclength,
                     length: section.rho * end.along,
                 };
-                let weights = part.weights((i, lanes), (profile, k), computed);
+                let weights = span.weights((i, lanes), (profile, k), computed);
                 let stepped = collocate::<T, I, S>(&system, &end, &section, &weights, state);
                 state = state.times(one - takes).plus(takes, stepped);
                 section = section.at(&end);

@@ -1,8 +1,7 @@
-//! Thousands of trajectories in `f64`: lanes of the widest SIMD unit that the machine has, on all cores.
+//! Batches of thousands of trajectories in `f64`, in lanes of the widest SIMD unit of the machine, on all cores.
 //!
-//! The integrator is generic and inlined whole into functions compiled for every [`Unit`]; which of them run is decided by
-//! the processor. Results do not depend on the number of threads: every trajectory is computed by itself, or in a block whose
-//! conditions do not.
+//! The generic integrator is inlined into functions compiled for every [`Unit`]; the processor decides which of them run.
+//! Results do not depend on the number of threads: the conditions of a block do not depend on it.
 
 mod block_key;
 mod flops;
@@ -24,7 +23,7 @@ use crate::numerics::Unit;
 use crate::rod::{Effects, Rod};
 use rayon::prelude::*;
 
-/// One trajectory: from the contact at `tau` under `load = f/radius^2` to the base.
+/// Initial condition of a trajectory: a rod, its contact at `tau`, and the `load = f/radius^2` there.
 #[derive(Clone, Copy, Debug)]
 pub struct InitialCondition<'a> {
     /// The rod.
@@ -35,17 +34,17 @@ pub struct InitialCondition<'a> {
     pub load: f64,
 }
 
-/// How trajectories are integrated: how finely, and with which effects beside each rod's own.
+/// Method of integration: the resolution, and effects that every kernel has.
 #[derive(Clone, Copy, Debug)]
 pub struct Method {
-    /// How finely.
+    /// Resolution of the integration.
     pub resolution: Resolution,
-    /// The effects that every kernel has.
+    /// Effects of every kernel beside the rod's own.
     pub effects: Effects,
 }
 
 impl Method {
-    /// Every rod with the kernel for its own effects.
+    /// The method at `resolution`, in which every rod has the kernel for its own effects.
     #[must_use]
     pub fn new(resolution: Resolution) -> Self {
         let effects = Effects::default();
@@ -55,26 +54,27 @@ impl Method {
         }
     }
 
-    /// At [`Resolution::FINE`].
+    /// The method at [`Resolution::FINE`].
     #[must_use]
     pub fn fine() -> Self {
         Self::new(Resolution::FINE)
     }
 
-    /// Kernels have at least these `effects`: with those of all rods of a scene, its rods share kernels, and round alike.
+    /// The method whose kernels have at least these `effects`. With the effects of all rods of a scene, its rods share kernels, and
+    /// their rounding.
     #[must_use]
     pub const fn with_effects(self, effects: Effects) -> Self {
         Self { effects, ..self }
     }
 
-    /// The same in twice the steps.
+    /// The method with twice as many steps.
     #[must_use]
     pub const fn doubled(self) -> Self {
         let resolution = self.resolution.doubled();
         Self { resolution, ..self }
     }
 
-    /// The same at [`Resolution::COARSE`].
+    /// The method at [`Resolution::COARSE`].
     #[must_use]
     pub const fn coarsely(self) -> Self {
         let resolution = Resolution::COARSE;
@@ -82,7 +82,7 @@ impl Method {
     }
 }
 
-/// Shoots many initial conditions at once.
+/// Integrates many trajectories at once.
 ///
 /// ```
 /// use whiskmap_mechanics::rod::Rod;
@@ -101,13 +101,13 @@ pub struct Batch {
     is_padded: bool,
 }
 
-/// The fewest conditions for a thread, so that most of its blocks are full.
+/// Fewest conditions of a chunk, so that most of its blocks are full.
 const SMALLEST_CHUNK: usize = 1024;
 
-/// Chunks of a batch for each thread, so that threads end together.
+/// Chunks of a batch per thread, so that threads finish together.
 const CHUNKS_OF_A_THREAD: usize = 4;
 
-/// Into chunks of how many a batch of `count` is best divided among the threads of the current pool.
+/// Size of the chunks into which a batch of `count` conditions is divided for the threads of the current pool.
 #[must_use]
 pub fn chunk_size(count: usize) -> usize {
     let threads = rayon::current_num_threads();
@@ -120,7 +120,7 @@ pub fn chunk_size(count: usize) -> usize {
 }
 
 impl Batch {
-    /// By `method`, on the widest unit of this processor; every answer is independent of the rest of the batch.
+    /// A batch by `method` on the widest unit of this processor. Each output is independent of the rest of the batch.
     #[must_use]
     pub fn new(method: Method) -> Self {
         Self {
@@ -130,14 +130,14 @@ impl Batch {
         }
     }
 
-    /// On a given unit.
+    /// The batch on another unit.
     #[must_use]
     pub const fn on(self, unit: Unit) -> Self {
         Self { unit, ..self }
     }
 
-    /// Blocks are filled with trajectories that want different numbers of steps; all take the most. For small batches that are
-    /// always the same, like those of a sheet: an answer depends, by less than its error, on the whole batch.
+    /// The batch with padded blocks: trajectories with different numbers of steps share a block, and all take the largest number. An
+    /// output depends on the whole batch by less than its error. Padding pays for small batches, such as those of a sheet.
     #[must_use]
     pub const fn padded(self) -> Self {
         Self {
@@ -146,7 +146,7 @@ impl Batch {
         }
     }
 
-    /// The outputs of every condition, in the same order, on all threads of the current pool.
+    /// The outputs of all conditions, in their order, on all threads of the current pool.
     #[must_use]
     pub fn shoot<O: OutputSet>(&self, conditions: &[InitialCondition]) -> Vec<O> {
         let mut outputs = vec![O::default(); conditions.len()];
@@ -166,13 +166,13 @@ impl Batch {
         outputs
     }
 
-    /// The same on this thread.
+    /// Computes the outputs of a chunk on this thread.
     fn chunk<O: OutputSet>(&self, conditions: &[InitialCondition], outputs: &mut [O]) {
         self.for_each(conditions.iter().copied(), |i, output| outputs[i] = *output);
     }
 
-    /// Shoots conditions as they come, on this thread, and hands the outputs of each on with its index, in no order. They are
-    /// never padded, for which all of them would have to be known first.
+    /// Integrates the trajectories of `conditions` on this thread. Calls `take` with the index and the outputs of each, in any
+    /// order. Blocks are never padded.
     pub fn for_each<'a, O: OutputSet>(
         &self,
         conditions: impl Iterator<Item = InitialCondition<'a>>,

@@ -1,8 +1,8 @@
-//! What a batch answers for each trajectory, worked out in lanes.
+//! Outputs of a batch for each trajectory, computed in lanes.
 
 use super::block_key::BlockKey;
 use super::kernel::{Block, Trajectories};
-use super::pole::{Centre, spread};
+use super::pole::{PoleCentre, spread};
 use crate::numerics::{Lanes, Unit, WIDTH};
 use crate::shooting::contact::Contact;
 use crate::shooting::sensitivity::{
@@ -12,26 +12,26 @@ use crate::shooting::sensitivity::{
 use crate::shooting::{FirstVariation, FullState, SecondVariation, ShootingMap, StateDerivative};
 use glam::DVec2;
 
-/// What a batch computes for each trajectory: the derivatives carried for it, and the outputs from their values at the base.
+/// Outputs of a batch for each trajectory: the derivatives to carry, and the outputs from their values at the base.
 pub trait OutputSet: Copy + Default + Send + 'static {
-    /// The set whose kernels compute this one on processors without a SIMD unit: they need not be fast, and each kernel
-    /// takes its time to compile.
+    /// The set whose kernels compute this set on processors without a SIMD unit. There, few kernels matter more than fast ones:
+    /// each takes long to compile.
     type OnOneLane: OutputSet + Into<Self>;
 
-    /// The derivatives on any rod.
+    /// Derivatives to carry on any rod.
     type General<T: Lanes>: SensitivitySet<T>;
-    /// On rods that look the same from each of their points.
+    /// Derivatives to carry on straight cones and cylinders with a constant modulus.
     type Similar<T: Lanes>: SensitivitySet<T, AtBase = <Self::General<T> as SensitivitySet<T>>::AtBase>;
 
-    /// The outputs; `pole` is where its centre lies, seen from the contact.
+    /// The outputs of each lane. `pole` is the vector from the contact to the pole's centre.
     fn answers<T: Lanes>(
         arrival: &Arrival<T>,
         pole: [T; 2],
         at_base: <Self::General<T> as SensitivitySet<T>>::AtBase,
     ) -> [Self; WIDTH];
 
-    /// `unit.run(Trajectories::new(key, block))`: written out for each set, so that its kernels are compiled here, and not
-    /// wherever a batch is shot. There are many of them, and each is long.
+    /// `unit.run(Trajectories::new(key, block))`. Each set writes it out, so that its kernels are compiled in this crate and not
+    /// wherever a batch is integrated.
     #[doc(hidden)]
     fn shoot(unit: Unit, key: BlockKey, block: &Block) -> [Self; WIDTH];
 }
@@ -53,7 +53,7 @@ impl OutputSet for ShootingMap {
         pole: [T; 2],
         first: BaseDerivatives<T>,
     ) -> [Self; WIDTH] {
-        Centre::new(arrival, pole).maps(&first)
+        PoleCentre::new(arrival, pole).maps(&first)
     }
 
     #[inline(never)]
@@ -73,7 +73,7 @@ impl OutputSet for FirstVariation {
         pole: [T; 2],
         (first, energy): (BaseDerivatives<T>, T),
     ) -> [FirstVariation; WIDTH] {
-        let maps = Centre::new(arrival, pole).maps(&first);
+        let maps = PoleCentre::new(arrival, pole).maps(&first);
         let [cos, sin, x, y, _] = arrival.rod;
         let Contact {
             radius,
@@ -81,7 +81,7 @@ impl OutputSet for FirstVariation {
             tangent: [_, slant],
             ..
         } = arrival.contact;
-        // The work done along the change: the moment at the base turns it, and the force moves it.
+        // The work along the change: of the moment at the base by its rotation, and of the force by its displacement.
         let work = |[theta, _, y]: Triple<T>| force * x.mul_add(theta, -y);
         let [theta_tau, x_tau, y_tau] = first.by_tau;
         let [theta_load, x_load, y_load] = first.by_load;
@@ -134,7 +134,7 @@ impl OutputSet for SecondVariation {
         pole: [T; 2],
         second: SecondBaseDerivatives<T>,
     ) -> [SecondVariation; WIDTH] {
-        let centre = Centre::new(arrival, pole);
+        let centre = PoleCentre::new(arrival, pole);
         let maps = centre.maps(&second.first);
         let by_tau = centre.moved(second.first.by_tau);
         let by_load = centre.moved(second.first.by_load);

@@ -1,15 +1,15 @@
-//! Padded batches: a few dozen trajectories of many numbers of steps, which would leave most lanes of their blocks empty.
+//! Padded batches: small batches whose trajectories have many different numbers of steps.
 //!
-//! A block takes the steps of its most demanding member, so that outputs depend on the whole batch; not on the number of
-//! threads.
+//! All trajectories of a block take the steps of its most demanding one. Outputs depend on the whole batch, but not on the number
+//! of threads.
 
 use super::block_key::BlockKey;
-use super::kernel::{Block, Steps};
+use super::kernel::{Block, StepCounts};
 use super::{InitialCondition, Method, OutputSet, SMALLEST_CHUNK};
 use crate::numerics::{Unit, WIDTH};
 use rayon::prelude::*;
 
-/// Shoots `conditions`, each in at least the steps that it would take alone.
+/// Computes the `outputs` of `conditions`, each in at least the number of steps that it takes alone.
 pub fn shoot<O: OutputSet>(
     unit: Unit,
     method: Method,
@@ -19,7 +19,7 @@ pub fn shoot<O: OutputSet>(
     let mut members: Vec<(BlockKey, usize)> = Vec::with_capacity(conditions.len());
     for conditions in conditions.chunks(WIDTH) {
         let block = &Block::new(method, conditions.len(), |i| &conditions[i]);
-        let steps = unit.run(Steps(block));
+        let steps = unit.run(StepCounts(block));
         for (condition, steps) in conditions.iter().zip(steps) {
             members.push((BlockKey::new(method, condition, steps), members.len()));
         }

@@ -1,22 +1,22 @@
-//! The pole as the base sees it, in lanes.
+//! Position of the pole in the frame of the base, with derivatives, in lanes.
 //!
-//! With `w` the pole's centre seen from the base in the axes of the contact, and `theta` the base's tangent
-//! there, `G = ln w - i theta` (complex) has the real part `ln D` and the imaginary part `phi`, the two
-//! coordinates of a whisker in front of a pole. Its derivatives need no trigonometry:
-//! `G_i = w_i/w - i theta_i`, `G_ij = w_ij/w - w_i w_j/w^2 - i theta_ij`.
+//! Let the complex number `w` be the vector from the base to the pole's centre in the axes of the contact, and `theta` the angle of
+//! the base's tangent. `G = ln w - i theta` has the real part `ln D` and the imaginary part `phi`. Its derivatives need no
+//! trigonometry: `G_i = w_i/w - i theta_i`, `G_ij = w_ij/w - w_i w_j/w^2 - i theta_ij`.
 
 use crate::numerics::{Complex, Lanes, WIDTH};
 use crate::shooting::ShootingMap;
 use crate::shooting::sensitivity::{Arrival, BaseDerivatives, Triple};
 use glam::DVec2;
 
-/// The pole's centre `w` seen from the base, in the axes of the contact.
-pub struct Centre<T> {
+/// The pole's centre relative to the base.
+pub struct PoleCentre<T> {
+    /// In the frame of the base.
     pole: Complex<T>,
     inverse: Complex<T>,
 }
 
-impl<T: Lanes> Centre<T> {
+impl<T: Lanes> PoleCentre<T> {
     #[inline(always)]
     pub fn new(arrival: &Arrival<T>, [to_x, to_y]: [T; 2]) -> Self {
         let [c, s, x, y, _] = arrival.rod;
@@ -27,20 +27,20 @@ impl<T: Lanes> Centre<T> {
         }
     }
 
-    /// `w_i/w`.
+    /// `w_i/w` for the derivatives `[theta_i, x_i, y_i]` of the base.
     #[inline(always)]
     pub fn moved(&self, [_, x, y]: Triple<T>) -> Complex<T> {
         Complex::new(-x, -y).times(self.inverse)
     }
 
-    /// `G_i`.
+    /// `G_i` for the derivatives `[theta_i, x_i, y_i]` of the base.
     #[inline(always)]
     pub fn ln_pole_by(&self, of: Triple<T>) -> Complex<T> {
         let moved = self.moved(of);
         Complex::new(moved.re, moved.im - of[0])
     }
 
-    /// `G_ij`; `by` are `w_i/w` and `w_j/w`.
+    /// `G_ij` for the second derivatives `of` the base; `by` and `and` are `w_i/w` and `w_j/w`.
     #[inline(always)]
     pub fn ln_pole_by_twice(&self, of: Triple<T>, by: Complex<T>, and: Complex<T>) -> Complex<T> {
         self.ln_pole_by(of).minus(by.times(and))
@@ -64,7 +64,7 @@ impl<T: Lanes> Centre<T> {
     }
 }
 
-/// Each lane's numbers, as `answer` arranges them. All kernels share this function; it computes nothing.
+/// The result of `answer` for the index and the numbers of each lane. It is outside the kernels, because it computes nothing.
 #[inline(never)]
 fn transposed<A: Copy + Default, const N: usize>(
     columns: &[[f64; WIDTH]; N],
@@ -77,7 +77,7 @@ fn transposed<A: Copy + Default, const N: usize>(
     answers
 }
 
-/// Numbers in lanes, as `answer` arranges those of each lane.
+/// The result of `answer` for the index and the numbers of each lane.
 #[inline(always)]
 pub fn spread<T: Lanes, A: Copy + Default, const N: usize>(
     numbers: [T; N],

@@ -1,4 +1,4 @@
-//! Where the steps of trajectories start: what a shader needs of them to integrate others beside them.
+//! StepStarts of the integration steps of trajectories, beside which a shader integrates neighbouring trajectories.
 
 use super::InitialCondition;
 use super::gather::{Conditions, Gather, lanes};
@@ -10,7 +10,7 @@ use crate::shooting::{
 use glam::DVec2;
 use std::marker::PhantomData;
 
-/// The whisker where a step starts, as seen from the contact, in axes whose second one is along the force.
+/// State of the whisker where a step starts. The frame's origin is the contact; its second axis is along the force.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StepStart {
     /// Radius over the base radius.
@@ -21,26 +21,26 @@ pub struct StepStart {
     pub tangent: DVec2,
     /// Position across the force, in whisker lengths.
     pub across: f64,
-    /// How far bending has turned the rod since the contact.
+    /// Angle by which bending has turned the rod since the contact, in radians.
     pub bent: f64,
-    /// cos and sin of the tangent of a parabola at rest, in its own frame; of the first axis where the whisker is none.
+    /// Unit tangent of a parabola at rest in its own frame; the first axis for other rest shapes.
     pub rest: DVec2,
 }
 
-/// The starts of the `steps` of each trajectory of a uniform cone, one trajectory after the other, and how far bending has turned the
-/// rod at each base.
+/// StepStarts of the `steps` of each trajectory, one trajectory after the other, and the angle by which bending has turned the rod at
+/// each base. The rods are cones with a constant modulus.
 #[must_use]
 pub fn step_starts(conditions: &[InitialCondition], steps: &[u32]) -> (Vec<StepStart>, Vec<f64>) {
     let unit = Unit::detect();
-    unit.run(Starts { conditions, steps })
+    unit.run(StepStarts { conditions, steps })
 }
 
-struct Starts<'a> {
+struct StepStarts<'a> {
     conditions: &'a [InitialCondition<'a>],
     steps: &'a [u32],
 }
 
-impl SimdTask for Starts<'_> {
+impl SimdTask for StepStarts<'_> {
     type Output = (Vec<StepStart>, Vec<f64>);
 
     #[inline(always)]
@@ -54,7 +54,7 @@ impl SimdTask for Starts<'_> {
         for (conditions, steps) in blocks.zip(self.steps.chunks(T::LANES)) {
             macro_rules! follow {
                 ($rest:ty) => {
-                    T::outlined(Follow::<$rest> {
+                    T::outlined(FollowSteps::<$rest> {
                         conditions: &std::array::from_fn(|lane| {
                             &conditions[lane.min(conditions.len() - 1)]
                         }),
@@ -75,7 +75,7 @@ impl SimdTask for Starts<'_> {
     }
 }
 
-/// A rest shape that tells its tangent.
+/// A rest shape whose state determines its tangent.
 trait RestTangent<T: Lanes>: Gather<T> {
     fn tangent(state: Self::State) -> [T; 2];
 }
@@ -101,17 +101,18 @@ impl<T: Lanes> RestTangent<T> for Spiral<T> {
     }
 }
 
-/// Trajectories side by side, each in steps of its own length; lanes that have arrived go on for nothing.
-struct Follow<'a, I> {
+/// Task that integrates trajectories side by side, each in its own number of steps. Lanes that have reached the base continue; their
+/// numbers are ignored.
+struct FollowSteps<'a, I> {
     conditions: &'a Conditions<'a>,
     steps: &'a [u32],
-    /// Theirs are appended.
+    /// Output, to which the starts are appended.
     starts: &'a mut Vec<StepStart>,
     of: PhantomData<I>,
 }
 
-impl<T: Lanes, I: RestTangent<T>> LanesTask<T> for Follow<'_, I> {
-    /// How far bending has turned each.
+impl<T: Lanes, I: RestTangent<T>> LanesTask<T> for FollowSteps<'_, I> {
+    /// Angle by which bending has turned each rod at its base.
     type Output = [f64; WIDTH];
 
     #[inline(always)]

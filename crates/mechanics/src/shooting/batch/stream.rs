@@ -1,12 +1,12 @@
-//! Conditions as they come, sorted into blocks that are computed as soon as they are full.
+//! Streams of conditions, sorted into blocks, each of which is computed as soon as it is full.
 
 use super::block_key::{BlockKey, BlockKeys};
-use super::kernel::{Block, Steps};
+use super::kernel::{Block, StepCounts};
 use super::{InitialCondition, Method, OutputSet};
 use crate::numerics::{Unit, WIDTH};
 
-/// Shoots `conditions` on this thread, and hands the outputs of each on with its index, in no order. Only trajectories with one
-/// key share a block, so that each is as if computed alone.
+/// Integrates the trajectories of `conditions` on this thread. Calls `take` with the index and the outputs of each, in any order.
+/// Only trajectories with equal keys share a block, so that each output is as if computed alone.
 pub fn shoot<'a, O: OutputSet>(
     unit: Unit,
     method: Method,
@@ -32,7 +32,7 @@ pub fn shoot<'a, O: OutputSet>(
             break;
         }
         let block = &Block::new(method, next.len(), |i| &next[i]);
-        let steps = unit.run(Steps(block));
+        let steps = unit.run(StepCounts(block));
         for (i, (condition, steps)) in (from..).zip(next.drain(..).zip(steps)) {
             let key = BlockKey::new(method, &condition, steps);
             let index = keys.index(key);

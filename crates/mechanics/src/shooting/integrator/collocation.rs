@@ -1,40 +1,41 @@
-//! Collocation for measured radii: the compliance is a weight of its own.
+//! Collocation for measured radii, with the compliance as a weight.
 //!
-//! Measured radii are rough. Their fourth power is what bends the rod, and no method that takes it for smooth gets along with a
-//! step a piece. But the levers `X` hardly feel it: they change by the cosine of an angle that bending turns a little within a
-//! step. So the levers are taken for polynomials through Gauss's nodes, and what turns the rod, `dtheta/da = f X/S`, is their
-//! integral with `r^-4` as its weight, whatever its shape. The modulus is smooth, and divides them at the nodes. The derivatives by a parameter have the same equations.
+//! Measured radii are rough, and the inverse of their fourth power bends the rod. A method for smooth equations would need many
+//! steps along each piece. But the levers `X` are smooth: they change by the cosine of an angle that bending turns a little
+//! within a step. The levers are therefore polynomials through Gauss-Legendre nodes, and the rotation `dtheta/da = f X/S` is
+//! their integral with the weight `r^-4`. The smooth modulus divides the levers at the nodes. Derivatives by a parameter have
+//! equations of this form as well.
 //!
-//! Levers turn angles, and angles move levers: a few turns of this iteration suffice, because within a step bending moves a lever
-//! by a small part of itself.
+//! Levers turn angles, and angles move levers. The iteration between them converges fast, because bending within a step moves a
+//! lever by a small part of itself.
 
 use crate::numerics::gauss::{AT, FLAT, Integrals, NODES, Weight, integrals};
 use crate::numerics::{Real, Vector, rotated_by_small};
-use crate::shooting::integrator::upright;
+use crate::shooting::integrator::{Levers, upright};
 use crate::shooting::{Intrinsic, Measured, RodSystem, Section, Sensitivity, Stage, State};
 
-/// Rounds in which levers follow from angles, after the first prediction.
+/// Iterations after the first prediction, in each of which levers follow from angles.
 const ITERATIONS: usize = 2;
 
-/// The compliance of a material backward from an arclength.
-pub struct Backward<'a, T> {
+/// Compliance of a material from an arclength toward the base, as a weight.
+pub struct BackwardCompliance<'a, T> {
     /// The material.
     pub material: &'a Measured<T>,
-    /// The arclength.
+    /// The arclength where the step begins.
     pub from: T,
-    /// How far.
+    /// The length of the step.
     pub length: T,
 }
 
-impl<T: Real> Weight<T> for Backward<'_, T> {
+impl<T: Real> Weight<T> for BackwardCompliance<'_, T> {
     #[inline(always)]
     fn at(&self, x: f64) -> T {
         self.material.compliance(self.from - self.length * T::of(x))
     }
 }
 
-impl<T: Real> Backward<'_, T> {
-    /// The compliance as a weight over the arclength.
+impl<T: Real> BackwardCompliance<'_, T> {
+    /// Collocation integrals with the compliance as their weight, over the arclength.
     #[inline(always)]
     pub fn weights(&self) -> Integrals<T> {
         let mut weights = integrals(self);
@@ -47,10 +48,7 @@ impl<T: Real> Backward<'_, T> {
     }
 }
 
-/// What turns the rod, and its derivatives: `X` and the levers of the sensitivities. Their moments turn the angles.
-type Levers<T, S> = ([T; 1], <S as Sensitivity<T>>::Pairs);
-
-/// One step of `system` from the section `from`, which changes the rod as `end` says, with the compliance along it as `weights`.
+/// One step of `system` from the section `from` to the stage `end`. `weights` are the collocation integrals with the compliance.
 #[inline(always)]
 pub fn collocate<T: Real, I: Intrinsic<T>, S: Sensitivity<T>>(
     system: &RodSystem<T, I, Measured<T>>,
@@ -74,7 +72,7 @@ pub fn collocate<T: Real, I: Intrinsic<T>, S: Sensitivity<T>>(
     for (turn, at) in rest_turns.iter_mut().zip(AT) {
         *turn = I::turn(&course, end.along * T::of(at));
     }
-    // What the modulus leaves of the moments.
+    // Inverse modulus at the nodes.
     let mut left = [None; NODES];
     if let Some(gradient) = system.material.gradient {
         for (left, at) in left.iter_mut().zip(AT) {
@@ -96,7 +94,7 @@ pub fn collocate<T: Real, I: Intrinsic<T>, S: Sensitivity<T>>(
     }
     let mut pulls = at_nodes;
     let mut climbs = [([-s], sums); NODES];
-    // Tangent, bend and angles at a node, or at the end.
+    // Tangent, bend and angles at a node or at the end.
     macro_rules! turned {
         ($i:expr) => {{
             let weights = &weights[$i];
@@ -113,7 +111,7 @@ pub fn collocate<T: Real, I: Intrinsic<T>, S: Sensitivity<T>>(
             (rotated_by_small([c, s], turn), bent + bend, angles)
         }};
     }
-    // As if the pull changed evenly from the start to the end of the step.
+    // The prediction: the pull changes linearly from the start to the end of the step.
     find_moments!();
     let ([c_end, s_end], bent_end, angles_end) = turned!(NODES);
     let (pull_end, _) = S::pull(c_end, s_end, bent_end, angles_end);

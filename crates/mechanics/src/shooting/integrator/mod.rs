@@ -1,10 +1,10 @@
-//! Fixed-step integration along the rod: what the methods share.
+//! Fixed-step integration along the rod.
 
 mod collocation;
 mod nystrom8;
 mod rk4;
 
-pub use collocation::{Backward, collocate};
+pub use collocation::{BackwardCompliance, collocate};
 pub use nystrom8::Nystrom8;
 pub use rk4::Rk4;
 
@@ -13,10 +13,10 @@ use crate::shooting::{Intrinsic, Material, Planar, RodSystem, Section, Sensitivi
 
 /// An explicit one-step method with fixed steps.
 pub trait Integrator: Copy + Send + Sync + 'static {
-    /// Where the stages lie in the unit step; the last ones are its end.
+    /// Places of the stages in the unit step. The last ones are its end.
     const NODES: [f64; STAGES];
 
-    /// One step from the section `from`.
+    /// The state one step after `state` at the section `from`.
     fn step<T: Real, I: Intrinsic<T>, C: Material<T>, S: Sensitivity<T>>(
         system: &RodSystem<T, I, C>,
         scales: &Scales<T>,
@@ -25,34 +25,37 @@ pub trait Integrator: Copy + Send + Sync + 'static {
     ) -> State<T, I, S>;
 }
 
-/// Stages of the largest method.
+/// Quantities that turn angles: `X` and the levers of the derivatives.
+type Levers<T, S> = ([T; 1], <S as Sensitivity<T>>::Pairs);
+
+/// Number of stages of the largest method.
 pub const STAGES: usize = 8;
 
-/// How the rod changes from the start of a step to one of its stages, `sigma` further on.
+/// Changes of the cross-section from the start of a step to one of its stages.
 #[derive(Clone, Copy, Debug)]
 pub struct Stage<T> {
-    /// `sigma`.
+    /// `sigma` from the start of the step.
     pub sigma: T,
-    /// How much arclength the stage is nearer to the base, over the radius at the start of the step.
+    /// Arclength toward the base, over the radius at the start of the step.
     pub along: T,
-    /// `exp(taper sigma)`: the radius.
+    /// Factor of the radius, `exp(taper sigma)`.
     pub grown: T,
-    /// `exp(-3 taper sigma)`: its inverse cube.
+    /// Factor of the radius' inverse cube, `exp(-3 taper sigma)`.
     pub inverse_cube: T,
-    /// `exp(-taper sigma/2)`.
+    /// Factor of the radius' inverse square root, `exp(-taper sigma/2)`.
     pub shrunk: T,
 }
 
-/// The stages of a step.
+/// The stages of a step, which all steps of a trajectory share.
 #[derive(Clone, Copy, Debug)]
 pub struct Scales<T> {
     stages: [Stage<T>; STAGES],
-    /// The rod's taper, where it has one.
+    /// Taper of the rod. `None` for a cylinder.
     pub taper: Option<T>,
 }
 
 impl<T: Real> Scales<T> {
-    /// Steps of `h` on a rod of this `taper`; `taper h` up to 0.8.
+    /// Stages of steps of length `h` on a rod of this `taper`. `taper h` is at most 0.8.
     #[inline(always)]
     pub fn tapered<M: Integrator>(taper: T, h: T) -> Self {
         let mut scales = Self::cylinder::<M>(h);
@@ -77,7 +80,7 @@ impl<T: Real> Scales<T> {
         scales
     }
 
-    /// Steps of `h` on a cylinder.
+    /// Stages of steps of length `h` on a cylinder.
     #[inline(always)]
     pub fn cylinder<M: Integrator>(h: T) -> Self {
         let one = T::of(1.0);
@@ -99,7 +102,7 @@ impl<T: Real> Scales<T> {
         }
     }
 
-    /// Stage `i`.
+    /// The stage `i`.
     #[inline(always)]
     pub fn stage(&self, i: usize) -> &Stage<T> {
         &self.stages[i]
@@ -113,7 +116,7 @@ impl<T: Real> Scales<T> {
 }
 
 impl<T: Real> Section<T> {
-    /// The section at a stage of a step that starts here.
+    /// The section at a stage of a step that starts at this section.
     #[inline(always)]
     #[must_use]
     pub fn at(&self, stage: &Stage<T>) -> Self {
@@ -125,7 +128,7 @@ impl<T: Real> Section<T> {
     }
 }
 
-/// Integrates `system` in `steps` steps from the section `from`.
+/// The state after `steps` steps of `system` from `state` at the section `from`.
 #[inline(always)]
 pub fn integrate<M: Integrator, T: Real, I: Intrinsic<T>, C: Material<T>, S: Sensitivity<T>>(
     system: &RodSystem<T, I, C>,
@@ -143,8 +146,8 @@ pub fn integrate<M: Integrator, T: Real, I: Intrinsic<T>, C: Material<T>, S: Sen
     state
 }
 
-/// The rod with its tangent brought back to unit length, to first order in the drift of a step. Without this,
-/// the drift near a slender tip stretches all that follows.
+/// The rod with its tangent scaled to unit length, to first order in the drift of a step. The drift near a slender tip would
+/// otherwise scale the rest of the trajectory.
 #[inline(always)]
 fn upright<T: Real>([c, s, x, y, bent]: Planar<T>) -> Planar<T> {
     let scale = T::of(1.5) - T::of(0.5) * c.mul_add(c, s * s);

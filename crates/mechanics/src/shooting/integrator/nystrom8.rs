@@ -11,7 +11,7 @@
 //! every map carries its residual, and tests measure the accuracy against finer runs.
 
 use crate::numerics::{Real, Vector, rotated_by_small};
-use crate::shooting::integrator::{Integrator, STAGES, Scales};
+use crate::shooting::integrator::{Integrator, Levers, STAGES, Scales};
 use crate::shooting::{Intrinsic, Material, RodSystem, Section, Sensitivity, State};
 
 /// The Nystrom method of order 8 with 8 stages: the integrator of all kernels on rods without a measured profile.
@@ -80,9 +80,6 @@ macro_rules! weighted_sum {
         sum
     }};
 }
-
-/// Quantities that turn angles, `X` and the levers of the sensitivities.
-type Levers<T, S> = ([T; 1], <S as Sensitivity<T>>::Pairs);
 
 impl Integrator for Nystrom8 {
     const NODES: [f64; STAGES] = Self::NODES;

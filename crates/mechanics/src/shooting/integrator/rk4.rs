@@ -1,11 +1,11 @@
-//! The classical Runge-Kutta method of order 4, straight from the right-hand sides: what tests hold [`Nystrom8`](super::Nystrom8)
-//! against.
+//! The classical Runge-Kutta method of order 4, directly from the right-hand sides. Tests compare
+//! [`Nystrom8`](super::Nystrom8) with it.
 
 use crate::numerics::{Real, Vector};
 use crate::shooting::integrator::{Integrator, STAGES, Scales};
 use crate::shooting::{Intrinsic, Material, RodSystem, Section, Sensitivity, State};
 
-/// Order 4, 4 stages.
+/// The Runge-Kutta method of order 4 with 4 stages.
 #[derive(Clone, Copy, Debug)]
 pub struct Rk4;
 

@@ -1,8 +1,8 @@
 //! Derivatives on any rod.
 //!
-//! The rod is a Hamiltonian system, `theta` with the moment `f X` and `Y` with the force, so the symplectic product of the
-//! derivatives by force and by arclength is the same at the base as at the contact:
-//! `Y_s = theta_s (X + f X_f) - f theta_f X_s + const`. `Y_s` and its derivatives therefore need not be carried.
+//! The rod is a Hamiltonian system with the pairs `theta`, `f X` and `Y`, `f`. The symplectic product of the derivatives by
+//! force and by arclength is therefore equal at base and contact: `Y_s = theta_s (X + f X_f) - f theta_f X_s + const`. A
+//! trajectory need not carry `Y_s` and its derivatives.
 
 use crate::numerics::{Real, Vector};
 use crate::shooting::contact::Contact;
@@ -11,11 +11,11 @@ use crate::shooting::sensitivity::{
 };
 use crate::shooting::{Carried, Sensitivity};
 
-/// First derivatives; carries `theta, X` by force and by arclength, and `Y_f`.
+/// First derivatives. A trajectory carries those of `theta, X` by force and arclength, and `Y_f`.
 #[derive(Clone, Copy, Debug)]
 pub struct GeneralFirst;
 
-/// First and second derivatives; carries `ff`, `fs` and `ss` of `theta, X` and `ff` of `Y`, too.
+/// First and second derivatives. A trajectory also carries `ff`, `fs` and `ss` of `theta, X` and `ff` of `Y`.
 #[derive(Clone, Copy, Debug)]
 pub struct GeneralSecond;
 
@@ -34,7 +34,7 @@ impl<T: Real> Sensitivity<T> for GeneralFirst {
     }
 }
 
-/// Derivatives by the load from those by the force, those by `tau` from both.
+/// Derivatives by load and `tau` from those by force and arclength.
 #[inline(always)]
 fn base_derivatives<T: Real>(
     arrival: &Arrival<T>,
@@ -53,7 +53,7 @@ fn sum<T: Real>([a, b, c]: Triple<T>, [d, e, f]: Triple<T>) -> Triple<T> {
     [a + d, b + e, c + f]
 }
 
-/// How the force changes with `tau` at fixed load.
+/// Derivative of the force by `tau` at fixed load.
 #[inline(always)]
 fn load<T: Real>(arrival: &Arrival<T>) -> T {
     T::of(-2.0) * arrival.taper * arrival.contact.force
@@ -126,7 +126,7 @@ impl<T: Real> SensitivitySet<T> for GeneralSecond {
         let ([x_f, x_s], [x_ff, x_fs, x_ss]) = levers;
         let (f, x) = (arrival.contact.force, arrival.rod[2]);
         let [_, from] = arrival.contact.tangent;
-        // The lever and its derivatives.
+        // Derivatives of the moment.
         let (m_f, m_ff) = (f.mul_add(x_f, x), f.mul_add(x_ff, x_f + x_f));
         let m_fs = f.mul_add(x_fs, x_s);
         let y_s = theta_s * m_f - f * theta_f * x_s - from;

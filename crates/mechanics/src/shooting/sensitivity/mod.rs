@@ -1,8 +1,8 @@
-//! The derivatives that a trajectory carries, hand-written (the tests hold them against `num-dual`), and those that follow
-//! from them at the base.
+//! Derivatives that a trajectory carries, and those that follow from them at the base. They are written by hand; tests compare
+//! them with `num-dual`.
 //!
-//! `f` and `s` in the names below are the force and the arclength of the contact. The start values follow from the rod
-//! being at the origin at the same tilt, whatever the contact: `y_s = -y'` there.
+//! In names, `f` and `s` are the force and the arclength of the contact. The rod starts at the origin with a fixed tilt for
+//! every contact, so that derivatives start with `y_s = -y'`.
 
 mod general;
 mod similar;
@@ -18,67 +18,67 @@ use std::marker::PhantomData;
 /// Derivatives of `theta, X, Y`.
 pub type Triple<T> = [T; 3];
 
-/// A set of derivatives: where it starts, and what the base knows from it.
+/// A set of derivatives: its start values, and its results at the base.
 pub trait SensitivitySet<T: Real>: Sensitivity<T> + Sized {
     /// Derivatives of the base by the coordinates of the sheet.
     type AtBase;
 
-    /// Values at the contact.
+    /// Start values at the contact.
     fn start(contact: &Contact<T>) -> Carried<T, Self>;
 
-    /// What follows at the base from the values there.
+    /// Derivatives of the base from the carried values there.
     fn at_base(arrival: &Arrival<T>, carried: Carried<T, Self>) -> Self::AtBase;
 }
 
-/// A trajectory that has come to the base.
+/// End of a trajectory at the base.
 #[derive(Clone, Copy, Debug)]
 pub struct Arrival<T> {
-    /// Where it comes from.
+    /// Contact where the trajectory starts.
     pub contact: Contact<T>,
-    /// The rod's `beta`.
+    /// Taper `beta` of the rod.
     pub taper: T,
-    /// The base.
+    /// State of the rod at the base.
     pub rod: Planar<T>,
 }
 
 /// First derivatives of the base by the coordinates of the sheet.
 #[derive(Clone, Copy, Debug)]
 pub struct BaseDerivatives<T> {
-    /// By `tau` of the contact at fixed load.
+    /// Derivatives by `tau` of the contact at fixed load.
     pub by_tau: Triple<T>,
-    /// By the load.
+    /// Derivatives by the load at fixed `tau`.
     pub by_load: Triple<T>,
 }
 
-/// First and second derivatives.
+/// First and second derivatives of the base by the coordinates of the sheet.
 #[derive(Clone, Copy, Debug)]
 pub struct SecondBaseDerivatives<T> {
-    /// First.
+    /// First derivatives.
     pub first: BaseDerivatives<T>,
-    /// Twice by `tau`.
+    /// Second derivatives by `tau`.
     pub by_tau_tau: Triple<T>,
-    /// By `tau` and load.
+    /// Mixed derivatives by `tau` and load.
     pub by_tau_load: Triple<T>,
-    /// Twice by load.
+    /// Second derivatives by the load.
     pub by_load_load: Triple<T>,
 }
 
-/// Second derivatives of `-cos theta` and `-sin theta`, where those of `theta` are `angle`; `turns` is the product of the first
-/// ones.
+/// Second derivatives of `-cos theta` and `-sin theta`. `angle` is the second derivative of `theta`, `turns` the product of its
+/// first derivatives.
 #[inline(always)]
 fn twice<T: Real>(c: T, s: T, turns: T, angle: T) -> (T, T) {
     (s.mul_add(angle, c * turns), s * turns - c * angle)
 }
 
-/// A set of derivatives, and the bending energy in `E I_base/L_w`. Its relative error grows with the inverse of the radius at
-/// the contact, over that at the base: 2e-8 where that is 1e-6.
+/// A set of derivatives, and the bending energy in `E I_base/L_w`. The energy's relative error grows with the inverse of the
+/// radius at the contact over the base radius: it is 2e-8 for a ratio of 1e-6.
 #[derive(Clone, Copy, Debug)]
 pub struct Energetic<S>(PhantomData<S>);
 
 impl<T: Real, S: Sensitivity<T>> Sensitivity<T> for Energetic<S> {
     type Pairs = S::Pairs;
-    /// Those of the set, and the integral of `psi` along `-X`, where `psi` is how far bending has turned the rod: the energy
-    /// is the integral of `f X/2` along `psi`, and this is the rest of its integration by parts.
+    /// Sums of the set, and the integral of `psi` along `-X`, where `psi` is the angle by which bending has turned the rod. The
+    /// energy is the integral of `f X/2` along `psi`; integration by parts leads to this integral.
     type Sums = (S::Sums, [T; 1]);
 
     #[inline(always)]

@@ -1,9 +1,9 @@
-//! Derivatives on rods that look the same from each of their points, but for their size: straight at rest, a radius that
-//! falls linearly or not at all, one modulus.
+//! Derivatives on rods whose parts toward the base are similar but for their size: straight at rest, with a radius that falls
+//! linearly or is constant, and a constant modulus.
 //!
-//! On such a rod the trajectory, in units of the radius at the contact, depends on the load alone and not on where the
-//! contact is; only its end does. So derivatives by `tau` are right-hand sides at the base:
-//! `theta_tau = f X`, `X_tau = -beta X - c`, `Y_tau = -beta Y - s`, and only those by the load have to be integrated.
+//! On such a rod, the trajectory in units of the radius at the contact depends on the load alone; only its length depends on the
+//! contact. Derivatives by `tau` are therefore right-hand sides at the base: `theta_tau = f X`, `X_tau = -beta X - c`,
+//! `Y_tau = -beta Y - s`. Only derivatives by the load are integrated.
 
 use crate::numerics::{Real, Vector};
 use crate::shooting::contact::Contact;
@@ -12,11 +12,11 @@ use crate::shooting::sensitivity::{
 };
 use crate::shooting::{Carried, Sensitivity};
 
-/// First derivatives; carries those by the force.
+/// First derivatives. A trajectory carries those by the force.
 #[derive(Clone, Copy, Debug)]
 pub struct SimilarFirst;
 
-/// First and second derivatives; carries those by the force.
+/// First and second derivatives. A trajectory carries those by the force.
 #[derive(Clone, Copy, Debug)]
 pub struct SimilarSecond;
 
@@ -64,7 +64,7 @@ impl<T: Real> SensitivitySet<T> for SimilarFirst {
     }
 }
 
-/// The same for derivatives of `theta, X, Y`, at a fixed force.
+/// Derivative by `tau` of a derivative of `theta, X, Y`, at a fixed force.
 #[inline(always)]
 fn by_tau<T: Real>(f: T, taper: T, [c, s]: [T; 2], [theta, x, y]: Triple<T>) -> Triple<T> {
     [

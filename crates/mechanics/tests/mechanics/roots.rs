@@ -1,4 +1,4 @@
-//! Roots of one variable, and the polynomials whose roots they mostly are.
+//! Roots of functions of one variable, and polynomials.
 
 use whiskmap_mechanics::numerics::lobatto::{LOBATTO_COUNT, LOBATTO_NODES, through_lobatto};
 use whiskmap_mechanics::numerics::newton_form::{
@@ -11,7 +11,7 @@ const UNIT: Bracket = Bracket {
     above: 1.0,
 };
 
-/// Newton's method for `f`, which tells value and slope.
+/// Newton's method for `f`, which returns value and slope.
 fn newton(bracket: Bracket, start: f64, f: impl Fn(f64) -> (f64, f64)) -> Root {
     bracket.newton(
         start,
@@ -47,7 +47,7 @@ fn halley_triples_its_digits() {
     assert_eq!(root.iterations, 3);
 }
 
-/// Newton's method for the arcus tangent diverges from places beyond 1.39.
+/// Newton's method for the arctangent diverges from places beyond 1.39.
 #[test]
 fn a_step_out_of_the_bracket_goes_to_its_middle() {
     let bracket = Bracket::new([-70.0, 100.0], [-1.0, 1.0]);
@@ -64,9 +64,9 @@ fn a_triple_root_is_found_slowly() {
     );
 }
 
-/// Without a change of sign there is an extremum, which the steps lead to.
+/// The function has an extremum there and does not change its sign.
 #[test]
-fn a_double_root_is_no_trap() {
+fn a_double_root_is_found() {
     let root = newton(UNIT, 1.0, |x| ((x - 0.3).powi(2), 2.0 * (x - 0.3)));
     assert!(
         (root.x - 0.3).abs() < 3e-8 && root.iterations < 40,
@@ -74,7 +74,7 @@ fn a_double_root_is_no_trap() {
     );
 }
 
-/// Nothing is proposed on a flat slope or where there is no number: bisection goes on alone.
+/// A slope of 0 or NaN proposes no step: bisection continues alone.
 #[test]
 fn without_slopes_it_bisects() {
     for slope in [0.0, f64::NAN, f64::INFINITY] {
@@ -88,7 +88,7 @@ fn without_slopes_it_bisects() {
 }
 
 #[test]
-fn what_is_not_known_counts_as_above() {
+fn nan_counts_as_above() {
     let sqrt = |x: f64| ((0.3 - x).sqrt() - 0.5, -0.5 / (0.3 - x).sqrt());
     let bracket = Bracket {
         below: 1.0,
@@ -111,9 +111,9 @@ fn a_root_at_an_end_is_found() {
     }
 }
 
-/// Steps that rounding makes as long as the last step allows, but to and fro.
+/// Rounding alternates between steps.
 #[test]
-fn rounding_is_an_end() {
+fn the_iteration_ends_at_rounding() {
     let root = UNIT.newton(
         0.9,
         |_| 0.0,
@@ -139,7 +139,7 @@ fn illinois_needs_few_values() {
         }),
         "{root:?}"
     );
-    // Next to an extremum at the end, where regula falsi alone needs thousands.
+    // Next to an extremum at the end, where regula falsi without weights needs thousands of values.
     for below in [1e-1, 1e-2, 1e-3, 1e-4] {
         let f = |x: f64| Some(below - (1.0 - x).powi(2));
         let root = illinois(ends(&f), 1e-16, f);
@@ -157,7 +157,7 @@ fn illinois_needs_few_values() {
     );
 }
 
-/// Through their values, and where they are known through their slopes.
+/// Polynomials go through the values, and those with slopes through the slopes as well.
 #[test]
 fn runs_go_through_their_samples() {
     let f = |t: usize| (0.3 * t as f64).sin();
@@ -189,7 +189,7 @@ fn runs_go_through_their_samples() {
     }
 }
 
-/// A target at a sample, as exactly as that is known: a row whose end is the resting tip has one.
+/// The target is a sample or the number next to it, as for a row whose end is the resting tip.
 #[test]
 fn a_sample_is_found_where_it_is() {
     const COUNT: usize = 10;
@@ -243,7 +243,7 @@ fn polynomials_go_through_their_values() {
 }
 
 #[test]
-fn halving_knows_signs_alone() {
+fn halving_needs_signs_alone() {
     for [below, above] in [[0.0, 1.0], [1.0, 0.0]] {
         let mut bracket = Bracket { below, above };
         let is_below = |x: f64| Ok::<bool, ()>((x < 0.3) == (below < above));

@@ -59,7 +59,7 @@ fn points_grow_and_are_symmetric() {
     }
 }
 
-/// The tail bounds the error of `1/(x + 1/4)`, whose coefficients fall by a factor of 2.62, and is no more than 20 times it.
+/// For `1/(x + 1/4)`, whose coefficients fall by factors of 2.62, the tail is 1 to 20 times the error.
 #[test]
 fn the_tail_estimates_the_error() {
     for count in [8, 12, 16, 20, 24] {
@@ -95,10 +95,10 @@ fn slopes_are_derivatives() {
     }
 }
 
-/// Largest errors of the powers: rounding grows with the square of the number of points at each power.
+/// Largest errors by power. Rounding grows with each power by about the square of the number of points.
 const ERRORS: [f64; 6] = [1e-14, 1e-12, 3e-11, 1e-9, 2e-8, 2e-7];
 
-/// One place at a time, and side by side.
+/// Around one place at a time, and around several side by side.
 #[test]
 fn taylor_coefficients_are_those_of_the_function() {
     let expansion = through(16, exponentials);
