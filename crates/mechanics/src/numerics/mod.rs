@@ -2,7 +2,6 @@
 
 mod bracket;
 pub mod chebyshev;
-mod complex;
 pub mod divided_differences;
 pub mod gauss;
 pub mod lobatto;
@@ -11,13 +10,18 @@ pub mod newton_form_simd;
 mod real;
 mod simd;
 pub mod taylor;
-mod turn;
 mod vector;
 
 pub use bracket::{Bracket, Root, illinois};
-pub use complex::Complex;
 pub(crate) use real::horner;
 pub use real::{Real, expm1_over_small, hyperbolic_small, rotated_by_small};
 pub use simd::{ArithmeticClass, Lanes, LanesTask, SimdTask, Unit, WIDTH};
-pub use turn::nearest_turn;
 pub use vector::Vector;
+
+use std::f64::consts::TAU;
+
+/// `angle` plus the number of full turns that brings it nearest to `near`, all in radians.
+#[must_use]
+pub fn nearest_turn(angle: f64, near: f64) -> f64 {
+    angle + TAU * ((near - angle) / TAU).round()
+}

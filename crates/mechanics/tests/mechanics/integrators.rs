@@ -3,12 +3,13 @@
 use glam::DVec2;
 use num_dual::{DualNum, HyperDual64, second_partial_derivative};
 use std::ops::{Add, Div, Mul, Neg, Sub};
-use whiskmap_mechanics::numerics::Real;
+use whiskmap_mechanics::numerics::{Real, Vector};
 use whiskmap_mechanics::rod::{Effects, Rod};
 use whiskmap_mechanics::shooting::batch::{Batch, InitialCondition, Method};
 use whiskmap_mechanics::shooting::{
-    Graded, Integrator, Nystrom8, Planar, Resolution, Rk4, RodSystem, Scales, SecondVariation,
-    Section, Shape, ShootingMap, Straight, Uniform, integrate,
+    Graded, Integrator, Intrinsic, Material, Nystrom8, Planar, Resolution, RodSystem, STAGES,
+    Scales, SecondVariation, Section, Sensitivity, Shape, ShootingMap, State, Straight, Uniform,
+    integrate,
 };
 
 const EFFECTS: Effects = Effects {
@@ -18,6 +19,37 @@ const EFFECTS: Effects = Effects {
     gradient: true,
     profile: false,
 };
+
+/// The classical Runge-Kutta method of order 4, directly from the right-hand sides.
+#[derive(Clone, Copy, Debug)]
+struct Rk4;
+
+impl Integrator for Rk4 {
+    // The two middle stages share a node.
+    const NODES: [f64; STAGES] = [0.0, 0.5, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0];
+
+    #[inline(always)]
+    fn step<T: Real, I: Intrinsic<T>, C: Material<T>, S: Sensitivity<T>>(
+        system: &RodSystem<T, I, C>,
+        scales: &Scales<T>,
+        from: Section<T>,
+        y: State<T, I, S>,
+    ) -> State<T, I, S> {
+        let h = scales.end().sigma;
+        let half = T::of(0.5) * h;
+        let (middle, end) = (from.at(scales.stage(1)), from.at(scales.end()));
+        let k1 = system.rhs::<S>(from, y);
+        let k2 = system.rhs::<S>(middle, y.plus(half, k1));
+        let k3 = system.rhs::<S>(middle, y.plus(half, k2));
+        let k4 = system.rhs::<S>(end, y.plus(h, k3));
+        let sixth = T::of(1.0 / 6.0) * h;
+        let third = T::of(1.0 / 3.0) * h;
+        y.plus(sixth, k1)
+            .plus(third, k2)
+            .plus(third, k3)
+            .plus(sixth, k4)
+    }
+}
 
 fn steps(least: u32) -> Method {
     Method::new(Resolution {

@@ -133,6 +133,12 @@ impl<T: Lanes> GatherMaterial<T> for Graded<T> {
 pub trait Gather<T: Lanes>: Intrinsic<T> {
     /// The rest shape, and at the arclengths `s`: its state, and its curvature with the derivative by the arclength.
     fn gather(conditions: &Conditions, s: T) -> (Self, Self::State, [T; 2]);
+
+    /// Unit tangent at rest in the frame of a parabola; the first axis for other rest shapes.
+    #[inline(always)]
+    fn tangent(_: Self::State) -> [T; 2] {
+        [T::of(1.0), T::of(0.0)]
+    }
 }
 
 impl<T: Lanes> Gather<T> for Straight {
@@ -159,6 +165,11 @@ impl<T: Lanes> Gather<T> for Bent<T> {
         let curvature = twice_bend * cos * cos * cos;
         let slope = T::of(-3.0) * twice_bend * curvature * sin * cos * cos;
         (Self { twice_bend }, [cos, sin], [curvature, slope])
+    }
+
+    #[inline(always)]
+    fn tangent(tangent: [T; 2]) -> [T; 2] {
+        tangent
     }
 }
 

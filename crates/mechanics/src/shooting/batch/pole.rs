@@ -4,10 +4,43 @@
 //! the base's tangent. `G = ln w - i theta` has the real part `ln D` and the imaginary part `phi`. Its derivatives need no
 //! trigonometry: `G_i = w_i/w - i theta_i`, `G_ij = w_ij/w - w_i w_j/w^2 - i theta_ij`.
 
-use crate::numerics::{Complex, Lanes, WIDTH};
+use crate::numerics::{Lanes, Real, WIDTH};
 use crate::shooting::ShootingMap;
 use crate::shooting::sensitivity::{Arrival, BaseDerivatives, Triple};
 use glam::DVec2;
+
+/// A complex number `re + i im`.
+#[derive(Clone, Copy, Debug)]
+pub struct Complex<T> {
+    pub re: T,
+    pub im: T,
+}
+
+impl<T: Real> Complex<T> {
+    #[inline(always)]
+    fn new(re: T, im: T) -> Self {
+        Self { re, im }
+    }
+
+    #[inline(always)]
+    pub fn times(self, other: Self) -> Self {
+        Self::new(
+            self.re * other.re - self.im * other.im,
+            self.re.mul_add(other.im, self.im * other.re),
+        )
+    }
+
+    #[inline(always)]
+    fn inverse(self) -> Self {
+        let over = T::of(1.0) / self.re.mul_add(self.re, self.im * self.im);
+        Self::new(over * self.re, -over * self.im)
+    }
+
+    #[inline(always)]
+    pub fn minus(self, other: Self) -> Self {
+        Self::new(self.re - other.re, self.im - other.im)
+    }
+}
 
 /// The pole's centre relative to the base.
 pub struct PoleCentre<T> {

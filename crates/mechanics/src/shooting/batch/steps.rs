@@ -75,32 +75,6 @@ impl SimdTask for StepStarts<'_> {
     }
 }
 
-/// A rest shape whose state determines its tangent.
-trait RestTangent<T: Lanes>: Gather<T> {
-    fn tangent(state: Self::State) -> [T; 2];
-}
-
-impl<T: Lanes> RestTangent<T> for Straight {
-    #[inline(always)]
-    fn tangent((): ()) -> [T; 2] {
-        [T::of(1.0), T::of(0.0)]
-    }
-}
-
-impl<T: Lanes> RestTangent<T> for Bent<T> {
-    #[inline(always)]
-    fn tangent(tangent: [T; 2]) -> [T; 2] {
-        tangent
-    }
-}
-
-impl<T: Lanes> RestTangent<T> for Spiral<T> {
-    #[inline(always)]
-    fn tangent((): ()) -> [T; 2] {
-        [T::of(1.0), T::of(0.0)]
-    }
-}
-
 /// Task that integrates trajectories side by side, each in its own number of steps. Lanes that have reached the base continue; their
 /// numbers are ignored.
 struct FollowSteps<'a, I> {
@@ -111,7 +85,7 @@ struct FollowSteps<'a, I> {
     of: PhantomData<I>,
 }
 
-impl<T: Lanes, I: RestTangent<T>> LanesTask<T> for FollowSteps<'_, I> {
+impl<T: Lanes, I: Gather<T>> LanesTask<T> for FollowSteps<'_, I> {
     /// Angle by which bending has turned each rod at its base.
     type Output = [f64; WIDTH];
 

@@ -2,11 +2,9 @@
 
 mod collocation;
 mod nystrom8;
-mod rk4;
 
 pub use collocation::{BackwardCompliance, collocate};
 pub use nystrom8::Nystrom8;
-pub use rk4::Rk4;
 
 use crate::numerics::{Real, hyperbolic_small};
 use crate::shooting::{Intrinsic, Material, Planar, RodSystem, Section, Sensitivity, State};
