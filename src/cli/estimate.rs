@@ -8,7 +8,7 @@ use whiskmap::engine::Engine;
 use whiskmap::map::{self, Panel, Stage, Summary};
 use whiskmap::plan::{Plan, SAMPLE_LINES, SAMPLE_VALUES};
 use whiskmap::scene::Scene;
-use whiskmap::store::{self, MapWriter, ZarrStore};
+use whiskmap::store::{MapWriter, ZarrStore};
 
 /// Estimated cost of a map without its files.
 pub struct MapCost {
@@ -44,9 +44,9 @@ impl MapFormat {
     }
 
     /// Packs some panels of `scene`, and returns the number of bytes.
-    fn pack(self, scene: &Scene, plan: &Plan, panels: &[Panel]) -> Result<u64, store::Error> {
+    fn pack(self, scene: &Scene, plan: &Plan, panels: &[Panel]) -> u64 {
         match self {
-            Self::Exr => Ok(MapWriter::sample(&scene.grid, plan.channels, panels)),
+            Self::Exr => MapWriter::sample(&scene.grid, plan.channels, panels),
             Self::Zarr => ZarrStore::sample(scene, plan.channels, panels),
         }
     }
@@ -69,17 +69,17 @@ pub fn files(scene: &Scene, plan: &Plan, formats: &[MapFormat]) -> Result<Vec<Fi
     let by_cells = plan.cells as f64 / small_plan.cells as f64;
     let packed = formats.iter().map(|format| {
         let start = Instant::now();
-        let mut bytes = 0;
-        for panels in &groups {
-            bytes += format.pack(&small, &small_plan, panels)?;
-        }
-        Ok(FileCost {
+        let packed = groups
+            .iter()
+            .map(|own| format.pack(&small, &small_plan, own));
+        let bytes = packed.sum::<u64>() as f64 * by_cells;
+        FileCost {
             format: *format,
-            bytes: bytes as f64 * by_cells,
+            bytes,
             seconds: start.elapsed().as_secs_f64() * by_cells,
-        })
+        }
     });
-    packed.collect()
+    Ok(packed.collect())
 }
 
 /// Returns a sample of at most these numbers of push angles and distances, and its plan.

@@ -97,7 +97,7 @@ pub fn fill(
     let keep = |panels: Vec<Panel>| {
         let panels = panels.par_iter();
         let panels = panels.map(|panel| store.pack(panel));
-        packed.extend(panels.collect::<Result<Vec<_>, _>>()?);
+        packed.par_extend(panels);
         if let Some((block, whiskers)) = next
             && packed.len() == whiskers
         {

@@ -59,9 +59,6 @@ pub enum Error {
     /// A file of a block that has not been computed, or is lost.
     #[error("{file} is not there: the store is not complete; `map --resume` goes on with it", file = .0.display())]
     NotComputed(PathBuf),
-    /// The codecs of Zarr refused.
-    #[error("cannot pack {file}: {1}", file = .0.display())]
-    Pack(PathBuf, String),
     /// A folder, a pipe or a device.
     #[error("{file} is no regular file", file = .0.display())]
     NotAFile(PathBuf),

@@ -37,7 +37,7 @@ fn store(path: &Path, text: &str) -> ZarrStore {
     store.begin(&TemporaryFiles::default()).unwrap();
     for block in 0..store.block_count() {
         let panels = store.whiskers(block).map(|whisker| panel(&scene, whisker));
-        let packed: Vec<PackedPanel> = panels.map(|panel| store.pack(&panel).unwrap()).collect();
+        let packed: Vec<PackedPanel> = panels.map(|panel| store.pack(&panel)).collect();
         store
             .write(block, &packed, &TemporaryFiles::default())
             .unwrap();
@@ -261,11 +261,7 @@ fn counts_are_compared_with_the_regimes() {
         .position(|code| *code == Regime::Contact.code());
     panel.regime[contact.unwrap()] = Regime::SlipOff.code();
     store
-        .write(
-            1,
-            &[store.pack(&panel).unwrap()],
-            &TemporaryFiles::default(),
-        )
+        .write(1, &[store.pack(&panel)], &TemporaryFiles::default())
         .unwrap();
     assert!(is_sound(&path));
     fs::write(&counts, sound).unwrap();

@@ -138,8 +138,12 @@ fn store(
     store.begin(temporary)?;
     for block in 0..store.block_count() {
         let whiskers = store.whiskers(block);
-        let packed = whiskers.map(|whisker| store.pack(&slice.panel(about.channels, whisker)?));
-        store.write(block, &packed.collect::<Result<Vec<_>, _>>()?, temporary)?;
+        let packed = whiskers.map(|whisker| Ok(store.pack(&slice.panel(about.channels, whisker)?)));
+        store.write(
+            block,
+            &packed.collect::<Result<Vec<_>, whiskmap::store::Error>>()?,
+            temporary,
+        )?;
     }
     let finished = folder.map_or(Ok(()), |folder| folder.finish(path));
     finished.map_err(unwritten(path))

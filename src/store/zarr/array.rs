@@ -1,205 +1,280 @@
-//! One array of a store: its metadata as Zarr has them, and its blocks from values to bytes and back.
+//! One array of a store: its metadata as Zarr has them, and its chunks from values to bytes and back.
 
 use super::blocks::Blocks;
-use super::chunk::{self, Chunk};
-use super::kind::{Kind, options};
+use super::blosc;
 use serde_json::{Map, Value, json};
-use std::num::NonZeroU64;
-use std::sync::Arc;
-use zarrs::array::codec::api::ArrayToBytesCodecTraits;
-use zarrs::array::{ArrayBytes, ArrayMetadata};
 
-/// An array of a store.
-#[derive(Debug)]
-pub(super) struct Array {
-    pub(super) name: String,
-    pub(super) kind: Kind,
-    /// The metadata as they are written.
-    pub(super) metadata: Value,
-    array: zarrs::array::Array<()>,
-    /// The shape of a block's file.
-    shape: Vec<NonZeroU64>,
-    /// How a chunk of a block's file is packed.
-    chunk: Chunk,
+/// Kinds of values.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum ValueKind {
+    /// Codes as `u8`, whose fill value is [`NOT_COMPUTED`].
+    Code,
+    /// Counts as `u32`.
+    Count,
+    /// Quantities as `f32`.
+    Quantity,
+    /// Coordinates as `f64`.
+    Coordinate,
 }
 
-impl Array {
-    /// Values for each cell, `[sweep axes.., distance, push angle]`, in blocks.
+/// The code of a cell that is not computed yet.
+pub(super) const NOT_COMPUTED: u8 = 254;
+
+impl ValueKind {
+    const fn data_type(self) -> &'static str {
+        match self {
+            Self::Code => "uint8",
+            Self::Count => "uint32",
+            Self::Quantity => "float32",
+            Self::Coordinate => "float64",
+        }
+    }
+
+    /// Bytes of a value.
+    pub(super) const fn size(self) -> usize {
+        match self {
+            Self::Code => 1,
+            Self::Count | Self::Quantity => 4,
+            Self::Coordinate => 8,
+        }
+    }
+
+    /// The fill value, in the metadata and as bytes.
+    fn fill(self) -> (Value, Vec<u8>) {
+        match self {
+            Self::Code => (json!(NOT_COMPUTED), vec![NOT_COMPUTED]),
+            Self::Count => (json!(0), vec![0; 4]),
+            Self::Quantity => (json!("NaN"), f32::NAN.to_le_bytes().to_vec()),
+            Self::Coordinate => (json!("NaN"), f64::NAN.to_le_bytes().to_vec()),
+        }
+    }
+}
+
+/// An array of a store. Each block of it is a file of equal chunks.
+#[derive(Debug)]
+pub(super) struct ZarrArray {
+    pub(super) name: String,
+    pub(super) kind: ValueKind,
+    /// The metadata as they are written.
+    pub(super) metadata: Value,
+    /// Number of dimensions.
+    pub(super) dimensions: usize,
+    /// Values of a block's file.
+    pub(super) values: usize,
+    /// Values of a chunk.
+    chunk_values: usize,
+    /// Values of a line of a chunk, if its lines are stored as columns.
+    width: Option<usize>,
+}
+
+impl ZarrArray {
+    /// Values of each cell, `[sweep axes.., distance, push angle]`, in blocks.
     pub(super) fn of_cells(
         name: &str,
-        kind: Kind,
+        kind: ValueKind,
         blocks: &Blocks,
         dimensions: &[&str],
         about: Value,
-    ) -> Result<Self, String> {
+    ) -> Self {
         let [chunk, filled] = blocks.distances();
         let [distances, push_angles] = blocks.panel();
         let sizes = [[distances, filled, chunk], [push_angles; 3]];
-        let width = chunk::is_turned(name, kind).then_some(push_angles);
+        // Columns make quantities 8 % smaller, but a line of margins is the one before it, shifted.
+        let is_turned = kind == ValueKind::Quantity && name != "margin_deg";
+        let width = is_turned.then_some(push_angles);
         Self::in_blocks(name, kind, blocks, (&sizes, width), dimensions, about)
     }
 
-    /// `count` values for each whisker, in blocks.
+    /// `count` values of each whisker, `[sweep axes.., value]`, in blocks.
     pub(super) fn of_whiskers(
         name: &str,
-        kind: Kind,
+        kind: ValueKind,
         blocks: &Blocks,
         count: usize,
         dimensions: &[&str],
         about: Value,
-    ) -> Result<Self, String> {
+    ) -> Self {
         let sizes = (&[[count; 3]][..], None);
         Self::in_blocks(name, kind, blocks, sizes, dimensions, about)
     }
 
-    /// An array whose last dimensions have these `sizes`: in all, in a block's file, in a chunk, whose lines are turned into columns
-    /// where they have a `width`.
+    /// An array whose last dimensions have these `sizes`: in all, in a block's file, and in a chunk, whose lines of `width` values
+    /// are stored as columns.
     fn in_blocks(
         name: &str,
-        kind: Kind,
+        kind: ValueKind,
         blocks: &Blocks,
         (sizes, width): (&[[usize; 3]], Option<usize>),
         dimensions: &[&str],
         about: Value,
-    ) -> Result<Self, String> {
+    ) -> Self {
         let [axes, block] = blocks.sweep();
         let sweep = axes.iter().zip(block).map(|(all, block)| [*all, *block, 1]);
         let sizes: Vec<[usize; 3]> = sweep.chain(sizes.iter().copied()).collect();
         let [all, file, chunk] =
             [0, 1, 2].map(|which| -> Vec<usize> { sizes.iter().map(|size| size[which]).collect() });
-        let packed = Chunk::new(kind, chunk.iter().product(), width)?;
         let codecs = json!([{ "name": "sharding_indexed", "configuration": {
             "chunk_shape": chunk,
-            "codecs": packed.codecs(chunk.len()),
-            "index_codecs": [
-                { "name": "bytes", "configuration": { "endian": "little" } },
-                { "name": "crc32c" },
-            ],
+            "codecs": chunk_codecs(kind, &chunk, width.is_some()),
+            "index_codecs": [little_endian(), { "name": "crc32c" }],
             "index_location": "end",
         } }]);
-        Self::new(
-            name,
-            kind,
-            [&all, &file],
-            dimensions,
-            (about, codecs),
-            packed,
-        )
+        let array = Self::new(name, kind, [&all, &file], dimensions, (about, codecs));
+        Self {
+            chunk_values: chunk.iter().product(),
+            width,
+            ..array
+        }
     }
 
-    /// The values along an axis.
-    pub(super) fn of_axis(
-        name: &str,
-        kind: Kind,
-        count: usize,
-        about: Value,
-    ) -> Result<Self, String> {
-        let plain = json!([{ "name": "bytes", "configuration": { "endian": "little" } }]);
-        let chunk = Chunk::new(kind, count, None)?;
-        Self::new(name, kind, [&[count]; 2], &[name], (about, plain), chunk)
+    /// The values along an axis, in one chunk that is not packed.
+    pub(super) fn of_axis(name: &str, kind: ValueKind, count: usize, about: Value) -> Self {
+        let about = (about, json!([little_endian()]));
+        Self::new(name, kind, [&[count]; 2], &[name], about)
     }
 
     fn new(
         name: &str,
-        kind: Kind,
+        kind: ValueKind,
         [all, file]: [&[usize]; 2],
         dimensions: &[&str],
         (about, codecs): (Value, Value),
-        chunk: Chunk,
-    ) -> Result<Self, String> {
+    ) -> Self {
         let metadata = json!({
             "zarr_format": 3,
             "node_type": "array",
             "shape": all,
-            "data_type": kind.name(),
+            "data_type": kind.data_type(),
             "chunk_grid": { "name": "regular", "configuration": { "chunk_shape": file } },
             "chunk_key_encoding": { "name": "default", "configuration": { "separator": "." } },
-            "fill_value": kind.fill(),
+            "fill_value": kind.fill().0,
             "codecs": codecs,
             "attributes": about,
             "dimension_names": dimensions,
         });
-        let parsed: ArrayMetadata =
-            serde_json::from_value(metadata.clone()).map_err(|why| why.to_string())?;
-        let path = format!("/{name}");
-        let array = zarrs::array::Array::new_with_metadata(Arc::new(()), &path, parsed)
-            .map_err(|why| why.to_string())?;
-        let shape = file.iter().filter_map(|&size| NonZeroU64::new(size as u64));
-        Ok(Self {
+        let values = file.iter().product();
+        Self {
             name: name.to_owned(),
             kind,
-            shape: shape.collect(),
             metadata,
-            array,
-            chunk,
-        })
+            dimensions: file.len(),
+            values,
+            chunk_values: values,
+            width: None,
+        }
     }
 
     /// The name of a block's file in the folder of the array.
     pub(super) fn file(place: &[usize], dimensions: usize) -> String {
         let inside = std::iter::repeat_n(&0, dimensions);
         let indices = place.iter().chain(inside).map(usize::to_string);
-        std::iter::once("c".to_owned())
-            .chain(indices)
-            .collect::<Vec<_>>()
-            .join(".")
-    }
-
-    /// How many dimensions there are.
-    pub(super) fn dimensions(&self) -> usize {
-        self.shape.len()
-    }
-
-    /// Values of a block's file.
-    pub(super) fn values(&self) -> usize {
-        let sizes = self.shape.iter().map(|size| size.get() as usize);
-        sizes.product()
+        let parts: Vec<String> = std::iter::once("c".to_owned()).chain(indices).collect();
+        parts.join(".")
     }
 
     /// Chunks of a block's file.
-    pub(super) fn chunk_count(&self) -> usize {
-        self.values() * self.kind.size() / self.chunk.bytes()
+    pub(super) const fn chunk_count(&self) -> usize {
+        self.values / self.chunk_values
     }
 
     /// Bytes of a chunk's values.
     pub(super) const fn chunk_bytes(&self) -> usize {
-        self.chunk.bytes()
+        self.chunk_values * self.kind.size()
     }
 
-    /// The chunks of a whisker with these values, as bytes.
-    pub(super) fn chunks(&self, values: &[u8]) -> Result<Vec<Vec<u8>>, String> {
-        self.chunk.pack_all(values)
+    /// The chunks of a whisker with these `values`, given as bytes; the last chunk is filled up.
+    pub(super) fn pack(&self, values: &[u8]) -> Vec<Vec<u8>> {
+        let size = self.chunk_bytes();
+        let chunks = values.chunks(size).map(|chunk| {
+            let missing = (size - chunk.len()) / self.kind.size();
+            if missing == 0 {
+                return self.pack_chunk(chunk);
+            }
+            let fill = self.kind.fill().1.repeat(missing);
+            self.pack_chunk(&[chunk, &fill].concat())
+        });
+        chunks.collect()
     }
 
-    /// The chunks of a whisker that there is not, with room for `values` of them.
-    pub(super) fn empty(&self, values: usize) -> Result<Vec<Vec<u8>>, String> {
-        self.chunk.pack_all(&self.kind.fill_bytes().repeat(values))
+    /// The chunks of a whisker that does not exist, in a block with room for `whiskers`.
+    pub(super) fn pack_fill(&self, whiskers: usize) -> Vec<Vec<u8>> {
+        let chunks = self.chunk_count() / whiskers;
+        vec![self.pack_chunk(&self.kind.fill().1.repeat(self.chunk_values)); chunks]
     }
 
-    /// The file with these values, as bytes.
-    pub(super) fn encode(&self, values: Vec<u8>) -> Result<Vec<u8>, String> {
-        let array = &self.array;
-        let (kind, fill) = (array.data_type(), array.fill_value());
-        let values = ArrayBytes::new_flen(values);
-        let encoded = array
-            .codecs()
-            .encode(values, &self.shape, kind, fill, &options());
-        encoded
-            .map(std::borrow::Cow::into_owned)
-            .map_err(|why| why.to_string())
+    /// A frame of Blosc and its checksum.
+    fn pack_chunk(&self, values: &[u8]) -> Vec<u8> {
+        let size = self.kind.size();
+        let mut chunk = match self.width {
+            Some(width) => blosc::pack(&turned(values, width), size),
+            None => blosc::pack(values, size),
+        };
+        chunk.extend(crc32c::crc32c(&chunk).to_le_bytes());
+        chunk
     }
 
-    /// The values of a block's file, as bytes.
-    pub(super) fn decode(&self, file: Vec<u8>) -> Result<Vec<u8>, String> {
-        let array = &self.array;
-        let (kind, fill) = (array.data_type(), array.fill_value());
-        let decoded = array
-            .codecs()
-            .decode(file.into(), &self.shape, kind, fill, &options())
-            .map_err(|why| why.to_string())?;
-        let values = decoded.into_fixed().map_err(|why| why.to_string())?;
-        Ok(values.into_owned())
+    /// The values of frames of Blosc, as bytes.
+    ///
+    /// # Errors
+    ///
+    /// A frame is not as [`pack`](Self::pack) writes it.
+    pub(super) fn unpack<'a>(
+        &self,
+        frames: impl Iterator<Item = &'a [u8]>,
+    ) -> Result<Vec<u8>, String> {
+        let mut values = Vec::with_capacity(frames.size_hint().0 * self.chunk_bytes());
+        for frame in frames {
+            let first = values.len();
+            blosc::unpack(frame, [self.chunk_values, self.kind.size()], &mut values)?;
+            if let Some(width) = self.width {
+                let lines = turned(&values[first..], self.chunk_values / width);
+                values[first..].copy_from_slice(&lines);
+            }
+        }
+        Ok(values)
     }
+}
+
+fn little_endian() -> Value {
+    json!({ "name": "bytes", "configuration": { "endian": "little" } })
+}
+
+/// The codecs of a chunk of this `shape`: lines to columns where they `are_turned`, one block of Blosc, a checksum.
+fn chunk_codecs(kind: ValueKind, shape: &[usize], are_turned: bool) -> Value {
+    let size = kind.size();
+    let blosc = json!({ "name": "blosc", "configuration": {
+        "cname": blosc::CODEC,
+        "clevel": blosc::LEVEL,
+        "shuffle": if size > 1 { "shuffle" } else { "noshuffle" },
+        "typesize": size,
+        "blocksize": shape.iter().product::<usize>() * size,
+    } });
+    let codecs = [little_endian(), blosc, json!({ "name": "crc32c" })];
+    let mut order: Vec<usize> = (0..shape.len()).collect();
+    order[shape.len() - 2..].reverse();
+    let transpose = json!({ "name": "transpose", "configuration": { "order": order } });
+    let first = are_turned.then_some(transpose);
+    first.into_iter().chain(codecs).collect()
+}
+
+/// Columns that are turned together: those of a cache line.
+const TOGETHER: usize = 16;
+
+/// Lines of `width` values of 4 bytes, turned into columns.
+fn turned(lines: &[u8], width: usize) -> Vec<u8> {
+    let (from, _) = lines.as_chunks::<4>();
+    let mut turned = vec![0; lines.len()];
+    let (to, _) = turned.as_chunks_mut::<4>();
+    let height = from.len() / width;
+    for first in (0..width).step_by(TOGETHER) {
+        for (y, line) in from.chunks_exact(width).enumerate() {
+            let columns = line.iter().enumerate().skip(first).take(TOGETHER);
+            for (x, value) in columns {
+                to[x * height + y] = *value;
+            }
+        }
+    }
+    turned
 }
 
 /// Attributes by which xarray knows what an array holds.
@@ -210,4 +285,34 @@ pub(super) fn about(units: Option<&str>, long_name: &str) -> Map<String, Value> 
     }
     about.insert("long_name".to_owned(), json!(long_name));
     about
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two lines a chunk.
+    #[test]
+    fn lines_are_turned_and_the_last_chunk_is_filled_up() {
+        let values: Vec<f32> = (0..51).map(|i| i as f32).collect();
+        let axis = ZarrArray::of_axis("force_un", ValueKind::Quantity, 34, json!({}));
+        let array = ZarrArray {
+            width: Some(17),
+            ..axis
+        };
+        let packed = array.pack(bytemuck::cast_slice(&values));
+        let frames = || packed.iter().map(|chunk| &chunk[..chunk.len() - 4]);
+        let numbers = |bytes: Result<Vec<u8>, String>| -> Vec<f32> {
+            bytemuck::pod_collect_to_vec(&bytes.unwrap_or_default())
+        };
+        let found = numbers(array.unpack(frames()));
+        assert_eq!(found[..51], values);
+        assert!(found.len() == 68 && found[51..].iter().all(|own| own.is_nan()));
+        let columns = ZarrArray {
+            width: None,
+            ..array
+        };
+        let columns = numbers(columns.unpack(frames()));
+        assert_eq!(columns[..4], [0.0, 17.0, 1.0, 18.0]);
+    }
 }

@@ -1,9 +1,8 @@
 //! What is there of a store, what is damaged, and its removal.
 
 use super::ZarrStore;
-use super::array::Array;
+use super::array::{NOT_COMPUTED, ZarrArray};
 use super::identity::FileIdentity;
-use super::kind::NOT_COMPUTED;
 use super::metadata::CELLS;
 use super::read::open_regular;
 use crate::classify::Regime;
@@ -65,16 +64,16 @@ impl ZarrStore {
         }
     }
 
-    fn check(&self, array: &Array, block: usize, depth: CheckDepth) -> Result<(), Error> {
+    fn check(&self, array: &ZarrArray, block: usize, depth: CheckDepth) -> Result<(), Error> {
         match depth {
             CheckDepth::Structure => self.check_structure(array, &self.file(array, block)),
-            CheckDepth::Checksums => self.read_file(array, block).map(drop),
+            CheckDepth::Checksums => self.read_file(array, &self.file(array, block)).map(drop),
             CheckDepth::Values => self.read(array, block).map(drop),
         }
     }
 
     /// Compares identity, length and index of a file with what they must be.
-    fn check_structure(&self, array: &Array, file: &Path) -> Result<(), Error> {
+    fn check_structure(&self, array: &ZarrArray, file: &Path) -> Result<(), Error> {
         let mut opened = open_regular(file)?;
         let fault = self.expected(array, file).structure_fault(&mut opened);
         match fault.map_err(Error::at(file, Error::Read))? {
@@ -125,7 +124,7 @@ impl ZarrStore {
         if version != env!("CARGO_PKG_VERSION") {
             return Err(Error::OtherVersion(self.path.clone(), version.to_string()));
         }
-        let files = self.metadata_files()?;
+        let files = self.metadata_files();
         let faults = files.iter();
         let faults = faults.filter_map(|(path, bytes)| metadata_fault(path, bytes));
         Ok(faults.collect())

@@ -1,6 +1,6 @@
 //! The files of a store other than its blocks: metadata and coordinates, all of which follow from the scene.
 
-use super::array::Array;
+use super::array::ZarrArray;
 use super::check::{Owner, metadata_fault};
 use super::identity::AGREED;
 use super::metadata::{self, IDENTITY};
@@ -29,7 +29,7 @@ impl ZarrStore {
         let made = check_links(&self.path).and_then(|()| fs::create_dir_all(&self.path));
         made.map_err(Error::at(&self.path, Error::Write))?;
         let root = self.path.join(METADATA);
-        let created = finish(&root, &[self.root()?], temporary, Output::finish_new);
+        let created = finish(&root, &[self.root()], temporary, Output::finish_new);
         match created {
             Err(why) if why.kind() == io::ErrorKind::AlreadyExists => self.agree()?,
             created => created.map_err(Error::at(&root, Error::Write))?,
@@ -56,7 +56,7 @@ impl ZarrStore {
     /// A file cannot be read or written.
     pub fn restore_metadata(&self, temporary: &TemporaryFiles) -> Result<Vec<PathBuf>, Error> {
         let (mut damaged, mut failures) = (Vec::new(), Vec::new());
-        for (path, bytes) in self.metadata_files()? {
+        for (path, bytes) in self.metadata_files() {
             let restored = match metadata_fault(&path, &bytes) {
                 None => continue,
                 Some(Error::Damaged(..)) => restore(&path, &bytes, temporary),
@@ -72,34 +72,26 @@ impl ZarrStore {
     }
 
     /// Every file of metadata and coordinates, with the bytes that it must have; the root's is the last.
-    pub(super) fn metadata_files(&self) -> Result<Vec<(PathBuf, Vec<u8>)>, Error> {
+    pub(super) fn metadata_files(&self) -> Vec<(PathBuf, Vec<u8>)> {
         let mut files = Vec::new();
-        for (array, values) in self.coordinates()? {
+        for (array, values) in metadata::coordinates(&self.scene.grid) {
             let folder = self.path.join(&array.name);
-            let encoded = array.encode(values);
-            let encoded = encoded.map_err(Error::at(&folder, Error::Pack))?;
             files.push((folder.join(METADATA), json(&array.metadata)));
-            files.push((folder.join(Array::file(&[], 1)), encoded));
+            files.push((folder.join(ZarrArray::file(&[], 1)), values));
         }
         for array in &self.arrays {
             let file = self.path.join(&array.name).join(METADATA);
             files.push((file, json(&array.metadata)));
         }
-        files.push((self.path.join(METADATA), self.root()?));
-        Ok(files)
-    }
-
-    fn coordinates(&self) -> Result<Vec<(Array, Vec<u8>)>, Error> {
-        let coordinates = metadata::coordinates(&self.scene.grid);
-        coordinates.map_err(Error::at(&self.path, Error::Pack))
+        files.push((self.path.join(METADATA), self.root()));
+        files
     }
 
     /// The bytes of the root's metadata.
-    fn root(&self) -> Result<Vec<u8>, Error> {
-        let coordinates = self.coordinates()?;
+    fn root(&self) -> Vec<u8> {
+        let coordinates = metadata::coordinates(&self.scene.grid);
         let axes = coordinates.iter().map(|(array, _)| array);
-        let arrays = axes.chain(&self.arrays);
-        Ok(json(&metadata::group(&self.attributes, arrays)))
+        json(&metadata::group(&self.attributes, axes.chain(&self.arrays)))
     }
 
     /// Compares the store with what is at its path. Damaged metadata are no obstacle where the blocks are of this store.

@@ -1,9 +1,8 @@
 //! What a store says of itself: its arrays, and the attributes of the whole.
 
-use super::array::{Array, about};
+use super::array::{NOT_COMPUTED, ValueKind, ZarrArray, about};
 use super::blocks::Blocks;
 use super::identity::{AGREED, Identity};
-use super::kind::{Kind, NOT_COMPUTED};
 use crate::classify::{Regime, Status};
 use crate::scene::{Grid, SceneData};
 use crate::store::{Channels, Description};
@@ -74,35 +73,31 @@ const MEANINGS: [(&str, Option<&str>, &str); 14] = [
 ];
 
 /// The arrays that are filled block by block. The regime, without which a block is not there, is the last.
-pub(super) fn arrays(
-    grid: &Grid,
-    blocks: &Blocks,
-    channels: Channels,
-) -> Result<Vec<Array>, String> {
+pub(super) fn arrays(grid: &Grid, blocks: &Blocks, channels: Channels) -> Vec<ZarrArray> {
     let sweep = grid.sweep.iter().map(|axis| axis.parameter.axis());
     let sweep: Vec<&str> = sweep.collect();
     let of_cells = [&sweep[..], &["distance_mm", "push_angle_deg"]].concat();
     let of_regimes = [&sweep[..], &[CODES]].concat();
-    let mut arrays = vec![Array::of_whiskers(
+    let mut arrays = vec![ZarrArray::of_whiskers(
         CELLS,
-        Kind::Count,
+        ValueKind::Count,
         blocks,
         Regime::ALL.len(),
         &of_regimes,
         Value::Object(about(None, "cells of each regime")),
-    )?];
+    )];
     let mut names: Vec<&str> = channels.names().filter(|name| *name != "regime").collect();
     names.push("regime");
     for name in names {
         let kind = match name {
-            "regime" | "status" => Kind::Code,
-            "newton_steps" => Kind::Count,
-            _ => Kind::Quantity,
+            "regime" | "status" => ValueKind::Code,
+            "newton_steps" => ValueKind::Count,
+            _ => ValueKind::Quantity,
         };
         let about = Value::Object(of_channel(name));
-        arrays.push(Array::of_cells(name, kind, blocks, &of_cells, about)?);
+        arrays.push(ZarrArray::of_cells(name, kind, blocks, &of_cells, about));
     }
-    Ok(arrays)
+    arrays
 }
 
 /// The attributes of a channel; codes are flags in the sense of the CF conventions.
@@ -139,7 +134,7 @@ fn word(name: &str) -> String {
 }
 
 /// The coordinates along every axis, with their values as bytes.
-pub(super) fn coordinates(grid: &Grid) -> Result<Vec<(Array, Vec<u8>)>, String> {
+pub(super) fn coordinates(grid: &Grid) -> Vec<(ZarrArray, Vec<u8>)> {
     let inside = [
         (
             "distance_mm",
@@ -162,16 +157,16 @@ pub(super) fn coordinates(grid: &Grid) -> Result<Vec<(Array, Vec<u8>)>, String> 
     let mut all = Vec::new();
     for (name, units, title, values) in sweep.chain(inside) {
         let about = Value::Object(about(Some(units), title));
-        let array = Array::of_axis(name, Kind::Coordinate, values.len(), about)?;
+        let array = ZarrArray::of_axis(name, ValueKind::Coordinate, values.len(), about);
         all.push((array, bytemuck::cast_slice(values).to_vec()));
     }
     let codes = Regime::ALL.map(|regime| regime.code() as u8).to_vec();
     let about = Value::Object(of_channel("regime"));
     all.push((
-        Array::of_axis(CODES, Kind::Code, codes.len(), about)?,
+        ZarrArray::of_axis(CODES, ValueKind::Code, codes.len(), about),
         codes,
     ));
-    Ok(all)
+    all
 }
 
 /// The attributes of a store, which are the same on every machine of its arithmetic.
@@ -208,7 +203,7 @@ pub(super) const IDENTITY: &str = "identity";
 /// The metadata of the whole, those of the arrays among them.
 pub(super) fn group<'a>(
     attributes: &Map<String, Value>,
-    arrays: impl Iterator<Item = &'a Array>,
+    arrays: impl Iterator<Item = &'a ZarrArray>,
 ) -> Value {
     let arrays = arrays.map(|array| (array.name.clone(), array.metadata.clone()));
     json!({

@@ -9,11 +9,10 @@
 
 mod array;
 mod blocks;
+mod blosc;
 mod check;
-mod chunk;
 mod files;
 mod identity;
-mod kind;
 mod metadata;
 mod pack;
 mod read;
@@ -22,7 +21,7 @@ mod shard;
 pub use self::check::{BlockState, CheckDepth};
 pub use self::pack::PackedPanel;
 
-use self::array::Array;
+use self::array::ZarrArray;
 use self::blocks::Blocks;
 use self::identity::Identity;
 use super::stored::is_compatible;
@@ -43,7 +42,7 @@ pub struct ZarrStore {
     scene: Scene,
     channels: Channels,
     blocks: Blocks,
-    arrays: Vec<Array>,
+    arrays: Vec<ZarrArray>,
 }
 
 /// The name of every file of metadata.
@@ -67,8 +66,10 @@ impl ZarrStore {
             ..*about
         };
         let attributes = metadata::attributes(&about, scene);
-        let mut own = Self::new(path, attributes, scene.clone(), about.channels)?;
-        own.may_exist = may_exist;
+        let own = Self {
+            may_exist,
+            ..Self::new(path, attributes, scene.clone(), about.channels)
+        };
         own.agree()?;
         Ok(own)
     }
@@ -108,19 +109,13 @@ impl ZarrStore {
             .parse()
             .map_err(|why: String| foreign(&why))?;
         let attributes = metadata::completed(&attributes, &scene.title);
-        Self::new(path, attributes, scene, channels)
+        Ok(Self::new(path, attributes, scene, channels))
     }
 
-    fn new(
-        path: &Path,
-        attributes: Map<String, Value>,
-        scene: Scene,
-        channels: Channels,
-    ) -> Result<Self, Error> {
+    fn new(path: &Path, attributes: Map<String, Value>, scene: Scene, channels: Channels) -> Self {
         let blocks = Blocks::of(&scene.grid);
-        let arrays = metadata::arrays(&scene.grid, &blocks, channels);
-        Ok(Self {
-            arrays: arrays.map_err(Error::at(path, Error::Pack))?,
+        Self {
+            arrays: metadata::arrays(&scene.grid, &blocks, channels),
             path: path.to_owned(),
             identity: Identity::of(&attributes),
             may_exist: true,
@@ -128,7 +123,7 @@ impl ZarrStore {
             scene,
             channels,
             blocks,
-        })
+        }
     }
 
     /// One line for people.
@@ -179,9 +174,9 @@ impl ZarrStore {
         self.blocks.whiskers(block)
     }
 
-    fn file(&self, array: &Array, block: usize) -> PathBuf {
+    fn file(&self, array: &ZarrArray, block: usize) -> PathBuf {
         let place = self.blocks.place(block);
-        let name = Array::file(&place, array.dimensions() - place.len());
+        let name = ZarrArray::file(&place, array.dimensions - place.len());
         self.path.join(&array.name).join(name)
     }
 }

@@ -1,6 +1,6 @@
 //! From panels to the files of a block.
 
-use super::array::Array;
+use super::array::ZarrArray;
 use super::files::write;
 use super::{ZarrStore, shard};
 use crate::classify::Regime;
@@ -17,32 +17,21 @@ pub struct PackedPanel(Vec<Vec<Vec<u8>>>);
 
 impl ZarrStore {
     /// Packs a panel.
-    ///
-    /// # Errors
-    ///
-    /// The codecs refuse.
-    pub fn pack(&self, panel: &Panel) -> Result<PackedPanel, Error> {
-        let chunks = |array: &Array| {
-            let packed = array.chunks(&values(&array.name, panel));
-            packed.map_err(Error::at(&self.path.join(&array.name), Error::Pack))
-        };
+    #[must_use]
+    pub fn pack(&self, panel: &Panel) -> PackedPanel {
         let arrays = self.arrays.par_iter();
-        let arrays = arrays.map(|array| chunks(array));
-        arrays.collect::<Result<_, _>>().map(PackedPanel)
+        let packed = arrays.map(|array| array.pack(&values(&array.name, panel)));
+        PackedPanel(packed.collect())
     }
 
-    /// Packs `panels` of `scene`, and tells how many bytes they take, but for headers.
-    ///
-    /// # Errors
-    ///
-    /// The codecs refuse.
-    pub fn sample(scene: &Scene, channels: Channels, panels: &[Panel]) -> Result<u64, Error> {
+    /// Packs `panels` of `scene`, and returns how many bytes they take without headers.
+    #[must_use]
+    pub fn sample(scene: &Scene, channels: Channels, panels: &[Panel]) -> u64 {
         let (nowhere, channels) = (Path::new(""), channels.with("regime"));
-        let store = Self::new(nowhere, Map::new(), scene.clone(), channels)?;
+        let store = Self::new(nowhere, Map::new(), scene.clone(), channels);
         let packed = panels.iter().map(|panel| store.pack(panel));
-        let packed: Vec<PackedPanel> = packed.collect::<Result<_, _>>()?;
-        let chunks = packed.iter().flat_map(|panel| &panel.0).flatten();
-        Ok(chunks.map(|chunk| chunk.len() as u64).sum())
+        let chunks = packed.flat_map(|panel| panel.0.into_iter().flatten());
+        chunks.map(|chunk| chunk.len() as u64).sum()
     }
 
     /// Writes the panels of a block.
@@ -57,15 +46,11 @@ impl ZarrStore {
         temporary: &TemporaryFiles,
     ) -> Result<(), Error> {
         self.check_place()?;
-        let put = |(index, array): (usize, &Array)| {
+        let put = |(index, array): (usize, &ZarrArray)| {
             let file = self.file(array, block);
             let room = self.blocks.slots();
-            let missing = if panels.len() < room {
-                array.empty(array.values() / room)
-            } else {
-                Ok(Vec::new())
-            };
-            let missing = missing.map_err(Error::at(&file, Error::Pack))?;
+            let missing = (panels.len() < room).then(|| array.pack_fill(room));
+            let missing = missing.unwrap_or_default();
             let mut slots = vec![&missing; room];
             for (place, panel) in panels.iter().enumerate() {
                 slots[self.blocks.slot(block, place)] = &panel.0[index];

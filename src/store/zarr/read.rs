@@ -1,10 +1,9 @@
 //! What is in the files of a block.
 
 use super::ZarrStore;
-use super::array::Array;
-use super::kind::Kind;
+use super::array::{ValueKind, ZarrArray};
 use super::metadata::CELLS;
-use super::shard::Expected;
+use super::shard::ExpectedFile;
 use crate::classify::Regime;
 use crate::store::{Error, Samples};
 use std::fs::{self, File};
@@ -46,64 +45,57 @@ impl ZarrStore {
             known: self.channels.to_string(),
         })?;
         let (block, index) = self.blocks.find(whisker);
-        let bytes = self.read(array, block)?;
-        let (panel, room) = self.sizes(array);
-        let first = self.blocks.slot(block, index) * room;
-        let bytes = &bytes[first..first + panel];
+        let file = self.file(array, block);
+        let (expected, bytes) = self.read_file(array, &file)?;
+        let chunks = expected.chunks / self.blocks.slots();
+        let frames = expected.frames(&bytes);
+        let frames = frames.skip(self.blocks.slot(block, index) * chunks);
+        let values = array.unpack(frames.take(chunks));
+        let values = values.map_err(Error::at(&file, Error::Damaged))?;
+        let [distances, push_angles] = self.blocks.panel();
+        let bytes = &values[..distances * push_angles * array.kind.size()];
         Ok(match array.kind {
-            Kind::Code => Samples::U32(bytes.iter().map(|code| u32::from(*code)).collect()),
-            Kind::Count => Samples::U32(bytemuck::pod_collect_to_vec(bytes)),
+            ValueKind::Code => Samples::U32(bytes.iter().map(|code| u32::from(*code)).collect()),
+            ValueKind::Count => Samples::U32(bytemuck::pod_collect_to_vec(bytes)),
             _ => Samples::F32(bytemuck::pod_collect_to_vec(bytes)),
         })
     }
 
     /// The values of a block's file, as bytes.
-    pub(super) fn read(&self, array: &Array, block: usize) -> Result<Vec<u8>, Error> {
-        let values = array.decode(self.read_file(array, block)?);
-        let expected = array.values() * array.kind.size();
-        let values = values.and_then(|values| match values.len() == expected {
-            true => Ok(values),
-            false => Err("it has the wrong number of values".to_owned()),
-        });
-        values.map_err(Error::at(&self.file(array, block), Error::Damaged))
+    pub(super) fn read(&self, array: &ZarrArray, block: usize) -> Result<Vec<u8>, Error> {
+        let path = self.file(array, block);
+        let (expected, bytes) = self.read_file(array, &path)?;
+        let values = array.unpack(expected.frames(&bytes));
+        values.map_err(Error::at(&path, Error::Damaged))
     }
 
     /// A block's file whose structure and checksums have no fault.
-    pub(super) fn read_file(&self, array: &Array, block: usize) -> Result<Vec<u8>, Error> {
-        let path = self.file(array, block);
-        let file = open_regular(&path)?;
-        let expected = self.expected(array, &path);
+    pub(super) fn read_file(
+        &self,
+        array: &ZarrArray,
+        path: &Path,
+    ) -> Result<(ExpectedFile, Vec<u8>), Error> {
+        let file = open_regular(path)?;
+        let expected = self.expected(array, path);
         let mut bytes = Vec::new();
         let read = file.take(expected.most_bytes() + 1).read_to_end(&mut bytes);
-        read.map_err(Error::at(&path, Error::Read))?;
+        read.map_err(Error::at(path, Error::Read))?;
         let fault = expected.structure_fault(&mut Cursor::new(&bytes));
-        let fault = fault.map_err(Error::at(&path, Error::Read))?;
+        let fault = fault.map_err(Error::at(path, Error::Read))?;
         match fault.or_else(|| expected.chunk_fault(&bytes)) {
-            Some(why) => Err(Error::Damaged(path, why)),
-            None => Ok(bytes),
+            Some(why) => Err(Error::Damaged(path.to_owned(), why)),
+            None => Ok((expected, bytes)),
         }
     }
 
     /// What the file `path` of an array must be.
-    pub(super) fn expected(&self, array: &Array, path: &Path) -> Expected {
+    pub(super) fn expected(&self, array: &ZarrArray, path: &Path) -> ExpectedFile {
         let name = path.file_name().unwrap_or_default().to_string_lossy();
-        Expected {
+        ExpectedFile {
             identity: self.identity.of_file(&array.name, &name),
             chunks: array.chunk_count(),
             chunk_bytes: array.chunk_bytes(),
         }
-    }
-
-    /// Bytes of a whisker's values in a block, and of the room there.
-    fn sizes(&self, array: &Array) -> (usize, usize) {
-        let room = array.values() / self.blocks.slots();
-        let [distances, push_angles] = self.blocks.panel();
-        let values = if array.name == CELLS {
-            room
-        } else {
-            distances * push_angles
-        };
-        (values * array.kind.size(), room * array.kind.size())
     }
 }
 

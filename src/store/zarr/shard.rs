@@ -3,6 +3,7 @@
 //! The index has the position and the size of each chunk, as pairs of little-endian `u64`. Readers find chunks by the
 //! index alone, so that none of them needs to know of the identity.
 
+use super::blosc;
 use super::identity::FileIdentity;
 use std::borrow::Cow;
 use std::io::{self, Read, Seek, SeekFrom};
@@ -16,8 +17,8 @@ const CHECKSUM: usize = 4;
 /// Bytes of a chunk's entry in the index.
 const ENTRY: usize = 16;
 
-/// The most bytes by which packing makes a chunk larger: 16 of Blosc, and the checksum.
-const OVERHEAD: u64 = 20;
+/// The most bytes by which packing makes a chunk larger.
+const OVERHEAD: u64 = (blosc::OVERHEAD + CHECKSUM) as u64;
 
 /// The pieces of a file with these chunks, in order.
 pub(super) fn assemble<'a>(
@@ -44,7 +45,7 @@ pub(super) fn assemble<'a>(
 
 /// What a file of a block must be.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Expected {
+pub(super) struct ExpectedFile {
     pub(super) identity: FileIdentity,
     /// Chunks of the file.
     pub(super) chunks: usize,
@@ -52,10 +53,7 @@ pub(super) struct Expected {
     pub(super) chunk_bytes: usize,
 }
 
-/// The fault of a file, or a failure to read it.
-type Fault = io::Result<Option<String>>;
-
-impl Expected {
+impl ExpectedFile {
     /// The most bytes that the file can have.
     pub(super) fn most_bytes(&self) -> u64 {
         let chunks = self.chunks as u64 * (self.chunk_bytes as u64 + OVERHEAD);
@@ -67,7 +65,10 @@ impl Expected {
     }
 
     /// Compares identity, length and index of a file with what they must be. Chunks are not read.
-    pub(super) fn structure_fault(&self, file: &mut (impl Read + Seek)) -> Fault {
+    pub(super) fn structure_fault(
+        &self,
+        file: &mut (impl Read + Seek),
+    ) -> io::Result<Option<String>> {
         let length = file.seek(SeekFrom::End(0))?;
         let index_bytes = self.index_bytes();
         let Some(end) = length
@@ -95,8 +96,7 @@ impl Expected {
         let (entries, _) = index.as_chunks::<ENTRY>();
         let mut position = HEAD;
         for entry in entries {
-            let (begin, size) = entry.split_at(ENTRY / 2);
-            let [begin, size] = [begin, size].map(number);
+            let [begin, size] = numbers(entry);
             if begin != position || size > end - position {
                 return Some("the index does not fit the file's length");
             }
@@ -110,17 +110,25 @@ impl Expected {
         (identity != self.identity).then_some(why)
     }
 
-    /// Compares the chunks of a whole file, whose structure has no fault, with their checksums.
+    /// The fault of the chunks of a whole file without a structure fault, by their checksums.
     pub(super) fn chunk_fault(&self, file: &[u8]) -> Option<String> {
-        let index = &file[file.len() - self.index_bytes()..];
-        let (entries, _) = index.as_chunks::<ENTRY>();
-        let is_damaged = |entry: &[u8; ENTRY]| {
-            let (begin, size) = entry.split_at(ENTRY / 2);
-            let [begin, size] = [begin, size].map(|bytes| number(bytes) as usize);
-            !has_checksum(&file[begin..begin + size])
-        };
-        let damaged = entries.iter().position(is_damaged)?;
+        let damaged = self.chunks(file).position(|chunk| !has_checksum(chunk))?;
         Some(format!("chunk {damaged} does not have its checksum"))
+    }
+
+    /// The chunks of a whole file without a fault, less their checksums.
+    pub(super) fn frames<'a>(&self, file: &'a [u8]) -> impl Iterator<Item = &'a [u8]> {
+        let chunks = self.chunks(file);
+        chunks.map(|chunk| &chunk[..chunk.len().saturating_sub(CHECKSUM)])
+    }
+
+    /// The chunks of a whole file without a structure fault.
+    fn chunks<'a>(&self, file: &'a [u8]) -> impl Iterator<Item = &'a [u8]> {
+        let (entries, _) = file[file.len() - self.index_bytes()..].as_chunks::<ENTRY>();
+        entries.iter().map(|entry| {
+            let [begin, size] = numbers(entry).map(|number| number as usize);
+            &file[begin..begin + size]
+        })
     }
 }
 
@@ -131,6 +139,8 @@ fn has_checksum(bytes: &[u8]) -> bool {
         .is_some_and(|(bytes, checksum)| crc32c::crc32c(bytes) == u32::from_le_bytes(*checksum))
 }
 
-fn number(bytes: &[u8]) -> u64 {
-    bytes.try_into().map_or(0, u64::from_le_bytes)
+/// Position and size of a chunk, from its entry in the index.
+fn numbers(entry: &[u8; ENTRY]) -> [u64; 2] {
+    let number = u128::from_le_bytes(*entry);
+    [number as u64, (number >> 64) as u64]
 }
