@@ -1,13 +1,13 @@
-//! Values wanted on axes.
+//! Values selected on axes.
 
 use crate::input::Quantity;
 use crate::scene::digits;
 use std::str::FromStr;
 
-/// A value wanted on an axis.
+/// A value selected on an axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct At {
-    /// The axis by its name, such as `taper` or `distance_mm`.
+    /// Name of the axis, such as `taper` or `distance_mm`.
     pub axis: String,
     /// The value, in the unit of the axis.
     pub value: f64,
@@ -36,11 +36,10 @@ impl FromStr for At {
     }
 }
 
-/// How close a value must be to the only one of an axis, relative to it: messages and file names have
-/// four digits.
+/// Relative distance at which a value still selects the only value of an axis: messages and file names have four digits.
 const ROUNDED: f64 = 5e-4;
 
-/// Checks that `wanted` is at most half a step beyond the axis `name` of these `values`.
+/// Checks that `wanted` is at most half a step beyond the `values` of the axis `name`.
 pub(super) fn check_near(name: &str, values: &[f64], wanted: f64) -> Result<(), String> {
     let (first, last) = (values[0], values[values.len() - 1]);
     let [below, above] = match values {
@@ -67,7 +66,7 @@ pub(super) fn with_unit(name: &str, value: f64) -> String {
     }
 }
 
-/// The place of the value nearest to `wanted`.
+/// Index of the value nearest to `wanted`.
 pub(super) fn nearest(values: &[f64], wanted: f64) -> usize {
     let apart = |value: &f64| (value - wanted).abs();
     let places = values.iter().enumerate();

@@ -1,4 +1,4 @@
-//! The attributes: ASCII JSON, every one of them.
+//! The attributes of an EXR map, as ASCII JSON.
 
 use super::layout::Layout;
 use super::tally::{Counts, regimes, statuses};
@@ -10,29 +10,29 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 use std::collections::{BTreeMap, HashMap};
 
-/// What is known before the run, and written first.
+/// Attributes that are known before a run.
 #[derive(Clone, Copy, Debug)]
 pub struct Description<'a> {
-    /// What is simulated.
+    /// The scene that is computed.
     pub scene: &'a SceneData,
-    /// What integrates, and on which device.
+    /// The engine and its device.
     pub engine: &'a engine::EngineDescription,
     /// Tolerances and step limits.
     pub tolerances: &'a Value,
-    /// What is stored of each cell.
+    /// The channels that are stored.
     pub channels: Channels,
-    /// How the CPU rounds: the [name](crate::numerics::ArithmeticClass::name) of a class.
+    /// Rounding of the CPU: the [name](crate::numerics::ArithmeticClass::name) of a class.
     pub arithmetic: &'a str,
 }
 
-/// An axis of the map.
+/// An axis in the attribute `axes`.
 #[derive(Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Axis {
     name: String,
     unit: String,
     /// `x` and `y` inside a panel, `panel x` and `panel y` from one panel to the next.
     direction: String,
-    /// Where the first value lies.
+    /// Place of the first value.
     first: String,
     values: Vec<f64>,
 }
@@ -49,21 +49,21 @@ const ATLAS: [[&str; 2]; 2] = [
     ["panel y", "row 0 of the atlas (top)"],
 ];
 
-/// The attribute that has the CRC-32C of all that precedes the tables of offsets, in 8 hexadecimal digits.
+/// Attribute with the CRC-32C of all bytes before the offset tables, in 8 hexadecimal digits.
 pub(super) const CHECKSUM: &str = "checksum";
 
 /// The digits of the checksum while it is computed.
 pub(super) const NO_CHECKSUM: &str = "00000000";
 
-/// Texts by name, as the EXR library has them.
+/// Attribute texts by name.
 pub(super) type Attributes = HashMap<Text, AttributeValue>;
 
-/// An attribute with this text.
+/// The attribute `name` with this `text`.
 pub(super) fn attribute(name: &str, text: &str) -> (Text, AttributeValue) {
     (Text::from(name), AttributeValue::Text(Text::from(text)))
 }
 
-/// The attributes of a map. `counts` is left out; [`encode_counts`] makes it.
+/// All attributes of a map but `counts`, which [`encode_counts`] makes.
 pub(super) fn encode(about: &Description<'_>) -> Attributes {
     let layout = Layout::of(&about.scene.grid);
     let attributes = [
@@ -90,7 +90,7 @@ pub(super) fn encode_counts(counts: &Counts) -> String {
     format!("{text:width$}", width = counts_width())
 }
 
-/// The longest text that any run's counts can have.
+/// Bytes of the longest text that [`encode_counts`] can make.
 pub(super) fn counts_width() -> usize {
     let most = |name: &'static str| (name.to_owned(), u64::MAX);
     let counts = Counts {
@@ -115,7 +115,7 @@ pub(super) fn counts_width() -> usize {
     ascii_json(&json!(counts)).len()
 }
 
-/// The axes as they are written.
+/// The attribute `axes` of a grid.
 fn axes(grid: &Grid) -> Vec<Axis> {
     let axis = |[name, unit, direction, first]: [&str; 4], values: &[f64]| Axis {
         name: name.to_owned(),
@@ -138,7 +138,7 @@ fn axes(grid: &Grid) -> Vec<Axis> {
     inside.into_iter().chain(atlas).collect()
 }
 
-/// The sweep that the attribute `axes` describes.
+/// The grid that the attribute `axes` describes.
 ///
 /// # Errors
 ///
@@ -175,8 +175,7 @@ pub(super) fn decode_axes(mut found: Vec<Axis>) -> Result<Grid, String> {
     Ok(grid)
 }
 
-/// The same with the names in every object in their order: whether `serde_json` keeps another one depends on what else is
-/// built with it.
+/// The value with the names of every object sorted. The order that `serde_json` keeps depends on features that other crates enable.
 pub(super) fn sorted(value: &Value) -> Value {
     match value {
         Value::Object(names) => {
@@ -191,8 +190,8 @@ pub(super) fn sorted(value: &Value) -> Value {
     }
 }
 
-/// JSON in which every character beyond ASCII is written as `\uXXXX`, in surrogate pairs where needed: other readers
-/// refuse a whole file for a single `µ`.
+/// JSON with every character beyond ASCII as `\uXXXX`, in surrogate pairs where needed: other readers refuse a file with a
+/// single `µ`.
 fn ascii_json(value: &Value) -> String {
     let json = sorted(value).to_string();
     let mut ascii = String::with_capacity(json.len());

@@ -1,9 +1,9 @@
-//! What can go wrong with a stored map.
+//! Errors of files.
 
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// A map that cannot be written or read. Every message is complete; there is no chain of sources to print.
+/// A file that cannot be written or read. Every message is complete: there is no chain of sources to print.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
     /// The file system refused to read.
@@ -23,10 +23,10 @@ pub enum Error {
         /// The axes, by name.
         axes: String,
     },
-    /// A store that is there, and was not asked to be continued.
-    #[error("{folder} is there already: go on with it by --resume, or remove it", folder = .0.display())]
+    /// A store that exists although the run does not resume it.
+    #[error("{folder} exists already; resume it with --resume, or remove it", folder = .0.display())]
     Exists(PathBuf),
-    /// A store that was begun otherwise.
+    /// A store that was created with other settings.
     #[error(
         "{} differs in `{name}`: {there} there, {here} here{reason}; use the settings with which it was created, or \
          give another --output", path.display(), reason = reason(name)
@@ -47,44 +47,44 @@ pub enum Error {
          remove it, or give another --output", folder = .0.display()
     )]
     OtherBlocks(PathBuf),
-    /// A store that is not at its path any more.
+    /// A store that is no longer at its path.
     #[error("{folder} was moved, removed or replaced during the run", folder = .0.display())]
     Displaced(PathBuf),
-    /// A store whose metadata only another version of the program can check: the version.
+    /// A store of an incompatible version: the version.
     #[error("{folder} was written by whiskmap {1}, and only that version can check and read it", folder = .0.display())]
     OtherVersion(PathBuf, String),
-    /// A folder of Zarr that this program did not write, and what is missing or different.
+    /// A Zarr folder of another program: what is missing or different.
     #[error("{folder} is not a store of whiskmap: {1}", folder = .0.display())]
     NotAStore(PathBuf, String),
-    /// A file of a block that has not been computed, or is lost.
-    #[error("{file} is not there: the store is not complete; `map --resume` goes on with it", file = .0.display())]
+    /// A file of a block that is not computed, or lost.
+    #[error("{file} is missing: the store is not complete; compute the rest with `map --resume`", file = .0.display())]
     NotComputed(PathBuf),
     /// A folder, a pipe or a device.
     #[error("{file} is no regular file", file = .0.display())]
     NotAFile(PathBuf),
-    /// The file does not start like an EXR file.
+    /// A file that does not begin like an EXR file.
     #[error("{file} is not an EXR file", file = .0.display())]
     NotExr(PathBuf),
-    /// An EXR file that this program did not write, and what is missing or different.
+    /// An EXR file of another program: what is missing or different.
     #[error("{file} is an EXR file, but not a map of whiskmap: {1}", file = .0.display())]
     NotAMap(PathBuf, String),
-    /// A map whose bytes end too early or contradict each other: where, and how.
+    /// A file whose bytes end too early or contradict each other: where, and how.
     #[error("{file} is damaged: {1}", file = .0.display())]
     Damaged(PathBuf, String),
-    /// No part has a channel of this name.
+    /// A channel that the file does not have.
     #[error("{} has no channel `{name}`; it has {known}", path.display())]
     UnknownChannel {
         /// The file.
         path: PathBuf,
-        /// The name asked for.
+        /// The name.
         name: String,
-        /// The names there are, separated by commas.
+        /// The names of its channels, separated by commas.
         known: String,
     },
-    /// A panel that the atlas does not have, wanted or written.
+    /// A panel that the map does not have.
     #[error("there is no panel {index}; the map has {panels}")]
     NoSuchPanel {
-        /// The index asked for.
+        /// The index.
         index: usize,
         /// The number of panels.
         panels: usize,
@@ -121,7 +121,7 @@ pub enum Error {
     },
 }
 
-/// What a reader may not know about an attribute.
+/// Explanation of an attribute in a message.
 fn reason(name: &str) -> &'static str {
     if name == "arithmetic" {
         " (with and without fused multiply-add, processors round differently)"
@@ -131,12 +131,12 @@ fn reason(name: &str) -> &'static str {
 }
 
 impl Error {
-    /// Makes the error `kind` for the map at `path` of its cause.
+    /// Makes the error `kind` of the file at `path` from its cause.
     pub(super) fn at<C>(path: &Path, kind: fn(PathBuf, C) -> Self) -> impl Fn(C) -> Self {
         move |cause| kind(path.to_owned(), cause)
     }
 
-    /// Whether a file is no map that can be read, or continued, however that came to light.
+    /// Returns true if a file cannot be read or resumed, which is an error of the input.
     #[must_use]
     pub fn is_unreadable(&self) -> bool {
         matches!(

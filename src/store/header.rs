@@ -1,4 +1,4 @@
-//! The header: what precedes the blocks, written and read.
+//! The header of an EXR map: all bytes before the blocks.
 
 use super::attributes::{Attributes, CHECKSUM, NO_CHECKSUM};
 use super::layout::Layout;
@@ -14,7 +14,7 @@ use std::io::{self, BufReader, Read, Seek};
 use std::ops::Range;
 use std::path::Path;
 
-/// All that precedes the tables of offsets. Attributes are sorted by name, so that equal maps have equal bytes.
+/// All bytes before the offset tables. Attributes are sorted by name, so that equal maps have equal bytes.
 pub(super) fn encode(headers: &[Header]) -> exr::error::Result<Vec<u8>> {
     let requirements = MetaData::validate(headers, true)?;
     let mut bytes = Vec::new();
@@ -35,7 +35,7 @@ pub(super) fn encode(headers: &[Header]) -> exr::error::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// The headers, not yet checked against the layout.
+/// Reads the headers and checks their checksum, but not their layout.
 pub(super) fn read(path: &Path, file: &mut BufReader<File>) -> Result<MetaData, Error> {
     let mut magic = [0; 4];
     match file.read_exact(&mut magic) {
@@ -55,7 +55,7 @@ pub(super) fn read(path: &Path, file: &mut BufReader<File>) -> Result<MetaData, 
     }
 }
 
-/// Whether the bytes that have been read have their checksum. Maps of versions with another format, and other files, have none.
+/// Returns true if the bytes read so far have their checksum. Maps of incompatible versions and other files need none.
 fn has_checksum(file: &mut BufReader<File>, meta: &MetaData) -> io::Result<bool> {
     let mut preamble = vec![0; file.stream_position()? as usize];
     file.rewind()?;
@@ -73,7 +73,7 @@ fn has_checksum(file: &mut BufReader<File>, meta: &MetaData) -> io::Result<bool>
     Ok(sealed == preamble)
 }
 
-/// Puts the checksum of a preamble, in which each part has [`NO_CHECKSUM`], into each part.
+/// Writes the checksum of a preamble into each part in place of [`NO_CHECKSUM`].
 pub(super) fn seal(preamble: &mut [u8]) {
     let digits = format!("{:08x}", crc32c::crc32c(preamble));
     for place in places_of_checksum(preamble) {
@@ -81,7 +81,7 @@ pub(super) fn seal(preamble: &mut [u8]) {
     }
 }
 
-/// The digits of the checksum in each part, behind the name, type and size of their attribute and a quotation mark.
+/// Ranges of the checksum's digits, behind name, type and size of their attribute and a quotation mark.
 fn places_of_checksum(preamble: &[u8]) -> Vec<Range<usize>> {
     let size = NO_CHECKSUM.len() + 2;
     let size = (size as u32).to_le_bytes();
@@ -94,7 +94,7 @@ fn places_of_checksum(preamble: &[u8]) -> Vec<Range<usize>> {
     places.collect()
 }
 
-/// The table between the headers and the blocks.
+/// Reads the offset tables between the headers and the blocks.
 pub(super) fn read_offsets(
     path: &Path,
     file: &mut BufReader<File>,
@@ -104,7 +104,7 @@ pub(super) fn read_offsets(
         .map_err(|cause| Error::Damaged(path.to_owned(), format!("offset table: {cause}")))
 }
 
-/// Compares parts, channels, size, tiles and compression with what `layout` is written as.
+/// Checks that parts, channels, size, tiles and compression are as this program writes `layout`.
 pub(super) fn check_layout(
     meta: &MetaData,
     layout: Layout,
@@ -123,14 +123,14 @@ pub(super) fn check_layout(
     Ok(())
 }
 
-/// The channels that there are.
+/// The channels of the file.
 pub(super) fn channels(meta: &MetaData) -> Channels {
     let lists = meta.headers.iter().map(|header| &header.channels.list);
     let found: Vec<_> = lists.flatten().map(|channel| &channel.name).collect();
     Channels::those(|name| found.iter().any(|own| own.bytes() == name.as_bytes()))
 }
 
-/// An attribute of the first part, decoded.
+/// Decodes an attribute of the first part.
 pub(super) fn parse<T: DeserializeOwned>(meta: &MetaData, name: &str) -> Result<T, String> {
     let attributes = meta.headers.first().map(|header| &header.own_attributes);
     let mut attributes = attributes.into_iter().flat_map(|own| &own.other);

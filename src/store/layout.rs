@@ -1,4 +1,4 @@
-//! Where each value lies in the file: parts, channels, tiles and blocks.
+//! The place of each value in an EXR map: parts, channels, tiles and blocks.
 
 use super::{Channels, Panel, STATE_CHANNELS};
 use crate::scene::Grid;
@@ -12,7 +12,7 @@ use exr::meta::{BlockDescription, Headers};
 use exr::prelude::Compression;
 use std::collections::HashMap;
 
-/// How many panels, and how many cells in each.
+/// Numbers of panels and of cells in a panel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Layout {
     /// Panels along x, one per value of the first sweep axis.
@@ -40,7 +40,7 @@ impl Layout {
         }
     }
 
-    /// Number of panels. Panel `row * columns + column` belongs to those values of the axes.
+    /// Number of panels. Panel `row * columns + column` has value `column` of the first sweep axis and `row` of the second.
     #[must_use]
     pub const fn panels(&self) -> usize {
         self.columns * self.rows
@@ -52,7 +52,7 @@ impl Layout {
         self.push_angles * self.distances
     }
 
-    /// Tiles, one per panel, or, when there is only one panel, scan lines: their many blocks compress in parallel.
+    /// Tiles, one per panel. A single panel has scan lines: their many blocks compress in parallel.
     fn blocks(&self) -> BlockDescription {
         if self.panels() == 1 {
             return BlockDescription::ScanLines;
@@ -64,7 +64,7 @@ impl Layout {
         })
     }
 
-    /// Rows of cells in each block but the last one of a panel.
+    /// Rows of cells in a block; the last block of a panel may have fewer.
     fn block_height(&self) -> usize {
         match self.panels() {
             1 => COMPRESSION.scan_lines_per_block(),
@@ -72,17 +72,17 @@ impl Layout {
         }
     }
 
-    /// Number of blocks of a panel in each part.
+    /// Blocks of a panel in each part.
     pub(super) fn blocks_per_panel(&self) -> usize {
         self.distances.div_ceil(self.block_height())
     }
 
-    /// The tile of a panel, or none where there is only one panel.
+    /// Indices of a panel's tile; a single panel has none.
     pub(super) fn tile(&self, panel: usize) -> Option<Vec2<usize>> {
         (self.panels() > 1).then_some(Vec2(panel % self.columns, panel / self.columns))
     }
 
-    /// The first row of a panel that lies in `block`.
+    /// First row of cells of a block of a panel.
     pub(super) fn first_row(&self, block: usize) -> usize {
         block * self.block_height()
     }
@@ -118,7 +118,7 @@ impl Layout {
         }
     }
 
-    /// One header per part, all with the same attributes, so that each part stands alone.
+    /// One header per part, all with the same attributes: readers may take a part alone.
     pub(super) fn headers(
         &self,
         channels: Channels,
@@ -141,13 +141,13 @@ impl Layout {
 /// Lossless.
 const COMPRESSION: Compression = Compression::ZIP16;
 
-/// A part of the file, with its channels in the order of their names, as EXR wants them.
+/// A part of an EXR map, with its channels sorted by name, as EXR demands.
 pub(super) struct Part<'a> {
     pub(super) name: &'static str,
     pub(super) channels: Vec<Channel<'a>>,
 }
 
-/// A channel, with its samples in a panel as bytes.
+/// A channel of a panel, with its samples as bytes.
 pub(super) struct Channel<'a> {
     pub(super) name: &'static str,
     pub(super) kind: SampleType,

@@ -1,14 +1,14 @@
-//! The stored map: a multi-part EXR file that is enough to make the map again.
+//! Files: maps as EXR, sweeps as Zarr stores, tables as CSV.
 //!
-//! A map is written panel by panel and read panel by panel, so neither side's memory grows with the number of
-//! whiskers. The file has three parts, `regime`, `state` and `numerics`. Column 0 is the first push angle and row 0
-//! the first distance. One whisker fills the image; a sweep of whiskers is an atlas with one tile per whisker, the
-//! first sweep axis along x and the second along y. Every attribute is ASCII JSON: `axes`, `scene`, `title`, `whiskmap_version`,
-//! `engine`, `adapter`, `arithmetic`, `tolerances`, `regime_names`, `status_names`, `counts`, `panels` and `checksum`.
+//! An EXR map is written and read panel by panel, so its memory does not grow with the number of whiskers. It has three parts:
+//! `regime`, `state` and `numerics`. Column 0 is the first push angle and row 0 the first distance. A sweep of whiskers is an atlas
+//! with one tile per whisker, the first sweep axis along x and the second along y. Every attribute is ASCII JSON: `axes`, `scene`,
+//! `title`, `whiskmap_version`, `engine`, `adapter`, `arithmetic`, `tolerances`, `regime_names`, `status_names`, `counts`, `panels`
+//! and `checksum`. They are enough to compute the map again.
 //!
-//! A sweep that outgrows a machine goes to a Zarr store instead, a folder that many processes fill.
+//! A Zarr store is a folder that several processes fill.
 //!
-//! Invariant: a file that bears its final name is complete.
+//! Invariant: a file with its final name is complete.
 
 mod at;
 mod attributes;
@@ -48,5 +48,4 @@ pub use writer::MapWriter;
 #[cfg(feature = "zarr")]
 pub use zarr::{BlockState, CheckDepth, PackedPanel, ZarrStore};
 
-/// What a file holds of one whisker, and of the whole run.
 pub use crate::map::{Audit, Channels, EngineCells, Panel, STATE_CHANNELS};

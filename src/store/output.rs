@@ -1,4 +1,4 @@
-//! Where a file goes that is being written: the only opener of files for writing.
+//! Files being written. No other module opens files for writing.
 
 use super::file_id::{FileId, folder_of};
 use super::target::Target;
@@ -88,12 +88,12 @@ impl Output {
         }
     }
 
-    /// Finishes a regular file such that it is on the disk before it has its name, and its name when this returns, so that
-    /// a crash of the machine spoils neither. It takes 1 to 5 ms.
+    /// Finishes a regular file such that its bytes are on the disk before its name, and its name before this returns: a crash of
+    /// the machine damages neither. It takes 1 to 5 ms.
     ///
     /// # Errors
     ///
-    /// Those of [`Output::finish`].
+    /// An error of [`Output::finish`].
     #[cfg(feature = "zarr")]
     pub(super) fn finish_durably(self) -> io::Result<()> {
         self.finish_synced(Self::finish)
@@ -130,7 +130,7 @@ impl Output {
         }
     }
 
-    /// Writes what is left and gives the file its name.
+    /// Flushes the file and gives it its name.
     ///
     /// # Errors
     ///

@@ -1,4 +1,4 @@
-//! Reads a map, a channel of a panel at a time.
+//! Reads an EXR map, one channel of a panel at a time.
 
 use super::attributes;
 use super::layout::{self, Layout, SAMPLE_BYTES};
@@ -24,7 +24,7 @@ pub enum Samples {
 }
 
 impl Samples {
-    /// The value of a cell, exactly.
+    /// The value of a cell.
     ///
     /// # Panics
     ///
@@ -37,7 +37,7 @@ impl Samples {
         }
     }
 
-    /// Every value, exactly.
+    /// All values.
     pub fn values(&self) -> impl Iterator<Item = f64> + '_ {
         let cells = match self {
             Self::F32(values) => values.len(),
@@ -47,29 +47,29 @@ impl Samples {
     }
 }
 
-/// What the header of a map tells.
+/// The header of an EXR map.
 #[derive(Debug)]
 pub struct MapHeader {
-    /// One line for people.
+    /// Title of the scene, one line.
     pub title: String,
     /// The axes.
     pub grid: Grid,
-    /// Panels and cells.
+    /// Numbers of panels and cells.
     pub layout: Layout,
     /// Name of every code of the channel `regime`.
     pub regime_names: BTreeMap<u32, String>,
     /// Name of every code of the channel `status`.
     pub status_names: BTreeMap<u32, String>,
-    /// What the map holds.
+    /// Cells of each regime and status.
     pub counts: Counts,
 }
 
-/// A map on disk whose header has been read and checked. It reads like its [`MapHeader`].
+/// An EXR map whose header is read and checked; it dereferences to its [`MapHeader`].
 #[derive(Debug)]
 pub struct StoredMap {
     path: PathBuf,
     meta: MetaData,
-    /// Where the blocks of each part begin.
+    /// Positions of the blocks of each part.
     offsets: OffsetTables,
     channels: Channels,
     header: MapHeader,
@@ -115,7 +115,7 @@ impl StoredMap {
         })
     }
 
-    /// The codes of `regime` or `status` that occur, as the header has counted them.
+    /// The codes of `regime` or `status` that occur, by the counts of the header.
     pub(super) fn codes(&self, channel: &str) -> BTreeSet<u32> {
         let (names, cells) = match channel {
             "regime" => (&self.regime_names, &self.counts.regimes),
@@ -126,7 +126,7 @@ impl StoredMap {
         present.map(|(code, _)| *code).collect()
     }
 
-    /// Any attribute, such as `tolerances`; a text, such as `scene` or `adapter`, is a JSON string.
+    /// The attribute `name`; texts such as `scene` and `adapter` are JSON strings.
     ///
     /// # Errors
     ///
@@ -146,7 +146,7 @@ impl StoredMap {
             .collect()
     }
 
-    /// A whole channel, panel after panel: `[second axis][first axis][distance][push angle]`, the last one fastest.
+    /// A channel of all panels: `[second sweep axis][first sweep axis][distance][push angle]`, the last axis fastest.
     ///
     /// # Errors
     ///
@@ -155,7 +155,7 @@ impl StoredMap {
         self.read(name, 0..self.layout.panels())
     }
 
-    /// A channel of one panel: `[distance][push angle]`. Nothing but this panel is read.
+    /// A channel of one panel: `[distance][push angle]`. No other panel is read.
     ///
     /// # Errors
     ///
@@ -187,7 +187,7 @@ impl StoredMap {
         })
     }
 
-    /// Part, place in that part, and type of a channel.
+    /// Part, index in the part, and type of a channel.
     fn find(&self, name: &str) -> Result<(usize, usize, SampleType), Error> {
         let nothing = Panel::unresolved(0, self.channels);
         for (part, about) in layout::parts(&nothing, self.channels).iter().enumerate() {
@@ -226,7 +226,7 @@ impl StoredMap {
     }
 }
 
-/// Opens a regular file: a map is read here and there, and a pipe without a writer would never open.
+/// Opens a regular file: reading seeks, and a pipe without a writer would never open.
 fn open(path: &Path) -> Result<BufReader<File>, Error> {
     let about = std::fs::metadata(path).map_err(Error::at(path, Error::Read))?;
     if !about.is_file() {

@@ -1,4 +1,4 @@
-//! A part of a map or a store: what is left of its axes where a value is chosen on some of them.
+//! A part of a map or a store: the values of some of its axes are fixed.
 
 use super::at::{At, check_near, nearest, with_unit};
 use super::{Channels, Error, Layout, Panel, STATE_CHANNELS, Samples, Stored, StoredMap};
@@ -6,7 +6,7 @@ use crate::input::did_you_mean;
 use crate::scene::{Grid, Scene, digits};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// A value that cannot be chosen.
+/// A selected value that an axis does not have.
 #[derive(Debug, thiserror::Error)]
 #[error("{axis}: {why}")]
 pub struct NoChoice {
@@ -14,25 +14,25 @@ pub struct NoChoice {
     why: String,
 }
 
-/// A part of a map or a store, which is read panel by panel, no more than is asked for.
+/// A part of a map or a store, read panel by panel.
 #[derive(Debug)]
 pub struct Slice {
     stored: Stored,
     grid: Grid,
-    /// The rows and columns taken of each panel.
+    /// Selected rows and columns of each panel.
     rows: Vec<usize>,
     columns: Vec<usize>,
     chosen: Vec<(&'static str, f64)>,
-    /// The place chosen on each axis of the whole sweep.
+    /// Selected index of each sweep axis of the whole.
     fixed: Vec<Option<usize>>,
 }
 
 impl Slice {
-    /// The part of `stored` at the values nearest to those wanted or, if they must be `exact`, at these alone.
+    /// The part of `stored` at the values nearest to those `wanted`, which must be values of the axes if `exact`.
     ///
     /// # Errors
     ///
-    /// If an axis is unknown or there twice, does not have the value exactly, or ends more than half a step before it.
+    /// An axis is unknown or given twice, ends more than half a step before the value, or does not have it although `exact`.
     pub fn new(stored: Stored, wanted: &[At], exact: bool) -> Result<Self, NoChoice> {
         let mut slice = Self::whole(stored);
         for at in wanted {
@@ -104,31 +104,31 @@ impl Slice {
         Ok(())
     }
 
-    /// The whole that this is a part of.
+    /// The whole map or store.
     #[must_use]
     pub fn stored(&self) -> &Stored {
         &self.stored
     }
 
-    /// What is left of the axes: a chosen one of the sweep is gone, one of the panels has its value alone.
+    /// The axes of the part. A fixed sweep axis is absent; a fixed axis of the panels has one value.
     #[must_use]
     pub fn grid(&self) -> &Grid {
         &self.grid
     }
 
-    /// The panels that are left, which have at most two sweep axes.
+    /// Numbers of panels and cells of the part, which has at most two sweep axes.
     #[must_use]
     pub fn layout(&self) -> Layout {
         Layout::of(&self.grid)
     }
 
-    /// The values chosen, by the names of their axes.
+    /// Names and values of the fixed axes.
     #[must_use]
     pub fn chosen(&self) -> &[(&'static str, f64)] {
         &self.chosen
     }
 
-    /// The same, to four digits, for people.
+    /// Names and values of the fixed axes, to four digits.
     pub fn readable(&self) -> impl Iterator<Item = (&'static str, String)> + '_ {
         self.chosen.iter().map(|(name, value)| {
             let rounded = format!("{value:.3e}").parse().unwrap_or(*value);
@@ -136,7 +136,7 @@ impl Slice {
         })
     }
 
-    /// One line for people, with the values chosen.
+    /// Title of the scene with the fixed values, one line.
     #[must_use]
     pub fn title(&self) -> String {
         let chosen = self.readable();
@@ -152,7 +152,7 @@ impl Slice {
         self.stored.channels()
     }
 
-    /// Whether any whisker of the slice has friction with its pole. A scene that this version cannot read counts as having it.
+    /// Returns true if a whisker of the part has friction with its pole, or this version cannot read the scene.
     ///
     /// # Errors
     ///
@@ -167,7 +167,7 @@ impl Slice {
         })
     }
 
-    /// The whiskers that are left, with the last axis varying fastest.
+    /// Indices of the whiskers of the part, with the last axis varying fastest.
     pub fn whiskers(&self) -> impl Iterator<Item = usize> + '_ {
         let sizes = self.grid.sweep.iter().map(|axis| axis.values.len());
         let sizes: Vec<usize> = sizes.collect();
@@ -183,7 +183,7 @@ impl Slice {
         })
     }
 
-    /// The values of a whisker of the slice on all axes of the whole sweep.
+    /// Names and values of all sweep axes of the whole, for a whisker of the part.
     #[must_use]
     pub fn place(&self, whisker: usize) -> Vec<(&'static str, f64)> {
         let place = self.stored.grid().place(self.in_whole(whisker));
@@ -193,7 +193,7 @@ impl Slice {
             .collect()
     }
 
-    /// Sizes of the axes that are left: those of the sweep, then distance and push angle.
+    /// Sizes of the axes that are not fixed: the sweep axes, then distance and push angle.
     #[must_use]
     pub fn shape(&self) -> Vec<usize> {
         let sweep = self.grid.sweep.iter().map(|axis| axis.values.len());
@@ -206,7 +206,7 @@ impl Slice {
         sweep.chain(inside.map(|(_, size)| size)).collect()
     }
 
-    /// A channel of one whisker of the slice: `[distance][push angle]`.
+    /// A channel of one whisker of the part: `[distance][push angle]`.
     ///
     /// # Errors
     ///
@@ -230,11 +230,11 @@ impl Slice {
         })
     }
 
-    /// The `channels` of one whisker of the slice; the others are those of a whisker without an answer.
+    /// The `channels` of one whisker of the part; other channels are those of an unresolved whisker.
     ///
     /// # Errors
     ///
-    /// Those of [`Slice::read_panel`].
+    /// An error of [`Slice::read_panel`].
     pub fn panel(&self, channels: Channels, whisker: usize) -> Result<Panel, Error> {
         let mut panel = Panel::unresolved(self.rows.len() * self.columns.len(), channels);
         for name in channels.names() {
@@ -251,19 +251,19 @@ impl Slice {
         Ok(panel)
     }
 
-    /// The names of the codes of a channel that is made of codes.
+    /// Names of the codes of `regime` or `status`.
     #[must_use]
     pub fn names(&self, channel: &str) -> Option<BTreeMap<u32, String>> {
         self.stored.names(channel)
     }
 
-    /// The codes of a channel that occur.
+    /// The codes of a channel that occur in the part.
     ///
     /// # Errors
     ///
-    /// Those of [`Slice::read_panel`].
+    /// An error of [`Slice::read_panel`].
     pub fn codes(&self, channel: &str) -> Result<BTreeSet<u32>, Error> {
-        // The header of a whole map has counted them.
+        // The header of a whole map has the counts.
         if let (Stored::Exr(map), []) = (&self.stored, &*self.chosen) {
             return Ok(map.codes(channel));
         }
@@ -276,7 +276,7 @@ impl Slice {
         Ok(codes)
     }
 
-    /// The index in the whole sweep of a whisker of the slice.
+    /// Index in the whole sweep of a whisker of the part.
     fn in_whole(&self, whisker: usize) -> usize {
         let mut left = self.grid.indices(whisker).into_iter();
         let (mut index, mut stride) = (0, 1);
@@ -289,7 +289,7 @@ impl Slice {
     }
 }
 
-/// All of a map.
+/// The whole map.
 impl From<StoredMap> for Slice {
     fn from(map: StoredMap) -> Self {
         Self::whole(Stored::Exr(Box::new(map)))

@@ -1,4 +1,4 @@
-//! What is at a path, a map or a store: both are read panel by panel.
+//! A map or a store, whichever is at a path: both are read panel by panel.
 
 use super::{Error, Samples, StoredMap};
 #[cfg(feature = "zarr")]
@@ -19,11 +19,11 @@ pub enum Stored {
 }
 
 impl Stored {
-    /// Opens what is at `path`; a folder is a store.
+    /// Opens the map at `path`, or the store if it is a folder.
     ///
     /// # Errors
     ///
-    /// It cannot be read, or is not of this program.
+    /// It cannot be read, or this program did not write it.
     pub fn open(path: &Path) -> Result<Self, Error> {
         #[cfg(feature = "zarr")]
         if path.is_dir() {
@@ -32,7 +32,7 @@ impl Stored {
         Ok(Self::Exr(Box::new(StoredMap::open(path)?)))
     }
 
-    /// One line for people.
+    /// Title of the scene, one line.
     #[must_use]
     pub fn title(&self) -> &str {
         match self {
@@ -62,7 +62,7 @@ impl Stored {
         }
     }
 
-    /// What both say of the whole, such as `scene`, `engine` and `tolerances`.
+    /// The attribute `name`, such as `scene`, `engine` or `tolerances`.
     ///
     /// # Errors
     ///
@@ -75,18 +75,18 @@ impl Stored {
         }
     }
 
-    /// The version of the program that wrote it, if that is not compatible with this one.
+    /// The version that wrote it, if it is not compatible with this version.
     ///
     /// # Errors
     ///
-    /// It does not say.
+    /// There is no such attribute.
     pub fn foreign_version(&self) -> Result<Option<String>, Error> {
         let version = self.attribute("whiskmap_version")?;
         let version = version.as_str().unwrap_or_default();
         Ok((!is_compatible(version)).then(|| version.to_owned()))
     }
 
-    /// The names of the codes of a channel that is made of codes.
+    /// Names of the codes of `regime` or `status`.
     #[must_use]
     pub fn names(&self, channel: &str) -> Option<BTreeMap<u32, String>> {
         let [regimes, statuses] = match self {
@@ -118,12 +118,12 @@ impl Stored {
     }
 }
 
-/// Whether a map of this version of the program is one of this version's format.
+/// Returns true if a file of `version` has this version's format.
 pub(super) fn is_compatible(version: &str) -> bool {
     series(version) == series(env!("CARGO_PKG_VERSION"))
 }
 
-/// What compatible versions have in common: the numbers up to the first that is not 0.
+/// The numbers that compatible versions share: those up to the first that is not 0.
 fn series(version: &str) -> Vec<&str> {
     let zeros = version.split('.').take_while(|number| *number == "0");
     let length = zeros.count() + 1;

@@ -1,4 +1,4 @@
-//! Tables as CSV: a header, then one line per row; numbers in the fewest digits that give them back exactly.
+//! Tables as CSV: a header, then a line per row. Numbers have the fewest digits that parse to the same value.
 
 use super::Output;
 use serde::Serialize;
@@ -9,7 +9,7 @@ use std::io;
 pub struct Table(csv::Writer<Output>);
 
 impl Table {
-    /// A table on its way to `output`.
+    /// A table that is written to `output`.
     #[must_use]
     pub fn new(output: Output) -> Self {
         Self(csv::Writer::from_writer(output))
@@ -24,7 +24,7 @@ impl Table {
             .try_for_each(|row| self.0.serialize(row).map_err(unwrapped))
     }
 
-    /// Writes what is left and finishes the output.
+    /// Flushes the table and finishes the output.
     ///
     /// # Errors
     /// When the output takes no more.
@@ -34,7 +34,7 @@ impl Table {
     }
 }
 
-/// The cause of an error, whose kind `csv` would hide.
+/// The I/O error in an error of `csv`, which hides its kind.
 fn unwrapped(error: csv::Error) -> io::Error {
     let message = error.to_string();
     match error.into_kind() {

@@ -1,11 +1,11 @@
-//! How many cells there are of each regime and status.
+//! Numbers of cells of each regime and status.
 
 use crate::classify::{Regime, Status};
 use crate::map::{Audit, EngineCells};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// The attribute `counts`: what a whole map holds.
+/// The attribute `counts` of a map.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Counts {
     /// Cells of each regime, by name.
@@ -14,9 +14,9 @@ pub struct Counts {
     pub statuses: BTreeMap<String, u64>,
     /// The greatest residual, relative to the whisker's length; `None` where no cell is in contact.
     pub worst_residual: Option<f64>,
-    /// What an engine did for them.
+    /// Cells by what the engine did with them.
     pub engine_cells: EngineCells,
-    /// What came of looking at some of its cells once more.
+    /// Result of the engine's audit.
     pub audit: Audit,
 }
 
@@ -30,7 +30,7 @@ pub(super) fn statuses() -> BTreeMap<u32, &'static str> {
     Status::ALL.map(|own| (own.code(), own.name())).into()
 }
 
-/// Adds the cells of one channel by their names; returns the first code that has none.
+/// Adds the number of `codes` of each name to `cells`. A code without a name is an error.
 pub(super) fn add(
     cells: &mut BTreeMap<String, u64>,
     names: BTreeMap<u32, &'static str>,

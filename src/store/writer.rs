@@ -1,4 +1,4 @@
-//! Writes a map, some panels at a time.
+//! Writes an EXR map, some panels at a time.
 
 use super::attributes::{self, Description, attribute};
 use super::layout::{self, Channel, Layout, Part, SAMPLE_BYTES};
@@ -20,18 +20,18 @@ use std::path::{Path, PathBuf};
 /// Bytes of a place in the file.
 const OFFSET_BYTES: u64 = 8;
 
-/// A map on its way to disk, by an [`Output`]: there is none until [`MapWriter::finish`].
+/// An EXR map being written; it appears at its path with [`MapWriter::finish`].
 #[derive(Debug)]
 pub struct MapWriter {
     path: PathBuf,
     file: BufWriter<Output>,
-    /// Where the next block goes.
+    /// Position of the next block.
     position: u64,
     layout: Layout,
     channels: Channels,
     headers: Headers,
-    /// Where the table of each part is, which tells where its blocks begin. They are filled in as blocks come: those of a large
-    /// sweep would not fit in memory.
+    /// Position of each part's table of block positions. Tables are written with their blocks: those of a large sweep would not
+    /// fit in memory.
     tables: Vec<u64>,
     /// Panels written so far.
     written: usize,
@@ -39,8 +39,7 @@ pub struct MapWriter {
 }
 
 impl MapWriter {
-    /// Begins the map that will be `path`, with a header of all that is known before the run. Until it is finished, its bytes are
-    /// in one of the temporary `files`.
+    /// Begins the map that will be at `path`. Until it is finished, its bytes are in one of the temporary `files`.
     ///
     /// # Errors
     ///
@@ -94,7 +93,7 @@ impl MapWriter {
         Ok(writer)
     }
 
-    /// Compresses, side by side, and appends the next panels, in the order of the sweep.
+    /// Compresses the next panels in parallel and appends them, in the order of the sweep.
     ///
     /// # Errors
     ///
@@ -143,7 +142,7 @@ impl MapWriter {
         Ok(())
     }
 
-    /// Packs `panels` of a map with this `grid`, and tells how many bytes they take, but for headers.
+    /// Packs `panels` of a map with this `grid`, and returns how many bytes they take without headers.
     #[must_use]
     pub fn sample(grid: &Grid, channels: Channels, panels: &[Panel]) -> u64 {
         let layout = Layout::of(grid);
@@ -159,7 +158,7 @@ impl MapWriter {
         packed.sum()
     }
 
-    /// Writes the counts and the checksum into the header and gives the map its name. Returns the counts.
+    /// Writes counts and checksum into the header and gives the map its name. Returns the counts.
     ///
     /// # Errors
     ///
@@ -178,7 +177,7 @@ impl MapWriter {
             let attributes = &mut header.own_attributes.other;
             attributes.extend([attribute("counts", &text)]);
         }
-        // The counts were given their room at the start, so this has the length of what it replaces.
+        // `create` has reserved the room of the counts.
         let mut preamble =
             header::encode(&self.headers).map_err(Error::at(&self.path, Error::Encode))?;
         header::seal(&mut preamble);
@@ -218,7 +217,7 @@ impl MapWriter {
         Ok(())
     }
 
-    /// Counts the cells of panels, or, where a code has no name, none of them.
+    /// Adds the cells of panels to the counts, unless a code has no name.
     fn count(&mut self, first: usize, panels: &[Panel]) -> Result<(), Error> {
         let mut counts = self.counts.clone();
         for (index, panel) in (first..).zip(panels) {
@@ -248,7 +247,7 @@ impl MapWriter {
         Ok(())
     }
 
-    /// One block of one part of a panel, compressed and ready to be appended.
+    /// One compressed block of one part of a panel.
     fn chunk(
         &self,
         panel: usize,

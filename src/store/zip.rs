@@ -1,4 +1,4 @@
-//! Blocks as EXR's ZIP has them, packed straight from the samples of a panel.
+//! ZIP compression of EXR blocks, straight from the samples of a panel.
 //!
 //! OpenEXR (`ImfZip.cpp`): of all bytes of a block those at even places come first, then those at odd ones; each is replaced by its
 //! difference from the one before it, plus 128; and all that is deflated (zlib, RFC 1950). A block that does not get smaller
@@ -6,7 +6,7 @@
 
 use miniz_oxide::deflate::compress_to_vec_zlib;
 
-/// Of the levels of `miniz_oxide` the fastest, at nearly the same size: see `benches/NOTES.md`.
+/// The fastest level of `miniz_oxide`, at nearly the smallest size: see `benches/NOTES.md`.
 const LEVEL: u8 = 1;
 
 /// The block of these `lines` of samples, in the order of the file.

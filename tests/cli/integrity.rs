@@ -125,7 +125,7 @@ fn a_failed_extract_leaves_no_store() {
     let lost = "out/scene.zarr/force_un/c.0.1.2.0.0";
     fs::remove_file(place.path(lost)).unwrap();
     let run = place.run(&["extract", "out/scene.zarr", "-o", "x.zarr"]);
-    run.assert_said(2, "c.0.1.2.0.0 is not there");
+    run.assert_said(2, "c.0.1.2.0.0 is missing");
     assert!(!place.path("x.zarr").exists());
     assert!(!files(&place.path("")).keys().any(|path| is_hidden(path)));
     good(&place, "out", &["--resume"]);
@@ -178,7 +178,7 @@ fn sizes_that_a_store_claims_are_not_allocated() {
             &place,
             &["extract", "huge.zarr", "--channel=regime", "-o", output],
         );
-        run.assert_said(2, "is not there: the store is not complete");
+        run.assert_said(2, "is missing: the store is not complete");
     }
     let run = in_little_memory(&place, &["status", "huge.zarr"]);
     run.assert_said(1, "blocks are missing, 0 are damaged");

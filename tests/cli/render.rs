@@ -108,7 +108,7 @@ fn stores_and_parts_are_drawn_like_maps() {
         .run(&["render", "scene.zarr", "--at=friction=0", "--exact"])
         .assert_said(
             2,
-            "regime/c.0.0.0.0.0 is not there: the store is not complete",
+            "regime/c.0.0.0.0.0 is missing: the store is not complete",
         );
 }
 

@@ -230,7 +230,7 @@ fn an_interrupted_run_says_how_to_go_on() {
 fn a_store_is_not_continued_otherwise_than_it_was_begun() {
     let place = Place::with(SWEEP);
     good(&place, ".", &["--shard=0/8"]);
-    map(&place, ".", &[]).assert_refused(&["scene.zarr is there already", "--resume"]);
+    map(&place, ".", &[]).assert_refused(&["scene.zarr exists already", "--resume"]);
     map(&place, ".", &["--resume", "--channels=force_un"])
         .assert_refused(&["differs in `channels`: ", "regime, status, force_un here"]);
     map(&place, ".", &["--resume", "--tolerance=1e-3deg"])

@@ -1,15 +1,15 @@
-//! How a sweep is cut into blocks: a block of whiskers is one file of each array, and what a run finishes as a whole.
+//! The blocks of a sweep: the whiskers that share a file of each array, and that a run finishes together.
 
 use crate::scene::Grid;
 use std::ops::Range;
 
-/// Fewest and most cells of a block: what is lost with it takes seconds, and its panels 120 MB of memory.
+/// Fewest and most cells of a block: an interruption loses seconds of work, and the panels of a block take 120 MB of memory.
 const CELLS: [usize; 2] = [1 << 14, 1 << 21];
 
 /// Blocks of a sweep whose size lies between these limits; there is a file for each of them and each array.
 const WANTED: usize = 128;
 
-/// Most cells of a chunk, which is what is packed and read as a whole: 4 MB of a quantity.
+/// Most cells of a chunk, which is packed and read as a whole: 4 MB of a quantity.
 const CELLS_OF_A_CHUNK: usize = 1 << 20;
 
 /// The blocks of a sweep. They depend on its grid alone, so that any number of processes agree on them.
@@ -45,7 +45,7 @@ impl Blocks {
         }
     }
 
-    /// How many blocks there are.
+    /// Number of blocks.
     pub(super) fn count(&self) -> usize {
         self.blocks_per_axis().product()
     }
@@ -55,7 +55,7 @@ impl Blocks {
         axes.map(|(values, block)| values.div_ceil(*block))
     }
 
-    /// The place of a block on every axis of an array.
+    /// Indices of a block on the sweep axes of an array.
     pub(super) fn place(&self, block: usize) -> Vec<usize> {
         let mut rest = block;
         let on_axes = self.blocks_per_axis().map(|blocks| {
@@ -66,7 +66,7 @@ impl Blocks {
         on_axes.collect()
     }
 
-    /// The whiskers of a block, by their indices in the sweep.
+    /// Indices in the sweep of the whiskers of a block.
     pub(super) fn whiskers(&self, block: usize) -> Range<usize> {
         let (mut first, mut count, mut stride) = (0, 1, 1);
         for (axis, at) in self.place(block).into_iter().enumerate() {
@@ -78,7 +78,7 @@ impl Blocks {
         first..first + count
     }
 
-    /// The block of a whisker, and its place in the block.
+    /// The block of a whisker, and its index in the block.
     pub(super) fn find(&self, whisker: usize) -> (usize, usize) {
         let (mut rest, mut block, mut stride) = (whisker, 0, 1);
         let axes = self.axes.iter().zip(&self.shape);
@@ -90,7 +90,7 @@ impl Blocks {
         (block, whisker - self.whiskers(block).start)
     }
 
-    /// Where whisker `index` of `block` is among those that its files have room for, the last axis varying fastest.
+    /// The slot of whisker `index` of `block` in its files, which the last axis varies fastest.
     pub(super) fn slot(&self, block: usize, index: usize) -> usize {
         let mut rest = index;
         let at = self.place(block);
@@ -103,7 +103,7 @@ impl Blocks {
         slot
     }
 
-    /// Whiskers that the files of a block have room for.
+    /// Number of slots, each for one whisker, of a block's files.
     pub(super) fn slots(&self) -> usize {
         self.shape.iter().product()
     }

@@ -1,4 +1,4 @@
-//! What is there of a store, what is damaged, and its removal.
+//! Checks blocks and metadata of a store, and removes damaged blocks.
 
 use super::ZarrStore;
 use super::array::{NOT_COMPUTED, ZarrArray};
@@ -12,7 +12,7 @@ use std::fs;
 use std::io::{self, Read};
 use std::path::Path;
 
-/// How much of a block's files is checked.
+/// How thoroughly a block's files are checked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CheckDepth {
     /// Identity, length and index of each file.
@@ -26,13 +26,13 @@ pub enum CheckDepth {
 /// The state of a block on disk.
 #[derive(Debug)]
 pub enum BlockState {
-    /// A file is not there: the block has not been finished.
+    /// A file is missing: the block is not finished.
     Missing,
-    /// All files are there, and these are damaged.
+    /// All files exist, and these are damaged.
     Damaged(Vec<Error>),
     /// The file system refused to read these files: they may be whole.
     Unreadable(Vec<Error>),
-    /// All files are there, without a fault as far as they were checked.
+    /// All files exist, without a fault at this depth.
     Done,
 }
 
@@ -40,7 +40,7 @@ impl ZarrStore {
     /// Checks the files of a block.
     #[must_use]
     pub fn state(&self, block: usize, depth: CheckDepth) -> BlockState {
-        // The last file to be written is the first to be looked for.
+        // The file that is written last is looked for first.
         for array in self.arrays.iter().rev() {
             let file = self.file(array, block);
             match file.try_exists() {
@@ -72,7 +72,7 @@ impl ZarrStore {
         }
     }
 
-    /// Compares identity, length and index of a file with what they must be.
+    /// Checks identity, length and index of a file.
     fn check_structure(&self, array: &ZarrArray, file: &Path) -> Result<(), Error> {
         let mut opened = open_regular(file)?;
         let fault = self.expected(array, file).structure_fault(&mut opened);
@@ -113,8 +113,7 @@ impl ZarrStore {
         })
     }
 
-    /// The metadata and coordinates that are missing or damaged: files that [`ZarrStore::begin`] and
-    /// [`ZarrStore::restore_metadata`] write again.
+    /// Missing and damaged metadata and coordinates, which [`ZarrStore::begin`] and [`ZarrStore::restore_metadata`] write again.
     ///
     /// # Errors
     ///
@@ -130,12 +129,12 @@ impl ZarrStore {
         Ok(faults.collect())
     }
 
-    /// Removes the files of a block if it is still damaged, so that the next run with `--resume` computes it again. Returns
-    /// true if it was.
+    /// Removes the files of a block if it is still damaged, so that a run with `--resume` computes it again. Returns true if it
+    /// was damaged.
     ///
     /// # Errors
     ///
-    /// A file cannot be removed, or all blocks are of another store: then the root is wrong, not the blocks.
+    /// A file cannot be removed, or all blocks belong to another store: then the root is wrong, not the blocks.
     pub fn remove_damaged(&self, block: usize) -> Result<bool, Error> {
         if self.owner() == Owner::Other {
             return Err(Error::OtherBlocks(self.path.clone()));
@@ -145,7 +144,7 @@ impl ZarrStore {
         if !matches!(state, BlockState::Damaged(_)) {
             return Ok(false);
         }
-        // Without the last file the block is not there, whatever becomes of the others.
+        // Without the last file the block counts as missing, whether or not the others are removed.
         for array in self.arrays.iter().rev() {
             let file = self.file(array, block);
             let folder = self.path.join(&array.name);
@@ -179,25 +178,25 @@ impl ZarrStore {
     }
 }
 
-/// The first bytes of a block's file, if it has so many.
+/// The identity at the beginning of a block's file, if it is long enough.
 fn identity_in(file: &Path) -> Option<FileIdentity> {
     let mut identity = FileIdentity::default();
     let read = open_regular(file).ok()?.read_exact(&mut identity);
     read.ok().map(|()| identity)
 }
 
-/// Whose blocks are in a folder.
+/// The store to which the blocks in a folder belong.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Owner {
     /// There are no blocks.
     Nobody,
-    /// A block of this store is there.
+    /// At least one block belongs to this store.
     This,
-    /// There are blocks, and none is of this store.
+    /// There are blocks, and none belongs to this store.
     Other,
 }
 
-/// The fault of a file of metadata that must have these `bytes`. A longer file is not read to its end.
+/// The fault of a metadata file that must have these `bytes`. A longer file is not read to its end.
 pub(super) fn metadata_fault(path: &Path, bytes: &[u8]) -> Option<Error> {
     let mut found = Vec::new();
     let read = open_regular(path).and_then(|file| {

@@ -1,4 +1,4 @@
-//! The files of a store other than its blocks: metadata and coordinates, all of which follow from the scene.
+//! The metadata and coordinates of a store, which follow from the scene and the settings.
 
 use super::array::ZarrArray;
 use super::check::{Owner, metadata_fault};
@@ -13,7 +13,7 @@ use std::fs;
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 
-/// The most bytes of a file of metadata: a scene of 1 MiB with its radii, in JSON, needs less.
+/// Most bytes of a metadata file: a scene of 1 MiB with its radii, in JSON, needs less.
 const MOST_METADATA: u64 = 16 << 20;
 
 impl ZarrStore {
@@ -24,7 +24,7 @@ impl ZarrStore {
     ///
     /// # Errors
     ///
-    /// The store that is there was created with other settings, or must not be there, or one of its folders cannot be written.
+    /// The existing store was created with other settings or must not exist, or one of its folders cannot be written.
     pub fn begin(&self, temporary: &TemporaryFiles) -> Result<Vec<PathBuf>, Error> {
         let made = check_links(&self.path).and_then(|()| fs::create_dir_all(&self.path));
         made.map_err(Error::at(&self.path, Error::Write))?;
@@ -49,7 +49,7 @@ impl ZarrStore {
         Ok(restored)
     }
 
-    /// Writes the metadata and coordinates again that are missing or damaged. Returns the damaged files.
+    /// Writes missing and damaged metadata and coordinates again. Returns the damaged files.
     ///
     /// # Errors
     ///
@@ -71,7 +71,7 @@ impl ZarrStore {
         failures.into_iter().next().map_or(Ok(damaged), Err)
     }
 
-    /// Every file of metadata and coordinates, with the bytes that it must have; the root's is the last.
+    /// Every file of metadata and coordinates with its bytes; the root's is the last.
     pub(super) fn metadata_files(&self) -> Vec<(PathBuf, Vec<u8>)> {
         let mut files = Vec::new();
         for (array, values) in metadata::coordinates(&self.scene.grid) {
@@ -94,7 +94,7 @@ impl ZarrStore {
         json(&metadata::group(&self.attributes, axes.chain(&self.arrays)))
     }
 
-    /// Compares the store with what is at its path. Damaged metadata are no obstacle where the blocks are of this store.
+    /// Checks that the store at the path, if any, has these settings. Its metadata may be damaged if its blocks belong to this store.
     pub(super) fn agree(&self) -> Result<(), Error> {
         match Self::open(&self.path) {
             Ok(_) if !self.may_exist => Err(Error::Exists(self.path.clone())),
@@ -151,7 +151,7 @@ impl ZarrStore {
         })
     }
 
-    /// Finds out whether the store is still at its path, with the identity that it was begun with.
+    /// Checks that the store at its path still has this identity.
     pub(super) fn check_place(&self) -> Result<(), Error> {
         let found = attributes(&self.path);
         let is_same =
@@ -164,7 +164,7 @@ impl ZarrStore {
     }
 }
 
-/// The attributes of the store at `path`, as its root has them.
+/// Reads the attributes of the store at `path` from its root.
 pub(super) fn attributes(path: &Path) -> Result<Map<String, Value>, Error> {
     let file = path.join(METADATA);
     let foreign = |why: &dyn std::fmt::Display| Error::NotAStore(path.to_owned(), why.to_string());
@@ -185,14 +185,14 @@ pub(super) fn attributes(path: &Path) -> Result<Map<String, Value>, Error> {
     }
 }
 
-/// Whether a folder is missing, or has no files but temporary ones.
+/// Returns true if a folder is missing or has only temporary files.
 fn is_empty(folder: &Path) -> bool {
     let names = fs::read_dir(folder).into_iter().flatten().flatten();
     let mut names = names.map(|entry| entry.file_name());
     names.all(|name| name.to_str().and_then(host_of).is_some())
 }
 
-/// Writes a file of metadata again. Returns true if it was there.
+/// Writes a metadata file again. Returns true if it existed.
 fn restore(path: &Path, bytes: &[u8], temporary: &TemporaryFiles) -> Result<bool, Error> {
     let was_there = path.exists();
     let folder = path.parent().map_or(Ok(()), fs::create_dir_all);
@@ -205,8 +205,8 @@ fn json(value: &Value) -> Vec<u8> {
     value.to_string().into_bytes()
 }
 
-/// Writes a file as a whole, piece by piece, into a folder that is there. It is on the disk before this returns: after a crash,
-/// what is there counts as done.
+/// Writes a file as a whole, piece by piece, into an existing folder. It is on the disk before this returns, because a run that
+/// resumes after a crash takes existing files for finished ones.
 pub(super) fn write(
     path: &Path,
     pieces: &[impl AsRef<[u8]>],

@@ -1,4 +1,4 @@
-//! The identity of a store: a hash of everything that its bytes depend on, and of each file of its blocks.
+//! Identities of a store and of the files of its blocks: hashes of everything that their bytes depend on.
 
 use crate::store::attributes::sorted;
 use serde_json::{Map, Value};

@@ -1,4 +1,4 @@
-//! What a store says of itself: its arrays, and the attributes of the whole.
+//! The arrays and attributes of a store.
 
 use super::array::{NOT_COMPUTED, ValueKind, ZarrArray, about};
 use super::blocks::Blocks;
@@ -8,13 +8,13 @@ use crate::scene::{Grid, SceneData};
 use crate::store::{Channels, Description};
 use serde_json::{Map, Value, json};
 
-/// The number of cells of each regime, whisker by whisker.
+/// Array with the number of cells of each regime: `[sweep axes.., regime]`.
 pub(super) const CELLS: &str = "regime_cells";
 
-/// The codes of the regimes, along the last axis of [`CELLS`].
+/// Coordinate with the codes of the regimes, the last axis of [`CELLS`].
 const CODES: &str = "regime_code";
 
-/// Units and meaning of every channel.
+/// Name, unit and meaning of every channel.
 const MEANINGS: [(&str, Option<&str>, &str); 14] = [
     ("regime", None, "what becomes of the whisker"),
     ("status", None, "how that was settled"),
@@ -72,7 +72,7 @@ const MEANINGS: [(&str, Option<&str>, &str); 14] = [
     ),
 ];
 
-/// The arrays that are filled block by block. The regime, without which a block is not there, is the last.
+/// The arrays that are filled block by block. The regimes, which mark a block as finished, are the last.
 pub(super) fn arrays(grid: &Grid, blocks: &Blocks, channels: Channels) -> Vec<ZarrArray> {
     let sweep = grid.sweep.iter().map(|axis| axis.parameter.axis());
     let sweep: Vec<&str> = sweep.collect();
@@ -100,7 +100,7 @@ pub(super) fn arrays(grid: &Grid, blocks: &Blocks, channels: Channels) -> Vec<Za
     arrays
 }
 
-/// The attributes of a channel; codes are flags in the sense of the CF conventions.
+/// The attributes of a channel; codes are flags of the CF conventions.
 fn of_channel(name: &str) -> Map<String, Value> {
     let meaning = MEANINGS.iter().find(|(own, ..)| *own == name);
     let (_, units, long_name) = *meaning.unwrap_or(&("", None, ""));
@@ -169,7 +169,7 @@ pub(super) fn coordinates(grid: &Grid) -> Vec<(ZarrArray, Vec<u8>)> {
     all
 }
 
-/// The attributes of a store, which are the same on every machine of its arithmetic.
+/// The attributes of a store, equal on all machines of one arithmetic class.
 pub(super) fn attributes(about: &Description<'_>, scene: &SceneData) -> Map<String, Value> {
     let agreed = [
         ("whiskmap_version", json!(env!("CARGO_PKG_VERSION"))),
@@ -183,7 +183,7 @@ pub(super) fn attributes(about: &Description<'_>, scene: &SceneData) -> Map<Stri
     completed(&Map::from_iter(agreed), &scene.title)
 }
 
-/// The attributes of a store with this `title`, which `found` has as far as they are [`AGREED`] on.
+/// The attributes of a store: those of `found` in [`AGREED`], the `title`, and those that follow.
 pub(super) fn completed(found: &Map<String, Value>, title: &str) -> Map<String, Value> {
     let agreed = AGREED.iter().filter_map(|name| {
         let value = found.get(*name)?;
@@ -197,10 +197,10 @@ pub(super) fn completed(found: &Map<String, Value>, title: &str) -> Map<String, 
     attributes
 }
 
-/// The attribute that has the identity of the store.
+/// Attribute with the identity of the store.
 pub(super) const IDENTITY: &str = "identity";
 
-/// The metadata of the whole, those of the arrays among them.
+/// The root's metadata, with those of all arrays.
 pub(super) fn group<'a>(
     attributes: &Map<String, Value>,
     arrays: impl Iterator<Item = &'a ZarrArray>,

@@ -1,11 +1,11 @@
-//! The Zarr store: a folder that any number of processes fill, block by block.
+//! The Zarr store: a folder that several processes fill, block by block.
 //!
-//! A block is some whiskers of the sweep: one file of each array, whole or not there. Which blocks there are depends on
-//! the grid alone, and what is in a block on the scene alone, so it does not matter who computes it, when, or how often.
+//! A block is some whiskers of the sweep, and one file of each array. The blocks depend on the grid alone, and their bytes on the
+//! scene and settings, so any process may compute any block, once or again.
 //!
-//! Every file of a block begins with the identity of the store, so that no block of other settings is taken for one of this store.
+//! Every file of a block begins with a hash of the store's identity, so that no reader accepts a block of other settings.
 //!
-//! Invariant: what has been computed is stored, fill values too, and the file of the regimes comes last.
+//! Invariant: a computed block is stored with its fill values, and its file of the regimes is written last.
 
 mod array;
 mod blocks;
@@ -31,13 +31,13 @@ use serde_json::{Map, Value};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-/// A store on disk.
+/// A Zarr store on disk.
 #[derive(Debug)]
 pub struct ZarrStore {
     path: PathBuf,
     attributes: Map<String, Value>,
     identity: Identity,
-    /// Whether the store may be there when it is begun.
+    /// Whether the store may exist when it is begun.
     may_exist: bool,
     scene: Scene,
     channels: Channels,
@@ -45,16 +45,16 @@ pub struct ZarrStore {
     arrays: Vec<ZarrArray>,
 }
 
-/// The name of every file of metadata.
+/// Name of a metadata file.
 const METADATA: &str = "zarr.json";
 
 impl ZarrStore {
-    /// The store at `path`, there already if it `may_exist`, or yet to [begin](Self::begin). The regimes are always stored.
+    /// The store at `path`, which [`begin`](Self::begin) creates; it exists already only if it `may_exist`. Regimes are always stored.
     ///
     /// # Errors
     ///
-    /// The store was begun with another scene, version, engine, accuracy or choice of channels, or it is there although it
-    /// must not be.
+    /// The store was created with another scene, version, engine, accuracy or choice of channels, or it exists although it must
+    /// not.
     pub fn join(
         path: &Path,
         scene: &Scene,
@@ -74,7 +74,7 @@ impl ZarrStore {
         Ok(own)
     }
 
-    /// Whether there is a store, of this program or another one, at `path`.
+    /// Returns true if there is a Zarr store at `path`, of this program or another one.
     #[must_use]
     pub fn is_at(path: &Path) -> bool {
         path.join(METADATA).exists()
@@ -84,7 +84,7 @@ impl ZarrStore {
     ///
     /// # Errors
     ///
-    /// There is none, it is not one of this program, or what it says of itself is damaged.
+    /// There is no store, another program wrote it, or its metadata are damaged.
     pub fn open(path: &Path) -> Result<Self, Error> {
         let attributes = files::attributes(path)?;
         let foreign =
@@ -126,7 +126,7 @@ impl ZarrStore {
         }
     }
 
-    /// One line for people.
+    /// Title of the scene, one line.
     #[must_use]
     pub fn title(&self) -> &str {
         &self.scene.title
@@ -138,13 +138,13 @@ impl ZarrStore {
         &self.scene.grid
     }
 
-    /// What is stored of each cell.
+    /// The channels that are stored.
     #[must_use]
     pub fn channels(&self) -> Channels {
         self.channels
     }
 
-    /// What the store says of the whole, such as `scene` or `tolerances`.
+    /// The attribute `name`, such as `scene` or `tolerances`.
     ///
     /// # Errors
     ///
@@ -156,19 +156,19 @@ impl ZarrStore {
         })
     }
 
-    /// How many blocks the store of a sweep over `grid` has.
+    /// Number of blocks of a store of a sweep over `grid`.
     #[must_use]
     pub fn blocks(grid: &Grid) -> usize {
         Blocks::of(grid).count()
     }
 
-    /// How many blocks there are, done or not.
+    /// Number of blocks, done or not.
     #[must_use]
     pub fn block_count(&self) -> usize {
         self.blocks.count()
     }
 
-    /// The whiskers of a block, by their indices in the sweep.
+    /// Indices in the sweep of the whiskers of a block.
     #[must_use]
     pub fn whiskers(&self, block: usize) -> Range<usize> {
         self.blocks.whiskers(block)

@@ -11,7 +11,7 @@ use serde_json::Map;
 use std::borrow::Cow;
 use std::path::Path;
 
-/// A panel on its way to a store: its chunks, array by array.
+/// A packed panel: the chunks of each array.
 #[derive(Debug)]
 pub struct PackedPanel(Vec<Vec<Vec<u8>>>);
 
@@ -66,7 +66,7 @@ impl ZarrStore {
     }
 }
 
-/// What a panel holds for an array, as bytes.
+/// The values of a panel for the array `name`, as bytes.
 fn values<'a>(name: &str, panel: &'a Panel) -> Cow<'a, [u8]> {
     let codes = |codes: &[u32]| codes.iter().map(|code| *code as u8).collect();
     let state = STATE_CHANNELS.iter().position(|own| *own == name);

@@ -1,4 +1,4 @@
-//! What is in the files of a block.
+//! Reads the files of a block.
 
 use super::ZarrStore;
 use super::array::{ValueKind, ZarrArray};
@@ -11,11 +11,11 @@ use std::io::{self, Cursor, Read};
 use std::path::Path;
 
 impl ZarrStore {
-    /// How many cells of a block there are of each regime.
+    /// Number of cells of each regime in a block.
     ///
     /// # Errors
     ///
-    /// The block is not there, or damaged.
+    /// The block is missing or damaged.
     pub fn regimes(&self, block: usize) -> Result<[u64; Regime::ALL.len()], Error> {
         let mut regimes = [0; Regime::ALL.len()];
         for array in self.arrays.iter().filter(|array| array.name == CELLS) {
@@ -69,7 +69,7 @@ impl ZarrStore {
         values.map_err(Error::at(&path, Error::Damaged))
     }
 
-    /// A block's file whose structure and checksums have no fault.
+    /// Reads a block's file and checks its structure and checksums.
     pub(super) fn read_file(
         &self,
         array: &ZarrArray,
@@ -88,7 +88,7 @@ impl ZarrStore {
         }
     }
 
-    /// What the file `path` of an array must be.
+    /// The identity and sizes that the file `path` of an array must have.
     pub(super) fn expected(&self, array: &ZarrArray, path: &Path) -> ExpectedFile {
         let name = path.file_name().unwrap_or_default().to_string_lossy();
         ExpectedFile {
@@ -99,7 +99,7 @@ impl ZarrStore {
     }
 }
 
-/// Opens a regular file; another, such as a pipe, might never open.
+/// Opens a regular file: another one, such as a pipe, might never open.
 pub(super) fn open_regular(path: &Path) -> Result<File, Error> {
     let failed = |why: io::Error| match why.kind() {
         io::ErrorKind::NotFound => Error::NotComputed(path.to_owned()),

@@ -1,7 +1,7 @@
-//! A block's file, a shard in the sense of Zarr: identity, chunks without gaps, index, checksum of the index.
+//! A block's file, a shard of Zarr: identity, chunks without gaps, index, checksum of the index.
 //!
-//! The index has the position and the size of each chunk, as pairs of little-endian `u64`. Readers find chunks by the
-//! index alone, so that none of them needs to know of the identity.
+//! The index has the position and the size of each chunk, as pairs of little-endian `u64`. Zarr readers find chunks by the index
+//! and ignore the identity.
 
 use super::blosc;
 use super::identity::FileIdentity;
@@ -43,7 +43,7 @@ pub(super) fn assemble<'a>(
         .collect()
 }
 
-/// What a file of a block must be.
+/// Identity and sizes that a file of a block must have.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ExpectedFile {
     pub(super) identity: FileIdentity,
@@ -64,7 +64,7 @@ impl ExpectedFile {
         self.chunks * ENTRY + CHECKSUM
     }
 
-    /// Compares identity, length and index of a file with what they must be. Chunks are not read.
+    /// The fault of identity, length or index of a file. Chunks are not read.
     pub(super) fn structure_fault(
         &self,
         file: &mut (impl Read + Seek),
@@ -132,7 +132,7 @@ impl ExpectedFile {
     }
 }
 
-/// Whether the last bytes are the checksum of those before.
+/// Returns true if the last bytes are the checksum of the bytes before them.
 fn has_checksum(bytes: &[u8]) -> bool {
     bytes
         .split_last_chunk::<CHECKSUM>()
