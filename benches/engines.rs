@@ -25,7 +25,9 @@ use whiskmap::scene::Scene;
 use whiskmap::sheet::Sheet;
 use whiskmap::shooting::batch::{Batch, InitialCondition, Method};
 use whiskmap::shooting::{FirstVariation, Resolution, SecondVariation, ShootingMap};
-use whiskmap::store::{Audit, Description, EngineCells, Error, MapWriter, Panel, TemporaryFiles};
+use whiskmap::store::{
+    Audit, EngineCells, MapDescription, MapWriter, Panel, StoreError, TemporaryFiles,
+};
 
 const TRAJECTORIES: usize = 16_384;
 
@@ -138,14 +140,14 @@ fn files(criterion: &mut Criterion) {
     });
     let panel = kept.expect("the scene has a panel");
     let folder = tempfile::tempdir().expect("there is a folder for temporary files");
-    let about = Description {
+    let about = MapDescription {
         scene: &scene,
         engine: &whiskmap::engine::EngineDescription::of(None),
         tolerances: &serde_json::json!({}),
         channels: whiskmap::map::Channels::ALL,
         arithmetic: "fma",
     };
-    let write = |path: &Path| -> Result<(), Error> {
+    let write = |path: &Path| -> Result<(), StoreError> {
         let mut writer = MapWriter::create(path, &about, &TemporaryFiles::default())?;
         writer.write_panels(std::slice::from_ref(&panel))?;
         writer.finish(EngineCells::default(), Audit::default())?;

@@ -33,7 +33,7 @@ pub enum Failure {
     #[error(transparent)]
     Engine(#[from] EngineError),
     #[error(transparent)]
-    Store(#[from] store::Error),
+    Store(#[from] store::StoreError),
     #[error(transparent)]
     Render(#[from] RenderError),
     #[error(transparent)]
@@ -75,7 +75,7 @@ impl Failure {
         let is_input = match self {
             Self::Scene(_) | Self::Points(_) | Self::Plan(_) | Self::Input(_) => true,
             Self::Fit(error) => !matches!(error, fit::Error::NotConverged(_)),
-            Self::Store(store::Error::Encode(..))
+            Self::Store(store::StoreError::Encode(..))
             | Self::Render(
                 RenderError::Scale { .. } | RenderError::Codes(_) | RenderError::TooManyAxes(_),
             ) => true,

@@ -22,7 +22,7 @@ use whiskmap::refine::{GOAL, TOLERANCE};
 use whiskmap::render;
 use whiskmap::render::MapOptions;
 use whiskmap::scene::Scene;
-use whiskmap::store::{Description, MapWriter, StoredMap};
+use whiskmap::store::{MapDescription, MapWriter, StoredMap};
 
 #[derive(Debug, Args)]
 #[command(after_help = "\
@@ -87,7 +87,7 @@ pub fn run(args: &MapArgs, files: &mut Files) -> Result<(), Failure> {
     plan.channels = channels.with_marks(scene.has_friction());
     let mut engine = args.engine.open(&scene, &plan, left_deg)?;
     let solver = EngineDescription::of(engine.0.as_deref());
-    let about = Description {
+    let about = MapDescription {
         scene: &scene,
         engine: &solver,
         tolerances: &tolerances(&scene, accuracy, engine.0.as_deref()),

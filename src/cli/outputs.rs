@@ -7,7 +7,7 @@ use serde::Serialize;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use whiskmap::render::{Chart, Picture, PictureFormat, Plot};
-use whiskmap::store::{Output, Table, TemporaryFiles};
+use whiskmap::store::{Output, TableFile, TemporaryFiles};
 
 #[derive(Debug, Args)]
 pub struct OutputArgs {
@@ -21,7 +21,7 @@ pub struct OutputArgs {
 
 /// Open table and plot of a run.
 pub struct OpenOutputs {
-    table: Option<(Table, PathBuf)>,
+    table: Option<(TableFile, PathBuf)>,
     is_regular: bool,
     plot: Option<PlotFile>,
 }
@@ -38,7 +38,7 @@ impl OutputArgs {
         let (table, plot) = open(files, "--csv", csv.as_deref(), self.plot.as_deref())?;
         Ok(OpenOutputs {
             is_regular: table.as_ref().is_some_and(Output::is_regular),
-            table: table.map(Table::new).zip(csv),
+            table: table.map(TableFile::new).zip(csv),
             plot,
         })
     }

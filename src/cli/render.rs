@@ -10,7 +10,7 @@ use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use whiskmap::input::Quantity;
 use whiskmap::render::{self, MapOptions, PictureFormat};
-use whiskmap::store::Slice;
+use whiskmap::store::MapSlice;
 
 #[derive(Debug, Args)]
 #[command(after_help = "\
@@ -103,7 +103,7 @@ pub fn run(args: &RenderArgs, files: &mut Files) -> Result<(), Failure> {
 /// Opens the output, and returns its path and format; `None` is standard output.
 fn target(
     args: &RenderArgs,
-    map: &Slice,
+    map: &MapSlice,
     files: &mut Files,
 ) -> Result<Option<(PathBuf, PictureFormat)>, Failure> {
     let path = args.output.clone().unwrap_or_else(|| {

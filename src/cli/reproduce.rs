@@ -11,7 +11,7 @@ use whiskmap::measured::{Angle, Point};
 use whiskmap::paper::{self, FIG4_WHISKER, FIG5_LEFT, FIG5_RIGHT, Measurements, POLE};
 use whiskmap::render::PictureFormat;
 use whiskmap::scene::Whisker;
-use whiskmap::store::{Output, Table};
+use whiskmap::store::{Output, TableFile};
 
 #[derive(Debug, Args)]
 #[command(after_help = "\
@@ -96,7 +96,7 @@ pub fn run(args: &ReproduceArgs, files: &mut Files) -> Result<(), Failure> {
         for (name, write) in &figure.tables {
             let path = table(name);
             let output = Output::create(&path, files.temporary());
-            let written = output.map(Table::new).and_then(|mut table| {
+            let written = output.map(TableFile::new).and_then(|mut table| {
                 write(&mut table)?;
                 table.finish()
             });

@@ -8,13 +8,13 @@ use std::str::FromStr;
 use whiskmap::input::did_you_mean;
 use whiskmap::map::Channels;
 use whiskmap::scene::digits;
-use whiskmap::store::{At, Slice, Stored};
+use whiskmap::store::{AxisValue, MapSlice, MapSource};
 
 #[derive(Debug, Args)]
 pub struct SelectionArgs {
     /// Select the nearest value on an axis; the value may have a unit, such as distance_mm=1.5cm
-    #[arg(long, value_name = "AXIS=VALUE", value_parser = At::from_str, allow_hyphen_values = true)]
-    at: Vec<At>,
+    #[arg(long, value_name = "AXIS=VALUE", value_parser = AxisValue::from_str, allow_hyphen_values = true)]
+    at: Vec<AxisValue>,
     /// Accept only values on the axis in --at, not the nearest
     #[arg(long)]
     exact: bool,
@@ -22,8 +22,8 @@ pub struct SelectionArgs {
 
 impl SelectionArgs {
     /// Opens the selected part of the input `source`, and prints the selected values.
-    pub fn open(&self, files: &mut Files, source: &Path) -> Result<Slice, Failure> {
-        let stored = Stored::open(source)?;
+    pub fn open(&self, files: &mut Files, source: &Path) -> Result<MapSlice, Failure> {
+        let stored = MapSource::open(source)?;
         files.input(source);
         if let Some(version) = stored.foreign_version()? {
             message(&format!(
@@ -32,7 +32,7 @@ impl SelectionArgs {
                 env!("CARGO_PKG_VERSION")
             ));
         }
-        let slice = Slice::new(stored, &self.at, self.exact);
+        let slice = MapSlice::new(stored, &self.at, self.exact);
         let slice = slice.map_err(|why| Failure::Input(format!("--at {why}")))?;
         for (name, value) in slice.chosen() {
             message(&format!("{name} = {}", digits(*value)));
@@ -44,7 +44,7 @@ impl SelectionArgs {
 /// Returns `channels` of the slice of `source`, with friction also `status`; warns if the slice has no `status`.
 pub fn with_marks(
     source: &Path,
-    slice: &Slice,
+    slice: &MapSlice,
     channels: &[&'static str],
 ) -> Result<Vec<&'static str>, Failure> {
     let chosen = Channels::those(|name| channels.contains(&name));
@@ -62,7 +62,7 @@ pub fn with_marks(
 }
 
 /// Returns the `wanted` channels, or all if there are none.
-pub fn channels(slice: &Slice, wanted: &[String]) -> Result<Vec<&'static str>, Failure> {
+pub fn channels(slice: &MapSlice, wanted: &[String]) -> Result<Vec<&'static str>, Failure> {
     let known = slice.channels();
     if let Some(name) = wanted.iter().find(|name| !known.contains(&name.as_str())) {
         let hint = did_you_mean(name, known.iter().copied());

@@ -13,7 +13,7 @@ use std::time::Instant;
 use whiskmap::map::Panel;
 use whiskmap::plan::Plan;
 use whiskmap::scene::Scene;
-use whiskmap::store::{BlockState, CheckDepth, Description, PackedPanel, ZarrStore};
+use whiskmap::store::{BlockState, CheckDepth, MapDescription, PackedPanel, ZarrStore};
 
 /// Blocks of one of `count` processes: every `count`-th block.
 #[derive(Clone, Copy, Debug)]
@@ -49,7 +49,7 @@ pub fn fill(
     files: &mut Files,
     scene: &Scene,
     mut plan: Plan,
-    about: &Description<'_>,
+    about: &MapDescription<'_>,
     (engine, why): &mut OpenEngine,
 ) -> Result<(), Failure> {
     let path = &args.output.join(format!("{}.zarr", scene.name));

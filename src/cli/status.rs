@@ -7,7 +7,7 @@ use std::io::Write;
 use std::ops::Range;
 use std::path::PathBuf;
 use whiskmap::classify::Regime;
-use whiskmap::store::{BlockState, CheckDepth, Error, TemporaryFiles, ZarrStore};
+use whiskmap::store::{BlockState, CheckDepth, StoreError, TemporaryFiles, ZarrStore};
 
 #[derive(Debug, Args)]
 #[command(after_help = "\
@@ -35,7 +35,7 @@ struct StoreBlocks {
     done: usize,
     missing: Vec<Range<usize>>,
     damaged: Vec<usize>,
-    faults: Vec<Error>,
+    faults: Vec<StoreError>,
     regimes: [u64; Regime::ALL.len()],
 }
 
@@ -93,7 +93,7 @@ pub fn run(args: &StatusArgs, temporary: &TemporaryFiles) -> Result<(), Failure>
     };
     let metadata = match store.metadata_faults() {
         // Without --verify, a store of another version is not a failure.
-        Err(Error::OtherVersion(..)) if !is_thorough => Vec::new(),
+        Err(StoreError::OtherVersion(..)) if !is_thorough => Vec::new(),
         faults => faults?,
     };
     let found = StoreBlocks::in_store(&store, depth);

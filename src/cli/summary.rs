@@ -10,7 +10,7 @@ use whiskmap::engine::Engine;
 use whiskmap::map::{self, Panel, Stage, Summary};
 use whiskmap::plan::Plan;
 use whiskmap::scene::Scene;
-use whiskmap::store::Error;
+use whiskmap::store::StoreError;
 
 /// Computes `cells` of `plan` with a progress bar, and passes panels to `keep`; warns if the engine fails.
 pub fn compute(

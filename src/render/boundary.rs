@@ -1,7 +1,7 @@
 //! The detachment boundary of a stored map, from the margins of the cells next to it.
 
 use crate::scene::Grid;
-use crate::store::Samples;
+use crate::store::ChannelValues;
 use whiskmap_plot::CellAxis;
 
 /// Boundaries of neighbouring rows are not connected if they lie farther apart than this fraction of the axis.
@@ -9,7 +9,7 @@ const JUMP: f64 = 0.25;
 
 /// The boundary on both sides of the whisker, inside the axis: lines through points `[push angle (deg), distance (mm)]`. In each row
 /// and side, the whisker detaches at the push angle of the cell with the smallest margin, plus that margin away from 0.
-pub fn stretches(grid: &Grid, margin_deg: &Samples) -> Vec<Vec<[f64; 2]>> {
+pub fn stretches(grid: &Grid, margin_deg: &ChannelValues) -> Vec<Vec<[f64; 2]>> {
     let [low, high] = CellAxis::new("", &grid.push_angle_deg).range();
     let mut stretches: Vec<Vec<[f64; 2]>> = Vec::new();
     for side in [-1.0, 1.0] {
@@ -33,7 +33,7 @@ pub fn stretches(grid: &Grid, margin_deg: &Samples) -> Vec<Vec<[f64; 2]>> {
 }
 
 /// The push angle in degrees at which the whisker detaches in a row, CF for `side` -1 and CB for 1.
-fn detachment(grid: &Grid, margin_deg: &Samples, row: usize, side: f64) -> Option<f64> {
+fn detachment(grid: &Grid, margin_deg: &ChannelValues, row: usize, side: f64) -> Option<f64> {
     let angles = &grid.push_angle_deg;
     let cells = angles.iter().enumerate().filter_map(|(column, angle)| {
         let margin = margin_deg.value(row * angles.len() + column);

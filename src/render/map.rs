@@ -4,7 +4,7 @@ use super::RenderError;
 use super::boundary::stretches;
 use crate::classify::{Regime, Status};
 use crate::scene::SweepAxis;
-use crate::store::{STATE_CHANNELS, Samples, Slice};
+use crate::store::{ChannelValues, MapSlice, STATE_CHANNELS};
 use std::collections::BTreeMap;
 use whiskmap_plot::{
     CellAxis, ColourScale, Fill, HeatMap, LegendEntry, PanelAxis, PanelCells, Picture, Rgb,
@@ -32,7 +32,7 @@ pub struct MapOptions<'a> {
 ///
 /// The map has more than two sweep axes, it lacks the channel, the channel cannot have the requested colour scale, or the map is
 /// damaged.
-pub fn map(map: &Slice, options: &MapOptions<'_>) -> Result<Picture, RenderError> {
+pub fn map(map: &MapSlice, options: &MapOptions<'_>) -> Result<Picture, RenderError> {
     let grid = map.grid();
     if grid.sweep.len() > 2 {
         let axes = grid.sweep.iter().map(|axis| axis.parameter.axis());
@@ -60,7 +60,7 @@ pub fn map(map: &Slice, options: &MapOptions<'_>) -> Result<Picture, RenderError
             values: map.read_panel(channel, index)?.values().collect(),
             ..PanelCells::default()
         };
-        if has_marks && let Samples::U32(codes) = map.read_panel("status", index)? {
+        if has_marks && let ChannelValues::U32(codes) = map.read_panel("status", index)? {
             cells.hatched = codes.into_iter().map(is_mark).collect();
         }
         if has_boundary {
@@ -83,7 +83,7 @@ fn panel_axis(axis: &SweepAxis) -> PanelAxis {
 
 /// The fills of a channel of codes, and the legend of the codes that occur.
 fn codes(
-    map: &Slice,
+    map: &MapSlice,
     channel: &str,
     names: BTreeMap<u32, String>,
     options: &MapOptions<'_>,
@@ -108,7 +108,7 @@ fn codes(
 }
 
 /// Whether any panel shows a stretch of the detachment boundary.
-fn has_boundary(map: &Slice) -> Result<bool, RenderError> {
+fn has_boundary(map: &MapSlice) -> Result<bool, RenderError> {
     if !map.channels().contains(&"margin_deg") {
         return Ok(false);
     }
@@ -137,7 +137,7 @@ fn regime_fill(code: u32) -> Fill {
 
 /// The colour scale of a channel of quantities, common to all panels, and its legend.
 fn quantities(
-    map: &Slice,
+    map: &MapSlice,
     channel: &str,
     options: &MapOptions<'_>,
 ) -> Result<(Shading, Vec<LegendEntry>), RenderError> {
@@ -145,7 +145,7 @@ fn quantities(
     let mut whole = false;
     for index in 0..map.layout().panels() {
         let samples = map.read_panel(channel, index)?;
-        whole = matches!(samples, Samples::U32(_));
+        whole = matches!(samples, ChannelValues::U32(_));
         summary.extend(samples.values());
     }
     let scale = ScaleOptions {
@@ -167,7 +167,7 @@ fn quantities(
 }
 
 /// Whether the states in `channel` include some whose friction is not the assumed one.
-fn has_marks(map: &Slice, channel: &str) -> Result<bool, RenderError> {
+fn has_marks(map: &MapSlice, channel: &str) -> Result<bool, RenderError> {
     let is_marked = STATE_CHANNELS.contains(&channel) && map.channels().contains(&"status");
     Ok(is_marked && map.codes("status")?.into_iter().any(is_mark))
 }

@@ -25,7 +25,7 @@ use whiskmap_plot::ScaleError;
 pub enum RenderError {
     /// The map lacks what is to be drawn, or it is damaged.
     #[error(transparent)]
-    Store(#[from] store::Error),
+    Store(#[from] store::StoreError),
     /// The channel cannot have the requested colour scale.
     #[error("colour scale of `{channel}`: {cause}")]
     Scale {

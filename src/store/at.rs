@@ -6,7 +6,7 @@ use std::str::FromStr;
 
 /// A value selected on an axis.
 #[derive(Clone, Debug, PartialEq)]
-pub struct At {
+pub struct AxisValue {
     /// Name of the axis, such as `taper` or `distance_mm`.
     pub axis: String,
     /// The value, in the unit of the axis.
@@ -16,13 +16,13 @@ pub struct At {
 /// Reads `AXIS=VALUE`; the value of a length or an angle may have another unit than the axis.
 ///
 /// ```
-/// use whiskmap::store::At;
+/// use whiskmap::store::AxisValue;
 ///
-/// let at: At = "distance_mm = 1.5cm".parse()?;
+/// let at: AxisValue = "distance_mm = 1.5cm".parse()?;
 /// assert_eq!((&*at.axis, at.value), ("distance_mm", 15.0));
 /// # Ok::<(), String>(())
 /// ```
-impl FromStr for At {
+impl FromStr for AxisValue {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {

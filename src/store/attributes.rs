@@ -1,7 +1,7 @@
 //! The attributes of an EXR map, as ASCII JSON.
 
-use super::layout::Layout;
-use super::tally::{Counts, regimes, statuses};
+use super::layout::AtlasLayout;
+use super::tally::{CellCounts, regimes, statuses};
 use crate::engine;
 use crate::map::{Audit, Channels, EngineCells};
 use crate::scene::{Grid, Parameter, SceneData, SweepAxis};
@@ -12,7 +12,7 @@ use std::collections::{BTreeMap, HashMap};
 
 /// Attributes that are known before a run.
 #[derive(Clone, Copy, Debug)]
-pub struct Description<'a> {
+pub struct MapDescription<'a> {
     /// The scene that is computed.
     pub scene: &'a SceneData,
     /// The engine and its device.
@@ -27,7 +27,7 @@ pub struct Description<'a> {
 
 /// An axis in the attribute `axes`.
 #[derive(Debug, PartialEq, Serialize, Deserialize)]
-pub(super) struct Axis {
+pub(super) struct AxisAttribute {
     name: String,
     unit: String,
     /// `x` and `y` inside a panel, `panel x` and `panel y` from one panel to the next.
@@ -56,7 +56,7 @@ pub(super) const CHECKSUM: &str = "checksum";
 pub(super) const NO_CHECKSUM: &str = "00000000";
 
 /// Attribute texts by name.
-pub(super) type Attributes = HashMap<Text, AttributeValue>;
+pub(super) type ExrAttributes = HashMap<Text, AttributeValue>;
 
 /// The attribute `name` with this `text`.
 pub(super) fn attribute(name: &str, text: &str) -> (Text, AttributeValue) {
@@ -64,8 +64,8 @@ pub(super) fn attribute(name: &str, text: &str) -> (Text, AttributeValue) {
 }
 
 /// All attributes of a map but `counts`, which [`encode_counts`] makes.
-pub(super) fn encode(about: &Description<'_>) -> Attributes {
-    let layout = Layout::of(&about.scene.grid);
+pub(super) fn encode(about: &MapDescription<'_>) -> ExrAttributes {
+    let layout = AtlasLayout::of(&about.scene.grid);
     let attributes = [
         ("axes", json!(axes(&about.scene.grid))),
         ("scene", json!(about.scene.text.to_string())),
@@ -85,7 +85,7 @@ pub(super) fn encode(about: &Description<'_>) -> Attributes {
 }
 
 /// `counts`, padded with spaces to [`counts_width`].
-pub(super) fn encode_counts(counts: &Counts) -> String {
+pub(super) fn encode_counts(counts: &CellCounts) -> String {
     let text = ascii_json(&json!(counts));
     format!("{text:width$}", width = counts_width())
 }
@@ -93,7 +93,7 @@ pub(super) fn encode_counts(counts: &Counts) -> String {
 /// Bytes of the longest text that [`encode_counts`] can make.
 pub(super) fn counts_width() -> usize {
     let most = |name: &'static str| (name.to_owned(), u64::MAX);
-    let counts = Counts {
+    let counts = CellCounts {
         regimes: regimes().into_values().map(most).collect(),
         statuses: statuses().into_values().map(most).collect(),
         worst_residual: Some(-f64::MIN_POSITIVE),
@@ -116,8 +116,8 @@ pub(super) fn counts_width() -> usize {
 }
 
 /// The attribute `axes` of a grid.
-fn axes(grid: &Grid) -> Vec<Axis> {
-    let axis = |[name, unit, direction, first]: [&str; 4], values: &[f64]| Axis {
+fn axes(grid: &Grid) -> Vec<AxisAttribute> {
+    let axis = |[name, unit, direction, first]: [&str; 4], values: &[f64]| AxisAttribute {
         name: name.to_owned(),
         unit: unit.to_owned(),
         direction: direction.to_owned(),
@@ -143,7 +143,7 @@ fn axes(grid: &Grid) -> Vec<Axis> {
 /// # Errors
 ///
 /// An axis is unknown, missing or one too many, or its values are not increasing.
-pub(super) fn decode_axes(mut found: Vec<Axis>) -> Result<Grid, String> {
+pub(super) fn decode_axes(mut found: Vec<AxisAttribute>) -> Result<Grid, String> {
     for axis in &found {
         if axis.values.is_empty() || !axis.values.is_sorted_by(|one, next| one < next) {
             return Err(format!("the values of `{}` do not increase", axis.name));
@@ -161,7 +161,7 @@ pub(super) fn decode_axes(mut found: Vec<Axis>) -> Result<Grid, String> {
         sweep: Vec::new(),
     };
     found.sort_by(|one, next| one.direction.cmp(&next.direction));
-    for Axis { name, values, .. } in found {
+    for AxisAttribute { name, values, .. } in found {
         let known = Parameter::SWEPT.into_iter();
         let parameter = known
             .filter(|parameter| grid.axis(*parameter).is_none())

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 /// A file that cannot be written or read. Every message is complete: there is no chain of sources to print.
 #[derive(Debug, thiserror::Error)]
-pub enum Error {
+pub enum StoreError {
     /// The file system refused to read.
     #[error("cannot read {file}: {1}", file = .0.display())]
     Read(PathBuf, io::Error),
@@ -130,7 +130,7 @@ fn reason(name: &str) -> &'static str {
     }
 }
 
-impl Error {
+impl StoreError {
     /// Makes the error `kind` of the file at `path` from its cause.
     pub(super) fn at<C>(path: &Path, kind: fn(PathBuf, C) -> Self) -> impl Fn(C) -> Self {
         move |cause| kind(path.to_owned(), cause)

@@ -7,10 +7,10 @@ use std::path::{Path, PathBuf};
 ///
 /// Device and inode identify what exists on Unix. The canonical path identifies the rest.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct FileId(Id);
+pub struct FileId(FileKey);
 
 #[derive(Clone, Debug, PartialEq, Eq)]
-enum Id {
+enum FileKey {
     Stdout,
     #[cfg(unix)]
     Inode {
@@ -22,7 +22,7 @@ enum Id {
 
 impl FileId {
     /// Identity of standard output.
-    pub(super) const STDOUT: Self = Self(Id::Stdout);
+    pub(super) const STDOUT: Self = Self(FileKey::Stdout);
 
     /// Identity of the file or folder at `path`, behind its symbolic links. A device or a pipe has none.
     #[must_use]
@@ -31,7 +31,7 @@ impl FileId {
             Ok(about) if !about.is_file() && !about.is_dir() => return None,
             #[cfg(unix)]
             Ok(about) => inode(&about),
-            _ => Id::Path(resolved(path)?),
+            _ => FileKey::Path(resolved(path)?),
         };
         Some(Self(id))
     }
@@ -64,9 +64,9 @@ impl FileId {
 }
 
 #[cfg(unix)]
-fn inode(about: &fs::Metadata) -> Id {
+fn inode(about: &fs::Metadata) -> FileKey {
     use std::os::unix::fs::MetadataExt;
-    Id::Inode {
+    FileKey::Inode {
         device: about.dev(),
         inode: about.ino(),
     }

@@ -1,9 +1,9 @@
 //! The header of an EXR map: all bytes before the blocks.
 
-use super::attributes::{Attributes, CHECKSUM, NO_CHECKSUM};
-use super::layout::Layout;
+use super::attributes::{CHECKSUM, ExrAttributes, NO_CHECKSUM};
+use super::layout::AtlasLayout;
 use super::stored::is_compatible;
-use super::{Channels, Error};
+use super::{Channels, StoreError};
 use exr::io::PeekRead;
 use exr::meta::attribute;
 use exr::meta::header::Header;
@@ -36,20 +36,21 @@ pub(super) fn encode(headers: &[Header]) -> exr::error::Result<Vec<u8>> {
 }
 
 /// Reads the headers and checks their checksum, but not their layout.
-pub(super) fn read(path: &Path, file: &mut BufReader<File>) -> Result<MetaData, Error> {
+pub(super) fn read(path: &Path, file: &mut BufReader<File>) -> Result<MetaData, StoreError> {
     let mut magic = [0; 4];
     match file.read_exact(&mut magic) {
         Ok(()) if magic == magic_number::BYTES => {}
         Err(cause) if cause.kind() != io::ErrorKind::UnexpectedEof => {
-            return Err(Error::Read(path.to_owned(), cause));
+            return Err(StoreError::Read(path.to_owned(), cause));
         }
-        _ => return Err(Error::NotExr(path.to_owned())),
+        _ => return Err(StoreError::NotExr(path.to_owned())),
     }
-    file.rewind().map_err(Error::at(path, Error::Read))?;
-    let damaged = |why: String| Error::Damaged(path.to_owned(), format!("header: {why}"));
+    file.rewind()
+        .map_err(StoreError::at(path, StoreError::Read))?;
+    let damaged = |why: String| StoreError::Damaged(path.to_owned(), format!("header: {why}"));
     let meta =
         MetaData::read_from_buffered(&mut *file, true).map_err(|why| damaged(why.to_string()))?;
-    match has_checksum(file, &meta).map_err(Error::at(path, Error::Read))? {
+    match has_checksum(file, &meta).map_err(StoreError::at(path, StoreError::Read))? {
         true => Ok(meta),
         false => Err(damaged("it does not have its checksum".to_owned())),
     }
@@ -99,15 +100,15 @@ pub(super) fn read_offsets(
     path: &Path,
     file: &mut BufReader<File>,
     meta: &MetaData,
-) -> Result<OffsetTables, Error> {
+) -> Result<OffsetTables, StoreError> {
     MetaData::read_offset_tables(&mut PeekRead::new(file), &meta.headers)
-        .map_err(|cause| Error::Damaged(path.to_owned(), format!("offset table: {cause}")))
+        .map_err(|cause| StoreError::Damaged(path.to_owned(), format!("offset table: {cause}")))
 }
 
 /// Checks that parts, channels, size, tiles and compression are as this program writes `layout`.
 pub(super) fn check_layout(
     meta: &MetaData,
-    layout: Layout,
+    layout: AtlasLayout,
     channels: Channels,
 ) -> Result<(), String> {
     if parse::<[usize; 2]>(meta, "panels")? != [layout.columns, layout.rows] {
@@ -117,7 +118,7 @@ pub(super) fn check_layout(
     for header in &mut found {
         header.own_attributes.other.clear();
     }
-    if found != layout.headers(channels, &Attributes::new()) {
+    if found != layout.headers(channels, &ExrAttributes::new()) {
         return Err("the parts and channels are not those that the axes demand".to_owned());
     }
     Ok(())

@@ -14,7 +14,7 @@ use std::collections::HashMap;
 
 /// Numbers of panels and of cells in a panel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Layout {
+pub struct AtlasLayout {
     /// Panels along x, one per value of the first sweep axis.
     pub columns: usize,
     /// Panels along y, one per value of the second.
@@ -25,7 +25,7 @@ pub struct Layout {
     pub distances: usize,
 }
 
-impl Layout {
+impl AtlasLayout {
     /// The layout of a sweep over at most two axes.
     #[must_use]
     pub fn of(grid: &Grid) -> Self {
@@ -91,7 +91,7 @@ impl Layout {
     pub(super) fn lines<'a>(
         &self,
         block: usize,
-        channels: &'a [Channel<'_>],
+        channels: &'a [ExrChannel<'_>],
     ) -> impl Iterator<Item = &'a [u8]> + Clone {
         let line = self.push_angles * SAMPLE_BYTES;
         let first = self.first_row(block);
@@ -142,20 +142,20 @@ impl Layout {
 const COMPRESSION: Compression = Compression::ZIP16;
 
 /// A part of an EXR map, with its channels sorted by name, as EXR demands.
-pub(super) struct Part<'a> {
+pub(super) struct ExrPart<'a> {
     pub(super) name: &'static str,
-    pub(super) channels: Vec<Channel<'a>>,
+    pub(super) channels: Vec<ExrChannel<'a>>,
 }
 
 /// A channel of a panel, with its samples as bytes.
-pub(super) struct Channel<'a> {
+pub(super) struct ExrChannel<'a> {
     pub(super) name: &'static str,
     pub(super) kind: SampleType,
     pub(super) bytes: &'a [u8],
 }
 
 /// The parts of a panel that have some of the `channels`, in the order of the file.
-pub(super) fn parts(panel: &Panel, channels: Channels) -> Vec<Part<'_>> {
+pub(super) fn parts(panel: &Panel, channels: Channels) -> Vec<ExrPart<'_>> {
     let mut state: Vec<_> = STATE_CHANNELS
         .into_iter()
         .zip(&panel.state)
@@ -175,21 +175,21 @@ pub(super) fn parts(panel: &Panel, channels: Channels) -> Vec<Part<'_>> {
         .map(|(name, mut own)| {
             own.retain(|channel| channels.contains(channel.name));
             let channels = own;
-            Part { name, channels }
+            ExrPart { name, channels }
         })
         .into_iter()
         .filter(|part| !part.channels.is_empty())
         .collect()
 }
 
-fn quantity<'a>(name: &'static str, values: &'a [f32]) -> Channel<'a> {
+fn quantity<'a>(name: &'static str, values: &'a [f32]) -> ExrChannel<'a> {
     let (kind, bytes) = (SampleType::F32, bytemuck::cast_slice(values));
-    Channel { name, kind, bytes }
+    ExrChannel { name, kind, bytes }
 }
 
-fn number<'a>(name: &'static str, values: &'a [u32]) -> Channel<'a> {
+fn number<'a>(name: &'static str, values: &'a [u32]) -> ExrChannel<'a> {
     let (kind, bytes) = (SampleType::U32, bytemuck::cast_slice(values));
-    Channel { name, kind, bytes }
+    ExrChannel { name, kind, bytes }
 }
 
 /// Bytes of one sample; every channel is 32 bits wide.

@@ -29,17 +29,17 @@ mod writer;
 mod zarr;
 mod zip;
 
-pub use at::At;
-pub use attributes::Description;
-pub use error::Error;
+pub use at::AxisValue;
+pub use attributes::MapDescription;
+pub use error::StoreError;
 pub use file_id::FileId;
-pub use layout::Layout;
+pub use layout::AtlasLayout;
 pub use output::Output;
-pub use reader::{MapHeader, Samples, StoredMap};
-pub use slice::{NoChoice, Slice};
-pub use stored::Stored;
-pub use table::Table;
-pub use tally::Counts;
+pub use reader::{ChannelValues, MapHeader, StoredMap};
+pub use slice::{InvalidAxisValue, MapSlice};
+pub use stored::MapSource;
+pub use table::TableFile;
+pub use tally::CellCounts;
 pub use target::check_links;
 pub use temporary::TemporaryFiles;
 #[cfg(feature = "zarr")]

@@ -1,7 +1,7 @@
 //! Files being written. No other module opens files for writing.
 
 use super::file_id::{FileId, folder_of};
-use super::target::Target;
+use super::target::OutputTarget;
 use super::temporary::{TemporaryFile, TemporaryFiles};
 use std::fs::File;
 use std::io::{self, Seek, SeekFrom, Write};
@@ -43,12 +43,12 @@ impl Output {
     /// `path` leads to a folder, or to a file that is read-only or whose owner cannot be kept, or through a link that must not be
     /// followed; or its folder does not exist or is not writable.
     pub fn create(path: &Path, files: &TemporaryFiles) -> io::Result<Self> {
-        Ok(Self(match Target::of(path)? {
-            Target::Regular(target, replaced) => Destination::Regular {
+        Ok(Self(match OutputTarget::of(path)? {
+            OutputTarget::Regular(target, replaced) => Destination::Regular {
                 file: TemporaryFile::create(folder_of(&target), replaced.as_ref(), files)?,
                 target,
             },
-            Target::Stream(target) => Destination::Stream {
+            OutputTarget::Stream(target) => Destination::Stream {
                 kept: tempfile::tempfile()?,
                 target,
             },

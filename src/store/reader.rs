@@ -1,8 +1,8 @@
 //! Reads an EXR map, one channel of a panel at a time.
 
 use super::attributes;
-use super::layout::{self, Layout, SAMPLE_BYTES};
-use super::{Channels, Counts, Error, Panel, header};
+use super::layout::{self, AtlasLayout, SAMPLE_BYTES};
+use super::{CellCounts, Channels, Panel, StoreError, header};
 use crate::scene::Grid;
 use exr::block::UncompressedBlock;
 use exr::block::chunk::Chunk;
@@ -16,14 +16,14 @@ use std::path::{Path, PathBuf};
 
 /// The values of a channel.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Samples {
+pub enum ChannelValues {
     /// Quantities; NaN where there is none.
     F32(Vec<f32>),
     /// Codes and counts.
     U32(Vec<u32>),
 }
 
-impl Samples {
+impl ChannelValues {
     /// The value of a cell.
     ///
     /// # Panics
@@ -55,13 +55,13 @@ pub struct MapHeader {
     /// The axes.
     pub grid: Grid,
     /// Numbers of panels and cells.
-    pub layout: Layout,
+    pub layout: AtlasLayout,
     /// Name of every code of the channel `regime`.
     pub regime_names: BTreeMap<u32, String>,
     /// Name of every code of the channel `status`.
     pub status_names: BTreeMap<u32, String>,
     /// Cells of each regime and status.
-    pub counts: Counts,
+    pub counts: CellCounts,
 }
 
 /// An EXR map whose header is read and checked; it dereferences to its [`MapHeader`].
@@ -76,7 +76,7 @@ pub struct StoredMap {
 }
 
 impl Deref for StoredMap {
-    type Target = MapHeader;
+    type OutputTarget = MapHeader;
 
     fn deref(&self) -> &MapHeader {
         &self.header
@@ -89,14 +89,14 @@ impl StoredMap {
     /// # Errors
     ///
     /// The file cannot be read, is not EXR, is not a map of this program, or is damaged.
-    pub fn open(path: &Path) -> Result<Self, Error> {
+    pub fn open(path: &Path) -> Result<Self, StoreError> {
         let mut file = open(path)?;
         let meta = header::read(path, &mut file)?;
-        let foreign = Error::at(path, Error::NotAMap);
+        let foreign = StoreError::at(path, StoreError::NotAMap);
         let axes = header::parse(&meta, "axes").map_err(&foreign)?;
         let grid = attributes::decode_axes(axes)
             .map_err(|reason| foreign(format!("attribute `axes`: {reason}")))?;
-        let layout = Layout::of(&grid);
+        let layout = AtlasLayout::of(&grid);
         let channels = header::channels(&meta);
         header::check_layout(&meta, layout, channels).map_err(&foreign)?;
         Ok(Self {
@@ -131,8 +131,8 @@ impl StoredMap {
     /// # Errors
     ///
     /// There is no such attribute, or it is not JSON.
-    pub fn attribute(&self, name: &str) -> Result<serde_json::Value, Error> {
-        header::parse(&self.meta, name).map_err(Error::at(&self.path, Error::NotAMap))
+    pub fn attribute(&self, name: &str) -> Result<serde_json::Value, StoreError> {
+        header::parse(&self.meta, name).map_err(StoreError::at(&self.path, StoreError::NotAMap))
     }
 
     /// The names of all channels, part by part.
@@ -151,7 +151,7 @@ impl StoredMap {
     /// # Errors
     ///
     /// There is no such channel, or the file is damaged.
-    pub fn read_channel(&self, name: &str) -> Result<Samples, Error> {
+    pub fn read_channel(&self, name: &str) -> Result<ChannelValues, StoreError> {
         self.read(name, 0..self.layout.panels())
     }
 
@@ -160,15 +160,15 @@ impl StoredMap {
     /// # Errors
     ///
     /// There is no such channel or panel, or the file is damaged.
-    pub fn read_panel(&self, name: &str, index: usize) -> Result<Samples, Error> {
+    pub fn read_panel(&self, name: &str, index: usize) -> Result<ChannelValues, StoreError> {
         let panels = self.layout.panels();
         if index >= panels {
-            return Err(Error::NoSuchPanel { index, panels });
+            return Err(StoreError::NoSuchPanel { index, panels });
         }
         self.read(name, index..index + 1)
     }
 
-    fn read(&self, name: &str, panels: Range<usize>) -> Result<Samples, Error> {
+    fn read(&self, name: &str, panels: Range<usize>) -> Result<ChannelValues, StoreError> {
         let (part, channel, kind) = self.find(name)?;
         let mut file = open(&self.path)?;
         let mut bytes = Vec::new();
@@ -177,25 +177,25 @@ impl StoredMap {
                 self.read_block(&mut file, [part, panel, block], channel, &mut bytes)
                     .map_err(|cause| {
                         let place = format!("channel `{name}`, panel {panel}, block {block}");
-                        Error::Damaged(self.path.clone(), format!("{place}: {cause}"))
+                        StoreError::Damaged(self.path.clone(), format!("{place}: {cause}"))
                     })?;
             }
         }
         Ok(match kind {
-            SampleType::U32 => Samples::U32(bytemuck::pod_collect_to_vec(&bytes)),
-            _ => Samples::F32(bytemuck::pod_collect_to_vec(&bytes)),
+            SampleType::U32 => ChannelValues::U32(bytemuck::pod_collect_to_vec(&bytes)),
+            _ => ChannelValues::F32(bytemuck::pod_collect_to_vec(&bytes)),
         })
     }
 
     /// Part, index in the part, and type of a channel.
-    fn find(&self, name: &str) -> Result<(usize, usize, SampleType), Error> {
+    fn find(&self, name: &str) -> Result<(usize, usize, SampleType), StoreError> {
         let nothing = Panel::unresolved(0, self.channels);
         for (part, about) in layout::parts(&nothing, self.channels).iter().enumerate() {
             if let Some(place) = about.channels.iter().position(|own| own.name == name) {
                 return Ok((part, place, about.channels[place].kind));
             }
         }
-        Err(Error::UnknownChannel {
+        Err(StoreError::UnknownChannel {
             path: self.path.clone(),
             name: name.to_owned(),
             known: self.channels().join(", "),
@@ -227,11 +227,11 @@ impl StoredMap {
 }
 
 /// Opens a regular file: reading seeks, and a pipe without a writer would never open.
-fn open(path: &Path) -> Result<BufReader<File>, Error> {
-    let about = std::fs::metadata(path).map_err(Error::at(path, Error::Read))?;
+fn open(path: &Path) -> Result<BufReader<File>, StoreError> {
+    let about = std::fs::metadata(path).map_err(StoreError::at(path, StoreError::Read))?;
     if !about.is_file() {
-        return Err(Error::NotAFile(path.to_owned()));
+        return Err(StoreError::NotAFile(path.to_owned()));
     }
-    let file = File::open(path).map_err(Error::at(path, Error::Read))?;
+    let file = File::open(path).map_err(StoreError::at(path, StoreError::Read))?;
     Ok(BufReader::new(file))
 }

@@ -1,7 +1,9 @@
 //! A part of a map or a store: the values of some of its axes are fixed.
 
-use super::at::{At, check_near, nearest, with_unit};
-use super::{Channels, Error, Layout, Panel, STATE_CHANNELS, Samples, Stored, StoredMap};
+use super::at::{AxisValue, check_near, nearest, with_unit};
+use super::{
+    AtlasLayout, ChannelValues, Channels, MapSource, Panel, STATE_CHANNELS, StoreError, StoredMap,
+};
 use crate::input::did_you_mean;
 use crate::scene::{Grid, Scene, digits};
 use std::collections::{BTreeMap, BTreeSet};
@@ -9,15 +11,15 @@ use std::collections::{BTreeMap, BTreeSet};
 /// A selected value that an axis does not have.
 #[derive(Debug, thiserror::Error)]
 #[error("{axis}: {why}")]
-pub struct NoChoice {
+pub struct InvalidAxisValue {
     axis: String,
     why: String,
 }
 
 /// A part of a map or a store, read panel by panel.
 #[derive(Debug)]
-pub struct Slice {
-    stored: Stored,
+pub struct MapSlice {
+    stored: MapSource,
     grid: Grid,
     /// Selected rows and columns of each panel.
     rows: Vec<usize>,
@@ -27,16 +29,20 @@ pub struct Slice {
     fixed: Vec<Option<usize>>,
 }
 
-impl Slice {
+impl MapSlice {
     /// The part of `stored` at the values nearest to those `wanted`, which must be values of the axes if `exact`.
     ///
     /// # Errors
     ///
     /// An axis is unknown or given twice, ends more than half a step before the value, or does not have it although `exact`.
-    pub fn new(stored: Stored, wanted: &[At], exact: bool) -> Result<Self, NoChoice> {
+    pub fn new(
+        stored: MapSource,
+        wanted: &[AxisValue],
+        exact: bool,
+    ) -> Result<Self, InvalidAxisValue> {
         let mut slice = Self::whole(stored);
         for at in wanted {
-            slice.choose(at, exact).map_err(|why| NoChoice {
+            slice.choose(at, exact).map_err(|why| InvalidAxisValue {
                 axis: at.axis.clone(),
                 why,
             })?;
@@ -44,7 +50,7 @@ impl Slice {
         Ok(slice)
     }
 
-    fn whole(stored: Stored) -> Self {
+    fn whole(stored: MapSource) -> Self {
         let grid = stored.grid().clone();
         Self {
             rows: (0..grid.distance_mm.len()).collect(),
@@ -56,7 +62,7 @@ impl Slice {
         }
     }
 
-    fn choose(&mut self, at: &At, exact: bool) -> Result<(), String> {
+    fn choose(&mut self, at: &AxisValue, exact: bool) -> Result<(), String> {
         let whole = self.stored.grid();
         let sweep = whole.sweep.iter();
         let sweep = sweep.map(|axis| (axis.parameter.axis(), &axis.values));
@@ -106,7 +112,7 @@ impl Slice {
 
     /// The whole map or store.
     #[must_use]
-    pub fn stored(&self) -> &Stored {
+    pub fn stored(&self) -> &MapSource {
         &self.stored
     }
 
@@ -118,8 +124,8 @@ impl Slice {
 
     /// Numbers of panels and cells of the part, which has at most two sweep axes.
     #[must_use]
-    pub fn layout(&self) -> Layout {
-        Layout::of(&self.grid)
+    pub fn layout(&self) -> AtlasLayout {
+        AtlasLayout::of(&self.grid)
     }
 
     /// Names and values of the fixed axes.
@@ -157,7 +163,7 @@ impl Slice {
     /// # Errors
     ///
     /// The map or store has no scene.
-    pub fn has_friction(&self) -> Result<bool, Error> {
+    pub fn has_friction(&self) -> Result<bool, StoreError> {
         let text = self.stored.attribute("scene")?;
         let scene = Scene::parse(text.as_str().unwrap_or_default(), "the scene of the map");
         let mut chosen = self.chosen.iter();
@@ -211,10 +217,10 @@ impl Slice {
     /// # Errors
     ///
     /// There is no such channel or whisker, or it is missing or damaged.
-    pub fn read_panel(&self, channel: &str, whisker: usize) -> Result<Samples, Error> {
+    pub fn read_panel(&self, channel: &str, whisker: usize) -> Result<ChannelValues, StoreError> {
         let panels = self.grid.whisker_count();
         if whisker >= panels {
-            return Err(Error::NoSuchPanel {
+            return Err(StoreError::NoSuchPanel {
                 index: whisker,
                 panels,
             });
@@ -225,8 +231,12 @@ impl Slice {
             rows.flat_map(|row| self.columns.iter().map(move |column| row * width + column));
         let samples = self.stored.read_panel(channel, self.in_whole(whisker))?;
         Ok(match samples {
-            Samples::F32(values) => Samples::F32(cells.map(|cell| values[cell]).collect()),
-            Samples::U32(codes) => Samples::U32(cells.map(|cell| codes[cell]).collect()),
+            ChannelValues::F32(values) => {
+                ChannelValues::F32(cells.map(|cell| values[cell]).collect())
+            }
+            ChannelValues::U32(codes) => {
+                ChannelValues::U32(cells.map(|cell| codes[cell]).collect())
+            }
         })
     }
 
@@ -234,18 +244,18 @@ impl Slice {
     ///
     /// # Errors
     ///
-    /// An error of [`Slice::read_panel`].
-    pub fn panel(&self, channels: Channels, whisker: usize) -> Result<Panel, Error> {
+    /// An error of [`MapSlice::read_panel`].
+    pub fn panel(&self, channels: Channels, whisker: usize) -> Result<Panel, StoreError> {
         let mut panel = Panel::unresolved(self.rows.len() * self.columns.len(), channels);
         for name in channels.names() {
             let state = STATE_CHANNELS.iter().position(|own| *own == name);
             match (self.read_panel(name, whisker)?, name, state) {
-                (Samples::U32(codes), "regime", _) => panel.regime = codes,
-                (Samples::U32(codes), "status", _) => panel.status = codes,
-                (Samples::U32(counts), ..) => panel.newton_steps = counts,
-                (Samples::F32(values), _, Some(place)) => panel.state[place] = values,
-                (Samples::F32(values), "margin_deg", _) => panel.margin_deg = values,
-                (Samples::F32(values), ..) => panel.residual = values,
+                (ChannelValues::U32(codes), "regime", _) => panel.regime = codes,
+                (ChannelValues::U32(codes), "status", _) => panel.status = codes,
+                (ChannelValues::U32(counts), ..) => panel.newton_steps = counts,
+                (ChannelValues::F32(values), _, Some(place)) => panel.state[place] = values,
+                (ChannelValues::F32(values), "margin_deg", _) => panel.margin_deg = values,
+                (ChannelValues::F32(values), ..) => panel.residual = values,
             }
         }
         Ok(panel)
@@ -261,15 +271,15 @@ impl Slice {
     ///
     /// # Errors
     ///
-    /// An error of [`Slice::read_panel`].
-    pub fn codes(&self, channel: &str) -> Result<BTreeSet<u32>, Error> {
+    /// An error of [`MapSlice::read_panel`].
+    pub fn codes(&self, channel: &str) -> Result<BTreeSet<u32>, StoreError> {
         // The header of a whole map has the counts.
-        if let (Stored::Exr(map), []) = (&self.stored, &*self.chosen) {
+        if let (MapSource::Exr(map), []) = (&self.stored, &*self.chosen) {
             return Ok(map.codes(channel));
         }
         let mut codes = BTreeSet::new();
         for whisker in 0..self.grid.whisker_count() {
-            if let Samples::U32(own) = self.read_panel(channel, whisker)? {
+            if let ChannelValues::U32(own) = self.read_panel(channel, whisker)? {
                 codes.extend(own);
             }
         }
@@ -290,8 +300,8 @@ impl Slice {
 }
 
 /// The whole map.
-impl From<StoredMap> for Slice {
+impl From<StoredMap> for MapSlice {
     fn from(map: StoredMap) -> Self {
-        Self::whole(Stored::Exr(Box::new(map)))
+        Self::whole(MapSource::Exr(Box::new(map)))
     }
 }

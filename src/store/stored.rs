@@ -1,6 +1,6 @@
 //! A map or a store, whichever is at a path: both are read panel by panel.
 
-use super::{Error, Samples, StoredMap};
+use super::{ChannelValues, StoreError, StoredMap};
 #[cfg(feature = "zarr")]
 use super::{ZarrStore, tally};
 use crate::scene::Grid;
@@ -10,7 +10,7 @@ use std::path::Path;
 
 /// A map or a store.
 #[derive(Debug)]
-pub enum Stored {
+pub enum MapSource {
     /// An EXR file.
     Exr(Box<StoredMap>),
     /// A Zarr store.
@@ -18,13 +18,13 @@ pub enum Stored {
     Zarr(Box<ZarrStore>),
 }
 
-impl Stored {
+impl MapSource {
     /// Opens the map at `path`, or the store if it is a folder.
     ///
     /// # Errors
     ///
     /// It cannot be read, or this program did not write it.
-    pub fn open(path: &Path) -> Result<Self, Error> {
+    pub fn open(path: &Path) -> Result<Self, StoreError> {
         #[cfg(feature = "zarr")]
         if path.is_dir() {
             return Ok(Self::Zarr(Box::new(ZarrStore::open(path)?)));
@@ -67,7 +67,7 @@ impl Stored {
     /// # Errors
     ///
     /// There is no such attribute.
-    pub fn attribute(&self, name: &str) -> Result<Value, Error> {
+    pub fn attribute(&self, name: &str) -> Result<Value, StoreError> {
         match self {
             Self::Exr(map) => map.attribute(name),
             #[cfg(feature = "zarr")]
@@ -80,7 +80,7 @@ impl Stored {
     /// # Errors
     ///
     /// There is no such attribute.
-    pub fn foreign_version(&self) -> Result<Option<String>, Error> {
+    pub fn foreign_version(&self) -> Result<Option<String>, StoreError> {
         let version = self.attribute("whiskmap_version")?;
         let version = version.as_str().unwrap_or_default();
         Ok((!is_compatible(version)).then(|| version.to_owned()))
@@ -109,7 +109,7 @@ impl Stored {
     /// # Errors
     ///
     /// There is no such channel or whisker, or it is missing or damaged.
-    pub fn read_panel(&self, name: &str, whisker: usize) -> Result<Samples, Error> {
+    pub fn read_panel(&self, name: &str, whisker: usize) -> Result<ChannelValues, StoreError> {
         match self {
             Self::Exr(map) => map.read_panel(name, whisker),
             #[cfg(feature = "zarr")]

@@ -6,9 +6,9 @@ use std::io;
 
 /// A table being written.
 #[derive(Debug)]
-pub struct Table(csv::Writer<Output>);
+pub struct TableFile(csv::Writer<Output>);
 
-impl Table {
+impl TableFile {
     /// A table that is written to `output`.
     #[must_use]
     pub fn new(output: Output) -> Self {

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 
 /// The attribute `counts` of a map.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Counts {
+pub struct CellCounts {
     /// Cells of each regime, by name.
     pub regimes: BTreeMap<String, u64>,
     /// Cells of each status, by name.

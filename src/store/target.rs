@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 /// What an output becomes.
 #[derive(Debug)]
-pub(super) enum Target {
+pub(super) enum OutputTarget {
     /// A regular file, in place of the one with this metadata if there is one.
     Regular(PathBuf, Option<Metadata>),
     /// A device, a pipe or an open file of a process: bytes are appended to it.
@@ -17,7 +17,7 @@ pub(super) enum Target {
 /// Linux follows at most this many symbolic links in a row.
 const MOST_LINKS: usize = 40;
 
-impl Target {
+impl OutputTarget {
     /// Follows the symbolic links of `path` and checks what is there.
     ///
     /// # Errors
@@ -76,7 +76,7 @@ fn is_descriptor(path: &Path) -> bool {
     })
 }
 
-/// Refuses a symbolic link that another user may have made. [`Target::of`] follows links itself, so `protected_symlinks` of Linux
+/// Refuses a symbolic link that another user may have made. [`OutputTarget::of`] follows links itself, so `protected_symlinks` of Linux
 /// has no effect on them. Its rule applies here in every folder that others may write to, sticky or not: the link must belong to
 /// this user or to the folder's owner.
 #[cfg(unix)]

@@ -1,9 +1,9 @@
 //! Writes an EXR map, some panels at a time.
 
-use super::attributes::{self, Description, attribute};
-use super::layout::{self, Channel, Layout, Part, SAMPLE_BYTES};
-use super::tally::{self, Counts};
-use super::{Channels, Error, Output, Panel, TemporaryFiles, header, zip};
+use super::attributes::{self, MapDescription, attribute};
+use super::layout::{self, AtlasLayout, ExrChannel, ExrPart, SAMPLE_BYTES};
+use super::tally::{self, CellCounts};
+use super::{Channels, Output, Panel, StoreError, TemporaryFiles, header, zip};
 use crate::classify::Regime;
 use crate::map::{Audit, EngineCells};
 use crate::scene::Grid;
@@ -27,7 +27,7 @@ pub struct MapWriter {
     file: BufWriter<Output>,
     /// Position of the next block.
     position: u64,
-    layout: Layout,
+    layout: AtlasLayout,
     channels: Channels,
     headers: Headers,
     /// Position of each part's table of block positions. Tables are written with their blocks: those of a large sweep would not
@@ -35,7 +35,7 @@ pub struct MapWriter {
     tables: Vec<u64>,
     /// Panels written so far.
     written: usize,
-    counts: Counts,
+    counts: CellCounts,
 }
 
 impl MapWriter {
@@ -46,18 +46,18 @@ impl MapWriter {
     /// The folder is not writable, or the map is too large for EXR or has more than two sweep axes.
     pub fn create(
         path: &Path,
-        about: &Description<'_>,
+        about: &MapDescription<'_>,
         files: &TemporaryFiles,
-    ) -> Result<Self, Error> {
+    ) -> Result<Self, StoreError> {
         let sweep = &about.scene.grid.sweep;
         if sweep.len() > 2 {
             let names: Vec<&str> = sweep.iter().map(|axis| axis.parameter.axis()).collect();
-            return Err(Error::TooManyAxes {
+            return Err(StoreError::TooManyAxes {
                 path: path.to_owned(),
                 axes: names.join(", "),
             });
         }
-        let layout = Layout::of(&about.scene.grid);
+        let layout = AtlasLayout::of(&about.scene.grid);
         let mut attributes = attributes::encode(about);
         attributes.extend([attribute("counts", &" ".repeat(attributes::counts_width()))]);
         let headers = layout.headers(about.channels, &attributes);
@@ -66,10 +66,11 @@ impl MapWriter {
             .any(|own| own.chunk_count > i32::MAX as usize)
         {
             let why = exr::error::Error::Invalid("it has more than 2^31 blocks".into());
-            return Err(Error::Encode(path.to_owned(), why));
+            return Err(StoreError::Encode(path.to_owned(), why));
         }
 
-        let preamble = header::encode(&headers).map_err(Error::at(path, Error::Encode))?;
+        let preamble =
+            header::encode(&headers).map_err(StoreError::at(path, StoreError::Encode))?;
         let mut position = preamble.len() as u64;
         let table = |header: &Header| {
             let table = position;
@@ -77,7 +78,7 @@ impl MapWriter {
             table
         };
         let tables = headers.iter().map(table).collect();
-        let file = Output::create(path, files).map_err(Error::at(path, Error::Write))?;
+        let file = Output::create(path, files).map_err(StoreError::at(path, StoreError::Write))?;
         let mut writer = Self {
             path: path.to_owned(),
             file: BufWriter::new(file),
@@ -87,7 +88,7 @@ impl MapWriter {
             headers,
             tables,
             written: 0,
-            counts: Counts::default(),
+            counts: CellCounts::default(),
         };
         writer.write_at(0, &[preamble])?;
         Ok(writer)
@@ -98,10 +99,10 @@ impl MapWriter {
     /// # Errors
     ///
     /// A panel is one too many, has the wrong size or a code without a name, or the disk is full.
-    pub fn write_panels(&mut self, panels: &[Panel]) -> Result<(), Error> {
+    pub fn write_panels(&mut self, panels: &[Panel]) -> Result<(), StoreError> {
         let (first, all) = (self.written, self.layout.panels());
         if first + panels.len() > all {
-            return Err(Error::NoSuchPanel {
+            return Err(StoreError::NoSuchPanel {
                 index: all,
                 panels: all,
             });
@@ -127,7 +128,7 @@ impl MapWriter {
                 self.chunk(first + panel, part, task % blocks, channels)
             })
             .collect::<exr::error::Result<_>>()
-            .map_err(Error::at(&self.path, Error::Encode))?;
+            .map_err(StoreError::at(&self.path, StoreError::Encode))?;
         self.write_at(self.position, &chunks)?;
         let mut offsets = vec![Vec::new(); self.tables.len()];
         for (task, chunk) in chunks.iter().enumerate() {
@@ -145,7 +146,7 @@ impl MapWriter {
     /// Packs `panels` of a map with this `grid`, and returns how many bytes they take without headers.
     #[must_use]
     pub fn sample(grid: &Grid, channels: Channels, panels: &[Panel]) -> u64 {
-        let layout = Layout::of(grid);
+        let layout = AtlasLayout::of(grid);
         let packed = panels.par_iter().map(|panel| {
             let parts = layout::parts(panel, channels).into_iter();
             let bytes = parts.map(|part| {
@@ -163,9 +164,13 @@ impl MapWriter {
     /// # Errors
     ///
     /// A panel is missing, or the file cannot be written or renamed; then no map appears.
-    pub fn finish(mut self, engine_cells: EngineCells, audit: Audit) -> Result<Counts, Error> {
+    pub fn finish(
+        mut self,
+        engine_cells: EngineCells,
+        audit: Audit,
+    ) -> Result<CellCounts, StoreError> {
         if self.written != self.layout.panels() {
-            return Err(Error::Incomplete {
+            return Err(StoreError::Incomplete {
                 written: self.written,
                 panels: self.layout.panels(),
             });
@@ -178,8 +183,8 @@ impl MapWriter {
             attributes.extend([attribute("counts", &text)]);
         }
         // `create` has reserved the room of the counts.
-        let mut preamble =
-            header::encode(&self.headers).map_err(Error::at(&self.path, Error::Encode))?;
+        let mut preamble = header::encode(&self.headers)
+            .map_err(StoreError::at(&self.path, StoreError::Encode))?;
         header::seal(&mut preamble);
         self.write_at(0, &[preamble])?;
         let Self {
@@ -188,25 +193,25 @@ impl MapWriter {
         file.into_inner()
             .map_err(IntoInnerError::into_error)
             .and_then(Output::finish)
-            .map_err(Error::at(&path, Error::Write))?;
+            .map_err(StoreError::at(&path, StoreError::Write))?;
         Ok(counts)
     }
 
     /// Writes `pieces` one after another.
-    fn write_at(&mut self, position: u64, pieces: &[Vec<u8>]) -> Result<(), Error> {
+    fn write_at(&mut self, position: u64, pieces: &[Vec<u8>]) -> Result<(), StoreError> {
         let mut pieces = pieces.iter();
         self.file
             .seek(SeekFrom::Start(position))
             .and_then(|_| pieces.try_for_each(|piece| self.file.write_all(piece)))
-            .map_err(Error::at(&self.path, Error::Write))
+            .map_err(StoreError::at(&self.path, StoreError::Write))
     }
 
-    fn check_sizes(&self, index: usize, parts: &[Part<'_>]) -> Result<(), Error> {
+    fn check_sizes(&self, index: usize, parts: &[ExrPart<'_>]) -> Result<(), StoreError> {
         let expected = self.layout.cells();
         for own in parts.iter().flat_map(|part| &part.channels) {
             let (channel, cells) = (own.name, own.bytes.len() / SAMPLE_BYTES);
             if cells != expected {
-                return Err(Error::PanelSize {
+                return Err(StoreError::PanelSize {
                     index,
                     channel,
                     cells,
@@ -218,11 +223,11 @@ impl MapWriter {
     }
 
     /// Adds the cells of panels to the counts, unless a code has no name.
-    fn count(&mut self, first: usize, panels: &[Panel]) -> Result<(), Error> {
+    fn count(&mut self, first: usize, panels: &[Panel]) -> Result<(), StoreError> {
         let mut counts = self.counts.clone();
         for (index, panel) in (first..).zip(panels) {
             let unknown = |channel| {
-                move |code| Error::UnknownCode {
+                move |code| StoreError::UnknownCode {
                     index,
                     channel,
                     code,
@@ -253,7 +258,7 @@ impl MapWriter {
         panel: usize,
         part: usize,
         block: usize,
-        channels: &[Channel<'_>],
+        channels: &[ExrChannel<'_>],
     ) -> exr::error::Result<Vec<u8>> {
         let layout = &self.layout;
         let compressed_pixels_le = zip::pack(layout.lines(block, channels));

@@ -161,7 +161,7 @@ fn sizes_that_a_store_claims_are_not_allocated() {
         [grid]\npush_angle_deg = { from = -9, to = 9, count = 2 }\ndistance_mm = { from = 2, to = 20, count = 2 }\n\
         taper = { from = 0.1, to = 0.9, count = 65536 }\npole_radius_mm = { from = 0.1, to = 0.2, count = 65536 }\n";
     let scene = whiskmap::scene::Scene::parse(huge, "huge.toml").unwrap();
-    let about = whiskmap::store::Description {
+    let about = whiskmap::store::MapDescription {
         scene: &scene,
         engine: &whiskmap::engine::EngineDescription::of(None),
         tolerances: &serde_json::Value::Null,

@@ -3,7 +3,9 @@
 use crate::{Place, Run, SCENE};
 use whiskmap::classify::Status;
 use whiskmap::map::Channels;
-use whiskmap::store::{Description, MapWriter, Samples, StoredMap, TemporaryFiles, ZarrStore};
+use whiskmap::store::{
+    ChannelValues, MapDescription, MapWriter, StoredMap, TemporaryFiles, ZarrStore,
+};
 
 /// Writes the small map with this friction into its own folder, and returns its name.
 fn place(friction: f64) -> Place {
@@ -44,7 +46,7 @@ fn a_map_with_friction_keeps_the_status_of_loads() {
 /// Returns the number of marked cells of a map.
 fn marked(place: &Place) -> usize {
     let map = StoredMap::open(&place.path("outputs/scene.exr")).unwrap();
-    let Samples::U32(codes) = map.read_channel("status").unwrap() else {
+    let ChannelValues::U32(codes) = map.read_channel("status").unwrap() else {
         panic!("codes are u32");
     };
     let marks = Status::MARKS.map(Status::code);
@@ -91,7 +93,7 @@ fn a_slice_with_friction_keeps_the_status_of_loads() {
 fn write_without_status(place: &Place) {
     let scene = whiskmap::scene::Scene::read(place.path("scene.toml")).unwrap();
     let map = whiskmap::map(&scene, whiskmap::Options::default()).unwrap();
-    let about = Description {
+    let about = MapDescription {
         scene: &scene,
         engine: &whiskmap::engine::EngineDescription::of(None),
         tolerances: &serde_json::json!({}),

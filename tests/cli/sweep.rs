@@ -3,7 +3,7 @@
 use crate::{Place, names};
 use std::path::Path;
 use whiskmap::scene::Parameter;
-use whiskmap::store::{Layout, StoredMap};
+use whiskmap::store::{AtlasLayout, StoredMap};
 
 const SWEEP: &str = r#"title = "A small sweep"
 [whisker]
@@ -53,7 +53,7 @@ fn every_panel_is_the_map_of_its_whisker() {
     assert!(width > 4 * 24 && height > 3 * 24, "{width} x {height}");
 
     let sweep = StoredMap::open(&place.path("outputs/scene.exr")).unwrap();
-    let layout = Layout {
+    let layout = AtlasLayout {
         columns: 4,
         rows: 3,
         push_angles: 24,

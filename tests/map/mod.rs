@@ -8,7 +8,7 @@ use whiskmap::classify::Regime;
 use whiskmap::engine;
 use whiskmap::map::{Audit, Channels, EngineCells, Panel, STATE_CHANNELS};
 use whiskmap::scene::{Grid, Parameter, Pole, SceneData, SceneText, SweepAxis, Whisker};
-use whiskmap::store::{Counts, Description, MapWriter, TemporaryFiles};
+use whiskmap::store::{CellCounts, MapDescription, MapWriter, TemporaryFiles};
 
 /// `count` values from `first` to `last`.
 pub fn spread(first: f64, last: f64, count: usize) -> Vec<f64> {
@@ -117,8 +117,8 @@ static ENGINE: LazyLock<engine::EngineDescription> = LazyLock::new(|| engine::En
     adapter: "a \u{201c}card\u{201d}".to_owned(),
 });
 
-pub fn describe<'a>(scene: &'a SceneData, tolerances: &'a Value) -> Description<'a> {
-    Description {
+pub fn describe<'a>(scene: &'a SceneData, tolerances: &'a Value) -> MapDescription<'a> {
+    MapDescription {
         scene,
         engine: &ENGINE,
         tolerances,
@@ -128,7 +128,7 @@ pub fn describe<'a>(scene: &'a SceneData, tolerances: &'a Value) -> Description<
 }
 
 /// Writes the whole map.
-pub fn write(path: &Path, scene: &SceneData) -> Counts {
+pub fn write(path: &Path, scene: &SceneData) -> CellCounts {
     let tolerances = json!({"rtol": 0.1 + 0.2});
     let mut writer = MapWriter::create(
         path,

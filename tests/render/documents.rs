@@ -83,7 +83,7 @@ fn errors_leave_no_picture() {
     assert!(
         matches!(
             error,
-            RenderError::Store(store::Error::UnknownChannel { .. })
+            RenderError::Store(store::StoreError::UnknownChannel { .. })
         ),
         "{error}"
     );

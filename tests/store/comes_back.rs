@@ -5,26 +5,26 @@ use super::sweeps;
 use serde_json::json;
 use std::fs;
 use whiskmap::classify::Status;
-use whiskmap::store::{Layout, Panel, STATE_CHANNELS, Samples, StoredMap};
+use whiskmap::store::{AtlasLayout, ChannelValues, Panel, STATE_CHANNELS, StoredMap};
 
-fn bits(samples: &Samples) -> Vec<u32> {
+fn bits(samples: &ChannelValues) -> Vec<u32> {
     match samples {
-        Samples::F32(values) => values.iter().map(|value| value.to_bits()).collect(),
-        Samples::U32(values) => values.clone(),
+        ChannelValues::F32(values) => values.iter().map(|value| value.to_bits()).collect(),
+        ChannelValues::U32(values) => values.clone(),
     }
 }
 
 /// A channel of a panel, by the name it has in the file.
-fn channel(panel: &Panel, name: &str) -> Samples {
+fn channel(panel: &Panel, name: &str) -> ChannelValues {
     match name {
-        "regime" => Samples::U32(panel.regime.clone()),
-        "status" => Samples::U32(panel.status.clone()),
-        "newton_steps" => Samples::U32(panel.newton_steps.clone()),
-        "residual" => Samples::F32(panel.residual.clone()),
-        "margin_deg" => Samples::F32(panel.margin_deg.clone()),
+        "regime" => ChannelValues::U32(panel.regime.clone()),
+        "status" => ChannelValues::U32(panel.status.clone()),
+        "newton_steps" => ChannelValues::U32(panel.newton_steps.clone()),
+        "residual" => ChannelValues::F32(panel.residual.clone()),
+        "margin_deg" => ChannelValues::F32(panel.margin_deg.clone()),
         _ => {
             let place = STATE_CHANNELS.iter().position(|known| *known == name);
-            Samples::F32(panel.state[place.unwrap()].clone())
+            ChannelValues::F32(panel.state[place.unwrap()].clone())
         }
     }
 }
@@ -38,7 +38,7 @@ fn every_channel_of_every_panel_comes_back_bit_for_bit() {
         let scene = scene(23, 37, taper, curvature);
         write(&path, &scene);
         let map = StoredMap::open(&path).unwrap();
-        let layout = Layout::of(&scene.grid);
+        let layout = AtlasLayout::of(&scene.grid);
         assert_eq!(map.layout, layout);
         assert_eq!(map.channels().len(), STATE_CHANNELS.len() + 5);
         for name in map.channels() {
@@ -51,7 +51,7 @@ fn every_channel_of_every_panel_comes_back_bit_for_bit() {
             }
             assert_eq!(bits(&map.read_channel(name).unwrap()), whole, "{name}");
         }
-        let Samples::F32(force) = map.read_channel("force_un").unwrap() else {
+        let ChannelValues::F32(force) = map.read_channel("force_un").unwrap() else {
             panic!("forces are f32");
         };
         assert!(force.iter().any(|value| value.is_nan()) && force.iter().any(|f| f.is_finite()));
@@ -104,7 +104,7 @@ fn the_header_counts_the_cells() {
     let scene = scene(40, 30, Some(vec![0.5, 0.9]), None);
     let counts = write(&path, &scene);
     let map = StoredMap::open(&path).unwrap();
-    let Samples::U32(regimes) = map.read_channel("regime").unwrap() else {
+    let ChannelValues::U32(regimes) = map.read_channel("regime").unwrap() else {
         panic!("regimes are u32");
     };
     for (code, name) in &map.regime_names {
@@ -163,7 +163,7 @@ fn another_strict_reader_finds_every_cell_where_the_axes_say() {
             .map(|own| own.layer_name.clone().unwrap().to_string())
             .collect();
         assert_eq!(names, ["regime", "state", "numerics"]);
-        let layout = Layout::of(&scene.grid);
+        let layout = AtlasLayout::of(&scene.grid);
         let width = layout.columns * 23;
         for found in image
             .layer_data

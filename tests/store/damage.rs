@@ -8,8 +8,8 @@ use whiskmap::classify::Regime;
 use whiskmap::map::Channels;
 use whiskmap::scene::Scene;
 use whiskmap::store::{
-    BlockState, CheckDepth, Description, Error, PackedPanel, Samples, StoredMap, TemporaryFiles,
-    ZarrStore,
+    BlockState, ChannelValues, CheckDepth, MapDescription, PackedPanel, StoreError, StoredMap,
+    TemporaryFiles, ZarrStore,
 };
 
 /// Two blocks of three and one whiskers.
@@ -22,8 +22,8 @@ distance_mm = { from = 2, to = 20, count = 64 }
 taper = [0, 0.5, 0.8, 1]
 "#;
 
-fn about<'a>(scene: &'a Scene, arithmetic: &'a str) -> Description<'a> {
-    Description {
+fn about<'a>(scene: &'a Scene, arithmetic: &'a str) -> MapDescription<'a> {
+    MapDescription {
         channels: Channels::those(|name| ["regime", "status", "force_un"].contains(&name)),
         arithmetic,
         ..map::describe(scene, &serde_json::Value::Null)
@@ -60,12 +60,12 @@ fn files(folder: &Path) -> Vec<PathBuf> {
 }
 
 /// The bits of every value.
-fn bits(samples: &Samples) -> Vec<u64> {
+fn bits(samples: &ChannelValues) -> Vec<u64> {
     samples.values().map(f64::to_bits).collect()
 }
 
 /// All that readers get of a store: each channel by its bits, the counts and the axes.
-fn all_of_store(path: &Path) -> Result<Vec<u64>, Error> {
+fn all_of_store(path: &Path) -> Result<Vec<u64>, StoreError> {
     let store = ZarrStore::open(path)?;
     let mut all: Vec<u64> = Vec::new();
     for channel in store.channels().names() {
@@ -157,7 +157,7 @@ fn no_flipped_bit_of_the_root_passes() {
 }
 
 /// All that readers get of a map.
-fn all_of_map(path: &Path) -> Result<Vec<u64>, Error> {
+fn all_of_map(path: &Path) -> Result<Vec<u64>, StoreError> {
     let map = StoredMap::open(path)?;
     let mut all: Vec<u64> = Vec::new();
     for channel in map.channels() {
@@ -278,7 +278,7 @@ fn a_store_has_one_scene_version_engine_arithmetic_and_accuracy() {
     let path = folder.path().join("x.zarr");
     store(&path, SCENE);
     let scene = Scene::parse(SCENE, "scene.toml").unwrap();
-    let join = |about: &Description<'_>| {
+    let join = |about: &MapDescription<'_>| {
         let joined = ZarrStore::join(&path, &scene, about, true);
         joined.map(drop).map_err(|why| why.to_string())
     };
@@ -293,7 +293,7 @@ fn a_store_has_one_scene_version_engine_arithmetic_and_accuracy() {
         engine: "gpu f32".to_owned(),
         adapter: String::new(),
     };
-    let why = join(&Description {
+    let why = join(&MapDescription {
         engine: &engine,
         ..fma
     })
@@ -303,7 +303,7 @@ fn a_store_has_one_scene_version_engine_arithmetic_and_accuracy() {
         "{why}"
     );
     let tolerances = json!({ "rtol": 1 });
-    let why = join(&Description {
+    let why = join(&MapDescription {
         tolerances: &tolerances,
         ..fma
     })
@@ -324,7 +324,7 @@ fn of_two_engines_that_create_a_store_one_succeeds() {
                 engine: name.to_owned(),
                 adapter: String::new(),
             };
-            let about = Description {
+            let about = MapDescription {
                 engine: &engine,
                 ..about(&scene, "fma")
             };

@@ -5,7 +5,9 @@ use super::sweeps;
 use serde_json::json;
 use std::fs;
 use std::path::Path;
-use whiskmap::store::{Audit, EngineCells, Error, MapWriter, Panel, StoredMap, TemporaryFiles};
+use whiskmap::store::{
+    Audit, EngineCells, MapWriter, Panel, StoreError, StoredMap, TemporaryFiles,
+};
 
 fn listing(folder: &Path) -> Vec<String> {
     let entries = fs::read_dir(folder).unwrap();
@@ -121,15 +123,15 @@ fn other_files_are_told_apart() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("map.exr");
     let missing = StoredMap::open(&path).unwrap_err();
-    assert!(matches!(missing, Error::Read(..)));
+    assert!(matches!(missing, StoreError::Read(..)));
     for text in ["", "\x76", "this is no picture"] {
         fs::write(&path, text).unwrap();
         let error = StoredMap::open(&path).unwrap_err();
-        assert!(matches!(error, Error::NotExr { .. }), "{error}");
+        assert!(matches!(error, StoreError::NotExr { .. }), "{error}");
     }
     exr::prelude::write_rgb_file(&path, 4, 4, |x, y| (x as f32, y as f32, 0.0)).unwrap();
     let error = StoredMap::open(&path).unwrap_err();
-    assert!(matches!(error, Error::NotAMap { .. }), "{error}");
+    assert!(matches!(error, StoreError::NotAMap { .. }), "{error}");
 }
 
 #[test]
@@ -144,11 +146,11 @@ fn channels_that_do_not_fit_the_axes_are_refused() {
     super::sealed::seal(&mut bytes);
     fs::write(&path, bytes).unwrap();
     let error = StoredMap::open(&path).unwrap_err();
-    assert!(matches!(error, Error::NotAMap { .. }), "{error}");
+    assert!(matches!(error, StoreError::NotAMap { .. }), "{error}");
 }
 
 /// Opens a file and reads every block of it.
-fn read_all(path: &Path) -> Result<(), Error> {
+fn read_all(path: &Path) -> Result<(), StoreError> {
     let map = StoredMap::open(path)?;
     for name in ["regime", "force_un", "residual"] {
         map.read_channel(name)?;
@@ -168,7 +170,10 @@ fn a_file_cut_short_is_an_error_at_every_length() {
             fs::write(&path, &whole[..length]).unwrap();
             let error = read_all(&path).unwrap_err();
             assert!(
-                matches!(error, Error::NotExr { .. } | Error::Damaged { .. }),
+                matches!(
+                    error,
+                    StoreError::NotExr { .. } | StoreError::Damaged { .. }
+                ),
                 "{length}: {error}"
             );
         }

@@ -6,11 +6,11 @@ use super::refuse;
 use std::io::{BufWriter, IntoInnerError, Write};
 use std::path::Path;
 use whiskmap::classify::Status;
-use whiskmap::store::{Output, Samples, Slice};
+use whiskmap::store::{ChannelValues, MapSlice, Output};
 
 /// Writes the only channel of `channels`.
 pub fn array(
-    slice: &Slice,
+    slice: &MapSlice,
     channels: &[&'static str],
     path: &Path,
     files: &mut Files,
@@ -21,11 +21,11 @@ pub fn array(
     let mut file = BufWriter::new(files.output("--output", path)?);
     for (number, whisker) in slice.whiskers().enumerate() {
         let (kind, bytes): (_, Vec<u8>) = match slice.read_panel(channel, whisker)? {
-            Samples::F32(values) => (
+            ChannelValues::F32(values) => (
                 "<f4",
                 values.into_iter().flat_map(f32::to_le_bytes).collect(),
             ),
-            Samples::U32(codes) => (
+            ChannelValues::U32(codes) => (
                 "<u4",
                 codes.into_iter().flat_map(u32::to_le_bytes).collect(),
             ),
@@ -47,7 +47,7 @@ pub fn array(
 
 /// Prints the number of inexact states in an array. The array does not contain `status`, which marks them.
 pub fn warn_of_marks(
-    slice: &Slice,
+    slice: &MapSlice,
     channels: &[&'static str],
     marked: &[&'static str],
 ) -> Result<(), Failure> {
@@ -57,7 +57,7 @@ pub fn warn_of_marks(
     let marks = Status::MARKS.map(Status::code);
     let (mut off, mut cells) = (0, 0);
     for whisker in slice.whiskers() {
-        if let Samples::U32(codes) = slice.read_panel("status", whisker)? {
+        if let ChannelValues::U32(codes) = slice.read_panel("status", whisker)? {
             off += codes.iter().filter(|code| marks.contains(code)).count();
             cells += codes.len();
         }

@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 use whiskmap::engine;
 use whiskmap::map::{Audit, Channels, EngineCells};
 use whiskmap::scene::{LONGEST_TITLE, Parameter, Scene, SceneData};
-use whiskmap::store::{Description, MapWriter, Slice, TemporaryFolder, ZarrStore};
+use whiskmap::store::{MapDescription, MapSlice, MapWriter, TemporaryFolder, ZarrStore};
 
 #[derive(Debug, Args)]
 #[command(after_help = "\
@@ -67,7 +67,7 @@ fn refuse(path: &Path, why: &str) -> Result<(), Failure> {
 }
 
 fn map(
-    slice: &Slice,
+    slice: &MapSlice,
     channels: &[&'static str],
     path: &Path,
     files: &mut Files,
@@ -104,7 +104,7 @@ fn map(
 }
 
 fn store(
-    slice: &Slice,
+    slice: &MapSlice,
     channels: &[&'static str],
     path: &Path,
     files: &mut Files,
@@ -141,7 +141,7 @@ fn store(
         let packed = whiskers.map(|whisker| Ok(store.pack(&slice.panel(about.channels, whisker)?)));
         store.write(
             block,
-            &packed.collect::<Result<Vec<_>, whiskmap::store::Error>>()?,
+            &packed.collect::<Result<Vec<_>, whiskmap::store::StoreError>>()?,
             temporary,
         )?;
     }
@@ -150,7 +150,7 @@ fn store(
 }
 
 /// Returns the scene of the slice, in which each selected axis has one value.
-fn scene(slice: &Slice) -> Result<Scene, Failure> {
+fn scene(slice: &MapSlice) -> Result<Scene, Failure> {
     let text = slice.stored().attribute("scene")?;
     let text = text.as_str().unwrap_or_default();
     let scene = Scene::parse(text, "the scene of the map")?;
@@ -176,10 +176,10 @@ struct MapOrigin {
 }
 
 impl MapOrigin {
-    fn of(slice: &Slice) -> Result<Self, Failure> {
+    fn of(slice: &MapSlice) -> Result<Self, Failure> {
         let text = |name: &str| {
             let text = slice.stored().attribute(name)?;
-            Ok::<_, whiskmap::store::Error>(text.as_str().unwrap_or_default().to_owned())
+            Ok::<_, whiskmap::store::StoreError>(text.as_str().unwrap_or_default().to_owned())
         };
         let engine = engine::EngineDescription {
             engine: text("engine")?,
@@ -194,8 +194,8 @@ impl MapOrigin {
         })
     }
 
-    fn describe<'a>(&'a self, scene: &'a SceneData, channels: Channels) -> Description<'a> {
-        Description {
+    fn describe<'a>(&'a self, scene: &'a SceneData, channels: Channels) -> MapDescription<'a> {
+        MapDescription {
             scene,
             engine: &self.engine,
             tolerances: &self.tolerances,

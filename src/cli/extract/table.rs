@@ -4,12 +4,12 @@ use super::super::failure::Failure;
 use super::super::files::{Files, unwritten};
 use serde::ser::{Serialize, SerializeStruct, Serializer};
 use std::path::Path;
-use whiskmap::store::{Samples, Slice, Table};
+use whiskmap::store::{ChannelValues, MapSlice, TableFile};
 
 struct CellLine<'a> {
     axes: &'a [(&'static str, f64)],
     channels: &'a [&'static str],
-    samples: &'a [Samples],
+    samples: &'a [ChannelValues],
     cell: usize,
 }
 
@@ -22,8 +22,8 @@ impl Serialize for CellLine<'_> {
         }
         for (name, samples) in self.channels.iter().zip(self.samples) {
             match samples {
-                Samples::U32(codes) => columns.serialize_field(name, &codes[self.cell])?,
-                Samples::F32(values) => {
+                ChannelValues::U32(codes) => columns.serialize_field(name, &codes[self.cell])?,
+                ChannelValues::F32(values) => {
                     let value = Some(values[self.cell]).filter(|value| !value.is_nan());
                     columns.serialize_field(name, &value)?;
                 }
@@ -34,16 +34,16 @@ impl Serialize for CellLine<'_> {
 }
 
 pub fn table(
-    slice: &Slice,
+    slice: &MapSlice,
     channels: &[&'static str],
     path: &Path,
     files: &mut Files,
 ) -> Result<(), Failure> {
-    let mut table = Table::new(files.output("--output", path)?);
+    let mut table = TableFile::new(files.output("--output", path)?);
     let grid = slice.grid();
     for whisker in slice.whiskers() {
         let samples = channels.iter().map(|name| slice.read_panel(name, whisker));
-        let samples: Vec<Samples> = samples.collect::<Result<_, _>>()?;
+        let samples: Vec<ChannelValues> = samples.collect::<Result<_, _>>()?;
         let place = slice.place(whisker);
         let rows = grid.distance_mm.iter();
         let cells =

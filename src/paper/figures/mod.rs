@@ -12,7 +12,7 @@ mod fig3;
 pub use detachment::Measurements;
 
 use crate::render::{Chart, Plot};
-use crate::store::Table;
+use crate::store::TableFile;
 use crate::trace::NoState;
 use serde::Serialize;
 use std::io;
@@ -28,7 +28,7 @@ pub struct Figure {
 }
 
 /// Writes the rows of one panel into a table.
-pub type TableRows = Box<dyn Fn(&mut Table) -> io::Result<()>>;
+pub type TableRows = Box<dyn Fn(&mut TableFile) -> io::Result<()>>;
 
 /// A panel: its letter, its plot and its table.
 struct FigurePanel {

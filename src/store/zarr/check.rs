@@ -6,7 +6,7 @@ use super::identity::FileIdentity;
 use super::metadata::CELLS;
 use super::read::open_regular;
 use crate::classify::Regime;
-use crate::store::{Error, check_links};
+use crate::store::{StoreError, check_links};
 use rayon::prelude::*;
 use std::fs;
 use std::io::{self, Read};
@@ -29,9 +29,9 @@ pub enum BlockState {
     /// A file is missing: the block is not finished.
     Missing,
     /// All files exist, and these are damaged.
-    Damaged(Vec<Error>),
+    Damaged(Vec<StoreError>),
     /// The file system refused to read these files: they may be whole.
-    Unreadable(Vec<Error>),
+    Unreadable(Vec<StoreError>),
     /// All files exist, without a fault at this depth.
     Done,
 }
@@ -46,25 +46,28 @@ impl ZarrStore {
             match file.try_exists() {
                 Ok(true) => {}
                 Ok(false) => return BlockState::Missing,
-                Err(why) => return BlockState::Unreadable(vec![Error::Read(file, why)]),
+                Err(why) => return BlockState::Unreadable(vec![StoreError::Read(file, why)]),
             }
         }
         let faults = self.arrays.par_iter();
         let faults = faults.filter_map(|array| self.check(array, block, depth).err());
-        let mut faults: Vec<Error> = faults.collect();
+        let mut faults: Vec<StoreError> = faults.collect();
         if faults.is_empty() && depth == CheckDepth::Values {
             faults.extend(self.check_counts(block).err());
         }
         if faults.is_empty() {
             BlockState::Done
-        } else if faults.iter().any(|fault| matches!(fault, Error::Read(..))) {
+        } else if faults
+            .iter()
+            .any(|fault| matches!(fault, StoreError::Read(..)))
+        {
             BlockState::Unreadable(faults)
         } else {
             BlockState::Damaged(faults)
         }
     }
 
-    fn check(&self, array: &ZarrArray, block: usize, depth: CheckDepth) -> Result<(), Error> {
+    fn check(&self, array: &ZarrArray, block: usize, depth: CheckDepth) -> Result<(), StoreError> {
         match depth {
             CheckDepth::Structure => self.check_structure(array, &self.file(array, block)),
             CheckDepth::Checksums => self.read_file(array, &self.file(array, block)).map(drop),
@@ -73,17 +76,17 @@ impl ZarrStore {
     }
 
     /// Checks identity, length and index of a file.
-    fn check_structure(&self, array: &ZarrArray, file: &Path) -> Result<(), Error> {
+    fn check_structure(&self, array: &ZarrArray, file: &Path) -> Result<(), StoreError> {
         let mut opened = open_regular(file)?;
         let fault = self.expected(array, file).structure_fault(&mut opened);
-        match fault.map_err(Error::at(file, Error::Read))? {
-            Some(why) => Err(Error::Damaged(file.to_owned(), why)),
+        match fault.map_err(StoreError::at(file, StoreError::Read))? {
+            Some(why) => Err(StoreError::Damaged(file.to_owned(), why)),
             None => Ok(()),
         }
     }
 
     /// Compares the counts of regimes with the regimes.
-    fn check_counts(&self, block: usize) -> Result<(), Error> {
+    fn check_counts(&self, block: usize) -> Result<(), StoreError> {
         let array = |name: &str| self.arrays.iter().find(|array| array.name == name);
         let (Some(counts), Some(regimes)) = (array(CELLS), array("regime")) else {
             return Ok(());
@@ -99,7 +102,7 @@ impl ZarrStore {
         });
         if !found.eq(counted) {
             let why = format!("its counts are not those of the array `{}`", regimes.name);
-            return Err(Error::Damaged(self.file(counts, block), why));
+            return Err(StoreError::Damaged(self.file(counts, block), why));
         }
         let unknown = cells.iter().find(|code| {
             **code != NOT_COMPUTED
@@ -109,7 +112,7 @@ impl ZarrStore {
         });
         unknown.map_or(Ok(()), |code| {
             let why = format!("the code {code} has no name");
-            Err(Error::Damaged(self.file(regimes, block), why))
+            Err(StoreError::Damaged(self.file(regimes, block), why))
         })
     }
 
@@ -118,10 +121,13 @@ impl ZarrStore {
     /// # Errors
     ///
     /// The store is of another version, whose metadata may differ, or a file cannot be read.
-    pub fn metadata_faults(&self) -> Result<Vec<Error>, Error> {
+    pub fn metadata_faults(&self) -> Result<Vec<StoreError>, StoreError> {
         let version = self.attribute("whiskmap_version")?;
         if version != env!("CARGO_PKG_VERSION") {
-            return Err(Error::OtherVersion(self.path.clone(), version.to_string()));
+            return Err(StoreError::OtherVersion(
+                self.path.clone(),
+                version.to_string(),
+            ));
         }
         let files = self.metadata_files();
         let faults = files.iter();
@@ -135,9 +141,9 @@ impl ZarrStore {
     /// # Errors
     ///
     /// A file cannot be removed, or all blocks belong to another store: then the root is wrong, not the blocks.
-    pub fn remove_damaged(&self, block: usize) -> Result<bool, Error> {
-        if self.owner() == Owner::Other {
-            return Err(Error::OtherBlocks(self.path.clone()));
+    pub fn remove_damaged(&self, block: usize) -> Result<bool, StoreError> {
+        if self.owner() == BlockOwner::Other {
+            return Err(StoreError::OtherBlocks(self.path.clone()));
         }
         // A run may have computed it again meanwhile.
         let state = self.state(block, CheckDepth::Values);
@@ -150,7 +156,7 @@ impl ZarrStore {
             let folder = self.path.join(&array.name);
             match check_links(&folder).and_then(|()| fs::remove_file(&file)) {
                 Err(why) if why.kind() != io::ErrorKind::NotFound => {
-                    return Err(Error::Write(file, why));
+                    return Err(StoreError::Write(file, why));
                 }
                 _ => {}
             }
@@ -159,8 +165,8 @@ impl ZarrStore {
     }
 
     /// The owner of the blocks in the folder, by the first bytes of their files.
-    pub(super) fn owner(&self) -> Owner {
-        let mut owner = Owner::Nobody;
+    pub(super) fn owner(&self) -> BlockOwner {
+        let mut owner = BlockOwner::Nobody;
         for array in &self.arrays {
             let folder = self.path.join(&array.name);
             for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
@@ -169,9 +175,9 @@ impl ZarrStore {
                     continue;
                 };
                 if identity == self.expected(array, &entry.path()).identity {
-                    return Owner::This;
+                    return BlockOwner::This;
                 }
-                owner = Owner::Other;
+                owner = BlockOwner::Other;
             }
         }
         owner
@@ -187,7 +193,7 @@ fn identity_in(file: &Path) -> Option<FileIdentity> {
 
 /// The store to which the blocks in a folder belong.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Owner {
+pub(super) enum BlockOwner {
     /// There are no blocks.
     Nobody,
     /// At least one block belongs to this store.
@@ -197,21 +203,22 @@ pub(super) enum Owner {
 }
 
 /// The fault of a metadata file that must have these `bytes`. A longer file is not read to its end.
-pub(super) fn metadata_fault(path: &Path, bytes: &[u8]) -> Option<Error> {
+pub(super) fn metadata_fault(path: &Path, bytes: &[u8]) -> Option<StoreError> {
     let mut found = Vec::new();
     let read = open_regular(path).and_then(|file| {
         let read = file.take(bytes.len() as u64 + 1).read_to_end(&mut found);
-        read.map_err(Error::at(path, Error::Read))
+        read.map_err(StoreError::at(path, StoreError::Read))
     });
     match read {
         Ok(_) if found == bytes => None,
         Ok(_) => {
             let why = "it is not as the scene demands";
-            Some(Error::Damaged(path.to_owned(), why.to_owned()))
+            Some(StoreError::Damaged(path.to_owned(), why.to_owned()))
         }
-        Err(Error::NotComputed(_)) => {
-            Some(Error::Damaged(path.to_owned(), "it is missing".to_owned()))
-        }
+        Err(StoreError::NotComputed(_)) => Some(StoreError::Damaged(
+            path.to_owned(),
+            "it is missing".to_owned(),
+        )),
         Err(why) => Some(why),
     }
 }

@@ -1,13 +1,13 @@
 //! The metadata and coordinates of a store, which follow from the scene and the settings.
 
 use super::array::ZarrArray;
-use super::check::{Owner, metadata_fault};
+use super::check::{BlockOwner, metadata_fault};
 use super::identity::AGREED;
 use super::metadata::{self, IDENTITY};
 use super::read::open_regular;
 use super::{METADATA, ZarrStore};
 use crate::store::temporary::host_of;
-use crate::store::{Error, Output, TemporaryFiles, check_links};
+use crate::store::{Output, StoreError, TemporaryFiles, check_links};
 use serde_json::{Map, Value};
 use std::fs;
 use std::io::{self, Read, Write};
@@ -25,26 +25,26 @@ impl ZarrStore {
     /// # Errors
     ///
     /// The existing store was created with other settings or must not exist, or one of its folders cannot be written.
-    pub fn begin(&self, temporary: &TemporaryFiles) -> Result<Vec<PathBuf>, Error> {
+    pub fn begin(&self, temporary: &TemporaryFiles) -> Result<Vec<PathBuf>, StoreError> {
         let made = check_links(&self.path).and_then(|()| fs::create_dir_all(&self.path));
-        made.map_err(Error::at(&self.path, Error::Write))?;
+        made.map_err(StoreError::at(&self.path, StoreError::Write))?;
         let root = self.path.join(METADATA);
         let created = finish(&root, &[self.root()], temporary, Output::finish_new);
         match created {
             Err(why) if why.kind() == io::ErrorKind::AlreadyExists => self.agree()?,
-            created => created.map_err(Error::at(&root, Error::Write))?,
+            created => created.map_err(StoreError::at(&root, StoreError::Write))?,
         }
         for array in &self.arrays {
             let folder = self.path.join(&array.name);
             let made = check_links(&folder).and_then(|()| fs::create_dir_all(&folder));
-            made.map_err(Error::at(&folder, Error::Write))?;
+            made.map_err(StoreError::at(&folder, StoreError::Write))?;
         }
         let restored = self.restore_metadata(temporary)?;
         let folders = self.arrays.iter().map(|array| self.path.join(&array.name));
         for folder in folders.chain([self.path.clone()]) {
             temporary
                 .prepare(&folder)
-                .map_err(Error::at(&folder, Error::Write))?;
+                .map_err(StoreError::at(&folder, StoreError::Write))?;
         }
         Ok(restored)
     }
@@ -54,12 +54,12 @@ impl ZarrStore {
     /// # Errors
     ///
     /// A file cannot be read or written.
-    pub fn restore_metadata(&self, temporary: &TemporaryFiles) -> Result<Vec<PathBuf>, Error> {
+    pub fn restore_metadata(&self, temporary: &TemporaryFiles) -> Result<Vec<PathBuf>, StoreError> {
         let (mut damaged, mut failures) = (Vec::new(), Vec::new());
         for (path, bytes) in self.metadata_files() {
             let restored = match metadata_fault(&path, &bytes) {
                 None => continue,
-                Some(Error::Damaged(..)) => restore(&path, &bytes, temporary),
+                Some(StoreError::Damaged(..)) => restore(&path, &bytes, temporary),
                 Some(why) => Err(why),
             };
             match restored {
@@ -95,33 +95,33 @@ impl ZarrStore {
     }
 
     /// Checks that the store at the path, if any, has these settings. Its metadata may be damaged if its blocks belong to this store.
-    pub(super) fn agree(&self) -> Result<(), Error> {
+    pub(super) fn agree(&self) -> Result<(), StoreError> {
         match Self::open(&self.path) {
-            Ok(_) if !self.may_exist => Err(Error::Exists(self.path.clone())),
+            Ok(_) if !self.may_exist => Err(StoreError::Exists(self.path.clone())),
             Ok(there) => {
                 self.agree_with(&there)?;
                 match self.owner() {
-                    Owner::Other => Err(Error::OtherBlocks(self.path.clone())),
-                    Owner::Nobody | Owner::This => Ok(()),
+                    BlockOwner::Other => Err(StoreError::OtherBlocks(self.path.clone())),
+                    BlockOwner::Nobody | BlockOwner::This => Ok(()),
                 }
             }
-            Err(Error::Read(_, why)) if why.kind() == io::ErrorKind::NotFound => {
+            Err(StoreError::Read(_, why)) if why.kind() == io::ErrorKind::NotFound => {
                 let (owner, is_empty) = (self.owner(), is_empty(&self.path));
                 // Another process may have created it meanwhile: the root first.
                 if Self::is_at(&self.path) {
                     return self.agree();
                 }
                 match owner {
-                    Owner::Other => Err(Error::OtherBlocks(self.path.clone())),
-                    Owner::Nobody if !is_empty => {
+                    BlockOwner::Other => Err(StoreError::OtherBlocks(self.path.clone())),
+                    BlockOwner::Nobody if !is_empty => {
                         let why = format!("it has files, but no {METADATA}");
-                        Err(Error::NotAStore(self.path.clone(), why))
+                        Err(StoreError::NotAStore(self.path.clone(), why))
                     }
-                    Owner::Nobody | Owner::This => Ok(()),
+                    BlockOwner::Nobody | BlockOwner::This => Ok(()),
                 }
             }
-            Err(Error::NotAStore(..) | Error::Damaged(..))
-                if self.may_exist && self.owner() == Owner::This =>
+            Err(StoreError::NotAStore(..) | StoreError::Damaged(..))
+                if self.may_exist && self.owner() == BlockOwner::This =>
             {
                 Ok(())
             }
@@ -129,7 +129,7 @@ impl ZarrStore {
         }
     }
 
-    fn agree_with(&self, there: &Self) -> Result<(), Error> {
+    fn agree_with(&self, there: &Self) -> Result<(), StoreError> {
         let apart = AGREED
             .iter()
             .find(|name| self.attributes.get(**name) != there.attributes.get(**name));
@@ -143,7 +143,7 @@ impl ZarrStore {
         };
         let (there, here) = (text(there), text(self));
         let [there, here] = first_difference(&there, &here);
-        Err(Error::AtOdds {
+        Err(StoreError::AtOdds {
             path: self.path.clone(),
             name,
             there,
@@ -152,29 +152,30 @@ impl ZarrStore {
     }
 
     /// Checks that the store at its path still has this identity.
-    pub(super) fn check_place(&self) -> Result<(), Error> {
+    pub(super) fn check_place(&self) -> Result<(), StoreError> {
         let found = attributes(&self.path);
         let is_same =
             |found: &Map<String, Value>| found.get(IDENTITY) == self.attributes.get(IDENTITY);
         if found.is_ok_and(|found| is_same(&found)) {
             Ok(())
         } else {
-            Err(Error::Displaced(self.path.clone()))
+            Err(StoreError::Displaced(self.path.clone()))
         }
     }
 }
 
 /// Reads the attributes of the store at `path` from its root.
-pub(super) fn attributes(path: &Path) -> Result<Map<String, Value>, Error> {
+pub(super) fn attributes(path: &Path) -> Result<Map<String, Value>, StoreError> {
     let file = path.join(METADATA);
-    let foreign = |why: &dyn std::fmt::Display| Error::NotAStore(path.to_owned(), why.to_string());
+    let foreign =
+        |why: &dyn std::fmt::Display| StoreError::NotAStore(path.to_owned(), why.to_string());
     let mut text = Vec::new();
     let source = open_regular(&file).map_err(|why| match why {
-        Error::NotComputed(file) => Error::Read(file, io::ErrorKind::NotFound.into()),
+        StoreError::NotComputed(file) => StoreError::Read(file, io::ErrorKind::NotFound.into()),
         why => why,
     })?;
     let read = source.take(MOST_METADATA + 1).read_to_end(&mut text);
-    if read.map_err(Error::at(&file, Error::Read))? as u64 > MOST_METADATA {
+    if read.map_err(StoreError::at(&file, StoreError::Read))? as u64 > MOST_METADATA {
         return Err(foreign(&format!("{METADATA} is longer than 16 MiB")));
     }
     let root = serde_json::from_slice(&text);
@@ -193,10 +194,10 @@ fn is_empty(folder: &Path) -> bool {
 }
 
 /// Writes a metadata file again. Returns true if it existed.
-fn restore(path: &Path, bytes: &[u8], temporary: &TemporaryFiles) -> Result<bool, Error> {
+fn restore(path: &Path, bytes: &[u8], temporary: &TemporaryFiles) -> Result<bool, StoreError> {
     let was_there = path.exists();
     let folder = path.parent().map_or(Ok(()), fs::create_dir_all);
-    folder.map_err(Error::at(path, Error::Write))?;
+    folder.map_err(StoreError::at(path, StoreError::Write))?;
     write(path, &[bytes], temporary)?;
     Ok(was_there)
 }
@@ -211,9 +212,9 @@ pub(super) fn write(
     path: &Path,
     pieces: &[impl AsRef<[u8]>],
     temporary: &TemporaryFiles,
-) -> Result<(), Error> {
+) -> Result<(), StoreError> {
     let written = finish(path, pieces, temporary, Output::finish_durably);
-    written.map_err(Error::at(path, Error::Write))
+    written.map_err(StoreError::at(path, StoreError::Write))
 }
 
 fn finish(

@@ -16,12 +16,12 @@ pub(super) const AGREED: [&str; 6] = [
 
 /// The XXH3-128 hash of the attributes in which all runs that fill a store agree.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Identity(u128);
+pub(super) struct StoreIdentity(u128);
 
 /// The first bytes of a block's file: a hash of the store's identity, the array and the file's name.
 pub(super) type FileIdentity = [u8; 16];
 
-impl Identity {
+impl StoreIdentity {
     /// The identity of a store with these attributes.
     pub(super) fn of(attributes: &Map<String, Value>) -> Self {
         let agreed = AGREED.map(|name| attributes.get(name).map(sorted));
@@ -54,13 +54,13 @@ mod tests {
 
     #[test]
     fn what_is_agreed_on_changes_it_and_nothing_else_does() {
-        let one = Identity::of(&attributes("one"));
+        let one = StoreIdentity::of(&attributes("one"));
         let mut titled = attributes("one");
         titled.insert("title".to_owned(), json!("One"));
-        assert_eq!(one, Identity::of(&titled));
-        assert_ne!(one, Identity::of(&attributes("two")));
+        assert_eq!(one, StoreIdentity::of(&titled));
+        assert_ne!(one, StoreIdentity::of(&attributes("two")));
         titled.insert("arithmetic".to_owned(), json!("fma"));
-        assert_ne!(one, Identity::of(&titled));
+        assert_ne!(one, StoreIdentity::of(&titled));
         let files = [("regime", "c.0"), ("regime", "c.1"), ("status", "c.0")];
         let [a, b, c] = files.map(|(array, name)| one.of_file(array, name));
         assert!(a != b && b != c && c != a);

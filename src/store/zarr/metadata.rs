@@ -2,10 +2,10 @@
 
 use super::array::{NOT_COMPUTED, ValueKind, ZarrArray, about};
 use super::blocks::Blocks;
-use super::identity::{AGREED, Identity};
+use super::identity::{AGREED, StoreIdentity};
 use crate::classify::{Regime, Status};
 use crate::scene::{Grid, SceneData};
-use crate::store::{Channels, Description};
+use crate::store::{Channels, MapDescription};
 use serde_json::{Map, Value, json};
 
 /// Array with the number of cells of each regime: `[sweep axes.., regime]`.
@@ -170,7 +170,7 @@ pub(super) fn coordinates(grid: &Grid) -> Vec<(ZarrArray, Vec<u8>)> {
 }
 
 /// The attributes of a store, equal on all machines of one arithmetic class.
-pub(super) fn attributes(about: &Description<'_>, scene: &SceneData) -> Map<String, Value> {
+pub(super) fn attributes(about: &MapDescription<'_>, scene: &SceneData) -> Map<String, Value> {
     let agreed = [
         ("whiskmap_version", json!(env!("CARGO_PKG_VERSION"))),
         ("engine", json!(about.engine.engine)),
@@ -190,7 +190,7 @@ pub(super) fn completed(found: &Map<String, Value>, title: &str) -> Map<String, 
         Some(((*name).to_owned(), value.clone()))
     });
     let mut attributes: Map<String, Value> = agreed.collect();
-    let identity = Identity::of(&attributes).text();
+    let identity = StoreIdentity::of(&attributes).text();
     attributes.insert("Conventions".to_owned(), json!("CF-1.11"));
     attributes.insert("title".to_owned(), json!(title));
     attributes.insert(IDENTITY.to_owned(), json!(identity));

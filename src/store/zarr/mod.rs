@@ -23,9 +23,9 @@ pub use self::pack::PackedPanel;
 
 use self::array::ZarrArray;
 use self::blocks::Blocks;
-use self::identity::Identity;
+use self::identity::StoreIdentity;
 use super::stored::is_compatible;
-use super::{Channels, Description, Error};
+use super::{Channels, MapDescription, StoreError};
 use crate::scene::{Grid, Scene};
 use serde_json::{Map, Value};
 use std::ops::Range;
@@ -36,7 +36,7 @@ use std::path::{Path, PathBuf};
 pub struct ZarrStore {
     path: PathBuf,
     attributes: Map<String, Value>,
-    identity: Identity,
+    identity: StoreIdentity,
     /// Whether the store may exist when it is begun.
     may_exist: bool,
     scene: Scene,
@@ -58,10 +58,10 @@ impl ZarrStore {
     pub fn join(
         path: &Path,
         scene: &Scene,
-        about: &Description<'_>,
+        about: &MapDescription<'_>,
         may_exist: bool,
-    ) -> Result<Self, Error> {
-        let about = Description {
+    ) -> Result<Self, StoreError> {
+        let about = MapDescription {
             channels: about.channels.with("regime"),
             ..*about
         };
@@ -85,24 +85,27 @@ impl ZarrStore {
     /// # Errors
     ///
     /// There is no store, another program wrote it, or its metadata are damaged.
-    pub fn open(path: &Path) -> Result<Self, Error> {
+    pub fn open(path: &Path) -> Result<Self, StoreError> {
         let attributes = files::attributes(path)?;
         let foreign =
-            |why: &dyn std::fmt::Display| Error::NotAStore(path.to_owned(), why.to_string());
+            |why: &dyn std::fmt::Display| StoreError::NotAStore(path.to_owned(), why.to_string());
         let text = |name: &str| {
             let value = attributes.get(name).and_then(Value::as_str);
             value.ok_or_else(|| foreign(&format!("there is no text attribute `{name}`")))
         };
         let version = text("whiskmap_version")?;
         if !is_compatible(version) {
-            return Err(Error::OtherVersion(path.to_owned(), version.to_owned()));
+            return Err(StoreError::OtherVersion(
+                path.to_owned(),
+                version.to_owned(),
+            ));
         }
-        if text(metadata::IDENTITY)? != Identity::of(&attributes).text() {
+        if text(metadata::IDENTITY)? != StoreIdentity::of(&attributes).text() {
             let names = identity::AGREED.join(", ");
             let why = format!(
                 "its `identity` does not fit its attributes {names}: one of them was changed"
             );
-            return Err(Error::Damaged(path.join(METADATA), why));
+            return Err(StoreError::Damaged(path.join(METADATA), why));
         }
         let scene = Scene::parse(text("scene")?, "its scene").map_err(|why| foreign(&why))?;
         let channels = text("channels")?
@@ -117,7 +120,7 @@ impl ZarrStore {
         Self {
             arrays: metadata::arrays(&scene.grid, &blocks, channels),
             path: path.to_owned(),
-            identity: Identity::of(&attributes),
+            identity: StoreIdentity::of(&attributes),
             may_exist: true,
             attributes,
             scene,
@@ -149,10 +152,10 @@ impl ZarrStore {
     /// # Errors
     ///
     /// There is no such attribute.
-    pub fn attribute(&self, name: &str) -> Result<Value, Error> {
+    pub fn attribute(&self, name: &str) -> Result<Value, StoreError> {
         let value = self.attributes.get(name).cloned();
         value.ok_or_else(|| {
-            Error::NotAStore(self.path.clone(), format!("there is no attribute `{name}`"))
+            StoreError::NotAStore(self.path.clone(), format!("there is no attribute `{name}`"))
         })
     }
 

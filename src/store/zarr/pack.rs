@@ -5,7 +5,7 @@ use super::files::write;
 use super::{ZarrStore, shard};
 use crate::classify::Regime;
 use crate::scene::Scene;
-use crate::store::{Channels, Error, Panel, STATE_CHANNELS, TemporaryFiles};
+use crate::store::{Channels, Panel, STATE_CHANNELS, StoreError, TemporaryFiles};
 use rayon::prelude::*;
 use serde_json::Map;
 use std::borrow::Cow;
@@ -44,7 +44,7 @@ impl ZarrStore {
         block: usize,
         panels: &[PackedPanel],
         temporary: &TemporaryFiles,
-    ) -> Result<(), Error> {
+    ) -> Result<(), StoreError> {
         self.check_place()?;
         let put = |(index, array): (usize, &ZarrArray)| {
             let file = self.file(array, block);

@@ -5,7 +5,7 @@ use super::array::{ValueKind, ZarrArray};
 use super::metadata::CELLS;
 use super::shard::ExpectedFile;
 use crate::classify::Regime;
-use crate::store::{Error, Samples};
+use crate::store::{ChannelValues, StoreError};
 use std::fs::{self, File};
 use std::io::{self, Cursor, Read};
 use std::path::Path;
@@ -16,7 +16,7 @@ impl ZarrStore {
     /// # Errors
     ///
     /// The block is missing or damaged.
-    pub fn regimes(&self, block: usize) -> Result<[u64; Regime::ALL.len()], Error> {
+    pub fn regimes(&self, block: usize) -> Result<[u64; Regime::ALL.len()], StoreError> {
         let mut regimes = [0; Regime::ALL.len()];
         for array in self.arrays.iter().filter(|array| array.name == CELLS) {
             let values: Vec<u32> = bytemuck::pod_collect_to_vec(&self.read(array, block)?);
@@ -34,12 +34,12 @@ impl ZarrStore {
     /// # Errors
     ///
     /// There is no such channel, or the whisker's block is missing or damaged.
-    pub fn read_panel(&self, name: &str, whisker: usize) -> Result<Samples, Error> {
+    pub fn read_panel(&self, name: &str, whisker: usize) -> Result<ChannelValues, StoreError> {
         let array = self
             .arrays
             .iter()
             .find(|array| array.name == name && name != CELLS);
-        let array = array.ok_or_else(|| Error::UnknownChannel {
+        let array = array.ok_or_else(|| StoreError::UnknownChannel {
             path: self.path.clone(),
             name: name.to_owned(),
             known: self.channels.to_string(),
@@ -51,22 +51,24 @@ impl ZarrStore {
         let frames = expected.frames(&bytes);
         let frames = frames.skip(self.blocks.slot(block, index) * chunks);
         let values = array.unpack(frames.take(chunks));
-        let values = values.map_err(Error::at(&file, Error::Damaged))?;
+        let values = values.map_err(StoreError::at(&file, StoreError::Damaged))?;
         let [distances, push_angles] = self.blocks.panel();
         let bytes = &values[..distances * push_angles * array.kind.size()];
         Ok(match array.kind {
-            ValueKind::Code => Samples::U32(bytes.iter().map(|code| u32::from(*code)).collect()),
-            ValueKind::Count => Samples::U32(bytemuck::pod_collect_to_vec(bytes)),
-            _ => Samples::F32(bytemuck::pod_collect_to_vec(bytes)),
+            ValueKind::Code => {
+                ChannelValues::U32(bytes.iter().map(|code| u32::from(*code)).collect())
+            }
+            ValueKind::Count => ChannelValues::U32(bytemuck::pod_collect_to_vec(bytes)),
+            _ => ChannelValues::F32(bytemuck::pod_collect_to_vec(bytes)),
         })
     }
 
     /// The values of a block's file, as bytes.
-    pub(super) fn read(&self, array: &ZarrArray, block: usize) -> Result<Vec<u8>, Error> {
+    pub(super) fn read(&self, array: &ZarrArray, block: usize) -> Result<Vec<u8>, StoreError> {
         let path = self.file(array, block);
         let (expected, bytes) = self.read_file(array, &path)?;
         let values = array.unpack(expected.frames(&bytes));
-        values.map_err(Error::at(&path, Error::Damaged))
+        values.map_err(StoreError::at(&path, StoreError::Damaged))
     }
 
     /// Reads a block's file and checks its structure and checksums.
@@ -74,16 +76,16 @@ impl ZarrStore {
         &self,
         array: &ZarrArray,
         path: &Path,
-    ) -> Result<(ExpectedFile, Vec<u8>), Error> {
+    ) -> Result<(ExpectedFile, Vec<u8>), StoreError> {
         let file = open_regular(path)?;
         let expected = self.expected(array, path);
         let mut bytes = Vec::new();
         let read = file.take(expected.most_bytes() + 1).read_to_end(&mut bytes);
-        read.map_err(Error::at(path, Error::Read))?;
+        read.map_err(StoreError::at(path, StoreError::Read))?;
         let fault = expected.structure_fault(&mut Cursor::new(&bytes));
-        let fault = fault.map_err(Error::at(path, Error::Read))?;
+        let fault = fault.map_err(StoreError::at(path, StoreError::Read))?;
         match fault.or_else(|| expected.chunk_fault(&bytes)) {
-            Some(why) => Err(Error::Damaged(path.to_owned(), why)),
+            Some(why) => Err(StoreError::Damaged(path.to_owned(), why)),
             None => Ok((expected, bytes)),
         }
     }
@@ -100,13 +102,13 @@ impl ZarrStore {
 }
 
 /// Opens a regular file: another one, such as a pipe, might never open.
-pub(super) fn open_regular(path: &Path) -> Result<File, Error> {
+pub(super) fn open_regular(path: &Path) -> Result<File, StoreError> {
     let failed = |why: io::Error| match why.kind() {
-        io::ErrorKind::NotFound => Error::NotComputed(path.to_owned()),
-        _ => Error::Read(path.to_owned(), why),
+        io::ErrorKind::NotFound => StoreError::NotComputed(path.to_owned()),
+        _ => StoreError::Read(path.to_owned(), why),
     };
     if !fs::metadata(path).map_err(failed)?.is_file() {
-        return Err(Error::NotAFile(path.to_owned()));
+        return Err(StoreError::NotAFile(path.to_owned()));
     }
     File::open(path).map_err(failed)
 }

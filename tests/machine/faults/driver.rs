@@ -8,7 +8,7 @@ use std::path::Path;
 use std::process::Output;
 use tempfile::TempDir;
 use whiskmap::map::{EngineCells, STATE_CHANNELS};
-use whiskmap::store::{Samples, StoredMap};
+use whiskmap::store::{ChannelValues, StoredMap};
 
 tests! {
     Driver:
@@ -86,8 +86,8 @@ impl Place {
 /// The pixels of channels that do not depend on who solved the cells.
 fn verdicts(map: &StoredMap) -> [Vec<u32>; 2] {
     ["regime", "status"].map(|name| match map.read_channel(name).unwrap() {
-        Samples::U32(codes) => codes,
-        Samples::F32(_) => panic!("{name} is u32"),
+        ChannelValues::U32(codes) => codes,
+        ChannelValues::F32(_) => panic!("{name} is u32"),
     })
 }
 
