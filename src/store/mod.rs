@@ -35,7 +35,7 @@ pub use error::StoreError;
 pub use file_id::FileId;
 pub use layout::AtlasLayout;
 pub use output::Output;
-pub use reader::{ChannelValues, MapHeader, StoredMap};
+pub use reader::{ChannelValues, StoredMap};
 pub use slice::{InvalidAxisValue, MapSlice};
 pub use stored::MapSource;
 pub use table::TableFile;

@@ -11,7 +11,7 @@ use exr::meta::{MetaData, OffsetTables};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::File;
 use std::io::{self, BufReader, Seek, SeekFrom};
-use std::ops::{Deref, Range};
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 /// The values of a channel.
@@ -47,9 +47,10 @@ impl ChannelValues {
     }
 }
 
-/// The header of an EXR map.
+/// An EXR map on disk whose header is read and checked.
 #[derive(Debug)]
-pub struct MapHeader {
+#[non_exhaustive]
+pub struct StoredMap {
     /// Title of the scene, one line.
     pub title: String,
     /// The axes.
@@ -62,25 +63,11 @@ pub struct MapHeader {
     pub status_names: BTreeMap<u32, String>,
     /// Cells of each regime and status.
     pub counts: CellCounts,
-}
-
-/// An EXR map whose header is read and checked; it dereferences to its [`MapHeader`].
-#[derive(Debug)]
-pub struct StoredMap {
     path: PathBuf,
     meta: MetaData,
     /// Positions of the blocks of each part.
     offsets: OffsetTables,
     channels: Channels,
-    header: MapHeader,
-}
-
-impl Deref for StoredMap {
-    type OutputTarget = MapHeader;
-
-    fn deref(&self) -> &MapHeader {
-        &self.header
-    }
 }
 
 impl StoredMap {
@@ -101,14 +88,12 @@ impl StoredMap {
         header::check_layout(&meta, layout, channels).map_err(&foreign)?;
         Ok(Self {
             offsets: header::read_offsets(path, &mut file, &meta)?,
-            header: MapHeader {
-                title: header::parse(&meta, "title").map_err(&foreign)?,
-                regime_names: header::parse(&meta, "regime_names").map_err(&foreign)?,
-                status_names: header::parse(&meta, "status_names").map_err(&foreign)?,
-                counts: header::parse(&meta, "counts").map_err(&foreign)?,
-                layout,
-                grid,
-            },
+            title: header::parse(&meta, "title").map_err(&foreign)?,
+            regime_names: header::parse(&meta, "regime_names").map_err(&foreign)?,
+            status_names: header::parse(&meta, "status_names").map_err(&foreign)?,
+            counts: header::parse(&meta, "counts").map_err(&foreign)?,
+            layout,
+            grid,
             path: path.to_owned(),
             meta,
             channels,
