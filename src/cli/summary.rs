@@ -18,7 +18,7 @@ pub fn compute(
     plan: &Plan,
     engine: Option<&mut dyn Engine>,
     cells: usize,
-    mut keep: impl FnMut(Vec<Panel>) -> Result<(), Error> + Send,
+    mut keep: impl FnMut(Vec<Panel>) -> Result<(), StoreError> + Send,
 ) -> Result<Summary, Failure> {
     let bar = Progress::over(cells, "cells");
     let result = map::run(scene, plan, engine, &mut |cells| bar.inc(cells), &mut keep);
