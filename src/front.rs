@@ -263,7 +263,7 @@ pub fn shape(scene: &Scene, distance_mm: f64, push_angle_deg: f64) -> Result<Sha
 /// # Errors
 /// When a parameter cannot be free, a point is beyond the whisker, points are too few, or the iteration does not converge.
 #[cfg(feature = "fit")]
-pub fn fit(scene: &Scene, points: &Points, free: &[Parameter]) -> Result<Fit, fit::Error> {
+pub fn fit(scene: &Scene, points: &Points, free: &[Parameter]) -> Result<Fit, fit::FitError> {
     fit::fit(scene, points, free)
 }
 

@@ -21,7 +21,7 @@ pub enum Failure {
     #[error(transparent)]
     Points(#[from] CsvError),
     #[error(transparent)]
-    Fit(#[from] fit::Error),
+    Fit(#[from] fit::FitError),
     /// The best values are not a fit; the text names the output that is therefore not written.
     #[error("{0}{1}")]
     NotAFit(fit::NotAFit, String),
@@ -74,7 +74,7 @@ impl Failure {
     fn code(&self) -> u8 {
         let is_input = match self {
             Self::Scene(_) | Self::Points(_) | Self::Plan(_) | Self::Input(_) => true,
-            Self::Fit(error) => !matches!(error, fit::Error::NotConverged(_)),
+            Self::Fit(error) => !matches!(error, fit::FitError::NotConverged(_)),
             Self::Store(store::StoreError::Encode(..))
             | Self::Render(
                 RenderError::Scale { .. } | RenderError::Codes(_) | RenderError::TooManyAxes(_),

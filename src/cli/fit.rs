@@ -9,7 +9,7 @@ use clap::Args;
 use serde_json::{Map, Value, json};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
-use whiskmap::fit::{Error, Estimate, Fit, fit};
+use whiskmap::fit::{Estimate, Fit, FitError, fit};
 use whiskmap::measured::Points;
 use whiskmap::scene::{Parameter, digits};
 use whiskmap::store::Output;
@@ -59,7 +59,7 @@ pub fn run(args: &FitArgs, files: &mut Files) -> Result<(), Failure> {
     let toml = open("--output", &args.output)?.zip(args.output.as_deref());
     let json = open("--json", &args.json)?.zip(args.json.as_deref());
     let found = fit(&scene, &points, &args.free).map_err(|why| match why {
-        Error::Lacking { .. } | Error::Twice(..) | Error::Held { .. } => {
+        FitError::Lacking { .. } | FitError::Twice(..) | FitError::Held { .. } => {
             Failure::Input(format!("--free {why}"))
         }
         _ => why.into(),

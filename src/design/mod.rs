@@ -1,8 +1,8 @@
-//! Which values of a parameter make the whisker detach in a given way at a given push angle.
+//! Values of a parameter with which a whisker detaches in a given way at a given push angle.
 //!
-//! The range that the scene accepts is scanned; where pushes begin to end in another way, and where their push angle
-//! turns back, is found between the samples; what is asked for then lies between two of all these places, and is
-//! bisected. Every solution is an end that was computed: a jump across the push angle is none.
+//! The search scans the range that the scene accepts. Between samples it finds changes of the kind of detachment, and turns of
+//! the push angle. It bisects between neighbours of all these values. Every solution is a computed end: a jump of the push angle
+//! across the target is no solution.
 
 mod samples;
 mod search;
@@ -13,82 +13,82 @@ use crate::scene::{Parameter, Scene, SceneError, digits};
 use crate::trace::DetachmentKind;
 use search::Search;
 
-/// How far the push angle of a solution may be from the one asked for, in degrees: exact ends are known to 1e-11.
+/// Largest difference of the push angles of a solution and the target, in degrees: exact ends are known to 1e-11.
 const TOLERANCE_DEG: f64 = 1e-9;
 
-/// Values closer than this, relative to them, are one solution, or leave no choice.
+/// Relative difference of values below which they are one solution, or a range leaves no choice.
 const EQUAL: f64 = 1e-9;
 
-/// The end that is asked for.
+/// The detachment that a design looks for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Target {
-    /// Distance from the base to the contact at first touch.
+    /// Distance from the base to the contact at first touch, in millimetres.
     pub distance_mm: f64,
     /// Side of the whisker that the pole is on.
     pub side: Side,
     /// How the push ends.
     pub kind: DetachmentKind,
-    /// Where it ends: positive CB, negative CF.
+    /// Push angle of the detachment in degrees: positive CB, negative CF.
     pub push_angle_deg: f64,
 }
 
 /// The end of a push at a value of the parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct End {
-    /// Value of the parameter.
+    /// Value of the parameter, in its unit.
     pub value: f64,
     /// How the push ends.
     pub kind: DetachmentKind,
-    /// Where it ends.
+    /// Push angle of the detachment in degrees; `None` without a detachment.
     pub push_angle_deg: Option<f64>,
 }
 
-/// What a parameter can do.
+/// Solutions of a design, and the ends over the whole range of the parameter.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Design {
-    /// Growing values, each of which makes the whisker detach as asked; none where all push angles are the same.
+    /// Solutions in growing order; empty if no value reaches the target, or if every value has the same push angle.
     pub values: Vec<f64>,
-    /// The least and the greatest value that were tried: all that the scene accepts.
+    /// The least and the greatest value that the scene accepts.
     pub range: [f64; 2],
-    /// Ends all over that range, at growing values.
+    /// Ends over that range, in growing order of the values.
     pub ends: Vec<End>,
 }
 
-/// Why there is nothing to try.
+/// Error of a design.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum NoDesign {
-    /// An axis stands in the parameter's place.
+    /// The scene sweeps whiskers, along this axis.
     #[error("grid.{0}: must be left out, as one number of one whisker is varied")]
     Sweep(&'static str),
     /// The scene does not give the parameter.
     #[error("{}: must be one of {given}, which the scene has; it has no {}", .parameter.name(), .parameter.key())]
     Lacking {
-        /// What was asked for.
+        /// The parameter of the design.
         parameter: Parameter,
-        /// What the scene does give.
+        /// Names of the parameters that the scene gives.
         given: String,
     },
-    /// The scene accepts its own value alone.
-    #[error("{}: the scene accepts no value but {} for {}, its other numbers being what they are", .parameter.name(), digits(*.value), .parameter.key())]
+    /// The scene accepts no other value of the parameter.
+    #[error("{}: the scene accepts no value but {} for {}, with all other numbers fixed", .parameter.name(), digits(*.value), .parameter.key())]
     Fixed {
-        /// What was asked for.
+        /// The parameter of the design.
         parameter: Parameter,
         /// Its own value.
         value: f64,
     },
-    /// No first touch at the distance.
+    /// The scene accepts no pole at the distance.
     #[error(transparent)]
     Distance(#[from] SceneError),
 }
 
 impl Design {
-    /// Whether the range spans so much that the logarithm of the parameter says more.
+    /// Returns true if the range is so wide that a logarithmic axis suits it.
     #[must_use]
     pub fn is_wide(&self) -> bool {
         samples::is_wide(self.range)
     }
 
-    /// The least and the greatest push angle of ends of a kind.
+    /// The least and the greatest push angle of ends of a kind, in degrees; `None` without such an end.
     #[must_use]
     pub fn reached_deg(&self, kind: DetachmentKind) -> Option<[f64; 2]> {
         let ends = self.ends.iter().filter(|end| end.kind == kind);
@@ -100,7 +100,7 @@ impl Design {
     }
 }
 
-/// Every value of `parameter` that makes the whisker of `scene` detach as asked; its grid does not matter.
+/// Finds every value of `parameter` with which the whisker of `scene` detaches as `target` says. The grid is not used.
 ///
 /// ```
 /// use whiskmap::design::{Target, design};

@@ -1,13 +1,13 @@
-//! Where a range is looked at.
+//! Sample values of a range.
 
-/// How many samples a range has.
+/// Number of samples of a range.
 pub const SAMPLES: usize = 128;
 
-/// Ranges of positive numbers that span more than this are looked at by their logarithm, too.
+/// Ratio of the ends of a range of positive numbers above which half of the samples are logarithmic.
 const WIDE: f64 = 10.0;
 
-/// Values from one end of the range to the other: evenly spaced, or, in a wide range of positive numbers, half of them
-/// evenly and half of them evenly in the logarithm.
+/// Sample values in growing order, both ends of the range included. They are evenly spaced; in a wide range of positive
+/// numbers, half of them are evenly spaced in the logarithm.
 pub fn samples([low, high]: [f64; 2]) -> Vec<f64> {
     let even = |count: usize| {
         (0..count).map(move |i| match i {
@@ -20,7 +20,7 @@ pub fn samples([low, high]: [f64; 2]) -> Vec<f64> {
         return even(SAMPLES).collect();
     }
     let half = SAMPLES / 2;
-    // Without the ends, which are there already.
+    // The even samples have the ends.
     let inner = (1..=half).map(|i| low * libm::pow(high / low, i as f64 / (half + 1) as f64));
     let mut values: Vec<f64> = even(half).chain(inner).collect();
     values.sort_by(f64::total_cmp);
@@ -28,7 +28,7 @@ pub fn samples([low, high]: [f64; 2]) -> Vec<f64> {
     values
 }
 
-/// Whether a range of positive numbers spans much.
+/// Returns true for a range of positive numbers that spans more than a factor of 10.
 pub fn is_wide([low, high]: [f64; 2]) -> bool {
     low > 0.0 && high > WIDE * low
 }

@@ -1,4 +1,4 @@
-//! The search for ends at a push angle: a scan, changes of kind, and bisection between turns.
+//! Search for ends at a push angle: a scan, changes of kind, and bisection between turns.
 
 use super::samples::samples;
 use super::{End, TOLERANCE_DEG, Target, turn};
@@ -7,10 +7,10 @@ use crate::scene::{Parameter, Scene};
 use crate::trace::{DetachmentKind, curve};
 use rayon::prelude::*;
 
-/// Halvings of the distance between two samples until a change of kind is known.
+/// Halvings of the interval between two samples until a change of kind is exact.
 const HALVINGS: u32 = 50;
 
-/// What is asked of what.
+/// A scene, the parameter that varies, and the target.
 pub struct Search<'a> {
     pub scene: &'a Scene,
     pub parameter: Parameter,
@@ -18,7 +18,7 @@ pub struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// The end at a value of the parameter; unresolved where the scene refuses it.
+    /// The end at a value of the parameter; `Unresolved` if the scene refuses the value.
     fn end(&self, value: f64) -> End {
         let moved = self.scene.with_parameters(&[(self.parameter, value)]);
         let end = moved.ok().and_then(|scene| {
@@ -32,7 +32,7 @@ impl Search<'_> {
         }
     }
 
-    /// How far, in degrees, an end is from the one that is asked for; NaN where it is of another kind.
+    /// Push angle of an end less that of the target, in degrees; NaN for an end of another kind.
     fn miss(&self, end: &End) -> f64 {
         let push = end
             .push_angle_deg
@@ -45,7 +45,7 @@ impl Search<'_> {
         self.miss(&self.end(value))
     }
 
-    /// Ends all over the range, and on both sides of each change of kind.
+    /// Ends over the range, and on both sides of each change of kind.
     pub fn scan(&self, range: [f64; 2]) -> Vec<End> {
         let scanned: Vec<End> = samples(range)
             .into_par_iter()
@@ -63,7 +63,7 @@ impl Search<'_> {
         ends
     }
 
-    /// The last end of the kind of `before` and the first one of another, on the way to `after`.
+    /// The last end of the kind of `before`, and the first end of another kind between it and `after`.
     fn change(&self, mut before: End, mut after: End) -> [End; 2] {
         for _ in 0..HALVINGS {
             let middle = self.end(before.value.midpoint(after.value));
@@ -76,7 +76,7 @@ impl Search<'_> {
         [before, after]
     }
 
-    /// The solutions within a piece of the range where all ends are of the kind that is asked for.
+    /// The solutions within a part of the range where every end has the kind of the target.
     pub fn solutions(&self, piece: &[End]) -> Vec<f64> {
         let mut places: Vec<[f64; 2]> = piece
             .iter()

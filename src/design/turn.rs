@@ -1,13 +1,13 @@
-//! Where a function turns back between samples, as it comes near zero.
+//! Extremum of a function near zero, between samples.
 
-/// Steps of the golden section; what is left of the interval is 1e-8 of it, where a smooth function is flat.
+/// Steps of the golden section. They leave 1e-8 of the interval, in which a smooth function is flat to rounding.
 const STEPS: u32 = 40;
 
-/// The part of an interval that the golden section keeps.
+/// Part of an interval that a step of the golden section keeps.
 const GOLDEN: f64 = 0.618_033_988_749_894_8;
 
-/// Where the function turns back between three neighbouring places with their values, or where it is found to have
-/// crossed zero; `None` if it does not turn toward zero, or too far from it to reach it between such samples.
+/// The place and value of an extremum toward zero between three neighbouring places with their values, or the first place found
+/// beyond zero. `None` without such an extremum, or if it is too far from zero for a smooth function.
 pub fn toward_zero(
     [before, here, after]: [[f64; 2]; 3],
     mut value: impl FnMut(f64) -> f64,
@@ -34,7 +34,7 @@ pub fn toward_zero(
         if sign * best[1] < 0.0 {
             break;
         }
-        // A value that is not there, NaN, is none to go to.
+        // The search avoids NaN.
         if low[1] < high[1] || high[1].is_nan() {
             (ends[1], high) = (high[0], low);
             let at = GOLDEN * ends[0] + (1.0 - GOLDEN) * ends[1];

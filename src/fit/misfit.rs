@@ -1,11 +1,10 @@
-//! How far a scene is from its points, as a function of its free parameters.
+//! Residuals of points, as a function of the free parameters of a scene.
 
 use crate::measured::Points;
 use crate::scene::{Parameter, Scene, SceneError, Swept, Whisker};
-use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
-/// Half of what central differences span, in units of the parameters. Truncation and the rounding of curves then take at most
+/// Step of central differences, in units of the parameters. Truncation and the rounding of curves then take at most
 /// 5e-9 of a cone's derivatives, by each of its parameters; with ten times the step, 5e-7.
 const STEP: f64 = 1e-5;
 
@@ -32,14 +31,15 @@ impl<'a> Misfit<'a> {
         }
     }
 
-    /// The parameters of the scene itself, which has them all.
-    pub fn start(&self) -> DVector<f64> {
+    /// The values of the parameters in the scene, which gives them all.
+    pub fn start(&self) -> Vec<f64> {
         let values = self.free.iter().zip(&self.units);
-        let values = values.filter_map(|(own, unit)| Some(own.value(self.scene)? / unit));
-        DVector::from_iterator(self.free.len(), values)
+        values
+            .filter_map(|(own, unit)| Some(own.value(self.scene)? / unit))
+            .collect()
     }
 
-    /// The least and the greatest values that `scene` accepts, one parameter at a time.
+    /// The least and the greatest value of each parameter that `scene` accepts, with the other parameters fixed.
     pub fn ranges(&self, scene: &Scene) -> Vec<[f64; 2]> {
         let free = self.free.par_iter().zip(&self.units);
         free.map(|(own, unit)| own.range(scene).map(|end| end / unit))
@@ -47,7 +47,7 @@ impl<'a> Misfit<'a> {
     }
 
     /// The scene with these parameters.
-    pub fn scene(&self, parameters: &DVector<f64>) -> Result<Scene, SceneError> {
+    pub fn scene(&self, parameters: &[f64]) -> Result<Scene, SceneError> {
         let values = self.free.iter().zip(&self.units).zip(parameters);
         let values: Vec<_> = values.map(|((own, unit), x)| (*own, unit * x)).collect();
         self.scene.with_parameters(&values)
@@ -55,7 +55,7 @@ impl<'a> Misfit<'a> {
 
     /// Predicted less measured angles over their standard deviations; `None` where the scene refuses the parameters, or a
     /// point is out of reach or never detaches.
-    pub fn residuals(&self, parameters: &DVector<f64>) -> Option<DVector<f64>> {
+    pub fn residuals(&self, parameters: &[f64]) -> Option<Vec<f64>> {
         let scene = self.scene(parameters).ok()?;
         let Swept { whisker, pole, .. } = scene.first_whisker();
         self.points.check_reach(&whisker, &pole).ok()?;
@@ -64,32 +64,41 @@ impl<'a> Misfit<'a> {
         for (row, point) in rows.iter().zip(&self.points.points) {
             residuals.push(-row.residual_deg? / point.sd_deg);
         }
-        Some(DVector::from_vec(residuals))
+        Some(residuals)
     }
 
-    /// Their derivatives by the parameters; `None` where one cannot be had on either side. `here` are the residuals themselves.
-    pub fn jacobian(&self, parameters: &DVector<f64>, here: &DVector<f64>) -> Option<DMatrix<f64>> {
+    /// Derivatives of the residuals, a column for each parameter; `None` where neither side has one. `here` are the residuals.
+    pub fn jacobian(&self, parameters: &[f64], here: &[f64]) -> Option<Vec<Vec<f64>>> {
         let columns = (0..self.free.len()).into_par_iter().map(|i| {
             let beside = |step: f64| {
-                let mut beside = parameters.clone();
+                let mut beside = parameters.to_vec();
                 beside[i] += step;
                 self.residuals(&beside)
             };
-            let central = || Some((beside(STEP)? - beside(-STEP)?) / (2.0 * STEP));
+            let central = || {
+                let (after, before) = (beside(STEP)?, beside(-STEP)?);
+                let pairs = after.iter().zip(before);
+                Some(
+                    pairs
+                        .map(|(after, before)| (after - before) / (2.0 * STEP))
+                        .collect(),
+                )
+            };
             let one_sided = |step: f64| {
                 let (near, far) = (beside(step)?, beside(2.0 * step)?);
-                Some((4.0 * near - far - 3.0 * here) / (2.0 * step))
+                let pairs = near.iter().zip(far).zip(here);
+                let slope = |((near, far), here)| (4.0 * near - far - 3.0 * here) / (2.0 * step);
+                Some(pairs.map(slope).collect())
             };
             central()
                 .or_else(|| one_sided(STEP))
                 .or_else(|| one_sided(-STEP))
         });
-        let columns: Vec<DVector<f64>> = columns.collect::<Option<_>>()?;
-        Some(DMatrix::from_columns(&columns))
+        columns.collect()
     }
 }
 
-/// How large a change of a parameter changes a whisker or its contact altogether.
+/// The change of a parameter that changes a whisker or its contact altogether.
 fn size(parameter: Parameter, whisker: &Whisker) -> f64 {
     let length = whisker.length_mm;
     match parameter {

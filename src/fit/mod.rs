@@ -1,12 +1,14 @@
 //! Parameters of a scene from measured detachments, by nonlinear least squares.
 //!
 //! The misfit is the sum of squares of measured less predicted angles, each over its standard deviation. Levenberg and
-//! Marquardt's method (MINPACK's, from the crate `levenberg-marquardt`) minimises it inside the limits of the scene. Angles are
-//! continuous where slip-off turns into pull-off, their derivatives are not: the trust region gets over that.
+//! Marquardt's method (`least_squares`) minimises it inside the limits of the scene (`bounded`). Angles are continuous where
+//! slip-off turns into pull-off, their derivatives are not: the trust region gets over that.
 
 mod bounded;
 mod covariance;
+mod least_squares;
 mod misfit;
+mod svd;
 mod verdict;
 
 pub use verdict::{LikelyCause, NotAFit};
@@ -14,32 +16,32 @@ pub use verdict::{LikelyCause, NotAFit};
 use crate::input::CsvError;
 use crate::measured::{Comparison, Points};
 use crate::scene::{Parameter, Scene, SceneError, Swept, digits};
-use bounded::{NO_DERIVATIVE, minimise};
+use bounded::{NO_DERIVATIVE, best};
 use covariance::Covariance;
 use misfit::Misfit;
 
-/// What a fit has found.
+/// Result of a fit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fit {
-    /// The scene with the values that fit best.
+    /// The scene with the best values.
     pub scene: Scene,
-    /// These values, in the order in which they were set free.
+    /// The best values, in the order of the free parameters.
     pub estimates: Vec<Estimate>,
-    /// Their correlation; `None` for pairs of which one is not determined.
+    /// Correlations, `[parameter][parameter]`; `None` for a pair with a parameter that is not determined.
     pub correlation: Vec<Vec<Option<f64>>>,
-    /// Sum of the squares of residuals over standard deviations: of 1 degree where the points have none.
+    /// Sum of the squares of residuals over standard deviations, which are 1 degree if the points have none.
     pub chi_square: f64,
-    /// Points used, less parameters that they determine.
+    /// Number of points used less the number of parameters that they determine.
     pub degrees_of_freedom: usize,
-    /// The points beside the fitted scene.
+    /// The points with the predictions of the fitted scene.
     pub comparison: Comparison,
-    /// Why the values are not a fit; `None` for a fit. Without a fit there are no standard errors and correlations.
+    /// Why the values are not a fit; `None` for a fit. Without a fit there are no standard errors and no correlations.
     pub not_a_fit: Option<NotAFit>,
 }
 
 impl Fit {
-    /// Whether `chi_square` is as expected of points with standard deviations. Where it is larger, the deviations are too
-    /// small, and so are the standard errors.
+    /// Returns true if the standard deviations of the points explain `chi_square`. If not, the deviations are too small, and so
+    /// are the standard errors.
     #[must_use]
     pub fn is_explained(&self) -> bool {
         verdict::is_explained(self.chi_square, self.degrees_of_freedom)
@@ -49,63 +51,63 @@ impl Fit {
 /// A fitted parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Estimate {
-    /// Which one.
+    /// The parameter.
     pub parameter: Parameter,
-    /// Its value; where it is not determined, one of many that fit as well.
+    /// Best value, in the parameter's unit; if it is not determined, one of many that fit as well.
     pub value: f64,
-    /// Its standard error; `None` where the points do not determine it, at a limit, and without a fit.
+    /// Standard error, in the parameter's unit; `None` if it is not determined, at a limit, and without a fit.
     pub standard_error: Option<f64>,
-    /// Whether it is the least or the greatest value that the scene accepts.
+    /// True if the value is the least or the greatest one that the scene accepts.
     pub is_at_limit: bool,
 }
 
-/// Why there is no fit.
+/// Error of a fit.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum Error {
-    /// Nothing is free.
+pub enum FitError {
+    /// No parameter is free.
     #[error("no parameter is free")]
     NothingFree,
-    /// A scene without the parameter.
+    /// The scene does not give the parameter.
     #[error("{}: the scene has no {}; give it a value to start from, or free some of {has}", .parameter.name(), .parameter.key())]
     Lacking {
-        /// Which one.
+        /// The parameter.
         parameter: Parameter,
-        /// Names of those that the scene has.
+        /// Names of the parameters that the scene gives.
         has: String,
     },
-    /// A parameter that is free twice, maybe under two names.
+    /// Two free parameters are one number of the scene.
     #[error("{} and {}: both are {}; one of them may be free", .0.name(), .1.name(), .0.key())]
     Twice(Parameter, Parameter),
-    /// A parameter that the rest of the scene holds.
+    /// The rest of the scene leaves the parameter no range.
     #[error("{}: the rest of the scene allows no values but {} to {}", .parameter.name(), digits(.range[0]), digits(.range[1]))]
     Held {
-        /// Which one.
+        /// The parameter.
         parameter: Parameter,
         /// The least and the greatest value.
         range: [f64; 2],
     },
-    /// Values that the scene refuses.
+    /// The scene refuses the values.
     #[error(transparent)]
     Scene(#[from] SceneError),
-    /// Points that the scene's whisker cannot touch.
+    /// The scene's whisker does not touch a pole at some point.
     #[error(transparent)]
     Points(#[from] CsvError),
-    /// Fewer points than parameters.
+    /// There are fewer points than free parameters.
     #[error("{free} free parameters need as many points: {origin} has {used} that detach")]
     TooFew {
-        /// Name of the file of points.
+        /// Name of the file of the points.
         origin: String,
-        /// Free parameters.
+        /// Number of free parameters.
         free: usize,
-        /// Points that can be used.
+        /// Number of points that detach.
         used: usize,
     },
-    /// An iteration that has not ended at a minimum.
+    /// The iteration has not reached a minimum.
     #[error("the fit has not converged: {0}")]
     NotConverged(&'static str),
 }
 
-/// A range that is narrower, relative to the value, leaves nothing to fit.
+/// Width of a range, relative to the value, below which there is nothing to fit.
 const NARROWEST: f64 = 1e-6;
 
 /// Fits the `free` parameters of the first whisker of `scene` and of its pole to `points`, from the scene's values on.
@@ -114,34 +116,34 @@ const NARROWEST: f64 = 1e-6;
 ///
 /// # Errors
 /// If a parameter cannot be free, a point is beyond the whisker, points are too few, or the iteration does not converge.
-pub fn fit(scene: &Scene, points: &Points, free: &[Parameter]) -> Result<Fit, Error> {
+pub fn fit(scene: &Scene, points: &Points, free: &[Parameter]) -> Result<Fit, FitError> {
     check(scene, free)?;
     let used = used(scene, points)?;
     if used.points.len() < free.len() {
-        return Err(Error::TooFew {
+        return Err(FitError::TooFew {
             origin: points.origin.clone(),
             free: free.len(),
             used: used.points.len(),
         });
     }
     let misfit = Misfit::new(scene, &used, free);
-    let best = minimise(&misfit)?;
+    let best = best(&misfit)?;
     let fitted = misfit.scene(&best)?;
     let here = misfit.residuals(&best);
     let jacobian = here.as_ref().and_then(|here| misfit.jacobian(&best, here));
     let (here, mut jacobian) = here
         .zip(jacobian)
-        .ok_or(Error::NotConverged(NO_DERIVATIVE))?;
+        .ok_or(FitError::NotConverged(NO_DERIVATIVE))?;
     let ranges = misfit.ranges(&fitted);
     let is_at_limit = |i: usize| ranges[i].contains(&best[i]);
     // The limit determines such a parameter, not the points.
     for i in (0..free.len()).filter(|i| is_at_limit(*i)) {
-        jacobian.column_mut(i).fill(0.0);
+        jacobian[i].fill(0.0);
     }
     let covariance = Covariance::new(&jacobian);
-    let chi_square = here.norm_squared();
+    let chi_square = svd::dot(&here, &here);
     let degrees_of_freedom = used.points.len() - covariance.rank;
-    // Without standard deviations the residuals tell how exact the points are.
+    // Without standard deviations, the residuals give the variance of the points.
     let variance = match (used.have_deviations, degrees_of_freedom) {
         (true, _) => Some(1.0),
         (false, 0) => None,
@@ -185,25 +187,25 @@ pub fn fit(scene: &Scene, points: &Points, free: &[Parameter]) -> Result<Fit, Er
     })
 }
 
-/// Refuses parameters that cannot be free.
-fn check(scene: &Scene, free: &[Parameter]) -> Result<(), Error> {
+/// Checks that the parameters can be free.
+fn check(scene: &Scene, free: &[Parameter]) -> Result<(), FitError> {
     if free.is_empty() {
-        return Err(Error::NothingFree);
+        return Err(FitError::NothingFree);
     }
     for (i, &parameter) in free.iter().enumerate() {
         let same = free[..i]
             .iter()
             .find(|other| other.key() == parameter.key());
         if let Some(same) = same {
-            return Err(Error::Twice(*same, parameter));
+            return Err(FitError::Twice(*same, parameter));
         }
-        let value = parameter.value(scene).ok_or_else(|| Error::Lacking {
+        let value = parameter.value(scene).ok_or_else(|| FitError::Lacking {
             parameter,
             has: Parameter::given(scene),
         })?;
         let range @ [least, most] = parameter.range(scene);
         if most - least < NARROWEST * value.abs() {
-            return Err(Error::Held { parameter, range });
+            return Err(FitError::Held { parameter, range });
         }
     }
     Ok(())

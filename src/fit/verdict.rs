@@ -1,4 +1,4 @@
-//! Which best values are no fit: no whisker of the scene's kind explains the points.
+//! Refusal of best values with which no whisker of the scene's kind explains the points.
 
 use crate::measured::{Comparison, Points};
 use crate::scene::{Scene, Swept, digits};
@@ -8,20 +8,20 @@ use std::fmt;
 /// ends of a push go from a few degrees to 90.
 const LARGEST_RMS_DEG: f64 = 5.0;
 
-/// Largest RMS as a fraction of the range of the measured angles, 0 included: 0 is the angle at first touch. Without it,
-/// repeated measurements at one distance would have a range of nothing but their errors.
+/// Largest RMS as a fraction of the range of the measured angles and 0, the angle at first touch. Without 0, the range of
+/// repeated measurements at one distance would be that of their errors.
 const LARGEST_PART: f64 = 1.0 / 3.0;
 
-/// How far the reduced chi-square of right deviations may be above 1, in its own standard deviations `sqrt(2 / freedom)`.
+/// Largest excess of a reduced chi-square over 1, in its own standard deviations `sqrt(2 / freedom)`.
 const DEVIATIONS: f64 = 5.0;
 
 /// Largest reduced chi-square of a fit: residuals are 20 times their standard deviations.
 const LARGEST_REDUCED: f64 = 400.0;
 
-/// Angles in radians are all below one turn, 2 pi.
+/// Least number that exceeds every angle in radians: one turn is 2 pi.
 const TURN: f64 = 6.3;
 
-/// A predicted angle in degrees that no angle in radians has.
+/// Least predicted angle in degrees that shows measured angles in radians.
 const TENS_DEG: f64 = 10.0;
 
 /// Why the best values are not a fit.
@@ -33,11 +33,11 @@ pub struct NotAFit {
     pub largest_rms_deg: f64,
     /// Chi-square over its degrees of freedom, where points have standard deviations.
     pub reduced_chi_square: Option<f64>,
-    /// What the points look like, if they look like a known mistake.
+    /// A known mistake that the points show, if any.
     pub cause: Option<LikelyCause>,
 }
 
-/// A mistake that points show.
+/// Likely mistake in a file of points.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LikelyCause {
     /// All angles are below 6.3, and the scene predicts tens of degrees.
@@ -87,14 +87,14 @@ impl NotAFit {
     }
 }
 
-/// Whether standard deviations explain residuals with this chi-square.
+/// Returns true if standard deviations explain residuals with this chi-square.
 pub(super) fn is_explained(chi_square: f64, freedom: usize) -> bool {
     let freedom = freedom.max(1) as f64;
     chi_square / freedom <= 1.0 + DEVIATIONS * (2.0 / freedom).sqrt()
 }
 
 impl LikelyCause {
-    /// The mistake that `points` show beside the theory of `scene`.
+    /// The mistake that a comparison of `points` with the theory of `scene` shows.
     fn of(points: &Points, scene: &Scene) -> Option<Self> {
         let Swept { whisker, pole, .. } = scene.first_whisker();
         let own = points.beside(&whisker, &pole);
@@ -117,8 +117,8 @@ impl LikelyCause {
         (rms_deg < own.rms_deg()? / 2.0).then_some(Self::Centimetres)
     }
 
-    /// The mistake that the standard deviations of `points` show beside this reduced chi-square. In radians they are
-    /// `180 / pi` times too small, which residuals show within a factor of 2.
+    /// The mistake that the standard deviations of `points` show with this reduced chi-square. Deviations in radians are
+    /// `180 / pi` times too small, and the residuals show this factor within 2.
     fn of_deviations(points: &Points, reduced: f64) -> Option<Self> {
         let turn = 1.0_f64.to_degrees();
         let is_turned = (turn / 2.0..=2.0 * turn).contains(&reduced.sqrt());

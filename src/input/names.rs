@@ -1,6 +1,6 @@
-//! Names and values in messages: shortened, or beside the known name that resembles them.
+//! Names and values in messages: shortened, or with a known name that resembles them.
 
-/// The similarity from which on a name is suggested, as in clap.
+/// Least similarity of a suggested name, as in clap.
 const SIMILAR: f64 = 0.7;
 
 /// The name among `known` that resembles `name` most, by Jaro's similarity of lower-case names; `None` where none does.
@@ -53,7 +53,7 @@ const UNITS: [&[&str]; 4] = [
     &["pa", "kpa", "mpa", "gpa", "tpa"],
 ];
 
-/// Whether two names differ only in the units at their ends, which belong to one quantity.
+/// Returns true if two names differ only in the units at their ends, and the units belong to one quantity.
 fn is_of_another_unit(name: &str, other: &str) -> bool {
     let [name, other] = [name, other].map(str::to_lowercase);
     let ends = name.rsplit_once('_').zip(other.rsplit_once('_'));
@@ -67,7 +67,7 @@ fn is_of_another_unit(name: &str, other: &str) -> bool {
 /// The most characters that a message quotes of a text, at its beginning and at its end.
 const QUOTED: [usize; 2] = [60, 20];
 
-/// A text of a file as messages print it: a terminal must not obey its control characters.
+/// Escapes control characters, which a terminal would obey.
 pub(crate) fn escaped(text: &str) -> String {
     let parts = text.chars().map(|c| match c {
         control if control.is_control() => control.escape_default().to_string(),
@@ -76,7 +76,7 @@ pub(crate) fn escaped(text: &str) -> String {
     parts.collect()
 }
 
-/// A text that may quote a value or a key of any length: escaped, and without its middle where it is long.
+/// Escapes a quoted value or key, and cuts the middle of a long one.
 pub(crate) fn shortened(text: &str) -> String {
     let text = escaped(text);
     let [head, tail] = QUOTED;

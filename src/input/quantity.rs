@@ -2,7 +2,7 @@
 
 use super::names::shortened;
 
-/// What a number measures, and its unit where the text gives none.
+/// Quantity of a number, and its unit where the text gives none.
 ///
 /// ```
 /// use whiskmap::input::Quantity;
@@ -47,7 +47,7 @@ impl Quantity {
         }
     }
 
-    /// Its unit; `None` for a number without one.
+    /// Unit of the quantity; `None` for a plain number.
     #[must_use]
     pub const fn unit(self) -> Option<&'static str> {
         match self {
@@ -74,7 +74,7 @@ impl Quantity {
         self.convert(number, unit).ok_or_else(unknown)
     }
 
-    /// A number with this unit in the quantity's own one; `None` for a unit of something else.
+    /// Converts a number from this unit to that of the quantity; `None` for a unit of another quantity.
     fn convert(self, number: f64, unit: &str) -> Option<f64> {
         let own_um = match self {
             _ if unit.is_empty() => return Some(number),
@@ -98,7 +98,7 @@ impl Quantity {
         })
     }
 
-    /// What a text without a number must be.
+    /// Message about a text without a number.
     const fn example(self) -> &'static str {
         match self {
             Self::LengthMm => "must be a length, such as 15.66, 15.66mm or 1.5cm",
@@ -108,7 +108,7 @@ impl Quantity {
         }
     }
 
-    /// The units that are allowed.
+    /// Message that lists the allowed units.
     const fn allowed(self) -> &'static str {
         match self {
             Self::LengthMm => "must be mm (the default), cm, m or um",

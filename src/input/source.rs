@@ -2,10 +2,10 @@
 
 use std::io::{self, Read};
 
-/// The longest input in bytes. A scene is a page of text and a table is short: a longer file is a wrong file.
+/// Longest input in bytes: far longer than any scene or table.
 const MOST_BYTES: u64 = 1 << 20;
 
-/// All bytes of `source`.
+/// Reads all bytes of `source`.
 ///
 /// # Errors
 /// If it cannot be read, or is longer than 1 MiB.
@@ -21,10 +21,10 @@ pub(crate) fn bounded(source: impl Read) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// The text of `bytes`, without a byte order mark: UTF-16 where the mark says so, UTF-8 otherwise.
+/// Decodes the text of `bytes`, without a byte order mark: UTF-16 where the mark says so, UTF-8 otherwise.
 ///
 /// # Errors
-/// The line of the first byte that is wrong, from 1, and what it is.
+/// The line of the first wrong byte, from 1, and a message about it.
 pub(super) fn decoded(bytes: &[u8]) -> Result<String, (usize, String)> {
     let (units, encoding): (fn([u8; 2]) -> u16, _) = match bytes {
         [0xFF, 0xFE, ..] => (u16::from_le_bytes, "UTF-16LE"),

@@ -165,13 +165,13 @@ impl CsvTable {
         Ok(unused.map(note))
     }
 
-    /// Whether the header has a column of this name.
+    /// Returns true if the header has a column of this name.
     #[must_use]
     pub fn has(&self, column: &str) -> bool {
         self.header.cells.iter().any(|name| name == column)
     }
 
-    /// The numbers of the lines of all rows, from 1.
+    /// The line number of each row, from 1.
     pub fn lines(&self) -> impl Iterator<Item = usize> + '_ {
         self.rows.iter().map(|row| row.number)
     }
@@ -179,7 +179,7 @@ impl CsvTable {
     /// The values of a column, row by row; `None` without such a column.
     ///
     /// # Errors
-    /// The first cell of which `value` makes none, and what it `must` be.
+    /// The first cell for which `value` returns `None`, and what it `must` be.
     pub fn values<T>(
         &self,
         column: &str,
@@ -232,7 +232,7 @@ impl CsvTable {
 /// The end of a message about numbers with commas where commas separate columns.
 const DECIMAL_COMMAS: &str = "; where numbers have decimal commas, separate columns by `;`";
 
-/// How many cells a line has, without empty ones at its end.
+/// Number of cells of a line, without empty cells at its end.
 fn filled(line: &CsvLine) -> usize {
     let empty = line.cells.iter().rev().take_while(|cell| cell.is_empty());
     line.cells.len() - empty.count()

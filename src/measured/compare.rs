@@ -1,4 +1,4 @@
-//! Points beside the theory of a whisker.
+//! Comparison of measured points with theory.
 
 use super::{Angle, Point, Points};
 use crate::rod::Side;
@@ -30,15 +30,15 @@ row! {
     }
 }
 
-/// Points beside the theory of one whisker and pole.
+/// Measured points with the predictions for one whisker and pole.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Comparison {
-    /// Each point, in the order of its file.
+    /// The points, in the order of their file.
     pub rows: Vec<Compared>,
 }
 
 impl Points {
-    /// The points beside the detachments of `whisker` at `pole`.
+    /// Compares the points with the detachments of `whisker` at `pole`.
     #[must_use]
     pub fn beside(&self, whisker: &Whisker, pole: &Pole) -> Comparison {
         let ends = Side::BOTH.map(|side| self.ends(whisker, pole, side));
@@ -66,7 +66,7 @@ impl Points {
         }
     }
 
-    /// The detachments on `side`, at growing distances, each once.
+    /// The predicted detachments on `side`, in growing order of the distances, each distance once.
     fn ends(&self, whisker: &Whisker, pole: &Pole, side: Side) -> Vec<Detachment> {
         let points = self.points.iter().filter(|point| point.side == side);
         let mut distances: Vec<f64> = points.map(|point| point.distance_mm).collect();
@@ -77,18 +77,18 @@ impl Points {
 }
 
 impl Comparison {
-    /// Points for which there is no prediction.
+    /// The points without a prediction.
     pub fn left_out(&self) -> impl Iterator<Item = &Compared> {
         self.rows.iter().filter(|row| row.residual_deg.is_none())
     }
 
-    /// How many points are compared.
+    /// Number of points with a prediction.
     #[must_use]
     pub fn count(&self) -> usize {
         self.residuals().count()
     }
 
-    /// How many of those were seen to end in another way than predicted.
+    /// Number of points with a prediction whose measured kind is another one.
     #[must_use]
     pub fn of_another_kind(&self) -> usize {
         let compared = self.rows.iter().filter(|row| row.residual_deg.is_some());
@@ -96,14 +96,14 @@ impl Comparison {
         compared.filter(differs).count()
     }
 
-    /// Root mean square of the residuals; `None` without any.
+    /// Root mean square of the residuals in degrees; `None` without residuals.
     #[must_use]
     pub fn rms_deg(&self) -> Option<f64> {
         let squares: f64 = self.residuals().map(|residual| residual * residual).sum();
         self.mean(squares).map(f64::sqrt)
     }
 
-    /// Mean of the residuals; `None` without any.
+    /// Mean of the residuals in degrees; `None` without residuals.
     #[must_use]
     pub fn bias_deg(&self) -> Option<f64> {
         self.mean(self.residuals().sum())

@@ -1,4 +1,4 @@
-//! Measured detachments: points from a CSV file, and how far the theory of a whisker is from each.
+//! Measured detachments: points from a CSV file, and their differences from theory.
 
 mod compare;
 mod read;
@@ -8,16 +8,16 @@ pub use compare::{Compared, Comparison};
 use crate::rod::Side;
 use crate::trace::DetachmentKind;
 
-/// Detachments as measured, in the order of their file; no value is out of its range.
+/// Measured detachments, in the order of their file. Every value is in its range.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Points {
-    /// The name of their file.
+    /// Name of the file in messages.
     pub origin: String,
     /// Message that names unused columns of the file.
     pub note: Option<String>,
-    /// The angle that was measured.
+    /// The measured angle.
     pub angle: Angle,
-    /// Whether every point has a standard deviation of its own.
+    /// True if the file gives standard deviations.
     pub have_deviations: bool,
     /// The points, at least one.
     pub points: Vec<Point>,
@@ -26,21 +26,21 @@ pub struct Points {
 /// One measured detachment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Point {
-    /// Its line in the file, from 1.
+    /// Line in the file, from 1.
     pub line: usize,
     /// Side of the whisker that the pole is on.
     pub side: Side,
-    /// Distance from the base to the contact at first touch.
+    /// Distance from the base to the contact at first touch, in millimetres.
     pub distance_mm: f64,
-    /// The angle at detachment: positive CB, negative CF.
+    /// Angle at detachment in degrees: positive CB, negative CF.
     pub angle_deg: f64,
-    /// Slip-off or pull-off, if it was seen which.
+    /// Slip-off or pull-off, if the file says which.
     pub kind: Option<DetachmentKind>,
-    /// Standard deviation of the angle; 1 degree where the file has none.
+    /// Standard deviation of the angle in degrees; 1 without deviations in the file.
     pub sd_deg: f64,
 }
 
-/// What was measured at detachment.
+/// Angle that was measured at detachment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Angle {
     /// Rotation of the base since first touch.
@@ -50,7 +50,7 @@ pub enum Angle {
 }
 
 impl Angle {
-    /// Its column, here and in detachment curves.
+    /// Name of its column, in files of points and of detachment curves.
     #[must_use]
     pub const fn column(self) -> &'static str {
         match self {

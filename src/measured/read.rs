@@ -1,4 +1,4 @@
-//! From a CSV file to checked points.
+//! Reader of measured points.
 
 use super::{Angle, Point, Points};
 use crate::input::{CsvError, CsvTable};
@@ -8,14 +8,14 @@ use crate::sheet::Row;
 use crate::trace::DetachmentKind;
 use std::path::Path;
 
-/// Columns that a file needs, one of each group.
+/// Required columns of a file: one of each group.
 const NEEDED: [&[&str]; 3] = [
     &["side"],
     &["distance_mm"],
     &[Angle::Push.column(), Angle::Chord.column()],
 ];
 
-/// Columns that a file may have beside them.
+/// Optional columns of a file.
 const OPTIONAL: [&str; 2] = ["kind", "sd_deg"];
 
 /// Least standard deviation of an angle, in degrees: far below what any instrument resolves.
@@ -37,7 +37,7 @@ impl Points {
         Self::of(&table?)
     }
 
-    /// Checks the text of a CSV file, as [`CsvTable`] splits it. Messages call it `origin`.
+    /// Reads points from the text of a CSV file, as [`CsvTable`] splits it. Messages call the text `origin`.
     ///
     /// ```
     /// use whiskmap::measured::Points;
@@ -106,10 +106,10 @@ impl Points {
         })
     }
 
-    /// Refuses points at which the resting `whisker` cannot touch the `pole`.
+    /// Checks that the resting `whisker` touches the `pole` at the distance of every point.
     ///
     /// # Errors
-    /// With the first such point.
+    /// The first point that is out of reach.
     pub fn check_reach(&self, whisker: &Whisker, pole: &Pole) -> Result<(), CsvError> {
         let rest = Rest::new(&whisker.rod(pole, Side::Cb));
         let (tip, _) = rest.at_arclength(rest.end());

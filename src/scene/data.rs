@@ -9,15 +9,15 @@ use super::whisker::{Curvature, Pole, Swept, Whisker};
 /// Data of a scene. Only a [`Scene`](super::Scene) guarantees that the values are valid.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SceneData {
-    /// One line for people.
+    /// Title: one line of text.
     pub title: String,
-    /// The whisker as the file describes it, and the first one of a sweep; [`SceneData::whiskers`] yields those to simulate.
+    /// The whisker, the first one of a sweep. [`SceneData::whiskers`] yields the whiskers to simulate.
     pub whisker: Whisker,
-    /// The pole, and the first one of a sweep.
+    /// The pole, the first one of a sweep.
     pub pole: Pole,
     /// The sweep.
     pub grid: Grid,
-    /// How uncertain its numbers are, where the file says so.
+    /// Standard deviations of the numbers, if the scene gives them.
     pub uncertainty: Option<Deviations>,
     /// Stem of the output files.
     pub name: String,
@@ -26,8 +26,8 @@ pub struct SceneData {
 }
 
 impl SceneData {
-    /// The scene's whisker and pole with the values of `place` in place of their own. A taper gives the tip its radius; the
-    /// vertex of a curvature axis is the whisker's own, or 0 where its file gives none.
+    /// The scene's whisker and pole with the values of `place`. A taper determines the radius at the tip. The vertex of a
+    /// curvature axis is the whisker's own, or 0 if the scene gives none.
     #[must_use]
     pub fn whisker_at(&self, place: Place) -> Swept {
         let (mut whisker, mut pole) = (self.whisker.clone(), self.pole);
@@ -57,8 +57,7 @@ impl SceneData {
         }
     }
 
-    /// Every whisker of the sweep, in the order of the atlas: the first axis varies fastest, along its columns. Without axes,
-    /// the one whisker of the file.
+    /// Every whisker of the sweep; the first axis varies fastest. Without axes, the one whisker of the scene.
     pub fn whiskers(&self) -> impl Iterator<Item = Swept> {
         (0..self.whisker_count()).map(|index| self.whisker(index))
     }
@@ -69,14 +68,14 @@ impl SceneData {
         self.whisker_at(self.grid.place(index))
     }
 
-    /// The same, `size` whiskers at a time; the last group has what is left.
+    /// Groups of `size` whiskers of the sweep; the last group has the rest.
     pub fn whisker_groups(&self, size: usize) -> impl Iterator<Item = Vec<Swept>> {
         let mut whiskers = self.whiskers();
         let next = move || -> Vec<_> { whiskers.by_ref().take(size).collect() };
         std::iter::repeat_with(next).take_while(|group| !group.is_empty())
     }
 
-    /// How many whiskers the sweep has.
+    /// Number of whiskers of the sweep.
     #[must_use]
     pub fn whisker_count(&self) -> usize {
         self.grid.whisker_count()
@@ -95,19 +94,19 @@ impl SceneData {
         corners.map(move |index| self.whisker_at(ends.place(index)))
     }
 
-    /// Whether any whisker of the sweep has friction with its pole.
+    /// Returns true if any whisker of the sweep has friction with its pole.
     #[must_use]
     pub fn has_friction(&self) -> bool {
         self.corner_whiskers().any(|own| own.pole.friction != 0.0)
     }
 
-    /// Whether whiskers are swept: whether there is an axis beside push angle and distance.
+    /// Returns true if there is an axis along which whiskers differ.
     #[must_use]
     pub fn is_sweep(&self) -> bool {
         !self.grid.sweep.is_empty()
     }
 
-    /// The smallest and the largest distance of first touch; it must be more than the pole's radius, too.
+    /// The smallest and the largest allowed distance of first touch, in millimetres. It must exceed the pole's radius, too.
     #[must_use]
     pub fn distances_mm(&self) -> (f64, f64) {
         let length = self.whisker.length_mm;

@@ -1,4 +1,4 @@
-//! What is wrong with a scene: one message that says what, where, which value and what is allowed.
+//! Errors of scenes: what is wrong, where, which value, and what is allowed.
 
 use std::ops::Range;
 
@@ -33,7 +33,7 @@ impl SceneError {
         }
     }
 
-    /// What the reader of TOML found, in the words of TOML rather than of Rust.
+    /// An error of the reader of TOML, in the terms of TOML rather than of Rust.
     pub(super) fn of_toml(origin: &str, text: &str, why: &toml_edit::de::Error) -> Self {
         let message = match why.message().rsplit_once(", expected ") {
             Some((found, expected)) => {

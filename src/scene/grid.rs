@@ -1,33 +1,33 @@
-//! The axes of a sweep, and where a whisker stands in it.
+//! The axes of a sweep, and the place of a whisker in it.
 
 use serde::Serialize;
 use serde::ser::{SerializeStruct, Serializer};
 
 use super::parameter::Parameter;
 
-/// The nearest first touch is the whisker's length over this.
+/// The whisker's length over the nearest distance of first touch.
 pub(crate) const NEAREST: f64 = 1000.0;
 
-/// The farthest is the whisker's length times this.
+/// The farthest distance of first touch over the whisker's length.
 pub(super) const FARTHEST: f64 = 10.0;
 
-/// The axes of the sweep; every list is strictly increasing and not empty.
+/// Axes of a sweep. Every list of values is strictly increasing and not empty.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Grid {
-    /// Rotation of the base since first touch: negative CF, positive CB.
+    /// Push angles: rotations of the base since first touch in degrees, negative CF, positive CB.
     pub push_angle_deg: Vec<f64>,
-    /// Distance from the base to the contact at first touch.
+    /// Distances from the base to the contact at first touch, in millimetres.
     pub distance_mm: Vec<f64>,
-    /// What differs from whisker to whisker, in the order of the file; but of two axes, a curvature is the second.
+    /// Axes along which whiskers differ, in the order of the scene. Of two axes, a curvature is the second.
     pub sweep: Vec<SweepAxis>,
 }
 
 /// An axis along which whiskers, or their poles, differ.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SweepAxis {
-    /// What differs.
+    /// The parameter that differs.
     pub parameter: Parameter,
-    /// Its values, in place of the scene's own.
+    /// Values of the parameter, in its unit.
     pub values: Vec<f64>,
 }
 
@@ -40,7 +40,7 @@ impl Grid {
         axis.map(|axis| &*axis.values)
     }
 
-    /// The axes along x and along y of an atlas, which has room for two; a curvature alone lies along y.
+    /// The axes along x and along y of an atlas of at most two axes. A single axis of curvatures lies along y.
     #[must_use]
     pub fn atlas(&self) -> [Option<&SweepAxis>; 2] {
         match &*self.sweep {
@@ -49,13 +49,13 @@ impl Grid {
         }
     }
 
-    /// How many whiskers the sweep has.
+    /// Number of whiskers of the sweep.
     #[must_use]
     pub fn whisker_count(&self) -> usize {
         self.sweep.iter().map(|axis| axis.values.len()).product()
     }
 
-    /// Where whisker `index` stands on each axis; the first axis varies fastest.
+    /// Index of whisker `index` on each axis. The first axis varies fastest.
     #[must_use]
     pub fn indices(&self, index: usize) -> Vec<usize> {
         let mut rest = index;
@@ -78,7 +78,7 @@ impl Grid {
         )
     }
 
-    /// The same with the ends of every sweep axis alone.
+    /// The grid with only the ends of every sweep axis.
     pub(super) fn ends(&self) -> Self {
         let mut ends = self.clone();
         for axis in &mut ends.sweep {
@@ -90,7 +90,7 @@ impl Grid {
     }
 }
 
-/// Where a whisker stands in a sweep: a value for each axis, in their order. As a row of a table it has a column for each.
+/// Place of a whisker in a sweep: a value for each axis, in the order of the axes. A row of a table has a column for each.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Place(Vec<(Parameter, f64)>);
 
@@ -102,7 +102,7 @@ impl Place {
         axes.find_map(|(own, value)| (*own == parameter).then_some(*value))
     }
 
-    /// The axes and the values on them.
+    /// The parameter and the value of each axis.
     pub fn values(&self) -> impl Iterator<Item = (Parameter, f64)> + '_ {
         self.0.iter().copied()
     }

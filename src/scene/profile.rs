@@ -17,7 +17,7 @@ const END_SLACK: f64 = 1e-9;
 /// Least distance of two rows, relative to the length: `f32` can tell them apart.
 const NARROWEST: f64 = 1e-6;
 
-/// A tip that is thinner than the base over this is a perfect cone, which needs no table.
+/// Largest ratio of the radii at the base and at any row: a thinner tip is a perfect cone, which needs no table.
 const SHARPEST_TIP: f64 = 1000.0;
 
 /// Largest ratio of the radii of a waist and of the whisker on both sides of it. The base, which is held, is a waist where rows

@@ -39,7 +39,7 @@ const FORCE_UNITS: [(&str, f64); 6] = [
 /// Forces in uN, from below the noise of any sensor to a kilonewton.
 const FORCE_UN: [f64; 2] = [1e-6, 1e9];
 
-/// A number of the scene: its key, and its least and greatest value over the sweep. Values of 0 do not count; NaN if all are 0.
+/// Key of a number of the scene, and its least and greatest value over the sweep. Values of 0 do not count; NaN if all are 0.
 struct SceneNumber {
     key: String,
     ends: [f64; 2],
@@ -59,7 +59,7 @@ impl SceneNumber {
 }
 
 impl SceneData {
-    /// Numbers that look as if they were in another unit: one line each, with key, value, unit and what is expected.
+    /// Warnings about numbers that look like another unit: one line each, with key, value, unit and the expected range.
     ///
     /// These are radii below 1e-5 or above 0.1 of the length, a Young's modulus outside 0.1 to 100 GPa, and forces outside
     /// 1e-6 to 1e9 uN. All values of sweep axes count; of measured radii the largest one does. A message names another unit
@@ -97,7 +97,7 @@ impl SceneData {
         }
     }
 
-    /// The radii of the scene. A tip that follows from a taper is none of its numbers.
+    /// The radii of the scene, without a tip that follows from a taper.
     fn radii(&self) -> Vec<SceneNumber> {
         let whisker = &self.whisker;
         if let Some(rows) = &whisker.profile {
@@ -154,7 +154,7 @@ impl SceneData {
     }
 }
 
-/// A warning about a radius that is not as expected beside the length.
+/// A warning about a radius out of the expected range of radius over length.
 fn thickness(radius: &SceneNumber, length: &SceneNumber) -> Option<String> {
     let [thinnest_um, thickest_um] = radius.ends;
     let [shortest_mm, longest_mm] = length.ends;

@@ -1,4 +1,4 @@
-//! What is pushed and what it is pushed against: a whisker at rest and a pole.
+//! A whisker at rest and its pole.
 
 use std::sync::Arc;
 
@@ -8,24 +8,24 @@ use crate::rod::{RadiusProfile, Rod, Side, Units};
 /// One whisker of a sweep, in front of its pole.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Swept {
-    /// Where it stands in the sweep.
+    /// Place in the sweep.
     pub place: Place,
     /// The whisker.
     pub whisker: Whisker,
-    /// What it is pushed against.
+    /// The pole.
     pub pole: Pole,
 }
 
 /// A whisker at rest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Whisker {
-    /// Arclength from base to tip.
+    /// Arclength from base to tip, in millimetres.
     pub length_mm: f64,
-    /// Radius at the base.
+    /// Radius at the base, in micrometres.
     pub base_radius_um: f64,
-    /// Radius at the tip; 0 is a perfect cone.
+    /// Radius at the tip, in micrometres; 0 is a perfect cone.
     pub tip_radius_um: f64,
-    /// Young's modulus at the base; it scales forces, moments and energies, never an angle.
+    /// Young's modulus at the base, in GPa; it scales forces, moments and energies, never an angle.
     pub youngs_modulus_gpa: f64,
     /// Intrinsic curvature as a parabola, `None` for a straight whisker.
     pub curvature: Option<Curvature>,
@@ -100,14 +100,14 @@ impl Whisker {
 /// The undeflected shape `y = A (x - vertex)^2` with the base at `x = 0` (paper, Eq. 7); straight by default.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Curvature {
-    /// `A`.
+    /// Coefficient `A`, in 1/mm.
     pub parabola_per_mm: f64,
-    /// Where the vertex lies.
+    /// Position of the vertex along `x`, in millimetres.
     pub vertex_mm: f64,
 }
 
 impl Curvature {
-    /// Whether the shape is not straight.
+    /// Returns true unless the shape is straight.
     pub(super) fn bends(&self) -> bool {
         self.parabola_per_mm != 0.0
     }
@@ -116,21 +116,21 @@ impl Curvature {
 /// The undeflected shape whose curvature is linear in the arclength (Starostin et al. 2020).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EulerSpiral {
-    /// Curvature at the base; positive bends toward the CF side, as a parabola does.
+    /// Curvature at the base, in 1/mm; positive bends toward the CF side, as a parabola does.
     pub per_mm: f64,
-    /// Its growth along the whisker.
+    /// Growth of the curvature along the whisker, in 1/mm2.
     pub per_mm2: f64,
 }
 
-/// What the whisker is pushed against.
+/// Pole that the whisker is pushed against.
 ///
 /// The pole touches the whisker's centre line: the whisker's own thickness does not add to the pole's radius. Where it
 /// matters, give the sum of both radii at the contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pole {
-    /// Radius; 0 is a point contact.
+    /// Radius in millimetres; 0 is a point contact.
     pub radius_mm: f64,
-    /// Coulomb's coefficient; the whisker slides toward its tip at this limit.
+    /// Coulomb's coefficient of friction.
     pub friction: f64,
 }
 

@@ -7,11 +7,11 @@ use crate::scene::Scene;
 use crate::shooting::Resolution;
 use rayon::prelude::*;
 
-/// The difference quotient's step, in standard deviations and relative to the value: far above the rounding of exact ends
-/// (1e-12), and so small that its own error (its square) does not count.
+/// Step of the difference quotient, in standard deviations and relative to the value: far above the rounding of exact ends
+/// (1e-12), and so small that its truncation error (its square) is negligible.
 const STEP: [f64; 2] = [1e-3, 1e-6];
 
-/// Standard deviation of the push angle at every distance, in degrees; `None` where a derivative lacks an end.
+/// Standard deviation of the push angle in degrees, a value for each distance; `None` where a derivative lacks an end.
 pub(super) fn deviations_deg(
     scene: &Scene,
     varying: &[Varying],

@@ -1,7 +1,7 @@
-//! How uncertain detachments are where the numbers of a scene are: by whiskers drawn at random, and to first order.
+//! Uncertainty of detachments from the uncertainty of a scene's numbers: by random whiskers, and to first order.
 //!
-//! Numbers vary independently and normally, with the standard deviations of `[uncertainty]`. A draw that the scene's own
-//! limits refuse is drawn again. Equal seeds give equal draws, whatever the number of threads.
+//! Numbers vary independently and normally, with the standard deviations of `[uncertainty]`. A draw that the scene
+//! refuses is repeated. Equal seeds give equal draws, whatever the number of threads.
 
 mod first_order;
 mod normal;
@@ -18,10 +18,10 @@ use normal::Normal;
 use rayon::prelude::*;
 use varying::{Varying, moved, varying};
 
-/// Most ends on one side, of some 24 bytes each.
+/// Most ends on one side; an end takes 24 bytes.
 const MOST_ENDS: usize = 1 << 24;
 
-/// Draws of one sample until the scene accepts one.
+/// Most draws for one sample.
 const MOST_TRIES: u64 = 1000;
 
 /// Whiskers drawn from the uncertainty of a scene.
@@ -30,38 +30,38 @@ pub struct Draws {
     scene: Scene,
     varying: Vec<Varying>,
     drawn: Vec<(Whisker, Pole)>,
-    /// How many draws the scene's limits have refused.
+    /// Number of draws that the scene has refused.
     pub refused: u64,
 }
 
-/// Why there are no draws.
+/// Error of drawing whiskers.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum NoDraws {
-    /// Nothing is said to vary.
+    /// The scene has no `[uncertainty]`.
     #[error(
         "the scene has no [uncertainty]: add that table, such as `base_radius_um = 1.0`, a standard deviation"
     )]
     NoTable,
-    /// Several whiskers.
+    /// The scene sweeps whiskers, along this axis.
     #[error("grid.{0}: must be left out, as one whisker is drawn around")]
     Sweep(&'static str),
-    /// More ends than memory should hold.
+    /// Samples times distances exceed the limit.
     #[error(
         "makes {ends} ends at the scene's {distances} distances on each side; must make at most {MOST_ENDS}"
     )]
     TooMany {
         /// Samples times distances.
         ends: usize,
-        /// Of the scene.
+        /// Number of distances of the scene.
         distances: usize,
     },
-    /// The deviations are far larger than what the scene accepts.
+    /// The deviations are far larger than the ranges of the scene.
     #[error(
         "{MOST_TRIES} draws in a row are outside of the scene's limits; [uncertainty] must have smaller deviations; the \
          last one: {why}"
     )]
     Refused {
-        /// What is wrong with the last one.
+        /// Why the scene refuses the last draw.
         why: String,
     },
 }
@@ -93,19 +93,19 @@ impl Draws {
         })
     }
 
-    /// How many whiskers there are.
+    /// Number of whiskers.
     #[must_use]
     pub fn len(&self) -> usize {
         self.drawn.len()
     }
 
-    /// Whether there are none.
+    /// Returns true without any whisker.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.drawn.is_empty()
     }
 
-    /// How the ends of pushes on one side spread at every distance of the scene; `tick` is called after every whisker.
+    /// Spread of the ends of pushes on one side, at every distance of the scene. `tick` is called after every whisker.
     #[must_use]
     pub fn spread(
         &self,
@@ -139,13 +139,13 @@ impl Draws {
     }
 }
 
-/// How a push ends, and at which push angle.
+/// Kind of the end of a push, and its push angle in degrees.
 type End = (DetachmentKind, Option<f64>);
 
-/// A drawn whisker with its pole, and how many draws were refused before it.
+/// A drawn whisker with its pole, and the number of draws refused before it.
 type Drawn = ((Whisker, Pole), u64);
 
-/// The first whisker of a stream that the scene accepts.
+/// The first whisker of a random stream that the scene accepts.
 fn draw(scene: &Scene, varying: &[Varying], mut normal: Normal) -> Result<Drawn, NoDraws> {
     let mut refused = 0;
     loop {
@@ -164,7 +164,7 @@ fn draw(scene: &Scene, varying: &[Varying], mut normal: Normal) -> Result<Drawn,
     }
 }
 
-/// The push angles of the ends of `scene`.
+/// The push angles of the ends of `scene` in degrees, a value for each distance.
 fn pushes_deg(scene: &Scene, resolution: Resolution, side: Side) -> Vec<Option<f64>> {
     let distances = &scene.grid.distance_mm;
     let ends = curve_at(resolution, &scene.whisker, &scene.pole, side, distances);

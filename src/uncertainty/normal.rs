@@ -1,16 +1,16 @@
-//! Random numbers that are the same on every machine and for every number of threads.
+//! Reproducible random numbers: equal on every machine and for any number of threads.
 
 use std::f64::consts::TAU;
 
 /// Numbers with the normal distribution of mean 0 and standard deviation 1: SplitMix64 (Steele, Lea and Flood, OOPSLA
-/// 2014), turned by the method of Box and Muller (Ann. Math. Stat. 29, 610, 1958).
+/// 2014), transformed by the method of Box and Muller (Ann. Math. Stat. 29, 610, 1958).
 #[derive(Clone, Debug)]
 pub(super) struct Normal {
     state: u64,
 }
 
 impl Normal {
-    /// A stream of its own for every `seed` and `sample`.
+    /// The stream of a `seed` and a `sample`.
     pub fn new(seed: u64, sample: u64) -> Self {
         Self {
             state: mixed(mixed(seed).wrapping_add(sample)),
@@ -31,10 +31,10 @@ impl Normal {
     }
 }
 
-/// How many numbers 53 bits make.
+/// Number of values of 53 bits.
 const STEPS: f64 = (1_u64 << 53) as f64;
 
-/// Every bit depends on every bit.
+/// Mixes bits, so that each depends on all others.
 const fn mixed(bits: u64) -> u64 {
     let bits = (bits ^ (bits >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     let bits = (bits ^ (bits >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);

@@ -1,4 +1,4 @@
-//! What many ends have in common: percentiles, mean and standard deviation.
+//! Statistics of many ends: percentiles, mean and standard deviation.
 
 use super::End;
 use crate::rod::Side;
@@ -90,8 +90,8 @@ impl Spread {
     }
 }
 
-/// Linear between neighbours of the `sorted` values, of which the first is the quantile of 0 and the last that of 1
-/// (definition 7 of Hyndman and Fan, Am. Stat. 50, 361, 1996).
+/// Quantile by linear interpolation between neighbours of the `sorted` values: the first value is the quantile of 0, the last
+/// that of 1 (definition 7 of Hyndman and Fan, Am. Stat. 50, 361, 1996).
 fn quantile(sorted: &[f64], part: f64) -> Option<f64> {
     let last = sorted.len().checked_sub(1)?;
     let place = part * last as f64;
@@ -123,7 +123,7 @@ mod tests {
     }
 
     #[test]
-    fn what_does_not_detach_is_counted_and_left_out() {
+    fn ends_without_detachment_are_counted_and_left_out() {
         use DetachmentKind::{OutOfReach, PullOff, SlipOff, Unresolved};
         let ends = [
             (SlipOff, Some(3.0)),

@@ -2,21 +2,21 @@
 
 use crate::scene::{Deviations, Parameter, Scene, SceneError};
 
-/// A number that varies.
+/// A number of a scene that varies.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Varying {
     source: Source,
-    /// What the scene says.
+    /// Value in the scene.
     pub value: f64,
     /// Its standard deviation, more than 0.
     pub deviation: f64,
 }
 
-/// Where it stands.
+/// Place of a number in the scene.
 #[derive(Clone, Copy, Debug)]
 enum Source {
     Parameter(Parameter),
-    /// The radius of a row of the profile, in micrometres.
+    /// Radius of a row of the profile, in micrometres.
     Row(usize),
 }
 
@@ -42,10 +42,10 @@ pub(super) fn varying(scene: &Scene, deviations: &Deviations) -> Vec<Varying> {
     all.filter(|one| one.deviation > 0.0).collect()
 }
 
-/// The scene with each number away from its own value by the step beside it.
+/// The scene with each number moved by its step.
 ///
 /// # Errors
-/// If the scene would be refused with them.
+/// If the scene is refused with these numbers.
 pub(super) fn moved(scene: &Scene, steps: &[(Varying, f64)]) -> Result<Scene, SceneError> {
     let mut builder = scene.to_builder();
     let mut rows = rows(scene);

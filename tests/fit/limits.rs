@@ -2,7 +2,7 @@
 
 use crate::noisy::Random;
 use crate::{DISTANCES_MM, cone, detachments};
-use whiskmap::fit::{Error, Fit, fit};
+use whiskmap::fit::{Fit, FitError, fit};
 use whiskmap::measured::{Angle, Points};
 use whiskmap::scene::Parameter::{self, *};
 use whiskmap::scene::Scene;
@@ -88,7 +88,7 @@ fn as_many_points_as_parameters_have_no_error_of_their_own() {
     points.have_deviations = true;
     assert_eq!(determined(&fit(&cone(), &points, &free).unwrap()), free);
     points.points.pop();
-    let few = Error::TooFew {
+    let few = FitError::TooFew {
         origin: "points.csv".to_owned(),
         free: 2,
         used: 1,

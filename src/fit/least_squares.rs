@@ -1,0 +1,171 @@
+//! Nonlinear least squares by Levenberg and Marquardt's method in a scaled trust region.
+//!
+//! After Moré, "The Levenberg-Marquardt algorithm: implementation and theory" (1978), as in MINPACK's `lmder`. A step minimises
+//! `|r + J p|` subject to `|D p| <= radius`. `D` has the largest lengths so far of the columns of `J`. The singular values of
+//! `J D^-1` give the step for every damping, and so the damping at which the step reaches the radius.
+
+use super::svd::{Svd, dot, norm};
+
+/// Most evaluations of the residuals, per parameter.
+const MOST_STEPS: usize = 100;
+
+/// First radius of the trust region over the length of the scaled parameters.
+const FIRST_RADIUS: f64 = 100.0;
+
+/// Largest relative difference of the length of a step from the radius.
+const RADIUS_SLACK: f64 = 0.1;
+
+/// Least ratio of actual and predicted reduction with which a step is taken.
+const LEAST_RATIO: f64 = 1e-4;
+
+/// Why an iteration ends before it converges.
+pub(super) enum LeastSquaresFailure {
+    /// There is no Jacobian.
+    NoJacobian,
+    /// It takes more than 100 steps for each parameter.
+    TooManySteps,
+    /// The residuals at the start are not finite.
+    NotFinite,
+}
+
+/// A problem of least squares.
+pub(super) trait LeastSquares {
+    /// Residuals at `x`.
+    fn residuals(&self, x: &[f64]) -> Vec<f64>;
+    /// Columns of the Jacobian at `x`, where the residuals are known; `None` where there is none.
+    fn jacobian(&self, x: &[f64], residuals: &[f64]) -> Option<Vec<Vec<f64>>>;
+}
+
+/// Minimises the sum of the squares from `x` on. Returns the place and the sum.
+///
+/// The iteration ends where the relative change of the sum, or of the scaled parameters, is at most `tolerance`.
+pub(super) fn minimise(
+    problem: &impl LeastSquares,
+    mut x: Vec<f64>,
+    tolerance: f64,
+) -> Result<(Vec<f64>, f64), LeastSquaresFailure> {
+    let mut residuals = problem.residuals(&x);
+    let mut length = norm(&residuals);
+    let mut scales = vec![0.0; x.len()];
+    let mut radius = f64::INFINITY;
+    let mut steps = 0;
+    if !length.is_finite() {
+        return Err(LeastSquaresFailure::NotFinite);
+    }
+    loop {
+        let mut columns = problem
+            .jacobian(&x, &residuals)
+            .ok_or(LeastSquaresFailure::NoJacobian)?;
+        for (column, scale) in columns.iter_mut().zip(&mut scales) {
+            *scale = norm(column).max(*scale);
+            // A parameter on which nothing depends stays.
+            if *scale > 0.0 {
+                column.iter_mut().for_each(|own| *own /= *scale);
+            }
+        }
+        let scaled = |x: &[f64]| {
+            norm(
+                &x.iter()
+                    .zip(&scales)
+                    .map(|(x, d)| x * d)
+                    .collect::<Vec<_>>(),
+            )
+        };
+        if radius.is_infinite() {
+            let start = scaled(&x);
+            radius = FIRST_RADIUS * if start > 0.0 { start } else { 1.0 };
+        }
+        let svd = Svd::new(columns);
+        let tiny = svd.largest() * f64::EPSILON;
+        // Singular value, direction, and scalar product of the residuals and the image.
+        let parts = svd.values().filter(|(value, ..)| *value > tiny);
+        let parts: Vec<_> = parts
+            .map(|(value, direction, image)| (value, direction, dot(image, &residuals)))
+            .collect();
+        if length == 0.0 || parts.is_empty() {
+            return Ok((x, length * length));
+        }
+        loop {
+            steps += 1;
+            let damping = damping(&parts, radius);
+            let mut step = vec![0.0; x.len()];
+            let mut predicted = 0.0;
+            for (value, direction, slope) in &parts {
+                let size = slope / (value * value + damping);
+                step.iter_mut()
+                    .zip(*direction)
+                    .for_each(|(step, own)| *step -= size * own);
+                predicted += size * size * (value * value + 2.0 * damping);
+            }
+            let step_length = norm(&step);
+            if steps == 1 {
+                radius = radius.min(step_length);
+            }
+            let moved = x.iter().zip(&step).zip(&scales);
+            let moved: Vec<f64> = moved
+                .map(|((x, step), scale)| if *scale > 0.0 { x + step / scale } else { *x })
+                .collect();
+            let there = problem.residuals(&moved);
+            let there_length = norm(&there);
+            predicted /= length * length;
+            let actual = 1.0 - (there_length / length) * (there_length / length);
+            let ratio = if predicted > 0.0 {
+                actual / predicted
+            } else {
+                0.0
+            };
+            if ratio <= 0.25 || ratio.is_nan() {
+                // The minimum of a parabola through both sums with the slope here, within a tenth and a half.
+                let slope = parts
+                    .iter()
+                    .map(|(value, _, slope)| slope * slope / (value * value + damping));
+                let slope = -slope.sum::<f64>() / (length * length);
+                let shrink = 0.5 * slope / (slope + 0.5 * actual);
+                let shrink = if actual >= 0.0 {
+                    0.5
+                } else {
+                    shrink.clamp(0.1, 0.5)
+                };
+                radius = shrink * radius.min(10.0 * step_length);
+            } else if damping == 0.0 || ratio >= 0.75 {
+                radius = 2.0 * step_length;
+            }
+            let is_better = ratio >= LEAST_RATIO;
+            if is_better {
+                (x, residuals, length) = (moved, there, there_length);
+            }
+            let is_flat = actual.abs() <= tolerance && predicted <= tolerance && ratio <= 2.0;
+            if is_flat || radius <= tolerance * scaled(&x) {
+                return Ok((x, length * length));
+            }
+            if steps >= MOST_STEPS * (scales.len() + 1) {
+                return Err(LeastSquaresFailure::TooManySteps);
+            }
+            if is_better {
+                break;
+            }
+        }
+    }
+}
+
+/// The damping with which the step reaches the radius of the trust region, or 0 if the whole step is inside.
+///
+/// Newton's method for `1/|p(damping)| = 1/radius`, which is almost linear in the damping and converges from below (Nocedal
+/// and Wright, Numerical Optimization, 2006, algorithm 4.3).
+fn damping(parts: &[(f64, &[f64], f64)], radius: f64) -> f64 {
+    let mut damping = 0.0;
+    loop {
+        let [mut square, mut cube] = [0.0; 2];
+        for (value, _, slope) in parts {
+            let damped = value * value + damping;
+            square += (slope / damped) * (slope / damped);
+            cube += (slope / damped) * (slope / damped) / damped;
+        }
+        let length = f64::sqrt(square);
+        if length > (1.0 + RADIUS_SLACK) * radius {
+            damping += square / cube * (length - radius) / radius;
+        } else {
+            return damping;
+        }
+    }
+}
