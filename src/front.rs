@@ -9,12 +9,12 @@ use crate::engine::gpu::{Gpu, Precision};
 use crate::fit::{self, Fit};
 use crate::map::{self as stages, Panel, STATE_CHANNELS, Summary};
 #[cfg(feature = "fit")]
-use crate::measured::Points;
+use crate::measured::MeasuredPoints;
 use crate::plan::{Plan, PlanError};
 use crate::rod::Side;
 #[cfg(feature = "fit")]
 use crate::scene::Parameter;
-use crate::scene::{Grid, Place, Scene, Swept};
+use crate::scene::{Grid, Scene, SweepPlace, SweptWhisker};
 use crate::shooting::Resolution;
 use crate::trace::{Branch, Detachment, NoState, Shape, curve_at, sides, whiskers_at_once};
 
@@ -196,11 +196,11 @@ fn run<E: From<Error> + Send>(
 ///
 /// # Errors
 /// When the tolerance cannot be kept.
-pub fn curve(scene: &Scene, options: Options) -> Result<Vec<(Place, Detachment)>, Error> {
+pub fn curve(scene: &Scene, options: Options) -> Result<Vec<(SweepPlace, Detachment)>, Error> {
     let resolution = resolution(scene, options, &Side::BOTH)?;
     let distances = &scene.grid.distance_mm;
     let curves = |group: Vec<_>| {
-        sides(&group, |own: &Swept, side| {
+        sides(&group, |own: &SweptWhisker, side| {
             curve_at(resolution, &own.whisker, &own.pole, side, distances)
         })
     };
@@ -249,11 +249,11 @@ pub fn shape(scene: &Scene, distance_mm: f64, push_angle_deg: f64) -> Result<Sha
 /// Fits parameters of the scene's first whisker and of its pole to measured detachments, from the scene's values on.
 ///
 /// ```
-/// use whiskmap::measured::Points;
+/// use whiskmap::measured::MeasuredPoints;
 /// use whiskmap::scene::{Parameter, Scene};
 ///
 /// let cone = Scene::parse(include_str!("../scenes/cone.toml"), "cone.toml")?;
-/// let points = Points::parse("side,distance_mm,push_angle_deg\ncb,15.6604597633658,15.60793\n", "points.csv")?;
+/// let points = MeasuredPoints::parse("side,distance_mm,push_angle_deg\ncb,15.6604597633658,15.60793\n", "points.csv")?;
 /// let start = cone.with(Parameter::TipRadiusUm, 3.0)?;
 /// let fit = whiskmap::fit(&start, &points, &[Parameter::TipRadiusUm])?;
 /// assert!((fit.estimates[0].value - 1.5).abs() < 1e-5);
@@ -263,7 +263,11 @@ pub fn shape(scene: &Scene, distance_mm: f64, push_angle_deg: f64) -> Result<Sha
 /// # Errors
 /// When a parameter cannot be free, a point is beyond the whisker, points are too few, or the iteration does not converge.
 #[cfg(feature = "fit")]
-pub fn fit(scene: &Scene, points: &Points, free: &[Parameter]) -> Result<Fit, fit::FitError> {
+pub fn fit(
+    scene: &Scene,
+    points: &MeasuredPoints,
+    free: &[Parameter],
+) -> Result<Fit, fit::FitError> {
     fit::fit(scene, points, free)
 }
 

@@ -1,7 +1,7 @@
 //! The values that make a whisker detach where it should: known ones come back, none is missed, none is made up.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-use whiskmap::design::{Design, NoDesign, Target, design};
+use whiskmap::design::{Design, DesignError, DesignTarget, design};
 use whiskmap::rod::Side;
 use whiskmap::scene::{Parameter, Scene};
 use whiskmap::trace::{Detachment, DetachmentKind, curve};
@@ -38,8 +38,8 @@ fn end(scene: &Scene, distance_mm: f64, side: Side) -> Detachment {
     curve(&scene.whisker, &scene.pole, side, &[distance_mm])[0]
 }
 
-fn target(distance_mm: f64, side: Side, kind: DetachmentKind, push_angle_deg: f64) -> Target {
-    Target {
+fn target(distance_mm: f64, side: Side, kind: DetachmentKind, push_angle_deg: f64) -> DesignTarget {
+    DesignTarget {
         distance_mm,
         side,
         kind,
@@ -48,7 +48,7 @@ fn target(distance_mm: f64, side: Side, kind: DetachmentKind, push_angle_deg: f6
 }
 
 /// Every value does what is asked for, to the last of the tolerance.
-fn assert_sound(scene: &Scene, parameter: Parameter, target: &Target, design: &Design) {
+fn assert_sound(scene: &Scene, parameter: Parameter, target: &DesignTarget, design: &Design) {
     for value in &design.values {
         let moved = scene.with_parameters(&[(parameter, *value)]).unwrap();
         let end = end(&moved, target.distance_mm, target.side);
@@ -182,7 +182,7 @@ fn what_cannot_be_asked_for_is_refused() {
     let asked = target(60.0, Side::Cb, DetachmentKind::SlipOff, 30.0);
     let why = design(&scene, Parameter::Friction, &asked).unwrap_err();
     let said = why.to_string();
-    assert!(matches!(why, NoDesign::Lacking { .. }));
+    assert!(matches!(why, DesignError::Lacking { .. }));
     for part in [
         "friction: must be one of length_mm, ",
         "taper",
@@ -193,7 +193,7 @@ fn what_cannot_be_asked_for_is_refused() {
     let measured =
         include_str!("../scenes/measured.toml").replace("\"measured.csv\"", "[[0, 30], [20, 1.5]]");
     let measured = Scene::parse(&measured, "measured.toml").unwrap();
-    let near = Target {
+    let near = DesignTarget {
         distance_mm: 15.0,
         ..asked
     };
@@ -205,7 +205,7 @@ fn what_cannot_be_asked_for_is_refused() {
     );
     assert!(matches!(
         design(&measured, Parameter::Taper, &near),
-        Err(NoDesign::Lacking { .. })
+        Err(DesignError::Lacking { .. })
     ));
     let axis = scene
         .to_builder()
@@ -213,14 +213,14 @@ fn what_cannot_be_asked_for_is_refused() {
         .build()
         .unwrap();
     let why = design(&axis, Parameter::ParabolaPerMm, &asked).unwrap_err();
-    assert_eq!(why, NoDesign::Sweep("curvature_per_mm"));
-    let far = Target {
+    assert_eq!(why, DesignError::Sweep("curvature_per_mm"));
+    let far = DesignTarget {
         distance_mm: 1e9,
         ..asked
     };
     assert!(matches!(
         design(&scene, Parameter::Taper, &far),
-        Err(NoDesign::Distance(_))
+        Err(DesignError::Distance(_))
     ));
 }
 

@@ -4,9 +4,9 @@
 use assert_cmd::Command;
 use std::fs;
 use std::path::{Path, PathBuf};
-use whiskmap::measured::Compared;
+use whiskmap::measured::ComparedPoint;
 use whiskmap::trace::{BranchPoint, Corner, Detachment, ShapePoint};
-use whiskmap::uncertainty::Spread;
+use whiskmap::uncertainty::EndSpread;
 
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -91,10 +91,10 @@ fn every_column_is_on_the_page_of_the_commands() {
     let tables = [
         Detachment::COLUMNS,
         Corner::COLUMNS,
-        Compared::COLUMNS,
+        ComparedPoint::COLUMNS,
         BranchPoint::COLUMNS,
         ShapePoint::COLUMNS,
-        Spread::COLUMNS,
+        EndSpread::COLUMNS,
     ];
     for (name, meaning) in tables.into_iter().flatten() {
         let line = format!("| `{name}` | {} |", meaning.trim());

@@ -12,7 +12,7 @@ use whiskmap::accuracy::cheapest;
 use whiskmap::classify::{Regime, RowBoundary, Status, TIE};
 use whiskmap::plan::Plan;
 use whiskmap::rod::Side;
-use whiskmap::scene::{Scene, Swept, Whisker};
+use whiskmap::scene::{Scene, SweptWhisker, Whisker};
 use whiskmap::sheet::{Crossing, Edge};
 use whiskmap::shooting::Resolution;
 use whiskmap::trace::{Detachment, DetachmentKind, curve_at};
@@ -64,7 +64,7 @@ fn the_shape_at_rest_decides_at_the_straight_length() {
                 "{case}"
             );
             let regimes: Vec<Vec<u32>> = panels.into_iter().map(|panel| panel.regime).collect();
-            for (Swept { whisker, .. }, regimes) in scene.whiskers().zip(&regimes) {
+            for (SweptWhisker { whisker, .. }, regimes) in scene.whiskers().zip(&regimes) {
                 let case = format!("{case}, taper {}", whisker.taper());
                 for side in Side::BOTH {
                     let case = format!("{case}, {side:?}");

@@ -5,7 +5,7 @@ use whiskmap::rod::Side;
 use whiskmap::scene::{Parameter, Scene};
 use whiskmap::shooting::Resolution;
 use whiskmap::trace::{DetachmentKind, curve};
-use whiskmap::uncertainty::{Draws, NoDraws, Spread};
+use whiskmap::uncertainty::{DrawError, Draws, EndSpread};
 
 /// The cone with a rough pole and a stiff tip, at a few distances, with a table of deviations.
 fn scene(uncertainty: &str) -> Scene {
@@ -33,7 +33,7 @@ fn scene(uncertainty: &str) -> Scene {
     Scene::parse(&text, "uncertain.toml").unwrap()
 }
 
-fn spreads(scene: &Scene, samples: usize, seed: u64) -> Vec<Spread> {
+fn spreads(scene: &Scene, samples: usize, seed: u64) -> Vec<EndSpread> {
     let draws = Draws::new(scene, samples, seed).unwrap();
     let spread = |side| draws.spread(Resolution::FINE, side, || ());
     Side::BOTH.into_iter().flat_map(spread).collect()
@@ -202,9 +202,9 @@ fn what_cannot_be_drawn_is_refused() {
     let cone = include_str!("../scenes/cone.toml");
     let cone = Scene::parse(cone, "cone.toml").unwrap();
     let why = |scene: &Scene, samples| Draws::new(scene, samples, 1).unwrap_err();
-    assert_eq!(why(&cone, 10), NoDraws::NoTable);
+    assert_eq!(why(&cone, 10), DrawError::NoTable);
     let many = scene("length_mm = 1");
-    let too_many = NoDraws::TooMany {
+    let too_many = DrawError::TooMany {
         ends: 30_000_000,
         distances: 3,
     };
@@ -214,7 +214,7 @@ fn what_cannot_be_drawn_is_refused() {
         .sweep(Parameter::ParabolaPerMm, [0.02])
         .build()
         .unwrap();
-    assert_eq!(why(&axis, 10), NoDraws::Sweep("curvature_per_mm"));
+    assert_eq!(why(&axis, 10), DrawError::Sweep("curvature_per_mm"));
     let wide =
         scene("length_mm = 1e5\nbase_radius_um = 1e5\nvertex_mm = 1e5\npole_radius_mm = 1e5");
     let said = why(&wide, 10).to_string();

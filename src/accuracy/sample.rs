@@ -2,7 +2,7 @@
 
 use crate::refine::states;
 use crate::rod::{Effects, Rod, Side};
-use crate::scene::{Scene, SceneData, Swept};
+use crate::scene::{Scene, SceneData, SweptWhisker};
 use crate::sheet::{Edge, Sheet};
 use crate::shooting::batch::{Batch, InitialCondition, Method};
 use crate::shooting::{Resolution, ShootingMap};
@@ -113,7 +113,7 @@ fn worse(a: f64, b: f64) -> f64 {
 }
 
 /// The whiskers at some values of the sweep's axes: at the ends alone where there are many.
-fn whiskers(scene: &Scene) -> Vec<Swept> {
+fn whiskers(scene: &Scene) -> Vec<SweptWhisker> {
     let mut few = SceneData::clone(scene);
     let most = if few.grid.sweep.len() > 2 {
         2

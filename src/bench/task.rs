@@ -5,7 +5,7 @@ use crate::numerics::Unit;
 use crate::plan::Plan;
 use crate::refine::{Shot, states};
 use crate::rod::{Effects, Rod, Side, arclength};
-use crate::scene::{Scene, Swept};
+use crate::scene::{Scene, SweptWhisker};
 use crate::sheet::Sheet;
 use crate::shooting::batch::{Batch, InitialCondition, Method};
 use crate::shooting::{Resolution, ShootingMap};
@@ -45,9 +45,9 @@ pub fn places(hits: &[Hit]) -> Vec<(f64, f64)> {
 }
 
 /// The whiskers of a scene, each on the sides that its push angles ask for.
-pub fn faces(scene: &Scene) -> Vec<(Swept, Side)> {
+pub fn faces(scene: &Scene) -> Vec<(SweptWhisker, Side)> {
     let sides = Plan::sides(scene);
-    let both = |own: Swept| sides.iter().map(move |side| (own.clone(), *side));
+    let both = |own: SweptWhisker| sides.iter().map(move |side| (own.clone(), *side));
     scene.whiskers().flat_map(both).collect()
 }
 
@@ -97,7 +97,7 @@ impl Task {
     /// The states of every cell of `scene` that has one.
     pub fn new(scene: &Scene) -> Self {
         let faces = faces(scene);
-        let rod = |(own, side): &(Swept, Side)| own.rod(*side);
+        let rod = |(own, side): &(SweptWhisker, Side)| own.rod(*side);
         let rods: Vec<Rod> = faces.iter().map(rod).collect();
         let effects = Effects::of(&rods);
         let method = Method::fine().with_effects(effects);

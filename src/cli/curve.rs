@@ -12,13 +12,13 @@ use super::uncertainty::{self, SampleArgs};
 use clap::Args;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
-use whiskmap::measured::{Angle, Compared};
+use whiskmap::measured::{ComparedPoint, MeasuredAngle};
 use whiskmap::render::{CurveAxis, DrawnCurve, Plot, Stroke, curves, measured};
 use whiskmap::rod::Side;
-use whiskmap::scene::{Place, Scene, Swept};
+use whiskmap::scene::{Scene, SweepPlace, SweptWhisker};
 use whiskmap::shooting::Resolution;
 use whiskmap::trace::{self, Corner, Detachment, DetachmentKind};
-use whiskmap::uncertainty::Spread;
+use whiskmap::uncertainty::EndSpread;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -46,8 +46,8 @@ Percentiles are linear between neighbouring samples. The samples depend on the s
 const TABLES: &[(&str, &[(&str, &str)])] = &[
     ("Columns", Detachment::COLUMNS),
     ("Columns with --corner", Corner::COLUMNS),
-    ("Columns with --data", Compared::COLUMNS),
-    ("Columns with --samples", Spread::COLUMNS),
+    ("Columns with --data", ComparedPoint::COLUMNS),
+    ("Columns with --samples", EndSpread::COLUMNS),
 ];
 
 #[derive(Debug, Args)]
@@ -101,7 +101,7 @@ pub fn run(args: &CurveArgs, files: &mut Files) -> Result<(), Failure> {
     let at_once = trace::whiskers_at_once(distances.len());
     for group in scene.whisker_groups(at_once) {
         if args.corner {
-            let corner = |own: &Swept, side| {
+            let corner = |own: &SweptWhisker, side| {
                 let corner = trace::corner(&own.whisker, &own.pole, side);
                 bar.inc(1);
                 vec![corner]
@@ -109,7 +109,7 @@ pub fn run(args: &CurveArgs, files: &mut Files) -> Result<(), Failure> {
             write(&scene, &mut outputs, &trace::sides(&group, corner))?;
             continue;
         }
-        let curve = |own: &Swept, side| {
+        let curve = |own: &SweptWhisker, side| {
             let ends = trace::curve_at(resolution, &own.whisker, &own.pole, side, distances);
             bar.inc(ends.len());
             ends
@@ -133,7 +133,7 @@ pub fn run(args: &CurveArgs, files: &mut Files) -> Result<(), Failure> {
 fn write<R: Serialize>(
     scene: &Scene,
     outputs: &mut OpenOutputs,
-    rows: &[(Place, R)],
+    rows: &[(SweepPlace, R)],
 ) -> Result<(), Failure> {
     if scene.is_sweep() {
         outputs.rows(rows)
@@ -146,7 +146,7 @@ fn write<R: Serialize>(
 fn compare(args: &CurveArgs, scene: &Scene, path: &Path, files: &mut Files) -> Result<(), Failure> {
     check_single(scene, "curve --data")?;
     let points = data::read(files, path)?;
-    let Swept { whisker, pole, .. } = scene.first_whisker();
+    let SweptWhisker { whisker, pole, .. } = scene.first_whisker();
     points.check_reach(&whisker, &pole)?;
     let mut outputs = args.outputs.open(files)?;
     let comparison = points.beside(&whisker, &pole);
@@ -155,8 +155,8 @@ fn compare(args: &CurveArgs, scene: &Scene, path: &Path, files: &mut Files) -> R
     outputs.rows(rows)?;
     outputs.finish(scene.title.clone(), || {
         let axes = match points.angle {
-            Angle::Push => AXES,
-            Angle::Chord => [AXES[0], CHORD],
+            MeasuredAngle::Push => AXES,
+            MeasuredAngle::Chord => [AXES[0], CHORD],
         };
         Plot {
             dots: measured(rows),
@@ -178,7 +178,7 @@ fn compare(args: &CurveArgs, scene: &Scene, path: &Path, files: &mut Files) -> R
 
 /// Plots the detachment curve of the scene's first whisker.
 pub fn scene_curve(scene: &Scene, resolution: Resolution, axes: [CurveAxis; 2]) -> Plot {
-    let Swept { whisker, pole, .. } = scene.first_whisker();
+    let SweptWhisker { whisker, pole, .. } = scene.first_whisker();
     let distances = &scene.grid.distance_mm;
     let of_side = |side| trace::curve_at(resolution, &whisker, &pole, side, distances);
     let ends: Vec<Detachment> = Side::BOTH.into_iter().flat_map(of_side).collect();

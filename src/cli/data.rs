@@ -3,7 +3,7 @@
 use super::failure::{Failure, message};
 use super::files::{Files, STDOUT};
 use std::path::Path;
-use whiskmap::measured::{Comparison, Points};
+use whiskmap::measured::{Comparison, MeasuredPoints};
 use whiskmap::scene::digits;
 
 /// Returns an error if both the scene and the points are standard input.
@@ -16,8 +16,8 @@ pub fn check_stdin(scene: &Path, data: &Path) -> Result<(), Failure> {
 }
 
 /// Reads the points of the input `path`. Prints unused columns, and the number of points whose angle has the other side's sign.
-pub fn read(files: &mut Files, path: &Path) -> Result<Points, Failure> {
-    let points = Points::read(path)?;
+pub fn read(files: &mut Files, path: &Path) -> Result<MeasuredPoints, Failure> {
+    let points = MeasuredPoints::read(path)?;
     files.input(path);
     if let Some(note) = &points.note {
         message(&format!("note: {note}"));
@@ -37,7 +37,7 @@ pub fn read(files: &mut Files, path: &Path) -> Result<Points, Failure> {
 }
 
 /// Prints the points that are left out because their side never detaches by theory.
-pub fn name_left_out(points: &Points, comparison: &Comparison) {
+pub fn name_left_out(points: &MeasuredPoints, comparison: &Comparison) {
     for row in comparison.left_out() {
         message(&format!(
             "warning: {}:{}: left out: by theory this side never detaches at {} mm",

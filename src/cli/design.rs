@@ -8,7 +8,7 @@ use super::pole::{self, PoleArgs, title};
 use clap::Args;
 use std::io::{self, Write};
 use std::path::PathBuf;
-use whiskmap::design::{self, Design, NoDesign, Target};
+use whiskmap::design::{self, Design, DesignError, DesignTarget};
 use whiskmap::render::designs;
 use whiskmap::rod::Side;
 use whiskmap::scene::{Parameter, digits};
@@ -63,7 +63,7 @@ fn push(text: &str) -> Result<f64, String> {
 }
 
 impl DesignArgs {
-    fn target(&self) -> Result<Target, Failure> {
+    fn target(&self) -> Result<DesignTarget, Failure> {
         let (option, kind, push) = match (self.end.slip_off, self.end.pull_off) {
             (Some(push), _) => ("--slip-off", DetachmentKind::SlipOff, Some(push)),
             (None, push) => ("--pull-off", DetachmentKind::PullOff, push),
@@ -80,7 +80,7 @@ impl DesignArgs {
             let why = format!("{option} {push} deg: a push angle of {must}");
             return Err(Failure::Input(why));
         }
-        Ok(Target {
+        Ok(DesignTarget {
             distance_mm: self.pole.distance,
             side,
             kind,
@@ -96,11 +96,11 @@ pub fn run(args: &DesignArgs, files: &mut Files) -> Result<(), Failure> {
     let (_, picture) = open(files, "--plot", None, args.plot.as_deref())?;
     let found = design::design(&scene, args.parameter, &target);
     let found = found.map_err(|why| match why {
-        NoDesign::Sweep(_) => Failure::Input(why.to_string()),
-        NoDesign::Lacking { .. } | NoDesign::Fixed { .. } => {
+        DesignError::Sweep(_) => Failure::Input(why.to_string()),
+        DesignError::Lacking { .. } | DesignError::Fixed { .. } => {
             Failure::Input(format!("{}: --for {why}", path.display()))
         }
-        NoDesign::Distance(why) => Failure::Scene(why),
+        DesignError::Distance(why) => Failure::Scene(why),
     })?;
     if let Some(picture) = picture {
         let plot = designs(args.parameter, &target, &found);
@@ -118,7 +118,7 @@ pub fn run(args: &DesignArgs, files: &mut Files) -> Result<(), Failure> {
 }
 
 /// Returns the message for a target without a solution, with the push angles that are possible.
-fn unreached(parameter: Parameter, target: &Target, design: &Design) -> String {
+fn unreached(parameter: Parameter, target: &DesignTarget, design: &Design) -> String {
     let name = parameter.name();
     let [from, to] = design.range.map(digits);
     let ways = [

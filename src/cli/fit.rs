@@ -10,7 +10,7 @@ use serde_json::{Map, Value, json};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use whiskmap::fit::{Estimate, Fit, FitError, fit};
-use whiskmap::measured::Points;
+use whiskmap::measured::MeasuredPoints;
 use whiskmap::scene::{Parameter, digits};
 use whiskmap::store::Output;
 
@@ -109,7 +109,7 @@ fn print(title: &str, fit: &Fit, outputs: Vec<WrittenFile>) -> Result<(), Failur
 }
 
 /// Warns of parameters at a limit, parameters that the points do not determine, and too small standard deviations.
-fn warn(points: &Points, fit: &Fit) {
+fn warn(points: &MeasuredPoints, fit: &Fit) {
     for estimate in &fit.estimates {
         let name = estimate.parameter.name();
         if estimate.is_at_limit {

@@ -7,7 +7,7 @@ use super::outputs::save;
 use clap::Args;
 use std::io::Write;
 use std::path::PathBuf;
-use whiskmap::measured::{Angle, Point};
+use whiskmap::measured::{MeasuredAngle, MeasuredPoint};
 use whiskmap::paper::{self, FIG4_WHISKER, FIG5_LEFT, FIG5_RIGHT, Measurements, POLE};
 use whiskmap::render::PictureFormat;
 use whiskmap::scene::Whisker;
@@ -56,7 +56,7 @@ fn points(
     option: &str,
     path: &Option<PathBuf>,
     whisker: &Whisker,
-) -> Result<Vec<Point>, Failure> {
+) -> Result<Vec<MeasuredPoint>, Failure> {
     let Some(path) = path else {
         return Ok(Vec::new());
     };
@@ -64,8 +64,8 @@ fn points(
     let reach = points.check_reach(whisker, &POLE);
     reach.map_err(|why| Failure::Input(format!("{option} {why}")))?;
     match points.angle {
-        Angle::Push => Ok(points.points),
-        Angle::Chord => Err(Failure::Input(format!(
+        MeasuredAngle::Push => Ok(points.points),
+        MeasuredAngle::Chord => Err(Failure::Input(format!(
             "{option} {}: has push_chord_deg; must have push_angle_deg, which the figure shows",
             path.display()
         ))),

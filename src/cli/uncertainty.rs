@@ -10,7 +10,7 @@ use whiskmap::render::{Plot, bands};
 use whiskmap::rod::Side;
 use whiskmap::scene::Scene;
 use whiskmap::shooting::Resolution;
-use whiskmap::uncertainty::{Draws, NoDraws, Spread};
+use whiskmap::uncertainty::{DrawError, Draws, EndSpread};
 
 #[derive(Debug, Args)]
 pub struct SampleArgs {
@@ -31,7 +31,7 @@ impl SampleArgs {
         };
         let draws = Draws::new(scene, samples as usize, u64::from(self.seed));
         let draws = draws.map_err(|why| match why {
-            NoDraws::Sweep(_) => Failure::Input(format!("{why} with --samples")),
+            DrawError::Sweep(_) => Failure::Input(format!("{why} with --samples")),
             _ => Failure::Input(format!("--samples {samples}: {why}")),
         })?;
         Ok(Some(draws))
@@ -47,7 +47,7 @@ pub fn run(
 ) -> Result<(), Failure> {
     let bar = Progress::over(Side::BOTH.len() * draws.len(), "curves");
     let spread = |side| draws.spread(resolution, side, || bar.inc(1));
-    let rows: Vec<Spread> = Side::BOTH.into_iter().flat_map(spread).collect();
+    let rows: Vec<EndSpread> = Side::BOTH.into_iter().flat_map(spread).collect();
     bar.finish();
     if draws.refused > 0 {
         let (refused, kept) = (draws.refused, draws.len());

@@ -11,7 +11,7 @@ mod turn;
 use crate::rod::Side;
 use crate::scene::{Parameter, Scene, SceneError, digits};
 use crate::trace::DetachmentKind;
-use search::Search;
+use search::DesignSearch;
 
 /// Largest difference of the push angles of a solution and the target, in degrees: exact ends are known to 1e-11.
 const TOLERANCE_DEG: f64 = 1e-9;
@@ -21,7 +21,7 @@ const EQUAL: f64 = 1e-9;
 
 /// The detachment that a design looks for.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Target {
+pub struct DesignTarget {
     /// Distance from the base to the contact at first touch, in millimetres.
     pub distance_mm: f64,
     /// Side of the whisker that the pole is on.
@@ -34,7 +34,7 @@ pub struct Target {
 
 /// The end of a push at a value of the parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct End {
+pub struct DesignEnd {
     /// Value of the parameter, in its unit.
     pub value: f64,
     /// How the push ends.
@@ -51,12 +51,12 @@ pub struct Design {
     /// The least and the greatest value that the scene accepts.
     pub range: [f64; 2],
     /// Ends over that range, in growing order of the values.
-    pub ends: Vec<End>,
+    pub ends: Vec<DesignEnd>,
 }
 
 /// Error of a design.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum NoDesign {
+pub enum DesignError {
     /// The scene sweeps whiskers, along this axis.
     #[error("grid.{0}: must be left out, as one number of one whisker is varied")]
     Sweep(&'static str),
@@ -103,12 +103,12 @@ impl Design {
 /// Finds every value of `parameter` with which the whisker of `scene` detaches as `target` says. The grid is not used.
 ///
 /// ```
-/// use whiskmap::design::{Target, design};
+/// use whiskmap::design::{DesignTarget, design};
 /// use whiskmap::{rod::Side, trace::DetachmentKind};
 /// use whiskmap::scene::{Parameter, Scene};
 ///
 /// let cone = Scene::parse(include_str!("../../scenes/cone.toml"), "cone.toml")?;
-/// let target = Target { distance_mm: 15.66, side: Side::Cb, kind: DetachmentKind::SlipOff, push_angle_deg: 20.0 };
+/// let target = DesignTarget { distance_mm: 15.66, side: Side::Cb, kind: DetachmentKind::SlipOff, push_angle_deg: 20.0 };
 /// let design = design(&cone, Parameter::TipRadiusUm, &target)?;
 /// let [tip_radius_um] = design.values[..] else { panic!("{design:?}") };
 /// assert!((tip_radius_um - 4.063).abs() < 1e-3);
@@ -117,13 +117,17 @@ impl Design {
 ///
 /// # Errors
 /// If the scene sweeps whiskers, does not give the parameter, or accepts one value only, or no pole at the distance.
-pub fn design(scene: &Scene, parameter: Parameter, target: &Target) -> Result<Design, NoDesign> {
+pub fn design(
+    scene: &Scene,
+    parameter: Parameter,
+    target: &DesignTarget,
+) -> Result<Design, DesignError> {
     if let Some(axis) = scene.grid.sweep.first() {
-        return Err(NoDesign::Sweep(axis.parameter.axis()));
+        return Err(DesignError::Sweep(axis.parameter.axis()));
     }
     let Some(value) = parameter.value(scene) else {
         let given = Parameter::given(scene);
-        return Err(NoDesign::Lacking { parameter, given });
+        return Err(DesignError::Lacking { parameter, given });
     };
     // Other distances would limit what is accepted.
     let scene = &scene
@@ -132,9 +136,9 @@ pub fn design(scene: &Scene, parameter: Parameter, target: &Target) -> Result<De
         .build()?;
     let range = parameter.range(scene);
     if range[1] - range[0] <= 3.0 * EQUAL * value.abs() {
-        return Err(NoDesign::Fixed { parameter, value });
+        return Err(DesignError::Fixed { parameter, value });
     }
-    let search = Search {
+    let search = DesignSearch {
         scene,
         parameter,
         target,

@@ -1,7 +1,7 @@
 //! Search for ends at a push angle: a scan, changes of kind, and bisection between turns.
 
 use super::samples::samples;
-use super::{End, TOLERANCE_DEG, Target, turn};
+use super::{DesignEnd, DesignTarget, TOLERANCE_DEG, turn};
 use crate::numerics::Bracket;
 use crate::scene::{Parameter, Scene};
 use crate::trace::{DetachmentKind, curve};
@@ -11,21 +11,21 @@ use rayon::prelude::*;
 const HALVINGS: u32 = 50;
 
 /// A scene, the parameter that varies, and the target.
-pub struct Search<'a> {
+pub struct DesignSearch<'a> {
     pub scene: &'a Scene,
     pub parameter: Parameter,
-    pub target: &'a Target,
+    pub target: &'a DesignTarget,
 }
 
-impl Search<'_> {
+impl DesignSearch<'_> {
     /// The end at a value of the parameter; `Unresolved` if the scene refuses the value.
-    fn end(&self, value: f64) -> End {
+    fn end(&self, value: f64) -> DesignEnd {
         let moved = self.scene.with_parameters(&[(self.parameter, value)]);
         let end = moved.ok().and_then(|scene| {
             let distances = &scene.grid.distance_mm;
             curve(&scene.whisker, &scene.pole, self.target.side, distances).pop()
         });
-        End {
+        DesignEnd {
             value,
             kind: end.map_or(DetachmentKind::Unresolved, |end| end.kind),
             push_angle_deg: end.and_then(|end| end.push_angle_deg),
@@ -33,7 +33,7 @@ impl Search<'_> {
     }
 
     /// Push angle of an end less that of the target, in degrees; NaN for an end of another kind.
-    fn miss(&self, end: &End) -> f64 {
+    fn miss(&self, end: &DesignEnd) -> f64 {
         let push = end
             .push_angle_deg
             .filter(|_| end.kind == self.target.kind)
@@ -46,8 +46,8 @@ impl Search<'_> {
     }
 
     /// Ends over the range, and on both sides of each change of kind.
-    pub fn scan(&self, range: [f64; 2]) -> Vec<End> {
-        let scanned: Vec<End> = samples(range)
+    pub fn scan(&self, range: [f64; 2]) -> Vec<DesignEnd> {
+        let scanned: Vec<DesignEnd> = samples(range)
             .into_par_iter()
             .map(|value| self.end(value))
             .collect();
@@ -64,7 +64,7 @@ impl Search<'_> {
     }
 
     /// The last end of the kind of `before`, and the first end of another kind between it and `after`.
-    fn change(&self, mut before: End, mut after: End) -> [End; 2] {
+    fn change(&self, mut before: DesignEnd, mut after: DesignEnd) -> [DesignEnd; 2] {
         for _ in 0..HALVINGS {
             let middle = self.end(before.value.midpoint(after.value));
             if middle.kind == before.kind {
@@ -77,7 +77,7 @@ impl Search<'_> {
     }
 
     /// The solutions within a part of the range where every end has the kind of the target.
-    pub fn solutions(&self, piece: &[End]) -> Vec<f64> {
+    pub fn solutions(&self, piece: &[DesignEnd]) -> Vec<f64> {
         let mut places: Vec<[f64; 2]> = piece
             .iter()
             .map(|end| [end.value, self.miss(end)])

@@ -1,7 +1,7 @@
 //! Residuals of points, as a function of the free parameters of a scene.
 
-use crate::measured::Points;
-use crate::scene::{Parameter, Scene, SceneError, Swept, Whisker};
+use crate::measured::MeasuredPoints;
+use crate::scene::{Parameter, Scene, SceneError, SweptWhisker, Whisker};
 use rayon::prelude::*;
 
 /// Step of central differences, in units of the parameters. Truncation and the rounding of curves then take at most
@@ -11,14 +11,14 @@ const STEP: f64 = 1e-5;
 /// The residuals of points. Parameters are in units of [`Misfit::units`], so that all are of order 1.
 pub(super) struct Misfit<'a> {
     scene: &'a Scene,
-    pub points: &'a Points,
+    pub points: &'a MeasuredPoints,
     free: &'a [Parameter],
     /// Powers of 2, so that nothing is rounded by them.
     pub units: Vec<f64>,
 }
 
 impl<'a> Misfit<'a> {
-    pub fn new(scene: &'a Scene, points: &'a Points, free: &'a [Parameter]) -> Self {
+    pub fn new(scene: &'a Scene, points: &'a MeasuredPoints, free: &'a [Parameter]) -> Self {
         let first = scene.first_whisker();
         let units = free.iter().map(|own| size(*own, &first.whisker));
         Self {
@@ -57,7 +57,7 @@ impl<'a> Misfit<'a> {
     /// point is out of reach or never detaches.
     pub fn residuals(&self, parameters: &[f64]) -> Option<Vec<f64>> {
         let scene = self.scene(parameters).ok()?;
-        let Swept { whisker, pole, .. } = scene.first_whisker();
+        let SweptWhisker { whisker, pole, .. } = scene.first_whisker();
         self.points.check_reach(&whisker, &pole).ok()?;
         let rows = self.points.beside(&whisker, &pole).rows;
         let mut residuals = Vec::with_capacity(rows.len());

@@ -14,8 +14,8 @@ mod verdict;
 pub use verdict::{LikelyCause, NotAFit};
 
 use crate::input::CsvError;
-use crate::measured::{Comparison, Points};
-use crate::scene::{Parameter, Scene, SceneError, Swept, digits};
+use crate::measured::{Comparison, MeasuredPoints};
+use crate::scene::{Parameter, Scene, SceneError, SweptWhisker, digits};
 use bounded::{NO_DERIVATIVE, best};
 use covariance::Covariance;
 use misfit::Misfit;
@@ -116,7 +116,7 @@ const NARROWEST: f64 = 1e-6;
 ///
 /// # Errors
 /// If a parameter cannot be free, a point is beyond the whisker, points are too few, or the iteration does not converge.
-pub fn fit(scene: &Scene, points: &Points, free: &[Parameter]) -> Result<Fit, FitError> {
+pub fn fit(scene: &Scene, points: &MeasuredPoints, free: &[Parameter]) -> Result<Fit, FitError> {
     check(scene, free)?;
     let used = used(scene, points)?;
     if used.points.len() < free.len() {
@@ -212,13 +212,13 @@ fn check(scene: &Scene, free: &[Parameter]) -> Result<(), FitError> {
 }
 
 /// The points that detach at the values of `scene`.
-fn used(scene: &Scene, points: &Points) -> Result<Points, CsvError> {
-    let Swept { whisker, pole, .. } = scene.first_whisker();
+fn used(scene: &Scene, points: &MeasuredPoints) -> Result<MeasuredPoints, CsvError> {
+    let SweptWhisker { whisker, pole, .. } = scene.first_whisker();
     points.check_reach(&whisker, &pole)?;
     let rows = points.beside(&whisker, &pole).rows;
     let detaching = points.points.iter().zip(rows);
     let detaching = detaching.filter(|(_, row)| row.residual_deg.is_some());
-    Ok(Points {
+    Ok(MeasuredPoints {
         points: detaching.map(|(point, _)| *point).collect(),
         ..points.clone()
     })

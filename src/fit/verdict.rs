@@ -1,7 +1,7 @@
 //! Refusal of best values with which no whisker of the scene's kind explains the points.
 
-use crate::measured::{Comparison, Points};
-use crate::scene::{Scene, Swept, digits};
+use crate::measured::{Comparison, MeasuredPoints};
+use crate::scene::{Scene, SweptWhisker, digits};
 use std::fmt;
 
 /// The largest root mean square of residuals, in degrees. Theory and real whiskers differ by a few degrees; the measured
@@ -54,7 +54,7 @@ impl NotAFit {
     /// Without standard deviations, a fit has a small RMS. With them, points of low precision may be far off: a fit has a
     /// small RMS or a chi-square that the deviations explain, and its reduced chi-square is at most 400.
     pub(super) fn new(
-        used: &Points,
+        used: &MeasuredPoints,
         start: &Scene,
         end: &Comparison,
         chi_square: f64,
@@ -95,8 +95,8 @@ pub(super) fn is_explained(chi_square: f64, freedom: usize) -> bool {
 
 impl LikelyCause {
     /// The mistake that a comparison of `points` with the theory of `scene` shows.
-    fn of(points: &Points, scene: &Scene) -> Option<Self> {
-        let Swept { whisker, pole, .. } = scene.first_whisker();
+    fn of(points: &MeasuredPoints, scene: &Scene) -> Option<Self> {
+        let SweptWhisker { whisker, pole, .. } = scene.first_whisker();
         let own = points.beside(&whisker, &pole);
         let predicted = own.rows.iter().filter_map(|row| row.predicted_deg);
         let has_tens = predicted.fold(0.0, |most: f64, angle| most.max(angle.abs())) >= TENS_DEG;
@@ -119,7 +119,7 @@ impl LikelyCause {
 
     /// The mistake that the standard deviations of `points` show with this reduced chi-square. Deviations in radians are
     /// `180 / pi` times too small, and the residuals show this factor within 2.
-    fn of_deviations(points: &Points, reduced: f64) -> Option<Self> {
+    fn of_deviations(points: &MeasuredPoints, reduced: f64) -> Option<Self> {
         let turn = 1.0_f64.to_degrees();
         let is_turned = (turn / 2.0..=2.0 * turn).contains(&reduced.sqrt());
         let mut points = points.points.iter();

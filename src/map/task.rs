@@ -2,7 +2,7 @@
 
 use crate::engine::{SideColumns, WhiskerSide};
 use crate::plan::{CELLS_IN_FLIGHT, Plan};
-use crate::scene::{Scene, Swept};
+use crate::scene::{Scene, SweptWhisker};
 use crate::sheet::Sheet;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -51,11 +51,11 @@ impl<'a> Task<'a> {
 
     /// Every side of some of the whiskers, in order.
     pub fn sides(&self, whiskers: Range<usize>) -> Arc<[WhiskerSide]> {
-        let whiskers: Vec<Swept> = whiskers.map(|index| self.scene.whisker(index)).collect();
+        let whiskers: Vec<SweptWhisker> = whiskers.map(|index| self.scene.whisker(index)).collect();
         let of_whisker = |swept| self.sides.iter().map(move |side| (swept, side));
-        let pairs: Vec<(&Swept, &Arc<SideColumns>)> =
+        let pairs: Vec<(&SweptWhisker, &Arc<SideColumns>)> =
             whiskers.iter().flat_map(of_whisker).collect();
-        let side = |&(swept, columns): &(&Swept, &Arc<SideColumns>)| {
+        let side = |&(swept, columns): &(&SweptWhisker, &Arc<SideColumns>)| {
             let rod = swept.rod(columns.side);
             let distances = self.scene.grid.distance_mm.iter();
             let distances: Vec<f64> = distances.map(|d| d / swept.whisker.length_mm).collect();

@@ -1,6 +1,6 @@
 //! Comparison of measured points with theory.
 
-use super::{Angle, Point, Points};
+use super::{MeasuredAngle, MeasuredPoint, MeasuredPoints};
 use crate::rod::Side;
 use crate::scene::{Pole, Whisker};
 use crate::trace::row;
@@ -10,7 +10,7 @@ use serde::Serialize;
 row! {
     /// A measured detachment and the one that the theory predicts.
     #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-    pub struct Compared {
+    pub struct ComparedPoint {
         /// Line of the file of points.
         pub line: usize,
         /// Side of the whisker that the pole is on: cb (convex) or cf (concave).
@@ -34,23 +34,23 @@ row! {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Comparison {
     /// The points, in the order of their file.
-    pub rows: Vec<Compared>,
+    pub rows: Vec<ComparedPoint>,
 }
 
-impl Points {
+impl MeasuredPoints {
     /// Compares the points with the detachments of `whisker` at `pole`.
     #[must_use]
     pub fn beside(&self, whisker: &Whisker, pole: &Pole) -> Comparison {
         let ends = Side::BOTH.map(|side| self.ends(whisker, pole, side));
-        let compared = |point: &Point| {
+        let compared = |point: &MeasuredPoint| {
             let ends = &ends[usize::from(point.side == Side::Cb)];
             let place = ends.partition_point(|end| end.distance_mm < point.distance_mm);
             let end = &ends[place];
             let predicted_deg = match self.angle {
-                Angle::Push => end.push_angle_deg,
-                Angle::Chord => end.push_chord_deg,
+                MeasuredAngle::Push => end.push_angle_deg,
+                MeasuredAngle::Chord => end.push_chord_deg,
             };
-            Compared {
+            ComparedPoint {
                 line: point.line,
                 side: point.side,
                 distance_mm: point.distance_mm,
@@ -78,7 +78,7 @@ impl Points {
 
 impl Comparison {
     /// The points without a prediction.
-    pub fn left_out(&self) -> impl Iterator<Item = &Compared> {
+    pub fn left_out(&self) -> impl Iterator<Item = &ComparedPoint> {
         self.rows.iter().filter(|row| row.residual_deg.is_none())
     }
 
@@ -92,7 +92,8 @@ impl Comparison {
     #[must_use]
     pub fn of_another_kind(&self) -> usize {
         let compared = self.rows.iter().filter(|row| row.residual_deg.is_some());
-        let differs = |row: &&Compared| row.kind.is_some_and(|kind| kind != row.predicted_kind);
+        let differs =
+            |row: &&ComparedPoint| row.kind.is_some_and(|kind| kind != row.predicted_kind);
         compared.filter(differs).count()
     }
 

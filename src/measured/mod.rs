@@ -3,29 +3,29 @@
 mod compare;
 mod read;
 
-pub use compare::{Compared, Comparison};
+pub use compare::{ComparedPoint, Comparison};
 
 use crate::rod::Side;
 use crate::trace::DetachmentKind;
 
 /// Measured detachments, in the order of their file. Every value is in its range.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Points {
+pub struct MeasuredPoints {
     /// Name of the file in messages.
     pub origin: String,
     /// Message that names unused columns of the file.
     pub note: Option<String>,
     /// The measured angle.
-    pub angle: Angle,
+    pub angle: MeasuredAngle,
     /// True if the file gives standard deviations.
     pub have_deviations: bool,
     /// The points, at least one.
-    pub points: Vec<Point>,
+    pub points: Vec<MeasuredPoint>,
 }
 
 /// One measured detachment.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Point {
+pub struct MeasuredPoint {
     /// Line in the file, from 1.
     pub line: usize,
     /// Side of the whisker that the pole is on.
@@ -42,14 +42,14 @@ pub struct Point {
 
 /// Angle that was measured at detachment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Angle {
+pub enum MeasuredAngle {
     /// Rotation of the base since first touch.
     Push,
     /// Angle at the base between the contact and the resting whisker as far away (Fig. 1D).
     Chord,
 }
 
-impl Angle {
+impl MeasuredAngle {
     /// Name of its column, in files of points and of detachment curves.
     #[must_use]
     pub const fn column(self) -> &'static str {

@@ -1,6 +1,6 @@
 //! Reader of measured points.
 
-use super::{Angle, Point, Points};
+use super::{MeasuredAngle, MeasuredPoint, MeasuredPoints};
 use crate::input::{CsvError, CsvTable};
 use crate::rod::{Rest, Side};
 use crate::scene::{NEAREST, Pole, Whisker, digits};
@@ -12,7 +12,7 @@ use std::path::Path;
 const NEEDED: [&[&str]; 3] = [
     &["side"],
     &["distance_mm"],
-    &[Angle::Push.column(), Angle::Chord.column()],
+    &[MeasuredAngle::Push.column(), MeasuredAngle::Chord.column()],
 ];
 
 /// Optional columns of a file.
@@ -21,12 +21,12 @@ const OPTIONAL: [&str; 2] = ["kind", "sd_deg"];
 /// Least standard deviation of an angle, in degrees: far below what any instrument resolves.
 const LEAST_SD_DEG: f64 = 1e-6;
 
-impl Points {
+impl MeasuredPoints {
     /// Reads the points of a CSV file; `-` is standard input.
     ///
     /// # Errors
     /// If the file cannot be read, is longer than 1 MiB, is neither UTF-8 nor UTF-16 with a byte order mark, or for the
-    /// reasons of [`Points::parse`].
+    /// reasons of [`MeasuredPoints::parse`].
     pub fn read(path: impl AsRef<Path>) -> Result<Self, CsvError> {
         let path = path.as_ref();
         let table = if path == Path::new("-") {
@@ -40,11 +40,11 @@ impl Points {
     /// Reads points from the text of a CSV file, as [`CsvTable`] splits it. Messages call the text `origin`.
     ///
     /// ```
-    /// use whiskmap::measured::Points;
+    /// use whiskmap::measured::MeasuredPoints;
     ///
     /// let text = "side, distance_mm, push_angle_deg, kind\ncb, 15.66, 15.6, slip-off\n";
-    /// assert_eq!(Points::parse(text, "points.csv")?.points[0].angle_deg, 15.6);
-    /// let why = Points::parse(&text.replace("cb", "left"), "points.csv").unwrap_err();
+    /// assert_eq!(MeasuredPoints::parse(text, "points.csv")?.points[0].angle_deg, 15.6);
+    /// let why = MeasuredPoints::parse(&text.replace("cb", "left"), "points.csv").unwrap_err();
     /// assert_eq!(why.to_string(), "points.csv:2: side = left: must be cb or cf");
     /// # Ok::<(), whiskmap::input::CsvError>(())
     /// ```
@@ -57,9 +57,9 @@ impl Points {
 
     fn of(table: &CsvTable) -> Result<Self, CsvError> {
         let note = table.require(&NEEDED, &OPTIONAL)?;
-        let angle = match table.has(Angle::Push.column()) {
-            true => Angle::Push,
-            false => Angle::Chord,
+        let angle = match table.has(MeasuredAngle::Push.column()) {
+            true => MeasuredAngle::Push,
+            false => MeasuredAngle::Chord,
         };
         let sides = table.values("side", "cb or cf", |cell| match &*cell.to_lowercase() {
             "cb" => Some(Side::Cb),
@@ -87,16 +87,17 @@ impl Points {
                 .into_iter()
                 .zip(angles_deg.unwrap_or_default()),
         );
-        let points = rows
-            .enumerate()
-            .map(|(i, ((line, side), (distance_mm, angle_deg)))| Point {
-                line,
-                side,
-                distance_mm,
-                angle_deg,
-                kind: kinds.as_ref().and_then(|kinds| kinds[i]),
-                sd_deg: deviations_deg.as_ref().map_or(1.0, |all| all[i]),
-            });
+        let points =
+            rows.enumerate().map(
+                |(i, ((line, side), (distance_mm, angle_deg)))| MeasuredPoint {
+                    line,
+                    side,
+                    distance_mm,
+                    angle_deg,
+                    kind: kinds.as_ref().and_then(|kinds| kinds[i]),
+                    sd_deg: deviations_deg.as_ref().map_or(1.0, |all| all[i]),
+                },
+            );
         Ok(Self {
             origin: table.origin.clone(),
             note,

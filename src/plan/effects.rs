@@ -1,7 +1,7 @@
 //! The effects by name: which are on, and which line of the scene decides it. The only list of them.
 
 use crate::rod::Effects;
-use crate::scene::{Parameter, Scene, SceneData, Swept, Whisker};
+use crate::scene::{Parameter, Scene, SceneData, SweptWhisker, Whisker};
 
 /// An effect of the scene.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -60,8 +60,8 @@ pub fn effects(scene: &Scene, kernels: Effects) -> Vec<Effect> {
     let gradient = number(Parameter::ModulusTipToBase, "tip_to_base", ratio, 1.0);
     let radius = number(Parameter::PoleRadiusMm, "radius_mm", pole.radius_mm, 0.0);
     let friction = number(Parameter::Friction, "friction", pole.friction, 0.0);
-    let corners: Vec<Swept> = scene.corner_whiskers().collect();
-    let any = |differs: fn(&Swept) -> bool| corners.iter().any(differs);
+    let corners: Vec<SweptWhisker> = scene.corner_whiskers().collect();
+    let any = |differs: fn(&SweptWhisker) -> bool| corners.iter().any(differs);
     let stretched = any(|own| own.whisker.arc_stretch != 1.0);
     let varies = kernels.taper || kernels.profile || kernels.gradient;
     let stretch = whisker.arc_stretch;

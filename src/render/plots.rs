@@ -2,11 +2,11 @@
 //!
 //! Solid lines are stable states, dashed lines unstable states. Slip-off is black and pull-off is blue, as in the paper.
 
-use crate::design::{Design, End, Target};
-use crate::measured::Compared;
+use crate::design::{Design, DesignEnd, DesignTarget};
+use crate::measured::ComparedPoint;
 use crate::scene::Parameter;
 use crate::trace::{BranchPoint, Detachment, DetachmentKind, Mark, Shape};
-use crate::uncertainty::Spread;
+use crate::uncertainty::EndSpread;
 use whiskmap_plot::{Band, Disc, Dot, Ink, Line, Plot, Shade, Stroke};
 
 /// An axis of a plot of rows.
@@ -95,7 +95,7 @@ pub fn branches(title: &str, poles: &[(Ink, &[BranchPoint])], [x, y]: [BranchAxi
 
 /// Measured detachments as dots at `[distance (mm), angle (deg)]`: slip-off open, pull-off filled, grey where the kind is unknown.
 #[must_use]
-pub fn measured(points: &[Compared]) -> Vec<Dot> {
+pub fn measured(points: &[ComparedPoint]) -> Vec<Dot> {
     let dots = points.iter().map(|point| {
         let (ink, open, name) = match point.kind {
             Some(DetachmentKind::SlipOff) => (Ink::Black, true, "measured slip-off"),
@@ -144,7 +144,7 @@ pub fn shapes(title: &str, drawn: &[DrawnShape]) -> Plot {
 
 /// A plot of the push angles of a design, with its solutions as dots; over the logarithm of the parameter if its range is wide.
 #[must_use]
-pub fn designs(parameter: Parameter, target: &Target, design: &Design) -> Plot {
+pub fn designs(parameter: Parameter, target: &DesignTarget, design: &Design) -> Plot {
     let (x_label, x): (String, fn(f64) -> f64) = match design.is_wide() {
         true => (format!("log10 of {}", parameter.name()), f64::log10),
         false => (parameter.name().to_owned(), |value| value),
@@ -156,7 +156,7 @@ pub fn designs(parameter: Parameter, target: &Target, design: &Design) -> Plot {
     plot.lines.push(wanted.named(format!("{push} deg")));
     for piece in design.ends.chunk_by(|a, b| a.kind == b.kind) {
         if let Some((ink, name)) = look(piece[0].kind) {
-            let place = |end: &End| Some([x(end.value), end.push_angle_deg?]);
+            let place = |end: &DesignEnd| Some([x(end.value), end.push_angle_deg?]);
             let points = piece.iter().filter_map(place).collect();
             plot.lines
                 .push(Line::new(points, ink, Stroke::Solid).named(name));
@@ -175,8 +175,8 @@ pub fn designs(parameter: Parameter, target: &Target, design: &Design) -> Plot {
 /// Bands of push angle (deg) over distance (mm): from the 5th to the 95th percentile, and over them from the 25th to the 75th. `rows`
 /// has one side after the other, each in order of increasing distance.
 #[must_use]
-pub fn bands(rows: &[Spread]) -> Vec<Band> {
-    type Percentiles = fn(&Spread) -> [Option<f64>; 2];
+pub fn bands(rows: &[EndSpread]) -> Vec<Band> {
+    type Percentiles = fn(&EndSpread) -> [Option<f64>; 2];
     let kinds: [(Shade, &str, Percentiles); 2] = [
         (Shade::Light, "5 to 95 % of samples", |row| {
             [row.p5_deg, row.p95_deg]
@@ -188,7 +188,7 @@ pub fn bands(rows: &[Spread]) -> Vec<Band> {
     let mut bands = Vec::new();
     for (shade, name, percentiles) in kinds {
         for side in rows.chunk_by(|a, b| a.side == b.side && a.distance_mm < b.distance_mm) {
-            let point = |row: &Spread| {
+            let point = |row: &EndSpread| {
                 let [low, high] = percentiles(row).map(|end| end.unwrap_or(f64::NAN));
                 [row.distance_mm, low, high]
             };

@@ -2,7 +2,7 @@
 
 use super::axis::AxisValues;
 use super::deviations::Deviations;
-use super::grid::Place;
+use super::grid::SweepPlace;
 use super::parameter::Parameter;
 
 /// Numbers of a scene by parameter: those that are given.
@@ -25,7 +25,7 @@ impl Numbers {
     }
 
     /// The numbers of the whisker at a place of the sweep.
-    pub fn at(mut self, place: &Place) -> Self {
+    pub fn at(mut self, place: &SweepPlace) -> Self {
         for (parameter, value) in place.values() {
             self.set(parameter, value);
         }

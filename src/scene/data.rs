@@ -1,10 +1,10 @@
 //! Data of a scene, and the whiskers of its sweep.
 
 use super::deviations::Deviations;
-use super::grid::{FARTHEST, Grid, NEAREST, Place};
+use super::grid::{FARTHEST, Grid, NEAREST, SweepPlace};
 use super::parameter::Parameter;
 use super::toml::SceneText;
-use super::whisker::{Curvature, Pole, Swept, Whisker};
+use super::whisker::{Curvature, Pole, SweptWhisker, Whisker};
 
 /// Data of a scene. Only a [`Scene`](super::Scene) guarantees that the values are valid.
 #[derive(Clone, Debug, PartialEq)]
@@ -29,7 +29,7 @@ impl SceneData {
     /// The scene's whisker and pole with the values of `place`. A taper determines the radius at the tip. The vertex of a
     /// curvature axis is the whisker's own, or 0 if the scene gives none.
     #[must_use]
-    pub fn whisker_at(&self, place: Place) -> Swept {
+    pub fn whisker_at(&self, place: SweepPlace) -> SweptWhisker {
         let (mut whisker, mut pole) = (self.whisker.clone(), self.pole);
         let mut curvature = whisker.curvature.unwrap_or_default();
         for (parameter, value) in place.values() {
@@ -50,7 +50,7 @@ impl SceneData {
             whisker.tip_radius_um = whisker.base_radius_um * (1.0 - taper);
         }
         whisker.curvature = Some(curvature).filter(Curvature::bends);
-        Swept {
+        SweptWhisker {
             place,
             whisker,
             pole,
@@ -58,18 +58,18 @@ impl SceneData {
     }
 
     /// Every whisker of the sweep; the first axis varies fastest. Without axes, the one whisker of the scene.
-    pub fn whiskers(&self) -> impl Iterator<Item = Swept> {
+    pub fn whiskers(&self) -> impl Iterator<Item = SweptWhisker> {
         (0..self.whisker_count()).map(|index| self.whisker(index))
     }
 
     /// Whisker `index` of the sweep.
     #[must_use]
-    pub fn whisker(&self, index: usize) -> Swept {
+    pub fn whisker(&self, index: usize) -> SweptWhisker {
         self.whisker_at(self.grid.place(index))
     }
 
     /// Groups of `size` whiskers of the sweep; the last group has the rest.
-    pub fn whisker_groups(&self, size: usize) -> impl Iterator<Item = Vec<Swept>> {
+    pub fn whisker_groups(&self, size: usize) -> impl Iterator<Item = Vec<SweptWhisker>> {
         let mut whiskers = self.whiskers();
         let next = move || -> Vec<_> { whiskers.by_ref().take(size).collect() };
         std::iter::repeat_with(next).take_while(|group| !group.is_empty())
@@ -83,12 +83,12 @@ impl SceneData {
 
     /// The first whisker of the sweep, or the only one.
     #[must_use]
-    pub fn first_whisker(&self) -> Swept {
+    pub fn first_whisker(&self) -> SweptWhisker {
         self.whisker(0)
     }
 
     /// The whiskers at the ends of the sweep axes: an effect that any whisker has, one of these has.
-    pub fn corner_whiskers(&self) -> impl Iterator<Item = Swept> {
+    pub fn corner_whiskers(&self) -> impl Iterator<Item = SweptWhisker> {
         let ends = self.grid.ends();
         let corners = 0..ends.whisker_count();
         corners.map(move |index| self.whisker_at(ends.place(index)))

@@ -70,9 +70,9 @@ impl Grid {
 
     /// The values of whisker `index` on the axes.
     #[must_use]
-    pub fn place(&self, index: usize) -> Place {
+    pub fn place(&self, index: usize) -> SweepPlace {
         let axes = self.sweep.iter().zip(self.indices(index));
-        Place(
+        SweepPlace(
             axes.map(|(axis, at)| (axis.parameter, axis.values[at]))
                 .collect(),
         )
@@ -92,9 +92,9 @@ impl Grid {
 
 /// Place of a whisker in a sweep: a value for each axis, in the order of the axes. A row of a table has a column for each.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Place(Vec<(Parameter, f64)>);
+pub struct SweepPlace(Vec<(Parameter, f64)>);
 
-impl Place {
+impl SweepPlace {
     /// The value on the axis of `parameter`, if there is one.
     #[must_use]
     pub fn value(&self, parameter: Parameter) -> Option<f64> {
@@ -108,9 +108,9 @@ impl Place {
     }
 }
 
-impl Serialize for Place {
+impl Serialize for SweepPlace {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut columns = serializer.serialize_struct("Place", self.0.len())?;
+        let mut columns = serializer.serialize_struct("SweepPlace", self.0.len())?;
         for (parameter, value) in &self.0 {
             columns.serialize_field(parameter.axis(), value)?;
         }

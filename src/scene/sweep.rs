@@ -2,7 +2,7 @@
 
 use super::builder::SceneBuilder;
 use super::error::SceneFault;
-use super::grid::{Grid, Place, SweepAxis};
+use super::grid::{Grid, SweepAxis, SweepPlace};
 use super::limits::{
     MOST_STRETCH, NumberLimits, STIFFEST_TIP, digits, friction_limits, length_limits,
 };
@@ -111,7 +111,7 @@ pub(super) fn refuse_at_odds(scene: &SceneBuilder) -> Result<(), SceneFault> {
 /// The fault names the axis where an axis gives the number, and the place unless the fault is the same at every corner.
 pub(super) fn check_corners(
     grid: &Grid,
-    check: impl Fn(&Place) -> Result<(), SceneFault>,
+    check: impl Fn(&SweepPlace) -> Result<(), SceneFault>,
 ) -> Result<(), SceneFault> {
     let mut ends = grid.ends();
     for axis in &mut ends.sweep {
@@ -123,7 +123,7 @@ pub(super) fn check_corners(
     let corners = ends.whisker_count();
     let places = (0..corners).map(|index| ends.place(index));
     let refused = places.filter_map(|place| Some((check(&place).err()?, place)));
-    let refused: Vec<(SceneFault, Place)> = refused.collect();
+    let refused: Vec<(SceneFault, SweepPlace)> = refused.collect();
     let is_everywhere =
         refused.len() == corners && refused.iter().all(|(fault, _)| *fault == refused[0].0);
     let Some((mut fault, place)) = refused.into_iter().next() else {

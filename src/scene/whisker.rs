@@ -2,14 +2,14 @@
 
 use std::sync::Arc;
 
-use super::grid::Place;
+use super::grid::SweepPlace;
 use crate::rod::{RadiusProfile, Rod, Side, Units};
 
 /// One whisker of a sweep, in front of its pole.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Swept {
+pub struct SweptWhisker {
     /// Place in the sweep.
-    pub place: Place,
+    pub place: SweepPlace,
     /// The whisker.
     pub whisker: Whisker,
     /// The pole.
@@ -41,7 +41,7 @@ pub struct Whisker {
     pub arc_stretch: f64,
 }
 
-impl Swept {
+impl SweptWhisker {
     /// The rod of the whisker with its pole on `side`.
     #[must_use]
     pub fn rod(&self, side: Side) -> Rod {

@@ -18,7 +18,7 @@ pub use state::Found;
 pub(crate) use columns::row;
 
 use crate::rod::Side;
-use crate::scene::{Place, Swept};
+use crate::scene::{SweepPlace, SweptWhisker};
 use crate::shooting::Resolution;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -56,12 +56,12 @@ pub fn whiskers_at_once(distances: usize) -> usize {
 
 /// What `of_side` makes of each side of each whisker, in their order, CF before CB.
 pub fn sides<R: Send>(
-    whiskers: &[Swept],
-    of_side: impl Fn(&Swept, Side) -> Vec<R> + Sync,
-) -> Vec<(Place, R)> {
+    whiskers: &[SweptWhisker],
+    of_side: impl Fn(&SweptWhisker, Side) -> Vec<R> + Sync,
+) -> Vec<(SweepPlace, R)> {
     let both = |swept| Side::BOTH.map(|side| (swept, side));
-    let faces: Vec<(&Swept, Side)> = whiskers.iter().flat_map(both).collect();
-    let of_face = |(swept, side): (&Swept, Side)| {
+    let faces: Vec<(&SweptWhisker, Side)> = whiskers.iter().flat_map(both).collect();
+    let of_face = |(swept, side): (&SweptWhisker, Side)| {
         let place = swept.place.clone();
         let rows = of_side(swept, side).into_iter();
         rows.map(move |row| (place.clone(), row))

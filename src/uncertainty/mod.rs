@@ -8,7 +8,7 @@ mod normal;
 mod spread;
 mod varying;
 
-pub use spread::Spread;
+pub use spread::EndSpread;
 
 use crate::rod::Side;
 use crate::scene::{Deviations, Pole, Scene, Whisker};
@@ -36,7 +36,7 @@ pub struct Draws {
 
 /// Error of drawing whiskers.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum NoDraws {
+pub enum DrawError {
     /// The scene has no `[uncertainty]`.
     #[error(
         "the scene has no [uncertainty]: add that table, such as `base_radius_um = 1.0`, a standard deviation"
@@ -71,15 +71,15 @@ impl Draws {
     ///
     /// # Errors
     /// If the scene has no `[uncertainty]`, sweeps whiskers, or refuses almost every draw, or if there are too many.
-    pub fn new(scene: &Scene, samples: usize, seed: u64) -> Result<Self, NoDraws> {
-        let deviations: &Deviations = scene.uncertainty.as_ref().ok_or(NoDraws::NoTable)?;
+    pub fn new(scene: &Scene, samples: usize, seed: u64) -> Result<Self, DrawError> {
+        let deviations: &Deviations = scene.uncertainty.as_ref().ok_or(DrawError::NoTable)?;
         if let Some(axis) = scene.grid.sweep.first() {
-            return Err(NoDraws::Sweep(axis.parameter.axis()));
+            return Err(DrawError::Sweep(axis.parameter.axis()));
         }
         let distances = scene.grid.distance_mm.len();
         let ends = samples.saturating_mul(distances);
         if ends > MOST_ENDS {
-            return Err(NoDraws::TooMany { ends, distances });
+            return Err(DrawError::TooMany { ends, distances });
         }
         let varying = varying(scene, deviations);
         let draws = (0..samples as u64).into_par_iter();
@@ -112,14 +112,14 @@ impl Draws {
         resolution: Resolution,
         side: Side,
         tick: impl Fn() + Sync,
-    ) -> Vec<Spread> {
+    ) -> Vec<EndSpread> {
         let distances = &self.scene.grid.distance_mm;
         let curve = |whisker: &Whisker, pole: &Pole| {
             let curve = curve_at(resolution, whisker, pole, side, distances);
             let ends = curve.iter().map(|end| (end.kind, end.push_angle_deg));
-            ends.collect::<Vec<End>>()
+            ends.collect::<Vec<PushEnd>>()
         };
-        let ends: Vec<Vec<End>> = self
+        let ends: Vec<Vec<PushEnd>> = self
             .drawn
             .par_iter()
             .map(|(whisker, pole)| {
@@ -133,20 +133,20 @@ impl Draws {
         let rows = distances.iter().zip(own).zip(first_order).enumerate();
         rows.map(|(row, ((distance_mm, own), first_order_deg))| {
             let ends = ends.iter().map(|ends| ends[row]);
-            Spread::new(side, *distance_mm, own, ends, first_order_deg)
+            EndSpread::new(side, *distance_mm, own, ends, first_order_deg)
         })
         .collect()
     }
 }
 
 /// Kind of the end of a push, and its push angle in degrees.
-type End = (DetachmentKind, Option<f64>);
+type PushEnd = (DetachmentKind, Option<f64>);
 
 /// A drawn whisker with its pole, and the number of draws refused before it.
 type Drawn = ((Whisker, Pole), u64);
 
 /// The first whisker of a random stream that the scene accepts.
-fn draw(scene: &Scene, varying: &[Varying], mut normal: Normal) -> Result<Drawn, NoDraws> {
+fn draw(scene: &Scene, varying: &[Varying], mut normal: Normal) -> Result<Drawn, DrawError> {
     let mut refused = 0;
     loop {
         let step = |one: &Varying| (*one, one.deviation * normal.draw());
@@ -157,7 +157,7 @@ fn draw(scene: &Scene, varying: &[Varying], mut normal: Normal) -> Result<Drawn,
                 let why = why.to_string();
                 let first = why.lines().next().unwrap_or_default();
                 let why = first.trim_start_matches("error: ").to_owned();
-                return Err(NoDraws::Refused { why });
+                return Err(DrawError::Refused { why });
             }
             Err(_) => refused += 1,
         }

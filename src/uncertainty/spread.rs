@@ -1,6 +1,6 @@
 //! Statistics of many ends: percentiles, mean and standard deviation.
 
-use super::End;
+use super::PushEnd;
 use crate::rod::Side;
 use crate::trace::{DetachmentKind, row};
 use serde::Serialize;
@@ -8,7 +8,7 @@ use serde::Serialize;
 row! {
     /// How the ends of pushes spread at one distance. Percentiles are those of the detachments, of either kind.
     #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-    pub struct Spread {
+    pub struct EndSpread {
         /// Side of the whisker that the pole is on: cb (convex) or cf (concave).
         pub side: Side,
         /// Distance from the base to the contact at first touch.
@@ -44,13 +44,13 @@ row! {
     }
 }
 
-impl Spread {
+impl EndSpread {
     /// The spread of the `ends` of samples around the scene's `own` one.
     pub(super) fn new(
         side: Side,
         distance_mm: f64,
-        own: End,
-        ends: impl Iterator<Item = End>,
+        own: PushEnd,
+        ends: impl Iterator<Item = PushEnd>,
         sd_first_order_deg: Option<f64>,
     ) -> Self {
         // In the order of the kinds.
@@ -132,7 +132,7 @@ mod tests {
             (Unresolved, None),
             (SlipOff, Some(5.0)),
         ];
-        let spread = Spread::new(Side::Cb, 10.0, ends[0], ends.into_iter(), None);
+        let spread = EndSpread::new(Side::Cb, 10.0, ends[0], ends.into_iter(), None);
         let counts = [
             spread.slip_off,
             spread.pull_off,
@@ -141,7 +141,7 @@ mod tests {
         ];
         assert_eq!(counts, [2, 1, 1, 1]);
         assert_eq!((spread.mean_deg, spread.sd_deg), (Some(3.0), Some(2.0)));
-        let nothing = Spread::new(Side::Cb, 10.0, ends[1], std::iter::empty(), None);
+        let nothing = EndSpread::new(Side::Cb, 10.0, ends[1], std::iter::empty(), None);
         assert_eq!(
             (nothing.p50_deg, nothing.mean_deg, nothing.sd_deg),
             (None, None, None)

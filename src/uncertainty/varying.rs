@@ -5,7 +5,7 @@ use crate::scene::{Deviations, Parameter, Scene, SceneError};
 /// A number of a scene that varies.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Varying {
-    source: Source,
+    source: VaryingSource,
     /// Value in the scene.
     pub value: f64,
     /// Its standard deviation, more than 0.
@@ -14,7 +14,7 @@ pub(super) struct Varying {
 
 /// Place of a number in the scene.
 #[derive(Clone, Copy, Debug)]
-enum Source {
+enum VaryingSource {
     Parameter(Parameter),
     /// Radius of a row of the profile, in micrometres.
     Row(usize),
@@ -25,7 +25,7 @@ pub(super) fn varying(scene: &Scene, deviations: &Deviations) -> Vec<Varying> {
     let parameters = deviations.parameters.iter().filter_map(|own| {
         let (parameter, deviation) = *own;
         Some(Varying {
-            source: Source::Parameter(parameter),
+            source: VaryingSource::Parameter(parameter),
             value: parameter.value(scene)?,
             deviation,
         })
@@ -33,7 +33,7 @@ pub(super) fn varying(scene: &Scene, deviations: &Deviations) -> Vec<Varying> {
     let rows = deviations.profile_radius_um.map(|deviation| {
         let rows = rows(scene).into_iter().enumerate();
         rows.map(move |(row, [_, value])| Varying {
-            source: Source::Row(row),
+            source: VaryingSource::Row(row),
             value,
             deviation,
         })
@@ -51,13 +51,13 @@ pub(super) fn moved(scene: &Scene, steps: &[(Varying, f64)]) -> Result<Scene, Sc
     let mut rows = rows(scene);
     for (Varying { source, value, .. }, step) in steps {
         match *source {
-            Source::Parameter(parameter) => builder = builder.set(parameter, value + step),
-            Source::Row(row) => rows[row][1] = value + step,
+            VaryingSource::Parameter(parameter) => builder = builder.set(parameter, value + step),
+            VaryingSource::Row(row) => rows[row][1] = value + step,
         }
     }
     if steps
         .iter()
-        .any(|(one, _)| matches!(one.source, Source::Row(_)))
+        .any(|(one, _)| matches!(one.source, VaryingSource::Row(_)))
     {
         builder = builder.profile(rows);
     }

@@ -1,7 +1,7 @@
 //! Detachment curves of Figs. 3E, 3J, 4D and 5C, and measured ends over them.
 
 use crate::{figure, last, plot};
-use whiskmap::measured::Point;
+use whiskmap::measured::MeasuredPoint;
 use whiskmap::paper::Measurements;
 use whiskmap::render::{Ink, Stroke};
 use whiskmap::rod::Side;
@@ -50,7 +50,7 @@ fn detachment_curves_enclose_the_stable_region() {
 
 #[test]
 fn measured_ends_are_circles_over_the_theory() {
-    let end = |angle_deg, kind| Point {
+    let end = |angle_deg, kind| MeasuredPoint {
         line: 1,
         side: Side::of_push(angle_deg),
         distance_mm: 9.0,

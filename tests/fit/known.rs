@@ -2,12 +2,12 @@
 
 use crate::{DISTANCES_MM, cone, detachments, free};
 use whiskmap::fit::fit;
-use whiskmap::measured::Angle;
+use whiskmap::measured::MeasuredAngle;
 use whiskmap::scene::Parameter::{self, *};
 use whiskmap::scene::Scene;
 
 /// Fits `start` to the detachments of the same scene with these values, which must come back.
-fn comes_back(start: &Scene, angle: Angle, truth: &[(Parameter, f64)]) {
+fn comes_back(start: &Scene, angle: MeasuredAngle, truth: &[(Parameter, f64)]) {
     let scene = start.with_parameters(truth).unwrap();
     let points = detachments(&scene, angle, &DISTANCES_MM);
     let found = fit(start, &points, &free(truth)).unwrap();
@@ -41,35 +41,35 @@ const ALL: [(Parameter, f64); 7] = [
 fn each_parameter_alone() {
     let others = [(BaseRadiusUm, 40.0), (Taper, 0.8), (ArcStretch, 1.04)];
     for truth in ALL.into_iter().chain(others) {
-        comes_back(&cone(), Angle::Push, &[truth]);
+        comes_back(&cone(), MeasuredAngle::Push, &[truth]);
     }
 }
 
 #[test]
 fn several_at_once() {
     for truth in [&ALL[..2], &ALL[..3], &ALL[..4], &ALL[3..], &ALL] {
-        comes_back(&cone(), Angle::Push, truth);
+        comes_back(&cone(), MeasuredAngle::Push, truth);
     }
     // Tip, gradient and stretch are two ratios along the whisker.
     let stretched = [ALL[1], ALL[3], (ArcStretch, 1.04), (ModulusTipToBase, 1.3)];
-    comes_back(&cone(), Angle::Push, &stretched);
+    comes_back(&cone(), MeasuredAngle::Push, &stretched);
 }
 
 #[test]
 fn chord_angles_do_as_well() {
-    comes_back(&cone(), Angle::Chord, &ALL[..4]);
+    comes_back(&cone(), MeasuredAngle::Chord, &ALL[..4]);
 }
 
 #[test]
 fn from_far_away() {
     let truth = [(TipRadiusUm, 15.0), (ParabolaPerMm, 0.005)];
-    comes_back(&cone(), Angle::Push, &truth);
+    comes_back(&cone(), MeasuredAngle::Push, &truth);
     let truth = [
         (TipRadiusUm, 0.1),
         (ParabolaPerMm, 0.001),
         (PoleRadiusMm, 1.5),
     ];
-    comes_back(&cone(), Angle::Push, &truth);
+    comes_back(&cone(), MeasuredAngle::Push, &truth);
 }
 
 #[test]
@@ -77,7 +77,7 @@ fn an_euler_spiral_and_measured_radii() {
     let spiral = Scene::read("scenes/euler_spiral.toml").unwrap();
     let [per_mm, per_mm2] = [SpiralPerMm, SpiralPerMm2].map(|own| own.value(&spiral).unwrap());
     let truth = [(SpiralPerMm, 1.1 * per_mm), (SpiralPerMm2, 0.9 * per_mm2)];
-    comes_back(&spiral, Angle::Push, &truth);
+    comes_back(&spiral, MeasuredAngle::Push, &truth);
     let measured = Scene::read("scenes/measured.toml").unwrap();
-    comes_back(&measured, Angle::Push, &[(ParabolaPerMm, 0.018)]);
+    comes_back(&measured, MeasuredAngle::Push, &[(ParabolaPerMm, 0.018)]);
 }

@@ -3,7 +3,7 @@
 use crate::noisy::Random;
 use crate::{DISTANCES_MM, cone, detachments};
 use whiskmap::fit::{Fit, FitError, fit};
-use whiskmap::measured::{Angle, Points};
+use whiskmap::measured::{MeasuredAngle, MeasuredPoints};
 use whiskmap::scene::Parameter::{self, *};
 use whiskmap::scene::Scene;
 
@@ -18,7 +18,7 @@ fn determined(fit: &Fit) -> Vec<Parameter> {
 
 #[test]
 fn no_detachment_depends_on_the_modulus() {
-    let points = detachments(&cone(), Angle::Push, &DISTANCES_MM);
+    let points = detachments(&cone(), MeasuredAngle::Push, &DISTANCES_MM);
     let found = fit(&cone(), &points, &[YoungsModulusGpa]).unwrap();
     assert_eq!(determined(&found), []);
     assert_eq!(
@@ -26,7 +26,7 @@ fn no_detachment_depends_on_the_modulus() {
         (3.0, 24)
     );
     let truth = cone().with_parameters(&[(TipRadiusUm, 2.0)]).unwrap();
-    let points = detachments(&truth, Angle::Push, &DISTANCES_MM);
+    let points = detachments(&truth, MeasuredAngle::Push, &DISTANCES_MM);
     let found = fit(&cone(), &points, &[YoungsModulusGpa, TipRadiusUm]).unwrap();
     assert_eq!(determined(&found), [TipRadiusUm]);
     assert_eq!(found.correlation, [[None, None], [None, Some(1.0)]]);
@@ -37,7 +37,7 @@ fn no_detachment_depends_on_the_modulus() {
 #[test]
 fn what_counts_only_together_is_not_determined() {
     let truth = cone().with_parameters(&[(TipRadiusUm, 2.0), (ParabolaPerMm, 0.018)]);
-    let points = detachments(&truth.unwrap(), Angle::Push, &DISTANCES_MM);
+    let points = detachments(&truth.unwrap(), MeasuredAngle::Push, &DISTANCES_MM);
     let found = fit(
         &cone(),
         &points,
@@ -51,7 +51,7 @@ fn what_counts_only_together_is_not_determined() {
     assert!((ratio * 15.0 - 1.0).abs() < 1e-8, "{ratio}");
     assert!((found.estimates[1].value - 0.018).abs() < 1e-9);
 
-    let slips = Points {
+    let slips = MeasuredPoints {
         points: points
             .points
             .iter()
@@ -67,7 +67,7 @@ fn what_counts_only_together_is_not_determined() {
 #[test]
 fn an_error_beyond_the_range_is_none() {
     let rough = cone().with_parameters(&[(Friction, 0.2)]).unwrap();
-    let mut points = detachments(&rough, Angle::Push, &DISTANCES_MM);
+    let mut points = detachments(&rough, MeasuredAngle::Push, &DISTANCES_MM);
     points.have_deviations = true;
     for (sd_deg, known) in [(1.0, vec![Friction]), (1e3, vec![])] {
         points
@@ -81,7 +81,7 @@ fn an_error_beyond_the_range_is_none() {
 
 #[test]
 fn as_many_points_as_parameters_have_no_error_of_their_own() {
-    let mut points = detachments(&cone(), Angle::Push, &[12.0]);
+    let mut points = detachments(&cone(), MeasuredAngle::Push, &[12.0]);
     let free = [TipRadiusUm, ParabolaPerMm];
     let found = fit(&cone(), &points, &free).unwrap();
     assert_eq!((determined(&found), found.degrees_of_freedom), (vec![], 0));
@@ -100,7 +100,7 @@ fn as_many_points_as_parameters_have_no_error_of_their_own() {
 #[test]
 fn parameters_stay_within_the_scene() {
     let start = cone().with_parameters(&[(Friction, 0.3)]).unwrap();
-    let mut points = detachments(&cone(), Angle::Push, &DISTANCES_MM);
+    let mut points = detachments(&cone(), MeasuredAngle::Push, &DISTANCES_MM);
     let found = fit(&start, &points, &[Friction, TipRadiusUm]).unwrap();
     assert!(found.estimates[0].value.abs() < 1e-8 && (found.estimates[1].value - 1.5).abs() < 1e-8);
 
@@ -138,7 +138,7 @@ fn parameters_stay_within_the_scene() {
 fn a_cylinder_becomes_a_cone_and_a_cone_a_cylinder() {
     let cylinder = cone().with_parameters(&[(TipRadiusUm, 30.0)]).unwrap();
     for (start, truth, tip_um) in [(&cylinder, &cone(), 1.5), (&cone(), &cylinder, 30.0)] {
-        let points = detachments(truth, Angle::Push, &DISTANCES_MM);
+        let points = detachments(truth, MeasuredAngle::Push, &DISTANCES_MM);
         let found = fit(start, &points, &[TipRadiusUm]).unwrap();
         assert!(
             (found.estimates[0].value - tip_um).abs() < 1e-7,
@@ -154,7 +154,7 @@ fn the_whisker_keeps_reaching_its_points() {
     let start = cone().with_parameters(&[(LengthMm, 26.0)]).unwrap();
     let distances = [10.0, 14.0, 19.0, 20.0, 20.6];
     let mut random = Random(1);
-    let mut points = detachments(&truth, Angle::Push, &distances);
+    let mut points = detachments(&truth, MeasuredAngle::Push, &distances);
     for point in &mut points.points {
         point.angle_deg += 0.01 * random.normal();
     }
@@ -170,7 +170,7 @@ fn points_that_never_detach_are_left_out() {
                   [grid]\npush_angle_deg = [5, 10]\ndistance_mm = [8, 19]\n";
     let scene = Scene::parse(hinged, "hinged.toml").unwrap();
     let text = "side,distance_mm,push_angle_deg\ncb,19,13\ncb,8,40\n";
-    let points = Points::parse(text, "points.csv").unwrap();
+    let points = MeasuredPoints::parse(text, "points.csv").unwrap();
     let found = fit(&scene, &points, &[YoungsModulusGpa]).unwrap();
     let left_out: Vec<usize> = found.comparison.left_out().map(|row| row.line).collect();
     assert_eq!((left_out, found.comparison.count()), (vec![3], 1));

@@ -8,7 +8,7 @@ mod points;
 mod refused;
 mod verdict;
 
-use whiskmap::measured::{Angle, Point, Points};
+use whiskmap::measured::{MeasuredAngle, MeasuredPoint, MeasuredPoints};
 use whiskmap::rod::Side;
 use whiskmap::scene::{Parameter, Scene};
 use whiskmap::trace::curve;
@@ -26,22 +26,22 @@ const DISTANCES_MM: [f64; 12] = [
 ];
 
 /// The detachments of a scene, without any error.
-fn detachments(scene: &Scene, angle: Angle, distances_mm: &[f64]) -> Points {
+fn detachments(scene: &Scene, angle: MeasuredAngle, distances_mm: &[f64]) -> MeasuredPoints {
     let whisker = scene.first_whisker().whisker;
     let side = |side| curve(&whisker, &scene.pole, side, distances_mm);
     let ends = Side::BOTH.into_iter().flat_map(side);
-    let points = ends.enumerate().map(|(i, end)| Point {
+    let points = ends.enumerate().map(|(i, end)| MeasuredPoint {
         line: i + 2,
         side: end.side,
         distance_mm: end.distance_mm,
         angle_deg: match angle {
-            Angle::Push => end.push_angle_deg.unwrap(),
-            Angle::Chord => end.push_chord_deg.unwrap(),
+            MeasuredAngle::Push => end.push_angle_deg.unwrap(),
+            MeasuredAngle::Chord => end.push_chord_deg.unwrap(),
         },
         kind: Some(end.kind),
         sd_deg: 1.0,
     });
-    Points {
+    MeasuredPoints {
         origin: "points.csv".to_owned(),
         note: None,
         angle,

@@ -3,7 +3,7 @@
 use crate::{DISTANCES_MM, cone, detachments, free};
 use std::f64::consts::TAU;
 use whiskmap::fit::fit;
-use whiskmap::measured::Angle;
+use whiskmap::measured::MeasuredAngle;
 use whiskmap::scene::Parameter::{ParabolaPerMm, PoleRadiusMm, TipRadiusUm};
 
 /// Uniform numbers (splitmix64), and normal ones by pairs of them (Box and Muller).
@@ -38,7 +38,7 @@ fn trials(have_deviations: bool) -> (usize, f64) {
     let start = cone();
     let exact = detachments(
         &start.with_parameters(&truth).unwrap(),
-        Angle::Push,
+        MeasuredAngle::Push,
         &DISTANCES_MM,
     );
     let (mut within, mut squares) = (0, 0.0);

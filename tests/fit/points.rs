@@ -1,7 +1,7 @@
 //! Files of points, and points beside the theory.
 
 use crate::cone;
-use whiskmap::measured::{Angle, Points};
+use whiskmap::measured::{MeasuredAngle, MeasuredPoints};
 use whiskmap::rod::Side;
 use whiskmap::trace::DetachmentKind;
 
@@ -9,13 +9,18 @@ const GOOD: &str =
     "side,distance_mm,push_angle_deg,kind,sd_deg\ncb,15.5,16,slip-off,0.5\ncf,12,-41,,0.7\n";
 
 fn refused(text: &str) -> String {
-    Points::parse(text, "p.csv").unwrap_err().to_string()
+    MeasuredPoints::parse(text, "p.csv")
+        .unwrap_err()
+        .to_string()
 }
 
 #[test]
 fn columns_come_in_any_order() {
-    let points = Points::parse(GOOD, "p.csv").unwrap();
-    assert_eq!((points.angle, points.have_deviations), (Angle::Push, true));
+    let points = MeasuredPoints::parse(GOOD, "p.csv").unwrap();
+    assert_eq!(
+        (points.angle, points.have_deviations),
+        (MeasuredAngle::Push, true)
+    );
     let [cb, cf] = points.points[..] else {
         panic!()
     };
@@ -30,12 +35,12 @@ fn columns_come_in_any_order() {
     assert_eq!((cb.kind, cf.kind), (Some(DetachmentKind::SlipOff), None));
     let turned =
         "sd_deg,kind,push_angle_deg,distance_mm,side\n0.5,slip-off,16,15.5,cb\n0.7,,-41,12,cf\n";
-    assert_eq!(Points::parse(turned, "p.csv").unwrap(), points);
+    assert_eq!(MeasuredPoints::parse(turned, "p.csv").unwrap(), points);
     let chord = "push_chord_deg,side,distance_mm\n1.5e1,cb,15.5\n";
-    let chord = Points::parse(chord, "p.csv").unwrap();
+    let chord = MeasuredPoints::parse(chord, "p.csv").unwrap();
     assert_eq!(
         (chord.angle, chord.have_deviations, chord.points[0].sd_deg),
-        (Angle::Chord, false, 1.0)
+        (MeasuredAngle::Chord, false, 1.0)
     );
 }
 
@@ -133,12 +138,12 @@ fn what_is_wrong_is_told() {
 /// One table in the formats of spreadsheet programs of several countries.
 #[test]
 fn separators_decimal_commas_and_encodings() {
-    let wanted = Points::parse(GOOD, "p.csv").unwrap();
+    let wanted = MeasuredPoints::parse(GOOD, "p.csv").unwrap();
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("p.csv");
     let read = |bytes: Vec<u8>| {
         std::fs::write(&path, bytes).unwrap();
-        let points = Points::read(&path).unwrap();
+        let points = MeasuredPoints::read(&path).unwrap();
         assert_eq!((&points.points, points.note), (&wanted.points, None));
     };
     let semicolons = GOOD.replace(',', ";").replace('.', ",");
@@ -161,7 +166,7 @@ fn separators_decimal_commas_and_encodings() {
     }
     let refused = |bytes: &[u8], said: &str| {
         std::fs::write(&path, bytes).unwrap();
-        let why = Points::read(&path).unwrap_err().to_string();
+        let why = MeasuredPoints::read(&path).unwrap_err().to_string();
         assert!(why.ends_with(said), "{why}");
     };
     let half = "p.csv:2: not UTF-16LE text: half a character at the end";
@@ -190,7 +195,7 @@ fn lines_and_columns_of_rare_files() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("p.csv");
     std::fs::write(&path, b"side\rcb\xff").unwrap();
-    let why = Points::read(&path).unwrap_err().to_string();
+    let why = MeasuredPoints::read(&path).unwrap_err().to_string();
     assert!(why.ends_with("p.csv:2: not UTF-8 text: byte 0xFF"), "{why}");
 }
 
@@ -199,7 +204,7 @@ fn lines_and_columns_of_rare_files() {
 fn columns_that_are_not_used_are_noted_once() {
     let text = "rat,side,sd,distance_mm,push_angle_deg,note,\nA,cb,1,15.5,16,\"two\nlines\",\n,,,,,,\n \nB,cf,1,12,-41,,\n";
     let text = text.replace("\n \n", "\n\n");
-    let points = Points::parse(&text, "p.csv").unwrap();
+    let points = MeasuredPoints::parse(&text, "p.csv").unwrap();
     let note = "p.csv:1: columns that are not used: rat, sd, note; `sd` is not known; did you mean `sd_deg`?";
     assert_eq!(points.note.as_deref(), Some(note));
     let lines: Vec<usize> = points.points.iter().map(|point| point.line).collect();
@@ -212,14 +217,14 @@ fn columns_that_are_not_used_are_noted_once() {
 fn files_that_cannot_be_read() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("p.csv");
-    let said = |path: &std::path::Path| Points::read(path).unwrap_err().to_string();
+    let said = |path: &std::path::Path| MeasuredPoints::read(path).unwrap_err().to_string();
     assert!(said(&path).contains("p.csv: cannot be read: No such file"));
     std::fs::write(&path, b"side,distance_mm,push_angle_deg\ncb,1\xff,2\n").unwrap();
     assert!(said(&path).ends_with("p.csv:2: not UTF-8 text: byte 0xFF"));
     std::fs::write(&path, vec![b'#'; (1 << 20) + 1]).unwrap();
     assert!(said(&path).ends_with("p.csv: cannot be read: longer than 1 MiB"));
     std::fs::write(&path, GOOD).unwrap();
-    assert_eq!(Points::read(&path).unwrap().points.len(), 2);
+    assert_eq!(MeasuredPoints::read(&path).unwrap().points.len(), 2);
 }
 
 /// In any order, with repeats, on both sides; distances that no resting whisker reaches are refused.
@@ -227,7 +232,7 @@ fn files_that_cannot_be_read() {
 fn points_are_compared_one_by_one() {
     let text = "side,distance_mm,push_angle_deg,kind\n\
                 cb,19.5,3,slip-off\ncb,15.66,15,slip-off\ncf,15.66,-29,\ncb,15.66,17,pull-off\n";
-    let points = Points::parse(text, "p.csv").unwrap();
+    let points = MeasuredPoints::parse(text, "p.csv").unwrap();
     let scene = cone();
     let whisker = scene.first_whisker().whisker;
     points.check_reach(&whisker, &scene.pole).unwrap();
@@ -270,7 +275,7 @@ fn points_are_compared_one_by_one() {
         ("0.26", true),
         ("0.01", false),
     ] {
-        let points = Points::parse(&text.replace("19.5", distance), "p.csv").unwrap();
+        let points = MeasuredPoints::parse(&text.replace("19.5", distance), "p.csv").unwrap();
         let checked = points
             .check_reach(&whisker, &scene.pole)
             .map_err(|why| why.to_string());

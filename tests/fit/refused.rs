@@ -2,13 +2,13 @@
 
 use crate::{DISTANCES_MM, cone, detachments};
 use whiskmap::fit::fit;
-use whiskmap::measured::Angle;
+use whiskmap::measured::MeasuredAngle;
 use whiskmap::scene::Parameter::{self, *};
 use whiskmap::scene::Scene;
 
 /// The message of a fit that is refused.
 fn message(scene: &Scene, free: &[Parameter]) -> String {
-    let points = detachments(&cone(), Angle::Push, &DISTANCES_MM);
+    let points = detachments(&cone(), MeasuredAngle::Push, &DISTANCES_MM);
     fit(scene, &points, free).unwrap_err().to_string()
 }
 

@@ -3,14 +3,14 @@
 use crate::noisy::Random;
 use crate::{DISTANCES_MM, cone, detachments};
 use whiskmap::fit::{Fit, LikelyCause, fit};
-use whiskmap::measured::{Angle, Point, Points};
+use whiskmap::measured::{MeasuredAngle, MeasuredPoint, MeasuredPoints};
 use whiskmap::scene::Parameter::{ParabolaPerMm, TipRadiusUm};
 
 /// The detachments of another cone, each changed by `change`, and fitted.
-fn changed(have_deviations: bool, change: impl Fn(&mut Point)) -> Fit {
+fn changed(have_deviations: bool, change: impl Fn(&mut MeasuredPoint)) -> Fit {
     let truth = [(TipRadiusUm, 2.5), (ParabolaPerMm, 0.018)];
     let truth = cone().with_parameters(&truth).unwrap();
-    let mut points = detachments(&truth, Angle::Push, &DISTANCES_MM);
+    let mut points = detachments(&truth, MeasuredAngle::Push, &DISTANCES_MM);
     points.have_deviations = have_deviations;
     points.points.iter_mut().for_each(change);
     fit(&cone(), &points, &[TipRadiusUm, ParabolaPerMm]).unwrap()
@@ -92,7 +92,7 @@ fn absurd_deviations_are_not_a_fit() {
 #[test]
 fn repeated_measurements_at_one_distance_stay_a_fit() {
     let text = "side,distance_mm,push_angle_deg\ncb,15,18\ncb,15,20.5\ncb,15,16\n";
-    let points = Points::parse(text, "points.csv").unwrap();
+    let points = MeasuredPoints::parse(text, "points.csv").unwrap();
     let found = fit(&cone(), &points, &[TipRadiusUm]).unwrap();
     assert_eq!(found.not_a_fit, None);
     assert!(found.estimates[0].standard_error.is_some());

@@ -1,7 +1,7 @@
 //! Detachment curves in the plane of push angle and distance, Figs. 3E, 3J, 4D and 5C, with measured detachments over them.
 
 use super::{Figure, FigurePanel, PUSH, figure};
-use crate::measured::Point;
+use crate::measured::MeasuredPoint;
 use crate::paper::whiskers::{FIG4_HAIR, FIG4_WHISKER, FIG5_LEFT, FIG5_RIGHT, POLE, cylinder_of};
 use crate::render::{CurveAxis, Dot, DrawnCurve, Ink, Line, Stroke, curves};
 use crate::rod::{Rest, Side};
@@ -13,11 +13,11 @@ use serde::Serialize;
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Measurements {
     /// Fig. 4D: slip-offs (the whisker's) are open circles, others (the hair's) filled circles.
-    pub fig4d: Vec<Point>,
+    pub fig4d: Vec<MeasuredPoint>,
     /// Fig. 5C, left: open circles.
-    pub fig5c_left: Vec<Point>,
+    pub fig5c_left: Vec<MeasuredPoint>,
     /// Fig. 5C, right: open circles.
-    pub fig5c_right: Vec<Point>,
+    pub fig5c_right: Vec<MeasuredPoint>,
 }
 
 /// A row of a panel's table.
@@ -103,8 +103,8 @@ fn reach(rows: &[Detachment], stroke: Stroke) -> Line {
 }
 
 /// Measured detachments as circles.
-fn dots(measured: &[Point], is_open: impl Fn(Option<DetachmentKind>) -> bool) -> Vec<Dot> {
-    let dot = |end: &Point| Dot {
+fn dots(measured: &[MeasuredPoint], is_open: impl Fn(Option<DetachmentKind>) -> bool) -> Vec<Dot> {
+    let dot = |end: &MeasuredPoint| Dot {
         at: [end.angle_deg, end.distance_mm],
         ink: match end.kind {
             Some(DetachmentKind::SlipOff) => Ink::Black,
@@ -118,7 +118,7 @@ fn dots(measured: &[Point], is_open: impl Fn(Option<DetachmentKind>) -> bool) ->
 }
 
 /// Fig. 4D: a mouse whisker and a human hair.
-pub fn fig4d(measured: &[Point]) -> Figure {
+pub fn fig4d(measured: &[MeasuredPoint]) -> Figure {
     let whiskers = [
         ("mouse whisker", &FIG4_WHISKER, Stroke::Solid),
         ("human hair", &FIG4_HAIR, Stroke::Dashed),
