@@ -33,7 +33,7 @@ fn enlarged() -> Plot {
     }
 }
 
-/// The same without the inset.
+/// The SVG document of [`enlarged`] without the inset.
 fn plain() -> String {
     let plot = Plot {
         inset: None,
