@@ -23,7 +23,8 @@
 //! ```
 //!
 //! Axes choose their ranges, ticks and units: a label that ends in a unit of length, force, moment or energy, such as `(mm)`,
-//! changes to the unit in which the numbers read best. The font is DejaVu Sans; it is a part of the crate.
+//! changes to the unit in which the numbers read best. The font is DejaVu Sans; the crate contains it, and its
+//! licence in `fonts/`.
 
 mod chart;
 mod frame;

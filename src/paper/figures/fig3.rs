@@ -96,7 +96,7 @@ pub fn fig3() -> Result<Figure, NoState> {
     Ok(lettered("fig3", title, caption, panels.collect()))
 }
 
-/// The branches of both sides at one pole, each up to its own side of first touch.
+/// The branches of both whisker sides at one pole, up to the push angle 0.
 fn states(
     whisker: &Whisker,
     distance_mm: impl Fn(Side) -> f64,

@@ -28,10 +28,8 @@ impl Window {
         let extents = [0, 1].map(|axis| extent(plot, axis));
         let [x, y] = if plot.equal_axes {
             equal_units(extents, pixels)
-        } else if plot.logarithmic {
-            extents.map(widened_logarithms)
         } else {
-            extents.map(widened)
+            extents.map(|extent| widened(extent, plot.logarithmic))
         };
         let mut largest = extents.map(magnitude);
         if plot.equal_axes {
@@ -137,10 +135,7 @@ pub fn drawable_disc(disc: &Disc) -> bool {
 
 /// The smallest and the largest drawable number along an axis; 0 and 1 if there is none.
 fn extent(plot: &Plot, axis: usize) -> [f64; 2] {
-    let lines = plot
-        .lines
-        .iter()
-        .flat_map(|line| line.points.iter().copied());
+    let lines = plot.lines.iter().flat_map(|line| &line.points).copied();
     let bands = plot.bands.iter().flat_map(|band| &band.points);
     let bands = bands.copied().filter(|point| drawable_span(*point));
     let edges = bands.flat_map(|[x, from, to]| [[x, from], [x, to]]);
@@ -171,25 +166,18 @@ fn room(size: f64) -> f64 {
     if size < TINY { 1.0 } else { 0.1 * size }
 }
 
-/// Adds room to a range, which is never empty afterwards.
-fn widened([low, high]: [f64; 2]) -> [f64; 2] {
+/// Adds room to a range, which is never empty afterwards. Equal decimal logarithms get a decade on each side.
+fn widened([low, high]: [f64; 2], logarithmic: bool) -> [f64; 2] {
     let size = magnitude([low, high]);
-    if size < TINY || high - low < EQUAL * size {
-        [low - room(size), high + room(size)]
-    } else {
-        let margin = MARGIN * (high - low);
-        [low - margin, high + margin]
-    }
-}
-
-/// Adds room to a range of decimal logarithms: one decade beside equal numbers.
-fn widened_logarithms([low, high]: [f64; 2]) -> [f64; 2] {
-    if high - low < EQUAL {
-        [low - 1.0, high + 1.0]
-    } else {
-        let margin = MARGIN * (high - low);
-        [low - margin, high + margin]
-    }
+    let (size, least) = match logarithmic {
+        true => (1.0, 1.0),
+        false => (size, room(size)),
+    };
+    let margin = match size < TINY || high - low < EQUAL * size {
+        true => least,
+        false => MARGIN * (high - low),
+    };
+    [low - margin, high + margin]
 }
 
 /// Adds room to both ranges so that a data unit has the same length on both axes.

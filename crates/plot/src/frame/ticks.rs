@@ -41,7 +41,7 @@ pub fn at(values: &[f64], range: [f64; 2]) -> Vec<Tick> {
         .collect()
 }
 
-/// Chooses about so many ticks for a range.
+/// Chooses the ticks of a range, given about how many are wanted.
 pub type TickChooser = fn([f64; 2], f64) -> Vec<Tick>;
 
 /// About `wanted` ticks of a linear range.

@@ -3,21 +3,13 @@
 use crate::drawn::{frame, line, polylines, single, svg, well_formed};
 use crate::{arc, both};
 use std::path::Path;
-use whiskmap_plot::{
-    Chart, Disc, Dot, Ink, Line, Note, PictureFormat, Plot, Stroke, missing_glyphs,
-};
+use whiskmap_plot::{Chart, Disc, Dot, Ink, Note, PictureFormat, Plot, Stroke, missing_glyphs};
 
 #[test]
 fn the_legend_has_each_name_once_and_wraps() {
-    let named = |name: &str, stroke: Stroke| Line {
-        name: Some(name.to_owned()),
-        ..line(&[[0.0, 0.0], [1.0, 1.0]], Ink::Black, stroke)
-    };
+    let diagonal = || line(&[[0.0, 0.0], [1.0, 1.0]], Ink::Black, Stroke::Dashed);
     let plot = |names: &[&str]| Plot {
-        lines: names
-            .iter()
-            .map(|name| named(name, Stroke::Dashed))
-            .collect(),
+        lines: names.iter().map(|name| diagonal().named(*name)).collect(),
         ..Plot::default()
     };
     let long = [
@@ -48,10 +40,7 @@ fn a_document_is_well_formed_whatever_the_texts() {
             title: text.to_owned(),
             x_label: text.to_owned(),
             y_label: text.to_owned(),
-            lines: vec![Line {
-                name: Some(text.to_owned()),
-                ..line(&arc(), Ink::Grey, Stroke::Dashed)
-            }],
+            lines: vec![line(&arc(), Ink::Grey, Stroke::Dashed).named(text)],
             dots: vec![Dot::default()],
             discs: vec![Disc::default()],
             notes: vec![Note {

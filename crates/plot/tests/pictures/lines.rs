@@ -2,7 +2,7 @@
 
 use crate::drawn::{Pixels, frame, line, polylines, single, svg};
 use crate::{BLACK, BLANK, BLUE, WHITE, arc, both};
-use whiskmap_plot::{Disc, Dot, Ink, Line, Plot, Stroke};
+use whiskmap_plot::{Disc, Dot, Ink, Plot, Stroke};
 
 #[test]
 fn a_line_is_where_its_numbers_are() {
@@ -168,10 +168,7 @@ fn circles(svg: &str) -> Vec<[f64; 3]> {
 
 #[test]
 fn a_line_of_one_point_is_a_dot_and_so_it_is_in_the_legend() {
-    let point = |y: f64, ink: Ink| Line {
-        name: Some("slip-off".to_owned()),
-        ..line(&[[15.0, y]], ink, Stroke::Solid)
-    };
+    let point = |y: f64, ink: Ink| line(&[[15.0, y]], ink, Stroke::Solid).named("slip-off");
     let chart = single(Plot {
         lines: vec![point(-20.0, Ink::Black), point(20.0, Ink::Black)],
         ..Plot::default()
