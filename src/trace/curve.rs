@@ -2,6 +2,7 @@
 
 use super::columns::row;
 use crate::classify::{RowBoundary, Sliding};
+use crate::numerics::Bracket;
 use crate::rod::{Rest, Side};
 use crate::scene::{Pole, Whisker};
 use crate::sheet::{Crossing, Edge, Sheet};
@@ -219,16 +220,16 @@ fn switch(end: &impl Fn(f64) -> Detachment, length: f64, nearest: f64) -> Result
         .position(|d| end(*d).kind == DetachmentKind::PullOff);
     let pulled = pulled.ok_or(NoCorner::AlwaysSlipsOff)?;
     let before = pulled.checked_sub(1).ok_or(NoCorner::AlwaysPullsOff)?;
-    let (mut low, mut high) = (samples[before], samples[pulled]);
-    while high - low > CORNER_TOLERANCE * length {
-        let middle = 0.5 * (low + high);
-        match end(middle).kind {
-            DetachmentKind::SlipOff => low = middle,
-            DetachmentKind::PullOff => high = middle,
-            DetachmentKind::OutOfReach | DetachmentKind::Unresolved => {
-                return Err(NoCorner::NotFound);
-            }
+    let mut bracket = Bracket {
+        below: samples[before],
+        above: samples[pulled],
+    };
+    bracket.halve(CORNER_TOLERANCE * length, |distance| {
+        match end(distance).kind {
+            DetachmentKind::SlipOff => Ok(true),
+            DetachmentKind::PullOff => Ok(false),
+            DetachmentKind::OutOfReach | DetachmentKind::Unresolved => Err(NoCorner::NotFound),
         }
-    }
-    Ok(low)
+    })?;
+    Ok(bracket.below)
 }

@@ -1,7 +1,8 @@
 //! The tip edge: states with the contact at the tip, from first touch to the corner with the fold edge. They are sampled at
 //! Chebyshev-Lobatto nodes of the load, and where the distance has an extremum: between samples it then grows or falls throughout.
 
-use crate::numerics::lobatto::{LOBATTO_COUNT, LOBATTO_NODES, LobattoPolynomial, through_lobatto};
+use crate::numerics::divided_differences::through_nodes;
+use crate::numerics::lobatto::{LOBATTO_COUNT, LOBATTO_NODES, LobattoPolynomial};
 use crate::numerics::newton_form::RootProblem;
 use crate::numerics::{Bracket, nearest_turn};
 use crate::rod::Rod;
@@ -167,13 +168,14 @@ impl TipEdge {
         let (tau, corner) = (sampled.corner.tau, sampled.corner.load);
         let numbers =
             |number: fn(&ShootingMap) -> f64| std::array::from_fn(|m| number(&sampled.maps[m]));
-        let values = [
+        let values: [[f64; LOBATTO_COUNT]; 4] = [
             numbers(|map| libm::log(map.pole.length())),
             std::array::from_fn(|m| sampled.phis[m]),
             numbers(|map| map.by_load.x),
             numbers(|map| map.by_load.y),
         ];
-        let [ln_distance, phi, by_load @ ..] = through_lobatto(0, LOBATTO_COUNT, values);
+        let values = values.each_ref().map(|values| &values[..]);
+        let [ln_distance, phi, by_load @ ..] = through_nodes(&*LOBATTO_NODES, values);
         Self {
             tau,
             corner,

@@ -9,7 +9,6 @@ pub mod newton_form;
 pub mod newton_form_simd;
 mod real;
 mod simd;
-pub mod taylor;
 mod vector;
 
 pub use bracket::{Bracket, Root, illinois};

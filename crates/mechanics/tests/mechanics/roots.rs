@@ -1,6 +1,7 @@
 //! Roots of functions of one variable, and polynomials.
 
-use whiskmap_mechanics::numerics::lobatto::{LOBATTO_COUNT, LOBATTO_NODES, through_lobatto};
+use whiskmap_mechanics::numerics::divided_differences::through_nodes;
+use whiskmap_mechanics::numerics::lobatto::{LOBATTO_COUNT, LOBATTO_NODES};
 use whiskmap_mechanics::numerics::newton_form::{
     Polynomial, RootProblem, even_nodes, through_slopes, through_values,
 };
@@ -220,11 +221,8 @@ fn polynomials_go_through_their_values() {
     let f = |x: f64| (2.0 * x).sin();
     for first in [0, 3, LOBATTO_COUNT - 2] {
         let count = LOBATTO_COUNT - first;
-        let mut values = [0.0; LOBATTO_COUNT];
-        for (value, node) in values.iter_mut().zip(&LOBATTO_NODES[first..]) {
-            *value = f(*node);
-        }
-        let [polynomial] = through_lobatto(first, count, [values]);
+        let values: Vec<f64> = LOBATTO_NODES[first..].iter().map(|node| f(*node)).collect();
+        let [polynomial] = through_nodes::<LOBATTO_COUNT, 1>(&LOBATTO_NODES[first..], [&values]);
         for (node, value) in LOBATTO_NODES[first..].iter().zip(&values) {
             assert!(
                 (polynomial.at(*node).0 - value).abs() < 1e-13,
