@@ -21,7 +21,7 @@ row! {
         pub measured_deg: f64,
         /// How the push was seen to end: slip-off, pull-off or empty.
         pub kind: Option<DetachmentKind>,
-        /// The same angle by theory; empty where the side never detaches.
+        /// Predicted angle, of the same kind; empty where the side never detaches.
         pub predicted_deg: Option<f64>,
         /// How the push ends by theory: slip-off, pull-off, out-of-reach or unresolved.
         pub predicted_kind: DetachmentKind,

@@ -20,14 +20,14 @@ impl Random {
         ((bits >> 11) as f64 + 0.5) / (1_u64 << 53) as f64
     }
 
-    /// Of mean 0 and variance 1.
+    /// Normal number of mean 0 and variance 1.
     pub fn normal(&mut self) -> f64 {
         let radius = (-2.0 * self.uniform().ln()).sqrt();
         radius * (TAU * self.uniform()).cos()
     }
 }
 
-/// Of 100 trials, those in which every parameter is within 3 standard errors, and the mean square of all errors over
+/// Number of 100 trials with every parameter within 3 standard errors, and the mean square of all errors over
 /// standard errors.
 fn trials(have_deviations: bool) -> (usize, f64) {
     let truth = [
