@@ -38,7 +38,7 @@ impl ChebyshevGrid {
         let point = |j: usize| libm::sin(0.5 * angle(2 * j + 1)).powi(2);
         let weight = |j: usize, k: usize| {
             let cos = libm::cos(angle(k * (2 * j + 1) % (4 * count)));
-            let sign = if k % 2 == 0 { 1.0 } else { -1.0 };
+            let sign = if k.is_multiple_of(2) { 1.0 } else { -1.0 };
             let each = if k == 0 { 1.0 } else { 2.0 };
             sign * each * cos / count as f64
         };
@@ -82,7 +82,7 @@ impl<const D: usize> Chebyshev<D> {
     }
 
     /// Size of the last coefficients of each function: an estimate of the expansion's error where coefficients still fall.
-    /// It is 0 for a single point.
+    /// A single point gives 0.
     #[must_use]
     pub fn tail(&self) -> [f64; D] {
         let last = self.coefficients.iter().skip(1).rev().take(TAIL);

@@ -44,7 +44,7 @@ pub fn shoot<O: OutputSet>(
             keep(members, compute(members));
         }
     } else {
-        let computed = blocks.par_iter().map(|members| compute(members));
+        let computed = blocks.par_iter().map(compute);
         let computed: Vec<_> = computed.collect();
         for (members, computed) in blocks.iter().zip(computed) {
             keep(members, computed);
