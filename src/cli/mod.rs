@@ -53,25 +53,24 @@ struct Arguments {
 
 const EXAMPLES: &str = "\
 Examples:
-  whiskmap map scenes/cone.toml                    regime map as outputs/cone.exr and outputs/cone.png
-  whiskmap map scenes/cone.toml --engine gpu       the same, computed on the GPU
-  whiskmap map scenes/morphology.toml --format zarr --shard 0/8   one eighth of a Zarr store
-  whiskmap status outputs/morphology.zarr          finished and missing blocks of the store
-  whiskmap submit scenes/morphology.toml --shards 8 > sweep.sbatch     job array for Slurm that fills the store
-  whiskmap extract outputs/morphology.zarr --at taper=0.5 -o slice.csv
-  whiskmap plan scenes/cone.toml                   cost of a map: effects, memory, seconds, bytes
+  whiskmap map scenes/cone.toml                      # outputs/cone.exr and outputs/cone.png
+  whiskmap plan scenes/cone.toml                     # cost of a map: memory, seconds, bytes
   whiskmap render outputs/cone.exr --channel force_un
-  whiskmap curve scenes/cone.toml --plot curve.png detachment curve
+  whiskmap map scenes/morphology.toml --format zarr --shard 0/8
+  whiskmap submit scenes/morphology.toml --shards 8 > sweep.sbatch
+  whiskmap status outputs/morphology.zarr            # finished and missing blocks
+  whiskmap extract outputs/morphology.zarr --at taper=0.5 -o slice.csv
+  whiskmap curve scenes/cone.toml --plot curve.png
   whiskmap curve scenes/cone.toml --data scenes/cone_points.csv --plot points.svg
+  whiskmap curve scenes/uncertain.toml --samples 500 --plot bands.png
   whiskmap fit scenes/cone.toml --data scenes/cone_points.csv --free tip_radius_um
-  whiskmap branch scenes/cone.toml --distance 15.66 stable and unstable states at one pole
-  whiskmap shape scenes/cone.toml --distance 15.66 --push-angle 10 --plot shape.svg
-  whiskmap curve scenes/uncertain.toml --samples 500 --plot bands.png   detachment curve with its uncertainty
-  whiskmap design scenes/robot.toml --distance 60 --slip-off 30deg --for taper   taper that slips off at 30 degrees
-  whiskmap reproduce                               figures 1 to 5 of the paper
-  whiskmap verify                                  comparison with independently verified values
-  whiskmap bench scenes/cone.toml                  error against time for each engine
-  whiskmap devices                                 GPU adapters, with number and name";
+  whiskmap branch scenes/cone.toml --distance 15.66  # stable and unstable states
+  whiskmap shape scenes/cone.toml --distance 15.66 --push-angle 10
+  whiskmap design scenes/robot.toml --distance 60 --slip-off 30deg --for taper
+  whiskmap reproduce                                 # figures 1 to 5 of the paper
+  whiskmap verify
+  whiskmap bench scenes/cone.toml
+  whiskmap devices";
 
 #[derive(Debug, Subcommand)]
 enum Command {
