@@ -166,3 +166,26 @@ fn the_architecture_has_at_most_150_lines() {
     let text = fs::read_to_string(root().join("ARCHITECTURE.md")).expect("a page");
     assert!(text.lines().count() <= 150, "{}", text.lines().count());
 }
+
+/// Cargo finds no test by itself here, so a file that no program names would never run.
+#[test]
+fn every_test_file_is_in_a_program() {
+    let tests = root().join("tests");
+    let programs = ["main.rs", "portable/main.rs", "machine/main.rs"];
+    let read = |name: &str| fs::read_to_string(tests.join(name)).expect("a program");
+    let text: String = programs.map(read).concat();
+    for entry in fs::read_dir(&tests).expect("tests") {
+        let path = entry.expect("a test").path();
+        let is_module = path.join("mod.rs").exists() || path.extension().is_some_and(|e| e == "rs");
+        let name = path.file_stem().and_then(|name| name.to_str());
+        let name = name.expect("a name");
+        if is_module && name != "main" {
+            assert!(text.contains(&format!("mod {name};")), "{}", path.display());
+        }
+        assert!(
+            !path.join("main.rs").exists() || ["portable", "machine"].contains(&name),
+            "{}: a folder of a program that Cargo.toml does not name",
+            path.display()
+        );
+    }
+}

@@ -8,8 +8,8 @@ use whiskmap::scene::Scene;
 use whiskmap::shooting::batch::{Batch, InitialCondition, Method};
 use whiskmap::shooting::{FirstVariation, Resolution, SecondVariation, ShootingMap};
 
-mod effect_sets;
-mod random_rods;
+use crate::effect_sets;
+use crate::random_rods;
 
 use random_rods::{ROWS, Random, condition, rod};
 

@@ -2,7 +2,7 @@
 //! sticks, are told.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-mod compute;
+use crate::compute;
 
 use compute::compute;
 use whiskmap::classify::{Regime, Sliding, Status};

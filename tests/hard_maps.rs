@@ -1,7 +1,7 @@
 //! Maps of whiskers whose level curves run along lines of constant load, turn back, or come in pieces.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-mod compute;
+use crate::compute;
 
 use compute::compute;
 use whiskmap::classify::Regime;

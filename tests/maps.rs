@@ -1,7 +1,7 @@
 //! Whole maps: every shipped scene without a doubtful cell.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-mod compute;
+use crate::compute;
 
 use compute::{compute, shipped};
 use whiskmap::map::{Panel, STATE_CHANNELS};

@@ -5,7 +5,7 @@
     reason = "a test fails by panicking"
 )]
 
-mod compute;
+use crate::compute;
 
 use compute::compute_as;
 use whiskmap::accuracy::cheapest;

@@ -5,7 +5,7 @@
     reason = "a test fails by panicking"
 )]
 
-mod effect_sets;
+use crate::effect_sets;
 
 use naga::back::PipelineConstants;
 use naga::back::pipeline_constants::process_overrides;

@@ -5,8 +5,8 @@
     reason = "tests may panic, and tell what they measured"
 )]
 
-mod effect_sets;
-mod random_rods;
+use crate::effect_sets;
+use crate::random_rods;
 
 use glam::DVec2;
 use whiskmap::refine::{TOLERANCE, states};

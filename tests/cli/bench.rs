@@ -1,7 +1,7 @@
 //! `whiskmap bench`: consistency of its tables and JSON, not the measured times.
 
-use crate::traces::good;
-use crate::{Place, SCENE};
+use super::traces::good;
+use super::{Place, SCENE};
 use serde_json::Value;
 
 fn numbers(rows: &[Value], key: &str) -> Vec<f64> {

@@ -1,7 +1,7 @@
 //! `whiskmap branch`.
 
-use crate::traces::{BRANCH, CB, SHAPE, cells, good};
-use crate::{Place, SCENE};
+use super::traces::{BRANCH, CB, SHAPE, cells, good};
+use super::{Place, SCENE};
 
 #[test]
 fn a_branch_has_as_many_points_as_asked_for() {

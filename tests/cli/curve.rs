@@ -1,7 +1,7 @@
 //! `whiskmap curve`.
 
-use crate::traces::{CURVE, cells, good};
-use crate::{Place, SCENE};
+use super::traces::{CURVE, cells, good};
+use super::{Place, SCENE};
 use whiskmap::rod::Side;
 use whiskmap::scene::Scene;
 use whiskmap::trace::curve;
@@ -94,7 +94,7 @@ fn the_corner_of_the_cone() {
 
 #[test]
 fn a_curve_without_any_end_is_written_and_fails() {
-    let place = Place::with(crate::map::HINGED);
+    let place = Place::with(super::map::HINGED);
     let run = place.run(&["curve", "scene.toml", "--csv", "curve.csv"]);
     assert_eq!(run.code, Some(1), "{run:?}");
     assert!(
@@ -106,7 +106,7 @@ fn a_curve_without_any_end_is_written_and_fails() {
 
     place.write(
         "near.toml",
-        &crate::map::HINGED.replace("[5, 8]", "[8, 19]"),
+        &super::map::HINGED.replace("[5, 8]", "[8, 19]"),
     );
     let run = place.run(&["curve", "near.toml"]);
     let warning = "warning: 2 of 4 ends are unresolved: see the column `kind`\n";

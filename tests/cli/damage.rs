@@ -1,8 +1,8 @@
 //! Damaged stores, and stores with files of other stores.
 
-use crate::integrity::SMALL;
-use crate::store::{SWEEP, assert_same, files, good, map};
-use crate::{Place, Run};
+use super::integrity::SMALL;
+use super::store::{SWEEP, assert_same, files, good, map};
+use super::{Place, Run};
 use std::fs;
 use std::path::Path;
 
@@ -210,11 +210,11 @@ fn what_is_no_file_is_neither_read_nor_removed() {
     let chunk = place.path("out/scene.zarr/force_un/c.0.0.0");
     fs::remove_file(&chunk).unwrap();
     std::os::unix::fs::symlink("c.0.0.0", &chunk).unwrap();
-    let before = crate::names(&place.path("out/scene.zarr/force_un"));
+    let before = super::names(&place.path("out/scene.zarr/force_un"));
     let run = status(&place, "--repair");
     run.assert_said(1, "cannot read out/scene.zarr/force_un/c.0.0.0: ");
     assert!(run.out.contains("blocks removed: 0"), "{run:?}");
-    assert_eq!(crate::names(&place.path("out/scene.zarr/force_un")), before);
+    assert_eq!(super::names(&place.path("out/scene.zarr/force_un")), before);
     let run = map(&place, "out", &["--resume"]);
     run.assert_said(2, "cannot read out/scene.zarr/force_un/c.0.0.0: ");
 }

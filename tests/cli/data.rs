@@ -1,7 +1,7 @@
 //! `whiskmap curve --data`: measured points beside the curve.
 
-use crate::traces::cells;
-use crate::{Place, Run, SCENE};
+use super::traces::cells;
+use super::{Place, Run, SCENE};
 
 pub const POINTS: &str =
     "line,side,distance_mm,measured_deg,kind,predicted_deg,predicted_kind,residual_deg";
@@ -68,7 +68,7 @@ fn points_beside_the_curve() {
 
 #[test]
 fn points_that_never_detach() {
-    let place = Place::with(crate::map::HINGED);
+    let place = Place::with(super::map::HINGED);
     place.write(
         "points.csv",
         "side,distance_mm,push_angle_deg\ncb,8,40\ncb,19,5\n",

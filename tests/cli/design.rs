@@ -1,7 +1,7 @@
 //! `whiskmap design`.
 
-use crate::traces::good;
-use crate::{Place, SCENE};
+use super::traces::good;
+use super::{Place, SCENE};
 
 const TAPER: [&str; 6] = [
     "design",
@@ -13,7 +13,7 @@ const TAPER: [&str; 6] = [
 ];
 
 /// Runs `design` with more arguments.
-fn run(place: &Place, more: &[&str]) -> crate::Run {
+fn run(place: &Place, more: &[&str]) -> super::Run {
     place.run(&[&TAPER[..], more].concat())
 }
 

@@ -1,6 +1,6 @@
 //! Selection of engine and adapter by `map`.
 
-use crate::{Place, Run, SCENE};
+use super::{Place, Run, SCENE};
 
 fn said(run: &Run) -> &str {
     assert_eq!(run.code, Some(0), "{run:?}");

@@ -1,7 +1,7 @@
 //! `whiskmap extract`: slices of stores and maps.
 
-use crate::store::{SWEEP, good};
-use crate::{Place, SCENE};
+use super::store::{SWEEP, good};
+use super::{Place, SCENE};
 use std::fs;
 use whiskmap::scene::Parameter;
 use whiskmap::store::{StoredMap, ZarrStore};

@@ -1,7 +1,7 @@
 //! Output files: devices, pipes, links, full disks, unusual names.
 
-use crate::traces::{CURVE, good};
-use crate::{Place, Run, SCENE, names};
+use super::traces::{CURVE, good};
+use super::{Place, Run, SCENE, names};
 use std::fs::{self, File};
 use std::os::unix::fs::{FileTypeExt, symlink};
 use std::process::{Command, Stdio};
@@ -241,8 +241,8 @@ fn a_pipe_holds_no_radii() {
         .assert_refused(&["whisker.profile.rows = \"radii.csv\": must name a regular file"]);
 
     // The scene of the store names the pipe: no command opens it.
-    place.write("scene.toml", crate::store::SWEEP);
-    crate::store::good(&place, ".", &["--shard", "1/8"]);
+    place.write("scene.toml", super::store::SWEEP);
+    super::store::good(&place, ".", &["--shard", "1/8"]);
     let root = String::from_utf8(place.bytes("scene.zarr/zarr.json")).unwrap();
     let named = root.replace(
         "[whisker]",

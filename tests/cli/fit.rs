@@ -1,7 +1,7 @@
 //! `whiskmap fit`.
 
-use crate::data::{DATA, curve, place};
-use crate::{Place, Run, SCENE, names};
+use super::data::{DATA, curve, place};
+use super::{Place, Run, SCENE, names};
 use serde_json::Value;
 use whiskmap::scene::Scene;
 

@@ -1,7 +1,7 @@
 //! Stores that several runs create at once, that are moved while a run fills them, or that claim huge sizes.
 
-use crate::store::{MAP, SWEEP, assert_complete, assert_same, begun, files, good, is_hidden};
-use crate::{Place, Run};
+use super::store::{MAP, SWEEP, assert_complete, assert_same, begun, files, good, is_hidden};
+use super::{Place, Run};
 use std::fs;
 use std::process::{Command, Stdio};
 
@@ -139,7 +139,7 @@ fn a_failed_extract_leaves_no_store() {
         2,
         "full.zarr: exists, and is neither a store nor an empty folder",
     );
-    assert_eq!(crate::names(&place.path("full.zarr")), ["notes.txt"]);
+    assert_eq!(super::names(&place.path("full.zarr")), ["notes.txt"]);
 }
 
 /// The program, which may take 3 GB of memory.

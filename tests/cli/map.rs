@@ -1,6 +1,6 @@
 //! `whiskmap map` on one whisker.
 
-use crate::{Place, SCENE, names};
+use super::{Place, SCENE, names};
 use std::io::Read;
 use std::process::Stdio;
 use whiskmap::store::StoredMap;

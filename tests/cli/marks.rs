@@ -1,6 +1,6 @@
 //! With friction, states that do not slide toward the tip keep the status that marks them.
 
-use crate::{Place, Run, SCENE};
+use super::{Place, Run, SCENE};
 use whiskmap::classify::Status;
 use whiskmap::map::Channels;
 use whiskmap::store::{

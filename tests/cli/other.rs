@@ -1,6 +1,6 @@
 //! Files of other versions.
 
-use crate::{Place, SCENE};
+use super::{Place, SCENE};
 
 /// Channels of an incompatible version may have other meanings.
 #[test]
@@ -17,7 +17,7 @@ fn render_warns_of_another_version() {
                 bytes[at..at + own.len()].copy_from_slice(written.as_bytes());
             }
         }
-        crate::sealed::seal(&mut bytes);
+        super::sealed::seal(&mut bytes);
         std::fs::write(place.path("old.exr"), bytes).unwrap();
         let run = place.run(&["render", "old.exr"]);
         assert_eq!(run.code, Some(0), "{run:?}");

@@ -1,7 +1,7 @@
 //! `whiskmap reproduce` and `whiskmap verify`.
 
-use crate::traces::good;
-use crate::{Place, SCENE, names};
+use super::traces::good;
+use super::{Place, SCENE, names};
 
 #[test]
 fn figures_come_with_their_tables() {

@@ -1,6 +1,6 @@
 //! `whiskmap plan`.
 
-use crate::{Place, Run, SCENE, names};
+use super::{Place, Run, SCENE, names};
 
 const STRAIGHT: &str = r#"title = "A straight cylinder"
 [whisker]

@@ -1,8 +1,8 @@
 //! Protection of files that are not outputs of the run.
 
-use crate::data::DATA;
-use crate::traces::good;
-use crate::{Place, Run, SCENE, names};
+use super::data::DATA;
+use super::traces::good;
+use super::{Place, Run, SCENE, names};
 use std::fs::{self, Permissions};
 use std::os::unix::fs::{MetadataExt, PermissionsExt, symlink};
 use std::process::{Command, Stdio};

@@ -1,6 +1,6 @@
 //! Invalid input: one message, exit code 2, no file created.
 
-use crate::{Place, Run, SCENE, names};
+use super::{Place, Run, SCENE, names};
 use std::fs;
 use std::io::{BufRead, BufReader};
 use std::process::Stdio;

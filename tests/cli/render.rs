@@ -1,6 +1,6 @@
 //! `whiskmap render`.
 
-use crate::{Place, Run, SCENE, names};
+use super::{Place, Run, SCENE, names};
 
 #[test]
 fn render_draws_the_picture_again() {
@@ -47,8 +47,8 @@ fn every_channel_can_be_drawn() {
 #[cfg(unix)]
 #[test]
 fn stores_and_parts_are_drawn_like_maps() {
-    let place = Place::with(crate::store::SWEEP);
-    crate::store::good(&place, ".", &[]);
+    let place = Place::with(super::store::SWEEP);
+    super::store::good(&place, ".", &[]);
     let run = |arguments: &[&str]| {
         let run = place.run(arguments);
         assert_eq!(run.code, Some(0), "{run:?}");

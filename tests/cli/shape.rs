@@ -1,7 +1,7 @@
 //! `whiskmap shape`.
 
-use crate::traces::{BRANCH, CURVE, SHAPE, cells, good};
-use crate::{Place, SCENE, names};
+use super::traces::{BRANCH, CURVE, SHAPE, cells, good};
+use super::{Place, SCENE, names};
 use whiskmap::rod::Side;
 use whiskmap::scene::Scene;
 use whiskmap::trace::Branch;

@@ -1,6 +1,6 @@
 //! Leftovers of interrupted runs, which the next run removes.
 
-use crate::{Place, Run, SCENE, names};
+use super::{Place, Run, SCENE, names};
 use std::fs;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, SystemTime};

@@ -1,6 +1,6 @@
 //! `whiskmap map --format zarr` and `whiskmap status`: equal bytes for any processes, order and interruptions.
 
-use crate::{Place, Run};
+use super::{Place, Run};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -141,7 +141,7 @@ pub fn begun(place: &Place, folder: &str, blocks: usize) -> Child {
     let mut child = command.spawn().unwrap();
     let regimes = place.path(folder).join("scene.zarr/regime");
     let done = || {
-        let names = crate::names(&regimes);
+        let names = super::names(&regimes);
         names.iter().filter(|name| name.starts_with("c.")).count()
     };
     while done() < blocks {
@@ -216,7 +216,7 @@ fn an_interrupted_run_says_how_to_go_on() {
     let place = Place::with(SWEEP);
     good(&place, "whole", &[]);
     let child = begun(&place, "out", 2);
-    crate::signals::send("TERM", &child);
+    super::signals::send("TERM", &child);
     let run = Run::of(&child.wait_with_output().unwrap());
     assert_eq!(run.code, Some(143), "{run:?}");
     let said = "interrupted by SIGTERM; unfinished files are removed; finished blocks are kept: resume with the same command and --resume\n";

@@ -1,7 +1,7 @@
 //! `whiskmap submit`: the script, run by a shell task by task. `tests/cluster` runs it on Slurm.
 
-use crate::store::{SWEEP, assert_same, good};
-use crate::{Place, Run};
+use super::store::{SWEEP, assert_same, good};
+use super::{Place, Run};
 use std::fs;
 use std::os::unix::fs::PermissionsExt;
 use std::path::Path;

@@ -1,6 +1,6 @@
 //! `whiskmap map` on a sweep of whiskers.
 
-use crate::{Place, names};
+use super::{Place, names};
 use std::path::Path;
 use whiskmap::scene::Parameter;
 use whiskmap::store::{AtlasLayout, StoredMap};

@@ -1,6 +1,6 @@
 //! `--tolerance` of `map` and `curve`.
 
-use crate::{Place, SCENE};
+use super::{Place, SCENE};
 use whiskmap::accuracy::BOUNDED;
 
 #[test]

@@ -1,6 +1,6 @@
 //! Common behaviour of `whiskmap curve`, `branch` and `shape`: tables, plots, refused input.
 
-use crate::{Place, Run, SCENE, names};
+use super::{Place, Run, SCENE, names};
 
 pub const CURVE: &str = "side,distance_mm,pole_distance_mm,kind,push_angle_deg,push_chord_deg,contact_distance_mm,\
                      arc_length_mm,force_un,base_force_x_un,base_force_y_un,base_moment_nnm,contact_angle_deg,residual,\
@@ -75,7 +75,7 @@ fn help_defines_the_columns() {
     let place = Place::with(SCENE);
     let corner = "side,distance_mm,push_angle_deg,reason";
     for (command, tables) in [
-        ("curve", &[CURVE, corner, crate::data::POINTS, SPREAD][..]),
+        ("curve", &[CURVE, corner, super::data::POINTS, SPREAD][..]),
         ("branch", &[BRANCH]),
         ("shape", &[SHAPE]),
     ] {

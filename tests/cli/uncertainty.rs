@@ -1,7 +1,7 @@
 //! `whiskmap curve --samples`, and `[uncertainty]` elsewhere.
 
-use crate::traces::{CURVE, SPREAD, cells, good};
-use crate::{Place, SCENE, names};
+use super::traces::{CURVE, SPREAD, cells, good};
+use super::{Place, SCENE, names};
 
 const UNCERTAIN: &str = "[uncertainty]\nbase_radius_um = 1.0\ntip_radius_um = 0.3\n";
 

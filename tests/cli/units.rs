@@ -1,6 +1,6 @@
 //! Units of options, and warnings about values that look like another unit.
 
-use crate::{Place, SCENE};
+use super::{Place, SCENE};
 
 #[test]
 fn distances_and_angles_take_units() {
@@ -70,7 +70,7 @@ fn numbers_in_other_units_are_warned_of() {
             .replace("count = 24", "count = 3")
             .replace("= 3.0", "= 3000"),
     );
-    place.write("points.csv", crate::data::DATA);
+    place.write("points.csv", super::data::DATA);
     let warning =
         "warning: whisker.youngs_modulus_gpa = 3000 GPa: expected 0.1 to 100 GPa; is it in MPa?\n";
     for words in [

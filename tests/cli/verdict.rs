@@ -1,8 +1,8 @@
 //! `whiskmap fit`: best values that are not a fit, and tables of other programs.
 
-use crate::data::{DATA, place};
-use crate::fit::{FIT, fit, json};
-use crate::{Run, names};
+use super::data::{DATA, place};
+use super::fit::{FIT, fit, json};
+use super::{Run, names};
 use serde_json::Value;
 
 /// Data in radians are not a fit: exit code 1, and no file except the JSON.

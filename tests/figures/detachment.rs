@@ -1,6 +1,6 @@
 //! Detachment curves of Figs. 3E, 3J, 4D and 5C, and measured ends over them.
 
-use crate::{figure, last, plot};
+use super::{figure, last, plot};
 use whiskmap::measured::MeasuredPoint;
 use whiskmap::paper::Measurements;
 use whiskmap::render::{Ink, Stroke};

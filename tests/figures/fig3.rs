@@ -1,6 +1,6 @@
 //! Fig. 3: bifurcation diagrams, and the states of Fig. 2 in them.
 
-use crate::{last, looks, named, near, plot};
+use super::{last, looks, named, near, plot};
 use whiskmap::render::{Ink, Stroke};
 
 /// Caption of Fig. 3: circles, strokes, sides and the two poles of the cylinder.

@@ -1,6 +1,6 @@
 //! Points without errors: the parameters that they were made with.
 
-use crate::{DISTANCES_MM, cone, detachments, free};
+use super::{DISTANCES_MM, cone, detachments, free};
 use whiskmap::fit::fit;
 use whiskmap::measured::MeasuredAngle;
 use whiskmap::scene::Parameter::{self, *};

@@ -1,7 +1,7 @@
 //! Parameters that points do not determine, limits of the scene, and points without a prediction.
 
-use crate::noisy::Random;
-use crate::{DISTANCES_MM, cone, detachments};
+use super::noisy::Random;
+use super::{DISTANCES_MM, cone, detachments};
 use whiskmap::fit::{Fit, FitError, fit};
 use whiskmap::measured::{MeasuredAngle, MeasuredPoints};
 use whiskmap::scene::Parameter::{self, *};

@@ -1,6 +1,6 @@
 //! Points with normal errors, always the same: standard errors say how far off a fit is.
 
-use crate::{DISTANCES_MM, cone, detachments, free};
+use super::{DISTANCES_MM, cone, detachments, free};
 use std::f64::consts::TAU;
 use whiskmap::fit::fit;
 use whiskmap::measured::MeasuredAngle;

@@ -1,6 +1,6 @@
 //! Files of points, and points beside the theory.
 
-use crate::cone;
+use super::cone;
 use whiskmap::measured::{MeasuredAngle, MeasuredPoints};
 use whiskmap::rod::Side;
 use whiskmap::trace::DetachmentKind;

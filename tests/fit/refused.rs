@@ -1,6 +1,6 @@
 //! What a fit refuses.
 
-use crate::{DISTANCES_MM, cone, detachments};
+use super::{DISTANCES_MM, cone, detachments};
 use whiskmap::fit::fit;
 use whiskmap::measured::MeasuredAngle;
 use whiskmap::scene::Parameter::{self, *};

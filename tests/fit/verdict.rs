@@ -1,7 +1,7 @@
 //! What is not a fit, and what stays one.
 
-use crate::noisy::Random;
-use crate::{DISTANCES_MM, cone, detachments};
+use super::noisy::Random;
+use super::{DISTANCES_MM, cone, detachments};
 use whiskmap::fit::{Fit, LikelyCause, fit};
 use whiskmap::measured::{MeasuredAngle, MeasuredPoint, MeasuredPoints};
 use whiskmap::scene::Parameter::{ParabolaPerMm, TipRadiusUm};

@@ -91,6 +91,6 @@ impl Case {
 
 /// The map of a scene without sweep.
 pub fn compute(scene: &Scene, engine: Option<&mut dyn Engine>) -> (Summary, Panel) {
-    let (summary, mut panels) = crate::compute::compute(scene, engine);
+    let (summary, mut panels) = super::compute::compute(scene, engine);
     (summary, panels.remove(0))
 }

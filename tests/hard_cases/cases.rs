@@ -1,7 +1,7 @@
 //! The named hard cases: whole maps of them, and cells exactly at their edges.
 
-use crate::case::{Case, compute};
-use crate::named::named;
+use super::case::{Case, compute};
+use super::named::named;
 use whiskmap::classify::Regime;
 use whiskmap::map::Panel;
 use whiskmap::refine::TOLERANCE;

@@ -1,7 +1,7 @@
 //! Where a push ends, asked in every way there is: `curve` from the sheet's edges, `branch` and `shape` by walking, `map` cell by cell.
 
-use crate::case::Case;
-use crate::random::even_in_log;
+use super::case::Case;
+use super::random::even_in_log;
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngSeed, TestRunner};
 use std::cell::Cell;

@@ -1,7 +1,7 @@
 //! What samples of a sheet do not see, and walks can lose: each was a wrong end once, or none.
 
-use crate::case::Case;
-use crate::ends::agree;
+use super::case::Case;
+use super::ends::agree;
 use whiskmap::Options;
 use whiskmap::rod::{Rod, Side};
 use whiskmap::sheet::Sheet;

@@ -1,6 +1,6 @@
 //! The hard cases by name.
 
-use crate::case::Case;
+use super::case::Case;
 
 /// A straight cylinder in front of a point.
 const PLAIN: Case = Case {

@@ -1,7 +1,7 @@
 //! Random whiskers on small grids, the same ones in every run.
 #![allow(dead_code, reason = "each test program uses its own share")]
 
-use crate::case::Case;
+use super::case::Case;
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngSeed, TestRunner};
 

@@ -1,9 +1,9 @@
 //! Maps of two thousand random whiskers, and of some with measured radii.
 
-use crate::case::{Case, compute};
-use crate::cases::is_complete;
-use crate::random::{always_the_same, cases, measured};
-use crate::states::{Shots, halving};
+use super::case::{Case, compute};
+use super::cases::is_complete;
+use super::random::{always_the_same, cases, measured};
+use super::states::{Shots, halving};
 use proptest::prelude::*;
 use std::cell::RefCell;
 use whiskmap::rod::arclength;

@@ -1,7 +1,7 @@
 //! Nothing depends on units: whiskers of 0.1 mm and of 1 m, soft and stiff, are the same whisker.
 
-use crate::case::{Case, compute};
-use crate::named::named;
+use super::case::{Case, compute};
+use super::named::named;
 use whiskmap::map::{Panel, STATE_CHANNELS};
 use whiskmap::scene::Scene;
 

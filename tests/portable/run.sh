@@ -21,7 +21,7 @@ for step in ${*:-mechanics physics web}; do
         cargo test -Z build-std --target aarch64-unknown-linux-gnu -p whiskmap-mechanics
         ;;
     physics)
-        cargo test -Z build-std --target aarch64-unknown-linux-gnu --no-default-features --test physics --test bytes
+        cargo test -Z build-std --target aarch64-unknown-linux-gnu --no-default-features --test portable
         ;;
     web)
         cargo check -Z build-std --target wasm32-unknown-unknown --no-default-features --lib

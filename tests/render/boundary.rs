@@ -1,8 +1,8 @@
 //! The boundary of a regime map runs where the margins say.
 
-use crate::drawn::{body, frame, polylines, svg};
-use crate::map::{panel, scene};
-use crate::{draw, flat, picture};
+use super::drawn::{body, frame, polylines, svg};
+use super::map::{panel, scene};
+use super::{draw, flat, picture};
 use whiskmap::render::MapOptions;
 
 #[test]

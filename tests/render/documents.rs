@@ -1,8 +1,8 @@
 //! Pictures as files.
 
-use crate::drawn::{Pixels, rasters, svg, well_formed};
-use crate::map::{panel, scene, write};
-use crate::{SLIP_OFF, colours, flat, picture};
+use super::drawn::{Pixels, rasters, svg, well_formed};
+use super::map::{panel, scene, write};
+use super::{SLIP_OFF, colours, flat, picture};
 use std::fs;
 use whiskmap::render::{self, MapOptions, RenderError};
 use whiskmap::store::{self, Panel, StoredMap};

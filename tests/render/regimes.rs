@@ -1,9 +1,9 @@
 //! Maps of regimes, codes and counts, and atlases of them.
 
-use crate::drawn::body;
-use crate::map::{panel, scene, spread};
-use crate::vision;
-use crate::{BLANK, CONTACT, OUT_OF_REACH, PULL_OFF, SLIP_OFF, UNRESOLVED, colours, draw, flat};
+use super::drawn::body;
+use super::map::{panel, scene, spread};
+use super::vision;
+use super::{BLANK, CONTACT, OUT_OF_REACH, PULL_OFF, SLIP_OFF, UNRESOLVED, colours, draw, flat};
 
 #[test]
 fn a_regime_map_shows_every_cell_where_it_belongs() {

@@ -5,7 +5,7 @@ use std::fs;
 use proptest::prelude::*;
 use whiskmap::scene::Scene;
 
-use crate::{parse, shipped, with_line};
+use super::{parse, shipped, with_line};
 
 proptest! {
     #[test]

@@ -3,7 +3,7 @@
 use whiskmap::rod::Side;
 use whiskmap::scene::{Parameter, Scene};
 
-use crate::parse;
+use super::parse;
 
 /// A scene with these lines in its grid.
 fn swept(lines: &str) -> Result<Scene, String> {

@@ -2,7 +2,7 @@
 
 use whiskmap::scene::{AxisScale, AxisValues, Parameter, Scene, SceneBuilder, SceneData};
 
-use crate::{BASE, parse, shipped, sweep};
+use super::{BASE, parse, shipped, sweep};
 
 fn cone() -> Scene {
     Scene::parse(include_str!("../../scenes/cone.toml"), "cone.toml").unwrap()

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use whiskmap::scene::Scene;
 
-use crate::{BASE, parse, sweep, with_line};
+use super::{BASE, parse, sweep, with_line};
 
 #[test]
 fn a_bad_value_is_named_with_its_place_and_what_is_allowed() {

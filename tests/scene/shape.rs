@@ -4,7 +4,7 @@ use std::fs;
 
 use whiskmap::scene::{EulerSpiral, Scene};
 
-use crate::{BASE, parse};
+use super::{BASE, parse};
 
 /// The base scene with `whisker` in place of its radii, and `curvature` in place of its parabola.
 fn scene(whisker: &str, curvature: &str) -> String {

@@ -2,7 +2,7 @@
 
 use whiskmap::scene::Parameter;
 
-use crate::{BASE, parse, sweep, with_line};
+use super::{BASE, parse, sweep, with_line};
 
 /// The tables of the effects, which the base scene does not have.
 #[test]

@@ -2,7 +2,7 @@
 
 use whiskmap::scene::Scene;
 
-use crate::{BASE, with_line};
+use super::{BASE, with_line};
 
 fn warnings(text: &str) -> Vec<String> {
     Scene::parse(text, "test.toml").unwrap().warnings()

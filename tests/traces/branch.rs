@@ -1,6 +1,6 @@
 //! What must hold along every branch.
 
-use crate::{POLE, everything, whisker};
+use super::{POLE, everything, whisker};
 use whiskmap::rod::Side;
 use whiskmap::scene::Pole;
 use whiskmap::trace::{Branch, BranchPoint, DetachmentKind, Mark, NoState, curve};

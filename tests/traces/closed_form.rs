@@ -1,6 +1,6 @@
 //! Where the answer is known exactly.
 
-use crate::{POINT, whisker};
+use super::{POINT, whisker};
 use whiskmap::paper::elastica::{elastica, fold};
 use whiskmap::paper::{CheckVerdict, checks};
 use whiskmap::rod::Side;

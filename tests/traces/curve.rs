@@ -1,6 +1,6 @@
 //! Detachment curves and their corners.
 
-use crate::{POLE, everything, whisker};
+use super::{POLE, everything, whisker};
 use whiskmap::rod::Side;
 use whiskmap::scene::Curvature;
 use whiskmap::sheet::Sheet;

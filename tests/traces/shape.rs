@@ -1,6 +1,6 @@
 //! Shapes: geometry, statics, and the rest shape as a limit.
 
-use crate::{POLE, everything, whisker};
+use super::{POLE, everything, whisker};
 use whiskmap::rod::Side;
 use whiskmap::trace::{Branch, Part, Shape};
 

@@ -5,8 +5,7 @@ mod boundary;
 mod documents;
 #[path = "../../crates/plot/tests/pictures/drawn.rs"]
 mod drawn;
-#[path = "../map/mod.rs"]
-mod map;
+use crate::map;
 mod regimes;
 mod vision;
 

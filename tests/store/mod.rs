@@ -7,11 +7,9 @@
 
 mod comes_back;
 mod damage;
-#[path = "../map/mod.rs"]
-mod map;
+use crate::map;
 mod refused;
-#[path = "../sealed/mod.rs"]
-mod sealed;
+use crate::sealed;
 
 type Swept = Option<Vec<f64>>;
 

@@ -23,14 +23,12 @@ mod marks;
 mod other;
 mod paper;
 mod plan;
-#[path = "../program/mod.rs"]
-mod program;
+use crate::program;
 #[cfg(unix)]
 mod protected;
 mod refused;
 mod render;
-#[path = "../sealed/mod.rs"]
-mod sealed;
+use crate::sealed;
 mod shape;
 #[cfg(unix)]
 mod signals;

@@ -9,8 +9,7 @@
 
 mod case;
 mod cases;
-#[path = "../compute/mod.rs"]
-mod compute;
+use crate::compute;
 mod ends;
 mod limits;
 mod missed;

@@ -1,0 +1,30 @@
+//! All tests that need no special machine, in one program: linking the library once saves most of the build.
+//!
+//! `cargo test --test suite MODULE::` runs one module. `machine` needs a GPU or root; `portable` needs no features.
+
+mod accuracy;
+mod cli;
+mod compute;
+mod design;
+mod docs;
+mod effect_sets;
+mod effects;
+mod figures;
+mod fit;
+mod friction;
+mod hard_cases;
+mod hard_maps;
+mod map;
+mod maps;
+mod plan;
+mod program;
+mod random_rods;
+mod regimes;
+mod render;
+mod scene;
+mod sealed;
+mod shaders;
+mod store;
+mod traces;
+mod uncertainty;
+mod variations;
