@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Everything that must hold: format, lints, documentation, tests, and that Python reads a map and a store. On Debian or Ubuntu it
-# installs Mesa's software Vulkan driver (lavapipe) first where no Vulkan driver is found, so that the shaders run on any
-# machine, and pip where Python has neither what reads them nor that.
+# Runs all checks: format, lints, documentation, tests, and Python readers of a map and a store. On Debian and Ubuntu, it first
+# installs Mesa's software Vulkan driver (lavapipe) if there is no Vulkan driver, so that the shaders run on any machine. It
+# installs pip if Python has neither the readers nor pip.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -16,7 +16,7 @@ if [ "$(uname -s)" = Linux ] && ! has_driver; then
     as_root apt-get update -q
     as_root apt-get install -y -q --no-install-recommends mesa-vulkan-drivers
 fi
-# Mesa complains on standard error where this is unset.
+# Mesa prints an error if this is unset.
 export XDG_RUNTIME_DIR="${XDG_RUNTIME_DIR:-/tmp}"
 
 cargo fmt --check
@@ -26,13 +26,13 @@ RUSTDOCFLAGS="-D warnings" cargo doc --no-deps --locked --profile checked
 log="$(mktemp)"
 trap 'rm -f "$log"' EXIT
 cargo test --profile checked --locked --no-fail-fast | tee "$log"
-# Tests that only root can run are no failure for another user; root runs them.
+# Another user may ignore the tests that only root can run.
 if grep -E '^test .* \.\.\. ignored' "$log" | grep -v 'only root can'; then
     echo "error: tests were ignored, for the reasons above; all tests must run" >&2
     exit 1
 fi
 
-# The documentation's Python reads what the tests' program writes.
+# Python reads the files of the program under test as the documentation does.
 target="${CARGO_TARGET_DIR:-target}"
 export PYTHONPATH="$target/python${PYTHONPATH:+:$PYTHONPATH}"
 if ! python3 -c 'import numpy, OpenEXR, xarray, zarr' 2>/dev/null; then
