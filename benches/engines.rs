@@ -19,7 +19,7 @@ use whiskmap::engine::{Cpu, Engine};
 use whiskmap::map;
 use whiskmap::numerics::Unit;
 use whiskmap::plan::Plan;
-use whiskmap::refine::{Shot, refine};
+use whiskmap::refine::{CellTarget, refine};
 use whiskmap::rod::Side;
 use whiskmap::scene::Scene;
 use whiskmap::sheet::Sheet;
@@ -113,7 +113,7 @@ fn sheets(criterion: &mut Criterion) {
     for (row, place) in sheet.rows.iter().enumerate() {
         let guesses = sheet.guesses(row, pushes.iter().copied());
         for (guess, push) in guesses.iter().zip(&pushes) {
-            shots.extend(guess.map(|guess| Shot {
+            shots.extend(guess.map(|guess| CellTarget {
                 rod: 0,
                 tau: guess.tau,
                 load: guess.load,

@@ -1,7 +1,7 @@
 //! Newton's method on shots alone, in `f64` on the CPU: on any SIMD unit, at any resolution.
 
 use crate::numerics::Unit;
-use crate::refine::Shot;
+use crate::refine::CellTarget;
 use crate::rod::{Effects, Rod, arclength};
 use crate::shooting::batch::{Batch, InitialCondition, Method};
 use crate::shooting::{Resolution, ShootingMap};
@@ -40,17 +40,17 @@ pub struct Solver {
 impl Solver {
     /// Solves `shots`, each on one of `rods`; answers in the same order.
     #[must_use]
-    pub fn solve(self, effects: Effects, rods: &[Rod], shots: &[Shot]) -> Vec<Hit> {
+    pub fn solve(self, effects: Effects, rods: &[Rod], shots: &[CellTarget]) -> Vec<Hit> {
         shots
             .par_chunks(BATCH)
             .flat_map_iter(|shots| self.solve_batch(effects, rods, shots))
             .collect()
     }
 
-    fn solve_batch(self, effects: Effects, rods: &[Rod], shots: &[Shot]) -> Vec<Hit> {
+    fn solve_batch(self, effects: Effects, rods: &[Rod], shots: &[CellTarget]) -> Vec<Hit> {
         let method = Method::new(self.resolution).with_effects(effects);
         let batch = Batch::new(method).on(self.unit);
-        let start = |shot: &Shot| Hit {
+        let start = |shot: &CellTarget| Hit {
             tau: shot.tau,
             load: shot.load,
             residual: f64::INFINITY,

@@ -3,7 +3,7 @@
 use super::solver::{Hit, Solver};
 use crate::numerics::Unit;
 use crate::plan::Plan;
-use crate::refine::{Shot, states};
+use crate::refine::{CellTarget, states};
 use crate::rod::{Effects, Rod, Side, arclength};
 use crate::scene::{Scene, SweptWhisker};
 use crate::sheet::Sheet;
@@ -21,7 +21,7 @@ pub const EXACT: Resolution = Resolution::FINE.doubled().doubled();
 pub struct Task {
     pub effects: Effects,
     pub rods: Vec<Rod>,
-    pub shots: Vec<Shot>,
+    pub shots: Vec<CellTarget>,
     /// The answers, `(tau, load)`.
     exact: Vec<(f64, f64)>,
     by_pole: HashMap<(u32, [u64; 2]), usize>,
@@ -102,20 +102,21 @@ impl Task {
         let effects = Effects::of(&rods);
         let method = Method::fine().with_effects(effects);
         let distances_mm = &scene.grid.distance_mm;
-        let (shots, starts): (Vec<Shot>, Vec<Shot>) = (rods.par_iter().zip(&faces).enumerate())
-            .flat_map_iter(|(index, (rod, (own, side)))| {
-                let length = own.whisker.length_mm;
-                let distances: Vec<f64> = distances_mm.iter().map(|d| d / length).collect();
-                let sheet = Sheet::new(method, rod, *side, &distances);
-                let solved = states(method, &sheet, &scene.grid.push_angle_deg);
-                solved.into_iter().map(move |(shot, state)| {
-                    let rod = index as u32;
-                    let shot = Shot { rod, ..shot };
-                    let (tau, load) = (state.tau, state.load);
-                    (shot, Shot { tau, load, ..shot })
+        let (shots, starts): (Vec<CellTarget>, Vec<CellTarget>) =
+            (rods.par_iter().zip(&faces).enumerate())
+                .flat_map_iter(|(index, (rod, (own, side)))| {
+                    let length = own.whisker.length_mm;
+                    let distances: Vec<f64> = distances_mm.iter().map(|d| d / length).collect();
+                    let sheet = Sheet::new(method, rod, *side, &distances);
+                    let solved = states(method, &sheet, &scene.grid.push_angle_deg);
+                    solved.into_iter().map(move |(shot, state)| {
+                        let rod = index as u32;
+                        let shot = CellTarget { rod, ..shot };
+                        let (tau, load) = (state.tau, state.load);
+                        (shot, CellTarget { tau, load, ..shot })
+                    })
                 })
-            })
-            .unzip();
+                .unzip();
         let solver = Solver {
             unit: Unit::detect(),
             resolution: EXACT,
@@ -158,7 +159,7 @@ impl Task {
             .collect()
     }
 
-    fn condition(&self, shot: &Shot, (tau, load): (f64, f64)) -> InitialCondition<'_> {
+    fn condition(&self, shot: &CellTarget, (tau, load): (f64, f64)) -> InitialCondition<'_> {
         let rod = &self.rods[shot.rod as usize];
         InitialCondition { rod, tau, load }
     }

@@ -3,7 +3,7 @@
 use super::cells::CellsMut;
 use super::{BatchRow, Cell, Cells, Engine, EngineDescription, EngineError, Outcome, RowBatch};
 use crate::numerics::Unit;
-use crate::refine::{End, Refined, Shot, TOLERANCE, refine};
+use crate::refine::{CellTarget, RefineOutcome, Refined, TOLERANCE, refine};
 use crate::sheet::Guess;
 use rayon::prelude::*;
 use std::collections::VecDeque;
@@ -26,11 +26,15 @@ impl Cpu {
     pub fn solve(&mut self, batch: &RowBatch) -> Cells {
         let begun = Instant::now();
         let rows = batch.rows.par_iter();
-        let guessed: Vec<Vec<Option<Shot>>> = rows.map(|row| shots(batch, row)).collect();
+        let guessed: Vec<Vec<Option<CellTarget>>> =
+            rows.map(|row| cell_targets(batch, row)).collect();
         self.guesses += begun.elapsed();
         let begun = Instant::now();
-        let flat: Vec<Shot> = guessed.iter().flatten().flatten().copied().collect();
-        let starts: Vec<_> = flat.iter().map(|shot| (shot.tau, shot.load)).collect();
+        let flat: Vec<CellTarget> = guessed.iter().flatten().flatten().copied().collect();
+        let starts: Vec<_> = flat
+            .iter()
+            .map(|target| (target.tau, target.load))
+            .collect();
         let refined = refine(batch.method, &batch.sheets(), &flat, &starts);
         let mut cells = Cells::new(batch, Outcome::OffSheet);
         let ranges = batch
@@ -53,14 +57,14 @@ impl Cpu {
     }
 }
 
-/// The shot of each cell of `row`; none where the sheet has no guess.
-fn shots(batch: &RowBatch, row: &BatchRow) -> Vec<Option<Shot>> {
+/// The target of each cell of `row`; none where the sheet has no guess.
+fn cell_targets(batch: &RowBatch, row: &BatchRow) -> Vec<Option<CellTarget>> {
     let side = &batch.sides[row.side];
     let at_touch = side.sheet.rows[row.row].pole(0.0);
     let magnitudes = row.each().map(|cell| side.columns.magnitudes[cell]);
     let guesses = side.sheet.guesses(row.row, magnitudes);
-    let shot = |(guess, cell): (Option<Guess>, usize)| {
-        guess.map(|Guess { tau, load }| Shot {
+    let target = |(guess, cell): (Option<Guess>, usize)| {
+        guess.map(|Guess { tau, load }| CellTarget {
             // Sides of a group are few.
             rod: row.side as u32,
             tau,
@@ -68,31 +72,31 @@ fn shots(batch: &RowBatch, row: &BatchRow) -> Vec<Option<Shot>> {
             pole: side.columns.columns[cell].turn.rotate(at_touch),
         })
     };
-    guesses.into_iter().zip(row.each()).map(shot).collect()
+    guesses.into_iter().zip(row.each()).map(target).collect()
 }
 
 /// Writes the `refined` of the cells that have a guess, and all others as off the sheet.
 fn write(
     batch: &RowBatch,
     row: &BatchRow,
-    guessed: &[Option<Shot>],
+    guessed: &[Option<CellTarget>],
     refined: &[Refined],
     mut into: CellsMut,
 ) {
     let side = &batch.sides[row.side];
     let mut refined = refined.iter();
-    for ((index, cell), shot) in row.each().enumerate().zip(guessed) {
-        let found = shot.and_then(|_| refined.next());
+    for ((index, cell), target) in row.each().enumerate().zip(guessed) {
+        let found = target.and_then(|_| refined.next());
         let cell = found.map_or(Cell::new(Outcome::OffSheet, 0), |found| {
-            let outcome = match found.end {
-                End::Solved => {
+            let outcome = match found.outcome {
+                RefineOutcome::Solved => {
                     let push = side.columns.columns[cell].push;
                     let has_values = batch.has_values;
                     return side.solved(row.row, push, &found.state, found.steps, has_values);
                 }
-                End::BeyondTip => Outcome::BeyondTip,
-                End::BeyondFold => Outcome::BeyondFold,
-                End::NotConverged => Outcome::NotConverged,
+                RefineOutcome::BeyondTip => Outcome::BeyondTip,
+                RefineOutcome::BeyondFold => Outcome::BeyondFold,
+                RefineOutcome::NotConverged => Outcome::NotConverged,
             };
             Cell {
                 residual: found.state.residual as f32,

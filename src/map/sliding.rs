@@ -2,7 +2,7 @@
 
 use crate::classify::{Dragged, Regime, Sliding, Status};
 use crate::engine::WhiskerSide;
-use crate::sheet::{LevelCurve, together};
+use crate::sheet::{LevelCurve, rows_per_batch};
 use glam::DVec2;
 use rayon::prelude::*;
 
@@ -52,7 +52,7 @@ impl FoundRow {
 
 /// Writes the statuses of the states of `rows` of `side` into those of a panel that is `width` cells wide.
 pub fn mark(side: &WhiskerSide, rows: &[FoundRow], width: usize, status: &mut [u32]) {
-    let marks = rows.par_chunks(together(rows.len())).map(|rows| {
+    let marks = rows.par_chunks(rows_per_batch(rows.len())).map(|rows| {
         let levels: Vec<LevelCurve> = rows.iter().map(|row| side.sheet.level(row.row)).collect();
         let dragged = Dragged::of(&levels).into_iter();
         rows.iter().zip(dragged).flat_map(|(row, dragged)| {

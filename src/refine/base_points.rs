@@ -73,7 +73,7 @@ impl<'a> SpanFromTouch<'a> {
     fn new(sheet: &'a Sheet, row: usize) -> Option<Self> {
         let end = sheet.crossings[row].first()?;
         // On a lattice, a row with more crossings may be in several pieces.
-        let is_one = sheet.is_walked() || sheet.crossings[row].len() == 1;
+        let is_one = sheet.is_continued() || sheet.crossings[row].len() == 1;
         let is_simple = sheet.touches(row) && is_one && end.is_sound() && !end.is_at_touch();
         let span = sheet.spans(row).first()?.clone();
         (is_simple && span.begins_at_touch()).then_some(Self {

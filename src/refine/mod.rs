@@ -15,7 +15,7 @@ use crate::sheet::{Guess, Sheet};
 use crate::shooting::FullState;
 use crate::shooting::batch::{Method, chunk_size};
 use glam::DVec2;
-use near_fold::Verdict;
+use near_fold::FoldVerdict;
 use newton::newton;
 use rayon::prelude::*;
 
@@ -36,7 +36,7 @@ const STEPS_NEAR_FOLD: u32 = 30;
 
 /// A shooting problem.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Shot {
+pub struct CellTarget {
     /// Which of the rods of the call.
     pub rod: u32,
     /// Guess for `tau` of the contact.
@@ -47,7 +47,7 @@ pub struct Shot {
     pub pole: DVec2,
 }
 
-impl Shot {
+impl CellTarget {
     /// Where Newton's method starts.
     #[must_use]
     pub const fn guess(&self) -> Guess {
@@ -66,7 +66,7 @@ pub struct Refined {
     /// Newton steps taken here.
     pub steps: u32,
     /// The verdict.
-    pub end: End,
+    pub outcome: RefineOutcome,
 }
 
 impl Default for Refined {
@@ -80,7 +80,7 @@ impl Default for Refined {
                 residual: f64::INFINITY,
             },
             steps: 0,
-            end: End::NotConverged,
+            outcome: RefineOutcome::NotConverged,
         }
     }
 }
@@ -110,7 +110,7 @@ impl ContactState {
 
 /// The verdict on a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum End {
+pub enum RefineOutcome {
     /// A stable state.
     Solved,
     /// A stable state of a longer whisker: the contact lies beyond the tip.
@@ -121,21 +121,21 @@ pub enum End {
     NotConverged,
 }
 
-/// Refines `starts` by `method` toward `shots`, each on the sheet `sheets[shot.rod]`.
+/// Refines `starts` by `method` toward `targets`, each on the sheet `sheets[target.rod]`.
 #[must_use]
 pub fn refine(
     method: Method,
     sheets: &[&Sheet],
-    shots: &[Shot],
+    targets: &[CellTarget],
     starts: &[(f64, f64)],
 ) -> Vec<Refined> {
-    let mut cells = vec![Refined::default(); shots.len()];
-    let size = chunk_size(shots.len());
+    let mut cells = vec![Refined::default(); targets.len()];
+    let size = chunk_size(targets.len());
     cells
         .par_chunks_mut(size)
-        .zip(shots.par_chunks(size).zip(starts.par_chunks(size)))
-        .for_each(|(cells, (shots, starts))| {
-            refine_chunk(method, sheets, shots, starts, cells);
+        .zip(targets.par_chunks(size).zip(starts.par_chunks(size)))
+        .for_each(|(cells, (targets, starts))| {
+            refine_chunk(method, sheets, targets, starts, cells);
         });
     cells
 }
@@ -143,27 +143,27 @@ pub fn refine(
 fn refine_chunk(
     method: Method,
     sheets: &[&Sheet],
-    shots: &[Shot],
+    targets: &[CellTarget],
     starts: &[(f64, f64)],
     cells: &mut [Refined],
 ) {
     let starts = starts.iter().map(|(tau, load)| DVec2::new(*tau, *load));
     let all: Vec<(usize, DVec2)> = starts.enumerate().collect();
-    newton(method, sheets, shots, &all, STEPS, cells);
-    let failed = (0..cells.len()).filter(|&i| cells[i].end == End::NotConverged);
+    newton(method, sheets, targets, &all, STEPS, cells);
+    let failed = (0..cells.len()).filter(|&i| cells[i].outcome == RefineOutcome::NotConverged);
     let failed: Vec<usize> = failed.collect();
-    let failed_shots: Vec<Shot> = failed.iter().map(|&i| shots[i]).collect();
-    let verdicts = near_fold::decide(method, sheets, &failed_shots);
+    let failed_targets: Vec<CellTarget> = failed.iter().map(|&i| targets[i]).collect();
+    let verdicts = near_fold::decide(method, sheets, &failed_targets);
     let mut again = Vec::new();
     for (&i, verdict) in failed.iter().zip(verdicts) {
         match verdict {
-            Verdict::Beyond => cells[i].end = End::BeyondFold,
-            Verdict::Start(start) => again.push((i, start)),
-            Verdict::Unknown => {}
+            FoldVerdict::Beyond => cells[i].outcome = RefineOutcome::BeyondFold,
+            FoldVerdict::Start(start) => again.push((i, start)),
+            FoldVerdict::Unknown => {}
         }
     }
     let steps_before: Vec<u32> = again.iter().map(|(i, _)| cells[*i].steps).collect();
-    newton(method, sheets, shots, &again, STEPS_NEAR_FOLD, cells);
+    newton(method, sheets, targets, &again, STEPS_NEAR_FOLD, cells);
     for ((i, _), steps) in again.iter().zip(steps_before) {
         cells[*i].steps += steps;
     }
@@ -172,16 +172,16 @@ fn refine_chunk(
 /// Shots from the lattice's guesses at those of the signed push angles that are on the side of `sheet`, row by row, by growing
 /// magnitude of the push angle; `rod` is the index of the sheet's.
 #[must_use]
-pub fn shots(sheet: &Sheet, rod: u32, pushes_deg: &[f64]) -> Vec<Shot> {
+pub fn cell_targets(sheet: &Sheet, rod: u32, pushes_deg: &[f64]) -> Vec<CellTarget> {
     let sign = sheet.side.sign();
     let pushes = pushes_deg.iter().map(|push| push * sign);
     let mut pushes: Vec<f64> = pushes.filter(|p| *p >= 0.0).map(f64::to_radians).collect();
     pushes.sort_by(f64::total_cmp);
-    let mut shots = Vec::new();
+    let mut targets = Vec::new();
     for (row, place) in sheet.rows.iter().enumerate() {
         let guesses = sheet.guesses(row, pushes.iter().copied());
         for (guess, push) in guesses.iter().zip(&pushes) {
-            shots.extend(guess.map(|guess| Shot {
+            targets.extend(guess.map(|guess| CellTarget {
                 rod,
                 tau: guess.tau,
                 load: guess.load,
@@ -189,16 +189,23 @@ pub fn shots(sheet: &Sheet, rod: u32, pushes_deg: &[f64]) -> Vec<Shot> {
             }));
         }
     }
-    shots
+    targets
 }
 
 /// The states of `sheet` at those of the signed push angles that are on its side, with what they were aimed at.
 #[must_use]
-pub fn states(method: Method, sheet: &Sheet, pushes_deg: &[f64]) -> Vec<(Shot, ContactState)> {
-    let shots = shots(sheet, 0, pushes_deg);
-    let starts: Vec<_> = shots.iter().map(|shot| (shot.tau, shot.load)).collect();
-    let cells = refine(method, &[sheet], &shots, &starts);
-    let solved = shots.into_iter().zip(cells);
-    let solved = solved.filter(|(_, cell)| cell.end == End::Solved);
-    solved.map(|(shot, cell)| (shot, cell.state)).collect()
+pub fn states(
+    method: Method,
+    sheet: &Sheet,
+    pushes_deg: &[f64],
+) -> Vec<(CellTarget, ContactState)> {
+    let targets = cell_targets(sheet, 0, pushes_deg);
+    let starts: Vec<_> = targets
+        .iter()
+        .map(|target| (target.tau, target.load))
+        .collect();
+    let cells = refine(method, &[sheet], &targets, &starts);
+    let solved = targets.into_iter().zip(cells);
+    let solved = solved.filter(|(_, cell)| cell.outcome == RefineOutcome::Solved);
+    solved.map(|(target, cell)| (target, cell.state)).collect()
 }

@@ -4,7 +4,7 @@
 //! `phi = phi_fold - c eta^2/2`. So the fold at the wanted distance tells whether the wanted direction has a
 //! solution at all, and `eta` where it is.
 
-use super::Shot;
+use super::CellTarget;
 use crate::numerics::nearest_turn;
 use crate::sheet::{Edge, EdgeProblem, EdgeStart, Sheet, edge_newton};
 use crate::shooting::SecondVariation;
@@ -13,7 +13,7 @@ use glam::DVec2;
 
 /// What the fold says about a cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Verdict {
+pub enum FoldVerdict {
     /// No solution: the wanted direction lies beyond the fold.
     Beyond,
     /// Newton's method should start at this `(tau, load)`.
@@ -22,43 +22,48 @@ pub enum Verdict {
     Unknown,
 }
 
-/// Finds, for every shot, the fold at its distance, from its own guess, and compares.
-pub fn decide(method: Method, sheets: &[&Sheet], shots: &[Shot]) -> Vec<Verdict> {
-    let problems: Vec<EdgeProblem> = shots
+/// Finds, for every target, the fold at its distance, from its own guess, and compares.
+pub fn decide(method: Method, sheets: &[&Sheet], targets: &[CellTarget]) -> Vec<FoldVerdict> {
+    let problems: Vec<EdgeProblem> = targets
         .iter()
-        .map(|shot| EdgeProblem {
-            rod: &sheets[shot.rod as usize].rod,
+        .map(|target| EdgeProblem {
+            rod: &sheets[target.rod as usize].rod,
             edge: Edge::Fold,
-            pole_distance: shot.pole.length(),
-            start: DVec2::new(shot.tau, shot.load),
+            pole_distance: target.pole.length(),
+            start: DVec2::new(target.tau, target.load),
             second: None,
         })
         .collect();
     let folds = edge_newton(method, EdgeStart::Coarse, &problems);
     folds
         .into_iter()
-        .zip(shots)
-        .map(|(fold, shot)| {
+        .zip(targets)
+        .map(|(fold, target)| {
             if fold.has_converged {
-                compare(sheets[shot.rod as usize], shot, fold.point, &fold.here)
+                compare(sheets[target.rod as usize], target, fold.point, &fold.here)
             } else {
-                Verdict::Unknown
+                FoldVerdict::Unknown
             }
         })
         .collect()
 }
 
 /// The fold `here`, at `point`, against the wanted direction.
-fn compare(sheet: &Sheet, shot: &Shot, point: DVec2, here: &SecondVariation) -> Verdict {
+fn compare(
+    sheet: &Sheet,
+    target: &CellTarget,
+    point: DVec2,
+    here: &SecondVariation,
+) -> FoldVerdict {
     let phi = here.map.pole.to_angle();
-    let left = sheet.side.sign() * (phi - nearest_turn(shot.pole.to_angle(), phi));
+    let left = sheet.side.sign() * (phi - nearest_turn(target.pole.to_angle(), phi));
     if left < 0.0 {
-        return Verdict::Beyond;
+        return FoldVerdict::Beyond;
     }
     // Along the level curve of ln D, from the fold toward the stable side; `det` grows from 0 there.
     let along = DVec2::new(here.map.by_load.x, -here.map.by_tau.x);
     let det_slope = here.det_gradient().dot(along);
     // dphi/deta = -det, with eta counted in units of `along`.
     let eta = det_slope.signum() * (2.0 * left / det_slope.abs()).sqrt();
-    Verdict::Start(point + eta * along)
+    FoldVerdict::Start(point + eta * along)
 }

@@ -1,6 +1,6 @@
 //! Newton's method on many cells at once, and when it may stop.
 
-use super::{ContactState, End, GOAL, Refined, Shot, TOLERANCE};
+use super::{CellTarget, ContactState, GOAL, RefineOutcome, Refined, TOLERANCE};
 use crate::newton::{BatchNewton, NewtonOutcome, NewtonStep, Problem};
 use crate::rod::{Rod, arclength};
 use crate::sheet::{Guess, Sheet};
@@ -29,7 +29,7 @@ const CLEAR_OF_FOLD: f64 = 1e-5;
 /// Derivatives are good enough to extrapolate from this [`Resolution::least`](crate::shooting::Resolution::least) on.
 const LEAST_STEPS: u32 = 5;
 
-/// The state of a whisker whose pole is where a shot wants it.
+/// The state of a whisker whose pole is where a target wants it.
 struct CellProblem<'a> {
     sheet: &'a Sheet,
     pole: DVec2,
@@ -58,11 +58,11 @@ impl<'a> Problem<'a> for CellProblem<'a> {
         let columns = map.by_tau.length() * map.by_load.length();
         let is_short = length <= EXTRAPOLATED_STEP && map.det() > CLEAR_OF_FOLD * columns;
         if is_short && self.may_extrapolate {
-            let beside = Beside::the_cone(rod, at.x, s);
-            if at.y.abs() * s * s * beside.softness <= LARGEST_Q
-                && length * length * beside.left <= EXTRAPOLATED_STEP * EXTRAPOLATED_STEP
+            let deviation = ConeDeviation::new(rod, at.x, s);
+            if at.y.abs() * s * s * deviation.softness <= LARGEST_Q
+                && length * length * deviation.left <= EXTRAPOLATED_STEP * EXTRAPOLATED_STEP
             {
-                let left = LEFT_BY_STEP * beside.left * length * length;
+                let left = LEFT_BY_STEP * deviation.left * length * length;
                 self.residual = left * (s + map.pole.length()) + ROUNDING;
                 return NewtonStep::Extrapolate(step);
             }
@@ -80,14 +80,14 @@ impl<'a> Problem<'a> for CellProblem<'a> {
 pub fn newton(
     method: Method,
     sheets: &[&Sheet],
-    shots: &[Shot],
+    targets: &[CellTarget],
     open: &[(usize, DVec2)],
     most: u32,
     cells: &mut [Refined],
 ) {
     let problem = |&(i, _): &(usize, DVec2)| CellProblem {
-        sheet: sheets[shots[i].rod as usize],
-        pole: shots[i].pole,
+        sheet: sheets[targets[i].rod as usize],
+        pole: targets[i].pole,
         may_extrapolate: method.resolution.least >= LEAST_STEPS,
         residual: f64::INFINITY,
     };
@@ -104,16 +104,16 @@ pub fn newton(
         cells[*i] = Refined {
             state,
             steps: iterate.steps,
-            end: match iterate.outcome {
-                NewtonOutcome::Converged => verdict(problem.sheet, shots[*i].guess(), &state),
-                _ => End::NotConverged,
+            outcome: match iterate.outcome {
+                NewtonOutcome::Converged => verdict(problem.sheet, targets[*i].guess(), &state),
+                _ => RefineOutcome::NotConverged,
             },
         };
     }
 }
 
 /// What is different from the cone with measured radii.
-struct Beside {
+struct ConeDeviation {
     /// How many times as far the rod turns under a small load, but at least once.
     softness: f64,
     /// How many times as much a step leaves: the second derivatives go with the square of the softness, and with the compliance at the
@@ -122,14 +122,14 @@ struct Beside {
     left: f64,
 }
 
-impl Beside {
+impl ConeDeviation {
     const CONE: Self = Self {
         softness: 1.0,
         left: 1.0,
     };
 
     /// Of `rod` with its contact at `tau`, which is the arclength `s`.
-    fn the_cone(rod: &Rod, tau: f64, s: f64) -> Self {
+    fn new(rod: &Rod, tau: f64, s: f64) -> Self {
         const MARGIN: f64 = 1.5;
         if rod.profile.is_none() {
             return Self::CONE;
@@ -145,22 +145,23 @@ impl Beside {
 
 /// How far a state may be from its guess where a sheet has no samples that tell one branch from another, in parts of what changes
 /// everything: a tenth of the way from node to node of a continuation.
-const NEAR: f64 = 0.005;
+const NEAR_GUESS: f64 = 0.005;
 
 fn is_near(guess: Guess, state: &ContactState, s: f64) -> bool {
     let per_load = guess.load.abs() + 1.0 / (s * s);
-    (state.tau - guess.tau).abs() <= NEAR * s && (state.load - guess.load).abs() <= NEAR * per_load
+    (state.tau - guess.tau).abs() <= NEAR_GUESS * s
+        && (state.load - guess.load).abs() <= NEAR_GUESS * per_load
 }
 
 /// Whether a converged state counts.
-pub fn verdict(sheet: &Sheet, guess: Guess, state: &ContactState) -> End {
+pub fn verdict(sheet: &Sheet, guess: Guess, state: &ContactState) -> RefineOutcome {
     let s = arclength(&sheet.rod, state.tau);
-    let is_astray = sheet.is_walked() && !is_near(guess, state, s);
-    if is_astray || !sheet.is_stable(state.tau, state.load, &state.full.map) {
-        End::NotConverged
+    let is_elsewhere = sheet.is_continued() && !is_near(guess, state, s);
+    if is_elsewhere || !sheet.is_stable(state.tau, state.load, &state.full.map) {
+        RefineOutcome::NotConverged
     } else if state.tau > sheet.tip[0] && !state.is_at_tip(sheet) {
-        End::BeyondTip
+        RefineOutcome::BeyondTip
     } else {
-        End::Solved
+        RefineOutcome::Solved
     }
 }

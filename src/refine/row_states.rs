@@ -4,7 +4,7 @@
 //! so that the Jacobian is regular there, too.
 
 use super::newton::verdict;
-use super::{ContactState, End};
+use super::{ContactState, RefineOutcome};
 use crate::newton::{BatchNewton, NewtonOutcome, NewtonStep, Problem};
 use crate::rod::{Rod, arclength};
 use crate::sheet::{Guess, Sheet};
@@ -38,10 +38,10 @@ pub struct ExactState {
 }
 
 /// The longest Newton step whose end is extrapolated. What it leaves is below rounding: all cells of a base point inherit it.
-const EXTRAPOLATED_STEP: f64 = 3e-8;
+const EXTRAPOLATED_ROW_STEP: f64 = 3e-8;
 
 /// Most trajectories of a state.
-const TRAJECTORIES: u32 = 8;
+const ROW_STATE_TRAJECTORIES: u32 = 8;
 
 struct RowProblem<'a> {
     state: RowState<'a>,
@@ -70,7 +70,7 @@ impl<'a> Problem<'a> for RowProblem<'a> {
         let step = DVec2::new(miss.perp_dot(by_load), by_tau.perp_dot(miss));
         let step = step / by_tau.perp_dot(by_load);
         let (step, length) = limited(step, arclength(self.rod(), at.x), at.y);
-        if length <= EXTRAPOLATED_STEP {
+        if length <= EXTRAPOLATED_ROW_STEP {
             NewtonStep::Extrapolate(step)
         } else {
             NewtonStep::Shoot(at + step)
@@ -94,7 +94,7 @@ fn solve<'a>(method: Method, states: &[RowState<'a>]) -> Vec<Option<ExactState>>
     };
     let mut problems: Vec<RowProblem> = states.iter().map(problem).collect();
     let start = |state: &RowState| DVec2::new(state.tau, state.w / (state.tau * state.tau));
-    let newton = BatchNewton::new(method, TRAJECTORIES);
+    let newton = BatchNewton::new(method, ROW_STATE_TRAJECTORIES);
     let iterates = newton.solve(&mut problems, states.iter().map(start));
     let exact = problems.iter().zip(iterates);
     let exact = exact.map(
@@ -116,7 +116,7 @@ fn solve<'a>(method: Method, states: &[RowState<'a>]) -> Vec<Option<ExactState>>
                 load: guess.y,
             };
             let is_solved = iterate.outcome == NewtonOutcome::Converged
-                && verdict(state.sheet, guess, &reached) == End::Solved;
+                && verdict(state.sheet, guess, &reached) == RefineOutcome::Solved;
             is_solved.then_some(ExactState {
                 tau: reached.tau,
                 load: reached.load,

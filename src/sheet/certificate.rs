@@ -14,11 +14,13 @@ pub fn stays_positive(count: usize, sample: impl Fn(usize) -> f64) -> bool {
 }
 
 /// How far a change between two samples may be from the slopes at them.
-const ASTRAY: f64 = 0.25;
+const SLOPE_TOLERANCE: f64 = 0.25;
 
 /// Whether a function does between two samples, between which it changes by `change`, what its `slopes` there say.
 pub fn is_as_steep_as(change: f64, slopes: [f64; 2]) -> bool {
-    slopes.iter().all(|slope| (change - slope).abs() < ASTRAY)
+    slopes
+        .iter()
+        .all(|slope| (change - slope).abs() < SLOPE_TOLERANCE)
 }
 
 #[cfg(test)]

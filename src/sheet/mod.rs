@@ -27,7 +27,7 @@ pub use span::{Guess, RowSpan, SpanNode};
 use crate::rod::{Rest, Rod, Side};
 use crate::shooting::ShootingMap;
 use crate::shooting::batch::Method;
-use continuation::pieces::{StablePiece, WalkedRow, stable_pieces};
+use continuation::pieces::{ContinuedRow, StablePiece, stable_pieces};
 use edges::Edges;
 use edges::crossings::crossings;
 use fold::contact_nodes::{ContactNodes, NARROW_SPACING, SPACING};
@@ -39,9 +39,9 @@ use std::borrow::Cow;
 /// strongly curved cone the rounding of first touch (1e-13 of the length) is a load of 1e-8.
 const UNLOADED: f64 = 1e-6;
 
-/// How many of some `rows` are walked together: few enough that every thread has some, so many that lanes are full, though walks end at
+/// How many of some `rows` are continued together: few enough that every thread has some, so many that lanes are full, though walks end at
 /// different times. No answer depends on it.
-pub fn together(rows: usize) -> usize {
+pub fn rows_per_batch(rows: usize) -> usize {
     rows.div_ceil(rayon::current_num_threads()).clamp(32, 128)
 }
 
@@ -67,21 +67,21 @@ pub struct Sheet {
 /// Where guesses come from.
 #[derive(Clone, Debug)]
 enum Guesses {
-    /// Samples that show all of the sheet.
-    Sampled(Box<Samples>),
-    /// Its rows, walked because no samples do; piece by piece.
-    Walked(Vec<Vec<RowSpan>>),
+    /// SheetSamples that show all of the sheet.
+    Sampled(Box<SheetSamples>),
+    /// Its rows, continued because no samples do; piece by piece.
+    Continued(Vec<Vec<RowSpan>>),
 }
 
 /// A sheet, sampled.
 #[derive(Clone, Debug)]
-struct Samples {
+struct SheetSamples {
     contacts: ContactNodes,
     lattice: Lattice,
     edges: Edges,
 }
 
-impl Samples {
+impl SheetSamples {
     /// The samples down to the row `nearest` to the base; `None` if some contact has no fold, or no stable state at first touch.
     fn new(method: Method, rod: &Rod, side: Side, nearest: &Row, spacing: f64) -> Option<Self> {
         let contacts = ContactNodes::new(method, rod, side, nearest, spacing)?;
@@ -108,12 +108,12 @@ impl Sheet {
         let nearest = rows
             .iter()
             .min_by(|a, b| a.pole_distance.total_cmp(&b.pole_distance));
-        let sampled = |spacing| Samples::new(method, rod, side, nearest?, spacing);
+        let sampled = |spacing| SheetSamples::new(method, rod, side, nearest?, spacing);
         let mut samples = sampled(SPACING);
-        if !samples.as_ref().is_some_and(Samples::are_certified) {
+        if !samples.as_ref().is_some_and(SheetSamples::are_certified) {
             samples = sampled(NARROW_SPACING).or(samples);
         }
-        let is_certified = samples.as_ref().is_some_and(Samples::are_certified);
+        let is_certified = samples.as_ref().is_some_and(SheetSamples::are_certified);
         let mut crossings = match &samples {
             Some(samples) => crossings(method, rod, side, &samples.edges, &rows),
             None => vec![Vec::new(); rows.len()],
@@ -121,33 +121,33 @@ impl Sheet {
         let fold_grows = samples
             .as_ref()
             .is_some_and(|samples| samples.edges.fold_grows);
-        let needs_walk = |row: &Row, crossings: &[Crossing]| {
+        let needs_continuation = |row: &Row, crossings: &[Crossing]| {
             let touches = row.is_reached();
             let is_pair = usize::from(touches) + crossings.len() == 2;
             let is_simple = crossings.is_empty() && !touches
                 || fold_grows && is_pair && crossings.iter().all(Crossing::is_sound);
             !(is_certified && is_simple)
         };
-        let walk = |(rows, crossings): (&[Row], &mut [Vec<Crossing>])| {
-            let walked: Vec<usize> = (0..rows.len())
-                .filter(|i| needs_walk(&rows[*i], &crossings[*i]))
+        let follow = |(rows, crossings): (&[Row], &mut [Vec<Crossing>])| {
+            let continued: Vec<usize> = (0..rows.len())
+                .filter(|i| needs_continuation(&rows[*i], &crossings[*i]))
                 .collect();
-            let levels: Vec<LevelCurve> = walked
+            let levels: Vec<LevelCurve> = continued
                 .iter()
                 .map(|i| LevelCurve::new(method, rod, side, &rows[*i]))
                 .collect();
-            let row = |(i, level): (&usize, _)| WalkedRow {
+            let row = |(i, level): (&usize, _)| ContinuedRow {
                 level,
                 touches: rows[*i].is_reached(),
                 crossings: &crossings[*i],
             };
-            let found = stable_pieces(&walked.iter().zip(&levels).map(row).collect::<Vec<_>>());
+            let found = stable_pieces(&continued.iter().zip(&levels).map(row).collect::<Vec<_>>());
             let mut guesses = vec![Vec::new(); rows.len()];
-            for (i, found) in walked.into_iter().zip(found) {
+            for (i, found) in continued.into_iter().zip(found) {
                 let ends = |piece: &StablePiece| [piece.begin, Some(piece.end)];
                 crossings[i] = found.pieces.iter().flat_map(ends).flatten().collect();
-                let is_lost = !found.are_complete && !found.pieces.is_empty();
-                if is_lost || samples.is_none() && !rows[i].is_reached() {
+                let is_incomplete = !found.are_complete && !found.pieces.is_empty();
+                if is_incomplete || samples.is_none() && !rows[i].is_reached() {
                     crossings[i].push(Crossing::unknown());
                 }
                 guesses[i] = found
@@ -158,10 +158,10 @@ impl Sheet {
             }
             guesses
         };
-        let walked: Vec<Vec<RowSpan>> = rows
-            .par_chunks(together(distances.len()))
-            .zip(crossings.par_chunks_mut(together(distances.len())))
-            .map(|rows| walk(rows))
+        let continued: Vec<Vec<RowSpan>> = rows
+            .par_chunks(rows_per_batch(distances.len()))
+            .zip(crossings.par_chunks_mut(rows_per_batch(distances.len())))
+            .map(|rows| follow(rows))
             .flatten_iter()
             .collect();
         let tip = rod.tau_tip();
@@ -174,15 +174,15 @@ impl Sheet {
             method,
             guesses: match samples.filter(|_| is_certified) {
                 Some(samples) => Guesses::Sampled(Box::new(samples)),
-                None => Guesses::Walked(walked),
+                None => Guesses::Continued(continued),
             },
         }
     }
 
-    fn samples(&self) -> Option<&Samples> {
+    fn samples(&self) -> Option<&SheetSamples> {
         match &self.guesses {
             Guesses::Sampled(samples) => Some(samples),
-            Guesses::Walked(_) => None,
+            Guesses::Continued(_) => None,
         }
     }
 
@@ -192,9 +192,9 @@ impl Sheet {
         fold::first_folds(method, rod, side, &[rod.tau_tip()]).pop()?
     }
 
-    /// Whether samples do not show all of it, so that its rows are walked.
+    /// Whether samples do not show all of it, so that its rows are continued.
     #[must_use]
-    pub fn is_walked(&self) -> bool {
+    pub fn is_continued(&self) -> bool {
         self.samples().is_none()
     }
 
@@ -222,12 +222,12 @@ impl Sheet {
     pub fn spans(&self, row: usize) -> Cow<'_, [RowSpan]> {
         match &self.guesses {
             Guesses::Sampled(samples) => {
-                let Samples {
+                let SheetSamples {
                     contacts, lattice, ..
                 } = &**samples;
                 Cow::Owned(vec![lattice.span(contacts, &self.rows[row])])
             }
-            Guesses::Walked(rows) => Cow::Borrowed(&rows[row]),
+            Guesses::Continued(rows) => Cow::Borrowed(&rows[row]),
         }
     }
 
@@ -255,7 +255,7 @@ impl Sheet {
     #[must_use]
     pub fn is_stable(&self, tau: f64, load: f64, map: &ShootingMap) -> bool {
         let load = self.side.sign() * load;
-        let is_loaded = self.samples().is_none_or(|Samples { contacts, .. }| {
+        let is_loaded = self.samples().is_none_or(|SheetSamples { contacts, .. }| {
             load >= 0.0 && contacts.is_below_folds(tau, load) || {
                 let part = load / contacts.fold_load(tau);
                 part > -UNLOADED && part < 1.0 + 1e-4

@@ -58,10 +58,10 @@ const AROUND: usize = 7;
 
 /// Guesses are made this far, in radians, beyond the detachment angle of a lattice: on most whiskers many times the interpolation
 /// error. A row with a missed cell is followed by continuation for all that.
-pub const MARGIN: f64 = 1e-4;
+pub const PUSH_MARGIN: f64 = 1e-4;
 
 /// The last Newton step toward the `w` of a cell, in parts of the largest: its square is left, and interpolation leaves more.
-const LAST_STEP: f64 = 1e-5;
+const LAST_SPAN_STEP: f64 = 1e-5;
 
 impl RowSpan {
     /// The span through the states of a continuation, by growing push angle; `None` where `w` turns back.
@@ -78,7 +78,7 @@ impl RowSpan {
     /// The span through states of a lattice. A row leaves the lattice between two loads: where the states end before first touch or
     /// before the fold, the span goes on to the row parameters of the next load, in `beyond`, unless the push angle turns on the way.
     pub fn on_lattice(sign: f64, nodes: Vec<SpanNode>, beyond: [Option<f64>; 2]) -> Self {
-        let mut span = Self::new(sign, nodes, MARGIN);
+        let mut span = Self::new(sign, nodes, PUSH_MARGIN);
         let count = span.ends.len();
         if count < 2 {
             return span;
@@ -242,7 +242,7 @@ impl<'a> SpanCells<'a> {
         let largest = span.ends.iter().map(|end| end.w).fold(0.0, f64::max);
         Self {
             span,
-            last_step: LAST_STEP * largest,
+            last_step: LAST_SPAN_STEP * largest,
             whole: is_whole.then(|| span.polynomials(0)),
             indices: Vec::with_capacity(WIDTH),
             problems: Vec::with_capacity(WIDTH),
@@ -365,9 +365,9 @@ mod tests {
         }
         let whole: Vec<f64> = LOBATTO_NODES.iter().map(|part| push(*part)).collect();
         let whole = span(0, &whole);
-        let at_summit = guess(&whole, 1.0 + 0.5 * MARGIN);
+        let at_summit = guess(&whole, 1.0 + 0.5 * PUSH_MARGIN);
         assert!(at_summit.is_some_and(|[w, _]| (w - 1.0).abs() < 1e-4));
-        assert_eq!(guess(&whole, 1.0 + 2.0 * MARGIN), None);
+        assert_eq!(guess(&whole, 1.0 + 2.0 * PUSH_MARGIN), None);
         let all = whole.guesses((0..200).map(|i| f64::from(i) / 180.0));
         assert_eq!(all.iter().flatten().count(), 181);
     }

@@ -1,7 +1,7 @@
 //! The states of a map in `f64`, and how far they are from those of twice as many steps.
 
 use rayon::prelude::*;
-use whiskmap::refine::{self, End, Refined, Shot};
+use whiskmap::refine::{self, CellTarget, RefineOutcome, Refined};
 use whiskmap::rod::{Effects, Rod, Side};
 use whiskmap::scene::Scene;
 use whiskmap::sheet::Sheet;
@@ -12,7 +12,7 @@ use whiskmap::shooting::{Resolution, ShootingMap};
 pub struct Shots {
     pub effects: Effects,
     pub sheets: Vec<Sheet>,
-    pub shots: Vec<Shot>,
+    pub shots: Vec<CellTarget>,
 }
 
 impl Shots {
@@ -30,7 +30,11 @@ impl Shots {
             .collect();
         let mut shots = Vec::new();
         for (index, sheet) in (0..).zip(&sheets) {
-            shots.extend(refine::shots(sheet, index, &scene.grid.push_angle_deg));
+            shots.extend(refine::cell_targets(
+                sheet,
+                index,
+                &scene.grid.push_angle_deg,
+            ));
         }
         Self {
             effects,
@@ -52,7 +56,7 @@ impl Shots {
     pub fn conditions(&self, cells: &[Refined]) -> Vec<InitialCondition<'_>> {
         let solved = cells.iter().zip(&self.shots);
         solved
-            .filter(|(cell, _)| cell.end == End::Solved)
+            .filter(|(cell, _)| cell.outcome == RefineOutcome::Solved)
             .map(|(cell, shot)| InitialCondition {
                 rod: &self.sheets[shot.rod as usize].rod,
                 tau: cell.state.tau,

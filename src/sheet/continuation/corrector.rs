@@ -8,11 +8,11 @@ use crate::shooting::{FirstVariation, FullState};
 use glam::DVec2;
 
 /// Most trajectories of a point.
-pub const TRAJECTORIES: u32 = 12;
+pub const CORRECTOR_TRAJECTORIES: u32 = 12;
 
 /// A step, in parts of the scale and in `ln D`, after which a point that may miss the curve by [`NODE_MISS`] needs no trajectory of its
 /// own. The rest is the square of the longer of the two. On a soft rod that is the change of `ln D`.
-const LAST_STEP: f64 = 2e-5;
+const LAST_CORRECTOR_STEP: f64 = 2e-5;
 
 /// A point that approaches its level curve.
 pub struct Corrector<'a> {
@@ -54,7 +54,7 @@ impl<'a> Problem<'a> for Corrector<'a> {
         let gradient = scale * DVec2::new(map.by_tau.x, map.by_load.x);
         let part = gradient * (miss / gradient.length_squared());
         let step = scale * part;
-        let is_short = part.length().max(miss.abs()) < LAST_STEP;
+        let is_short = part.length().max(miss.abs()) < LAST_CORRECTOR_STEP;
         if self.tolerance >= NODE_MISS && is_short {
             NewtonStep::Extrapolate(step)
         } else {
@@ -72,7 +72,7 @@ pub fn correct(points: &[(&LevelCurve, DVec2, f64)]) -> Vec<Option<(DVec2, FullS
     let correctors = points.iter();
     let correctors = correctors.map(|(level, _, tolerance)| Corrector::new(level, *tolerance));
     let mut correctors: Vec<Corrector> = correctors.collect();
-    let newton = BatchNewton::new(first.method, TRAJECTORIES);
+    let newton = BatchNewton::new(first.method, CORRECTOR_TRAJECTORIES);
     let iterates = newton.solve(&mut correctors, points.iter().map(|(_, point, _)| *point));
     let corrected = iterates.into_iter().map(|iterate| {
         let has_converged = iterate.outcome == NewtonOutcome::Converged;

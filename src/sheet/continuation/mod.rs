@@ -42,7 +42,7 @@ impl Continuation {
 
 impl LevelCurve {
     /// The curve from `start` on to the tip or the fold, or past the fold to the tip or the second one; `None` where the continuation
-    /// gets lost.
+    /// gets failed.
     #[must_use]
     pub fn continuation(&self, start: Node, past_fold: bool) -> Option<Continuation> {
         continuations(vec![(self, start)], past_fold, ON_CURVE).pop()?
@@ -57,7 +57,7 @@ pub fn continuations(
     past_fold: bool,
     miss: f64,
 ) -> Vec<Option<Continuation>> {
-    let mut ended = follow_surely(&starts, past_fold, miss);
+    let mut ended = follow_with_retry(&starts, past_fold, miss);
     let is_steep =
         |found: &Option<Continuation>| found.as_ref().is_some_and(Continuation::is_steep);
     let steep: Vec<usize> = (0..starts.len()).filter(|i| is_steep(&ended[*i])).collect();
@@ -66,25 +66,25 @@ pub fn continuations(
         .iter()
         .zip(&steep)
         .map(|(level, i)| (level, starts[*i].1));
-    let again = follow_surely(&again.collect::<Vec<_>>(), past_fold, miss);
+    let again = follow_with_retry(&again.collect::<Vec<_>>(), past_fold, miss);
     for (i, found) in steep.into_iter().zip(again) {
         ended[i] = found.or(ended[i].take());
     }
     ended
 }
 
-/// The curves that get lost are followed once more with nodes to rounding: next to where curves meet, nodes that only lead can lose the
+/// The curves that get failed are followed once more with nodes to rounding: next to where curves meet, nodes that only lead can lose the
 /// way.
-fn follow_surely(
+fn follow_with_retry(
     starts: &[(&LevelCurve, Node)],
     past_fold: bool,
     miss: f64,
 ) -> Vec<Option<Continuation>> {
     let mut ended = follow(starts.to_vec(), past_fold, miss);
-    let is_lost = |i: &usize| ended[*i].is_none() && miss > ON_CURVE;
-    let lost: Vec<usize> = (0..starts.len()).filter(is_lost).collect();
-    let again = lost.iter().map(|i| starts[*i]).collect();
-    for (i, found) in lost.iter().zip(follow(again, past_fold, ON_CURVE)) {
+    let has_failed = |i: &usize| ended[*i].is_none() && miss > ON_CURVE;
+    let failed: Vec<usize> = (0..starts.len()).filter(has_failed).collect();
+    let again = failed.iter().map(|i| starts[*i]).collect();
+    for (i, found) in failed.iter().zip(follow(again, past_fold, ON_CURVE)) {
         ended[*i] = found;
     }
     ended

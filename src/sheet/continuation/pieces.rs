@@ -9,7 +9,7 @@ use crate::sheet::row::Crossing;
 use crate::sheet::span::{RowSpan, SpanNode};
 
 /// How far apart, relative to contact and load, two crossings are at most if they are the same.
-const SAME: f64 = 1e-5;
+const SAME_CROSSING: f64 = 1e-5;
 
 /// A part of a level curve on the stable sheet, in the direction of growing push angles.
 #[derive(Clone, Debug)]
@@ -36,9 +36,9 @@ impl StablePiece {
     }
 }
 
-/// A row to be walked.
+/// A row to be continued.
 #[derive(Clone, Copy, Debug)]
-pub struct WalkedRow<'a> {
+pub struct ContinuedRow<'a> {
     /// Its level curve.
     pub level: &'a LevelCurve,
     /// Whether it has a first touch.
@@ -58,7 +58,7 @@ pub struct StablePieces {
 
 impl StablePieces {
     /// Whether one of them begins or ends at `crossing`.
-    fn know(&self, crossing: &Crossing) -> bool {
+    fn have_end(&self, crossing: &Crossing) -> bool {
         let ends = |piece: &StablePiece| [piece.begin, Some(piece.end)];
         let mut known = self.pieces.iter().flat_map(ends).flatten();
         known.any(|other| same(crossing, &other))
@@ -66,7 +66,7 @@ impl StablePieces {
 }
 
 /// The pieces of all `rows`, whose trajectories share batches. No answer depends on the other rows.
-pub fn stable_pieces(rows: &[WalkedRow]) -> Vec<StablePieces> {
+pub fn stable_pieces(rows: &[ContinuedRow]) -> Vec<StablePieces> {
     let mut found: Vec<StablePieces> = from_touch(rows);
     let most = rows.iter().map(|row| row.crossings.len()).max();
     for index in 0..most.unwrap_or_default() {
@@ -74,11 +74,11 @@ pub fn stable_pieces(rows: &[WalkedRow]) -> Vec<StablePieces> {
             .iter()
             .zip(&found)
             .map(|(row, found)| {
-                let is_walked = found.are_complete || !found.pieces.is_empty();
+                let is_continued = found.are_complete || !found.pieces.is_empty();
                 // No cell has a push angle of several turns.
                 let is_near = |crossing: &Crossing| crossing.push.abs() <= MOST_PUSH;
                 let crossing = row.crossings.get(index).copied();
-                crossing.filter(|crossing| is_walked && is_near(crossing))
+                crossing.filter(|crossing| is_continued && is_near(crossing))
             })
             .collect();
         through_crossings(rows, &crossings, &mut found);
@@ -89,13 +89,13 @@ pub fn stable_pieces(rows: &[WalkedRow]) -> Vec<StablePieces> {
 /// Where a piece ends, and its nodes.
 type PieceEnd = (Crossing, Vec<Node>);
 
-fn from_touch(rows: &[WalkedRow]) -> Vec<StablePieces> {
-    let at_touch = |row: &WalkedRow| row.crossings.iter().copied().find(Crossing::is_at_touch);
+fn from_touch(rows: &[ContinuedRow]) -> Vec<StablePieces> {
+    let at_touch = |row: &ContinuedRow| row.crossings.iter().copied().find(Crossing::is_at_touch);
     let starts: Vec<Option<Node>> = rows
         .iter()
         .map(|row| {
-            let walks = row.touches && at_touch(row).is_none();
-            walks.then(|| row.level.touch()).flatten()
+            let is_continued = row.touches && at_touch(row).is_none();
+            is_continued.then(|| row.level.touch()).flatten()
         })
         .collect();
     let ends = ends_of_pieces(rows, &starts, false);
@@ -124,7 +124,7 @@ fn from_touch(rows: &[WalkedRow]) -> Vec<StablePieces> {
 
 /// Adds to what was `found` the piece of each row that begins or ends at its crossing, if there is one that is not known.
 fn through_crossings(
-    rows: &[WalkedRow],
+    rows: &[ContinuedRow],
     crossings: &[Option<Crossing>],
     found: &mut [StablePieces],
 ) {
@@ -140,11 +140,11 @@ fn through_crossings(
         .map(|((crossing, (near, begin)), found)| {
             // On the unstable side there is no piece to lose.
             let may_begin = near.is_none_or(|near| near.full.map.det() > 0.0);
-            let is_lost = unsound(crossing).is_some() && may_begin && begin.is_none();
-            found.are_complete &= !is_lost;
+            let has_failed = unsound(crossing).is_some() && may_begin && begin.is_none();
+            found.are_complete &= !has_failed;
             let entry = crossing.filter(|_| is_sound(crossing));
             let entry = entry.or(begin.map(|(begin, _)| begin));
-            entry.filter(|entry| !found.know(entry))
+            entry.filter(|entry| !found.have_end(entry))
         })
         .collect();
     let starts = at_crossings(rows, &entries);
@@ -167,7 +167,7 @@ fn through_crossings(
         let piece = match (&ahead[i], &behind[i]) {
             (Some((end, nodes)), _) => Some((Some(entry), *end, nodes)),
             (None, Some((begin, nodes))) if !same(&entry, begin) => {
-                let is_new = !found.know(begin);
+                let is_new = !found.have_end(begin);
                 is_new.then_some((Some(*begin), entry, nodes))
             }
             (None, Some(_)) => None,
@@ -187,7 +187,7 @@ fn through_crossings(
 }
 
 /// The states at the crossings that are there.
-fn at_crossings(rows: &[WalkedRow], crossings: &[Option<Crossing>]) -> Vec<Option<Node>> {
+fn at_crossings(rows: &[ContinuedRow], crossings: &[Option<Crossing>]) -> Vec<Option<Node>> {
     rows.iter()
         .zip(crossings)
         .map(|(row, crossing)| row.level.at_crossing(crossing.as_ref()?))
@@ -196,7 +196,7 @@ fn at_crossings(rows: &[WalkedRow], crossings: &[Option<Crossing>]) -> Vec<Optio
 
 /// Where the pieces end that begin at `starts`, or begin that end there; `None` without a start, or where the continuation is lost.
 fn ends_of_pieces(
-    rows: &[WalkedRow],
+    rows: &[ContinuedRow],
     starts: &[Option<Node>],
     backward: bool,
 ) -> Vec<Option<PieceEnd>> {
@@ -212,10 +212,10 @@ fn ends_of_pieces(
             false => rows[*i].level.clone(),
         })
         .collect();
-    let walks = levels.iter().zip(started.iter().map(|(_, start)| *start));
-    let walked = continuations(walks.collect(), false, NODE_MISS);
+    let curves = levels.iter().zip(started.iter().map(|(_, start)| *start));
+    let continued = continuations(curves.collect(), false, NODE_MISS);
     let mut ends = vec![None; starts.len()];
-    for ((level, (i, _)), piece) in levels.iter().zip(&started).zip(walked) {
+    for ((level, (i, _)), piece) in levels.iter().zip(&started).zip(continued) {
         ends[*i] = piece.and_then(|piece| end_of_piece(level, piece));
     }
     ends
@@ -238,5 +238,5 @@ fn end_of_piece(level: &LevelCurve, piece: Continuation) -> Option<PieceEnd> {
 
 fn same(one: &Crossing, other: &Crossing) -> bool {
     let load = (one.load - other.load).abs() / one.load.abs();
-    one.edge == other.edge && load + (one.tau / other.tau - 1.0).abs() < SAME
+    one.edge == other.edge && load + (one.tau / other.tau - 1.0).abs() < SAME_CROSSING
 }

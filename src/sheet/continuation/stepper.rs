@@ -2,7 +2,7 @@
 
 use crate::newton::{NewtonStep, Problem};
 use crate::rod::Rod;
-use crate::sheet::continuation::corrector::{Corrector, TRAJECTORIES};
+use crate::sheet::continuation::corrector::{CORRECTOR_TRAJECTORIES, Corrector};
 use crate::sheet::continuation::level_curve::{LevelCurve, Node};
 use crate::sheet::continuation::meeting::Chord;
 use crate::sheet::row::Edge;
@@ -17,7 +17,7 @@ const NODE_DISTANCE: f64 = 0.05;
 const SHARPEST_TURN: f64 = 0.1;
 
 /// Chords shorter than this may make any angle: after a longer one, no step is short enough for a small angle.
-const SHORT: f64 = 0.01 * NODE_DISTANCE;
+const SHORT_CHORD: f64 = 0.01 * NODE_DISTANCE;
 
 /// The first step of the continuation, relative to contact and load.
 const FIRST_ARC_STEP: f64 = 0.05;
@@ -142,7 +142,8 @@ impl<'a> Stepper<'a> {
         let turn = before.map_or(0.0, |before| {
             chord.angle_between(level.place(last) - level.place(before))
         });
-        chord.length() < 2.0 * NODE_DISTANCE && (turn < SHARPEST_TURN || chord.length() < SHORT)
+        chord.length() < 2.0 * NODE_DISTANCE
+            && (turn < SHARPEST_TURN || chord.length() < SHORT_CHORD)
     }
 
     /// Adds the node `next` and predicts the one after it; false where the continuation ends without an edge.
@@ -185,7 +186,9 @@ impl<'a> Problem<'a> for Stepper<'a> {
         let next = match self.corrector.step(at, here) {
             NewtonStep::Accept => self.next(at, here.full),
             NewtonStep::Extrapolate(step) => self.next(at + step, here.extrapolated(step)),
-            NewtonStep::Shoot(next) if next.x > 0.0 && self.trajectories < TRAJECTORIES => {
+            NewtonStep::Shoot(next)
+                if next.x > 0.0 && self.trajectories < CORRECTOR_TRAJECTORIES =>
+            {
                 return NewtonStep::Shoot(next);
             }
             NewtonStep::Shoot(_) | NewtonStep::Fail => None,

@@ -2,7 +2,7 @@
 
 use crate::numerics::Bracket;
 use crate::rod::{Rod, Side};
-use crate::sheet::edges::predictor::Sample;
+use crate::sheet::edges::predictor::EdgeSample;
 use crate::sheet::fold::first_folds;
 use crate::sheet::row::Edge;
 use crate::shooting::SecondVariation;
@@ -10,25 +10,25 @@ use crate::shooting::batch::{Batch, InitialCondition, Method};
 use glam::DVec2;
 
 /// Two samples of an edge, and the `ln D` that is looked for between them.
-pub struct Between {
+pub struct EdgeInterval {
     pub edge: Edge,
-    pub samples: [Sample; 2],
+    pub samples: [EdgeSample; 2],
     pub target: f64,
 }
 
 /// A point `(tau, load)` of an edge, and the pole there.
-pub type Point = (DVec2, SecondVariation);
+pub type EdgePoint = (DVec2, SecondVariation);
 
 /// Halvings: more than a mantissa has bits.
-const HALVINGS: usize = 64;
+const MOST_EDGE_HALVINGS: usize = 64;
 
 /// After so many halvings it is told by how much the distance still changes, in parts of what it has been seen to miss, that it leaps: as
 /// the first fold does from contact to contact. The change of a square root would have fallen to a 64th.
-const TELLING: usize = 12;
+const HALVINGS_BEFORE_LEAP: usize = 12;
 const LEAP: f64 = 0.25;
 
 /// A bisection on its way.
-struct Search {
+struct EdgeBisection {
     /// Which one.
     index: usize,
     /// Where it looks next, in parts of the way between the samples.
@@ -43,8 +43,8 @@ struct Search {
     is_last: bool,
 }
 
-impl Search {
-    fn new(index: usize, between: &Between) -> Self {
+impl EdgeBisection {
+    fn new(index: usize, between: &EdgeInterval) -> Self {
         let ends = between
             .samples
             .map(|sample| sample.ln_distance - between.target);
@@ -73,20 +73,25 @@ impl Search {
         self.ends[usize::from((miss <= 0.0) != (self.ends[0] <= 0.0))] = miss;
         self.part = self.parts.middle();
         self.halvings += 1;
-        self.is_last = self.halvings == HALVINGS;
+        self.is_last = self.halvings == MOST_EDGE_HALVINGS;
         let leaps = (self.ends[1] - self.ends[0]).abs() > LEAP * self.largest;
-        !leaps || self.halvings < TELLING
+        !leaps || self.halvings < HALVINGS_BEFORE_LEAP
     }
 }
 
 /// For each two samples, the point of the edge between them at which `ln D` is the target. If both are on the same side of it, the one
 /// that is closer. `None` where a fold is missing, or the distance leaps over the target.
-pub fn bisect(method: Method, rod: &Rod, side: Side, all: &[Between]) -> Vec<Option<Point>> {
+pub fn bisect(
+    method: Method,
+    rod: &Rod,
+    side: Side,
+    all: &[EdgeInterval],
+) -> Vec<Option<EdgePoint>> {
     let mut found = vec![None; all.len()];
-    let mut open: Vec<Search> = all
+    let mut open: Vec<EdgeBisection> = all
         .iter()
         .enumerate()
-        .map(|(index, between)| Search::new(index, between))
+        .map(|(index, between)| EdgeBisection::new(index, between))
         .collect();
     while !open.is_empty() {
         let mut points = points(method, rod, side, all, &open).into_iter();
@@ -111,10 +116,10 @@ fn points(
     method: Method,
     rod: &Rod,
     side: Side,
-    all: &[Between],
-    open: &[Search],
-) -> Vec<Option<Point>> {
-    let place = |search: &Search| {
+    all: &[EdgeInterval],
+    open: &[EdgeBisection],
+) -> Vec<Option<EdgePoint>> {
+    let place = |search: &EdgeBisection| {
         let [from, to] = all[search.index].samples;
         let [from, to] = [from, to].map(|sample| DVec2::new(sample.tau, sample.load));
         from + search.part * (to - from)

@@ -7,31 +7,32 @@
 use crate::numerics::nearest_turn;
 use crate::rod::{Rod, Side};
 use crate::sheet::edges::Edges;
-use crate::sheet::edges::bisection::{Between, Point, bisect};
+use crate::sheet::edges::bisection::{EdgeInterval, EdgePoint, bisect};
 use crate::sheet::edges::edge_newton::{
     EdgeIterate, EdgeProblem, EdgeStart, edge_newton, edge_newton_predicted,
 };
-use crate::sheet::edges::predictor::{Prediction, Sample};
+use crate::sheet::edges::predictor::{EdgeSample, Prediction};
 use crate::sheet::row::{Crossing, Edge, REACH_SLACK, Row};
 use crate::shooting::batch::Method;
 use glam::DVec2;
 
 /// A row, and two samples of an edge between which it crosses.
-struct Candidate {
+struct CrossingCandidate {
     row: usize,
     edge: Edge,
     predicted: Prediction,
-    between: [Sample; 2],
+    between: [EdgeSample; 2],
 }
 
 /// How far, in parts of their distance, a crossing may be outside of the samples that it is between but for rounding.
-const OUTSIDE: f64 = 1e-9;
+const OUTSIDE_SAMPLES: f64 = 1e-9;
 
-impl Candidate {
+impl CrossingCandidate {
     /// Whether `point` is between the samples.
     fn holds(&self, point: DVec2) -> bool {
         let [a, b] = self.between;
-        let is_between = |x: f64, a: f64, b: f64| (x - a) * (x - b) <= OUTSIDE * (b - a).powi(2);
+        let is_between =
+            |x: f64, a: f64, b: f64| (x - a) * (x - b) <= OUTSIDE_SAMPLES * (b - a).powi(2);
         match self.edge {
             Edge::Fold => is_between(point.x, a.tau, b.tau),
             Edge::Tip => is_between(point.y, a.load, b.load),
@@ -41,13 +42,13 @@ impl Candidate {
 
 /// How much the load of a fold between two samples, as all samples around tell it, may differ from what the two alone tell: more
 /// is a jump of the first fold.
-const ASTRAY: f64 = 0.15;
+const FOLD_LOAD_TOLERANCE: f64 = 0.15;
 
 /// Where `ln D` is `target` on `edge` between two samples.
-fn predict(edges: &Edges, edge: Edge, pair: [&Sample; 2], target: f64) -> Prediction {
+fn predict(edges: &Edges, edge: Edge, pair: [&EdgeSample; 2], target: f64) -> Prediction {
     let by_all = edges.predict(edge, pair, target);
     let by_two = Prediction::linear(pair, target);
-    if edge == Edge::Tip || (by_all.load / by_two.load - 1.0).abs() < ASTRAY {
+    if edge == Edge::Tip || (by_all.load / by_two.load - 1.0).abs() < FOLD_LOAD_TOLERANCE {
         by_all
     } else {
         by_two
@@ -81,7 +82,7 @@ pub fn crossings(
                 if at_touch && row.is_reached() != reached[1] {
                     found[index].push(Crossing::at_touch(rod));
                 } else if !at_touch && reached[0] != reached[1] {
-                    candidates.push(Candidate {
+                    candidates.push(CrossingCandidate {
                         row: index,
                         edge,
                         predicted: predict(edges, edge, [&a, &b], *target),
@@ -108,7 +109,7 @@ fn correct(
     rod: &Rod,
     side: Side,
     rows: &[Row],
-    candidates: &[Candidate],
+    candidates: &[CrossingCandidate],
 ) -> Vec<Crossing> {
     let problems: Vec<EdgeProblem> = candidates
         .iter()
@@ -121,7 +122,7 @@ fn correct(
         })
         .collect();
     let iterates = edge_newton_predicted(method, &problems);
-    let crossing = |c: &Candidate, (point, here): Point, residual: f64| {
+    let crossing = |c: &CrossingCandidate, (point, here): EdgePoint, residual: f64| {
         let phi = nearest_turn(here.map.pole.to_angle(), c.predicted.phi);
         Crossing {
             edge: c.edge,
@@ -132,23 +133,23 @@ fn correct(
             slope: c.edge.slope(&here.map),
         }
     };
-    let reached = |(c, iterate): (&Candidate, &EdgeIterate)| {
+    let reached = |(c, iterate): (&CrossingCandidate, &EdgeIterate)| {
         let residual = iterate.miss.abs() + iterate.left * iterate.left;
         crossing(c, (iterate.point, iterate.here), residual)
     };
     let mut corrected: Vec<Crossing> = candidates.iter().zip(&iterates).map(reached).collect();
-    let is_lost =
+    let has_failed =
         |i: &usize| !(corrected[*i].is_sound() && candidates[*i].holds(iterates[*i].point));
-    let lost: Vec<usize> = (0..candidates.len()).filter(is_lost).collect();
-    let between: Vec<Between> = lost
+    let failed: Vec<usize> = (0..candidates.len()).filter(has_failed).collect();
+    let between: Vec<EdgeInterval> = failed
         .iter()
-        .map(|&i| Between {
+        .map(|&i| EdgeInterval {
             edge: candidates[i].edge,
             samples: candidates[i].between,
             target: libm::log(rows[candidates[i].row].pole_distance),
         })
         .collect();
-    for (i, point) in lost.into_iter().zip(bisect(method, rod, side, &between)) {
+    for (i, point) in failed.into_iter().zip(bisect(method, rod, side, &between)) {
         let c = &candidates[i];
         let row = &rows[c.row];
         let bisected = point.map(|point| {

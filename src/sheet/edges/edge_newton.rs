@@ -43,7 +43,7 @@ pub struct EdgeIterate {
 const COARSE_ROUNDS: u32 = 2;
 
 /// Most trajectories at the method's own resolution; 1 or 2 are the rule.
-const TRAJECTORIES: u32 = 20;
+const EDGE_TRAJECTORIES: u32 = 20;
 
 /// The length of a step that needs no trajectory at its end. Its square is left, and second derivatives determine the end to its cube.
 const LAST_EDGE_STEP: f64 = 3e-7;
@@ -91,11 +91,11 @@ impl<'a> Problem<'a> for EdgeSearch<'a, '_> {
 /// Solves all `problems`. What is left of each is in `miss` and `left`.
 #[must_use]
 pub fn edge_newton(method: Method, start: EdgeStart, problems: &[EdgeProblem]) -> Vec<EdgeIterate> {
-    let newton = BatchNewton::new(method, TRAJECTORIES);
+    let newton = BatchNewton::new(method, EDGE_TRAJECTORIES);
     let newton = match start {
         EdgeStart::Coarse => BatchNewton {
             coarse_rounds: COARSE_ROUNDS,
-            most_trajectories: COARSE_ROUNDS + TRAJECTORIES,
+            most_trajectories: COARSE_ROUNDS + EDGE_TRAJECTORIES,
             ..newton
         },
         EdgeStart::Fine => newton,

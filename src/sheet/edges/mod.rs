@@ -10,7 +10,7 @@ mod tip_edge;
 use crate::numerics::nearest_turn;
 use crate::rod::{Rest, Rod, arclength};
 use crate::sheet::certificate::is_as_steep_as;
-use crate::sheet::edges::predictor::{FoldEdge, Prediction, Sample};
+use crate::sheet::edges::predictor::{EdgeSample, FoldEdge, Prediction};
 use crate::sheet::edges::tip_edge::{SampledTipEdge, TipEdge};
 use crate::sheet::fold::contact_nodes::ContactNodes;
 use crate::sheet::lattice::Lattice;
@@ -21,13 +21,13 @@ use crate::shooting::batch::Method;
 #[derive(Clone, Debug)]
 pub struct Edges {
     /// From the base to the corner.
-    pub fold: Vec<Sample>,
+    pub fold: Vec<EdgeSample>,
     fold_edge: FoldEdge,
     /// Whether the distance grows along the fold from the base to the tip, so that no row crosses it twice. Where the
     /// first fold jumps from contact to contact, there is more of it than the samples show.
     pub fold_grows: bool,
     /// From first touch to the corner.
-    pub tip: Vec<Sample>,
+    pub tip: Vec<EdgeSample>,
     /// `None` where it takes more samples than polynomials have nodes.
     tip_edge: Option<TipEdge>,
     /// Whether the fold does between its samples what these say.
@@ -39,13 +39,13 @@ pub struct Edges {
 impl Edges {
     /// Samples both edges; `lattice` knows the whole turns of the pole's direction.
     pub fn new(method: Method, rod: &Rod, contacts: &ContactNodes, lattice: &Lattice) -> Self {
-        let fold: Vec<Sample> = contacts.folds[..=contacts.tip]
+        let fold: Vec<EdgeSample> = contacts.folds[..=contacts.tip]
             .iter()
             .zip(lattice.phi_at_fold())
             .enumerate()
             .map(|(i, (fold, phi))| {
                 let pole = fold.variation.map.pole;
-                Sample {
+                EdgeSample {
                     place: i as f64,
                     tau: fold.tau,
                     load: fold.load,
@@ -63,11 +63,11 @@ impl Edges {
         let rest = Rest::new(rod);
         let (tip_at_rest, _) = rest.at_arclength(arclength(rod, rod.tau_tip()));
         let pole = rest.pole_at_distance(tip_at_rest.length()).length();
-        tip.extend(fold.last().map(|corner| Sample {
+        tip.extend(fold.last().map(|corner| EdgeSample {
             place: 1.0,
             ..*corner
         }));
-        let is_certified = |(i, pair): (usize, &[Sample])| {
+        let is_certified = |(i, pair): (usize, &[EdgeSample])| {
             let slopes =
                 [i, i + 1].map(|i| contacts.slope(i, 1.0, &contacts.folds[i].variation.map));
             let [from, to] = [pair[0], pair[1]];
@@ -86,7 +86,7 @@ impl Edges {
     }
 
     /// Where `ln D` is `target` between two neighbouring samples of `edge`.
-    pub fn predict(&self, edge: Edge, pair: [&Sample; 2], target: f64) -> Prediction {
+    pub fn predict(&self, edge: Edge, pair: [&EdgeSample; 2], target: f64) -> Prediction {
         match edge {
             Edge::Fold => self.fold_edge.predict(pair, target),
             Edge::Tip => match &self.tip_edge {

@@ -10,7 +10,7 @@ use glam::DVec2;
 
 /// A computed point of an edge.
 #[derive(Clone, Copy, Debug)]
-pub struct Sample {
+pub struct EdgeSample {
     /// Along the edge: the contact node of a fold, or the part of the corner's load at the tip.
     pub place: f64,
     /// `tau` of the contact.
@@ -41,9 +41,9 @@ pub struct Prediction {
 
 impl Prediction {
     /// Where `ln D` is `target` if all else changes evenly from one sample to the other.
-    pub fn linear([a, b]: [&Sample; 2], target: f64) -> Self {
+    pub fn linear([a, b]: [&EdgeSample; 2], target: f64) -> Self {
         let t = (target - a.ln_distance) / (b.ln_distance - a.ln_distance);
-        let scaled = |s: &Sample| s.load * s.tau * s.tau;
+        let scaled = |s: &EdgeSample| s.load * s.tau * s.tau;
         let tau = a.tau * libm::exp(t * libm::log(b.tau / a.tau));
         Self {
             tau,
@@ -61,7 +61,7 @@ pub const LAST_STEP_ALONG_EDGE: f64 = 1e-5;
 pub fn place_between<const N: usize>(
     ln_distance: &Polynomial<N>,
     ends: [f64; 2],
-    pair: [&Sample; 2],
+    pair: [&EdgeSample; 2],
     target: f64,
 ) -> f64 {
     let [from, to] = pair.map(|sample| sample.ln_distance);
@@ -142,7 +142,7 @@ impl FoldEdge {
     }
 
     /// Where `ln D` is `target` between the samples of two neighbouring contact nodes.
-    pub fn predict(&self, pair: [&Sample; 2], target: f64) -> Prediction {
+    pub fn predict(&self, pair: [&EdgeSample; 2], target: f64) -> Prediction {
         let ends = pair.map(|sample| sample.place);
         let start = stencil(ends[0] as usize, STENCIL, self.count);
         let piece = &self.pieces[start];

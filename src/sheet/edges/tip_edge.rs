@@ -7,7 +7,7 @@ use crate::numerics::newton_form::RootProblem;
 use crate::numerics::{Bracket, nearest_turn};
 use crate::rod::Rod;
 use crate::sheet::edges::extremum::Extremum;
-use crate::sheet::edges::predictor::{LAST_STEP_ALONG_EDGE, Prediction, Sample, place_between};
+use crate::sheet::edges::predictor::{EdgeSample, LAST_STEP_ALONG_EDGE, Prediction, place_between};
 use crate::sheet::fold::FoldPoint;
 use crate::sheet::lattice::directions;
 use crate::shooting::ShootingMap;
@@ -29,13 +29,13 @@ pub struct TipEdge {
 const SLOPE_OFF: f64 = 1e-2;
 
 /// Intervals between the samples of an edge that no polynomial follows.
-const MANY: usize = 256;
+const MANY_TIP_INTERVALS: usize = 256;
 
 /// The edge up to before the corner.
 #[derive(Clone, Debug)]
 pub struct SampledTipEdge {
     /// Samples, extrema of the distance among them.
-    pub samples: Vec<Sample>,
+    pub samples: Vec<EdgeSample>,
     /// The polynomials through the others and the corner, if they are the edge.
     pub edge: Option<TipEdge>,
     /// First touch.
@@ -45,7 +45,7 @@ pub struct SampledTipEdge {
 impl SampledTipEdge {
     /// Samples the edge up to the `corner`: at few loads, or at many where these do not show all of it.
     pub fn new(method: Method, rod: &Rod, corner: &FoldPoint) -> Self {
-        let sampled = Loads::new(method, rod, corner, &*LOBATTO_NODES);
+        let sampled = TipLoads::new(method, rod, corner, &*LOBATTO_NODES);
         let edge = TipEdge::new(&sampled);
         let at_touch = sampled.maps[0];
         if edge.is_certified() {
@@ -55,9 +55,9 @@ impl SampledTipEdge {
                 at_touch,
             };
         }
-        let part = |i| libm::sin(FRAC_PI_2 * i as f64 / MANY as f64).powi(2);
-        let parts: Vec<f64> = (0..=MANY).map(part).collect();
-        let sampled = Loads::new(method, rod, corner, &parts);
+        let part = |i| libm::sin(FRAC_PI_2 * i as f64 / MANY_TIP_INTERVALS as f64).powi(2);
+        let parts: Vec<f64> = (0..=MANY_TIP_INTERVALS).map(part).collect();
+        let sampled = TipLoads::new(method, rod, corner, &parts);
         Self {
             samples: sampled.samples(method, &sampled.extrema()),
             edge: None,
@@ -67,7 +67,7 @@ impl SampledTipEdge {
 }
 
 /// The edge under some loads.
-struct Loads<'a> {
+struct TipLoads<'a> {
     rod: &'a Rod,
     corner: &'a FoldPoint,
     /// In parts of the corner's; the last one is 1.
@@ -77,7 +77,7 @@ struct Loads<'a> {
     phis: Vec<f64>,
 }
 
-impl<'a> Loads<'a> {
+impl<'a> TipLoads<'a> {
     fn new(method: Method, rod: &'a Rod, corner: &'a FoldPoint, parts: &'a [f64]) -> Self {
         let condition = |part| InitialCondition {
             rod,
@@ -103,10 +103,10 @@ impl<'a> Loads<'a> {
     }
 
     /// The samples before the corner, with the `extrema` of the distance among them.
-    fn samples(&self, method: Method, extrema: &[Extremum]) -> Vec<Sample> {
-        let mut samples: Vec<Sample> = Vec::new();
+    fn samples(&self, method: Method, extrema: &[Extremum]) -> Vec<EdgeSample> {
+        let mut samples: Vec<EdgeSample> = Vec::new();
         for (m, part) in self.parts[..self.parts.len() - 1].iter().enumerate() {
-            let sample = |place: f64, load: f64, map: &ShootingMap| Sample {
+            let sample = |place: f64, load: f64, map: &ShootingMap| EdgeSample {
                 place,
                 tau: self.corner.tau,
                 load,
@@ -164,7 +164,7 @@ impl TipEdge {
     }
 
     /// Through what was `sampled` at the Lobatto nodes.
-    fn new(sampled: &Loads) -> Self {
+    fn new(sampled: &TipLoads) -> Self {
         let (tau, corner) = (sampled.corner.tau, sampled.corner.load);
         let numbers =
             |number: fn(&ShootingMap) -> f64| std::array::from_fn(|m| number(&sampled.maps[m]));
@@ -186,7 +186,7 @@ impl TipEdge {
     }
 
     /// Where `ln D` is `target` between two neighbouring samples.
-    pub fn predict(&self, pair: [&Sample; 2], target: f64) -> Prediction {
+    pub fn predict(&self, pair: [&EdgeSample; 2], target: f64) -> Prediction {
         let ends = pair.map(|sample| sample.place);
         let part = place_between(&self.ln_distance, ends, pair, target);
         Prediction {

@@ -40,8 +40,8 @@ const JUMP: f64 = 0.25;
 
 /// Whether the fold jumps between two nodes from one to the other of which `ln q` changes by `change`.
 pub fn jumps(change: f64, slopes: [f64; 2]) -> bool {
-    let astray = slopes.map(|slope| (change - slope).abs());
-    astray[0].max(astray[1]) >= JUMP
+    let misses = slopes.map(|slope| (change - slope).abs());
+    misses[0].max(misses[1]) >= JUMP
 }
 
 #[cfg(test)]

@@ -27,7 +27,7 @@ const BEYOND_TIP: usize = 1;
 const BEYOND_NEAREST: usize = 1;
 
 /// The longest way in `u` from the tip to the last node: the smallest `tau` is then below 1e-12 of the tip's.
-const LONGEST_WAY: f64 = 68.0;
+const LONGEST_RANGE: f64 = 68.0;
 
 /// The contact nodes, from the base outward.
 #[derive(Clone, Debug)]
@@ -77,8 +77,8 @@ fn folds_down_to(
         near
     };
     let reach = nearest.pole_distance - rod.pole.abs();
-    let way = (u_tip - u_of(rod, rod.tau(reach.min(1.0)))).min(LONGEST_WAY);
-    let count = (way / spacing) as usize + BEYOND_TIP + BEYOND_NEAREST + 2;
+    let range = (u_tip - u_of(rod, rod.tau(reach.min(1.0)))).min(LONGEST_RANGE);
+    let count = (range / spacing) as usize + BEYOND_TIP + BEYOND_NEAREST + 2;
     let taus: Vec<f64> = (0..count).map(&mut tau).collect();
     let folds = first_folds(method, rod, side, &taus);
     let mut folds: Vec<FoldPoint> = folds.into_iter().collect::<Option<_>>()?;

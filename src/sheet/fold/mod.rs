@@ -24,7 +24,7 @@ pub struct FoldPoint {
 }
 
 /// Samples of `q = |load| s^2` per round of the march; measured radii add their softness as a factor.
-const SAMPLES: usize = 11;
+const SAMPLES_PER_ROUND: usize = 11;
 
 /// Distance of the first samples: the second fold is farther from the first than this.
 const FIRST_SPACING: f64 = 0.75;
@@ -34,7 +34,7 @@ const FIRST_SPACING: f64 = 0.75;
 const SURELY_STABLE: f64 = 4.5;
 
 /// How much wider a bracket is than the samples say, relatively: their signs come from the coarse resolution.
-const SLACK: f64 = 1e-2;
+const BRACKET_SLACK: f64 = 1e-2;
 
 /// The last step toward the root between two samples, in parts of their distance: its square is left.
 const LAST_STEP_BETWEEN_SAMPLES: f64 = 1e-4;
@@ -66,11 +66,11 @@ pub fn first_folds(method: Method, rod: &Rod, side: Side, taus: &[f64]) -> Vec<O
     };
     let marched = march(method.coarsely(), rod, side, taus, begin);
     let mut folds = polish(method, rod, marched);
-    // With friction and a stiff tip the first fold can lie at `q` of 1000, where the coarse resolution is lost.
-    let lost: Vec<usize> = (0..taus.len()).filter(|&i| folds[i].is_none()).collect();
-    let again: Vec<f64> = lost.iter().map(|&i| taus[i]).collect();
+    // With friction and a stiff tip the first fold can lie at `q` of 1000, where the coarse resolution is failed.
+    let failed: Vec<usize> = (0..taus.len()).filter(|&i| folds[i].is_none()).collect();
+    let again: Vec<f64> = failed.iter().map(|&i| taus[i]).collect();
     let fine = polish(method, rod, march(method, rod, side, &again, 0.0));
-    for (i, fold) in lost.into_iter().zip(fine) {
+    for (i, fold) in failed.into_iter().zip(fine) {
         folds[i] = fold;
     }
     folds
@@ -78,7 +78,7 @@ pub fn first_folds(method: Method, rod: &Rod, side: Side, taus: &[f64]) -> Vec<O
 
 /// A contact, and the loads between which its `det` first falls below zero.
 #[derive(Clone, Copy, Debug)]
-struct Marched {
+struct FoldBracket {
     tau: f64,
     /// Of `-det`.
     loads: Bracket,
@@ -86,15 +86,21 @@ struct Marched {
 }
 
 /// Marches every contact out from `q = begin` until `det` has changed its sign; `None` also where that is not stable.
-fn march(method: Method, rod: &Rod, side: Side, taus: &[f64], begin: f64) -> Vec<Option<Marched>> {
-    struct March {
+fn march(
+    method: Method,
+    rod: &Rod,
+    side: Side,
+    taus: &[f64],
+    begin: f64,
+) -> Vec<Option<FoldBracket>> {
+    struct ContactMarch {
         index: usize,
         scale: f64,
         dets: Vec<f64>,
     }
     let mut found = vec![None; taus.len()];
-    let mut open: Vec<March> = (0..taus.len())
-        .map(|index| March {
+    let mut open: Vec<ContactMarch> = (0..taus.len())
+        .map(|index| ContactMarch {
             index,
             scale: side.sign() / (arclength(rod, taus[index]).powi(2) * rod.softness(taus[index])),
             dets: Vec::new(),
@@ -104,7 +110,7 @@ fn march(method: Method, rod: &Rod, side: Side, taus: &[f64], begin: f64) -> Vec
     while !open.is_empty() && samples.last().is_none_or(|q| *q < MARCH_END) {
         let from = samples.len();
         let first = samples.last().map_or(begin, |q| q + step);
-        samples.extend((0..SAMPLES).map(|i| step.mul_add(i as f64, first)));
+        samples.extend((0..SAMPLES_PER_ROUND).map(|i| step.mul_add(i as f64, first)));
         let conditions: Vec<InitialCondition> = open
             .iter()
             .flat_map(|m| samples[from..].iter().map(|q| (taus[m.index], q * m.scale)))
@@ -113,7 +119,7 @@ fn march(method: Method, rod: &Rod, side: Side, taus: &[f64], begin: f64) -> Vec
         let maps = Batch::new(method)
             .padded()
             .shoot::<ShootingMap>(&conditions);
-        let mut maps = maps.chunks(SAMPLES);
+        let mut maps = maps.chunks(SAMPLES_PER_ROUND);
         open.retain_mut(|march| {
             let shot = maps.next().unwrap_or_default();
             march.dets.extend(shot.iter().map(ShootingMap::det));
@@ -126,8 +132,8 @@ fn march(method: Method, rod: &Rod, side: Side, taus: &[f64], begin: f64) -> Vec
             let Some((at, _)) = pairs.into_iter().find(changed) else {
                 return true;
             };
-            let slack = SLACK * (samples[at + 1] - samples[at]);
-            found[march.index] = Some(Marched {
+            let slack = BRACKET_SLACK * (samples[at + 1] - samples[at]);
+            found[march.index] = Some(FoldBracket {
                 tau: taus[march.index],
                 loads: Bracket {
                     below: (samples[at] - slack) * march.scale,
@@ -138,7 +144,7 @@ fn march(method: Method, rod: &Rod, side: Side, taus: &[f64], begin: f64) -> Vec
             false
         });
         if samples[samples.len() - 1] >= EVEN_UP_TO {
-            step = samples[samples.len() - 1] / SAMPLES as f64;
+            step = samples[samples.len() - 1] / SAMPLES_PER_ROUND as f64;
         }
     }
     found
@@ -202,9 +208,9 @@ impl<'a> Problem<'a> for FoldProblem<'a> {
 }
 
 /// Solves `det(load) = 0` inside the brackets.
-fn polish(method: Method, rod: &Rod, marched: Vec<Option<Marched>>) -> Vec<Option<FoldPoint>> {
-    let found: Vec<Marched> = marched.iter().flatten().copied().collect();
-    let problem = |marched: &Marched| FoldProblem {
+fn polish(method: Method, rod: &Rod, marched: Vec<Option<FoldBracket>>) -> Vec<Option<FoldPoint>> {
+    let found: Vec<FoldBracket> = marched.iter().flatten().copied().collect();
+    let problem = |marched: &FoldBracket| FoldProblem {
         rod,
         loads: marched.loads,
     };
@@ -220,7 +226,7 @@ fn polish(method: Method, rod: &Rod, marched: Vec<Option<Marched>>) -> Vec<Optio
     let mut problems: Vec<FoldProblem> = found.iter().map(problem).collect();
     let starts = found.iter().map(|fold| DVec2::new(fold.tau, fold.guess));
     let mut iterates = newton.solve(&mut problems, starts).into_iter();
-    let mut fold = |_: Marched| {
+    let mut fold = |_: FoldBracket| {
         let iterate = iterates.next()?;
         let variation = iterate.state;
         // A bracket that closed on something else than a root, or did not close, is no fold.

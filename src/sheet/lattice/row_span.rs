@@ -13,7 +13,7 @@ use crate::shooting::contact::exp;
 
 /// Intervals between contact nodes over which one patch serves the loads of a row: one interval from its middle, interpolation is
 /// half as good.
-const SPAN: usize = 3;
+const PATCH_SPAN: usize = 3;
 
 /// The last Newton step toward the contact of a row, in contact nodes: its square is left, and interpolation leaves more than that.
 const LAST_CONTACT_STEP: f64 = 5e-5;
@@ -63,7 +63,7 @@ impl Lattice {
         while from < end {
             let [mut low, mut high] = [after[from]; 2];
             let mut to = from + 1;
-            while to < end && high.max(after[to]) - low.min(after[to]) < SPAN {
+            while to < end && high.max(after[to]) - low.min(after[to]) < PATCH_SPAN {
                 [low, high] = [low.min(after[to]), high.max(after[to])];
                 to += 1;
             }
