@@ -1,19 +1,20 @@
-//! Newton's method on many shooting problems at once: a round shoots one trajectory for each problem that is open.
+//! Newton's method for many shooting problems at once: a round shoots one trajectory for each open problem.
 //!
-//! The loop knows no sheet, no edge and no level curve. A [`Problem`] proposes steps and says when a state solves it. The loop gathers the
-//! initial conditions, keeps the iterates, extrapolates short last steps, bounds the number of trajectories and names the outcome.
+//! The loop is independent of sheets, edges and level curves. A [`Problem`] proposes steps and accepts a state as its solution. The loop
+//! gathers the initial conditions, stores the iterates, extrapolates short last steps, limits the number of trajectories and returns the
+//! outcome.
 
 use crate::rod::Rod;
 use crate::shooting::batch::{Batch, InitialCondition, Method, OutputSet};
 use crate::shooting::{FirstVariation, FullState, SecondVariation};
 use glam::DVec2;
 
-/// What a problem makes of the trajectory at an iterate.
+/// What follows from the trajectory at an iterate.
 #[derive(Clone, Copy, Debug)]
 pub enum NewtonStep {
     /// The state at the iterate solves the problem.
     Accept,
-    /// The state after this step in `(tau, load)` solves it. The step is so short that its end is extrapolated, not integrated.
+    /// The state after this step in `(tau, load)` solves the problem. The step is so short that its end is extrapolated, not integrated.
     Extrapolate(DVec2),
     /// The next trajectory starts at this `(tau, load)`.
     Shoot(DVec2),
@@ -21,27 +22,27 @@ pub enum NewtonStep {
     Fail,
 }
 
-/// A root to find in the plane of contact and load.
+/// Root-finding problem in the plane of contact and load.
 pub trait Problem<'a> {
-    /// What a trajectory computes.
+    /// Output of a trajectory.
     type Output: Extrapolate;
 
-    /// The rod that is shot.
+    /// Returns the rod whose trajectories are computed.
     fn rod(&self) -> &'a Rod;
 
     /// Decides what follows from the trajectory `here`, which starts at `at = (tau, load)`.
     fn step(&mut self, at: DVec2, here: &Self::Output) -> NewtonStep;
 }
 
-/// An output of trajectories whose state can be extrapolated.
+/// Output of a trajectory from which nearby states can be extrapolated.
 pub trait Extrapolate: OutputSet {
-    /// The state that an iterate keeps.
+    /// State stored in an iterate.
     type State: Copy + Default;
 
-    /// The state at the trajectory's initial condition.
+    /// Returns the state at the trajectory's initial condition.
     fn state(&self) -> Self::State;
 
-    /// The state after `step` in `(tau, load)`.
+    /// Returns the extrapolated state after `step` in `(tau, load)`.
     fn state_after(&self, step: DVec2) -> Self::State;
 }
 
@@ -69,58 +70,58 @@ impl Extrapolate for SecondVariation {
     }
 }
 
-/// How an iteration ended.
+/// Outcome of an iteration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NewtonOutcome {
-    /// The last trajectory's state, or its extrapolation, solves the problem.
+    /// The state of the last trajectory, or its extrapolation, solves the problem.
     Converged,
-    /// The trajectories allowed did not suffice.
+    /// The iteration reached the limit on trajectories.
     OutOfTrajectories,
     /// A step led to a number that is not finite, or to `tau <= 0`.
     OutsideDomain,
-    /// The problem gave up.
+    /// The problem returned [`NewtonStep::Fail`].
     Failed,
 }
 
-/// The last iterate of a problem.
+/// Last iterate of a problem.
 #[derive(Clone, Copy, Debug)]
 pub struct Iterate<S> {
-    /// `(tau, load)`.
+    /// Contact coordinate and signed load, `(tau, load)`.
     pub point: DVec2,
-    /// The state there.
+    /// State at `point`.
     pub state: S,
-    /// Steps taken, the extrapolated one included.
+    /// Number of Newton steps, including the extrapolated one.
     pub steps: u32,
-    /// How the iteration ended.
+    /// Outcome of the iteration.
     pub outcome: NewtonOutcome,
 }
 
-/// Which trajectories share blocks of lanes.
+/// Rule for which trajectories share a block of SIMD lanes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sharing {
-    /// Trajectories of equal steps only: no result depends on the other problems.
+    /// Only trajectories with the same number of steps share a block. Results do not depend on the other problems.
     EqualSteps,
-    /// All open problems, in padded blocks ([`Batch::padded`]).
+    /// All open problems share padded blocks ([`Batch::padded`]).
     Open,
-    /// All problems in padded blocks, solved ones included, so that blocks take as many steps in every round.
+    /// All problems share padded blocks, including solved ones, so that blocks take the same number of steps in every round.
     All,
 }
 
-/// The loop.
+/// Newton loop over a batch of problems: method, sharing of lanes and limits.
 #[derive(Clone, Copy, Debug)]
 pub struct BatchNewton {
-    /// How trajectories are integrated.
+    /// Integration method of the trajectories.
     pub method: Method,
-    /// Which trajectories share blocks.
+    /// Rule for sharing blocks of lanes.
     pub sharing: Sharing,
-    /// Rounds at the coarse resolution, which come first and accept no state.
+    /// Number of initial rounds at the coarse resolution, in which no state is accepted.
     pub coarse_rounds: u32,
-    /// Most trajectories of a problem.
+    /// Maximum number of trajectories for each problem.
     pub most_trajectories: u32,
 }
 
 impl BatchNewton {
-    /// At most `most_trajectories` for each problem by `method`; no result depends on the other problems.
+    /// Creates a loop with at most `most_trajectories` for each problem by `method`. Results do not depend on the other problems.
     pub const fn new(method: Method, most_trajectories: u32) -> Self {
         Self {
             method,
@@ -130,7 +131,8 @@ impl BatchNewton {
         }
     }
 
-    /// Iterates each of the `problems` from its start in `(tau, load)`, on this thread unless blocks are padded.
+    /// Iterates each of the `problems` from its start in `(tau, load)`, on the calling thread unless blocks are padded. Returns one
+    /// iterate for each problem, in the same order.
     pub fn solve<'a, P: Problem<'a>>(
         &self,
         problems: &mut [P],
@@ -195,7 +197,7 @@ impl BatchNewton {
         iterates
     }
 
-    /// Shoots `conditions` and passes the index and the output of each to `take`, in any order.
+    /// Shoots `conditions` and passes the index and output of each trajectory to `take`, in any order.
     fn shoot<O: OutputSet>(
         &self,
         is_coarse: bool,

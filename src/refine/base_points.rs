@@ -1,7 +1,7 @@
-//! Base points of rows: exact states along a row, beside which an engine integrates cells as differences.
+//! Base points of rows: exact states along a row, relative to which an engine integrates cells as differences.
 //!
-//! They lie at Chebyshev points of the row parameter `w`, from first touch to the end of the row. The numbers of a state that are analytic
-//! along the row are known between them by their Chebyshev expansion, which is passed on as Taylor polynomials around each base point.
+//! They lie at Chebyshev points of the row parameter `w`, from first touch to the end of the row. Between them, a Chebyshev expansion
+//! gives the components of the state that are analytic along the row. Each base point carries it as Taylor polynomials around itself.
 
 use super::row_states::{ExactState, RowState, row_states};
 use crate::engine::{BasePoint, MOST_TRAJECTORY_STEPS, RowTerms};
@@ -12,10 +12,10 @@ use crate::sheet::{RowSpan, Sheet};
 use crate::shooting::batch::Method;
 use rayon::prelude::*;
 
-/// Base points of a row: as many as polynomials are expanded around side by side.
+/// Number of base points of a row: as many as polynomials are expanded around side by side.
 pub const NODES: usize = WIDTH;
 
-/// The cells of a row for an engine.
+/// Cells of one row for an engine.
 #[derive(Clone, Copy, Debug)]
 pub struct RowOfCells<'a> {
     /// Index of the sheet.
@@ -24,12 +24,14 @@ pub struct RowOfCells<'a> {
     pub row: usize,
     /// Push angles: growing magnitudes, in radians.
     pub pushes: &'a [f64],
-    /// The index of the first of them among those of the call.
+    /// Index of the row's first cell among all cells of the call.
     pub first: u32,
 }
 
-/// The base points of every row, for its cells from first touch on. There are none where the row has no span from first touch, where a
-/// trajectory takes more than [`MOST_TRAJECTORY_STEPS`], and for rows with fewer cells than base points.
+/// Returns the base points of each row, `[row][base point]`, for its cells from first touch on.
+///
+/// A row has none if it has no span from first touch, if a trajectory takes more than [`MOST_TRAJECTORY_STEPS`], or if it has fewer cells
+/// than base points.
 #[must_use]
 pub fn base_points(method: Method, sheets: &[&Sheet], rows: &[RowOfCells]) -> Vec<Vec<BasePoint>> {
     let wanted = rows.par_iter().map(|row| {
@@ -60,12 +62,12 @@ pub fn base_points(method: Method, sheets: &[&Sheet], rows: &[RowOfCells]) -> Ve
     expanded.map(Option::unwrap_or_default).collect()
 }
 
-/// The span of a row from first touch to a sound end.
+/// Span of a row from first touch to a sound end.
 struct SpanFromTouch<'a> {
     sheet: &'a Sheet,
     row: usize,
     span: RowSpan,
-    /// Signed row parameter at the end.
+    /// Signed row parameter `load tau^2` at the end.
     w_end: f64,
 }
 
@@ -84,7 +86,7 @@ impl<'a> SpanFromTouch<'a> {
         })
     }
 
-    /// The states at the Chebyshev points of the row parameter.
+    /// Returns approximate states at the Chebyshev points of the row parameter.
     fn states(&self) -> [RowState<'a>; NODES] {
         let points = chebyshev_points(NODES);
         std::array::from_fn(|m| {
@@ -100,7 +102,7 @@ impl<'a> SpanFromTouch<'a> {
     }
 }
 
-/// Base points at the states `found` of a row, each with its cells.
+/// Returns the base points at the states `found` of a row, each with the cells nearest to it.
 fn expand(sheet: &Sheet, row: &RowOfCells, w_end: f64, found: &[ExactState]) -> Vec<BasePoint> {
     let last = sheet.crossings[row.row][0].push;
     let sign = sheet.side.sign();

@@ -1,8 +1,7 @@
-//! Refinement: Newton's method in `f64` from the lattice's guesses, and the verdict.
+//! Refinement: Newton's method in `f64` from the guesses for cells, and the outcome of each cell.
 //!
-//! "Newton converged" is not "still on the pole": a solution counts only on the stable sheet. Where Newton's
-//! method fails, the fold at the same distance decides: either the wanted direction lies beyond it, or the
-//! fold's normal form gives the start that Newton's method needs.
+//! A converged solution counts only on the stable sheet. Where Newton's method fails, the fold at the same distance decides: either the
+//! target direction lies beyond it, or the fold's normal form gives a better start.
 
 mod base_points;
 mod near_fold;
@@ -25,30 +24,30 @@ pub const GOAL: f64 = 1e-12;
 /// Residual, in whisker lengths, up to which a state is accepted when steps no longer help.
 pub const TOLERANCE: f64 = 1e-11;
 
-/// Contacts closer to the tip than this, relative to `tau` there, or than the residual, count as at the tip.
+/// Relative difference of `tau` from the tip's within which a contact counts as at the tip, in addition to the residual.
 const TIP_TIE: f64 = 1e-12;
 
-/// Newton steps before the fold is asked.
+/// Maximum number of Newton steps before the fold is computed.
 const STEPS: u32 = 8;
 
-/// Newton steps from the fold's normal form.
+/// Maximum number of Newton steps from the fold's normal form.
 const STEPS_NEAR_FOLD: u32 = 30;
 
-/// A shooting problem.
+/// Target of Newton's method for one cell: a guess and the pole to reach.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CellTarget {
-    /// Which of the rods of the call.
+    /// Index of the rod and its sheet in the call.
     pub rod: u32,
-    /// Guess for `tau` of the contact.
+    /// Guess for the contact coordinate `tau`.
     pub tau: f64,
     /// Guess for the signed load `f/rho^2`.
     pub load: f64,
-    /// Wanted centre of the pole in the frame of the base, in whisker lengths.
+    /// Target centre of the pole in the frame of the base, in whisker lengths.
     pub pole: DVec2,
 }
 
 impl CellTarget {
-    /// Where Newton's method starts.
+    /// Returns the start of Newton's method.
     #[must_use]
     pub const fn guess(&self) -> Guess {
         Guess {
@@ -58,19 +57,19 @@ impl CellTarget {
     }
 }
 
-/// What became of a cell.
+/// Refined cell: its last state and the outcome.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Refined {
-    /// The last state computed.
+    /// Last state computed.
     pub state: ContactState,
-    /// Newton steps taken here.
+    /// Number of Newton steps taken.
     pub steps: u32,
-    /// The verdict.
+    /// Outcome of the refinement.
     pub outcome: RefineOutcome,
 }
 
 impl Default for Refined {
-    /// Nothing computed yet.
+    /// Returns a cell for which nothing is computed yet: contact and load are NaN, and the residual is infinite.
     fn default() -> Self {
         Self {
             state: ContactState {
@@ -85,22 +84,21 @@ impl Default for Refined {
     }
 }
 
-/// A state of the whisker.
+/// State of the whisker at a contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactState {
-    /// `tau` of the contact.
+    /// Contact coordinate `tau`.
     pub tau: f64,
-    /// Signed load.
+    /// Signed load `f/rho^2`.
     pub load: f64,
-    /// Everything else.
+    /// Pole, shape and derivatives of the state.
     pub full: FullState,
-    /// Distance of the pole from the wanted place, in whisker lengths; a bound on it where the last step was so short that no
-    /// trajectory followed it.
+    /// Distance of the pole from its target, in whisker lengths; an upper bound if the last step is extrapolated.
     pub residual: f64,
 }
 
 impl ContactState {
-    /// Whether the contact is at the tip of the rod of `sheet`, as far as residual and resolution tell.
+    /// Returns true if the contact is at the tip of the rod of `sheet`, to the accuracy of residual and resolution.
     #[must_use]
     pub fn is_at_tip(&self, sheet: &Sheet) -> bool {
         let [tau, radius] = sheet.tip;
@@ -108,20 +106,21 @@ impl ContactState {
     }
 }
 
-/// The verdict on a cell.
+/// Outcome of the refinement of a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RefineOutcome {
-    /// A stable state.
+    /// Stable state.
     Solved,
-    /// A stable state of a longer whisker: the contact lies beyond the tip.
+    /// Stable state of a longer whisker: the contact lies beyond the tip.
     BeyondTip,
-    /// The wanted direction lies beyond the fold.
+    /// No state: the target direction lies beyond the fold.
     BeyondFold,
     /// Neither a state nor a proof that there is none.
     NotConverged,
 }
 
-/// Refines `starts` by `method` toward `targets`, each on the sheet `sheets[target.rod]`.
+/// Refines `starts`, pairs `(tau, load)`, by `method` toward `targets`, each on the sheet `sheets[target.rod]`. Returns one cell for each
+/// target.
 #[must_use]
 pub fn refine(
     method: Method,
@@ -169,8 +168,8 @@ fn refine_chunk(
     }
 }
 
-/// Shots from the lattice's guesses at those of the signed push angles that are on the side of `sheet`, row by row, by growing
-/// magnitude of the push angle; `rod` is the index of the sheet's.
+/// Returns the targets of the cells of `sheet` at those of the signed push angles, in degrees, that are on its side. They are sorted by
+/// row, then by magnitude of the push angle; `rod` is the index of the sheet's rod.
 #[must_use]
 pub fn cell_targets(sheet: &Sheet, rod: u32, pushes_deg: &[f64]) -> Vec<CellTarget> {
     let sign = sheet.side.sign();
@@ -192,7 +191,7 @@ pub fn cell_targets(sheet: &Sheet, rod: u32, pushes_deg: &[f64]) -> Vec<CellTarg
     targets
 }
 
-/// The states of `sheet` at those of the signed push angles that are on its side, with what they were aimed at.
+/// Returns the stable states of `sheet` with their targets, for those of the signed push angles, in degrees, that are on its side.
 #[must_use]
 pub fn states(
     method: Method,

@@ -1,8 +1,7 @@
 //! Cells next to the fold, where Newton's method has a singular Jacobian.
 //!
-//! Along the level curve of `D` the direction of the pole has its maximum at the fold,
-//! `phi = phi_fold - c eta^2/2`. So the fold at the wanted distance tells whether the wanted direction has a
-//! solution at all, and `eta` where it is.
+//! Along the level curve of `D` the direction of the pole has its maximum at the fold, `phi = phi_fold - c eta^2/2`. So the fold at the
+//! target distance decides whether the target direction has a solution, and gives its `eta`.
 
 use super::CellTarget;
 use crate::numerics::nearest_turn;
@@ -11,18 +10,18 @@ use crate::shooting::SecondVariation;
 use crate::shooting::batch::Method;
 use glam::DVec2;
 
-/// What the fold says about a cell.
+/// What follows from the fold for a cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum FoldVerdict {
-    /// No solution: the wanted direction lies beyond the fold.
+    /// No solution: the target direction lies beyond the fold.
     Beyond,
-    /// Newton's method should start at this `(tau, load)`.
+    /// Newton's method starts again at this `(tau, load)`.
     Start(DVec2),
     /// The fold was not found.
     Unknown,
 }
 
-/// Finds, for every target, the fold at its distance, from its own guess, and compares.
+/// Finds the fold at the distance of each target, from the target's guess, and compares directions. Returns one verdict for each target.
 pub fn decide(method: Method, sheets: &[&Sheet], targets: &[CellTarget]) -> Vec<FoldVerdict> {
     let problems: Vec<EdgeProblem> = targets
         .iter()
@@ -48,7 +47,7 @@ pub fn decide(method: Method, sheets: &[&Sheet], targets: &[CellTarget]) -> Vec<
         .collect()
 }
 
-/// The fold `here`, at `point`, against the wanted direction.
+/// Compares the fold `here`, at `point`, with the target direction.
 fn compare(
     sheet: &Sheet,
     target: &CellTarget,
@@ -63,7 +62,7 @@ fn compare(
     // Along the level curve of ln D, from the fold toward the stable side; `det` grows from 0 there.
     let along = DVec2::new(here.map.by_load.x, -here.map.by_tau.x);
     let det_slope = here.det_gradient().dot(along);
-    // dphi/deta = -det, with eta counted in units of `along`.
+    // dphi/deta = -det, with eta in units of `along`.
     let eta = det_slope.signum() * (2.0 * left / det_slope.abs()).sqrt();
     FoldVerdict::Start(point + eta * along)
 }

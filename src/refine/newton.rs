@@ -1,4 +1,4 @@
-//! Newton's method on many cells at once, and when it may stop.
+//! Newton's method for many cells at once, and its stopping criteria.
 
 use super::{CellTarget, ContactState, GOAL, RefineOutcome, Refined, TOLERANCE};
 use crate::newton::{BatchNewton, NewtonOutcome, NewtonStep, Problem};
@@ -8,34 +8,33 @@ use crate::shooting::batch::Method;
 use crate::shooting::{FirstVariation, limited};
 use glam::DVec2;
 
-/// The longest Newton step, as [`limited`] measures it, at whose end the state is extrapolated instead of integrated.
+/// Longest Newton step, as [`limited`] measures it, at whose end the state is extrapolated instead of integrated.
 const EXTRAPOLATED_STEP: f64 = 1.5e-7;
 
-/// The residual after such a step is at most this times `length^2 (s + D)`, with the contact's arclength `s` and the pole's
-/// distance `D`. Measured on 400,000 random states: at most 16.3, for 99 % of them at most 4.6. Their ranges: taper up to
-/// 0.995, `A*` up to 1.5, poles up to a tenth of the length, friction up to 1, moduli from a tenth to ten times, loads up
-/// to [`LARGEST_Q`].
+/// Bound on the residual after such a step, in units of `length^2 (s + D)`, with the contact's arclength `s` and the pole's distance `D`.
+/// Measured on 400,000 random states: at most 16.3, for 99 % of them at most 4.6. Their ranges: taper up to 0.995, `A*` up to 1.5, poles
+/// up to a tenth of the length, friction up to 1, moduli from a tenth to ten times, loads up to [`LARGEST_Q`].
 const LEFT_BY_STEP: f64 = 20.0;
 
-/// The largest `|load| s^2` of that measurement, with measured radii times their softness; beyond, a whisker coils up.
+/// Largest `|load| s^2` for which [`LEFT_BY_STEP`] is measured, with measured radii times their softness. Beyond it, a whisker coils up.
 const LARGEST_Q: f64 = 12.0;
 
-/// What rounding may add; on the shipped scenes at most 3.1e-14 (`tests/variations.rs`).
+/// Bound on the rounding error of the residual, in whisker lengths; on the shipped scenes it is at most 3.1e-14 (`tests/variations.rs`).
 const ROUNDING: f64 = 6e-14;
 
-/// Where the Jacobian's determinant, over the lengths of its columns, is larger than this, such a step cannot cross the fold.
+/// Jacobian determinant, relative to the lengths of its columns, above which an extrapolated step cannot cross the fold.
 const CLEAR_OF_FOLD: f64 = 1e-5;
 
-/// Derivatives are good enough to extrapolate from this [`Resolution::least`](crate::shooting::Resolution::least) on.
+/// Minimum [`Resolution::least`](crate::shooting::Resolution::least) at which derivatives are accurate enough for extrapolation.
 const LEAST_STEPS: u32 = 5;
 
-/// The state of a whisker whose pole is where a target wants it.
+/// Newton problem of a cell: the state whose pole is at the target.
 struct CellProblem<'a> {
     sheet: &'a Sheet,
     pole: DVec2,
-    /// Whether derivatives are good enough to extrapolate from them.
+    /// True if derivatives are accurate enough for extrapolation.
     may_extrapolate: bool,
-    /// How far the last iterate misses the pole, in whisker lengths; a bound where it is extrapolated.
+    /// Distance of the last iterate's pole from the target, in whisker lengths; an upper bound if it is extrapolated.
     residual: f64,
 }
 
@@ -76,7 +75,8 @@ impl<'a> Problem<'a> for CellProblem<'a> {
     }
 }
 
-/// Newton's method with at most `most` steps for each of the `open` cells: its index, and where it starts.
+/// Applies Newton's method with at most `most` steps to each of the `open` cells, given by index and start `(tau, load)`. Writes the
+/// results into `cells`.
 pub fn newton(
     method: Method,
     sheets: &[&Sheet],
@@ -112,13 +112,13 @@ pub fn newton(
     }
 }
 
-/// What is different from the cone with measured radii.
+/// Difference of a rod with measured radii from the cone.
 struct ConeDeviation {
-    /// How many times as far the rod turns under a small load, but at least once.
+    /// Ratio of the rod's rotation under a small load to the cone's, at least 1.
     softness: f64,
-    /// How many times as much a step leaves: the second derivatives go with the square of the softness, and with the compliance at the
-    /// contact. Measured on 137,000 random states of rods of up to 200 rows, with radii of a thousandth to one and a half times the
-    /// cone's, moduli, friction and loads as for [`LEFT_BY_STEP`]: without the margin, one left 1.02 times as much.
+    /// Ratio of the residual that a step leaves to the cone's. Second derivatives grow with the square of the softness, and with the
+    /// compliance at the contact. Measured on 137,000 random states of rods of up to 200 rows, with radii of a thousandth to one and a
+    /// half times the cone's, moduli, friction and loads as for [`LEFT_BY_STEP`]: without the margin, one state left 1.02 times as much.
     left: f64,
 }
 
@@ -128,7 +128,7 @@ impl ConeDeviation {
         left: 1.0,
     };
 
-    /// Of `rod` with its contact at `tau`, which is the arclength `s`.
+    /// Computes the difference of `rod` with its contact at `tau`, which is the arclength `s`.
     fn new(rod: &Rod, tau: f64, s: f64) -> Self {
         const MARGIN: f64 = 1.5;
         if rod.profile.is_none() {
@@ -143,8 +143,8 @@ impl ConeDeviation {
     }
 }
 
-/// How far a state may be from its guess where a sheet has no samples that tell one branch from another, in parts of what changes
-/// everything: a tenth of the way from node to node of a continuation.
+/// Largest distance of a state from its guess where a sheet has no samples that distinguish branches, relative to the scale of contact
+/// and load. It is a tenth of the distance between nodes of a continuation.
 const NEAR_GUESS: f64 = 0.005;
 
 fn is_near(guess: Guess, state: &ContactState, s: f64) -> bool {
@@ -153,7 +153,7 @@ fn is_near(guess: Guess, state: &ContactState, s: f64) -> bool {
         && (state.load - guess.load).abs() <= NEAR_GUESS * per_load
 }
 
-/// Whether a converged state counts.
+/// Returns the outcome of a converged state: it counts only on the sheet, and near its guess where the sheet is followed by continuation.
 pub fn verdict(sheet: &Sheet, guess: Guess, state: &ContactState) -> RefineOutcome {
     let s = arclength(&sheet.rod, state.tau);
     let is_elsewhere = sheet.is_continued() && !is_near(guess, state, s);

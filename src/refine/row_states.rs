@@ -1,7 +1,7 @@
-//! Exact states at given row parameters: where a row of constant distance `D` meets `load tau^2 = w`.
+//! Exact states at given row parameters: the points at which a row of constant distance `D` meets `load tau^2 = w`.
 //!
-//! Contact and load are the unknowns of `ln D(tau, load) = ln D_row` and `load tau^2 = w`. Along a stable row `w` grows through the fold,
-//! so that the Jacobian is regular there, too.
+//! Contact and load are the unknowns of `ln D(tau, load) = ln D_row` and `load tau^2 = w`. Along a stable row, `w` grows through the
+//! fold, so the Jacobian is regular there, too.
 
 use super::newton::verdict;
 use super::{ContactState, RefineOutcome};
@@ -13,34 +13,34 @@ use crate::shooting::{FirstVariation, limited};
 use glam::DVec2;
 use rayon::prelude::*;
 
-/// A state of a row to find.
+/// State of a row to find.
 #[derive(Clone, Copy, Debug)]
 pub struct RowState<'a> {
-    /// The whisker side.
+    /// Sheet of the whisker side.
     pub sheet: &'a Sheet,
-    /// Index of the row.
+    /// Index of the row in the sheet.
     pub row: usize,
     /// Signed row parameter `load tau^2`.
     pub w: f64,
-    /// A contact nearby; the load follows from `w`.
+    /// Contact coordinate `tau` near the state; the load follows from `w`.
     pub tau: f64,
 }
 
-/// A state, exact but for rounding.
+/// State that is exact to rounding.
 #[derive(Clone, Copy, Debug)]
 pub struct ExactState {
-    /// `tau` of the contact.
+    /// Contact coordinate `tau`.
     pub tau: f64,
-    /// Signed load.
+    /// Signed load `f/rho^2`.
     pub load: f64,
-    /// The state, with the derivatives of the last trajectory.
+    /// State, with the derivatives of the last trajectory.
     pub variation: FirstVariation,
 }
 
-/// The longest Newton step whose end is extrapolated. What it leaves is below rounding: all cells of a base point inherit it.
+/// Longest Newton step whose end is extrapolated. The error it leaves is below rounding: all cells of a base point inherit it.
 const EXTRAPOLATED_ROW_STEP: f64 = 3e-8;
 
-/// Most trajectories of a state.
+/// Maximum number of trajectories for each state.
 const ROW_STATE_TRAJECTORIES: u32 = 8;
 
 struct RowProblem<'a> {
@@ -78,7 +78,7 @@ impl<'a> Problem<'a> for RowProblem<'a> {
     }
 }
 
-/// Finds the `states`; `None` where Newton's method fails, or leads off the stable sheet.
+/// Finds the `states`, one result for each. A result is `None` where Newton's method fails, or leads off the stable sheet.
 pub fn row_states(method: Method, states: &[RowState]) -> Vec<Option<ExactState>> {
     let chunks = states.par_chunks(chunk_size(states.len()));
     chunks

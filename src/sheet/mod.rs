@@ -1,13 +1,13 @@
-//! The stable sheet: where all the physics of a whisker on one side of a pole lives.
+//! The stable sheet: all stable states of one whisker on one side of a pole.
 //!
-//! The stable states form a rectangle in (contact, load) with the edges touch (no load), tip, fold (first
-//! singular Jacobian) and base; its image in (distance, direction of the pole) is simple. So the edges alone
-//! give the exact boundary of a regime map ([`Sheet::crossings`]). A lattice of trajectories over the rectangle
-//! gives every cell of the map a guess, or the certainty that it has no solution ([`Sheet::guesses`]). The two
-//! are computed independently of each other.
+//! In the plane of contact and load, the stable states form a rectangle. Its edges are touch (no load), tip, fold (first singular
+//! Jacobian) and base. The image of the rectangle in (distance, direction of the pole) does not overlap itself. So the edges alone give
+//! the exact boundary of a regime map ([`Sheet::crossings`]). A lattice of trajectories over the rectangle gives each cell of the map a
+//! Newton start, or shows that the cell has no solution ([`Sheet::guesses`]). Crossings and guesses are computed independently of each
+//! other.
 //!
-//! In the order of work: `fold/` finds the first folds of sampled contacts, `lattice/` makes guesses, `edges/`
-//! decides where a row leaves the sheet. `continuation/` follows a row from state to state where these do not suffice.
+//! `fold/` finds the first folds of sampled contacts, `lattice/` makes guesses, and `edges/` computes where a row leaves the sheet.
+//! `continuation/` follows a row from state to state where the lattice or the edges are not certified.
 
 mod certificate;
 mod continuation;
@@ -35,45 +35,45 @@ use lattice::Lattice;
 use rayon::prelude::*;
 use std::borrow::Cow;
 
-/// How far below zero the load of an unloaded whisker may come out, relative to the fold's: at the soft tip of a
-/// strongly curved cone the rounding of first touch (1e-13 of the length) is a load of 1e-8.
+/// Largest negative load, relative to the fold load, that counts as unloaded. At the soft tip of a strongly curved cone, rounding of
+/// first touch (1e-13 of the length) is a load of 1e-8.
 const UNLOADED: f64 = 1e-6;
 
-/// How many of some `rows` are continued together: few enough that every thread has some, so many that lanes are full, though walks end at
-/// different times. No answer depends on it.
+/// Number of rows, of `rows` in total, that one batch of continuations follows: 32 to 128. Each thread gets a batch, and lanes stay full
+/// although continuations end at different times. Results do not depend on it.
 pub fn rows_per_batch(rows: usize) -> usize {
     rows.div_ceil(rayon::current_num_threads()).clamp(32, 128)
 }
 
-/// The sheet of one whisker on one side, with the rows of a map.
+/// The stable sheet of one whisker on one side of the pole, with the rows of a map.
 #[derive(Clone, Debug)]
 pub struct Sheet {
-    /// The whisker and its pole.
+    /// Whisker and pole.
     pub rod: Rod,
-    /// The side.
+    /// Whisker side.
     pub side: Side,
-    /// `tau` and radius over the base radius at the tip.
+    /// Tip of the whisker: `[tau, radius / base radius]`.
     pub tip: [f64; 2],
-    /// The rows.
+    /// Rows of the map, one for each distance.
     pub rows: Vec<Row>,
-    /// Per row: where it leaves and enters the sheet. The end of a push from first touch comes first, if there is one;
-    /// then the ends of each other piece of the row, in the direction of growing push angles; at last the unknown one, if a piece was
-    /// lost.
+    /// Crossings of the sheet's edges, `[row][crossing]`. The end of a push from first touch comes first, if the row has one. The ends of
+    /// every other piece follow, in the direction of growing push angles. An unknown crossing ([`Crossing::unknown`]) comes last if the
+    /// continuation of a piece failed.
     pub crossings: Vec<Vec<Crossing>>,
     method: Method,
     guesses: Guesses,
 }
 
-/// Where guesses come from.
+/// Source of the guesses for cells.
 #[derive(Clone, Debug)]
 enum Guesses {
-    /// SheetSamples that show all of the sheet.
+    /// Certified samples of the whole sheet.
     Sampled(Box<SheetSamples>),
-    /// Its rows, continued because no samples do; piece by piece.
+    /// Spans made by continuation, `[row][piece]`; the samples are missing or not certified.
     Continued(Vec<Vec<RowSpan>>),
 }
 
-/// A sheet, sampled.
+/// Samples of the sheet: contact nodes, lattice and edges.
 #[derive(Clone, Debug)]
 struct SheetSamples {
     contacts: ContactNodes,
@@ -82,7 +82,8 @@ struct SheetSamples {
 }
 
 impl SheetSamples {
-    /// The samples down to the row `nearest` to the base; `None` if some contact has no fold, or no stable state at first touch.
+    /// Samples the sheet from the tip down to the row `nearest` to the base. Returns `None` if some contact has no fold, or no stable
+    /// state at first touch.
     fn new(method: Method, rod: &Rod, side: Side, nearest: &Row, spacing: f64) -> Option<Self> {
         let contacts = ContactNodes::new(method, rod, side, nearest, spacing)?;
         let lattice = Lattice::new(method.coarsely(), rod, side, &contacts);
@@ -100,7 +101,7 @@ impl SheetSamples {
 }
 
 impl Sheet {
-    /// The sheet of `rod`, computed by `method`, for rows at these distances (first touch, in whisker lengths).
+    /// Computes the sheet of `rod` by `method` for rows at `distances` (at first touch, in whisker lengths).
     #[must_use]
     pub fn new(method: Method, rod: &Rod, side: Side, distances: &[f64]) -> Self {
         let rest = Rest::new(rod);
@@ -186,38 +187,38 @@ impl Sheet {
         }
     }
 
-    /// The fold with the contact at the tip, where slip-off turns into pull-off; `None` if it is not found.
+    /// Returns the fold with the contact at the tip, where slip-off turns into pull-off. Returns `None` if it is not found.
     #[must_use]
     pub fn fold_at_tip(method: Method, rod: &Rod, side: Side) -> Option<FoldPoint> {
         fold::first_folds(method, rod, side, &[rod.tau_tip()]).pop()?
     }
 
-    /// Whether samples do not show all of it, so that its rows are continued.
+    /// Returns true if all rows are followed by continuation, because the samples of the sheet are not certified.
     #[must_use]
     pub fn is_continued(&self) -> bool {
         self.samples().is_none()
     }
 
-    /// The level curve of `row`.
+    /// Returns the level curve `D = const` of the row with index `row`.
     #[must_use]
     pub fn level(&self, row: usize) -> LevelCurve {
         LevelCurve::new(self.method, &self.rod, self.side, &self.rows[row])
     }
 
-    /// Whether the whisker at rest reaches the pole of `row`.
+    /// Returns true if the resting whisker reaches the pole of `row`.
     #[must_use]
     pub fn touches(&self, row: usize) -> bool {
         self.rows[row].is_reached()
     }
 
-    /// How far from the tip, in `tau`, the integration cannot tell a contact from one at the tip.
+    /// Distance from the tip, in `tau`, within which the integration cannot distinguish a contact from one at the tip.
     #[must_use]
     pub fn tip_blur(&self) -> f64 {
         self.samples()
             .map_or(0.0, |samples| 2.0 * samples.edges.tip_error)
     }
 
-    /// The stable pieces of `row`: from the lattice, where that is certified, else from the row's continuation.
+    /// Returns the stable pieces of `row`: from the certified lattice, or else from the row's continuation.
     #[must_use]
     pub fn spans(&self, row: usize) -> Cow<'_, [RowSpan]> {
         match &self.guesses {
@@ -231,7 +232,8 @@ impl Sheet {
         }
     }
 
-    /// Guesses for the cells of `row` at growing `pushes` (magnitudes, in radians); `None` outside the sheet.
+    /// Returns a Newton start for each cell of `row`, one for each of the growing `pushes` (magnitudes, in radians). An entry is `None`
+    /// outside the sheet.
     pub fn guesses(
         &self,
         row: usize,
@@ -250,8 +252,7 @@ impl Sheet {
         guesses
     }
 
-    /// Whether a state, as far as the fold goes, is on the sheet: loaded toward the pole, on the stable side of
-    /// the Jacobian's first singularity.
+    /// Returns true if a state is on the sheet: loaded toward the pole, and on the stable side of the Jacobian's first singularity.
     #[must_use]
     pub fn is_stable(&self, tau: f64, load: f64, map: &ShootingMap) -> bool {
         let load = self.side.sign() * load;

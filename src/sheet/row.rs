@@ -1,28 +1,28 @@
-//! A row of a map: a distance at first touch, where the pole stands for it, and where the row leaves the stable sheet.
+//! Rows of a map, each at one distance, and the crossings at which they leave the stable sheet.
 
 use crate::rod::{Rest, Rod};
 use crate::shooting::ShootingMap;
 use glam::DVec2;
 
-/// First touch this far beyond the tip, in whisker lengths, still counts as at it: the rounding of a distance in
-/// millimetres, of its division by the length and of the rest shape stay a hundred times below.
+/// Distance beyond the tip, in whisker lengths, within which first touch counts as at the tip. Rounding of a distance in millimetres, of
+/// its division by the length and of the rest shape is a hundred times smaller.
 pub const REACH_SLACK: f64 = 1e-12;
 
-/// One distance of a map for one whisker and side; lengths in whisker lengths.
+/// One row of a map: one distance, for one whisker and side. Lengths are in whisker lengths.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Row {
-    /// Distance `D` of the pole's centre from the base.
+    /// Distance `D` of the pole's centre from the base, in whisker lengths.
     pub pole_distance: f64,
-    /// Arclength of the contact at first touch; beyond 1 the rest shape is continued.
+    /// Arclength of the contact at first touch, in whisker lengths. Beyond 1 the rest shape is continued.
     pub contact: f64,
-    /// Direction of the pole at first touch, an angle from the base's tangent.
+    /// Direction of the pole's centre at first touch, in radians from the base's tangent.
     pub touch: f64,
-    /// Arclength at the tip: 1, but for a perfect cone.
+    /// Arclength at the tip, in whisker lengths: 1, or a little less for a perfect cone.
     pub end: f64,
 }
 
 impl Row {
-    /// The row of first touch at `distance` from the base; continued beyond the tip along the rest shape.
+    /// Computes the row for `distance`, in whisker lengths, at first touch. Beyond the tip the rest shape is continued.
     #[must_use]
     pub fn new(rest: &Rest, distance: f64) -> Self {
         let (contact, pole) = rest.touch_at_distance(distance);
@@ -34,44 +34,45 @@ impl Row {
         }
     }
 
-    /// Whether the resting whisker is long enough to touch the pole: a question of its shape at rest, the same at every
-    /// resolution.
+    /// Returns true if the resting whisker is long enough to touch the pole. The shape at rest decides, so the result is the same at
+    /// every resolution.
     #[must_use]
     pub fn is_reached(&self) -> bool {
         self.contact <= self.end + REACH_SLACK
     }
 
-    /// Whether the very tip of the resting whisker touches the pole.
+    /// Returns true if the tip of the resting whisker touches the pole.
     #[must_use]
     pub fn is_at_reach(&self) -> bool {
         (self.contact - self.end).abs() <= REACH_SLACK
     }
 
-    /// `(tau, load)` of `rod` at first touch: the load is 0.
+    /// Returns `(tau, load)` of `rod` at first touch, where the load is 0.
     #[must_use]
     pub fn first_touch(&self, rod: &Rod) -> DVec2 {
         DVec2::new(rod.tau(self.contact).min(rod.tau_tip()), 0.0)
     }
 
-    /// Centre of the pole in the frame of the base after a rotation of the base by `push` since first touch.
+    /// Returns the pole's centre in the frame of the base, in whisker lengths, after the base has turned by `push` radians since first
+    /// touch.
     #[must_use]
     pub fn pole(&self, push: f64) -> DVec2 {
         self.pole_distance * DVec2::from_angle(self.touch + push)
     }
 }
 
-/// An edge over which a row leaves the sheet.
+/// Edge over which a row leaves the sheet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Edge {
-    /// The saddle-node: the whisker slips off.
+    /// Saddle-node: the whisker slips off.
     Fold,
-    /// The contact reaches the tip: the whisker is pulled off.
+    /// Contact at the tip: the whisker is pulled off.
     Tip,
 }
 
 impl Edge {
-    /// How fast the push angle changes with `ln D` along the edge, in radians, at a point of it where the pole is as `map` says. At the
-    /// fold both change in proportion, in whatever direction.
+    /// Returns the derivative of the push angle by `ln D` along the edge, in radians, at the point with the map `map`. At the fold, both
+    /// change in proportion in every direction.
     #[must_use]
     pub fn slope(self, map: &ShootingMap) -> f64 {
         let change = match self {
@@ -82,45 +83,45 @@ impl Edge {
     }
 }
 
-/// A row's crossing of an edge.
+/// Crossing of an edge of the sheet by a row.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Crossing {
-    /// Which edge.
+    /// Edge that the row crosses.
     pub edge: Edge,
-    /// `tau` of the contact.
+    /// Contact coordinate `tau`.
     pub tau: f64,
-    /// Signed load.
+    /// Signed load `f/rho^2`.
     pub load: f64,
-    /// Push angle since first touch, in radians, as a magnitude on the row's side.
+    /// Push angle since first touch, in radians: a magnitude on the row's side.
     pub push: f64,
-    /// Remaining error, relative: the distance in `ln D`, and the square of how far the point still is (the push angle is flat
-    /// at a fold).
+    /// Remaining relative error: the miss in `ln D`, plus the square of the remaining step in `(tau, load)` (the push angle is flat at a
+    /// fold). Infinite for a crossing that is not found.
     pub residual: f64,
-    /// See [`Edge::slope`].
+    /// Derivative of the push angle by `ln D` along the edge, in radians ([`Edge::slope`]); NaN for a crossing that is not found.
     pub slope: f64,
 }
 
-/// Where the push angle changes this fast with `ln D`, an error of 1e-11 in that makes more than 1e-8 degrees: such ends take twice the
-/// steps.
+/// Slope ([`Edge::slope`]) above which a crossing is computed with twice the steps. An error of 1e-11 in `ln D` then changes the push
+/// angle by more than 1e-8 degrees.
 pub const STEEP: f64 = 20.0;
 
-/// The largest error, relative to the distance of the pole, of a crossing that is taken for one.
+/// Largest residual of a crossing that counts as found.
 const SOUND: f64 = 1e-10;
 
 impl Crossing {
-    /// Whether it was found: a crossing that was not is only near the level curve.
+    /// Returns true if the crossing is found. Otherwise it is only near the level curve.
     #[must_use]
     pub fn is_sound(&self) -> bool {
         self.residual <= SOUND
     }
 
-    /// Whether the push angle changes so fast along the edge that it takes more steps to know it.
+    /// Returns true if the push angle changes so fast along the edge that the crossing needs more steps.
     #[must_use]
     pub fn is_steep(&self) -> bool {
         self.slope.abs() > STEEP
     }
 
-    /// Of a row that meets the tip edge at first touch: without a load, whatever the resolution.
+    /// Returns the crossing of a row that meets the tip edge at first touch: its load is 0 at every resolution.
     #[must_use]
     pub fn at_touch(rod: &Rod) -> Self {
         Self {
@@ -133,13 +134,14 @@ impl Crossing {
         }
     }
 
-    /// Whether it is one of those.
+    /// Returns true if the row meets the tip edge at first touch ([`Crossing::at_touch`]).
     #[must_use]
     pub fn is_at_touch(&self) -> bool {
         self.load == 0.0
     }
 
-    /// In place of the crossings of a row that could not be found, after those that were.
+    /// Returns the placeholder for crossings that could not be found; it follows those that were. Contact, load, push angle and slope are
+    /// NaN.
     #[must_use]
     pub fn unknown() -> Self {
         Self {
@@ -152,7 +154,7 @@ impl Crossing {
         }
     }
 
-    /// Whether it stands for those.
+    /// Returns true if this is the placeholder for crossings that could not be found ([`Crossing::unknown`]).
     #[must_use]
     pub fn is_unknown(&self) -> bool {
         self.tau.is_nan()

@@ -1,70 +1,71 @@
 //! Row spans: stable pieces of a row as polynomials of the row parameter `w = |load| tau^2`.
 //!
-//! Along a stable row `w` grows from first touch to the end of the row, and push angle and contact are analytic in it, at the fold, too,
-//! where the push angle is flat. So a span is a few states along the row. A cell is found by solving `push(w)` for `w`; its contact is
-//! `tau(w)`, its load `w/tau^2`.
+//! Along a stable row, `w` grows from first touch to the end of the row. Push angle and contact are analytic in `w`, even at the fold,
+//! where the push angle is flat. So a few states along the row represent the span. To find a cell, solve `push(w)` for `w`; its contact
+//! is `tau(w)`, and its load `w/tau^2`.
 
 use crate::numerics::divided_differences::through_nodes;
 use crate::numerics::newton_form::{Polynomial, RootProblem, stencil};
 use crate::numerics::newton_form_simd::{SimdRoots, Terms};
 use crate::numerics::{Bracket, WIDTH};
 
-/// Where Newton's method starts for one cell.
+/// Start of Newton's method for one cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Guess {
-    /// `tau` of the contact.
+    /// Contact coordinate `tau`.
     pub tau: f64,
-    /// Signed load.
+    /// Signed load `f/rho^2`.
     pub load: f64,
 }
 
-/// A state of a span.
+/// State of a span: an interpolation node.
 #[derive(Clone, Copy, Debug)]
 pub struct SpanNode {
     /// Row parameter `|load| tau^2`.
     pub w: f64,
-    /// Push angle since first touch, in radians, as a magnitude on the row's side.
+    /// Push angle since first touch, in radians: a magnitude on the row's side.
     pub push: f64,
-    /// `tau` of the contact.
+    /// Contact coordinate `tau`.
     pub tau: f64,
 }
 
-/// The end of an interval of push angles.
+/// End of an interval of push angles between two nodes.
 #[derive(Clone, Copy, Debug)]
 struct IntervalEnd {
     w: f64,
     push: f64,
-    /// Square root of how far the push angle is below the largest of the span: at the fold `w` changes with this root.
+    /// Square root of the difference between the largest push angle of the span and `push`. At the fold, `w` is linear in this root.
     below: f64,
 }
 
-/// A stable piece of a row, between two ends.
+/// Stable piece of a row, between two ends.
 #[derive(Clone, Debug)]
 pub struct RowSpan {
-    /// Sign of the loads.
+    /// Sign of the loads: 1 or -1.
     sign: f64,
     /// States by growing push angle; `w` grows or falls throughout.
     nodes: Vec<SpanNode>,
-    /// The ends of the intervals between the nodes.
+    /// Ends of the intervals between the nodes.
     ends: Vec<IntervalEnd>,
-    /// The largest push angle at these ends.
+    /// Largest push angle at `ends`, in radians.
     largest_push: f64,
-    /// Push angles this far beyond the ends, in radians, still have a guess.
+    /// Distance beyond the ends, in radians, within which push angles still have a guess.
     margin: f64,
 }
 
-/// Nodes of a polynomial between unevenly spaced nodes.
+/// Number of nodes of a polynomial through unevenly spaced nodes.
 const AROUND: usize = 7;
 
-/// Guesses are made this far, in radians, beyond the detachment angle of a lattice: on most whiskers many times the interpolation
-/// error. A row with a missed cell is followed by continuation for all that.
+/// Distance beyond the detachment angle of a lattice, in radians, up to which cells get guesses. On most whiskers it is many times the
+/// interpolation error; a row with a missed cell is followed by continuation.
 pub const PUSH_MARGIN: f64 = 1e-4;
 
-/// The last Newton step toward the `w` of a cell, in parts of the largest: its square is left, and interpolation leaves more.
+/// Newton step toward the `w` of a cell, in parts of the largest `w`, after which the iteration stops. The remaining error is its square,
+/// which is less than the interpolation error.
 const LAST_SPAN_STEP: f64 = 1e-5;
 
 impl RowSpan {
-    /// The span through the states of a continuation, by growing push angle; `None` where `w` turns back.
+    /// Creates the span through the states of a continuation, by growing push angle. Returns `None` if `w` turns back.
     pub fn through(sign: f64, nodes: Vec<SpanNode>) -> Option<Self> {
         let is_ordered = |pair: &[SpanNode]| pair[0].push < pair[1].push;
         let grows = |pair: &[SpanNode]| pair[0].w < pair[1].w;
@@ -75,8 +76,10 @@ impl RowSpan {
         (is_monotone && nodes.len() > 1).then(|| Self::new(sign, nodes, 0.0))
     }
 
-    /// The span through states of a lattice. A row leaves the lattice between two loads: where the states end before first touch or
-    /// before the fold, the span goes on to the row parameters of the next load, in `beyond`, unless the push angle turns on the way.
+    /// Creates the span through states of a lattice.
+    ///
+    /// A row leaves the lattice between two loads. Where the states end before first touch or before the fold, the span is extended to
+    /// the row parameters of the next load, `beyond`, unless the push angle turns in between.
     pub fn on_lattice(sign: f64, nodes: Vec<SpanNode>, beyond: [Option<f64>; 2]) -> Self {
         let mut span = Self::new(sign, nodes, PUSH_MARGIN);
         let count = span.ends.len();
@@ -125,7 +128,7 @@ impl RowSpan {
         self.largest_push = largest;
     }
 
-    /// Push angle and `tau` as polynomials of `w` through the nodes from `from` on.
+    /// Returns the push angle and `tau` as polynomials of `w` through `N` nodes, from the node `from` on.
     fn polynomials<const N: usize>(&self, from: usize) -> [Polynomial<N>; 2] {
         let nodes = &self.nodes[from..self.nodes.len().min(from + N)];
         let numbers = |number: fn(&SpanNode) -> f64| {
@@ -144,17 +147,17 @@ impl RowSpan {
         through_nodes(&w[..count], [&push[..count], &tau[..count]])
     }
 
-    /// The polynomials around the interval after the node `i`.
+    /// Returns the polynomials around the interval after the node `i`.
     fn around(&self, i: usize) -> [Polynomial<AROUND>; 2] {
         self.polynomials(stencil(i, AROUND, self.nodes.len()))
     }
 
-    /// Whether the span begins at first touch, where the load is 0.
+    /// Returns true if the span begins at first touch, where the load is 0.
     pub fn begins_at_touch(&self) -> bool {
         self.nodes.first().is_some_and(|node| node.w == 0.0)
     }
 
-    /// Push angle and `tau` at the row parameter `w`.
+    /// Returns `[push angle in radians, tau]` at the row parameter `w`.
     pub fn at(&self, w: f64) -> [f64; 2] {
         let is_before = |node: &SpanNode| node.w <= w;
         let after = match self.nodes.first().zip(self.nodes.last()) {
@@ -172,7 +175,7 @@ impl RowSpan {
         }
     }
 
-    /// Guesses for growing push angles (magnitudes, in radians); `None` outside the span.
+    /// Returns one guess for each of the growing push angles (magnitudes, in radians). An entry is `None` outside the span.
     pub fn guesses(&self, pushes: impl Iterator<Item = f64>) -> Vec<Option<Guess>> {
         let mut guesses = Vec::with_capacity(pushes.size_hint().0);
         if self.ends.len() < 2 {
@@ -195,7 +198,7 @@ impl RowSpan {
         guesses
     }
 
-    /// The root to find for `push` between the end `i` and the next one; `None` where it is not near them.
+    /// Returns the root-finding problem for `push` between the end `i` and the next one, or `None` if `push` is not near them.
     fn problem(&self, i: usize, push: f64) -> Option<RootProblem> {
         let [low, high] = [self.ends[i], self.ends[i + 1]];
         if push < low.push - self.margin || push > high.push + self.margin {
@@ -227,9 +230,10 @@ impl RowSpan {
 struct SpanCells<'a> {
     span: &'a RowSpan,
     last_step: f64,
-    /// Through all nodes, where they are spaced like those of a lattice: one polynomial is as good at its ends as in its middle.
+    /// Polynomials through all nodes, if these are spaced like those of a lattice: one polynomial is then as accurate at its ends as in
+    /// its middle.
     whole: Option<[Polynomial<WIDTH>; 2]>,
-    /// Indices of the cells that wait, and what to solve for them.
+    /// Indices of the queued cells; `problems` are their root-finding problems.
     indices: Vec<usize>,
     problems: Vec<RootProblem>,
     /// The polynomials used last, and their first node.
@@ -270,12 +274,12 @@ impl<'a> SpanCells<'a> {
         guesses[index] = Some(self.span.guess([tau.at(w).0, w]));
     }
 
-    /// Solves for the cells that wait.
+    /// Solves for the queued cells.
     fn solve(&mut self, guesses: &mut [Option<Guess>]) {
         let Some([push, tau]) = &self.whole else {
             return;
         };
-        // In Newton's form, `w` itself.
+        // The function `w` in Newton's form.
         let mut identity = [0.0; WIDTH];
         (identity[0], identity[1]) = (push.nodes[0], 1.0);
         let roots = SimdRoots {
@@ -298,7 +302,7 @@ mod tests {
     use crate::numerics::lobatto::{LOBATTO_COUNT, LOBATTO_NODES};
     use std::f64::consts::FRAC_PI_2;
 
-    /// A span through loads of a lattice from `first` on, where `w` is the load and `tau` a line.
+    /// Returns a span through loads of a lattice from `first` on, where `w` is the load and `tau` a line.
     fn span(first: usize, pushes: &[f64]) -> RowSpan {
         let node = |(m, push): (usize, &f64)| SpanNode {
             w: LOBATTO_NODES[m],
@@ -311,7 +315,7 @@ mod tests {
         RowSpan::on_lattice(1.0, nodes, beyond)
     }
 
-    /// `w` and `tau` of the guess at `push`.
+    /// Returns `[w, tau]` of the guess at `push`.
     fn guess(span: &RowSpan, push: f64) -> Option<[f64; 2]> {
         let guess = span.guesses([push].into_iter())[0]?;
         Some([guess.load * guess.tau * guess.tau, guess.tau])
@@ -335,7 +339,7 @@ mod tests {
                 .map(|part| push(*part))
                 .collect();
             let span = span(first, &pushes);
-            // Rows that leave the lattice are known one load farther than their nodes, and less well.
+            // The span of a row that leaves the lattice extends one load beyond its nodes, with less accuracy.
             let error = if count == LOBATTO_COUNT {
                 1e-6
             } else {

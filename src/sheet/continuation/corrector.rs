@@ -1,4 +1,4 @@
-//! The corrector: brings points onto their level curves by Newton's method along the gradient, a trajectory at a time.
+//! The corrector: moves points onto their level curves by Newton's method along the gradient.
 
 use crate::newton::{BatchNewton, NewtonOutcome, NewtonStep, Problem};
 use crate::rod::Rod;
@@ -7,24 +7,24 @@ use crate::sheet::continuation::level_curve::LevelCurve;
 use crate::shooting::{FirstVariation, FullState};
 use glam::DVec2;
 
-/// Most trajectories of a point.
+/// Maximum number of trajectories for each point.
 pub const CORRECTOR_TRAJECTORIES: u32 = 12;
 
-/// A step, in parts of the scale and in `ln D`, after which a point that may miss the curve by [`NODE_MISS`] needs no trajectory of its
-/// own. The rest is the square of the longer of the two. On a soft rod that is the change of `ln D`.
+/// Step length, in parts of the scale and in `ln D`, whose end is extrapolated if the point may miss the curve by [`NODE_MISS`]. The
+/// remaining error is the square of the longer of the two. On a soft rod that is the change of `ln D`.
 const LAST_CORRECTOR_STEP: f64 = 2e-5;
 
-/// A point that approaches its level curve.
+/// Newton problem of a point that approaches its level curve.
 pub struct Corrector<'a> {
     level: &'a LevelCurve,
-    /// What `ln D` may miss.
+    /// Largest accepted miss in `ln D`.
     tolerance: f64,
-    /// What `ln D` missed at the point before.
+    /// Miss in `ln D` at the previous iterate.
     missed: f64,
 }
 
 impl<'a> Corrector<'a> {
-    /// Corrects a point until it misses the curve by at most `tolerance` in `ln D`, or by rounding.
+    /// Creates a corrector that stops when a point misses the curve by at most `tolerance` in `ln D`, or by rounding.
     pub const fn new(level: &'a LevelCurve, tolerance: f64) -> Self {
         Self {
             level,
@@ -63,8 +63,8 @@ impl<'a> Problem<'a> for Corrector<'a> {
     }
 }
 
-/// Brings every point of a level curve onto it, to its tolerance; returns the point and its state, `None` where that fails. All curves
-/// have the method of the first. No result depends on the other points.
+/// Moves each point onto its level curve, to its tolerance in `ln D`. Returns `(tau, load)` and the state of each point, or `None` where
+/// the corrector fails. The method of the first curve applies to all of them. Results do not depend on the other points.
 pub fn correct(points: &[(&LevelCurve, DVec2, f64)]) -> Vec<Option<(DVec2, FullState)>> {
     let Some((first, ..)) = points.first() else {
         return Vec::new();

@@ -1,9 +1,9 @@
-//! The level curve of `D`: every state of the whisker in front of one pole.
+//! The level curve of `D`: all states of the whisker in front of one pole.
 //!
-//! Neither the load nor the push angle can be stepped: the load peaks, the push angle turns at the fold. In the plane of contact and
-//! load the curve is the level set of one smooth function, whose gradient every trajectory brings along. So a step of pseudo-arclength
-//! continuation has its predictor along the tangent, bent as the curve was before, its corrector along the gradient. Lengths are measured
-//! where people look at the curve: in push angle, contact angle (both in radians) and arclength of the contact (in whisker lengths).
+//! Neither the load nor the push angle can be the continuation parameter: the load has a maximum, and the push angle turns at the fold.
+//! In the plane of contact and load, the curve is the level set of one smooth function, and each trajectory provides its gradient. So a
+//! step of pseudo-arclength continuation predicts along the tangent, with the curvature of the previous steps, and corrects along the
+//! gradient. Lengths are measured in push angle, contact angle (both in radians) and arclength of the contact (in whisker lengths).
 
 use crate::numerics::nearest_turn;
 use crate::rod::{Rod, Side, arclength};
@@ -12,39 +12,39 @@ use crate::shooting::FullState;
 use crate::shooting::batch::Method;
 use glam::{DVec2, DVec3};
 
-/// `ln D` at which a point lies on the curve, to rounding.
+/// Largest miss in `ln D` of a point on the curve: rounding.
 pub const ON_CURVE: f64 = 1e-14;
 
-/// A state on the level curve.
+/// State on the level curve.
 #[derive(Clone, Copy, Debug)]
 pub struct Node {
-    /// `(tau, load)`.
+    /// Contact coordinate and signed load, `(tau, load)`.
     pub point: DVec2,
-    /// Everything else.
+    /// Pole, shape and derivatives at `point`.
     pub full: FullState,
-    /// Push angle since first touch, signed, in radians, continuous along the curve.
+    /// Signed push angle since first touch, in radians, continuous along the curve.
     pub push: f64,
-    /// Tangent angle at the contact from the base's tangent, in radians, continuous along the curve.
+    /// Tangent angle at the contact, in radians from the base's tangent, continuous along the curve.
     pub angle: f64,
 }
 
-/// The level curve of one row.
+/// Level curve of one row, with the direction in which it is followed.
 #[derive(Clone, Debug)]
 pub struct LevelCurve {
-    /// How trajectories are integrated.
+    /// Integration method of the trajectories.
     pub method: Method,
-    /// The whisker and its pole.
+    /// Whisker and pole.
     pub rod: Rod,
-    /// The side.
+    /// Whisker side.
     pub side: Side,
-    /// Where the pole stands.
+    /// Row of the pole.
     pub row: Row,
-    /// Whether it is followed in the direction of growing push angles.
+    /// True if the curve is followed in the direction of growing push angles.
     forward: bool,
 }
 
 impl LevelCurve {
-    /// The curve of `row`, to be followed in the direction of growing push angles.
+    /// Creates the curve of `row`, followed in the direction of growing push angles.
     #[must_use]
     pub fn new(method: Method, rod: &Rod, side: Side, row: &Row) -> Self {
         Self {
@@ -56,7 +56,7 @@ impl LevelCurve {
         }
     }
 
-    /// The same in twice the steps.
+    /// Returns this curve with twice the integration steps.
     #[must_use]
     pub(super) fn finer(&self) -> Self {
         Self {
@@ -65,7 +65,7 @@ impl LevelCurve {
         }
     }
 
-    /// The same, followed the other way.
+    /// Returns this curve, followed in the opposite direction.
     #[must_use]
     pub fn backward(&self) -> Self {
         Self {
@@ -74,7 +74,7 @@ impl LevelCurve {
         }
     }
 
-    /// The state `full` at `point`, its angles continued from `push` and `angle`.
+    /// Returns the node with the state `full` at `point`. Its angles are continued from `push` and `angle`.
     #[must_use]
     pub fn node(&self, point: DVec2, full: &FullState, push: f64, angle: f64) -> Node {
         let phi = full.map.pole.to_angle();
@@ -88,20 +88,20 @@ impl LevelCurve {
         }
     }
 
-    /// The direction of the curve at a node, in parts of the scale, of length 1.
+    /// Returns the unit direction of the curve at a node, in parts of [`LevelCurve::scale`].
     pub(super) fn direction(&self, node: &Node) -> DVec2 {
         let gradient = self.scale(node.point) * gradient(node);
-        // Along the curve the push angle changes by minus `det` times its direction (by_load, -by_tau).
+        // Along the curve, the push angle changes by minus `det` times its direction (by_load, -by_tau).
         let heading = if self.forward { 1.0 } else { -1.0 };
         -heading * self.side.sign() * DVec2::new(gradient.y, -gradient.x).normalize()
     }
 
-    /// How fast contact and load change there, a length of 1 in parts of the scale at a time.
+    /// Returns the change of `(tau, load)` for each unit of scaled length at a node.
     pub(super) fn velocity(&self, node: &Node) -> DVec2 {
         self.scale(node.point) * self.direction(node)
     }
 
-    /// The next node, where the corrector has found the curve again; `None` if that is not the way `along`.
+    /// Returns the node that the corrector has reached, or `None` if it does not lie in the direction `along`.
     pub(super) fn next(
         &self,
         from: &Node,
@@ -113,27 +113,28 @@ impl LevelCurve {
         (turned.dot(along) > 0.5 * turned.length()).then_some(node)
     }
 
-    /// How much `tau` and load can change before the state changes by about as much as it is.
+    /// Returns the scale of `(tau, load)`: the changes after which the state changes by about its own size.
     pub(super) fn scale(&self, point: DVec2) -> DVec2 {
         let s = arclength(&self.rod, point.x);
         DVec2::new(s, point.y.abs() + 1.0 / (s * s))
     }
 
-    /// Where people see a node.
+    /// Returns the coordinates of a node in which lengths are measured: push angle and contact angle in radians, and arclength in whisker
+    /// lengths.
     #[must_use]
     pub fn place(&self, node: &Node) -> DVec3 {
         let s = arclength(&self.rod, node.point.x);
         DVec3::new(node.push, node.angle, s)
     }
 
-    /// How far apart people see two nodes.
+    /// Returns the distance of two nodes in the coordinates of [`LevelCurve::place`].
     #[must_use]
     pub fn length(&self, from: &Node, to: &Node) -> f64 {
         self.place(from).distance(self.place(to))
     }
 }
 
-/// `d ln D/d(tau, load)`.
+/// Returns `d ln D/d(tau, load)` at a node.
 fn gradient(node: &Node) -> DVec2 {
     DVec2::new(node.full.map.by_tau.x, node.full.map.by_load.x)
 }

@@ -1,4 +1,4 @@
-//! Where level curves meet the edges of the sheet, between two of their nodes.
+//! Points at which level curves meet the edges of the sheet, between two of their nodes.
 
 use crate::sheet::continuation::corrector::correct;
 use crate::sheet::continuation::level_curve::{LevelCurve, Node, ON_CURVE};
@@ -6,16 +6,16 @@ use crate::sheet::edges::edge_newton::{EdgeProblem, EdgeStart, edge_newton};
 use crate::sheet::row::Edge;
 use glam::DVec2;
 
-/// What `ln D` may miss at the tip, where moving the contact would do more harm.
+/// Largest miss in `ln D` at the tip, where moving the contact would cause a larger error.
 const TIP_MISS: f64 = 1e-11;
 
-/// How far, in parts of its height over both nodes, the top of a curve may be from where a cubic has it.
+/// Largest error of a curve's maximum as a cubic predicts it, in parts of the maximum's height above both nodes.
 const GRAZE_OFF: f64 = 0.5;
 
-/// A top that is higher than both nodes by less than this part of the tip's `tau` is none but for rounding.
+/// Height above both nodes, in parts of the tip's `tau`, below which a maximum is attributed to rounding.
 const LOWEST_GRAZE: f64 = 1e-12;
 
-/// From one node of a level curve to the next.
+/// Chord from one node of a level curve to the next.
 pub struct Chord<'a> {
     level: &'a LevelCurve,
     from: Node,
@@ -23,18 +23,18 @@ pub struct Chord<'a> {
     is_stable: bool,
 }
 
-/// What lies between two nodes.
+/// Edge between two nodes of a level curve.
 pub enum Meeting {
-    /// No edge.
+    /// No edge lies between the nodes.
     None,
-    /// The first edge, and where.
+    /// First edge between the nodes, and the node on it.
     Edge(Edge, Node),
-    /// An edge, but Newton's method did not find it from here.
+    /// An edge lies between the nodes, but Newton's method has not found it from there.
     Unclear,
 }
 
 impl<'a> Chord<'a> {
-    /// The chord between two nodes of the stable or the unstable part.
+    /// Creates the chord between two nodes of the stable or the unstable part.
     pub const fn new(level: &'a LevelCurve, from: Node, to: Node, is_stable: bool) -> Self {
         Self {
             level,
@@ -44,12 +44,12 @@ impl<'a> Chord<'a> {
         }
     }
 
-    /// Whether there may be an edge.
+    /// Returns true if the chord may meet an edge.
     pub fn may_meet(&self) -> bool {
         self.crossed().iter().any(Option::is_some)
     }
 
-    /// Whether the curve may go beyond the tip between the nodes and come back, as far as the cubic through both tells.
+    /// Returns true if the cubic through both nodes may go beyond the tip and come back between them.
     pub fn may_graze(&self) -> bool {
         let tip = self.level.rod.tau_tip();
         let [from, to] = [self.from.point.x, self.to.point.x];
@@ -70,7 +70,7 @@ impl<'a> Chord<'a> {
         height > LOWEST_GRAZE * tip && highest + GRAZE_OFF * height > tip
     }
 
-    /// The edges of which it has crossed the line.
+    /// Returns the tip and the fold, each if the chord has crossed it.
     fn crossed(&self) -> [Option<(&Self, Edge)>; 2] {
         let is_beyond = self.to.point.x > self.level.rod.tau_tip();
         let turns_over = (self.to.full.map.det() < 0.0) == self.is_stable;
@@ -80,7 +80,7 @@ impl<'a> Chord<'a> {
         ]
     }
 
-    /// Where an edge is about.
+    /// Returns the Newton problem for the point of `edge` on the chord.
     fn problem(&self, edge: Edge) -> EdgeProblem<'_> {
         let Self {
             level, from, to, ..
@@ -104,7 +104,7 @@ impl<'a> Chord<'a> {
         }
     }
 
-    /// Whether `node` is where the chord is.
+    /// Returns true if `node` lies near the chord.
     fn has_near(&self, node: &Node) -> bool {
         let length = |from, to| self.level.length(from, to);
         let reach = 2.0 * length(&self.from, &self.to) + f64::EPSILON;
@@ -112,7 +112,7 @@ impl<'a> Chord<'a> {
     }
 }
 
-/// What each of the `chords` meets first.
+/// Returns the first edge that each of the `chords` meets.
 pub fn meet(chords: &[Chord]) -> Vec<Meeting> {
     let crossed: Vec<_> = chords.iter().map(Chord::crossed).collect();
     let looked_for: Vec<(&Chord, Edge)> = crossed.iter().flatten().flatten().copied().collect();
@@ -137,7 +137,7 @@ pub fn meet(chords: &[Chord]) -> Vec<Meeting> {
         .collect()
 }
 
-/// The points of edges on `chords`; `None` if Newton's method found none, or one somewhere else.
+/// Returns the point of each edge on its chord, or `None` if Newton's method has found none, or one that is not near the chord.
 fn edges(chords: &[(&Chord, Edge)]) -> Vec<Option<Node>> {
     let Some((first, _)) = chords.first() else {
         return Vec::new();
@@ -147,7 +147,7 @@ fn edges(chords: &[(&Chord, Edge)]) -> Vec<Option<Node>> {
         .map(|(chord, edge)| chord.problem(*edge))
         .collect();
     let iterates = edge_newton(first.level.method, EdgeStart::Fine, &problems);
-    // At a fold rounding can leave Newton's method a little beside the curve; at the tip it is on it.
+    // At a fold, rounding can leave Newton's method slightly off the curve; at the tip its result is on the curve.
     let points = chords.iter().zip(&iterates);
     let points = points.map(|((chord, edge), iterate)| {
         let tolerance = match edge {

@@ -14,22 +14,22 @@ use crate::sheet::continuation::stepper::Stepper;
 use crate::sheet::row::{Edge, STEEP};
 use glam::DVec2;
 
-/// What `ln D` may miss at a node between the ends that only tells the way, and about where states are.
+/// Largest miss in `ln D` at a node between the ends, which only guides the continuation and approximates states.
 pub const NODE_MISS: f64 = 1e-8;
 
-/// A part of a level curve.
+/// Part of a level curve that a continuation has followed.
 #[derive(Clone, Debug)]
 pub struct Continuation {
-    /// From the start on.
+    /// Nodes from the start to the end.
     pub nodes: Vec<Node>,
-    /// Index of the fold; `None` where the tip comes first.
+    /// Index of the node at the fold; `None` if the tip comes first.
     pub fold: Option<usize>,
-    /// What the last node is.
+    /// Edge at which the last node lies.
     pub end: Edge,
 }
 
 impl Continuation {
-    /// Whether errors of the first fold or the end count for much.
+    /// Returns true if the push angle changes so fast along an edge at the first fold or the end that these need more steps.
     fn is_steep(&self) -> bool {
         let last = self.nodes.last().map(|end| (self.end, end));
         let fold = self.fold.map(|fold| (Edge::Fold, &self.nodes[fold]));
@@ -41,16 +41,18 @@ impl Continuation {
 }
 
 impl LevelCurve {
-    /// The curve from `start` on to the tip or the fold, or past the fold to the tip or the second one; `None` where the continuation
-    /// gets failed.
+    /// Follows the curve from `start` to the tip or the fold, or past the fold to the tip or the second fold. Returns `None` if the
+    /// continuation fails.
     #[must_use]
     pub fn continuation(&self, start: Node, past_fold: bool) -> Option<Continuation> {
         continuations(vec![(self, start)], past_fold, ON_CURVE).pop()?
     }
 }
 
-/// The same for several curves at once, whose trajectories share batches; nodes between the ends may `miss` the curve by so much in
-/// `ln D`. No answer depends on the other curves. Where an end is steep, the curve is followed in twice the steps.
+/// Follows several curves at once, each as [`LevelCurve::continuation`] does; their trajectories share batches.
+///
+/// Nodes between the ends may miss their curve by `miss` in `ln D`. Results do not depend on the other curves. Where an end is steep, the
+/// curve is followed again with twice the steps.
 #[must_use]
 pub fn continuations(
     starts: Vec<(&LevelCurve, Node)>,
@@ -73,8 +75,8 @@ pub fn continuations(
     ended
 }
 
-/// The curves that get failed are followed once more with nodes to rounding: next to where curves meet, nodes that only lead can lose the
-/// way.
+/// Follows all curves, and those that fail once more with nodes to rounding. Where curves meet, nodes with an error of `miss` can lead to
+/// another curve.
 fn follow_with_retry(
     starts: &[(&LevelCurve, Node)],
     past_fold: bool,
@@ -103,7 +105,7 @@ fn follow(
     let stepper = |(index, (level, start))| Stepper::new(index, level, start, miss);
     let mut open: Vec<Stepper> = starts.into_iter().enumerate().map(stepper).collect();
     while !open.is_empty() {
-        // All run until the chord to their next node may meet an edge, or until they fail, so that the edge Newtons share batches, too.
+        // Each stepper runs until the chord to its next node may meet an edge, or until it fails. So edge Newtons share batches, too.
         let predicted: Vec<DVec2> = open.iter().map(|stepper| stepper.predicted).collect();
         newton.solve(&mut open, predicted);
         let at_edges = std::mem::take(&mut open).into_iter();
@@ -176,7 +178,7 @@ mod tests {
                     let allowed = around.map(|node| level.rounding(node)).fold(0.0, f64::max);
                     let allowed = allowed * push.abs().max(1.0);
                     assert!(left <= allowed, "{left:e} > {allowed:e} at {push} {root:?}");
-                    // Measured 12, next to a fold.
+                    // Measured: 12, next to a fold.
                     assert!(root.iterations <= 12, "{push} {root:?}");
                 }
             }

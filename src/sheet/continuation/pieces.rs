@@ -1,5 +1,5 @@
-//! Which crossings of a row belong together. With friction or strong curvature `D` can have a saddle on the edge of the sheet: the
-//! level curve of a row is then in several pieces, whose push angles may overlap.
+//! Stable pieces of a row: the crossings that belong together. With friction or strong curvature, `D` can have a saddle on the edge of
+//! the sheet. The level curve of a row is then in several pieces, whose push angles may overlap.
 
 use crate::rod::Side;
 use crate::sheet::continuation::level_curve::{LevelCurve, Node};
@@ -8,22 +8,22 @@ use crate::sheet::continuation::{Continuation, NODE_MISS, continuations};
 use crate::sheet::row::Crossing;
 use crate::sheet::span::{RowSpan, SpanNode};
 
-/// How far apart, relative to contact and load, two crossings are at most if they are the same.
+/// Largest relative difference in contact and load of two crossings that are the same.
 const SAME_CROSSING: f64 = 1e-5;
 
-/// A part of a level curve on the stable sheet, in the direction of growing push angles.
+/// Part of a level curve on the stable sheet, in the direction of growing push angles.
 #[derive(Clone, Debug)]
 pub struct StablePiece {
-    /// Where it begins; `None` for first touch.
+    /// Crossing at which the piece begins; `None` for first touch.
     pub begin: Option<Crossing>,
-    /// Where it ends.
+    /// Crossing at which the piece ends.
     pub end: Crossing,
-    /// Its nodes, in this direction or the other.
+    /// Nodes of the piece, in this direction or the opposite one.
     pub nodes: Vec<Node>,
 }
 
 impl StablePiece {
-    /// The piece between its nodes; `None` where the row parameter turns back, or there are too few.
+    /// Returns the row span through the nodes, or `None` if the row parameter turns back, or there are too few nodes.
     pub fn span(&self, side: Side) -> Option<RowSpan> {
         let node = |node: &Node| SpanNode {
             w: node.point.y.abs() * node.point.x * node.point.x,
@@ -36,28 +36,28 @@ impl StablePiece {
     }
 }
 
-/// A row to be continued.
+/// Row to follow by continuation.
 #[derive(Clone, Copy, Debug)]
 pub struct ContinuedRow<'a> {
-    /// Its level curve.
+    /// Level curve of the row.
     pub level: &'a LevelCurve,
-    /// Whether it has a first touch.
+    /// True if the row has a first touch.
     pub touches: bool,
-    /// Its crossings as far as they are known, which tell where to look.
+    /// Crossings found on the sampled edges: starts of further pieces.
     pub crossings: &'a [Crossing],
 }
 
-/// The pieces of a row; that from first touch comes first.
+/// Stable pieces of a row. The piece from first touch comes first.
 #[derive(Clone, Debug, Default)]
 pub struct StablePieces {
-    /// Those that were followed; none where it was not possible from first touch.
+    /// Pieces that were followed; empty where the continuation from first touch failed.
     pub pieces: Vec<StablePiece>,
-    /// Whether these are all: no continuation was lost.
+    /// True if `pieces` are all stable pieces: no continuation has failed.
     pub are_complete: bool,
 }
 
 impl StablePieces {
-    /// Whether one of them begins or ends at `crossing`.
+    /// Returns true if one of the pieces begins or ends at `crossing`.
     fn have_end(&self, crossing: &Crossing) -> bool {
         let ends = |piece: &StablePiece| [piece.begin, Some(piece.end)];
         let mut known = self.pieces.iter().flat_map(ends).flatten();
@@ -65,7 +65,7 @@ impl StablePieces {
     }
 }
 
-/// The pieces of all `rows`, whose trajectories share batches. No answer depends on the other rows.
+/// Returns the stable pieces of each of the `rows`, whose trajectories share batches. Results do not depend on the other rows.
 pub fn stable_pieces(rows: &[ContinuedRow]) -> Vec<StablePieces> {
     let mut found: Vec<StablePieces> = from_touch(rows);
     let most = rows.iter().map(|row| row.crossings.len()).max();
@@ -86,7 +86,7 @@ pub fn stable_pieces(rows: &[ContinuedRow]) -> Vec<StablePieces> {
     found
 }
 
-/// Where a piece ends, and its nodes.
+/// Crossing at which a piece ends, and the nodes of the piece.
 type PieceEnd = (Crossing, Vec<Node>);
 
 fn from_touch(rows: &[ContinuedRow]) -> Vec<StablePieces> {
@@ -122,13 +122,13 @@ fn from_touch(rows: &[ContinuedRow]) -> Vec<StablePieces> {
         .collect()
 }
 
-/// Adds to what was `found` the piece of each row that begins or ends at its crossing, if there is one that is not known.
+/// Adds to `found` the piece of each row that begins or ends at its crossing, unless the piece is already there.
 fn through_crossings(
     rows: &[ContinuedRow],
     crossings: &[Option<Crossing>],
     found: &mut [StablePieces],
 ) {
-    // A crossing that is only near the level curve stands for where the piece begins that it is near to.
+    // A crossing that is only near the level curve stands for the nearest beginning of a piece.
     let is_sound = |crossing: &Option<Crossing>| crossing.is_some_and(|c| c.is_sound());
     let unsound = |crossing: &Option<Crossing>| crossing.filter(|c| !c.is_sound());
     let near = at_crossings(rows, &crossings.iter().map(unsound).collect::<Vec<_>>());
@@ -138,7 +138,7 @@ fn through_crossings(
         .zip(near.iter().zip(begins))
         .zip(found.iter_mut())
         .map(|((crossing, (near, begin)), found)| {
-            // On the unstable side there is no piece to lose.
+            // On the unstable side no piece can be missing.
             let may_begin = near.is_none_or(|near| near.full.map.det() > 0.0);
             let has_failed = unsound(crossing).is_some() && may_begin && begin.is_none();
             found.are_complete &= !has_failed;
@@ -149,7 +149,7 @@ fn through_crossings(
         .collect();
     let starts = at_crossings(rows, &entries);
     let ahead = ends_of_pieces(rows, &starts, false);
-    // From where a piece ends, the way on leads nowhere, and the way back to where it begins.
+    // From the end of a piece, the continuation ahead returns to this end; the continuation back leads to the beginning.
     let leads = |entry: &Crossing, end: Option<PieceEnd>| end.filter(|(end, _)| !same(entry, end));
     let ahead: Vec<Option<PieceEnd>> = entries
         .iter()
@@ -186,7 +186,7 @@ fn through_crossings(
     }
 }
 
-/// The states at the crossings that are there.
+/// Returns the state at the crossing of each row, or `None` without a crossing, or where the corrector fails.
 fn at_crossings(rows: &[ContinuedRow], crossings: &[Option<Crossing>]) -> Vec<Option<Node>> {
     rows.iter()
         .zip(crossings)
@@ -194,7 +194,8 @@ fn at_crossings(rows: &[ContinuedRow], crossings: &[Option<Crossing>]) -> Vec<Op
         .collect()
 }
 
-/// Where the pieces end that begin at `starts`, or begin that end there; `None` without a start, or where the continuation is lost.
+/// Returns the end of the piece that begins at each of the `starts`, or with `backward` the beginning of the piece that ends there. An
+/// entry is `None` without a start, or where the continuation fails.
 fn ends_of_pieces(
     rows: &[ContinuedRow],
     starts: &[Option<Node>],
@@ -221,7 +222,7 @@ fn ends_of_pieces(
     ends
 }
 
-/// Where `piece` ends, and its nodes.
+/// Returns the crossing at which `piece` ends, and its nodes.
 fn end_of_piece(level: &LevelCurve, piece: Continuation) -> Option<PieceEnd> {
     let end = piece.nodes.last()?;
     let distance = end.full.map.pole.length();

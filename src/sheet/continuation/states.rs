@@ -1,4 +1,4 @@
-//! States on a level curve: at first touch, at a crossing, at a push, and the nearest ones to given points.
+//! States on a level curve: at first touch, at a crossing, at a push angle, and the nearest states to given points.
 
 use crate::numerics::{Root, illinois};
 use crate::rod::arclength;
@@ -9,12 +9,12 @@ use crate::shooting::batch::{Batch, InitialCondition};
 use crate::shooting::{FirstVariation, FullState};
 use glam::DVec2;
 
-/// How much more rounding leaves next to states of a scaled load `q` than [`ON_CURVE`], per `q`: 1.4e-14 at 38 was too little, of 800
-/// states on branches of cones up to there.
+/// Rounding error near states of a scaled load `q`, in parts of [`ON_CURVE`] for each unit of `q`. 1.4e-14 at `q` = 38 was too little,
+/// for 800 states on branches of cones up to there.
 const ROUGHENING: f64 = 0.1;
 
 impl LevelCurve {
-    /// First touch, from where pushes are counted.
+    /// Returns the state at first touch, from which push angles are counted.
     #[must_use]
     pub fn touch(&self) -> Option<Node> {
         let at_touch = self.row.first_touch(&self.rod);
@@ -33,7 +33,7 @@ impl LevelCurve {
         })
     }
 
-    /// The state at a crossing.
+    /// Returns the state at a crossing, or `None` if the corrector fails.
     #[must_use]
     pub fn at_crossing(&self, crossing: &Crossing) -> Option<Node> {
         let at = DVec2::new(crossing.tau, crossing.load);
@@ -41,14 +41,15 @@ impl LevelCurve {
         Some(self.node(point, &full, self.side.sign() * crossing.push, 0.0))
     }
 
-    /// The state at the signed `push` (radians) between two of the `nodes`, along which the push angle grows or falls throughout;
-    /// `None` outside, or where the curve is lost.
+    /// Returns the state at the signed `push`, in radians, between two of the `nodes`, along which the push angle grows or falls
+    /// throughout. Returns `None` outside the nodes, or if the corrector fails.
     #[must_use]
     pub fn state_at_push(&self, nodes: &[Node], push: f64) -> Option<Node> {
         Some(self.bracketed_push(nodes, push)?.0)
     }
 
-    /// The same, and how it was found: without slopes, because that of the push angle is zero at the fold.
+    /// Returns the state at the signed `push`, in radians, and the root search that found it. The search uses no slopes, because that of
+    /// the push angle is zero at the fold.
     pub(super) fn bracketed_push(&self, nodes: &[Node], push: f64) -> Option<(Node, Root)> {
         let miss = |node: &Node| node.push - push;
         let is_between = |pair: &&[Node]| miss(&pair[0]) * miss(&pair[1]) <= 0.0;
@@ -58,7 +59,7 @@ impl LevelCurve {
         let is_from_closer = miss(from).abs() < miss(to).abs();
         let mut best = if is_from_closer { *from } else { *to };
         let ends = [[0.0, miss(from)], [1.0, miss(to)]];
-        // The corrector leaves as much.
+        // The corrector leaves an error of this size.
         let tolerance = self.rounding(from).max(self.rounding(to)) * push.abs().max(1.0);
         let root = illinois(ends, tolerance, |part| {
             let start = from.point.lerp(to.point, part);
@@ -72,14 +73,16 @@ impl LevelCurve {
         Some((best, root))
     }
 
-    /// What rounding leaves of `ln D` and of the push angle next to a node: the levers' own, which the load makes turn the rod.
+    /// Returns the rounding error in `ln D` and in the push angle near a node. It comes from the lever arms, through which the load turns
+    /// the rod.
     pub(super) fn rounding(&self, node: &Node) -> f64 {
         let s = arclength(&self.rod, node.point.x);
         let q = (node.point.y * s * s).abs() * self.rod.softness(node.point.x);
         ON_CURVE * (ROUGHENING * q).max(1.0)
     }
 
-    /// Brings every point onto the curve, to `tolerance` in `ln D` or to rounding; `None` where that fails.
+    /// Moves each point onto the curve, to `tolerance` in `ln D` or to rounding. Returns `(tau, load)` and the state of each point, or
+    /// `None` where the corrector fails.
     #[must_use]
     pub fn correct(&self, points: &[DVec2], tolerance: f64) -> Vec<Option<(DVec2, FullState)>> {
         let point = |point: &DVec2| (self, *point, tolerance);

@@ -1,4 +1,4 @@
-//! A continuation in progress: predictor and corrector, from node to node.
+//! The stepper of a continuation: predictor and corrector, from node to node.
 
 use crate::newton::{NewtonStep, Problem};
 use crate::rod::Rod;
@@ -10,54 +10,53 @@ use crate::shooting::{FirstVariation, FullState};
 use glam::DVec2;
 use std::f64::consts::TAU;
 
-/// Nodes are about this far apart.
+/// Approximate distance between neighbouring nodes, as [`LevelCurve::length`] measures it.
 const NODE_DISTANCE: f64 = 0.05;
 
-/// The largest angle between neighbouring chords that are not short, so that their length is that of the curve.
+/// Largest angle, in radians, between neighbouring chords that are not short: their length is then that of the curve.
 const SHARPEST_TURN: f64 = 0.1;
 
-/// Chords shorter than this may make any angle: after a longer one, no step is short enough for a small angle.
+/// Length below which chords may form any angle: after a longer chord, no step is short enough for a small angle.
 const SHORT_CHORD: f64 = 0.01 * NODE_DISTANCE;
 
-/// The first step of the continuation, relative to contact and load.
+/// First step of the continuation, relative to contact and load.
 const FIRST_ARC_STEP: f64 = 0.05;
 
-/// A continuation whose step is shorter than this has failed.
+/// Step length below which a continuation has failed.
 const SHORTEST_ARC_STEP: f64 = 1e-9;
 
-/// A predictor uses the curvature between two nodes whose directions differ by less than this.
+/// Difference between the directions of two nodes up to which the predictor uses the curvature between them.
 const MOST_BEND: f64 = 0.25;
 
-/// The largest push angle of a node, in radians: nine turns. Push angles of maps are at most one turn, and the largest detachment
-/// that another program has confirmed is at 2924 degrees. Beyond a soft waist, a whisker can coil up for thirty turns, in
-/// thousands of nodes.
+/// Largest push angle of a node, in radians: nine turns. Push angles of maps are at most one turn. The largest detachment that another
+/// program has confirmed is at 2924 degrees. Beyond a soft waist, a whisker can coil up for thirty turns, in thousands of nodes.
 pub const MOST_PUSH: f64 = 9.0 * TAU;
 
-/// Most nodes: no branch known has more than 300.
+/// Maximum number of nodes; no known branch has more than 300.
 const MOST_NODES: usize = 10_000;
 
-/// A continuation in progress. As a [`Problem`] it takes one step after another, until a chord may meet an edge.
+/// Continuation in progress. As a [`Problem`] it takes one step after another, until a chord may meet an edge.
 pub struct Stepper<'a> {
-    /// Its index among the curves followed together.
+    /// Index of its curve among those followed in the same batch.
     pub index: usize,
     level: &'a LevelCurve,
-    /// From the start on.
+    /// Nodes from the start to the last one found.
     pub nodes: Vec<Node>,
-    /// Index of the first fold.
+    /// Index of the node at the first fold.
     pub fold: Option<usize>,
-    /// The node after the last one, where the chord to it may meet an edge.
+    /// Node after the last one, if the chord to it may meet an edge.
     pub candidate: Option<Node>,
     step: f64,
-    /// The steps from node to node, up to the last one; none across an edge.
+    /// Step lengths from node to node, up to the last node, since the last edge.
     steps: Vec<f64>,
-    /// What `ln D` may miss at a node.
+    /// Largest miss in `ln D` at a node.
     miss: f64,
-    /// The direction at the last node, in parts of the scale.
+    /// Unit direction at the last node, in parts of the scale.
     along: DVec2,
-    /// The predicted next node, from which the corrector starts.
+    /// Predicted next node, at which the corrector starts.
     pub predicted: DVec2,
     corrector: Corrector<'a>,
-    /// Trajectories of the corrector.
+    /// Number of trajectories of the corrector for this node.
     trajectories: u32,
 }
 
@@ -82,14 +81,14 @@ impl<'a> Stepper<'a> {
         stepper
     }
 
-    /// Predicts the next node; false where the continuation ends without an edge.
+    /// Predicts the next node. Returns false where the continuation ends without an edge.
     pub fn advance(&mut self) -> bool {
         self.predict();
         let is_within = self.nodes.len() < MOST_NODES && self.last().push.abs() <= MOST_PUSH;
         is_within && self.step > SHORTEST_ARC_STEP
     }
 
-    /// Predicts the next node with half the step; false where the step is too short.
+    /// Predicts the next node with half the step. Returns false if the step is too short.
     pub fn shorten(&mut self) -> bool {
         self.step *= 0.5;
         self.advance()
@@ -99,7 +98,7 @@ impl<'a> Stepper<'a> {
         &self.nodes[self.nodes.len() - 1]
     }
 
-    /// The next node at a point of the curve, if it lies ahead and is not too far.
+    /// Returns the next node at a point of the curve, if the point lies ahead and not too far away.
     fn next(&self, point: DVec2, full: FullState) -> Option<Node> {
         let next = self.level.next(self.last(), self.along, (point, full))?;
         self.fits(&next).then_some(next)
@@ -129,12 +128,12 @@ impl<'a> Stepper<'a> {
         self.trajectories = 0;
     }
 
-    /// The chord from the last node to `next`.
+    /// Returns the chord from the last node to `next`.
     pub fn chord(&self, next: Node) -> Chord<'a> {
         Chord::new(self.level, *self.last(), next, self.fold.is_none())
     }
 
-    /// Whether the chord to `next` is about as long as the curve.
+    /// Returns true if the chord to `next` is about as long as the curve.
     fn fits(&self, next: &Node) -> bool {
         let (level, last) = (self.level, self.last());
         let chord = level.place(next) - level.place(last);
@@ -146,7 +145,7 @@ impl<'a> Stepper<'a> {
             && (turn < SHARPEST_TURN || chord.length() < SHORT_CHORD)
     }
 
-    /// Adds the node `next` and predicts the one after it; false where the continuation ends without an edge.
+    /// Adds the node `next` and predicts the one after it. Returns false where the continuation ends without an edge.
     pub fn add(&mut self, next: Node) -> bool {
         let length = self.level.length(self.last(), &next);
         self.steps.push(self.step);
@@ -155,9 +154,9 @@ impl<'a> Stepper<'a> {
         self.advance()
     }
 
-    /// Adds the node of an edge; whether that is the first fold.
+    /// Adds the node of an edge. Returns true if it is the first fold.
     pub fn end_at(&mut self, edge: Edge, node: Node) -> bool {
-        // Two nodes next to each other are a poor base for interpolation.
+        // Interpolation between two nodes that are close together is inaccurate.
         if let [.., before, last] = &self.nodes[..]
             && self.fold != Some(self.nodes.len() - 1)
             && self.level.length(last, &node) < 0.2 * self.level.length(before, last)

@@ -1,4 +1,4 @@
-//! Crossings by bisection between two samples of an edge, where Newton's method loses them because the distance turns nearby.
+//! Crossings by bisection between two samples of an edge, where Newton's method fails because the distance has an extremum nearby.
 
 use crate::numerics::Bracket;
 use crate::rod::{Rod, Side};
@@ -9,37 +9,38 @@ use crate::shooting::SecondVariation;
 use crate::shooting::batch::{Batch, InitialCondition, Method};
 use glam::DVec2;
 
-/// Two samples of an edge, and the `ln D` that is looked for between them.
+/// Interval between two samples of an edge, and the `ln D` to find in it.
 pub struct EdgeInterval {
     pub edge: Edge,
     pub samples: [EdgeSample; 2],
     pub target: f64,
 }
 
-/// A point `(tau, load)` of an edge, and the pole there.
+/// Point `(tau, load)` of an edge, and the pole and derivatives there.
 pub type EdgePoint = (DVec2, SecondVariation);
 
-/// Halvings: more than a mantissa has bits.
+/// Number of halvings: more than the bits of a mantissa.
 const MOST_EDGE_HALVINGS: usize = 64;
 
-/// After so many halvings it is told by how much the distance still changes, in parts of what it has been seen to miss, that it leaps: as
-/// the first fold does from contact to contact. The change of a square root would have fallen to a 64th.
+/// Number of halvings after which a bisection tests whether the distance leaps over the target, as the first fold does from contact to
+/// contact. The change of a square root has then fallen to a 64th. It leaps if it still changes by more than [`LEAP`], in parts of the
+/// largest miss.
 const HALVINGS_BEFORE_LEAP: usize = 12;
 const LEAP: f64 = 0.25;
 
-/// A bisection on its way.
+/// Bisection in progress on one interval of an edge.
 struct EdgeBisection {
-    /// Which one.
+    /// Index of the interval.
     index: usize,
-    /// Where it looks next, in parts of the way between the samples.
+    /// Place of the next trial: the part of the line between the samples, from 0 to 1.
     part: f64,
-    /// What is between.
+    /// Parts that bracket the target.
     parts: Bracket,
-    /// What the ends miss, and the most that any place has missed.
+    /// Misses in `ln D` at the ends of the bracket. `largest` is the largest magnitude of any miss.
     ends: [f64; 2],
     largest: f64,
     halvings: usize,
-    /// Whether the next place is the answer.
+    /// True if the next trial is the result.
     is_last: bool,
 }
 
@@ -66,7 +67,7 @@ impl EdgeBisection {
         }
     }
 
-    /// Goes on where the distance misses the target by `miss`; false if it leaps over it.
+    /// Halves the bracket at a trial that misses the target by `miss`. Returns false if the distance leaps over the target.
     fn halve(&mut self, miss: f64) -> bool {
         self.parts.shrink(self.part, miss);
         self.largest = self.largest.max(miss.abs());
@@ -79,8 +80,8 @@ impl EdgeBisection {
     }
 }
 
-/// For each two samples, the point of the edge between them at which `ln D` is the target. If both are on the same side of it, the one
-/// that is closer. `None` where a fold is missing, or the distance leaps over the target.
+/// Returns the point of each interval at which `ln D` is the target, or the closer end if both are on the same side of it. An entry is
+/// `None` where a fold is missing, or the distance leaps over the target.
 pub fn bisect(
     method: Method,
     rod: &Rod,
@@ -110,8 +111,8 @@ pub fn bisect(
     found
 }
 
-/// Where each search looks next. Searches for several distances between the same samples look at the same places, as long as all of them
-/// are on the same side.
+/// Returns the next trial of each bisection. Bisections for several distances between the same samples share their trials as long as all
+/// of them are on the same side.
 fn points(
     method: Method,
     rod: &Rod,

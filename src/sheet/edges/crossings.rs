@@ -1,8 +1,8 @@
-//! Where each row of a map leaves the stable sheet: over the fold (slip-off) or over the tip (pull-off).
+//! Crossings: the points at which each row of a map leaves the stable sheet, over the fold (slip-off) or over the tip (pull-off).
 //!
-//! The edges form one closed line, touch - tip - corner - fold; consecutive samples share their computed
-//! distance, and a row crosses between two samples when exactly one of them is at most its own distance. So
-//! the number of crossings has the right parity whatever the rounding. Where a row crosses is predicted, and then corrected.
+//! The edges form one closed line, touch - tip - corner - fold. Consecutive samples share their computed distance. A row crosses between
+//! two samples if exactly one of them is at most at the row's distance. So the number of crossings has the right parity whatever the
+//! rounding. Each crossing is predicted and then corrected.
 
 use crate::numerics::nearest_turn;
 use crate::rod::{Rod, Side};
@@ -16,7 +16,7 @@ use crate::sheet::row::{Crossing, Edge, REACH_SLACK, Row};
 use crate::shooting::batch::Method;
 use glam::DVec2;
 
-/// A row, and two samples of an edge between which it crosses.
+/// Row with two samples of an edge between which it crosses.
 struct CrossingCandidate {
     row: usize,
     edge: Edge,
@@ -24,11 +24,11 @@ struct CrossingCandidate {
     between: [EdgeSample; 2],
 }
 
-/// How far, in parts of their distance, a crossing may be outside of the samples that it is between but for rounding.
+/// Distance outside the two samples, in parts of their spacing, within which a crossing is attributed to rounding.
 const OUTSIDE_SAMPLES: f64 = 1e-9;
 
 impl CrossingCandidate {
-    /// Whether `point` is between the samples.
+    /// Returns true if `point` is between the samples.
     fn holds(&self, point: DVec2) -> bool {
         let [a, b] = self.between;
         let is_between =
@@ -40,11 +40,11 @@ impl CrossingCandidate {
     }
 }
 
-/// How much the load of a fold between two samples, as all samples around tell it, may differ from what the two alone tell: more
-/// is a jump of the first fold.
+/// Largest relative difference between the fold load predicted from all samples and from the two neighbours alone. A larger one is a jump
+/// of the first fold.
 const FOLD_LOAD_TOLERANCE: f64 = 0.15;
 
-/// Where `ln D` is `target` on `edge` between two samples.
+/// Returns the predicted point of `edge` between two samples at which `ln D` is `target`.
 fn predict(edges: &Edges, edge: Edge, pair: [&EdgeSample; 2], target: f64) -> Prediction {
     let by_all = edges.predict(edge, pair, target);
     let by_two = Prediction::linear(pair, target);
@@ -55,7 +55,7 @@ fn predict(edges: &Edges, edge: Edge, pair: [&EdgeSample; 2], target: f64) -> Pr
     }
 }
 
-/// Every crossing of every row, sorted by push angle.
+/// Returns the crossings of each row, `[row][crossing]`, sorted by push angle.
 pub fn crossings(
     method: Method,
     rod: &Rod,
@@ -74,8 +74,8 @@ pub fn crossings(
             let (a, b) = (pair[0], pair[1]);
             for (index, (row, target)) in rows.iter().zip(&targets).enumerate() {
                 let reached = [a, b].map(|sample| sample.ln_distance > *target);
-                // At first touch the shape at rest decides. Where the integration puts the tip on the other side of the
-                // pole, the two cross there as nearly as it can tell.
+                // At first touch, the shape at rest decides. Where the integration puts the tip on the other side of the pole, the row
+                // crosses there to the accuracy of the integration.
                 let at_touch = edge == Edge::Tip
                     && after == 0
                     && (row.is_at_reach() || row.is_reached() != reached[0]);
@@ -102,8 +102,8 @@ pub fn crossings(
     found
 }
 
-/// The crossings that the candidates lead to: by Newton's method, else by bisection between the samples; steep ones once more in twice
-/// the steps.
+/// Corrects the candidates by Newton's method, or else by bisection between the samples; steep crossings are corrected again with twice
+/// the steps. Returns one crossing for each candidate.
 fn correct(
     method: Method,
     rod: &Rod,
@@ -157,8 +157,8 @@ fn correct(
             let residual = libm::log(row.pole_distance / here.map.pole.length()).abs();
             crossing(c, point, residual)
         });
-        // Where the first fold jumps from contact to contact, there is nothing between the samples. What Newton's method
-        // has found may be on another sheet: continuation must tell.
+        // Where the first fold jumps from contact to contact, there is nothing between the samples. The result of Newton's method may be
+        // on another sheet, so continuation must decide.
         corrected[i] = bisected.filter(Crossing::is_sound).unwrap_or(Crossing {
             edge: c.edge,
             tau: c.predicted.tau,
@@ -185,7 +185,7 @@ fn correct(
         if found.is_sound() && c.holds(iterate.point) {
             corrected[i] = found;
         } else {
-            // Continuation must tell.
+            // Continuation must decide.
             corrected[i].residual = f64::INFINITY;
         }
     }

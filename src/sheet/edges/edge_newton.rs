@@ -1,5 +1,5 @@
-//! Edge Newton, the corrector: solves for the point of an edge at which the pole is at a distance. On the fold edge two equations
-//! hold, `D` and `det = 0`, for contact and load; on the tip edge `D` alone, for the load.
+//! Edge Newton, the corrector of crossings: solves for the point of an edge at which the pole has a given distance. On the fold edge two
+//! equations, for `D` and `det = 0`, determine contact and load. On the tip edge `D` alone determines the load.
 
 use crate::newton::{BatchNewton, NewtonOutcome, NewtonStep, Problem, Sharing};
 use crate::rod::{Rod, arclength};
@@ -9,61 +9,62 @@ use crate::shooting::batch::{Batch, InitialCondition, Method};
 use crate::shooting::{SecondVariation, ShootingMap, limited};
 use glam::DVec2;
 
-/// A point of an edge to solve for.
+/// Newton problem for one point of an edge.
 #[derive(Clone, Copy, Debug)]
 pub struct EdgeProblem<'a> {
-    /// The whisker and its pole.
+    /// Whisker and pole.
     pub rod: &'a Rod,
-    /// The edge.
+    /// Edge on which the point lies.
     pub edge: Edge,
-    /// Distance of the pole's centre.
+    /// Distance `D` of the pole's centre from the base, in whisker lengths.
     pub pole_distance: f64,
-    /// `(tau, load)` to start from.
+    /// Start of Newton's method, `(tau, load)`.
     pub start: DVec2,
-    /// Second derivatives there, if the start is a good prediction.
+    /// Second derivatives at `start`, if the start is a good prediction.
     pub second: Option<SecondDerivatives>,
 }
 
-/// Where Newton's method ended.
+/// Last iterate of an edge Newton.
 #[derive(Clone, Copy, Debug)]
 pub struct EdgeIterate {
-    /// `(tau, load)`.
+    /// Contact coordinate and signed load, `(tau, load)`.
     pub point: DVec2,
-    /// The pole there.
+    /// Pole and derivatives at `point`.
     pub here: SecondVariation,
-    /// What is missing in `ln D`.
+    /// Remaining miss in `ln D`.
     pub miss: f64,
-    /// The remaining step, as [`limited`] measures lengths: the square of the last step, or the step that was not taken.
+    /// Remaining step length, as [`limited`] measures it: the square of the last step, or the step that was not taken.
     pub left: f64,
-    /// Whether a step was short enough to be the last one.
+    /// True if a step was short enough to be the last one.
     pub has_converged: bool,
 }
 
-/// Rounds at the coarse resolution: from the guess of a cell next to the fold they lead to its error.
+/// Number of rounds at the coarse resolution. From the guess of a cell next to the fold, they reach the error of that resolution.
 const COARSE_ROUNDS: u32 = 2;
 
-/// Most trajectories at the method's own resolution; 1 or 2 are the rule.
+/// Maximum number of trajectories at the method's own resolution; usually 1 or 2 suffice.
 const EDGE_TRAJECTORIES: u32 = 20;
 
-/// The length of a step that needs no trajectory at its end. Its square is left, and second derivatives determine the end to its cube.
+/// Step length whose end is extrapolated. The remaining step is its square, and second derivatives determine the end to its cube.
 const LAST_EDGE_STEP: f64 = 3e-7;
 
-/// The largest relative error of predicted second derivatives; 1e-3 is the rule.
+/// Largest relative error of predicted second derivatives; usually it is 1e-3.
 const SECOND_OFF: f64 = 1e-2;
 
-/// Which trajectories an edge Newton shoots.
+/// Quality of the starts of an edge Newton, which decides the resolution and batching of its trajectories.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EdgeStart {
-    /// The first ones are coarse: for starts next to the edge, such as the guesses of cells.
+    /// The first trajectories are coarse: for starts next to the edge, such as the guesses of cells.
     Coarse,
-    /// All have the method's resolution: for good starts, and for whiskers that coil up under friction, where the coarse resolution
-    /// leads astray.
+    /// All trajectories have the method's resolution: for good starts, and for whiskers that coil up under friction, where the coarse
+    /// resolution fails.
     Fine,
-    /// All have the method's resolution and share padded blocks: for the batches of a sheet, which do not depend on row batches.
+    /// All trajectories have the method's resolution and share padded blocks: for the batches of a sheet, which do not depend on row
+    /// batches.
     Shared,
 }
 
-/// An edge point on its way.
+/// Iteration of one edge problem.
 struct EdgeSearch<'a, 'b> {
     problem: &'b EdgeProblem<'a>,
     left: f64,
@@ -88,7 +89,7 @@ impl<'a> Problem<'a> for EdgeSearch<'a, '_> {
     }
 }
 
-/// Solves all `problems`. What is left of each is in `miss` and `left`.
+/// Solves all `problems`. Returns one iterate for each, with its remaining error in `miss` and `left`.
 #[must_use]
 pub fn edge_newton(method: Method, start: EdgeStart, problems: &[EdgeProblem]) -> Vec<EdgeIterate> {
     let newton = BatchNewton::new(method, EDGE_TRAJECTORIES);
@@ -118,8 +119,8 @@ pub fn edge_newton(method: Method, start: EdgeStart, problems: &[EdgeProblem]) -
     ended.collect()
 }
 
-/// Solves all `problems` from predictions. With predicted second derivatives, most need a single trajectory with first derivatives;
-/// toward the tip those by the load are enough. This is one step of another kernel, not a loop.
+/// Solves all `problems` from predictions. With predicted second derivatives, most problems need a single trajectory with first
+/// derivatives. Toward the tip, second derivatives by the load are enough. This is one step of another kernel, not a loop.
 #[must_use]
 pub fn edge_newton_predicted(method: Method, problems: &[EdgeProblem]) -> Vec<EdgeIterate> {
     let conditions = problems.iter().map(|problem| InitialCondition {
@@ -145,7 +146,7 @@ pub fn edge_newton_predicted(method: Method, problems: &[EdgeProblem]) -> Vec<Ed
         let there = here.extrapolated(step);
         let is_last = problem.second.is_some() && length <= LAST_EDGE_STEP;
         if !is_last {
-            // A long step, or one of unknown second derivatives, can lead astray.
+            // A long step, or one without second derivatives, can end far from the edge.
             let is_good = problem.second.is_some() && length < SECOND_OFF;
             let start = problem.start + if is_good { step } else { DVec2::ZERO };
             open.push(i);
@@ -170,12 +171,12 @@ pub fn edge_newton_predicted(method: Method, problems: &[EdgeProblem]) -> Vec<Ed
 }
 
 impl EdgeProblem<'_> {
-    /// What is missing in `ln D` where the pole is `here`.
+    /// Returns the miss in `ln D` at the state `here`.
     fn miss(&self, here: &SecondVariation) -> f64 {
         libm::log(self.pole_distance / here.map.pole.length())
     }
 
-    /// The next step from `at`, where the pole is `here`, and its length.
+    /// Returns the next step in `(tau, load)` from `at`, where the state is `here`, and its length.
     fn step(&self, at: DVec2, here: &SecondVariation) -> (DVec2, f64) {
         let miss = self.miss(here);
         let step = match self.edge {
@@ -186,15 +187,15 @@ impl EdgeProblem<'_> {
     }
 }
 
-/// The step in load toward the point at the same contact whose `ln D` is larger by `miss`, to second order: where the distance is
-/// largest, as that of a straight whisker is at first touch, a step of first order would go half the way.
+/// Returns the step in load toward the point at the same contact whose `ln D` is larger by `miss`, to second order. Where the distance
+/// has its maximum, as for a straight whisker at first touch, a first-order step would go half as far.
 fn load_step(here: &SecondVariation, miss: f64) -> f64 {
     let (slope, second) = (here.map.by_load.x, here.by_load_load.x);
     let slope_there = (slope * slope + 2.0 * second * miss).max(0.0).sqrt();
     2.0 * miss / (slope + slope_there.copysign(slope))
 }
 
-/// The step toward the point of the fold whose `ln D` is larger by `miss`.
+/// Returns the step in `(tau, load)` toward the point of the fold whose `ln D` is larger by `miss`.
 fn fold_step(here: &SecondVariation, miss: f64) -> DVec2 {
     let by_distance = DVec2::new(here.map.by_tau.x, here.map.by_load.x);
     let by_det = here.det_gradient();
@@ -209,7 +210,7 @@ fn fold_step(here: &SecondVariation, miss: f64) -> DVec2 {
 mod tests {
     use super::*;
 
-    /// From starts off by 1e-8 and 1e-5, with known second derivatives, with wrong ones and with none.
+    /// Starts are off by 1e-8 and 1e-5; second derivatives are known, wrong or missing.
     #[test]
     fn predictions_lead_to_the_same_point() {
         let rod = Rod {

@@ -1,29 +1,30 @@
-//! Extrema of the distance along the tip edge: between them it grows or falls throughout.
+//! Extrema of the distance along the tip edge; between them the distance grows or falls throughout.
 
 use crate::numerics::Bracket;
 use crate::shooting::batch::{Batch, InitialCondition, Method};
 use crate::shooting::{SecondVariation, ShootingMap};
 use glam::DVec2;
 
-/// The last Newton step toward an extremum, relative to the distance of the places around it: its square is left.
+/// Newton step toward an extremum, relative to the width of its bracket, after which the iteration stops. The remaining error is its
+/// square.
 const LAST_STEP_TO_EXTREMUM: f64 = 1e-7;
 
-/// An extremum of the distance along the tip edge, as far as its samples tell.
+/// Extremum of the distance along the tip edge, as its samples predict it.
 #[derive(Clone, Copy, Debug)]
 pub struct Extremum {
-    /// The sample before it.
+    /// Index of the sample before the extremum.
     pub after: usize,
-    /// The load.
+    /// Predicted signed load `f/rho^2`.
     pub load: f64,
-    /// Loads around it, of `dlnD/dload`.
+    /// Loads that bracket the root of `dlnD/dload`.
     pub loads: Bracket,
     /// Second derivatives of `(ln D, phi)` by the load.
     pub by_load_load: DVec2,
 }
 
 impl Extremum {
-    /// Its load and the map there. Mostly the polynomials know the second derivatives so well that one trajectory tells all; else
-    /// Newton's method has its own.
+    /// Returns the load of the extremum and the map there. The polynomials usually determine the second derivatives so well that one
+    /// trajectory suffices; otherwise Newton's method computes its own.
     pub fn polished(&self, method: Method, at_tip: InitialCondition) -> (f64, ShootingMap) {
         let (load, by_load_load) = (self.load, self.by_load_load);
         let condition = |load| [InitialCondition { load, ..at_tip }];

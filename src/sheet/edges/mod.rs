@@ -1,4 +1,4 @@
-//! The edges of the stable sheet, sampled: the fold at every contact node, the tip from first touch to the corner.
+//! The sampled edges of the stable sheet: the fold at every contact node, and the tip from first touch to the corner.
 
 mod bisection;
 pub mod crossings;
@@ -17,27 +17,27 @@ use crate::sheet::lattice::Lattice;
 use crate::sheet::row::Edge;
 use crate::shooting::batch::Method;
 
-/// The sampled edges of a sheet.
+/// Sampled edges of a sheet.
 #[derive(Clone, Debug)]
 pub struct Edges {
-    /// From the base to the corner.
+    /// Samples of the fold edge, from the base to the corner.
     pub fold: Vec<EdgeSample>,
     fold_edge: FoldEdge,
-    /// Whether the distance grows along the fold from the base to the tip, so that no row crosses it twice. Where the
-    /// first fold jumps from contact to contact, there is more of it than the samples show.
+    /// True if the distance grows along the fold from the base to the tip, so that no row crosses it twice. Where the first fold jumps
+    /// from contact to contact, the samples do not show all of the fold.
     pub fold_grows: bool,
-    /// From first touch to the corner.
+    /// Samples of the tip edge, from first touch to the corner.
     pub tip: Vec<EdgeSample>,
-    /// `None` where it takes more samples than polynomials have nodes.
+    /// Polynomials of the tip edge; `None` where the edge needs more samples than polynomials have nodes.
     tip_edge: Option<TipEdge>,
-    /// Whether the fold does between its samples what these say.
+    /// True if the changes along the fold between samples agree with the slopes there.
     fold_is_certified: bool,
-    /// How far, in `tau`, the integration puts the tip of the resting whisker from where its shape at rest has it.
+    /// Difference in `tau` between the tip of the resting whisker by integration and by its shape at rest.
     pub tip_error: f64,
 }
 
 impl Edges {
-    /// Samples both edges; `lattice` knows the whole turns of the pole's direction.
+    /// Samples both edges; `lattice` provides the whole turns of the pole's direction.
     pub fn new(method: Method, rod: &Rod, contacts: &ContactNodes, lattice: &Lattice) -> Self {
         let fold: Vec<EdgeSample> = contacts.folds[..=contacts.tip]
             .iter()
@@ -85,7 +85,7 @@ impl Edges {
         }
     }
 
-    /// Where `ln D` is `target` between two neighbouring samples of `edge`.
+    /// Returns the predicted point of `edge` between two neighbouring samples at which `ln D` is `target`.
     pub fn predict(&self, edge: Edge, pair: [&EdgeSample; 2], target: f64) -> Prediction {
         match edge {
             Edge::Fold => self.fold_edge.predict(pair, target),
@@ -96,7 +96,7 @@ impl Edges {
         }
     }
 
-    /// Whether no crossing hides between the samples.
+    /// Returns true if no crossing is hidden between the samples.
     pub fn are_certified(&self) -> bool {
         self.fold_is_certified && self.tip_edge.is_some()
     }
@@ -117,7 +117,7 @@ mod tests {
     use crate::sheet::row::Row;
     use glam::DVec2;
 
-    /// Predictions in the middle between samples, against what trajectories find from there.
+    /// Compares predictions in the middle between samples with the results of Newton's method from there.
     #[test]
     fn edges_are_known_between_their_samples() {
         for side in Side::BOTH {
@@ -137,7 +137,7 @@ mod tests {
                 for pair in samples.windows(2) {
                     let pair = [&pair[0], &pair[1]];
                     let target = pair[0].ln_distance.midpoint(pair[1].ln_distance);
-                    // The nearest row.
+                    // Contacts are sampled only as far as this nearest row.
                     if target < row.pole_distance.ln() {
                         continue;
                     }

@@ -1,4 +1,4 @@
-//! The predictor: points of an edge between its samples, so good that one trajectory mostly confirms them.
+//! The predictor of crossings: points of an edge between its samples, usually so accurate that one trajectory confirms them.
 
 use crate::numerics::Bracket;
 use crate::numerics::newton_form::{
@@ -8,39 +8,39 @@ use crate::sheet::fold::contact_nodes::ContactNodes;
 use crate::sheet::fold::coordinate::{Hermite, STENCIL, hermite};
 use glam::DVec2;
 
-/// A computed point of an edge.
+/// Computed point of an edge.
 #[derive(Clone, Copy, Debug)]
 pub struct EdgeSample {
-    /// Along the edge: the contact node of a fold, or the part of the corner's load at the tip.
+    /// Coordinate along the edge: the index of the contact node on the fold, or the part of the corner's load at the tip.
     pub place: f64,
-    /// `tau` of the contact.
+    /// Contact coordinate `tau`.
     pub tau: f64,
-    /// Signed load.
+    /// Signed load `f/rho^2`.
     pub load: f64,
-    /// `ln D`.
+    /// Logarithm `ln D` of the pole's distance in whisker lengths.
     pub ln_distance: f64,
-    /// Direction of the pole, continuous from first touch.
+    /// Direction of the pole in radians, continuous from first touch.
     pub phi: f64,
 }
 
 /// Second derivatives of `(ln D, phi)`: twice by `tau`, by `tau` and load, twice by load.
 pub type SecondDerivatives = [DVec2; 3];
 
-/// A point of an edge as it is predicted.
+/// Predicted point of an edge.
 #[derive(Clone, Copy, Debug)]
 pub struct Prediction {
-    /// `tau` of the contact.
+    /// Contact coordinate `tau`.
     pub tau: f64,
-    /// Signed load.
+    /// Signed load `f/rho^2`.
     pub load: f64,
-    /// Direction of the pole, continuous from first touch.
+    /// Direction of the pole in radians, continuous from first touch.
     pub phi: f64,
-    /// `None` where the point is not known well.
+    /// Second derivatives at the point; `None` where the prediction is poor.
     pub second: Option<SecondDerivatives>,
 }
 
 impl Prediction {
-    /// Where `ln D` is `target` if all else changes evenly from one sample to the other.
+    /// Returns the point at which `ln D` is `target` if all quantities change linearly from one sample to the other.
     pub fn linear([a, b]: [&EdgeSample; 2], target: f64) -> Self {
         let t = (target - a.ln_distance) / (b.ln_distance - a.ln_distance);
         let scaled = |s: &EdgeSample| s.load * s.tau * s.tau;
@@ -54,10 +54,11 @@ impl Prediction {
     }
 }
 
-/// The last step along an edge, in contact nodes or in parts of the corner's load: its square is left.
+/// Newton step along an edge, in contact nodes or in parts of the corner's load, after which the iteration stops. The remaining error is
+/// its square.
 pub const LAST_STEP_ALONG_EDGE: f64 = 1e-5;
 
-/// Where `ln_distance` is `target` between the places `ends` of two samples.
+/// Returns the place between the places `ends` of two samples at which `ln_distance` is `target`.
 pub fn place_between<const N: usize>(
     ln_distance: &Polynomial<N>,
     ends: [f64; 2],
@@ -74,7 +75,7 @@ pub fn place_between<const N: usize>(
     ln_distance.solve(&problem, LAST_STEP_ALONG_EDGE)
 }
 
-/// The fold edge over one stencil of contact nodes.
+/// Polynomials of the fold edge over one stencil of contact nodes.
 #[derive(Clone, Debug)]
 struct FoldPiece {
     ln_distance: Hermite,
@@ -85,17 +86,17 @@ struct FoldPiece {
     second: [Polynomial<STENCIL>; 6],
 }
 
-/// The fold edge between its samples.
+/// Fold edge between its samples, as polynomials.
 #[derive(Clone, Debug)]
 pub struct FoldEdge {
     count: usize,
     sign: f64,
-    /// By the first node of their stencils.
+    /// Pieces of the edge, indexed by the first node of their stencil.
     pieces: Vec<FoldPiece>,
 }
 
 impl FoldEdge {
-    /// Through the folds of all contact nodes, with the directions `phis` of the pole.
+    /// Interpolates the folds of all contact nodes, with the directions `phis` of the pole in radians.
     pub fn new(contacts: &ContactNodes, phis: impl Iterator<Item = f64>) -> Self {
         let folds = &contacts.folds;
         let maps = folds.iter().map(|fold| &fold.variation.map);
@@ -141,7 +142,7 @@ impl FoldEdge {
         }
     }
 
-    /// Where `ln D` is `target` between the samples of two neighbouring contact nodes.
+    /// Returns the predicted point between the samples of two neighbouring contact nodes at which `ln D` is `target`.
     pub fn predict(&self, pair: [&EdgeSample; 2], target: f64) -> Prediction {
         let ends = pair.map(|sample| sample.place);
         let start = stencil(ends[0] as usize, STENCIL, self.count);

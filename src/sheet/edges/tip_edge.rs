@@ -1,5 +1,7 @@
-//! The tip edge: states with the contact at the tip, from first touch to the corner with the fold edge. They are sampled at
-//! Chebyshev-Lobatto nodes of the load, and where the distance has an extremum: between samples it then grows or falls throughout.
+//! The tip edge: states with the contact at the tip, from first touch to the corner with the fold edge.
+//!
+//! It is sampled at Chebyshev-Lobatto points of the load, and at the extrema of the distance. Between two samples the distance then grows
+//! or falls throughout.
 
 use crate::numerics::divided_differences::through_nodes;
 use crate::numerics::lobatto::{LOBATTO_COUNT, LOBATTO_NODES, LobattoPolynomial};
@@ -15,7 +17,7 @@ use crate::shooting::batch::{Batch, InitialCondition, Method};
 use glam::DVec2;
 use std::f64::consts::FRAC_PI_2;
 
-/// The tip edge between its samples, by the parts of the load at the corner.
+/// Tip edge between its samples, as polynomials of the part of the load at the corner.
 #[derive(Clone, Debug)]
 pub struct TipEdge {
     tau: f64,
@@ -25,25 +27,25 @@ pub struct TipEdge {
     by_load: [LobattoPolynomial; 2],
 }
 
-/// How far slopes of the polynomial through the distances may be off, relative to the steepest, or to 1.
+/// Largest error of the slopes of the polynomial through the distances, relative to the steepest slope, or to 1.
 const SLOPE_OFF: f64 = 1e-2;
 
-/// Intervals between the samples of an edge that no polynomial follows.
+/// Number of intervals between the samples of an edge that no polynomial approximates.
 const MANY_TIP_INTERVALS: usize = 256;
 
-/// The edge up to before the corner.
+/// Sampled tip edge, without the corner.
 #[derive(Clone, Debug)]
 pub struct SampledTipEdge {
-    /// Samples, extrema of the distance among them.
+    /// Samples by load, including extrema of the distance.
     pub samples: Vec<EdgeSample>,
-    /// The polynomials through the others and the corner, if they are the edge.
+    /// Polynomials through the samples at Lobatto points and the corner, if they are certified.
     pub edge: Option<TipEdge>,
-    /// First touch.
+    /// Map at first touch.
     pub at_touch: ShootingMap,
 }
 
 impl SampledTipEdge {
-    /// Samples the edge up to the `corner`: at few loads, or at many where these do not show all of it.
+    /// Samples the edge up to the `corner`: at few loads, or at many if the few are not certified.
     pub fn new(method: Method, rod: &Rod, corner: &FoldPoint) -> Self {
         let sampled = TipLoads::new(method, rod, corner, &*LOBATTO_NODES);
         let edge = TipEdge::new(&sampled);
@@ -66,14 +68,14 @@ impl SampledTipEdge {
     }
 }
 
-/// The edge under some loads.
+/// Maps of the tip edge at several loads.
 struct TipLoads<'a> {
     rod: &'a Rod,
     corner: &'a FoldPoint,
-    /// In parts of the corner's; the last one is 1.
+    /// Loads in parts of the corner's load; the last one is 1.
     parts: &'a [f64],
     maps: Vec<ShootingMap>,
-    /// Directions of the pole, continuous from first touch.
+    /// Directions of the pole in radians, continuous from first touch, one for each load.
     phis: Vec<f64>,
 }
 
@@ -102,7 +104,7 @@ impl<'a> TipLoads<'a> {
         }
     }
 
-    /// The samples before the corner, with the `extrema` of the distance among them.
+    /// Returns the samples before the corner, including the `extrema` of the distance.
     fn samples(&self, method: Method, extrema: &[Extremum]) -> Vec<EdgeSample> {
         let mut samples: Vec<EdgeSample> = Vec::new();
         for (m, part) in self.parts[..self.parts.len() - 1].iter().enumerate() {
@@ -127,7 +129,7 @@ impl<'a> TipLoads<'a> {
         samples
     }
 
-    /// Where `dlnD/dload` changes its sign between two loads.
+    /// Returns the extrema: `dlnD/dload` changes its sign between two loads.
     fn extrema(&self) -> Vec<Extremum> {
         let slope = |m: usize| self.maps[m].by_load;
         let load = |m: usize| self.parts[m] * self.corner.load;
@@ -150,7 +152,7 @@ impl<'a> TipLoads<'a> {
 }
 
 impl TipEdge {
-    /// Whether the polynomial through the distances is the edge: its slopes are those of the trajectories.
+    /// Returns true if the slopes of the polynomial through the distances agree with those of the trajectories.
     fn is_certified(&self) -> bool {
         let known = |part: &f64| self.corner * self.by_load[0].at(*part).0;
         let largest = |of: &dyn Fn(&f64) -> f64| {
@@ -163,7 +165,7 @@ impl TipEdge {
         off <= SLOPE_OFF * largest(&known).max(1.0)
     }
 
-    /// Through what was `sampled` at the Lobatto nodes.
+    /// Interpolates the maps `sampled` at the Lobatto points.
     fn new(sampled: &TipLoads) -> Self {
         let (tau, corner) = (sampled.corner.tau, sampled.corner.load);
         let numbers =
@@ -185,7 +187,7 @@ impl TipEdge {
         }
     }
 
-    /// Where `ln D` is `target` between two neighbouring samples.
+    /// Returns the predicted point between two neighbouring samples at which `ln D` is `target`.
     pub fn predict(&self, pair: [&EdgeSample; 2], target: f64) -> Prediction {
         let ends = pair.map(|sample| sample.place);
         let part = place_between(&self.ln_distance, ends, pair, target);
@@ -197,7 +199,8 @@ impl TipEdge {
         }
     }
 
-    /// Where `dlnD/dload` changes its sign, looked for at three places from sample to sample: two of them may be close.
+    /// Returns the extrema: sign changes of `dlnD/dload`. Three places from sample to sample are tested, because two extrema may be
+    /// close.
     pub fn extrema(&self) -> Vec<Extremum> {
         let slope = &self.by_load[0];
         let mut extrema = Vec::new();
@@ -206,7 +209,7 @@ impl TipEdge {
             for third in [1.0, 2.0, 3.0] {
                 let to = pair[0] + third / 3.0 * (pair[1] - pair[0]);
                 let at_to = slope.at(to).0;
-                // A slope of exactly 0, as a straight whisker's at first touch, is at a sample already.
+                // A slope of exactly 0, as of a straight whisker at first touch, is at a sample already.
                 if at_from * at_to < 0.0 {
                     let near = from + at_from / (at_from - at_to) * (to - from);
                     let parts = Bracket::new([from, to], [at_from, at_to]);

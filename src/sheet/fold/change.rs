@@ -1,29 +1,29 @@
-//! How first folds change from contact node to contact node.
+//! Changes of the first fold from contact node to contact node.
 
 use crate::rod::Rod;
 use crate::sheet::fold::FoldPoint;
 use crate::sheet::fold::coordinate::slope_of_u;
 
-/// `|load| tau^2` of a fold.
+/// Returns the row parameter `|load| tau^2` of a fold.
 pub fn q(fold: &FoldPoint) -> f64 {
     fold.load.abs() * fold.tau * fold.tau
 }
 
-/// The most that `d ln q/d ln tau` of a fold counts for; it is 2 toward a slender tip.
+/// Bound on the magnitude of `d ln q/d ln tau` of a fold; it is 2 toward a slender tip.
 const STEEPEST: f64 = 4.0;
 
-/// Slopes of `ln tau` and `ln(|load| tau^2)` of the folds at `fold`, per node.
+/// Returns the derivatives of `ln tau` and `ln(|load| tau^2)` of the folds at `fold`, by the index of the contact node.
 pub fn slopes_at(rod: &Rod, fold: &FoldPoint, spacing: f64) -> [f64; 2] {
     let ln_tau = spacing / slope_of_u(rod, fold.tau);
     let by_det = fold.variation.det_gradient();
     let ln_load = -by_det.x / by_det.y * fold.tau / fold.load;
-    // Next to a jump the fold edge may be vertical in load, and no polynomial is of any use.
+    // Next to a jump, the fold edge may be vertical in load, and no polynomial approximates it.
     let ln_q = (2.0 + ln_load).clamp(-STEEPEST, STEEPEST);
     [ln_tau, ln_q * ln_tau]
 }
 
-/// A lower bound of `|load| tau^2` of the folds, at the nodes and between them: a cubic through two values with their slopes falls
-/// below both by no more than this.
+/// Returns a lower bound of `|load| tau^2` of the folds, at the nodes and between them. A cubic through two values with their slopes
+/// falls below both values by at most the `dip`.
 pub fn least_q(values: &[[f64; 2]], slopes: &[[f64; 2]]) -> f64 {
     let pairs = values.windows(2).zip(slopes.windows(2));
     let least = pairs.map(|(values, slopes)| {
@@ -34,11 +34,11 @@ pub fn least_q(values: &[[f64; 2]], slopes: &[[f64; 2]]) -> f64 {
     libm::exp(least.fold(f64::INFINITY, f64::min))
 }
 
-/// The first fold jumps between two nodes if the change of `ln q` differs by this much from the slope at one of them. A jump
-/// with friction led from 29 to 15; without one, `scenes/measured.toml` has 0.19.
+/// Difference between the change of `ln q` from node to node and the slope at one of them from which on the first fold jumps. A jump with
+/// friction led from 29 to 15; without one, `scenes/measured.toml` has 0.19.
 const JUMP: f64 = 0.25;
 
-/// Whether the fold jumps between two nodes from one to the other of which `ln q` changes by `change`.
+/// Returns true if the fold jumps between two nodes with these `slopes` of `ln q`, between which `ln q` changes by `change`.
 pub fn jumps(change: f64, slopes: [f64; 2]) -> bool {
     let misses = slopes.map(|slope| (change - slope).abs());
     misses[0].max(misses[1]) >= JUMP
@@ -48,7 +48,7 @@ pub fn jumps(change: f64, slopes: [f64; 2]) -> bool {
 mod tests {
     use super::jumps;
 
-    /// A fold that falls as a root right after it has jumped down is as steep there as the jump.
+    /// Right after a jump down, a fold that changes like a square root is as steep as the jump.
     #[test]
     fn a_jump_is_seen_whatever_the_slopes() {
         assert!(jumps(-0.6, [0.0, 0.0]));

@@ -1,8 +1,8 @@
-//! The contact nodes: the contacts along the whisker at which the sheet is sampled, each with its first fold.
+//! The contact nodes: contacts along the whisker at which the sheet is sampled, each with its first fold.
 //!
-//! They are evenly spaced in the coordinate `u` ([`u_of`]). One lies exactly at the tip, and one beyond it: a trajectory does
-//! not know where the whisker ends, and so interpolation is nearly as good at the tip as elsewhere. Every trajectory brings
-//! slopes along, so what lies between the nodes is known by Hermite interpolation.
+//! They are evenly spaced in the coordinate `u` ([`u_of`]). One lies exactly at the tip, and one beyond it: a trajectory does not depend
+//! on where the whisker ends. So interpolation is nearly as accurate at the tip as elsewhere. Each trajectory provides derivatives, so
+//! Hermite interpolation gives the values between nodes.
 
 use crate::numerics::newton_form::{stencil, through_slopes};
 use crate::rod::{Rod, Side};
@@ -14,49 +14,50 @@ use crate::shooting::ShootingMap;
 use crate::shooting::batch::Method;
 use glam::DVec2;
 
-/// Distance of the nodes in `u`.
+/// Spacing of the contact nodes in `u`.
 pub const SPACING: f64 = 0.68;
 
-/// Their distance where the wider one shows too little.
+/// Spacing of the contact nodes in `u` where samples at [`SPACING`] are not certified.
 pub const NARROW_SPACING: f64 = SPACING / 4.0;
 
-/// Nodes beyond the tip.
+/// Number of contact nodes beyond the tip.
 const BEYOND_TIP: usize = 1;
 
-/// Nodes between the contact nearest to the base that a row can have and the end of the lattice.
+/// Number of contact nodes between the contact nearest to the base of any row and the end of the lattice.
 const BEYOND_NEAREST: usize = 1;
 
-/// The longest way in `u` from the tip to the last node: the smallest `tau` is then below 1e-12 of the tip's.
+/// Largest distance in `u` from the tip to the last node. The smallest `tau` is then below 1e-12 of the tip's.
 const LONGEST_RANGE: f64 = 68.0;
 
-/// The contact nodes, from the base outward.
+/// Contact nodes with their first folds, from the base outward.
 #[derive(Clone, Debug)]
 pub struct ContactNodes {
-    /// The fold at each.
+    /// First fold of each contact node.
     pub folds: Vec<FoldPoint>,
-    /// Index of the node at the tip.
+    /// Index of the contact node at the tip.
     pub tip: usize,
     spacing: f64,
     first_u: f64,
     rod: Rod,
-    /// See [`least_q`].
+    /// Lower bound of `|load| tau^2` of the folds ([`least_q`]).
     least_q: f64,
-    /// Slopes of `ln tau` and `ln(|load| tau^2)` of the folds, per node.
+    /// Derivatives of `ln tau` and `ln(|load| tau^2)` of the folds by node index.
     slopes: Vec<[f64; 2]>,
-    /// `ln tau` of the folds, by the first node of the stencil.
+    /// Polynomials of `ln tau` of the folds, indexed by the first node of the stencil.
     pub ln_tau: Vec<Hermite>,
-    /// `ln(|load| tau^2)` of them.
+    /// Polynomials of `ln(|load| tau^2)` of the folds, indexed by the first node of the stencil.
     pub ln_q: Vec<Hermite>,
 }
 
-/// What rounding may leave of the slope of `ln D` where it is 0: at the tip of a perfect cone.
+/// Rounding error of a slope of `ln D` that is 0, as at the tip of a perfect cone.
 const FLAT: f64 = 1e-6;
 
-/// A load is surely below the folds where `|load| tau^2` is this part of the smallest; the rest allows for a jump between nodes.
+/// Part of the smallest `|load| tau^2` of the folds up to which a load is certainly below the folds. The rest allows for a jump between
+/// nodes.
 const SURELY_BELOW: f64 = 0.75;
 
-/// The folds of nodes from the base outward. The first ones are so close to the base that a whisker held there does not reach the pole
-/// of `nearest`, whatever its shape.
+/// Returns the folds of nodes from the base outward. The first ones are so close to the base that a whisker held there does not reach the
+/// pole of `nearest`, whatever its shape.
 fn folds_down_to(
     method: Method,
     rod: &Rod,
@@ -87,8 +88,8 @@ fn folds_down_to(
 }
 
 impl ContactNodes {
-    /// The nodes of `rod` from its tip down to `nearest`, the row nearest to the base, and some beyond both. `None` where a fold is
-    /// missing.
+    /// Computes the nodes of `rod` from its tip down to `nearest`, the row nearest to the base, and some beyond both. Returns `None`
+    /// where a fold is missing.
     pub fn new(method: Method, rod: &Rod, side: Side, nearest: &Row, spacing: f64) -> Option<Self> {
         let folds = folds_down_to(method, rod, side, nearest, spacing)?;
         let values: Vec<[f64; 2]> = folds
@@ -118,14 +119,14 @@ impl ContactNodes {
         })
     }
 
-    /// Whether the load is surely less than that of the fold for the contact at `tau`.
+    /// Returns true if the load is certainly less than the fold load of the contact at `tau`.
     #[must_use]
     pub fn is_below_folds(&self, tau: f64, load: f64) -> bool {
         load.abs() * tau * tau < SURELY_BELOW * self.least_q
     }
 
-    /// Slopes of `(ln D, phi)`, per node, along the line on which the load is this `part` of the fold's: those of the `map` at the
-    /// node `i`.
+    /// Returns the derivatives of `(ln D, phi)` by node index along the line on which the load is this `part` of the fold's. `map` is the
+    /// map at the node `i`.
     #[must_use]
     pub fn slope(&self, i: usize, part: f64, map: &ShootingMap) -> DVec2 {
         let (fold, [ln_tau, ln_q]) = (&self.folds[i], self.slopes[i]);
@@ -133,7 +134,7 @@ impl ContactNodes {
         map.by_tau * (fold.tau * ln_tau) + map.by_load * (part * fold.load * ln_load)
     }
 
-    /// Whether the distance at the fold grows from the node `i` to the next one, and the fold does not jump.
+    /// Returns true if the distance at the fold grows from the node `i` to the next one, and the fold does not jump.
     #[must_use]
     pub fn grow_after(&self, i: usize) -> bool {
         let ends = [i, i + 1];
@@ -145,7 +146,7 @@ impl ContactNodes {
         here < next && grows(0) && grows(1) && !jumps(to - from, slopes)
     }
 
-    /// `|load|` at the fold for the contact at `tau`, by interpolation.
+    /// Returns `|load|` at the fold of the contact at `tau`, by interpolation.
     #[must_use]
     pub fn fold_load(&self, tau: f64) -> f64 {
         let place = (u_of(&self.rod, tau) - self.first_u) / self.spacing;
@@ -167,7 +168,7 @@ mod tests {
     use crate::shooting::ShootingMap;
     use crate::shooting::batch::{Batch, InitialCondition};
 
-    /// Slopes against differences between neighbours, at a node in the middle and at the one at the tip.
+    /// Compares slopes with differences between neighbours, at a node in the middle and at the tip.
     #[test]
     fn slopes_are_those_between_neighbours() {
         let slender = Rod {

@@ -1,12 +1,12 @@
-//! The coordinate `u` along the whisker in which contact nodes are evenly spaced, and polynomials from node to node.
+//! The coordinate `u` along the whisker, in which contact nodes are evenly spaced, and polynomials from node to node.
 
 use crate::numerics::Bracket;
 use crate::numerics::newton_form::{Polynomial, even_nodes};
 use crate::rod::{Rod, arclength};
 
-/// `u = ln tau + tau`. Toward the base the sheet depends on the contact through its logarithm, because everything scales; toward a
-/// slender tip through `tau`. Where the modulus falls toward the tip its logarithm is subtracted: continued beyond the tip, it would
-/// become 0.
+/// Returns `u = ln tau + tau`. Toward the base the sheet depends on the contact through its logarithm, because everything scales; toward
+/// a slender tip it depends on `tau`. Where the modulus falls toward the tip, its logarithm is subtracted: continued beyond the tip, the
+/// modulus would become 0.
 pub fn u_of(rod: &Rod, tau: f64) -> f64 {
     let softening = if rod.gradient < 0.0 {
         libm::log(rod.modulus(arclength(rod, tau)))
@@ -16,7 +16,7 @@ pub fn u_of(rod: &Rod, tau: f64) -> f64 {
     libm::log(tau) + tau - softening
 }
 
-/// `du/dln tau`.
+/// Returns `du/dln tau`.
 pub fn slope_of_u(rod: &Rod, tau: f64) -> f64 {
     let mut slope = 1.0 + tau;
     if rod.gradient < 0.0 {
@@ -26,10 +26,11 @@ pub fn slope_of_u(rod: &Rod, tau: f64) -> f64 {
     slope
 }
 
-/// The last step toward a `tau`, relatively: the square of a Newton step is left, and of a bisection that is harmless.
+/// Relative step in `tau` at which the iteration stops. The remaining error is its square after a Newton step; after a bisection it is
+/// harmless.
 const LAST_TAU_STEP: f64 = 1e-9;
 
-/// Inverse of [`u_of`] by Newton's method for `ln tau` from `near`.
+/// Returns the inverse of [`u_of`], by Newton's method for `ln tau` from `near`.
 pub fn tau_of(rod: &Rod, u: f64, near: f64) -> f64 {
     let softening = (-rod.gradient).max(0.0);
     let end = if softening > rod.taper {
@@ -38,7 +39,7 @@ pub fn tau_of(rod: &Rod, u: f64, near: f64) -> f64 {
         f64::INFINITY
     };
     let most = if u < 1.0 { libm::exp(u) } else { u };
-    // Of `u` less that of a place, which falls.
+    // The bracketed function is `u - u_of(tau)`, which falls with `tau`.
     let mut bracket = Bracket {
         below: most.min(end),
         above: 0.0,
@@ -60,16 +61,16 @@ pub fn tau_of(rod: &Rod, u: f64, near: f64) -> f64 {
     tau
 }
 
-/// Nodes that a [`Hermite`] polynomial goes through.
+/// Number of nodes through which a [`Hermite`] polynomial passes.
 pub const STENCIL: usize = 6;
 
-/// Its terms: values and slopes.
+/// Number of terms of a [`Hermite`] polynomial: a value and a slope for each node.
 pub const TERMS: usize = 2 * STENCIL;
 
-/// A function of the contact, by the number of nodes (a fraction between them) from the first one of a stencil.
+/// Function of the contact as a polynomial of the number of nodes, whole or fractional, from the first node of a stencil.
 pub type Hermite = Polynomial<TERMS>;
 
-/// The polynomial with these divided differences.
+/// Returns the polynomial with these divided differences.
 pub const fn hermite(differences: [f64; TERMS]) -> Hermite {
     Polynomial {
         nodes: even_nodes(2),

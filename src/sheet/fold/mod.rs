@@ -1,4 +1,4 @@
-//! The fold edge: the first load at which the Jacobian becomes singular, contact by contact.
+//! The fold edge: for each contact, the first load at which the Jacobian is singular.
 
 mod change;
 pub mod contact_nodes;
@@ -12,52 +12,53 @@ use crate::shooting::batch::{Batch, InitialCondition, Method};
 use crate::shooting::{SecondVariation, ShootingMap};
 use glam::DVec2;
 
-/// A point of the fold edge.
+/// Point of the fold edge.
 #[derive(Clone, Copy, Debug)]
 pub struct FoldPoint {
-    /// `tau` of the contact.
+    /// Contact coordinate `tau`.
     pub tau: f64,
-    /// Signed load.
+    /// Signed load `f/rho^2` at the fold.
     pub load: f64,
-    /// The pole there, with second derivatives.
+    /// Pole and its first and second derivatives at the fold.
     pub variation: SecondVariation,
 }
 
-/// Samples of `q = |load| s^2` per round of the march; measured radii add their softness as a factor.
+/// Number of samples of `q = |load| s^2` for each round of the march. Measured radii multiply `q` by their softness.
 const SAMPLES_PER_ROUND: usize = 11;
 
-/// Distance of the first samples: the second fold is farther from the first than this.
+/// Spacing of the first samples in `q`. The second fold is farther from the first one than this.
 const FIRST_SPACING: f64 = 0.75;
 
-/// Where the march begins. Without measured radii and moduli that fall toward the tip, which `q` does not know of, the sheet is
+/// Value of `q` at which the march begins. Measured radii and moduli that fall toward the tip do not enter `q`. Without them the sheet is
 /// wider: no first fold of 2,000 random whiskers with friction up to 2 and `A*` up to 2 lay below 6.5.
 const SURELY_STABLE: f64 = 4.5;
 
-/// How much wider a bracket is than the samples say, relatively: their signs come from the coarse resolution.
+/// Relative widening of a bracket beyond its samples, whose signs come from the coarse resolution.
 const BRACKET_SLACK: f64 = 1e-2;
 
-/// The last step toward the root between two samples, in parts of their distance: its square is left.
+/// Newton step toward the root between two samples, in parts of their spacing, after which the iteration stops. The remaining error is
+/// its square.
 const LAST_STEP_BETWEEN_SAMPLES: f64 = 1e-4;
 
-/// Beyond this `q` the samples spread out. The largest first fold known of a cone lies at 24.15: the limit at the tip of a
-/// perfect one that is slender against the pole.
+/// Value of `q` beyond which the spacing of the samples grows. The largest first fold known of a cone lies at 24.15: the limit at the tip
+/// of a perfect cone that is slender against the pole.
 const EVEN_UP_TO: f64 = 64.0;
 
-/// The largest Newton step left, relative to the load, at a point that counts as a fold. At the tip of a perfect
-/// cone rounding of `det` leaves 2e-7; elsewhere it is below 1e-13.
+/// Largest remaining Newton step, relative to the load, at a point that counts as a fold. At the tip of a perfect cone, rounding of `det`
+/// leaves 2e-7; elsewhere the step is below 1e-13.
 const STEP_LEFT: f64 = 1e-5;
 
-/// The Newton step in load, relative to it, that needs no trajectory at its end: its square is left.
+/// Newton step in load, relative to the load, whose end is extrapolated. The remaining error is its square.
 const LAST_LOAD_STEP: f64 = 1e-6;
 
-/// The `q` at which the march is given up.
+/// Value of `q` at which the march ends without a fold.
 const MARCH_END: f64 = 1e4;
 
-/// Most trajectories of a fold; bisection alone would need 50.
+/// Maximum number of trajectories for each fold; bisection alone would need 50.
 const POLISH_TRAJECTORIES: u32 = 60;
 
-/// First folds of `rod` at the contacts `taus`; `None` where there is none up to [`MARCH_END`], or no stable state at first
-/// touch.
+/// Returns the first folds of `rod` at the contacts `taus`, in the same order. An entry is `None` where there is no fold up to
+/// [`MARCH_END`], or no stable state at first touch.
 pub fn first_folds(method: Method, rod: &Rod, side: Side, taus: &[f64]) -> Vec<Option<FoldPoint>> {
     let begin = if rod.profile.is_none() && rod.gradient >= 0.0 {
         SURELY_STABLE
@@ -66,7 +67,7 @@ pub fn first_folds(method: Method, rod: &Rod, side: Side, taus: &[f64]) -> Vec<O
     };
     let marched = march(method.coarsely(), rod, side, taus, begin);
     let mut folds = polish(method, rod, marched);
-    // With friction and a stiff tip the first fold can lie at `q` of 1000, where the coarse resolution is failed.
+    // With friction and a stiff tip, the first fold can lie at `q` of 1000, where the coarse resolution fails.
     let failed: Vec<usize> = (0..taus.len()).filter(|&i| folds[i].is_none()).collect();
     let again: Vec<f64> = failed.iter().map(|&i| taus[i]).collect();
     let fine = polish(method, rod, march(method, rod, side, &again, 0.0));
@@ -76,16 +77,17 @@ pub fn first_folds(method: Method, rod: &Rod, side: Side, taus: &[f64]) -> Vec<O
     folds
 }
 
-/// A contact, and the loads between which its `det` first falls below zero.
+/// Contact with the loads between which its `det` first falls below zero.
 #[derive(Clone, Copy, Debug)]
 struct FoldBracket {
     tau: f64,
-    /// Of `-det`.
+    /// Loads that bracket the root of `-det`.
     loads: Bracket,
     guess: f64,
 }
 
-/// Marches every contact out from `q = begin` until `det` has changed its sign; `None` also where that is not stable.
+/// Samples the loads of every contact from `q = begin` outward until `det` changes its sign. An entry is `None` also where the first
+/// sample is not stable.
 fn march(
     method: Method,
     rod: &Rod,
@@ -126,7 +128,7 @@ fn march(
             if march.dets.first().is_none_or(|det| *det <= 0.0) {
                 return false;
             }
-            // The sample before the first one of the batch is looked at again.
+            // The last sample of the previous round is compared again.
             let pairs = march.dets.windows(2).enumerate().skip(from.max(1) - 1);
             let changed = |(_, pair): &(usize, &[f64])| pair[0] * pair[1] <= 0.0;
             let Some((at, _)) = pairs.into_iter().find(changed) else {
@@ -150,10 +152,10 @@ fn march(
     found
 }
 
-/// Samples that tell where between two of them `det` vanishes.
+/// Number of samples of the polynomial whose root is the zero of `det`.
 const DET_STENCIL: usize = 10;
 
-/// Where `dets` vanishes between the sample `at` and the next one.
+/// Returns the `q` at which `dets` vanishes between the sample `at` and the next one.
 fn root(samples: &[f64], dets: &[f64], at: usize) -> f64 {
     let [low, high] = [dets[at], dets[at + 1]];
     let secant = low / (low - high);
@@ -177,10 +179,10 @@ fn root(samples: &[f64], dets: &[f64], at: usize) -> f64 {
     samples[at] + part * (samples[at + 1] - samples[at])
 }
 
-/// The load at which `det` vanishes inside a bracket.
+/// Root-finding problem for the load at which `det` vanishes inside a bracket.
 struct FoldProblem<'a> {
     rod: &'a Rod,
-    /// Of `-det`.
+    /// Loads that bracket the root of `-det`.
     loads: Bracket,
 }
 
@@ -216,7 +218,7 @@ fn polish(method: Method, rod: &Rod, marched: Vec<Option<FoldBracket>>) -> Vec<O
     };
     let newton = BatchNewton {
         // Solved folds stay in the batch: with fewer steps, at the tip of a perfect cone, `det` may have its root elsewhere. Along a
-        // profile each trajectory takes steps of its own.
+        // profile, each trajectory takes its own number of steps.
         sharing: match rod.profile {
             Some(_) => Sharing::Open,
             None => Sharing::All,
@@ -229,7 +231,7 @@ fn polish(method: Method, rod: &Rod, marched: Vec<Option<FoldBracket>>) -> Vec<O
     let mut fold = |_: FoldBracket| {
         let iterate = iterates.next()?;
         let variation = iterate.state;
-        // A bracket that closed on something else than a root, or did not close, is no fold.
+        // A bracket that has not closed, or has closed on something other than a root, is no fold.
         let step = variation.map.det() / variation.det_gradient().y;
         let is_fold = step.abs() <= STEP_LEFT * iterate.point.y.abs();
         is_fold.then_some(FoldPoint {

@@ -1,8 +1,8 @@
-//! The lattice of trajectories over the stable sheet, from which the guesses come.
+//! The lattice of trajectories over the stable sheet, which provides the guesses for cells.
 //!
-//! Its points lie at the contact nodes, and for each of them at Chebyshev-Lobatto nodes of the load from first touch to the fold:
-//! so many that most guesses are a last Newton step away from the state. A row of a map is a level curve of `D` on the lattice;
-//! along it the push angle grows from first touch to detachment.
+//! Its points lie at the contact nodes, and for each node at Chebyshev-Lobatto points of the load from first touch to the fold. There are
+//! so many of them that most guesses are one Newton step away from the state. A row of a map is a level curve of `D` on the lattice.
+//! Along it the push angle grows from first touch to detachment.
 
 mod row_span;
 
@@ -17,38 +17,39 @@ use crate::sheet::fold::coordinate::TERMS;
 use crate::shooting::ShootingMap;
 use crate::shooting::batch::{Batch, InitialCondition, Method};
 
-/// The lattice.
+/// Trajectories by contact node and load, with polynomials between them.
 #[derive(Clone, Debug)]
 pub struct Lattice {
     side: Side,
-    /// By contact node.
+    /// Load lines, one for each contact node.
     lines: Vec<LoadLine>,
-    /// By the first node of their stencils.
+    /// Patches, indexed by the first contact node of their stencil.
     patches: Vec<Patch>,
 }
 
-/// The points of one contact node, by load.
+/// Lattice points of one contact node, `[load]`.
 #[derive(Clone, Copy, Debug, Default)]
 struct LoadLine {
     ln_distance: Numbers,
-    /// Direction of the pole, continuous from first touch.
+    /// Direction of the pole in radians, continuous from first touch.
     phi: Numbers,
-    /// Slopes of both, per contact node.
+    /// Derivatives of `ln_distance` and `phi` by the index of the contact node.
     slopes: [Numbers; 2],
-    /// `det D^2` over that at first touch and the part of the load that is left to the fold: positive and smooth up to the fold.
+    /// `det D^2`, divided by its value at first touch and by the remaining part of the load up to the fold. It is positive and smooth up
+    /// to the fold.
     clearance: Numbers,
 }
 
-/// Along one stencil of contact nodes: Hermite polynomials by their divided differences, one for every load.
+/// Hermite polynomials along one stencil of contact nodes, as divided differences, one polynomial for each load.
 #[derive(Clone, Copy, Debug)]
 struct Patch {
     ln_distance: [Numbers; TERMS],
-    /// Of the direction of the pole.
+    /// Divided differences of the direction of the pole, in radians.
     phi: [Numbers; TERMS],
 }
 
 impl LoadLine {
-    /// The `maps`, load by load, at the contact node `i`.
+    /// Collects the `maps`, one for each load, of the contact node `i`.
     fn new<'a>(
         contacts: &ContactNodes,
         i: usize,
@@ -72,7 +73,7 @@ impl LoadLine {
 }
 
 impl Lattice {
-    /// The lattice over the `contacts`.
+    /// Computes the lattice over `contacts`.
     pub fn new(method: Method, rod: &Rod, side: Side, contacts: &ContactNodes) -> Self {
         let conditions: Vec<InitialCondition> = LOBATTO_NODES
             .iter()
@@ -98,8 +99,8 @@ impl Lattice {
         }
     }
 
-    /// Whether no fold hides below the first folds of the contact nodes, at them or between them. The loads are evenly spaced in
-    /// the angle of which they are the cosine.
+    /// Returns true if no fold is hidden below the first folds, at the contact nodes or between them. The loads are evenly spaced in the
+    /// angle of which they are the cosine.
     pub fn is_certified(&self) -> bool {
         const BELOW_FOLD: usize = LOBATTO_COUNT - 1;
         let count = self.lines.len();
@@ -109,13 +110,13 @@ impl Lattice {
             && (0..BELOW_FOLD).all(|m| stays_positive(count, |i| self.lines[i].clearance[m]))
     }
 
-    /// Direction of the pole at the fold, contact node by contact node, continuous from first touch.
+    /// Returns the direction of the pole at the fold in radians, one for each contact node, continuous from first touch.
     pub fn phi_at_fold(&self) -> impl Iterator<Item = f64> {
         self.lines.iter().map(|line| line.phi[LOBATTO_COUNT - 1])
     }
 }
 
-/// Through each [`STENCIL`](crate::sheet::fold::coordinate::STENCIL) neighbours of `lines`, or through all where there are fewer.
+/// Interpolates each [`STENCIL`](crate::sheet::fold::coordinate::STENCIL) neighbours of `lines`, or all of them where there are fewer.
 fn patches(lines: &[LoadLine]) -> Vec<Patch> {
     let through = |value: fn(&LoadLine) -> Numbers, slope: usize| {
         let values: Vec<Numbers> = lines.iter().map(value).collect();
@@ -128,8 +129,8 @@ fn patches(lines: &[LoadLine]) -> Vec<Patch> {
         .collect()
 }
 
-/// Writes into `phis` the directions of the pole, continuous from first touch, of `maps` of one contact under these `parts` of its fold's
-/// `load`.
+/// Writes into `phis` the directions of the pole in radians, continuous from first touch. The `maps` are those of one contact under these
+/// `parts` of its fold's `load`.
 pub fn directions<'a>(
     load: f64,
     parts: &[f64],

@@ -1,4 +1,4 @@
-//! The level curve of `D` of one row on the lattice, load by load.
+//! Row spans from the lattice: the level curve of `D` of one row, load by load.
 
 use crate::numerics::lobatto::{LOBATTO_COUNT, LOBATTO_NODES};
 use crate::numerics::newton_form::{RootProblem, stencil};
@@ -11,17 +11,18 @@ use crate::sheet::row::Row;
 use crate::sheet::span::{RowSpan, SpanNode};
 use crate::shooting::contact::exp;
 
-/// Intervals between contact nodes over which one patch serves the loads of a row: one interval from its middle, interpolation is
-/// half as good.
+/// Number of intervals between contact nodes in which one patch serves the loads of a row. One interval away from the middle of the
+/// patch, interpolation is half as accurate.
 const PATCH_SPAN: usize = 3;
 
-/// The last Newton step toward the contact of a row, in contact nodes: its square is left, and interpolation leaves more than that.
+/// Newton step toward the contact of a row, in contact nodes, after which the iteration stops. The remaining error is its square, which
+/// is less than the interpolation error.
 const LAST_CONTACT_STEP: f64 = 5e-5;
 
 const _: () = assert!(LOBATTO_COUNT <= WIDTH, "a row's loads go together");
 
 impl Lattice {
-    /// The contact node after which `ln D` crosses `target` at the load `m`; the one nearest to `near` if there are several.
+    /// Returns the contact node after which `ln D` crosses `target` at the load `m`, or the one nearest to `near` if there are several.
     fn crossing(&self, m: usize, target: f64, near: usize) -> Option<usize> {
         let last = self.lines.len() - 1;
         let is_before = |i: usize| self.lines[i].ln_distance[m] <= target;
@@ -37,7 +38,7 @@ impl Lattice {
         None
     }
 
-    /// The span of `row` on the lattice, at neighbouring loads.
+    /// Returns the span of `row` on the lattice, at neighbouring loads.
     #[must_use]
     pub fn span(&self, contacts: &ContactNodes, row: &Row) -> RowSpan {
         let target = libm::log(row.pole_distance);
@@ -71,7 +72,7 @@ impl Lattice {
             self.cross(contacts, row, start, &after[from..to], from, &mut nodes);
             from = to;
         }
-        // The load at the fold changes little from contact to contact.
+        // The fold load changes little from contact to contact.
         let next = |node: Option<&SpanNode>, m: usize, to: Option<usize>| {
             let part = LOBATTO_NODES.get(to?)?;
             Some(node?.w * part / LOBATTO_NODES[m])
@@ -83,8 +84,8 @@ impl Lattice {
         RowSpan::on_lattice(self.side.sign(), nodes, beyond)
     }
 
-    /// Adds the nodes from the load `from` on, where `ln D` crosses that of `row` after the contact nodes `after`. The patch from the
-    /// node `start` on serves them all.
+    /// Adds the span's nodes from the load `from` on, where `ln D` crosses that of `row` after the contact nodes `after`. The patch that
+    /// begins at the contact node `start` serves all of them.
     fn cross(
         &self,
         contacts: &ContactNodes,
@@ -126,7 +127,7 @@ impl Lattice {
     }
 }
 
-/// The exponentials of some numbers.
+/// SIMD task that computes the exponential of each number.
 struct Exponentials([Numbers; 2]);
 
 impl SimdTask for Exponentials {
