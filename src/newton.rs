@@ -1,6 +1,6 @@
 //! Newton's method for many shooting problems at once: a round shoots one trajectory for each open problem.
 //!
-//! The loop is independent of sheets, edges and level curves. A [`Problem`] proposes steps and accepts a state as its solution. The loop
+//! The loop is independent of sheets, edges and level curves. A [`NewtonProblem`] proposes steps and accepts a state as its solution. The loop
 //! gathers the initial conditions, stores the iterates, extrapolates short last steps, limits the number of trajectories and returns the
 //! outcome.
 
@@ -23,7 +23,7 @@ pub enum NewtonStep {
 }
 
 /// Root-finding problem in the plane of contact and load.
-pub trait Problem<'a> {
+pub trait NewtonProblem<'a> {
     /// Output of a trajectory.
     type Output: Extrapolate;
 
@@ -85,7 +85,7 @@ pub enum NewtonOutcome {
 
 /// Last iterate of a problem.
 #[derive(Clone, Copy, Debug)]
-pub struct Iterate<S> {
+pub struct NewtonIterate<S> {
     /// Contact coordinate and signed load, `(tau, load)`.
     pub point: DVec2,
     /// State at `point`.
@@ -98,7 +98,7 @@ pub struct Iterate<S> {
 
 /// Rule for which trajectories share a block of SIMD lanes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Sharing {
+pub enum LaneSharing {
     /// Only trajectories with the same number of steps share a block. Results do not depend on the other problems.
     EqualSteps,
     /// All open problems share padded blocks ([`Batch::padded`]).
@@ -113,7 +113,7 @@ pub struct BatchNewton {
     /// Integration method of the trajectories.
     pub method: Method,
     /// Rule for sharing blocks of lanes.
-    pub sharing: Sharing,
+    pub sharing: LaneSharing,
     /// Number of initial rounds at the coarse resolution, in which no state is accepted.
     pub coarse_rounds: u32,
     /// Maximum number of trajectories for each problem.
@@ -125,7 +125,7 @@ impl BatchNewton {
     pub const fn new(method: Method, most_trajectories: u32) -> Self {
         Self {
             method,
-            sharing: Sharing::EqualSteps,
+            sharing: LaneSharing::EqualSteps,
             coarse_rounds: 0,
             most_trajectories,
         }
@@ -133,12 +133,12 @@ impl BatchNewton {
 
     /// Iterates each of the `problems` from its start in `(tau, load)`, on the calling thread unless blocks are padded. Returns one
     /// iterate for each problem, in the same order.
-    pub fn solve<'a, P: Problem<'a>>(
+    pub fn solve<'a, P: NewtonProblem<'a>>(
         &self,
         problems: &mut [P],
         starts: impl IntoIterator<Item = DVec2>,
-    ) -> Vec<Iterate<<P::Output as Extrapolate>::State>> {
-        let first = |point| Iterate {
+    ) -> Vec<NewtonIterate<<P::Output as Extrapolate>::State>> {
+        let first = |point| NewtonIterate {
             point,
             state: Default::default(),
             steps: 0,
@@ -188,7 +188,7 @@ impl BatchNewton {
                     }
                 }
             });
-            if self.sharing != Sharing::All {
+            if self.sharing != LaneSharing::All {
                 open.retain(|i| is_open[*i]);
             } else if !is_open.contains(&true) {
                 break;
@@ -209,7 +209,7 @@ impl BatchNewton {
             false => self.method,
         };
         let batch = Batch::new(method);
-        if self.sharing == Sharing::EqualSteps {
+        if self.sharing == LaneSharing::EqualSteps {
             batch.for_each(conditions.iter().copied(), take);
         } else {
             let outputs: Vec<O> = batch.padded().shoot(conditions);

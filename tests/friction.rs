@@ -9,7 +9,7 @@ use whiskmap::classify::{Regime, Sliding, Status};
 use whiskmap::map::{Panel, Summary};
 use whiskmap::rod::{Rest, Rod, Side, arclength};
 use whiskmap::scene::Scene;
-use whiskmap::sheet::{LevelCurve, Node, Row};
+use whiskmap::sheet::{CurveNode, LevelCurve, Row};
 use whiskmap::shooting::batch::Method;
 use whiskmap::trace::{Branch, Shape};
 
@@ -120,7 +120,7 @@ fn map(friction: f64) -> (Summary, Panel) {
 }
 
 /// The place of the contact: arclength less what it has rolled around the pole.
-fn place(rod: &Rod, node: &Node) -> f64 {
+fn place(rod: &Rod, node: &CurveNode) -> f64 {
     arclength(rod, node.point.x) + rod.pole * (node.angle - node.push)
 }
 

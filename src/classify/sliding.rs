@@ -3,7 +3,7 @@
 //! the state.
 
 use crate::rod::{Rod, arclength};
-use crate::sheet::Node;
+use crate::sheet::CurveNode;
 use crate::shooting::FirstVariation;
 use crate::shooting::batch::{Batch, InitialCondition, Method};
 use glam::DVec2;
@@ -64,7 +64,7 @@ pub(super) fn rate(variation: &FirstVariation, rod: &Rod, tau: f64) -> f64 {
 }
 
 /// How far along the whisker it has slid: the arclength of the contact less what it has rolled, in whisker lengths.
-pub(super) fn slid(rod: &Rod, node: &Node) -> f64 {
+pub(super) fn slid(rod: &Rod, node: &CurveNode) -> f64 {
     rod.pole
         .mul_add(node.angle - node.push, arclength(rod, node.point.x))
 }

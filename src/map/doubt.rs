@@ -7,7 +7,7 @@
 use crate::classify::{RowBoundary, TIE};
 use crate::engine::{Cell, Outcome, WhiskerSide};
 use crate::refine::{ContactState, TOLERANCE};
-use crate::sheet::{Edge, LevelCurve, Node, ON_CURVE};
+use crate::sheet::{CurveNode, Edge, LevelCurve, ON_CURVE};
 
 /// Maximum distance, relative to contact and load, between the ends of a continuation and of the boundary. The two are computed apart,
 /// and the boundary in blocks that may take more steps: they differ by the error of the resolution.
@@ -36,7 +36,7 @@ pub fn solve(
         let apart = (end.x / exit.tau - 1.0).abs() + (end.y / exit.load - 1.0).abs();
         (apart < SAME_END && piece.end == span.edge).then_some(piece.nodes)
     });
-    let pieces: Vec<Option<Vec<Node>>> = pieces.collect();
+    let pieces: Vec<Option<Vec<CurveNode>>> = pieces.collect();
     for (index, cell) in &mut cells {
         let push = side.columns.columns[*index].push;
         let before = *cell;
@@ -95,7 +95,7 @@ const fn beyond(edge: Edge) -> Outcome {
     }
 }
 
-fn state(level: &LevelCurve, node: &Node, push: f64) -> ContactState {
+fn state(level: &LevelCurve, node: &CurveNode, push: f64) -> ContactState {
     ContactState {
         tau: node.point.x,
         load: node.point.y,

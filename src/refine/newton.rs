@@ -1,7 +1,7 @@
 //! Newton's method for many cells at once, and its stopping criteria.
 
 use super::{CellTarget, ContactState, GOAL, RefineOutcome, Refined, TOLERANCE};
-use crate::newton::{BatchNewton, NewtonOutcome, NewtonStep, Problem};
+use crate::newton::{BatchNewton, NewtonOutcome, NewtonProblem, NewtonStep};
 use crate::rod::{Rod, arclength};
 use crate::sheet::{Guess, Sheet};
 use crate::shooting::batch::Method;
@@ -38,7 +38,7 @@ struct CellProblem<'a> {
     residual: f64,
 }
 
-impl<'a> Problem<'a> for CellProblem<'a> {
+impl<'a> NewtonProblem<'a> for CellProblem<'a> {
     type Output = FirstVariation;
 
     fn rod(&self) -> &'a Rod {

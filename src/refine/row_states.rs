@@ -5,7 +5,7 @@
 
 use super::newton::verdict;
 use super::{ContactState, RefineOutcome};
-use crate::newton::{BatchNewton, NewtonOutcome, NewtonStep, Problem};
+use crate::newton::{BatchNewton, NewtonOutcome, NewtonProblem, NewtonStep};
 use crate::rod::{Rod, arclength};
 use crate::sheet::{Guess, Sheet};
 use crate::shooting::batch::{Method, chunk_size};
@@ -49,7 +49,7 @@ struct RowProblem<'a> {
     derivatives: FirstVariation,
 }
 
-impl<'a> Problem<'a> for RowProblem<'a> {
+impl<'a> NewtonProblem<'a> for RowProblem<'a> {
     type Output = FirstVariation;
 
     fn rod(&self) -> &'a Rod {

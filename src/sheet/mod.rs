@@ -15,11 +15,13 @@ mod edges;
 mod fold;
 mod lattice;
 mod row;
+mod samples;
 mod span;
 
-pub use continuation::level_curve::{LevelCurve, Node, ON_CURVE};
+pub use continuation::level_curve::{CurveNode, LevelCurve, ON_CURVE};
 pub use continuation::{Continuation, NODE_MISS, continuations};
-pub use edges::edge_newton::{EdgeIterate, EdgeProblem, EdgeStart, edge_newton};
+pub use edges::edge_newton::{EdgeIterate, EdgeStart, edge_newton};
+pub use edges::edge_problem::EdgeProblem;
 pub use fold::FoldPoint;
 pub use row::{Crossing, Edge, Row};
 pub use span::{Guess, RowSpan, SpanNode};
@@ -28,16 +30,10 @@ use crate::rod::{Rest, Rod, Side};
 use crate::shooting::ShootingMap;
 use crate::shooting::batch::Method;
 use continuation::pieces::{ContinuedRow, StablePiece, stable_pieces};
-use edges::Edges;
 use edges::crossings::crossings;
-use fold::contact_nodes::{ContactNodes, NARROW_SPACING, SPACING};
-use lattice::Lattice;
 use rayon::prelude::*;
+use samples::SheetSamples;
 use std::borrow::Cow;
-
-/// Largest negative load, relative to the fold load, that counts as unloaded. At the soft tip of a strongly curved cone, rounding of
-/// first touch (1e-13 of the length) is a load of 1e-8.
-const UNLOADED: f64 = 1e-6;
 
 /// Number of rows, of `rows` in total, that one batch of continuations follows: 32 to 128. Each thread gets a batch, and lanes stay full
 /// although continuations end at different times. Results do not depend on it.
@@ -73,33 +69,6 @@ enum Guesses {
     Continued(Vec<Vec<RowSpan>>),
 }
 
-/// Samples of the sheet: contact nodes, lattice and edges.
-#[derive(Clone, Debug)]
-struct SheetSamples {
-    contacts: ContactNodes,
-    lattice: Lattice,
-    edges: Edges,
-}
-
-impl SheetSamples {
-    /// Samples the sheet from the tip down to the row `nearest` to the base. Returns `None` if some contact has no fold, or no stable
-    /// state at first touch.
-    fn new(method: Method, rod: &Rod, side: Side, nearest: &Row, spacing: f64) -> Option<Self> {
-        let contacts = ContactNodes::new(method, rod, side, nearest, spacing)?;
-        let lattice = Lattice::new(method.coarsely(), rod, side, &contacts);
-        let edges = Edges::new(method, rod, &contacts, &lattice);
-        Some(Self {
-            contacts,
-            lattice,
-            edges,
-        })
-    }
-
-    fn are_certified(&self) -> bool {
-        self.lattice.is_certified() && self.edges.are_certified()
-    }
-}
-
 impl Sheet {
     /// Computes the sheet of `rod` by `method` for rows at `distances` (at first touch, in whisker lengths).
     #[must_use]
@@ -109,12 +78,8 @@ impl Sheet {
         let nearest = rows
             .iter()
             .min_by(|a, b| a.pole_distance.total_cmp(&b.pole_distance));
-        let sampled = |spacing| SheetSamples::new(method, rod, side, nearest?, spacing);
-        let mut samples = sampled(SPACING);
-        if !samples.as_ref().is_some_and(SheetSamples::are_certified) {
-            samples = sampled(NARROW_SPACING).or(samples);
-        }
-        let is_certified = samples.as_ref().is_some_and(SheetSamples::are_certified);
+        let samples = nearest.and_then(|nearest| SheetSamples::new(method, rod, side, nearest));
+        let is_certified = samples.as_ref().is_some_and(|samples| samples.is_certified);
         let mut crossings = match &samples {
             Some(samples) => crossings(method, rod, side, &samples.edges, &rows),
             None => vec![Vec::new(); rows.len()],
@@ -222,12 +187,9 @@ impl Sheet {
     #[must_use]
     pub fn spans(&self, row: usize) -> Cow<'_, [RowSpan]> {
         match &self.guesses {
-            Guesses::Sampled(samples) => {
-                let SheetSamples {
-                    contacts, lattice, ..
-                } = &**samples;
-                Cow::Owned(vec![lattice.span(contacts, &self.rows[row])])
-            }
+            Guesses::Sampled(samples) => Cow::Owned(vec![
+                samples.lattice.span(&samples.contacts, &self.rows[row]),
+            ]),
             Guesses::Continued(rows) => Cow::Borrowed(&rows[row]),
         }
     }
@@ -240,28 +202,21 @@ impl Sheet {
         pushes: impl Iterator<Item = f64> + Clone,
     ) -> Vec<Option<Guess>> {
         let spans = self.spans(row);
-        let mut guesses = match spans.first() {
-            Some(span) => span.guesses(pushes.clone()),
-            None => pushes.clone().map(|_| None).collect(),
+        let found = spans.iter().map(|span| span.guesses(pushes.clone()));
+        let join = |first: Vec<Option<Guess>>, second: Vec<Option<Guess>>| {
+            let pairs = first.into_iter().zip(second);
+            pairs.map(|(first, second)| first.or(second)).collect()
         };
-        for span in spans.iter().skip(1) {
-            for (guess, other) in guesses.iter_mut().zip(span.guesses(pushes.clone())) {
-                *guess = guess.or(other);
-            }
-        }
-        guesses
+        let none = || pushes.clone().map(|_| None).collect();
+        found.reduce(join).unwrap_or_else(none)
     }
 
     /// Returns true if a state is on the sheet: loaded toward the pole, and on the stable side of the Jacobian's first singularity.
     #[must_use]
     pub fn is_stable(&self, tau: f64, load: f64, map: &ShootingMap) -> bool {
         let load = self.side.sign() * load;
-        let is_loaded = self.samples().is_none_or(|SheetSamples { contacts, .. }| {
-            load >= 0.0 && contacts.is_below_folds(tau, load) || {
-                let part = load / contacts.fold_load(tau);
-                part > -UNLOADED && part < 1.0 + 1e-4
-            }
-        });
+        let samples = self.samples();
+        let is_loaded = samples.is_none_or(|samples| samples.is_below_fold(tau, load));
         let scale = map.by_tau.length() * map.by_load.length();
         is_loaded && map.det() > -1e-7 * scale
     }

@@ -6,7 +6,7 @@ use super::{FINER, Mark, NoState};
 use crate::classify::{Dragged, Sliding};
 use crate::rod::{Rest, Side, Units};
 use crate::scene::{Pole, Whisker};
-use crate::sheet::{Continuation, Edge, LevelCurve, Node, ON_CURVE, Row};
+use crate::sheet::{Continuation, CurveNode, Edge, LevelCurve, ON_CURVE, Row};
 use crate::shooting::batch::Method;
 use crate::shooting::{FullState, Reader, Reading};
 use glam::DVec2;
@@ -116,7 +116,7 @@ impl Branch {
             (None, _) => Mark::PullOff,
         };
         let on_curve = guesses.iter().zip(corrected).enumerate();
-        let marked: Vec<(Node, Option<Mark>)> = on_curve
+        let marked: Vec<(CurveNode, Option<Mark>)> = on_curve
             .map(|(i, ((near, _), corrected))| {
                 // The ends and the fold are known better than any corrector knows them.
                 let exact = match i {
@@ -195,7 +195,7 @@ impl Branch {
     }
 
     /// A state, without what is special about it.
-    fn point(&self, node: &Node, stable: bool) -> BranchPoint {
+    fn point(&self, node: &CurveNode, stable: bool) -> BranchPoint {
         let LevelCurve { rod, side, row, .. } = &self.level;
         let reading = self.reading(node.point.x, &node.full, node.push);
         BranchPoint {

@@ -1,6 +1,6 @@
 //! A branch resampled: points at uniform distances along it.
 
-use crate::sheet::Node;
+use crate::sheet::CurveNode;
 use glam::DVec2;
 
 /// Where along the curve `count` points go, and which of them is the fold: the two parts share the intervals by length.
@@ -26,7 +26,7 @@ pub fn targets(lengths: &[f64], fold: Option<usize>, count: usize) -> (Vec<f64>,
 const NODES: usize = 6;
 
 /// The polynomial through the nodes around `target`, there, and the node before it.
-pub fn interpolate(nodes: &[Node], lengths: &[f64], target: f64) -> (usize, DVec2) {
+pub fn interpolate(nodes: &[CurveNode], lengths: &[f64], target: f64) -> (usize, DVec2) {
     let after = lengths.partition_point(|length| *length <= target);
     let near = after.saturating_sub(1);
     let first = after

@@ -1,6 +1,6 @@
 //! The corrector: moves points onto their level curves by Newton's method along the gradient.
 
-use crate::newton::{BatchNewton, NewtonOutcome, NewtonStep, Problem};
+use crate::newton::{BatchNewton, NewtonOutcome, NewtonProblem, NewtonStep};
 use crate::rod::Rod;
 use crate::sheet::continuation::NODE_MISS;
 use crate::sheet::continuation::level_curve::LevelCurve;
@@ -34,7 +34,7 @@ impl<'a> Corrector<'a> {
     }
 }
 
-impl<'a> Problem<'a> for Corrector<'a> {
+impl<'a> NewtonProblem<'a> for Corrector<'a> {
     type Output = FirstVariation;
 
     fn rod(&self) -> &'a Rod {

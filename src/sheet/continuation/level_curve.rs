@@ -17,7 +17,7 @@ pub const ON_CURVE: f64 = 1e-14;
 
 /// State on the level curve.
 #[derive(Clone, Copy, Debug)]
-pub struct Node {
+pub struct CurveNode {
     /// Contact coordinate and signed load, `(tau, load)`.
     pub point: DVec2,
     /// Pole, shape and derivatives at `point`.
@@ -76,11 +76,11 @@ impl LevelCurve {
 
     /// Returns the node with the state `full` at `point`. Its angles are continued from `push` and `angle`.
     #[must_use]
-    pub fn node(&self, point: DVec2, full: &FullState, push: f64, angle: f64) -> Node {
+    pub fn node(&self, point: DVec2, full: &FullState, push: f64, angle: f64) -> CurveNode {
         let phi = full.map.pole.to_angle();
         let to_pole = self.rod.to_pole() - full.position;
         let tilt = self.rod.contact_tangent().to_angle();
-        Node {
+        CurveNode {
             point,
             full: *full,
             push: nearest_turn(phi - self.row.touch, push),
@@ -89,7 +89,7 @@ impl LevelCurve {
     }
 
     /// Returns the unit direction of the curve at a node, in parts of [`LevelCurve::scale`].
-    pub(super) fn direction(&self, node: &Node) -> DVec2 {
+    pub(super) fn direction(&self, node: &CurveNode) -> DVec2 {
         let gradient = self.scale(node.point) * gradient(node);
         // Along the curve, the push angle changes by minus `det` times its direction (by_load, -by_tau).
         let heading = if self.forward { 1.0 } else { -1.0 };
@@ -97,17 +97,17 @@ impl LevelCurve {
     }
 
     /// Returns the change of `(tau, load)` for each unit of scaled length at a node.
-    pub(super) fn velocity(&self, node: &Node) -> DVec2 {
+    pub(super) fn velocity(&self, node: &CurveNode) -> DVec2 {
         self.scale(node.point) * self.direction(node)
     }
 
     /// Returns the node that the corrector has reached, or `None` if it does not lie in the direction `along`.
     pub(super) fn next(
         &self,
-        from: &Node,
+        from: &CurveNode,
         along: DVec2,
         (point, full): (DVec2, FullState),
-    ) -> Option<Node> {
+    ) -> Option<CurveNode> {
         let turned = (point - from.point) / self.scale(from.point);
         let node = self.node(point, &full, from.push, from.angle);
         (turned.dot(along) > 0.5 * turned.length()).then_some(node)
@@ -122,19 +122,19 @@ impl LevelCurve {
     /// Returns the coordinates of a node in which lengths are measured: push angle and contact angle in radians, and arclength in whisker
     /// lengths.
     #[must_use]
-    pub fn place(&self, node: &Node) -> DVec3 {
+    pub fn place(&self, node: &CurveNode) -> DVec3 {
         let s = arclength(&self.rod, node.point.x);
         DVec3::new(node.push, node.angle, s)
     }
 
     /// Returns the distance of two nodes in the coordinates of [`LevelCurve::place`].
     #[must_use]
-    pub fn length(&self, from: &Node, to: &Node) -> f64 {
+    pub fn length(&self, from: &CurveNode, to: &CurveNode) -> f64 {
         self.place(from).distance(self.place(to))
     }
 }
 
 /// Returns `d ln D/d(tau, load)` at a node.
-fn gradient(node: &Node) -> DVec2 {
+fn gradient(node: &CurveNode) -> DVec2 {
     DVec2::new(node.full.map.by_tau.x, node.full.map.by_load.x)
 }

@@ -1,8 +1,9 @@
 //! Points at which level curves meet the edges of the sheet, between two of their nodes.
 
 use crate::sheet::continuation::corrector::correct;
-use crate::sheet::continuation::level_curve::{LevelCurve, Node, ON_CURVE};
-use crate::sheet::edges::edge_newton::{EdgeProblem, EdgeStart, edge_newton};
+use crate::sheet::continuation::level_curve::{CurveNode, LevelCurve, ON_CURVE};
+use crate::sheet::edges::edge_newton::{EdgeStart, edge_newton};
+use crate::sheet::edges::edge_problem::EdgeProblem;
 use crate::sheet::row::Edge;
 use glam::DVec2;
 
@@ -18,8 +19,8 @@ const LOWEST_GRAZE: f64 = 1e-12;
 /// Chord from one node of a level curve to the next.
 pub struct Chord<'a> {
     level: &'a LevelCurve,
-    from: Node,
-    to: Node,
+    from: CurveNode,
+    to: CurveNode,
     is_stable: bool,
 }
 
@@ -28,14 +29,19 @@ pub enum Meeting {
     /// No edge lies between the nodes.
     None,
     /// First edge between the nodes, and the node on it.
-    Edge(Edge, Node),
+    Edge(Edge, CurveNode),
     /// An edge lies between the nodes, but Newton's method has not found it from there.
     Unclear,
 }
 
 impl<'a> Chord<'a> {
     /// Creates the chord between two nodes of the stable or the unstable part.
-    pub const fn new(level: &'a LevelCurve, from: Node, to: Node, is_stable: bool) -> Self {
+    pub const fn new(
+        level: &'a LevelCurve,
+        from: CurveNode,
+        to: CurveNode,
+        is_stable: bool,
+    ) -> Self {
         Self {
             level,
             from,
@@ -57,7 +63,7 @@ impl<'a> Chord<'a> {
             return false;
         }
         let chord = (self.to.point - self.from.point) / self.level.scale(self.from.point);
-        let slope = |node: &Node| self.level.velocity(node).x * chord.length();
+        let slope = |node: &CurveNode| self.level.velocity(node).x * chord.length();
         let [rises, falls] = [slope(&self.from), slope(&self.to)];
         if rises <= 0.0 || falls >= 0.0 {
             return false;
@@ -86,7 +92,7 @@ impl<'a> Chord<'a> {
             level, from, to, ..
         } = self;
         let tip = level.rod.tau_tip();
-        let height = |node: &Node| match edge {
+        let height = |node: &CurveNode| match edge {
             Edge::Fold => node.full.map.det(),
             Edge::Tip => node.point.x - tip,
         };
@@ -105,7 +111,7 @@ impl<'a> Chord<'a> {
     }
 
     /// Returns true if `node` lies near the chord.
-    fn has_near(&self, node: &Node) -> bool {
+    fn has_near(&self, node: &CurveNode) -> bool {
         let length = |from, to| self.level.length(from, to);
         let reach = 2.0 * length(&self.from, &self.to) + f64::EPSILON;
         length(&self.from, node).max(length(&self.to, node)) <= reach
@@ -138,7 +144,7 @@ pub fn meet(chords: &[Chord]) -> Vec<Meeting> {
 }
 
 /// Returns the point of each edge on its chord, or `None` if Newton's method has found none, or one that is not near the chord.
-fn edges(chords: &[(&Chord, Edge)]) -> Vec<Option<Node>> {
+fn edges(chords: &[(&Chord, Edge)]) -> Vec<Option<CurveNode>> {
     let Some((first, _)) = chords.first() else {
         return Vec::new();
     };

@@ -8,7 +8,7 @@ mod states;
 mod stepper;
 
 use crate::newton::BatchNewton;
-use crate::sheet::continuation::level_curve::{LevelCurve, Node, ON_CURVE};
+use crate::sheet::continuation::level_curve::{CurveNode, LevelCurve, ON_CURVE};
 use crate::sheet::continuation::meeting::{Meeting, meet};
 use crate::sheet::continuation::stepper::Stepper;
 use crate::sheet::row::{Edge, STEEP};
@@ -21,7 +21,7 @@ pub const NODE_MISS: f64 = 1e-8;
 #[derive(Clone, Debug)]
 pub struct Continuation {
     /// Nodes from the start to the end.
-    pub nodes: Vec<Node>,
+    pub nodes: Vec<CurveNode>,
     /// Index of the node at the fold; `None` if the tip comes first.
     pub fold: Option<usize>,
     /// Edge at which the last node lies.
@@ -44,7 +44,7 @@ impl LevelCurve {
     /// Follows the curve from `start` to the tip or the fold, or past the fold to the tip or the second fold. Returns `None` if the
     /// continuation fails.
     #[must_use]
-    pub fn continuation(&self, start: Node, past_fold: bool) -> Option<Continuation> {
+    pub fn continuation(&self, start: CurveNode, past_fold: bool) -> Option<Continuation> {
         continuations(vec![(self, start)], past_fold, ON_CURVE).pop()?
     }
 }
@@ -55,7 +55,7 @@ impl LevelCurve {
 /// curve is followed again with twice the steps.
 #[must_use]
 pub fn continuations(
-    starts: Vec<(&LevelCurve, Node)>,
+    starts: Vec<(&LevelCurve, CurveNode)>,
     past_fold: bool,
     miss: f64,
 ) -> Vec<Option<Continuation>> {
@@ -78,7 +78,7 @@ pub fn continuations(
 /// Follows all curves, and those that fail once more with nodes to rounding. Where curves meet, nodes with an error of `miss` can lead to
 /// another curve.
 fn follow_with_retry(
-    starts: &[(&LevelCurve, Node)],
+    starts: &[(&LevelCurve, CurveNode)],
     past_fold: bool,
     miss: f64,
 ) -> Vec<Option<Continuation>> {
@@ -93,7 +93,7 @@ fn follow_with_retry(
 }
 
 fn follow(
-    starts: Vec<(&LevelCurve, Node)>,
+    starts: Vec<(&LevelCurve, CurveNode)>,
     past_fold: bool,
     miss: f64,
 ) -> Vec<Option<Continuation>> {
@@ -111,7 +111,7 @@ fn follow(
         let at_edges = std::mem::take(&mut open).into_iter();
         let at_edges =
             at_edges.filter_map(|mut stepper| Some((stepper.candidate.take()?, stepper)));
-        let at_edges: Vec<(Node, Stepper)> = at_edges.collect();
+        let at_edges: Vec<(CurveNode, Stepper)> = at_edges.collect();
         let chords = at_edges.iter().map(|(next, stepper)| stepper.chord(*next));
         let meetings = meet(&chords.collect::<Vec<_>>());
         for ((next, mut stepper), meeting) in at_edges.into_iter().zip(meetings) {
@@ -172,8 +172,8 @@ mod tests {
                     let (node, root) = level.bracketed_push(part, push).unwrap();
                     let left = (node.push - push).abs();
                     // The tolerance of the search: at the nodes around the state, not at the state itself.
-                    let miss = |node: &Node| node.push - push;
-                    let is_around = |pair: &&[Node]| miss(&pair[0]) * miss(&pair[1]) <= 0.0;
+                    let miss = |node: &CurveNode| node.push - push;
+                    let is_around = |pair: &&[CurveNode]| miss(&pair[0]) * miss(&pair[1]) <= 0.0;
                     let around = part.windows(2).find(is_around).unwrap().iter();
                     let allowed = around.map(|node| level.rounding(node)).fold(0.0, f64::max);
                     let allowed = allowed * push.abs().max(1.0);

@@ -2,7 +2,7 @@
 //! the sheet. The level curve of a row is then in several pieces, whose push angles may overlap.
 
 use crate::rod::Side;
-use crate::sheet::continuation::level_curve::{LevelCurve, Node};
+use crate::sheet::continuation::level_curve::{CurveNode, LevelCurve};
 use crate::sheet::continuation::stepper::MOST_PUSH;
 use crate::sheet::continuation::{Continuation, NODE_MISS, continuations};
 use crate::sheet::row::Crossing;
@@ -19,13 +19,13 @@ pub struct StablePiece {
     /// Crossing at which the piece ends.
     pub end: Crossing,
     /// Nodes of the piece, in this direction or the opposite one.
-    pub nodes: Vec<Node>,
+    pub nodes: Vec<CurveNode>,
 }
 
 impl StablePiece {
     /// Returns the row span through the nodes, or `None` if the row parameter turns back, or there are too few nodes.
     pub fn span(&self, side: Side) -> Option<RowSpan> {
-        let node = |node: &Node| SpanNode {
+        let node = |node: &CurveNode| SpanNode {
             w: node.point.y.abs() * node.point.x * node.point.x,
             push: side.sign() * node.push,
             tau: node.point.x,
@@ -87,11 +87,11 @@ pub fn stable_pieces(rows: &[ContinuedRow]) -> Vec<StablePieces> {
 }
 
 /// Crossing at which a piece ends, and the nodes of the piece.
-type PieceEnd = (Crossing, Vec<Node>);
+type PieceEnd = (Crossing, Vec<CurveNode>);
 
 fn from_touch(rows: &[ContinuedRow]) -> Vec<StablePieces> {
     let at_touch = |row: &ContinuedRow| row.crossings.iter().copied().find(Crossing::is_at_touch);
-    let starts: Vec<Option<Node>> = rows
+    let starts: Vec<Option<CurveNode>> = rows
         .iter()
         .map(|row| {
             let is_continued = row.touches && at_touch(row).is_none();
@@ -156,7 +156,7 @@ fn through_crossings(
         .zip(ahead)
         .map(|(entry, end)| leads(entry.as_ref()?, end))
         .collect();
-    let back: Vec<Option<Node>> = starts
+    let back: Vec<Option<CurveNode>> = starts
         .iter()
         .zip(&ahead)
         .map(|(start, ahead)| start.filter(|_| ahead.is_none()))
@@ -187,7 +187,7 @@ fn through_crossings(
 }
 
 /// Returns the state at the crossing of each row, or `None` without a crossing, or where the corrector fails.
-fn at_crossings(rows: &[ContinuedRow], crossings: &[Option<Crossing>]) -> Vec<Option<Node>> {
+fn at_crossings(rows: &[ContinuedRow], crossings: &[Option<Crossing>]) -> Vec<Option<CurveNode>> {
     rows.iter()
         .zip(crossings)
         .map(|(row, crossing)| row.level.at_crossing(crossing.as_ref()?))
@@ -198,10 +198,10 @@ fn at_crossings(rows: &[ContinuedRow], crossings: &[Option<Crossing>]) -> Vec<Op
 /// entry is `None` without a start, or where the continuation fails.
 fn ends_of_pieces(
     rows: &[ContinuedRow],
-    starts: &[Option<Node>],
+    starts: &[Option<CurveNode>],
     backward: bool,
 ) -> Vec<Option<PieceEnd>> {
-    let started: Vec<(usize, Node)> = starts
+    let started: Vec<(usize, CurveNode)> = starts
         .iter()
         .enumerate()
         .filter_map(|(i, start)| Some((i, (*start)?)))

@@ -3,7 +3,7 @@
 use crate::numerics::{Root, illinois};
 use crate::rod::arclength;
 use crate::sheet::continuation::corrector::correct;
-use crate::sheet::continuation::level_curve::{LevelCurve, Node, ON_CURVE};
+use crate::sheet::continuation::level_curve::{CurveNode, LevelCurve, ON_CURVE};
 use crate::sheet::row::Crossing;
 use crate::shooting::batch::{Batch, InitialCondition};
 use crate::shooting::{FirstVariation, FullState};
@@ -16,7 +16,7 @@ const ROUGHENING: f64 = 0.1;
 impl LevelCurve {
     /// Returns the state at first touch, from which push angles are counted.
     #[must_use]
-    pub fn touch(&self) -> Option<Node> {
+    pub fn touch(&self) -> Option<CurveNode> {
         let at_touch = self.row.first_touch(&self.rod);
         let condition = InitialCondition {
             rod: &self.rod,
@@ -27,7 +27,7 @@ impl LevelCurve {
             .shoot::<FirstVariation>(&[condition])
             .pop()?
             .full;
-        Some(Node {
+        Some(CurveNode {
             push: 0.0,
             ..self.node(at_touch, &full, 0.0, 0.0)
         })
@@ -35,7 +35,7 @@ impl LevelCurve {
 
     /// Returns the state at a crossing, or `None` if the corrector fails.
     #[must_use]
-    pub fn at_crossing(&self, crossing: &Crossing) -> Option<Node> {
+    pub fn at_crossing(&self, crossing: &Crossing) -> Option<CurveNode> {
         let at = DVec2::new(crossing.tau, crossing.load);
         let (point, full) = self.correct(&[at], ON_CURVE).pop()??;
         Some(self.node(point, &full, self.side.sign() * crossing.push, 0.0))
@@ -44,15 +44,19 @@ impl LevelCurve {
     /// Returns the state at the signed `push`, in radians, between two of the `nodes`, along which the push angle grows or falls
     /// throughout. Returns `None` outside the nodes, or if the corrector fails.
     #[must_use]
-    pub fn state_at_push(&self, nodes: &[Node], push: f64) -> Option<Node> {
+    pub fn state_at_push(&self, nodes: &[CurveNode], push: f64) -> Option<CurveNode> {
         Some(self.bracketed_push(nodes, push)?.0)
     }
 
     /// Returns the state at the signed `push`, in radians, and the root search that found it. The search uses no slopes, because that of
     /// the push angle is zero at the fold.
-    pub(super) fn bracketed_push(&self, nodes: &[Node], push: f64) -> Option<(Node, Root)> {
-        let miss = |node: &Node| node.push - push;
-        let is_between = |pair: &&[Node]| miss(&pair[0]) * miss(&pair[1]) <= 0.0;
+    pub(super) fn bracketed_push(
+        &self,
+        nodes: &[CurveNode],
+        push: f64,
+    ) -> Option<(CurveNode, Root)> {
+        let miss = |node: &CurveNode| node.push - push;
+        let is_between = |pair: &&[CurveNode]| miss(&pair[0]) * miss(&pair[1]) <= 0.0;
         let [from, to] = nodes.windows(2).find(is_between)? else {
             return None;
         };
@@ -75,7 +79,7 @@ impl LevelCurve {
 
     /// Returns the rounding error in `ln D` and in the push angle near a node. It comes from the lever arms, through which the load turns
     /// the rod.
-    pub(super) fn rounding(&self, node: &Node) -> f64 {
+    pub(super) fn rounding(&self, node: &CurveNode) -> f64 {
         let s = arclength(&self.rod, node.point.x);
         let q = (node.point.y * s * s).abs() * self.rod.softness(node.point.x);
         ON_CURVE * (ROUGHENING * q).max(1.0)

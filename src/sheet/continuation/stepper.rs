@@ -1,9 +1,9 @@
 //! The stepper of a continuation: predictor and corrector, from node to node.
 
-use crate::newton::{NewtonStep, Problem};
+use crate::newton::{NewtonProblem, NewtonStep};
 use crate::rod::Rod;
 use crate::sheet::continuation::corrector::{CORRECTOR_TRAJECTORIES, Corrector};
-use crate::sheet::continuation::level_curve::{LevelCurve, Node};
+use crate::sheet::continuation::level_curve::{CurveNode, LevelCurve};
 use crate::sheet::continuation::meeting::Chord;
 use crate::sheet::row::Edge;
 use crate::shooting::{FirstVariation, FullState};
@@ -35,17 +35,17 @@ pub const MOST_PUSH: f64 = 9.0 * TAU;
 /// Maximum number of nodes; no known branch has more than 300.
 const MOST_NODES: usize = 10_000;
 
-/// Continuation in progress. As a [`Problem`] it takes one step after another, until a chord may meet an edge.
+/// Continuation in progress. As a [`NewtonProblem`] it takes one step after another, until a chord may meet an edge.
 pub struct Stepper<'a> {
     /// Index of its curve among those followed in the same batch.
     pub index: usize,
     level: &'a LevelCurve,
     /// Nodes from the start to the last one found.
-    pub nodes: Vec<Node>,
+    pub nodes: Vec<CurveNode>,
     /// Index of the node at the first fold.
     pub fold: Option<usize>,
-    /// Node after the last one, if the chord to it may meet an edge.
-    pub candidate: Option<Node>,
+    /// CurveNode after the last one, if the chord to it may meet an edge.
+    pub candidate: Option<CurveNode>,
     step: f64,
     /// Step lengths from node to node, up to the last node, since the last edge.
     steps: Vec<f64>,
@@ -62,7 +62,7 @@ pub struct Stepper<'a> {
 
 impl<'a> Stepper<'a> {
     /// Starts at `start`; nodes may miss the curve by `miss` in `ln D`.
-    pub fn new(index: usize, level: &'a LevelCurve, start: Node, miss: f64) -> Self {
+    pub fn new(index: usize, level: &'a LevelCurve, start: CurveNode, miss: f64) -> Self {
         let mut stepper = Self {
             index,
             level,
@@ -94,12 +94,12 @@ impl<'a> Stepper<'a> {
         self.advance()
     }
 
-    fn last(&self) -> &Node {
+    fn last(&self) -> &CurveNode {
         &self.nodes[self.nodes.len() - 1]
     }
 
     /// Returns the next node at a point of the curve, if the point lies ahead and not too far away.
-    fn next(&self, point: DVec2, full: FullState) -> Option<Node> {
+    fn next(&self, point: DVec2, full: FullState) -> Option<CurveNode> {
         let next = self.level.next(self.last(), self.along, (point, full))?;
         self.fits(&next).then_some(next)
     }
@@ -129,12 +129,12 @@ impl<'a> Stepper<'a> {
     }
 
     /// Returns the chord from the last node to `next`.
-    pub fn chord(&self, next: Node) -> Chord<'a> {
+    pub fn chord(&self, next: CurveNode) -> Chord<'a> {
         Chord::new(self.level, *self.last(), next, self.fold.is_none())
     }
 
     /// Returns true if the chord to `next` is about as long as the curve.
-    fn fits(&self, next: &Node) -> bool {
+    fn fits(&self, next: &CurveNode) -> bool {
         let (level, last) = (self.level, self.last());
         let chord = level.place(next) - level.place(last);
         let before = self.nodes.iter().rev().nth(1);
@@ -146,7 +146,7 @@ impl<'a> Stepper<'a> {
     }
 
     /// Adds the node `next` and predicts the one after it. Returns false where the continuation ends without an edge.
-    pub fn add(&mut self, next: Node) -> bool {
+    pub fn add(&mut self, next: CurveNode) -> bool {
         let length = self.level.length(self.last(), &next);
         self.steps.push(self.step);
         self.step *= (NODE_DISTANCE / length).clamp(0.5, 2.0);
@@ -155,7 +155,7 @@ impl<'a> Stepper<'a> {
     }
 
     /// Adds the node of an edge. Returns true if it is the first fold.
-    pub fn end_at(&mut self, edge: Edge, node: Node) -> bool {
+    pub fn end_at(&mut self, edge: Edge, node: CurveNode) -> bool {
         // Interpolation between two nodes that are close together is inaccurate.
         if let [.., before, last] = &self.nodes[..]
             && self.fold != Some(self.nodes.len() - 1)
@@ -173,7 +173,7 @@ impl<'a> Stepper<'a> {
     }
 }
 
-impl<'a> Problem<'a> for Stepper<'a> {
+impl<'a> NewtonProblem<'a> for Stepper<'a> {
     type Output = FirstVariation;
 
     fn rod(&self) -> &'a Rod {

@@ -9,8 +9,9 @@ use crate::rod::{Rod, Side};
 use crate::sheet::edges::Edges;
 use crate::sheet::edges::bisection::{EdgeInterval, EdgePoint, bisect};
 use crate::sheet::edges::edge_newton::{
-    EdgeIterate, EdgeProblem, EdgeStart, edge_newton, edge_newton_predicted,
+    EdgeIterate, EdgeStart, edge_newton, edge_newton_predicted,
 };
+use crate::sheet::edges::edge_problem::EdgeProblem;
 use crate::sheet::edges::predictor::{EdgeSample, Prediction};
 use crate::sheet::row::{Crossing, Edge, REACH_SLACK, Row};
 use crate::shooting::batch::Method;

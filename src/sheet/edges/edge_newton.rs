@@ -1,28 +1,12 @@
 //! Edge Newton, the corrector of crossings: solves for the point of an edge at which the pole has a given distance. On the fold edge two
 //! equations, for `D` and `det = 0`, determine contact and load. On the tip edge `D` alone determines the load.
 
-use crate::newton::{BatchNewton, NewtonOutcome, NewtonStep, Problem, Sharing};
-use crate::rod::{Rod, arclength};
-use crate::sheet::edges::predictor::SecondDerivatives;
-use crate::sheet::row::Edge;
+use crate::newton::{BatchNewton, LaneSharing, NewtonOutcome, NewtonProblem, NewtonStep};
+use crate::rod::Rod;
+use crate::sheet::edges::edge_problem::EdgeProblem;
 use crate::shooting::batch::{Batch, InitialCondition, Method};
-use crate::shooting::{SecondVariation, ShootingMap, limited};
+use crate::shooting::{SecondVariation, ShootingMap};
 use glam::DVec2;
-
-/// Newton problem for one point of an edge.
-#[derive(Clone, Copy, Debug)]
-pub struct EdgeProblem<'a> {
-    /// Whisker and pole.
-    pub rod: &'a Rod,
-    /// Edge on which the point lies.
-    pub edge: Edge,
-    /// Distance `D` of the pole's centre from the base, in whisker lengths.
-    pub pole_distance: f64,
-    /// Start of Newton's method, `(tau, load)`.
-    pub start: DVec2,
-    /// Second derivatives at `start`, if the start is a good prediction.
-    pub second: Option<SecondDerivatives>,
-}
 
 /// Last iterate of an edge Newton.
 #[derive(Clone, Copy, Debug)]
@@ -33,7 +17,7 @@ pub struct EdgeIterate {
     pub here: SecondVariation,
     /// Remaining miss in `ln D`.
     pub miss: f64,
-    /// Remaining step length, as [`limited`] measures it: the square of the last step, or the step that was not taken.
+    /// Remaining step length, as [`limited`](crate::shooting::limited) measures it: the square of the last step, or the step that was not taken.
     pub left: f64,
     /// True if a step was short enough to be the last one.
     pub has_converged: bool,
@@ -70,7 +54,7 @@ struct EdgeSearch<'a, 'b> {
     left: f64,
 }
 
-impl<'a> Problem<'a> for EdgeSearch<'a, '_> {
+impl<'a> NewtonProblem<'a> for EdgeSearch<'a, '_> {
     type Output = SecondVariation;
 
     fn rod(&self) -> &'a Rod {
@@ -101,7 +85,7 @@ pub fn edge_newton(method: Method, start: EdgeStart, problems: &[EdgeProblem]) -
         },
         EdgeStart::Fine => newton,
         EdgeStart::Shared => BatchNewton {
-            sharing: Sharing::Open,
+            sharing: LaneSharing::Open,
             ..newton
         },
     };
@@ -170,45 +154,10 @@ pub fn edge_newton_predicted(method: Method, problems: &[EdgeProblem]) -> Vec<Ed
     iterates
 }
 
-impl EdgeProblem<'_> {
-    /// Returns the miss in `ln D` at the state `here`.
-    fn miss(&self, here: &SecondVariation) -> f64 {
-        libm::log(self.pole_distance / here.map.pole.length())
-    }
-
-    /// Returns the next step in `(tau, load)` from `at`, where the state is `here`, and its length.
-    fn step(&self, at: DVec2, here: &SecondVariation) -> (DVec2, f64) {
-        let miss = self.miss(here);
-        let step = match self.edge {
-            Edge::Fold => fold_step(here, miss),
-            Edge::Tip => DVec2::new(0.0, load_step(here, miss)),
-        };
-        limited(step, arclength(self.rod, at.x), at.y)
-    }
-}
-
-/// Returns the step in load toward the point at the same contact whose `ln D` is larger by `miss`, to second order. Where the distance
-/// has its maximum, as for a straight whisker at first touch, a first-order step would go half as far.
-fn load_step(here: &SecondVariation, miss: f64) -> f64 {
-    let (slope, second) = (here.map.by_load.x, here.by_load_load.x);
-    let slope_there = (slope * slope + 2.0 * second * miss).max(0.0).sqrt();
-    2.0 * miss / (slope + slope_there.copysign(slope))
-}
-
-/// Returns the step in `(tau, load)` toward the point of the fold whose `ln D` is larger by `miss`.
-fn fold_step(here: &SecondVariation, miss: f64) -> DVec2 {
-    let by_distance = DVec2::new(here.map.by_tau.x, here.map.by_load.x);
-    let by_det = here.det_gradient();
-    let det = here.map.det();
-    DVec2::new(
-        miss * by_det.y + det * by_distance.y,
-        -miss * by_det.x - det * by_distance.x,
-    ) / by_distance.perp_dot(by_det)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::sheet::row::Edge;
 
     /// Starts are off by 1e-8 and 1e-5; second derivatives are known, wrong or missing.
     #[test]

@@ -9,9 +9,9 @@ use glam::DVec2;
 /// square.
 const LAST_STEP_TO_EXTREMUM: f64 = 1e-7;
 
-/// Extremum of the distance along the tip edge, as its samples predict it.
+/// DistanceExtremum of the distance along the tip edge, as its samples predict it.
 #[derive(Clone, Copy, Debug)]
-pub struct Extremum {
+pub struct DistanceExtremum {
     /// Index of the sample before the extremum.
     pub after: usize,
     /// Predicted signed load `f/rho^2`.
@@ -22,7 +22,7 @@ pub struct Extremum {
     pub by_load_load: DVec2,
 }
 
-impl Extremum {
+impl DistanceExtremum {
     /// Returns the load of the extremum and the map there. The polynomials usually determine the second derivatives so well that one
     /// trajectory suffices; otherwise Newton's method computes its own.
     pub fn polished(&self, method: Method, at_tip: InitialCondition) -> (f64, ShootingMap) {

@@ -3,6 +3,7 @@
 mod bisection;
 pub mod crossings;
 pub mod edge_newton;
+pub mod edge_problem;
 mod extremum;
 mod predictor;
 mod tip_edge;
@@ -111,7 +112,8 @@ mod tests {
     use super::*;
     use crate::numerics::lobatto::LOBATTO_COUNT;
     use crate::rod::{Rest, Side};
-    use crate::sheet::edges::edge_newton::{EdgeProblem, EdgeStart, edge_newton};
+    use crate::sheet::edges::edge_newton::{EdgeStart, edge_newton};
+    use crate::sheet::edges::edge_problem::EdgeProblem;
     use crate::sheet::fold::contact_nodes::SPACING;
     use crate::sheet::row::Edge;
     use crate::sheet::row::Row;

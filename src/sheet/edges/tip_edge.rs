@@ -8,7 +8,7 @@ use crate::numerics::lobatto::{LOBATTO_COUNT, LOBATTO_NODES, LobattoPolynomial};
 use crate::numerics::newton_form::RootProblem;
 use crate::numerics::{Bracket, nearest_turn};
 use crate::rod::Rod;
-use crate::sheet::edges::extremum::Extremum;
+use crate::sheet::edges::extremum::DistanceExtremum;
 use crate::sheet::edges::predictor::{EdgeSample, LAST_STEP_ALONG_EDGE, Prediction, place_between};
 use crate::sheet::fold::FoldPoint;
 use crate::sheet::lattice::directions;
@@ -105,7 +105,7 @@ impl<'a> TipLoads<'a> {
     }
 
     /// Returns the samples before the corner, including the `extrema` of the distance.
-    fn samples(&self, method: Method, extrema: &[Extremum]) -> Vec<EdgeSample> {
+    fn samples(&self, method: Method, extrema: &[DistanceExtremum]) -> Vec<EdgeSample> {
         let mut samples: Vec<EdgeSample> = Vec::new();
         for (m, part) in self.parts[..self.parts.len() - 1].iter().enumerate() {
             let sample = |place: f64, load: f64, map: &ShootingMap| EdgeSample {
@@ -130,14 +130,14 @@ impl<'a> TipLoads<'a> {
     }
 
     /// Returns the extrema: `dlnD/dload` changes its sign between two loads.
-    fn extrema(&self) -> Vec<Extremum> {
+    fn extrema(&self) -> Vec<DistanceExtremum> {
         let slope = |m: usize| self.maps[m].by_load;
         let load = |m: usize| self.parts[m] * self.corner.load;
         let turns = |m: &usize| slope(*m).x * slope(m + 1).x < 0.0;
         let between = |m: usize| {
             let [from, to] = [slope(m), slope(m + 1)];
             let by_load_load = (to - from) / (load(m + 1) - load(m));
-            Extremum {
+            DistanceExtremum {
                 after: m,
                 load: load(m) - from.x / by_load_load.x,
                 loads: Bracket::new([load(m), load(m + 1)], [from.x, to.x]),
@@ -201,7 +201,7 @@ impl TipEdge {
 
     /// Returns the extrema: sign changes of `dlnD/dload`. Three places from sample to sample are tested, because two extrema may be
     /// close.
-    pub fn extrema(&self) -> Vec<Extremum> {
+    pub fn extrema(&self) -> Vec<DistanceExtremum> {
         let slope = &self.by_load[0];
         let mut extrema = Vec::new();
         let (mut from, mut at_from) = (0.0, slope.at(0.0).0);
@@ -219,7 +219,7 @@ impl TipEdge {
                         bracket: parts,
                     };
                     let part = slope.solve(&problem, LAST_STEP_ALONG_EDGE);
-                    extrema.push(Extremum {
+                    extrema.push(DistanceExtremum {
                         after,
                         load: self.corner * part,
                         loads: Bracket {

@@ -4,7 +4,7 @@ mod change;
 pub mod contact_nodes;
 pub mod coordinate;
 
-use crate::newton::{BatchNewton, NewtonStep, Problem, Sharing};
+use crate::newton::{BatchNewton, LaneSharing, NewtonProblem, NewtonStep};
 use crate::numerics::Bracket;
 use crate::numerics::newton_form::{Polynomial, RootProblem, stencil};
 use crate::rod::{Rod, Side, arclength};
@@ -186,7 +186,7 @@ struct FoldProblem<'a> {
     loads: Bracket,
 }
 
-impl<'a> Problem<'a> for FoldProblem<'a> {
+impl<'a> NewtonProblem<'a> for FoldProblem<'a> {
     type Output = SecondVariation;
 
     fn rod(&self) -> &'a Rod {
@@ -220,8 +220,8 @@ fn polish(method: Method, rod: &Rod, marched: Vec<Option<FoldBracket>>) -> Vec<O
         // Solved folds stay in the batch: with fewer steps, at the tip of a perfect cone, `det` may have its root elsewhere. Along a
         // profile, each trajectory takes its own number of steps.
         sharing: match rod.profile {
-            Some(_) => Sharing::Open,
-            None => Sharing::All,
+            Some(_) => LaneSharing::Open,
+            None => LaneSharing::All,
         },
         ..BatchNewton::new(method, POLISH_TRAJECTORIES)
     };

@@ -24,7 +24,7 @@ pub struct Lattice {
     /// Load lines, one for each contact node.
     lines: Vec<LoadLine>,
     /// Patches, indexed by the first contact node of their stencil.
-    patches: Vec<Patch>,
+    patches: Vec<LatticePatch>,
 }
 
 /// Lattice points of one contact node, `[load]`.
@@ -42,7 +42,7 @@ struct LoadLine {
 
 /// Hermite polynomials along one stencil of contact nodes, as divided differences, one polynomial for each load.
 #[derive(Clone, Copy, Debug)]
-struct Patch {
+struct LatticePatch {
     ln_distance: [Numbers; TERMS],
     /// Divided differences of the direction of the pole, in radians.
     phi: [Numbers; TERMS],
@@ -117,7 +117,7 @@ impl Lattice {
 }
 
 /// Interpolates each [`STENCIL`](crate::sheet::fold::coordinate::STENCIL) neighbours of `lines`, or all of them where there are fewer.
-fn patches(lines: &[LoadLine]) -> Vec<Patch> {
+fn patches(lines: &[LoadLine]) -> Vec<LatticePatch> {
     let through = |value: fn(&LoadLine) -> Numbers, slope: usize| {
         let values: Vec<Numbers> = lines.iter().map(value).collect();
         let slopes: Vec<Numbers> = lines.iter().map(|line| line.slopes[slope]).collect();
@@ -125,7 +125,7 @@ fn patches(lines: &[LoadLine]) -> Vec<Patch> {
     };
     through(|line| line.ln_distance, 0)
         .zip(through(|line| line.phi, 1))
-        .map(|(ln_distance, phi)| Patch { ln_distance, phi })
+        .map(|(ln_distance, phi)| LatticePatch { ln_distance, phi })
         .collect()
 }
 

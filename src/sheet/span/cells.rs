@@ -1,180 +1,15 @@
-//! Row spans: stable pieces of a row as polynomials of the row parameter `w = |load| tau^2`.
-//!
-//! Along a stable row, `w` grows from first touch to the end of the row. Push angle and contact are analytic in `w`, even at the fold,
-//! where the push angle is flat. So a few states along the row represent the span. To find a cell, solve `push(w)` for `w`; its contact
-//! is `tau(w)`, and its load `w/tau^2`.
+//! Guesses for the cells of a span: each cell solves `push(w)` for `w`.
 
-use crate::numerics::divided_differences::through_nodes;
+use super::{AROUND, Guess, RowSpan};
 use crate::numerics::newton_form::{Polynomial, RootProblem, stencil};
 use crate::numerics::newton_form_simd::{SimdRoots, Terms};
 use crate::numerics::{Bracket, WIDTH};
-
-/// Start of Newton's method for one cell.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Guess {
-    /// Contact coordinate `tau`.
-    pub tau: f64,
-    /// Signed load `f/rho^2`.
-    pub load: f64,
-}
-
-/// State of a span: an interpolation node.
-#[derive(Clone, Copy, Debug)]
-pub struct SpanNode {
-    /// Row parameter `|load| tau^2`.
-    pub w: f64,
-    /// Push angle since first touch, in radians: a magnitude on the row's side.
-    pub push: f64,
-    /// Contact coordinate `tau`.
-    pub tau: f64,
-}
-
-/// End of an interval of push angles between two nodes.
-#[derive(Clone, Copy, Debug)]
-struct IntervalEnd {
-    w: f64,
-    push: f64,
-    /// Square root of the difference between the largest push angle of the span and `push`. At the fold, `w` is linear in this root.
-    below: f64,
-}
-
-/// Stable piece of a row, between two ends.
-#[derive(Clone, Debug)]
-pub struct RowSpan {
-    /// Sign of the loads: 1 or -1.
-    sign: f64,
-    /// States by growing push angle; `w` grows or falls throughout.
-    nodes: Vec<SpanNode>,
-    /// Ends of the intervals between the nodes.
-    ends: Vec<IntervalEnd>,
-    /// Largest push angle at `ends`, in radians.
-    largest_push: f64,
-    /// Distance beyond the ends, in radians, within which push angles still have a guess.
-    margin: f64,
-}
-
-/// Number of nodes of a polynomial through unevenly spaced nodes.
-const AROUND: usize = 7;
-
-/// Distance beyond the detachment angle of a lattice, in radians, up to which cells get guesses. On most whiskers it is many times the
-/// interpolation error; a row with a missed cell is followed by continuation.
-pub const PUSH_MARGIN: f64 = 1e-4;
 
 /// Newton step toward the `w` of a cell, in parts of the largest `w`, after which the iteration stops. The remaining error is its square,
 /// which is less than the interpolation error.
 const LAST_SPAN_STEP: f64 = 1e-5;
 
 impl RowSpan {
-    /// Creates the span through the states of a continuation, by growing push angle. Returns `None` if `w` turns back.
-    pub fn through(sign: f64, nodes: Vec<SpanNode>) -> Option<Self> {
-        let is_ordered = |pair: &[SpanNode]| pair[0].push < pair[1].push;
-        let grows = |pair: &[SpanNode]| pair[0].w < pair[1].w;
-        let is_monotone = nodes.windows(2).all(|pair| is_ordered(pair) && grows(pair))
-            || nodes
-                .windows(2)
-                .all(|pair| is_ordered(pair) && !grows(pair));
-        (is_monotone && nodes.len() > 1).then(|| Self::new(sign, nodes, 0.0))
-    }
-
-    /// Creates the span through states of a lattice.
-    ///
-    /// A row leaves the lattice between two loads. Where the states end before first touch or before the fold, the span is extended to
-    /// the row parameters of the next load, `beyond`, unless the push angle turns in between.
-    pub fn on_lattice(sign: f64, nodes: Vec<SpanNode>, beyond: [Option<f64>; 2]) -> Self {
-        let mut span = Self::new(sign, nodes, PUSH_MARGIN);
-        let count = span.ends.len();
-        if count < 2 {
-            return span;
-        }
-        for (w, i) in beyond.into_iter().zip([0, count - 1]) {
-            let Some(w) = w else { continue };
-            let push = span.around(i)[0].at(w).0;
-            let is_farther = if i == 0 {
-                push < span.nodes[i].push
-            } else {
-                push > span.nodes[i].push
-            };
-            if is_farther {
-                (span.ends[i].w, span.ends[i].push) = (w, push);
-            }
-        }
-        span.measure_below();
-        span
-    }
-
-    fn new(sign: f64, nodes: Vec<SpanNode>, margin: f64) -> Self {
-        let end = |node: &SpanNode| IntervalEnd {
-            w: node.w,
-            push: node.push,
-            below: 0.0,
-        };
-        let mut span = Self {
-            sign,
-            ends: nodes.iter().map(end).collect(),
-            nodes,
-            largest_push: 0.0,
-            margin,
-        };
-        span.measure_below();
-        span
-    }
-
-    fn measure_below(&mut self) {
-        let pushes = self.ends.iter().map(|end| end.push);
-        let largest = pushes.fold(f64::NEG_INFINITY, f64::max);
-        for end in &mut self.ends {
-            end.below = (largest - end.push).max(0.0).sqrt();
-        }
-        self.largest_push = largest;
-    }
-
-    /// Returns the push angle and `tau` as polynomials of `w` through `N` nodes, from the node `from` on.
-    fn polynomials<const N: usize>(&self, from: usize) -> [Polynomial<N>; 2] {
-        let nodes = &self.nodes[from..self.nodes.len().min(from + N)];
-        let numbers = |number: fn(&SpanNode) -> f64| {
-            let mut numbers = [0.0; WIDTH];
-            for (slot, node) in numbers.iter_mut().zip(nodes) {
-                *slot = number(node);
-            }
-            numbers
-        };
-        let [w, push, tau] = [
-            numbers(|node| node.w),
-            numbers(|node| node.push),
-            numbers(|node| node.tau),
-        ];
-        let count = nodes.len();
-        through_nodes(&w[..count], [&push[..count], &tau[..count]])
-    }
-
-    /// Returns the polynomials around the interval after the node `i`.
-    fn around(&self, i: usize) -> [Polynomial<AROUND>; 2] {
-        self.polynomials(stencil(i, AROUND, self.nodes.len()))
-    }
-
-    /// Returns true if the span begins at first touch, where the load is 0.
-    pub fn begins_at_touch(&self) -> bool {
-        self.nodes.first().is_some_and(|node| node.w == 0.0)
-    }
-
-    /// Returns `[push angle in radians, tau]` at the row parameter `w`.
-    pub fn at(&self, w: f64) -> [f64; 2] {
-        let is_before = |node: &SpanNode| node.w <= w;
-        let after = match self.nodes.first().zip(self.nodes.last()) {
-            Some((first, last)) if first.w > last.w => {
-                self.nodes.partition_point(|n| !is_before(n))
-            }
-            _ => self.nodes.partition_point(is_before),
-        };
-        let before = after.saturating_sub(1);
-        if self.nodes.len() == WIDTH {
-            self.polynomials::<WIDTH>(0)
-                .map(|polynomial| polynomial.at(w).0)
-        } else {
-            self.around(before).map(|polynomial| polynomial.at(w).0)
-        }
-    }
-
     /// Returns one guess for each of the growing push angles (magnitudes, in radians). An entry is `None` outside the span.
     pub fn guesses(&self, pushes: impl Iterator<Item = f64>) -> Vec<Option<Guess>> {
         let mut guesses = Vec::with_capacity(pushes.size_hint().0);
@@ -298,6 +133,7 @@ impl<'a> SpanCells<'a> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::{PUSH_MARGIN, SpanNode};
     use super::*;
     use crate::numerics::lobatto::{LOBATTO_COUNT, LOBATTO_NODES};
     use std::f64::consts::FRAC_PI_2;
