@@ -11,8 +11,8 @@ alias Group = vec4<u32>;
 @group(0) @binding(3) var<storage, read> pushes: array<vec2<real>>;
 @group(0) @binding(4) var<storage, read_write> cells: array<array<vec4<u32>, 3>>;
 
-// That of the workgroup, a state of the row, exact, and its neighbourhood on the row: `GpuReference` in Rust says what is where. Outside
-// of loops a software adapter reads a known place of it once for all invocations.
+// Base point of the workgroup: an exact state of the row, and its neighbourhood on the row, in the layout of the Rust struct. Outside of
+// loops, a software adapter reads a constant index of it once for all invocations.
 var<workgroup> reference: array<vec4<real>, REFERENCE_QUADS>;
 
 // The state of a cell less that of its reference.
@@ -36,7 +36,7 @@ struct Polynomial {
     last: vec4<real>,
 }
 
-// That of the reference's row from the place `first` on.
+// Polynomial of the base point's row that begins at the index `first`.
 fn of_row(first: u32) -> Polynomial {
     return Polynomial(reference[first], reference[first + 1u], reference[first + 2u]);
 }
@@ -207,7 +207,7 @@ fn solve_cells(@builtin(workgroup_id) of_group: vec3<u32>, @builtin(local_invoca
     workgroupBarrier();
     let here = pushes[group.y + min(own, group.w - 1u)];
     let push = (here.x - reference[PUSH].x) + (here.y - reference[PUSH].y);
-    // Those beyond the last cell have nothing to do.
+    // Invocations beyond the last cell take no steps.
     let is_asked = own < group.w;
     let steps = select(0u, u32(reference[PUSH].z), is_asked);
     let cell = solve(push, steps);

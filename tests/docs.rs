@@ -1,4 +1,4 @@
-//! Documentation: commands run, links and paths exist, every column is described.
+//! Documentation: commands run, links and paths exist, every column is described, every summary stands alone.
 #![allow(clippy::expect_used, reason = "a test fails by panicking")]
 
 use assert_cmd::Command;
@@ -188,4 +188,59 @@ fn every_test_file_is_in_a_program() {
             path.display()
         );
     }
+}
+
+/// Returns true if a summary does not name its subject.
+fn is_fragment(summary: &str) -> bool {
+    let starts = ["Of", "That of", "Those", "The same"];
+    starts.iter().any(|start| {
+        let rest = summary.strip_prefix(start);
+        rest.is_some_and(|rest| !rest.starts_with(char::is_alphanumeric))
+    })
+}
+
+#[test]
+fn fragments_are_recognized() {
+    for text in ["Of the rod.", "That of `x`.", "Those that do", "The same"] {
+        assert!(is_fragment(text), "{text}");
+    }
+    for text in [
+        "Offset in bytes.",
+        "The sameness",
+        "That off",
+        "Angle of the rod.",
+    ] {
+        assert!(!is_fragment(text), "{text}");
+    }
+}
+
+/// The first line of each doc comment, and in shaders of each comment, names its subject.
+#[test]
+fn summaries_stand_alone() {
+    let mut found = Vec::new();
+    let mut summaries = 0;
+    let mut folders = vec![root().join("src"), root().join("shaders")];
+    let crates = fs::read_dir(root().join("crates")).expect("crates");
+    folders.extend(crates.map(|own| own.expect("a crate").path().join("src")));
+    for folder in folders {
+        for (extension, markers) in [("rs", &["///", "//!"][..]), ("wgsl", &["//"])] {
+            for path in files(&folder, extension) {
+                let text = fs::read_to_string(&path).expect("a source file");
+                let mut is_first = true;
+                for (number, line) in (1..).zip(text.lines()) {
+                    let marked = |marker: &&str| line.trim_start().strip_prefix(*marker);
+                    let comment = markers.iter().find_map(marked);
+                    if let Some(comment) = comment.filter(|_| is_first) {
+                        summaries += 1;
+                        if is_fragment(comment.trim()) {
+                            found.push(format!("{}:{number}: {line}", path.display()));
+                        }
+                    }
+                    is_first = comment.is_none();
+                }
+            }
+        }
+    }
+    assert!(summaries > 1000, "only {summaries} summaries found");
+    assert!(found.is_empty(), "{}", found.join("\n"));
 }

@@ -48,7 +48,7 @@ pub struct Measurement {
     pub trajectories_per_s: f64,
     /// Billions of floating-point operations per second in the integration, where they are counted: on the CPU.
     pub gflops: Option<f64>,
-    /// The same as a part of the engine's peak.
+    /// Floating-point rate as a part of the engine's peak.
     pub of_peak: Option<f64>,
     /// How far off the answers are.
     pub errors: Errors,

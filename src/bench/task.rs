@@ -61,7 +61,7 @@ pub struct Spread {
 }
 
 impl Spread {
-    /// Of `values`; a number that is none is worse than any.
+    /// Returns the spread of `values`; NaN counts as the worst.
     pub fn of(mut values: Vec<f64>) -> Self {
         for value in &mut values {
             if value.is_nan() {

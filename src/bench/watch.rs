@@ -22,7 +22,7 @@ pub struct Timing {
 }
 
 impl Timing {
-    /// Of the `seconds` of some runs.
+    /// Returns the timing of runs that took these `seconds`.
     pub fn of(seconds: impl Iterator<Item = f64> + Clone) -> Self {
         let [fastest, slowest] =
             [f64::min, f64::max].map(|pick| seconds.clone().fold(f64::NAN, pick));

@@ -92,7 +92,7 @@ impl fmt::Display for Verdict {
 }
 
 impl Verdict {
-    /// Of one CPU engine, and any number of others.
+    /// Compares the CPU engine, which is first, with the fastest of the others.
     pub fn of(maps: &[WholeMap]) -> Option<Self> {
         let (cpu, gpus) = maps.split_first()?;
         let by_time = |a: &&WholeMap, b: &&WholeMap| a.seconds.median.total_cmp(&b.seconds.median);

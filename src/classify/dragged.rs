@@ -20,7 +20,7 @@ pub struct Dragged {
 }
 
 impl Dragged {
-    /// Of rows that begin at first touch, all of one method, whose trajectories share batches; `None` where continuation is lost.
+    /// Returns one limit per row that begins at first touch; `None` where continuation fails. All rows have one method.
     #[must_use]
     pub fn of(levels: &[LevelCurve]) -> Vec<Option<Self>> {
         let tips = Limit::of(levels);

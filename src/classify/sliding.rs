@@ -22,7 +22,7 @@ pub enum Sliding {
 }
 
 impl Sliding {
-    /// Of the state of `rod` with its contact at `tau`, if the contact slides there; `None` without friction.
+    /// Returns the sliding direction of a state of `rod` with its contact at `tau`; `None` without friction.
     #[must_use]
     pub fn of(variation: &FirstVariation, rod: &Rod, tau: f64) -> Option<Self> {
         // The coefficient has the sign of the side, and so has the growing direction of the pole.
@@ -30,7 +30,7 @@ impl Sliding {
         (rod.friction != 0.0).then_some(if rate < 0.0 { Self::Base } else { Self::Tip })
     }
 
-    /// The same at many points `(tau, load)` of `rod`, one trajectory each.
+    /// Returns the sliding direction at each point `(tau, load)` of `rod`, with one trajectory each.
     #[must_use]
     pub fn at(method: Method, rod: &Rod, points: &[DVec2]) -> Vec<Option<Self>> {
         if rod.friction == 0.0 {

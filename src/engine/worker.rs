@@ -186,7 +186,7 @@ mod tests {
         Arc::new(RowBatch::new(Method::fine(), [].into(), [].into(), []))
     }
 
-    /// Of `count` batches: those left submitted, those collected, and the number of responses.
+    /// Returns how many of `count` batches stay submitted, how many are collected, and the number of responses.
     fn served(count: usize, most: usize, is_received: bool) -> (usize, usize, usize) {
         let mut engine = counting(most, false);
         let ((requests, requested), (respond, responses)) = (channel(), channel());

@@ -37,8 +37,8 @@ impl Panel {
         panel
     }
 
-    /// The same, of which every cell must be written: all is 0 until then, since memory that is zero costs nothing before it is
-    /// written to, row by row on all threads.
+    /// Creates a panel of zeros, of which every cell must be written. Memory of zeros costs nothing until it is written, row by
+    /// row on all threads.
     pub(super) fn unwritten(cells: usize, channels: Channels) -> Self {
         let of_state = STATE_CHANNELS.map(|name| {
             let cells = if channels.contains(name) { cells } else { 0 };

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 
 /// A state that was found.
 pub struct FoundState {
-    /// Of the panel.
+    /// Column of the panel.
     pub column: usize,
     /// Whether a push from first touch leads there.
     pub regime: Regime,

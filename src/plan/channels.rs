@@ -41,7 +41,7 @@ impl Channels {
     /// Every channel.
     pub const ALL: Self = Self([true; COUNT]);
 
-    /// Those that `is_wanted` says.
+    /// Selects the channels for which `is_wanted` returns true.
     #[must_use]
     pub fn those(is_wanted: impl Fn(&str) -> bool) -> Self {
         let mut chosen = [false; COUNT];
@@ -51,7 +51,7 @@ impl Channels {
         Self(chosen)
     }
 
-    /// The same and `name`.
+    /// Adds the channel `name`.
     #[must_use]
     pub fn with(self, name: &str) -> Self {
         Self::those(|other| other == name || self.contains(other))

@@ -48,7 +48,7 @@ row! {
         pub force_un: Option<f64>,
         /// Force that the pole puts on the base, along the base's tangent.
         pub base_force_x_un: Option<f64>,
-        /// The same across the base's tangent, to the left.
+        /// Force that the pole puts on the base, across the base's tangent, to the left.
         pub base_force_y_un: Option<f64>,
         /// Moment that the pole puts on the base: positive turns it to the left.
         pub base_moment_nnm: Option<f64>,
@@ -94,7 +94,7 @@ pub fn curve(whisker: &Whisker, pole: &Pole, side: Side, distances_mm: &[f64]) -
     curve_at(Resolution::FINE, whisker, pole, side, distances_mm)
 }
 
-/// The same at another resolution.
+/// Returns the detachment curve at another resolution.
 #[must_use]
 pub fn curve_at(
     resolution: Resolution,

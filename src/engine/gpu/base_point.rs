@@ -136,7 +136,7 @@ pub struct GpuBasePoint<T> {
     rest: [T; 4],
     /// d(theta, X, Y) at the base, and of the energy, by `tau`.
     by_tau: [T; 4],
-    /// The same by load.
+    /// d(theta, X, Y) at the base, and of the energy, by load.
     by_load: [T; 4],
     /// The push angle, what is left of it, the steps, and the first of them.
     push: [T; 4],

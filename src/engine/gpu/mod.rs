@@ -48,7 +48,7 @@ pub struct Gpu {
     layout: BufferLayout,
     device: Device,
     pushes: Option<wgpu::Buffer>,
-    /// Those of no flight.
+    /// Buffers that no flight uses.
     buffers: Vec<Buffers>,
     pipelines: HashMap<Effects, Pipeline>,
     /// The batches submitted and not collected.
@@ -88,7 +88,7 @@ impl Gpu {
         Device::at(index, precision).map(|device| Self::with_device(precision, device))
     }
 
-    /// The same, to have the device time its work.
+    /// Opens the adapter at `index`, and lets the device time its work.
     ///
     /// # Errors
     /// Those of [`Gpu::new`].
