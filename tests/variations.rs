@@ -128,7 +128,7 @@ fn taylor_extrapolation_is_of_second_order() {
     assert!(worst[0] < 3e-11 && worst[1] < 3e-7);
 }
 
-/// Whiskers of rough radii, whose rows are walked: 60 rows with 30 % of noise; a waist before a bulge, on a rough pole, of a modulus that
+/// Whiskers of rough radii, whose rows are followed by continuation: 60 rows with 30 % of noise; a waist before a bulge, on a rough pole, of a modulus that
 /// rises.
 fn rough() -> [Scene; 2] {
     const LAST: u32 = 59;

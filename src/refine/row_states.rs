@@ -96,36 +96,26 @@ fn solve<'a>(method: Method, states: &[RowState<'a>]) -> Vec<Option<ExactState>>
     let start = |state: &RowState| DVec2::new(state.tau, state.w / (state.tau * state.tau));
     let newton = BatchNewton::new(method, ROW_STATE_TRAJECTORIES);
     let iterates = newton.solve(&mut problems, states.iter().map(start));
-    let exact = problems.iter().zip(iterates);
-    let exact = exact.map(
-        |(
-            RowProblem {
-                state, derivatives, ..
+    let exact = problems.iter().zip(iterates).map(|(problem, iterate)| {
+        let reached = ContactState {
+            tau: iterate.point.x,
+            load: iterate.point.y,
+            full: iterate.state,
+            residual: 0.0,
+        };
+        let state = &problem.state;
+        let (tau, load) = start(state).into();
+        let guess = Guess { tau, load };
+        let is_solved = iterate.outcome == NewtonOutcome::Converged
+            && verdict(state.sheet, guess, &reached) == RefineOutcome::Solved;
+        is_solved.then_some(ExactState {
+            tau: reached.tau,
+            load: reached.load,
+            variation: FirstVariation {
+                full: reached.full,
+                ..problem.derivatives
             },
-            iterate,
-        )| {
-            let reached = ContactState {
-                tau: iterate.point.x,
-                load: iterate.point.y,
-                full: iterate.state,
-                residual: 0.0,
-            };
-            let guess = start(state);
-            let guess = Guess {
-                tau: guess.x,
-                load: guess.y,
-            };
-            let is_solved = iterate.outcome == NewtonOutcome::Converged
-                && verdict(state.sheet, guess, &reached) == RefineOutcome::Solved;
-            is_solved.then_some(ExactState {
-                tau: reached.tau,
-                load: reached.load,
-                variation: FirstVariation {
-                    full: reached.full,
-                    ..*derivatives
-                },
-            })
-        },
-    );
+        })
+    });
     exact.collect()
 }

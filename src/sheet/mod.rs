@@ -29,7 +29,7 @@ pub use span::{Guess, RowSpan, SpanNode};
 use crate::rod::{Rest, Rod, Side};
 use crate::shooting::ShootingMap;
 use crate::shooting::batch::Method;
-use continuation::pieces::{ContinuedRow, StablePiece, stable_pieces};
+use continuation::pieces::{ContinuedRow, stable_pieces};
 use edges::crossings::crossings;
 use rayon::prelude::*;
 use samples::SheetSamples;
@@ -110,17 +110,13 @@ impl Sheet {
             let found = stable_pieces(&continued.iter().zip(&levels).map(row).collect::<Vec<_>>());
             let mut guesses = vec![Vec::new(); rows.len()];
             for (i, found) in continued.into_iter().zip(found) {
-                let ends = |piece: &StablePiece| [piece.begin, Some(piece.end)];
-                crossings[i] = found.pieces.iter().flat_map(ends).flatten().collect();
+                crossings[i] = found.ends().collect();
                 let is_incomplete = !found.are_complete && !found.pieces.is_empty();
                 if is_incomplete || samples.is_none() && !rows[i].is_reached() {
                     crossings[i].push(Crossing::unknown());
                 }
-                guesses[i] = found
-                    .pieces
-                    .iter()
-                    .filter_map(|piece| piece.span(side))
-                    .collect();
+                let spans = found.pieces.iter().filter_map(|piece| piece.span(side));
+                guesses[i] = spans.collect();
             }
             guesses
         };

@@ -134,9 +134,9 @@ fn close_folds_are_not_missed() {
     }
 }
 
-/// A cylinder that is pushed by a whole turn: between nodes that are on the curve to 1e-8 alone the walk loses the way.
+/// A cylinder that is pushed by a whole turn: with nodes that are on the curve only to 1e-8, the continuation fails.
 #[test]
-fn lost_walks_are_walked_once_more() {
+fn failed_continuations_are_repeated_with_exact_nodes() {
     let scene = cylinder(
         0.007318811503537833,
         0.8759848018136742,

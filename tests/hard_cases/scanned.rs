@@ -60,7 +60,7 @@ fn scan(count: u32, whiskers: &impl Strategy<Value = Case>) -> Seen {
 #[test]
 fn measured_radii_hold() {
     let seen = scan(200, &measured());
-    // Nearly half of these sheets are walked: radii that swell and thin make their edges steeper than samples can vouch for.
+    // Nearly half of these sheets need continuation: radii that swell and thin make their edges too steep to be certified.
     assert!(seen.states > 1000, "{seen:?}");
     holds(&seen);
 }
@@ -68,7 +68,7 @@ fn measured_radii_hold() {
 #[test]
 fn two_thousand_whiskers_hold() {
     let seen = scan(2000, &cases());
-    // Most whiskers that coil up are walked: their cells have no shots.
+    // Most whiskers that coil up need continuation: their cells have no targets.
     assert!(seen.states > 19_000 && seen.coiled > 5, "{seen:?}");
     holds(&seen);
 }

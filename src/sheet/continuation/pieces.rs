@@ -57,11 +57,15 @@ pub struct StablePieces {
 }
 
 impl StablePieces {
+    /// Returns the crossings at which the pieces begin and end, in order.
+    pub fn ends(&self) -> impl Iterator<Item = Crossing> {
+        let ends = |piece: &StablePiece| [piece.begin, Some(piece.end)];
+        self.pieces.iter().flat_map(ends).flatten()
+    }
+
     /// Returns true if one of the pieces begins or ends at `crossing`.
     fn have_end(&self, crossing: &Crossing) -> bool {
-        let ends = |piece: &StablePiece| [piece.begin, Some(piece.end)];
-        let mut known = self.pieces.iter().flat_map(ends).flatten();
-        known.any(|other| same(crossing, &other))
+        self.ends().any(|end| same(crossing, &end))
     }
 }
 
