@@ -114,7 +114,7 @@ pub fn fill(
         panel * whiskers,
         keep,
     )?;
-    report(scene, &summary, start, &[path.clone()])
+    report(scene, &summary, start, std::slice::from_ref(path))
 }
 
 /// Returns the missing and damaged ones of `blocks`, and warns of each damaged file.

@@ -130,7 +130,7 @@ impl RowBatch {
             BatchRow {
                 side,
                 row,
-                cells: vec![0..columns],
+                cells: std::iter::once(0..columns).collect(),
                 first: first - columns,
                 base_points: 0..0,
             }

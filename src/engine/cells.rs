@@ -141,7 +141,7 @@ impl Cells {
 
     /// Replaces the cell at `index`.
     pub fn set(&mut self, index: usize, cell: &Cell) {
-        self.rows_mut(&[index..index + 1])[0].set(0, cell);
+        self.rows_mut(std::slice::from_ref(&(index..index + 1)))[0].set(0, cell);
     }
 
     /// Splits the cells at growing, disjoint `ranges`, which can be written side by side.

@@ -34,8 +34,8 @@ impl Svd {
                 }
                 is_done = false;
                 let zeta = (b - a) / (2.0 * c);
-                let tan = zeta.signum() / (zeta.abs() + zeta.hypot(1.0));
-                let cos = 1.0 / tan.hypot(1.0);
+                let tan = zeta.signum() / (zeta.abs() + libm::hypot(zeta, 1.0));
+                let cos = 1.0 / libm::hypot(tan, 1.0);
                 for columns in [&mut images, &mut directions] {
                     rotate(columns, [i, j], [cos, cos * tan]);
                 }

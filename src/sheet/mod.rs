@@ -123,7 +123,7 @@ impl Sheet {
         let continued: Vec<Vec<RowSpan>> = rows
             .par_chunks(rows_per_batch(distances.len()))
             .zip(crossings.par_chunks_mut(rows_per_batch(distances.len())))
-            .map(|rows| follow(rows))
+            .map(follow)
             .flatten_iter()
             .collect();
         let tip = rod.tau_tip();

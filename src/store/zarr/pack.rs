@@ -61,7 +61,7 @@ impl ZarrStore {
         };
         let last = self.arrays.len() - 1;
         let others = self.arrays[..last].par_iter().enumerate();
-        others.try_for_each(|other| put(other))?;
+        others.try_for_each(put)?;
         put((last, &self.arrays[last]))
     }
 }
