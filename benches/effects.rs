@@ -1,13 +1,10 @@
-//! What each effect costs: `cargo bench --bench effects -- [trajectories]`.
+//! Cost of each set of effects: `cargo bench --bench effects -- [trajectories]`.
 //!
-//! Per set of effects the instructions of one cell's shader (naga's expressions and statements that are reached,
-//! each loop counted once), and the time per trajectory with first derivatives on one thread of the CPU, at the
-//! resolution of the maps; medians of seven runs, in turn.
-#![allow(
-    clippy::print_stdout,
-    reason = "a table on the screen is what this program is for"
-)]
-#![allow(clippy::expect_used, reason = "a bench that cannot start should stop")]
+//! For each set: the instructions of one cell's shader (reachable expressions and statements of naga, each loop counted once), and the
+//! time per trajectory with first derivatives on one CPU thread, at the resolution of maps. Times are medians of seven interleaved
+//! runs.
+#![allow(clippy::print_stdout, reason = "the program prints a table")]
+#![allow(clippy::expect_used, reason = "a benchmark that cannot start panics")]
 
 use naga::back::pipeline_constants::process_overrides;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
@@ -33,7 +30,8 @@ fn main() {
         .and_then(|text| text.parse().ok())
         .unwrap_or(20_000);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1);
-    pool.build_global().expect("no pool is there yet");
+    pool.build_global()
+        .expect("the global pool is not built yet");
 
     let sets: Vec<(Effects, Vec<InitialCondition<'static>>)> = effect_sets::all()
         .map(|effects| {
@@ -102,12 +100,12 @@ fn name(effects: Effects) -> String {
     }
 }
 
-/// Instructions that `solve_cells` reaches with these effects.
+/// Number of instructions that `solve_cells` can reach with these effects.
 fn instructions(effects: Effects) -> usize {
     let text = shaders::cells(Precision::F32);
-    let module = naga::front::wgsl::parse_str(&text).expect("the tests hold the text valid");
+    let module = naga::front::wgsl::parse_str(&text).expect("the shader parses");
     let mut validator = Validator::new(ValidationFlags::all(), Capabilities::empty());
-    let info = validator.validate(&module).expect("it is valid");
+    let info = validator.validate(&module).expect("the shader is valid");
     let entry = &module.entry_points[0];
     let constants = shaders::overrides(effects)
         .map(|(name, value)| (name.to_owned(), value))
@@ -115,12 +113,12 @@ fn instructions(effects: Effects) -> usize {
         .collect();
     let entry_point = Some((entry.stage, entry.name.as_str()));
     let (module, _) = process_overrides(&module, &info, entry_point, &constants)
-        .expect("every constant is given");
+        .expect("every override constant has a value");
     let entry = &module.entry_points[0].function;
     in_block(&module, entry, &entry.body)
 }
 
-/// Expressions and statements of a block, with the functions that it calls, without branches that are never taken.
+/// Number of expressions and statements of a block and of the functions that it calls, without branches that are never taken.
 fn in_block(module: &Module, function: &Function, block: &Block) -> usize {
     block
         .iter()
@@ -150,7 +148,7 @@ fn in_block(module: &Module, function: &Function, block: &Block) -> usize {
         .sum()
 }
 
-/// The value of a condition that is a constant.
+/// Value of a constant condition; `None` for other conditions.
 fn known(module: &Module, function: &Function, condition: Handle<Expression>) -> Option<bool> {
     match function.expressions[condition] {
         Expression::Literal(Literal::Bool(value)) => Some(value),

@@ -1,7 +1,6 @@
-//! The parts of a map one by one: `cargo bench --bench engines -- [filter]`. What they cost together, and at which accuracy,
-//! `whiskmap bench` tells.
+//! Cost of each stage of a map: `cargo bench --bench engines -- [filter]`. `whiskmap bench` measures whole maps and their accuracy.
 #![allow(missing_docs, reason = "criterion's macros make public functions")]
-#![allow(clippy::expect_used, reason = "a bench that cannot start should stop")]
+#![allow(clippy::expect_used, reason = "a benchmark that cannot start panics")]
 
 #[path = "../tests/cells/mod.rs"]
 mod cells;
@@ -31,7 +30,7 @@ use whiskmap::store::{
 
 const TRAJECTORIES: usize = 16_384;
 
-/// Trajectories by number of steps, and by the derivatives that they carry; one at a time and in vectors.
+/// Trajectories by number of steps and by derivatives, scalar and in SIMD vectors.
 fn integrators(criterion: &mut Criterion) {
     let conditions: Vec<InitialCondition> = conditions(USUAL, TRAJECTORIES, 6.5, 1);
     let mut group = criterion.benchmark_group("integrators");
@@ -63,12 +62,12 @@ fn integrators(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// Every engine by the number of cells in a batch.
+/// Engines by number of cells in a batch.
 fn engines(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("engines");
     let mut engines: Vec<Box<dyn Engine>> = vec![Box::new(Cpu::default())];
     for precision in [Precision::F32, Precision::F64] {
-        // Without a driver the CPU is measured alone.
+        // Without a GPU driver only the CPU is measured.
         engines.extend(Gpu::new(precision).map(|gpu| Box::new(gpu) as Box<dyn Engine>));
     }
     for whiskers in [1, 32, 512] {
@@ -90,7 +89,7 @@ fn scene() -> Scene {
     Scene::parse(text, "cone.toml").expect("the scene is good")
 }
 
-/// Folds, lattice and crossings of a sheet; and its cells, refined from the lattice's guesses.
+/// Folds, lattice and crossings of a sheet, and refinement of its cells from the guesses of the lattice.
 fn sheets(criterion: &mut Criterion) {
     let scene = scene();
     let rod = scene.whisker.rod(&scene.pole, Side::Cb);
@@ -129,7 +128,7 @@ fn sheets(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// The file of a map.
+/// Writing of a map file.
 fn files(criterion: &mut Criterion) {
     let scene = scene();
     let plan = Plan::new(&scene).expect("the scene is small");
@@ -139,7 +138,7 @@ fn files(criterion: &mut Criterion) {
         Ok::<(), Infallible>(())
     });
     let panel = kept.expect("the scene has a panel");
-    let folder = tempfile::tempdir().expect("there is a folder for temporary files");
+    let folder = tempfile::tempdir().expect("the system has a folder for temporary files");
     let about = MapDescription {
         scene: &scene,
         engine: &whiskmap::engine::EngineDescription::of(None),

@@ -1,11 +1,11 @@
-//! The side of `benches/peers/run.sh` that is ours: `cargo bench --bench peers -- --json FILE --ensemble FILE`.
+//! Measurements of whiskmap for `benches/peers/run.sh`: `cargo bench --bench peers -- --json FILE --ensemble FILE`.
 //!
-//! Trajectories with first derivatives by number of steps and threads, detachment points, and cells of a map; and the
-//! ensemble of trajectories with its exact answers, for the peers to solve too. Times are those of the fastest run, on both sides.
+//! It measures trajectories with first derivatives by number of steps and threads, detachment points, and cells of a map. It writes the
+//! ensemble of trajectories with its exact results for the peers. Times are of the fastest run, for whiskmap and for peers.
 #![allow(
     clippy::unwrap_used,
     clippy::print_stdout,
-    reason = "a bench that cannot go on should stop, and a line on the screen is what it is for"
+    reason = "a benchmark that fails panics, and it prints its results"
 )]
 
 #[path = "../tests/random_rods/mod.rs"]
@@ -48,7 +48,7 @@ fn main() {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
         pool.build().unwrap()
     });
-    let answer = json!({
+    let results = json!({
         "machine": processor(),
         "unit": Unit::detect().to_string(),
         "threads": threads,
@@ -56,14 +56,14 @@ fn main() {
         "detachment": detachment(&one),
         "cell": cell(&one),
     });
-    let text = serde_json::to_string_pretty(&answer).unwrap();
+    let text = serde_json::to_string_pretty(&results).unwrap();
     match value("--json") {
         Some(path) => std::fs::write(path, text).unwrap(),
         None => println!("{text}"),
     }
 }
 
-/// What the processor calls itself.
+/// Model name of the processor, or its architecture.
 fn processor() -> String {
     let info = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
     let model = info.lines().find(|line| line.starts_with("model name"));
@@ -74,8 +74,8 @@ fn processor() -> String {
     )
 }
 
-/// Taper up to 0.95, contacts from 0.05 of the length to next to the tip, `q` up to 9; half of them straight, then half with
-/// `A*` of 0.4.
+/// Random trajectories: taper up to 0.95, contacts from 0.05 to 0.999 of the length, `q` up to 9. The first half of the rods is
+/// straight, the second half has `A*` of 0.4.
 fn ensemble() -> Vec<InitialCondition<'static>> {
     let mut random = Random(1);
     (0..TRAJECTORIES)
@@ -94,7 +94,7 @@ fn ensemble() -> Vec<InitialCondition<'static>> {
         .collect()
 }
 
-/// Straight rods and curved ones each with the effects that they call for, as two scenes would.
+/// Shooting maps of `conditions`; straight and curved rods are integrated separately, each with their own effects.
 fn shoot(unit: Unit, resolution: Resolution, conditions: &[InitialCondition]) -> Vec<ShootingMap> {
     let scenes = conditions.chunk_by(|a, b| a.rod.bend == b.rod.bend);
     let shot = scenes.flat_map(|conditions| {
@@ -105,8 +105,8 @@ fn shoot(unit: Unit, resolution: Resolution, conditions: &[InitialCondition]) ->
     shot.collect()
 }
 
-/// Place of the pole, and the derivatives of the logarithm of its distance and of its direction by the contact's arclength
-/// at a fixed force, and by the force.
+/// Position of the pole, then the derivatives of `(ln D, phi)` by the arclength of the contact at constant force, then those by the
+/// force.
 fn observables(condition: &InitialCondition, map: &ShootingMap) -> [f64; 6] {
     let InitialCondition { rod, tau, load } = condition;
     let rho = rod.radius(*tau);
@@ -116,7 +116,7 @@ fn observables(condition: &InitialCondition, map: &ShootingMap) -> [f64; 6] {
     [pole.x, pole.y, by_s.x, by_s.y, by_f.x, by_f.y]
 }
 
-/// The ensemble as CSV.
+/// The ensemble with its exact observables as CSV.
 fn table(conditions: &[InitialCondition], exact: &[ShootingMap]) -> String {
     let mut text =
         String::from("taper,bend,arclength,force,x,y,ln_d_by_s,phi_by_s,ln_d_by_f,phi_by_f\n");
@@ -133,7 +133,7 @@ fn table(conditions: &[InitialCondition], exact: &[ShootingMap]) -> String {
     text
 }
 
-/// The largest difference of the observables, each by its own size.
+/// Largest difference of the observables, each relative to its own scale.
 fn error(condition: &InitialCondition, found: &ShootingMap, exact: &ShootingMap) -> f64 {
     let rho = condition.rod.radius(condition.tau);
     let s = arclength(condition.rod, condition.tau);
@@ -145,7 +145,7 @@ fn error(condition: &InitialCondition, found: &ShootingMap, exact: &ShootingMap)
     })
 }
 
-/// Seconds that `work` takes in `pool`: the fastest run, since others on the machine can only slow it down.
+/// Seconds of the fastest of [`RUNS`] runs of `work` in `pool`: other processes can only make a run slower.
 fn seconds(pool: &ThreadPool, mut work: impl FnMut() + Send) -> f64 {
     let times = (0..RUNS).map(|_| {
         let start = Instant::now();
@@ -197,7 +197,7 @@ fn scene() -> Scene {
     Scene::parse(text, "cone.toml").unwrap()
 }
 
-/// Detachment points of the cone, both sides, 1024 distances each, by number of steps.
+/// Detachment points of the cone by number of steps, at 1024 distances on each side.
 fn detachment(pool: &ThreadPool) -> Vec<Value> {
     const POINTS: usize = 1024;
     let scene = scene();
@@ -225,7 +225,7 @@ fn detachment(pool: &ThreadPool) -> Vec<Value> {
     Resolution::LADDER.map(row).to_vec()
 }
 
-/// Cells of the cone's map, and of them those with a state, in the steps that `--tolerance` of 1e-9 radians takes.
+/// Cells of the cone's map and cells with a state, with the steps that a tolerance of 1e-9 radians selects.
 fn cell(pool: &ThreadPool) -> Value {
     const TOLERANCE: f64 = 1e-9;
     let scene = scene();

@@ -1,21 +1,17 @@
-//! Whether a cell costs the same in small maps and large ones, of one whisker and of many:
-//! `cargo bench --bench sizes -- [runs]`.
+//! Cost per cell by size of the map and number of whiskers: `cargo bench --bench sizes -- [runs]`.
 //!
-//! `scenes/cone.toml` on one thread, without a file: from 64 x 64 cells to 2048 x 2048, then 128 x 128 for each of 1 to 1024
-//! whiskers. Wall microseconds per cell, stage by stage, of the fastest of some runs in turn; a small map is repeated, so that each run
-//! takes long enough for the clock.
-#![allow(
-    clippy::print_stdout,
-    reason = "a table on the screen is what this program is for"
-)]
-#![allow(clippy::expect_used, reason = "a bench that cannot start should stop")]
+//! It maps `scenes/cone.toml` on one thread, without a file: from 64 x 64 to 2048 x 2048 cells, then 128 x 128 cells for each of 4 to
+//! 1024 whiskers. It prints wall microseconds per cell and stage of the fastest of some interleaved runs. Small maps are repeated, so
+//! that each run takes long enough for the clock.
+#![allow(clippy::print_stdout, reason = "the program prints a table")]
+#![allow(clippy::expect_used, reason = "a benchmark that cannot start panics")]
 
 use std::convert::Infallible;
 use whiskmap::map::{self, Stage};
 use whiskmap::plan::Plan;
 use whiskmap::scene::Scene;
 
-/// Cells of a run at least.
+/// Minimum number of cells of a run.
 const CELLS: usize = 1 << 18;
 
 fn main() {
@@ -50,7 +46,7 @@ fn main() {
     }
 }
 
-/// What is measured.
+/// Map that is measured.
 struct Map {
     name: String,
     scene: Scene,
@@ -68,8 +64,8 @@ impl Map {
             text = text.replace("tip_radius_um", "# tip_radius_um");
             name = format!("{whiskers} x {name}");
         }
-        let scene = Scene::parse(&text, "cone.toml").expect("the scene is good");
-        let plan = Plan::new(&scene).expect("it has room");
+        let scene = Scene::parse(&text, "cone.toml").expect("the scene is valid");
+        let plan = Plan::new(&scene).expect("the map fits into memory");
         assert_eq!(
             plan.cells,
             side * side * whiskers,
@@ -78,7 +74,7 @@ impl Map {
         Self { name, scene, plan }
     }
 
-    /// Stage by stage.
+    /// Wall microseconds per cell, one value per stage.
     fn micros_per_cell(&self) -> Vec<f64> {
         let repeats = CELLS.div_ceil(self.plan.cells);
         let mut seconds = [0.0; Stage::ALL.len()];

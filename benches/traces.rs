@@ -1,6 +1,6 @@
-//! Curves, branches and shapes on one thread: `cargo bench --bench traces`.
+//! Cost of curves, branches and shapes on one thread: `cargo bench --bench traces`.
 #![allow(missing_docs, reason = "criterion's macros make public functions")]
-#![allow(clippy::expect_used, reason = "a bench that cannot start should stop")]
+#![allow(clippy::expect_used, reason = "a benchmark that cannot start panics")]
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use std::hint::black_box;
@@ -10,13 +10,13 @@ use whiskmap::trace::{Branch, Shape, corner, curve};
 
 fn traces(criterion: &mut Criterion) {
     let text = include_str!("../scenes/cone.toml");
-    let scene = Scene::parse(text, "cone.toml").expect("the scene is good");
+    let scene = Scene::parse(text, "cone.toml").expect("the scene is valid");
     let (whisker, pole) = (&scene.whisker, &scene.pole);
     let distances: Vec<f64> = (0..256)
         .map(|i| 2.0 + 18.0 * f64::from(i) / 255.0)
         .collect();
-    let branch = Branch::new(whisker, pole, Side::Cb, 10.0).expect("the pole is in reach");
-    let state = branch.state(0.5, true).expect("the whisker is on the pole");
+    let branch = Branch::new(whisker, pole, Side::Cb, 10.0).expect("the whisker reaches the pole");
+    let state = branch.state(0.5, true).expect("the state exists");
 
     let mut group = criterion.benchmark_group("traces");
     group.bench_function("curve, 256 distances, both sides", |bench| {
@@ -37,10 +37,11 @@ fn traces(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// On one thread, so that numbers are those of one core.
+/// Runs the benchmarks on one thread.
 fn one_thread(criterion: &mut Criterion) {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1);
-    pool.build_global().expect("no pool is there yet");
+    pool.build_global()
+        .expect("the global pool is not built yet");
     traces(criterion);
 }
 

@@ -1,5 +1,5 @@
-//! Which way the contact slides: friction is computed as of one that slides toward the tip, and states where it does not, or where it
-//! sticks, are told.
+//! Sliding direction of the contact. States are computed with the friction of a contact that slides toward the tip; cells that slide
+//! toward the base or stick have their own status.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use crate::compute;
@@ -13,7 +13,7 @@ use whiskmap::sheet::{CurveNode, LevelCurve, Row};
 use whiskmap::shooting::batch::Method;
 use whiskmap::trace::{Branch, Shape};
 
-/// The cone of the first figure, bent by `a_per_mm`, in front of a pole of this radius and friction.
+/// Scene of the cone of the paper's first figure, with curvature `a_per_mm`, at a pole of this radius and friction.
 fn cone(a_per_mm: f64, radius_mm: f64, friction: f64) -> Scene {
     let text = format!(
         "title = \"rough\"\n[whisker]\nlength_mm = 20\nbase_radius_um = 30\ntip_radius_um = 1.5\n\
@@ -25,17 +25,17 @@ fn cone(a_per_mm: f64, radius_mm: f64, friction: f64) -> Scene {
     Scene::parse(&text, "rough").unwrap()
 }
 
-/// Half the push between the states of a difference; their distance is known to its square.
+/// Half the push angle between the states of a central difference, in radians; the error is proportional to its square.
 const HALF: f64 = 1e-4;
 
-/// Work of friction, over that of the base's rotation, which rounding and the difference cannot tell from none.
+/// Work of friction, relative to the work of the base's rotation, below which rounding and the difference hide its sign.
 const NO_WORK: f64 = 1e-6;
 
-/// What the base puts in by its rotation and the whisker does not keep as bending energy is what friction takes. It takes
-/// some where the contact slides toward the tip; where it slides toward the base, this friction would give some.
+/// The work of the base's rotation minus the change of bending energy is the energy that friction dissipates. It is positive where the
+/// contact slides toward the tip. Where it slides toward the base, the assumed friction would supply energy.
 #[test]
 fn friction_takes_energy_only_toward_the_tip() {
-    let mut told = [0, 0];
+    let mut counts = [0, 0];
     for (a_per_mm, radius_mm) in [(0.0, 0.0), (0.02, 0.0), (0.02, 0.25), (0.04, 1.0)] {
         let scene = cone(a_per_mm, radius_mm, 0.3);
         for side in Side::BOTH {
@@ -69,7 +69,7 @@ fn friction_takes_energy_only_toward_the_tip() {
                         continue;
                     }
                     assert_eq!(point.sliding, Some(sliding), "{case}: {point:?}");
-                    told[usize::from(sliding == Sliding::Base)] += 1;
+                    counts[usize::from(sliding == Sliding::Base)] += 1;
                     let state = branch.state(push, true).unwrap();
                     assert_eq!(
                         Shape::new(&branch, &state, 2).sliding,
@@ -80,13 +80,13 @@ fn friction_takes_energy_only_toward_the_tip() {
             }
         }
     }
-    assert!(told[0] > 800 && told[1] > 60, "{told:?}");
+    assert!(counts[0] > 800 && counts[1] > 60, "{counts:?}");
 }
 
-/// Along a whole branch, unstable states included: arclength of the contact, less what it has rolled around the pole.
+/// The slid distance is the arclength of the contact minus the distance rolled around the pole, along a whole branch, with unstable states.
 #[test]
 fn sliding_is_what_is_not_rolled() {
-    let mut told = [0, 0];
+    let mut counts = [0, 0];
     for radius_mm in [0.0, 0.25, 1.0] {
         let scene = cone(0.02, radius_mm, 0.3);
         for side in Side::BOTH {
@@ -98,20 +98,20 @@ fn sliding_is_what_is_not_rolled() {
                         let turned = (point.contact_angle_deg - point.push_angle_deg).to_radians();
                         point.arc_length_mm + side.sign() * radius_mm * turned
                     });
-                    // Between two that differ the contact turns back.
+                    // Between points of different direction the contact reverses.
                     let sticks = pair[0].sliding == Some(Sliding::Sticks);
                     if pair[0].sliding == pair[1].sliding && !sticks {
                         let is_base = next < slid;
                         let case = format!("{radius_mm} {side:?} {distance}: {pair:?}");
                         let sliding = if is_base { Sliding::Base } else { Sliding::Tip };
                         assert_eq!(pair[0].sliding, Some(sliding), "{case}");
-                        told[usize::from(is_base)] += 1;
+                        counts[usize::from(is_base)] += 1;
                     }
                 }
             }
         }
     }
-    assert!(told.iter().all(|count| *count > 500), "{told:?}");
+    assert!(counts.iter().all(|count| *count > 500), "{counts:?}");
 }
 
 fn map(friction: f64) -> (Summary, Panel) {
@@ -119,12 +119,12 @@ fn map(friction: f64) -> (Summary, Panel) {
     (summary, panels.remove(0))
 }
 
-/// The place of the contact: arclength less what it has rolled around the pole.
+/// Slid distance of the contact: arclength minus the distance rolled around the pole, in whisker lengths.
 fn place(rod: &Rod, node: &CurveNode) -> f64 {
     arclength(rod, node.point.x) + rod.pole * (node.angle - node.push)
 }
 
-/// The row of a branch at any coefficient of friction, at growing pushes.
+/// Row of a branch, for any coefficient of friction.
 struct Frictions {
     rod: Rod,
     side: Side,
@@ -138,7 +138,7 @@ impl Frictions {
         Self { rod, side, row }
     }
 
-    /// Where the contact is at each of the `pushes` (magnitudes) where friction is this coefficient and points toward the tip.
+    /// Slid distance at each of `pushes` (magnitudes, in radians) with the coefficient `friction`, positive for sliding toward the tip.
     fn places(&self, friction: f64, pushes: &[f64]) -> Vec<Option<f64>> {
         let friction = friction * self.side.sign();
         let rod = Rod {
@@ -146,18 +146,18 @@ impl Frictions {
             ..self.rod.clone()
         };
         let level = LevelCurve::new(Method::fine(), &rod, self.side, &self.row);
-        let walked = level.continuation(level.touch().unwrap(), false).unwrap();
-        let state = |push: &f64| level.state_at_push(&walked.nodes, self.side.sign() * push);
+        let continuation = level.continuation(level.touch().unwrap(), false).unwrap();
+        let state = |push: &f64| level.state_at_push(&continuation.nodes, self.side.sign() * push);
         let place = |push| Some(place(&rod, &state(push)?));
         pushes.iter().map(place).collect()
     }
 }
 
-/// Where the contact sticks, some friction between the limits holds it at the place where sliding toward the base has ended; where it
-/// slides, none does.
+/// A contact that sticks is held where sliding toward the base has ended, by a friction between the limits. No such friction holds a
+/// contact that slides.
 #[test]
 fn where_the_contact_sticks_less_friction_holds_it() {
-    let mut told = [0; 3];
+    let mut counts = [0; 3];
     for (a_per_mm, radius_mm, friction) in [
         (0.02, 0.0, 0.3),
         (0.02, 0.25, 0.05),
@@ -173,29 +173,29 @@ fn where_the_contact_sticks_less_friction_holds_it() {
                 .map(|p| (p.push_angle_deg.to_radians().abs(), p.sliding.unwrap()))
                 .unzip();
             let frictions = Frictions::new(&scene, Side::Cf, distance);
-            // The turn lies between two of the points, and is flat.
+            // The reversal lies between two of the points, and is flat.
             let last = pushes[pushes.len() - 1];
             let fine: Vec<f64> = (0..2000).map(|i| last * f64::from(i) / 2000.0).collect();
             let base_limit = frictions.places(-friction, &fine);
-            let turn = base_limit
+            let reversal = base_limit
                 .iter()
                 .flatten()
                 .copied()
                 .fold(f64::INFINITY, f64::min);
-            let turn_at = base_limit
+            let reversal_at = base_limit
                 .iter()
-                .position(|place| *place == Some(turn))
+                .position(|place| *place == Some(reversal))
                 .unwrap();
             for (push, sliding) in pushes.iter().zip(slidings) {
                 let case = format!("{a_per_mm} {radius_mm} {distance}: {push} {sliding:?}");
-                let beyond = |friction| frictions.places(friction, &[*push])[0].unwrap() - turn;
+                let beyond = |friction| frictions.places(friction, &[*push])[0].unwrap() - reversal;
                 match sliding {
-                    Sliding::Base => assert!(*push <= fine[turn_at + 1], "{case}"),
+                    Sliding::Base => assert!(*push <= fine[reversal_at + 1], "{case}"),
                     Sliding::Tip => assert!(beyond(friction) > -1e-7, "{case}"),
                     Sliding::Sticks => {
-                        assert!(*push >= fine[turn_at.saturating_sub(1)], "{case}");
+                        assert!(*push >= fine[reversal_at.saturating_sub(1)], "{case}");
                         let (mut low, mut high) = (-friction, friction);
-                        // The turn is known to the square of a 2000th of the way.
+                        // The position of the reversal has an error of the order of (1/2000)^2.
                         assert!(beyond(low) > -1e-7 && beyond(high) < 0.0, "{case}");
                         for _ in 0..12 {
                             let middle = 0.5 * (low + high);
@@ -208,16 +208,16 @@ fn where_the_contact_sticks_less_friction_holds_it() {
                         assert!(beyond(low).abs() < 1e-4, "{case}: {low} {}", beyond(low));
                     }
                 }
-                told[sliding as usize] += 1;
+                counts[sliding as usize] += 1;
             }
         }
     }
-    assert!(told.iter().all(|count| *count > 10), "{told:?}");
+    assert!(counts.iter().all(|count| *count > 10), "{counts:?}");
 }
 
-/// On CF the first part of a push slides toward the base, then it sticks; on CB neither.
+/// On CF the contact first slides toward the base, then sticks. On CB it does neither.
 #[test]
-fn cells_that_slide_toward_the_base_are_told() {
+fn cells_that_slide_toward_the_base_are_marked() {
     let scene = cone(0.02, 0.25, 0.3);
     let (summary, panel) = map(0.3);
     let pushes = &scene.grid.push_angle_deg;
@@ -263,9 +263,9 @@ fn cells_that_slide_toward_the_base_are_told() {
     assert_eq!(summary.sticking, sticking[cf] as u64);
 }
 
-/// What a push makes of a contact does not depend on which other pushes are asked for.
+/// The status of a cell does not depend on the other push angles of the grid.
 #[test]
-fn a_status_is_that_of_its_own_push() {
+fn a_status_does_not_depend_on_other_push_angles() {
     let dense = cone(0.02, 0.25, 0.3);
     let few: Vec<f64> = dense
         .grid

@@ -1,7 +1,7 @@
 //! The boundary of the map against an independent solver, the paper, and closed forms.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-use whiskmap::classify::{RowBoundary, Span};
+use whiskmap::classify::{PushSpan, RowBoundary};
 use whiskmap::rod::{Rest, Rod, Side, arclength};
 use whiskmap::scene::{Curvature, Pole, Whisker};
 use whiskmap::sheet::{Crossing, Edge, Sheet};
@@ -19,7 +19,7 @@ fn detachment(whisker: &Whisker, pole: &Pole, side: Side, distance_mm: f64) -> (
     );
     let crossing = sheet.crossings[0][0];
     let boundary = RowBoundary::new(sheet.touches(0), &sheet.crossings[0]);
-    let span: &Span = boundary.detachment().unwrap();
+    let span: &PushSpan = boundary.detachment().unwrap();
     assert_eq!((span.from, span.to), (0.0, crossing.push));
     (side.sign() * span.to.to_degrees(), crossing)
 }

@@ -1,4 +1,4 @@
-//! Verdicts on cells: by their row's boundary, and at the reach of the resting whisker by its shape at rest.
+//! Classification of cells by the boundary of their row and, at the reach of the resting whisker, by its shape at rest.
 #![allow(
     clippy::unwrap_used,
     clippy::panic,
@@ -19,7 +19,7 @@ use whiskmap::trace::{Detachment, DetachmentKind, curve_at};
 
 const LENGTH_MM: f64 = 20.0;
 
-/// Distances over the length: well within reach, as near as a tenth of a micrometre, at it but for rounding, and beyond.
+/// Distances in whisker lengths: well within reach, a tenth of a micrometre from it, at it but for rounding, and beyond.
 const DISTANCES: [f64; 7] = [
     0.9,
     1.0 - 5e-9,
@@ -30,11 +30,11 @@ const DISTANCES: [f64; 7] = [
     1.01,
 ];
 
-/// How many of them are reached: a perfect cone ends a billionth of its length before its point.
+/// Number of distances that a whisker reaches. A perfect cone ends a billionth of its length before its point.
 const REACHED: usize = 5;
 const REACHED_BY_A_POINT: usize = 2;
 
-/// Straight whiskers from cylinder to perfect cone.
+/// Scene of straight whiskers from cylinder to perfect cone.
 fn straight(pole: f64, friction: f64) -> Scene {
     let distances = DISTANCES.map(|d| d * LENGTH_MM);
     let text = format!(
@@ -46,14 +46,14 @@ fn straight(pole: f64, friction: f64) -> Scene {
     Scene::parse(&text, "straight").unwrap()
 }
 
-/// At every resolution, and with the one that a tolerance of a thousandth of a degree asks for.
+/// Holds at every resolution, and at the one that a tolerance of 1e-3 degrees selects.
 #[test]
 fn the_shape_at_rest_decides_at_the_straight_length() {
     for (pole, friction) in [(0.0, 0.0), (0.25, 0.0), (1.0, 0.0), (0.25, 0.4)] {
         let scene = straight(pole, friction);
-        let told = cheapest(&scene, &Side::BOTH, 1e-3).unwrap().resolution;
+        let cheapest = cheapest(&scene, &Side::BOTH, 1e-3).unwrap().resolution;
         let mut first: Option<Vec<Vec<u32>>> = None;
-        for resolution in Resolution::LADDER.into_iter().rev().chain([told]) {
+        for resolution in Resolution::LADDER.into_iter().rev().chain([cheapest]) {
             let mut plan = Plan::new(&scene).unwrap();
             plan.method.resolution = resolution;
             let (summary, panels) = compute_as(&scene, &plan, None);
@@ -77,7 +77,7 @@ fn the_shape_at_rest_decides_at_the_straight_length() {
     }
 }
 
-/// Asserts that the curve of `whisker` is that of the map, and the same for every distance at the reach.
+/// Asserts that the curve of `whisker` agrees with `regimes`, and that all distances at the reach have the same kind of end.
 fn agrees_with_its_curve(
     scene: &Scene,
     whisker: &Whisker,
@@ -109,7 +109,7 @@ fn agrees_with_its_curve(
                 } else {
                     beyond
                 };
-                // A thick pole can be touched from farther away, but not by pushing.
+                // A thick pole beyond the reach can be touched, but not by a push from rest.
                 let entered = beyond == Regime::OutOfReach && *regime == Regime::Unreachable.code();
                 assert!(
                     entered || *regime == expected.code(),
@@ -145,16 +145,16 @@ fn crossing(edge: Edge, push: f64) -> Crossing {
 fn a_row_that_touches_ends_at_its_edge() {
     let row = RowBoundary::new(true, &[crossing(Edge::Fold, 0.5)]);
     assert_eq!(
-        row.judge(0.3, Status::Solved),
+        row.classify(0.3, Status::Solved),
         (Regime::Contact, Status::Solved)
     );
     assert_eq!(
-        row.judge(0.6, Status::Outside),
+        row.classify(0.6, Status::Outside),
         (Regime::SlipOff, Status::Outside)
     );
     let row = RowBoundary::new(true, &[crossing(Edge::Tip, 0.5)]);
     assert_eq!(
-        row.judge(0.6, Status::BeyondTip),
+        row.classify(0.6, Status::BeyondTip),
         (Regime::PullOff, Status::BeyondTip)
     );
 }
@@ -166,12 +166,12 @@ fn a_row_beyond_reach_is_entered_over_an_edge() {
         &[crossing(Edge::Tip, 0.2), crossing(Edge::Fold, 0.5)],
     );
     assert_eq!(
-        row.judge(0.3, Status::Solved),
+        row.classify(0.3, Status::Solved),
         (Regime::Unreachable, Status::Solved)
     );
     for push in [0.1, 0.6] {
         assert_eq!(
-            row.judge(push, Status::Outside),
+            row.classify(push, Status::Outside),
             (Regime::OutOfReach, Status::Outside)
         );
     }
@@ -186,43 +186,43 @@ fn contradictions_are_unresolved() {
         (0.0, Status::BeyondFold),
     ] {
         assert_eq!(
-            row.judge(push, status),
+            row.classify(push, status),
             (Regime::Unresolved, Status::Disagreement)
         );
     }
     let odd = RowBoundary::new(false, &[crossing(Edge::Fold, 0.5)]);
     assert_eq!(
-        odd.judge(0.3, Status::Solved),
+        odd.classify(0.3, Status::Solved),
         (Regime::Unresolved, Status::NoBoundary)
     );
 }
 
-/// What is known of a row holds; beyond it nobody knows whether another piece has a state.
+/// Known spans are valid. Beyond them another piece of the row may have a state.
 #[test]
-fn beyond_a_row_that_lost_a_piece_nothing_is_claimed() {
+fn cells_beyond_the_known_spans_of_an_incomplete_row_are_unresolved() {
     let row = RowBoundary::new(true, &[crossing(Edge::Fold, 0.5), Crossing::unknown()]);
-    assert_eq!(row.judge(0.3, Status::Solved).0, Regime::Contact);
+    assert_eq!(row.classify(0.3, Status::Solved).0, Regime::Contact);
     assert_eq!(row.detachment().map(|span| span.to), Some(0.5));
     for status in [Status::Outside, Status::BeyondFold, Status::Solved] {
         assert_eq!(
-            row.judge(0.6, status),
+            row.classify(0.6, status),
             (Regime::Unresolved, Status::NoBoundary)
         );
     }
-    let lost = RowBoundary::new(false, &[Crossing::unknown()]);
-    assert_eq!(lost.judge(0.1, Status::Outside).0, Regime::Unresolved);
+    let unknown = RowBoundary::new(false, &[Crossing::unknown()]);
+    assert_eq!(unknown.classify(0.1, Status::Outside).0, Regime::Unresolved);
 }
 
 #[test]
-fn both_verdicts_are_right_on_the_edge() {
+fn both_verdicts_are_correct_on_the_edge() {
     let row = RowBoundary::new(true, &[crossing(Edge::Fold, 0.5)]);
     let at = 0.5 + 0.5 * TIE;
-    assert_eq!(row.judge(at, Status::Solved).0, Regime::Contact);
-    assert_eq!(row.judge(at, Status::BeyondFold).0, Regime::SlipOff);
+    assert_eq!(row.classify(at, Status::Solved).0, Regime::Contact);
+    assert_eq!(row.classify(at, Status::BeyondFold).0, Regime::SlipOff);
 }
 
-/// Rows that a thick pole enters from beyond the reach of the resting whisker, near whose first states guesses are poor: coarse
-/// steps are no reason to doubt the continuation there, whose end they see a little apart from the boundary.
+/// Rows beyond the reach of the resting whisker that a thick pole enters, with poor guesses near their first states. With coarse steps
+/// the end of the continuation differs slightly from the boundary; this difference must not make cells doubtful.
 #[test]
 fn coarse_steps_leave_no_cell_in_doubt() {
     let slender = "title = 'slender'\n[whisker]\nlength_mm = 20\nbase_radius_um = 30\ntip_radius_um = 0.0003\n\
@@ -242,15 +242,15 @@ fn coarse_steps_leave_no_cell_in_doubt() {
     ] {
         for tolerance_deg in tolerances {
             let mut plan = Plan::new(&scene).unwrap();
-            let told = cheapest(&scene, &Side::BOTH, tolerance_deg).unwrap();
-            plan.method.resolution = told.resolution;
+            let cheapest = cheapest(&scene, &Side::BOTH, tolerance_deg).unwrap();
+            plan.method.resolution = cheapest.resolution;
             let (summary, _) = compute_as(&scene, &plan, None);
-            assert_eq!(summary.unresolved(), 0, "{}, {told:?}", scene.title);
+            assert_eq!(summary.unresolved(), 0, "{}, {cheapest:?}", scene.title);
         }
     }
 }
 
-/// Between pushes that are judged alike nothing changes, and where something changes there is no such stretch.
+/// All push angles of a range with one verdict are classified alike. A range at the end of a span is not one.
 #[test]
 fn one_verdict_holds_from_end_to_end() {
     let fold = |push| crossing(Edge::Fold, push);
@@ -268,7 +268,7 @@ fn one_verdict_holds_from_end_to_end() {
     pushes.sort_by(f64::total_cmp);
     for row in &rows {
         let alike = |status: Status, from: usize, to: usize| {
-            let verdict = |push: &f64| (row.judge(*push, status), row.span(*push));
+            let verdict = |push: &f64| (row.classify(*push, status), row.span(*push));
             pushes[from..=to]
                 .iter()
                 .all(|push| verdict(push) == verdict(&pushes[from]))
@@ -282,7 +282,7 @@ fn one_verdict_holds_from_end_to_end() {
                     assert!(holds, "{row:?}: {} to {}", pushes[from], pushes[to]);
                 }
             }
-            // Far from all ends there is nothing that could differ.
+            // A push angle away from all ends is a range with one verdict.
             let ends = row.spans().iter().flat_map(|span| [span.from, span.to]);
             let is_apart = ends
                 .into_iter()

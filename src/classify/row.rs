@@ -1,50 +1,50 @@
-//! The boundary of one row, and the verdict on its cells.
+//! Boundary of one row, and classification of its cells.
 
 use super::{Regime, Status};
 use crate::sheet::{Crossing, Edge};
 
-/// Push angles, in radians, closer to a boundary than this count as on it; both verdicts are right there.
+/// Push angles closer to a boundary than this, in radians, count as on it. Both verdicts are correct there.
 pub const TIE: f64 = 1e-10;
 
-/// A stretch of push angles (magnitudes, in radians) on the stable sheet.
+/// Interval of push angles (magnitudes, in radians) on the stable sheet, at one distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Span {
-    /// Where it begins.
+pub struct PushSpan {
+    /// Smallest push angle, in radians.
     pub from: f64,
-    /// Where the whisker detaches.
+    /// Largest push angle, in radians, at which the whisker detaches.
     pub to: f64,
-    /// How it detaches there.
+    /// Edge of the sheet at `to`.
     pub edge: Edge,
 }
 
-impl Span {
-    /// Whether the push angle is on it, or on one of its ends.
+impl PushSpan {
+    /// Returns true if `push` lies in the interval or on one of its ends.
     #[must_use]
     pub fn contains(&self, push: f64) -> bool {
         self.from - TIE <= push && push <= self.to + TIE
     }
 
-    /// How far it is from `push` to where the whisker detaches, in degrees.
+    /// Distance from `push` to the detachment, in degrees; 0 beyond it.
     #[must_use]
     pub fn margin_deg(&self, push: f64) -> f32 {
         (self.to - push).max(0.0).to_degrees() as f32
     }
 }
 
-/// Which push angles of a row are on the stable sheet.
+/// Push angles of one row that lie on the stable sheet.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RowBoundary {
-    /// Whether the whisker at rest reaches the pole: the first span then begins at first touch.
+    /// Whether the whisker at rest reaches the pole. The first span then begins at first touch.
     touches: bool,
-    /// Spans in the order of growing push angle; `None` when the crossings do not make sense.
-    spans: Option<Vec<Span>>,
-    /// Whether there are no others.
+    /// Spans, first the one from first touch, if any; `None` if the crossings contradict each other.
+    spans: Option<Vec<PushSpan>>,
+    /// Whether `spans` holds all spans of the row.
     is_complete: bool,
 }
 
 impl RowBoundary {
-    /// The boundary made of a row's `crossings`: the end of a push from first touch, then the others by push angle; at last the
-    /// [unknown](Crossing::unknown) one, if there may be more.
+    /// Boundary from the `crossings` of a row: first the end of a push from first touch, then the others by push angle. A last
+    /// [unknown](Crossing::unknown) crossing means that there may be more.
     #[must_use]
     pub fn new(touches: bool, crossings: &[Crossing]) -> Self {
         let (crossings, is_complete) = match crossings {
@@ -58,7 +58,7 @@ impl RowBoundary {
         let mut from = touches.then_some(0.0);
         while let Some(begin) = from.take().or_else(|| ends.next().map(|c| c.push)) {
             let Some(end) = ends.next() else { break };
-            spans.push(Span {
+            spans.push(PushSpan {
                 from: begin,
                 to: end.push,
                 edge: end.edge,
@@ -71,19 +71,20 @@ impl RowBoundary {
         }
     }
 
-    /// The span that the push angle is on, if any.
+    /// Span that contains `push`, in radians; `None` if there is none.
     #[must_use]
-    pub fn span(&self, push: f64) -> Option<&Span> {
+    pub fn span(&self, push: f64) -> Option<&PushSpan> {
         self.spans().iter().find(|span| span.contains(push))
     }
 
-    /// The spans: the one from first touch, if there is one, before the others; none where the boundary is not known.
+    /// Spans of the row, first the one from first touch, if any; empty if the boundary is unknown.
     #[must_use]
-    pub fn spans(&self) -> &[Span] {
+    pub fn spans(&self) -> &[PushSpan] {
         self.spans.as_deref().unwrap_or_default()
     }
 
-    /// Whether all pushes between these are judged alike: none is on an end of a span.
+    /// Returns true if every push angle from `from` to `to`, in radians, gets the same verdict, that is, if no span of the row begins
+    /// or ends there.
     #[must_use]
     pub fn is_one_verdict(&self, from: f64, to: f64) -> bool {
         let is_apart = |end: f64| end + TIE < from || to < end - TIE;
@@ -91,27 +92,27 @@ impl RowBoundary {
         spans.all(|span| is_apart(span.from) && is_apart(span.to))
     }
 
-    /// Whether `push` is on an end of `span` beyond which there is no state; first touch is no such end.
-    fn is_on_edge(&self, span: &Span, push: f64) -> bool {
+    /// Returns true if `push` is on an end of `span` beyond which no state exists. First touch is not such an end.
+    fn is_on_edge(&self, span: &PushSpan, push: f64) -> bool {
         let from_touch = self.detachment() == Some(span);
         (push < span.from + TIE && !from_touch) || push > span.to - TIE
     }
 
-    /// Where a push from first touch ends, if the boundary is known and there is a first touch.
+    /// Span of a push from first touch to detachment; `None` if the boundary is unknown or the whisker does not touch the pole.
     #[must_use]
-    pub fn detachment(&self) -> Option<&Span> {
+    pub fn detachment(&self) -> Option<&PushSpan> {
         self.spans.as_ref().filter(|_| self.touches)?.first()
     }
 
-    /// The regime at `push` for a cell that was settled with `status`, and the status, which turns into one of
-    /// the unresolved kinds where cell and boundary contradict each other.
+    /// Regime and final status of the cell at `push`, in radians, that was solved with `status`. The final status is an unresolved one
+    /// if cell and boundary contradict each other.
     #[must_use]
-    pub fn judge(&self, push: f64, status: Status) -> (Regime, Status) {
+    pub fn classify(&self, push: f64, status: Status) -> (Regime, Status) {
         if self.spans.is_none() {
             return (Regime::Unresolved, Status::NoBoundary);
         }
         match (status, self.span(push)) {
-            // Without a push the shape at rest decides: a pole that it does not reach is out of reach.
+            // Without a push the shape at rest decides: the whisker does not reach the pole.
             (Status::Solved | Status::NotConverged, Some(span))
                 if !self.touches && push <= TIE && self.is_on_edge(span, push) =>
             {

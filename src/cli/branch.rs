@@ -8,7 +8,7 @@ use super::pole::{self, PolesArgs, refuse, title};
 use clap::{Args, ValueEnum};
 use whiskmap::render::{BranchAxis, Ink, Note, Plot, branches};
 use whiskmap::rod::Side;
-use whiskmap::trace::{Branch, BranchPoint, Mark};
+use whiskmap::trace::{Branch, BranchMark, BranchPoint};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -124,7 +124,9 @@ pub fn run(args: &BranchArgs, files: &mut Files) -> Result<(), Failure> {
 /// Plots branches; with several poles, labels each detachment with its distance.
 fn plot(points: &[BranchPoint], y: BranchAxis, has_distances: bool) -> Plot {
     let mut plot = branches("", &[(Ink::Black, points)], [PUSH, y]);
-    let is_end = |point: &&BranchPoint| matches!(point.mark, Some(Mark::SlipOff | Mark::PullOff));
+    let is_end = |point: &&BranchPoint| {
+        matches!(point.mark, Some(BranchMark::SlipOff | BranchMark::PullOff))
+    };
     let ends = points.iter().filter(is_end).filter(|_| has_distances);
     plot.notes.extend(ends.map(|end| {
         let at = [end.push_angle_deg, (y.value)(end)];

@@ -82,7 +82,7 @@ pub fn title(scene: &Scene, distances_mm: &[f64]) -> String {
 /// Converts a missing state to a failure: a failed continuation is not invalid input.
 pub fn refuse(distance_mm: f64, why: NoState) -> Failure {
     match why {
-        NoState::Lost { .. } => Failure::State(why),
+        NoState::Failed { .. } => Failure::State(why),
         _ => Failure::Input(format!("--distance {distance_mm} mm: {why}")),
     }
 }

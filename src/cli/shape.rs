@@ -67,7 +67,7 @@ pub fn run(args: &ShapeArgs, files: &mut Files) -> Result<(), Failure> {
     let side = args.side.unwrap_or(Side::of_push(push_deg));
     let stable = args.branch == BranchPart::Stable;
     let refused = |why| match why {
-        NoState::OutOfReach { .. } | NoState::Lost { .. } => refuse(distance, why),
+        NoState::OutOfReach { .. } | NoState::Failed { .. } => refuse(distance, why),
         _ => Failure::Input(format!("--push-angle {push_deg} deg: {why}")),
     };
     let branch = Branch::new(&whisker, &scene.pole, side, distance).map_err(refused)?;

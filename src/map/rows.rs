@@ -127,7 +127,7 @@ impl RowWriter<'_> {
         let push = column.push.abs();
         let span = self.boundary.span(push);
         let status = status(cell.outcome, span.is_some());
-        let (regime, status) = self.boundary.judge(push, status);
+        let (regime, status) = self.boundary.classify(push, status);
         let margin_deg = span
             .filter(|_| has_state(regime))
             .map_or(f32::NAN, |span| span.margin_deg(push));
@@ -178,7 +178,7 @@ impl RowWriter<'_> {
             return None;
         }
         let span = boundary.span(from);
-        let (regime, status) = boundary.judge(from, status(outcome, span.is_some()));
+        let (regime, status) = boundary.classify(from, status(outcome, span.is_some()));
         if regime == Regime::Unresolved || self.side.has_friction() && status == Status::Solved {
             return None;
         }

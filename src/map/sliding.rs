@@ -1,6 +1,6 @@
 //! Which states of a map slide as friction is computed for: the others have a status of their own.
 
-use crate::classify::{Dragged, Regime, Sliding, Status};
+use crate::classify::{ContactHistory, Regime, Sliding, Status};
 use crate::engine::WhiskerSide;
 use crate::sheet::{LevelCurve, rows_per_batch};
 use glam::DVec2;
@@ -27,7 +27,7 @@ pub struct FoundRow {
 impl FoundRow {
     /// Columns of the states that do not slide toward the tip, and what their statuses become. Where it is not known what a push makes of
     /// the contact, it counts as sticking.
-    fn marks(&self, side: &WhiskerSide, dragged: Option<&Dragged>) -> Vec<(usize, Status)> {
+    fn marks(&self, side: &WhiskerSide, dragged: Option<&ContactHistory>) -> Vec<(usize, Status)> {
         let (sheet, states) = (&side.sheet, &self.states);
         let is_led_to = |state: &&FoundState| state.regime == Regime::Contact;
         let led_to = states.iter().filter(is_led_to).map(|state| {
@@ -54,7 +54,7 @@ impl FoundRow {
 pub fn mark(side: &WhiskerSide, rows: &[FoundRow], width: usize, status: &mut [u32]) {
     let marks = rows.par_chunks(rows_per_batch(rows.len())).map(|rows| {
         let levels: Vec<LevelCurve> = rows.iter().map(|row| side.sheet.level(row.row)).collect();
-        let dragged = Dragged::of(&levels).into_iter();
+        let dragged = ContactHistory::of(&levels).into_iter();
         rows.iter().zip(dragged).flat_map(|(row, dragged)| {
             let marks = row.marks(side, dragged.as_ref()).into_iter();
             marks.map(|(column, status)| (row.row * width + column, status))

@@ -6,7 +6,7 @@ use super::whiskers::{CONE, CYLINDER, POLE, whisker};
 use crate::rod::Side;
 use crate::scene::{Pole, Whisker};
 use crate::shooting::Reading;
-use crate::trace::{Branch, DetachmentKind, Found, NoState, corner, curve};
+use crate::trace::{Branch, DetachmentKind, NoState, StateAtPush, corner, curve};
 
 pub fn checks() -> Vec<Check> {
     [straight_cylinder(), straight_cone(), symmetries()].concat()
@@ -19,7 +19,11 @@ const STRAIGHT_CONE: Whisker = whisker([20.0, 30.0, 0.0], 0.0, 0.0);
 const STRAIGHT_WHISKER: Whisker = whisker([20.0, 30.0, 1.5], 0.0, 0.0);
 
 /// The stable state of `whisker` at a point contact, first touched at `distance_mm`, after a push in radians.
-fn pushed(whisker: &Whisker, distance_mm: f64, push: f64) -> Result<(Found, Reading), NoState> {
+fn pushed(
+    whisker: &Whisker,
+    distance_mm: f64,
+    push: f64,
+) -> Result<(StateAtPush, Reading), NoState> {
     let branch = Branch::new(whisker, &POINT, Side::Cb, distance_mm)?;
     let state = branch.state(push, true)?;
     Ok((state, branch.read(&state)))

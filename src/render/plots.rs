@@ -5,7 +5,7 @@
 use crate::design::{Design, DesignEnd, DesignTarget};
 use crate::measured::ComparedPoint;
 use crate::scene::Parameter;
-use crate::trace::{BranchPoint, Detachment, DetachmentKind, Mark, Shape};
+use crate::trace::{BranchMark, BranchPoint, Detachment, DetachmentKind, Shape};
 use crate::uncertainty::EndSpread;
 use whiskmap_plot::{Band, Disc, Dot, Ink, Line, Plot, Shade, Stroke};
 
@@ -64,7 +64,7 @@ pub fn branches(title: &str, poles: &[(Ink, &[BranchPoint])], [x, y]: [BranchAxi
     let mut plot = empty(title, x.label, y.label);
     let place = |point: &BranchPoint| [(x.value)(point), (y.value)(point)];
     for (ink, points) in poles {
-        for branch in points.chunk_by(|_, next| next.mark != Some(Mark::FirstTouch)) {
+        for branch in points.chunk_by(|_, next| next.mark != Some(BranchMark::FirstTouch)) {
             let parts = branch.chunk_by(|a, b| a.stable == b.stable).map(|part| {
                 let (stroke, name) = match part[0].stable {
                     true => (Stroke::Solid, "stable"),
@@ -75,16 +75,16 @@ pub fn branches(title: &str, poles: &[(Ink, &[BranchPoint])], [x, y]: [BranchAxi
             plot.lines.extend(joined(parts));
             plot.dots.extend(branch.iter().filter_map(|point| {
                 let (ink, name) = match point.mark? {
-                    Mark::FirstTouch => (*ink, "first touch"),
-                    Mark::SlipOff => (Ink::Black, "slip-off"),
-                    Mark::PullOff => (Ink::Blue, "pull-off"),
-                    Mark::SecondFold => (Ink::Grey, "second fold"),
-                    Mark::Tip => return None,
+                    BranchMark::FirstTouch => (*ink, "first touch"),
+                    BranchMark::SlipOff => (Ink::Black, "slip-off"),
+                    BranchMark::PullOff => (Ink::Blue, "pull-off"),
+                    BranchMark::SecondFold => (Ink::Grey, "second fold"),
+                    BranchMark::Tip => return None,
                 };
                 Some(Dot {
                     at: place(point),
                     ink,
-                    open: point.mark == Some(Mark::FirstTouch),
+                    open: point.mark == Some(BranchMark::FirstTouch),
                     name: Some(name.to_owned()),
                 })
             }));

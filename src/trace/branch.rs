@@ -1,9 +1,9 @@
-//! The solution branch at one pole: the stable states from first touch to the fold, and on along the unstable ones.
+//! Solution branch at one pole: stable states from first touch to the fold, then unstable states.
 
 use super::columns::row;
 use super::resample::{interpolate, targets};
-use super::{FINER, Mark, NoState};
-use crate::classify::{Dragged, Sliding};
+use super::{BranchMark, FINER, NoState};
+use crate::classify::{ContactHistory, Sliding};
 use crate::rod::{Rest, Side, Units};
 use crate::scene::{Pole, Whisker};
 use crate::sheet::{Continuation, CurveNode, Edge, LevelCurve, ON_CURVE, Row};
@@ -12,7 +12,7 @@ use crate::shooting::{FullState, Reader, Reading};
 use glam::DVec2;
 use serde::Serialize;
 
-/// One pole in front of one whisker, and every state connected with first touch.
+/// All states of one whisker at one pole that are connected with first touch.
 #[derive(Clone, Debug)]
 pub struct Branch {
     pub(super) level: LevelCurve,
@@ -22,7 +22,7 @@ pub struct Branch {
 }
 
 row! {
-    /// A state on a branch, in the units of people.
+    /// State on a branch, in mm, deg, uN and nN m.
     #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
     pub struct BranchPoint {
         /// Distance from the base to the contact at first touch.
@@ -46,17 +46,17 @@ row! {
         /// det d(D, phi)/d(s_obj, f) with f = F L^2/(E I_base): 0 at a fold.
         pub det: f64,
         /// first-touch; slip-off, pull-off (stable end); second-fold, tip (unstable end).
-        pub mark: Option<Mark>,
+        pub mark: Option<BranchMark>,
         /// With friction, the sliding direction: tip; loads are off at base, sticks.
         pub sliding: Option<Sliding>,
     }
 }
 
 impl Branch {
-    /// The branch of `whisker` at `pole`, which first touches it at `distance_mm`.
+    /// Branch of `whisker` at `pole`, whose first touch is at `distance_mm` from the base.
     ///
     /// # Errors
-    /// When the whisker at rest does not reach the pole, or the continuation gets lost.
+    /// The whisker at rest does not reach the pole, or the continuation fails.
     pub fn new(
         whisker: &Whisker,
         pole: &Pole,
@@ -75,10 +75,10 @@ impl Branch {
         let level = LevelCurve::new(Method::new(FINER), &rod, side, &row);
         let touch = level.touch();
         let followed = touch.and_then(|touch| level.continuation(touch, true));
-        // From the very tip a push may lead nowhere.
+        // From first touch at the tip there may be no state to continue to.
         let none = match row.is_at_reach() {
             true => NoState::PulledOff { at_deg: 0.0 },
-            false => NoState::Lost { push_deg: 0.0 },
+            false => NoState::Failed { push_deg: 0.0 },
         };
         Ok(Self {
             continuation: followed.ok_or(none)?,
@@ -88,17 +88,17 @@ impl Branch {
         })
     }
 
-    /// Where the pole stands.
+    /// Row of the branch: distance and direction of the pole.
     #[must_use]
     pub fn row(&self) -> &Row {
         &self.level.row
     }
 
-    /// `count` points, at least 3, as evenly spaced as the fold allows, which is one of them: in push angle, contact
-    /// angle (radians) and arclength of the contact (whisker lengths).
+    /// `count` points of the branch, at least 3, with the fold as one of them. They are evenly spaced on each side of the fold, in push
+    /// angle, contact angle (both in radians) and arclength of the contact (in whisker lengths).
     ///
     /// # Errors
-    /// When a point between two nodes of the continuation cannot be brought onto the curve.
+    /// The corrector fails at a point between two nodes of the continuation.
     pub fn points(&self, count: usize) -> Result<Vec<BranchPoint>, NoState> {
         let Continuation { nodes, fold, end } = &self.continuation;
         let lengths = self.lengths();
@@ -111,25 +111,25 @@ impl Branch {
         let corrected = self.level.correct(&starts, ON_CURVE);
         let (last, last_node) = (targets.len() - 1, nodes.len() - 1);
         let end_mark = match (fold, end) {
-            (Some(_), Edge::Fold) => Mark::SecondFold,
-            (Some(_), Edge::Tip) => Mark::Tip,
-            (None, _) => Mark::PullOff,
+            (Some(_), Edge::Fold) => BranchMark::SecondFold,
+            (Some(_), Edge::Tip) => BranchMark::Tip,
+            (None, _) => BranchMark::PullOff,
         };
         let on_curve = guesses.iter().zip(corrected).enumerate();
-        let marked: Vec<(CurveNode, Option<Mark>)> = on_curve
+        let marked: Vec<(CurveNode, Option<BranchMark>)> = on_curve
             .map(|(i, ((near, _), corrected))| {
-                // The ends and the fold are known better than any corrector knows them.
+                // The ends and the fold are more accurate than corrected points.
                 let exact = match i {
-                    0 => Some((nodes[0], Mark::FirstTouch)),
+                    0 => Some((nodes[0], BranchMark::FirstTouch)),
                     _ if i == last => Some((nodes[last_node], end_mark)),
-                    _ if Some(i) == fold_at => fold.map(|fold| (nodes[fold], Mark::SlipOff)),
+                    _ if Some(i) == fold_at => fold.map(|fold| (nodes[fold], BranchMark::SlipOff)),
                     _ => None,
                 };
                 let near = &nodes[*near];
                 Ok(match exact {
                     Some((node, mark)) => (node, Some(mark)),
                     None => {
-                        let (point, full) = corrected.ok_or_else(|| self.lost())?;
+                        let (point, full) = corrected.ok_or_else(|| self.failed())?;
                         (self.level.node(point, &full, near.push, near.angle), None)
                     }
                 })
@@ -150,40 +150,43 @@ impl Branch {
         Ok(points.collect())
     }
 
-    /// Which way the contact slides, or that it sticks, at each of the states `(tau, load)` with their pushes, of which the first so many
-    /// are `stable`.
+    /// Sliding direction at each of `states`, given as `(tau, load)` and push angle in radians; `None` without friction. The first
+    /// `stable` states are stable.
     pub(super) fn slidings(&self, states: &[(DVec2, f64)], stable: usize) -> Vec<Option<Sliding>> {
         let level = &self.level;
         if level.rod.friction == 0.0 {
             return vec![None; states.len()];
         }
-        let (led_to, unstable) = states.split_at(stable);
-        let dragged = Dragged::of(std::slice::from_ref(level)).pop().flatten();
+        let (stable, unstable) = states.split_at(stable);
+        let history = ContactHistory::of(std::slice::from_ref(level))
+            .pop()
+            .flatten();
         let sliding = |(_, push): &(DVec2, f64)| {
-            let sliding = dragged.as_ref().map(|dragged| dragged.sliding(push.abs()));
-            // Where that is not known, it does not count as sliding.
+            let sliding = history.as_ref().map(|history| history.sliding(push.abs()));
+            // A contact without a history counts as sticking.
             Some(sliding.unwrap_or(Sliding::Sticks))
         };
         let unstable: Vec<DVec2> = unstable.iter().map(|(point, _)| *point).collect();
         let unstable = Sliding::at(level.method, &level.rod, &unstable);
-        led_to.iter().map(sliding).chain(unstable).collect()
+        stable.iter().map(sliding).chain(unstable).collect()
     }
 
-    /// The state with its contact at `tau`, in the units of people.
+    /// State `full` with its contact at `tau` and the push angle `push` in radians, in mm, deg, uN and nN m.
     pub(super) fn reading(&self, tau: f64, full: &FullState, push: f64) -> Reading {
         let LevelCurve { rod, row, .. } = &self.level;
         Reader::new(self.units, rod).read(tau, full, row.touch, push)
     }
 
-    pub(super) fn lost(&self) -> NoState {
-        NoState::Lost {
+    /// Error of a failed continuation or corrector.
+    pub(super) fn failed(&self) -> NoState {
+        NoState::Failed {
             push_deg: self.continuation.nodes[self.continuation.nodes.len() - 1]
                 .push
                 .to_degrees(),
         }
     }
 
-    /// Length of the curve from first touch to each node.
+    /// Length of the branch from first touch to each node, in the measure of [`LevelCurve::length`].
     fn lengths(&self) -> Vec<f64> {
         let mut length = 0.0;
         let steps = self.continuation.nodes.windows(2);
@@ -194,7 +197,7 @@ impl Branch {
         std::iter::once(0.0).chain(rest).collect()
     }
 
-    /// A state, without what is special about it.
+    /// State at `node` as a point without mark and sliding direction.
     fn point(&self, node: &CurveNode, stable: bool) -> BranchPoint {
         let LevelCurve { rod, side, row, .. } = &self.level;
         let reading = self.reading(node.point.x, &node.full, node.push);
@@ -209,7 +212,7 @@ impl Branch {
             force_un: reading.force_un,
             base_moment_nnm: reading.base_moment_nnm,
             // From (ln D, phi) by (tau, load) to (D, phi) by (s, f): dtau/ds = 1/rho, dload/df = 1/rho^2, and f is the
-            // part of the force along the normal.
+            // normal component of the force.
             det: node.full.map.det() * row.pole_distance
                 / (rod.radius(node.point.x).powi(3) * rod.contact_tangent().x),
             mark: None,

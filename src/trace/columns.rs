@@ -1,7 +1,7 @@
-//! Rows of tables whose columns are defined once: in the docs and in `--help`.
+//! Table rows whose columns are defined once, for the documentation and `--help`.
 
-/// A struct whose fields are the columns of a table; their docs are what [`COLUMNS`](crate::trace::Detachment::COLUMNS)
-/// says of them.
+/// Defines a struct whose fields are the columns of a table. Their doc comments are the descriptions in
+/// [`COLUMNS`](crate::trace::Detachment::COLUMNS).
 macro_rules! row {
     ($(#[$outer:meta])* pub struct $name:ident {
         $($(#[doc = $text:literal])+ pub $column:ident: $kind:ty,)*
@@ -11,7 +11,7 @@ macro_rules! row {
         }
 
         impl $name {
-            /// The columns of its table, in their order, and what they mean.
+            /// Names and descriptions of the columns of the table, in order.
             pub const COLUMNS: &[(&str, &str)] = &[$((stringify!($column), concat!($($text),+))),*];
         }
     };

@@ -1,4 +1,4 @@
-//! Detachment curves: where pushes from first touch end, distance by distance.
+//! Detachment curves: the ends of pushes from first touch, by distance.
 
 use super::columns::row;
 use crate::classify::{RowBoundary, Sliding};
@@ -10,22 +10,22 @@ use crate::shooting::batch::{Batch, InitialCondition, Method};
 use crate::shooting::{FirstVariation, Reader, Reading, Resolution};
 use serde::{Deserialize, Serialize};
 
-/// How a push from first touch ends.
+/// Kind of the end of a push from first touch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum DetachmentKind {
-    /// At the fold.
+    /// The push ends at the fold.
     SlipOff,
-    /// With the tip at the pole.
+    /// The push ends with the contact at the tip.
     PullOff,
-    /// It never begins: the resting whisker does not reach the pole.
+    /// No push begins: the resting whisker does not reach the pole.
     OutOfReach,
-    /// The boundary was not found.
+    /// The boundary of the row was not found.
     Unresolved,
 }
 
 row! {
-    /// The end of a push at one distance; without values where there is none.
+    /// End of a push at one distance; the values are `None` if no end exists or was found.
     #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
     pub struct Detachment {
         /// Side of the whisker that the pole is on: cb (convex) or cf (concave).
@@ -62,7 +62,7 @@ row! {
 }
 
 row! {
-    /// Where slip-off turns into pull-off, if it does: the fold with the contact at the tip.
+    /// Corner of a detachment curve: the end at which slip-off turns into pull-off, the fold with the contact at the tip.
     #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
     pub struct Corner {
         /// Side of the whisker that the pole is on: cb (convex) or cf (concave).
@@ -76,25 +76,25 @@ row! {
     }
 }
 
-/// Why slip-off does not turn into pull-off anywhere.
+/// Reason why a detachment curve has no corner.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum NoCorner {
-    /// Every push that begins ends at the fold: a perfect cone's, and those of whiskers that bend out of the way.
+    /// Every push that begins ends at the fold, as with a perfect cone and with whiskers that bend away from the pole.
     AlwaysSlipsOff,
     /// Every push that begins ends at the tip.
     AlwaysPullsOff,
-    /// The fold with the contact at the tip was not found, or the ends around it were not.
+    /// The fold with the contact at the tip, or an end next to it, was not found.
     NotFound,
 }
 
-/// The detachment curve of `whisker` on one side of `pole`, at growing `distances_mm`.
+/// Detachment curve of `whisker` on one `side`, one end per distance of `distances_mm`, which must increase.
 #[must_use]
 pub fn curve(whisker: &Whisker, pole: &Pole, side: Side, distances_mm: &[f64]) -> Vec<Detachment> {
     curve_at(Resolution::FINE, whisker, pole, side, distances_mm)
 }
 
-/// Returns the detachment curve at another resolution.
+/// Detachment curve as [`curve`] returns it, at another resolution.
 #[must_use]
 pub fn curve_at(
     resolution: Resolution,
@@ -133,7 +133,7 @@ pub fn curve_at(
             .and_then(|(end, variation)| Sliding::of(variation, rod, end.tau));
         let reading = reached.as_ref().map(|(end, FirstVariation { full, .. })| {
             let push = side.sign() * end.push;
-            // The crossing's own residual foretells what its last step leaves; this trajectory has gone there.
+            // The residual of the crossing estimates the error after its last Newton step; `off` is the miss of this trajectory.
             let off = libm::log(row.pole_distance / full.map.pole.length()).abs();
             let reading = reader.read(end.tau, full, row.touch, push);
             (push.to_degrees(), end.residual + off, reading)
@@ -164,7 +164,7 @@ pub fn curve_at(
     .collect()
 }
 
-/// The corner of `whisker` on one side of `pole`.
+/// Corner of the detachment curve of `whisker` on one `side`, or the reason why there is none.
 #[must_use]
 pub fn corner(whisker: &Whisker, pole: &Pole, side: Side) -> Corner {
     let end = |distance: f64| curve(whisker, pole, side, &[distance])[0];
@@ -181,6 +181,7 @@ pub fn corner(whisker: &Whisker, pole: &Pole, side: Side) -> Corner {
     }
 }
 
+/// Distance of the corner, in mm: at the fold with the contact at the tip if the ends next to it agree, else by bisection.
 fn corner_distance(
     whisker: &Whisker,
     pole: &Pole,
@@ -202,14 +203,14 @@ fn corner_distance(
     switch(end, length, rod.pole.abs())
 }
 
-/// Half the width, in whisker lengths, of the gap in which slip-off must turn into pull-off.
+/// Half the width of the interval of distances in which slip-off must turn into pull-off, in whisker lengths.
 const CORNER_TOLERANCE: f64 = 1e-10;
 
-/// Samples among which the switch is looked for where it is not at the fold with the contact at the tip.
+/// Number of distances at which ends are computed to bracket a corner that is not at the fold with the contact at the tip.
 const CORNER_SAMPLES: u32 = 128;
 
-/// The distance at which slip-off turns into pull-off, by bisection: with friction it can lie where the branches of two
-/// poles swap their ends. No pole is nearer than `nearest`, in whisker lengths.
+/// Distance at which slip-off turns into pull-off, in the unit of `length`, by bisection. With friction two branches can exchange their
+/// ends there. The search begins at `nearest`, in whisker lengths.
 fn switch(end: &impl Fn(f64) -> Detachment, length: f64, nearest: f64) -> Result<f64, NoCorner> {
     let samples: Vec<f64> = (1..=CORNER_SAMPLES)
         .map(|i| nearest + (1.0 - nearest) * f64::from(i) / f64::from(CORNER_SAMPLES))

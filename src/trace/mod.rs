@@ -1,7 +1,7 @@
-//! Exact lines through the parameter space, in `f64`: detachment curves, solution branches, shapes.
+//! Detachment curves, solution branches and whisker shapes, in `f64`.
 //!
-//! A detachment curve is the image of two edges of the stable sheet, so it comes from [`crate::sheet`]. A branch goes
-//! on where the sheet ends, past the fold and along the unstable states, and is followed by continuation.
+//! A detachment curve is the image of two edges of the stable sheet, which [`crate::sheet`] computes. A branch is computed by
+//! continuation: it includes the unstable states beyond the fold, where the sheet ends.
 
 mod branch;
 mod columns;
@@ -12,8 +12,8 @@ mod state;
 
 pub use branch::{Branch, BranchPoint};
 pub use curve::{Corner, Detachment, DetachmentKind, NoCorner, corner, curve, curve_at};
-pub use shape::{Part, Shape, ShapePoint};
-pub use state::Found;
+pub use shape::{Shape, ShapePoint, WhiskerPart};
+pub use state::StateAtPush;
 
 pub(crate) use columns::row;
 
@@ -23,97 +23,97 @@ use crate::shooting::Resolution;
 use rayon::prelude::*;
 use serde::Serialize;
 
-/// Twice as fine as [`Resolution::FINE`]: unstable states carry larger loads.
+/// Resolution of branches and shapes, twice as fine as [`Resolution::FINE`]: unstable states have larger loads.
 const FINER: Resolution = Resolution::FINE.doubled();
 
-/// What is special about a point of a branch.
+/// Special point of a branch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Mark {
-    /// The resting whisker touches the pole.
+pub enum BranchMark {
+    /// First touch: the resting whisker touches the pole.
     FirstTouch,
-    /// The saddle-node, where the stable states end.
+    /// Fold (saddle-node) at which the stable states end.
     SlipOff,
-    /// The stable states end with the contact at the tip.
+    /// End of the stable states with the contact at the tip.
     PullOff,
-    /// The unstable states do.
+    /// End of the unstable states with the contact at the tip.
     Tip,
-    /// The unstable states end at a fold of their own.
+    /// End of the unstable states at a second fold.
     SecondFold,
 }
 
-/// Ends of pushes held at a time, of some 250 bytes each.
+/// Maximum number of ends of pushes in memory, of about 250 bytes each.
 const ENDS_AT_ONCE: usize = 1 << 19;
 
-/// Most whiskers whose curves are computed together: enough for several threads.
+/// Maximum number of whiskers whose curves are computed together, enough for several threads.
 const MOST_WHISKERS: usize = 64;
 
-/// Whiskers to compute together where each has ends at so many `distances` on both sides.
+/// Number of whiskers to compute together if each has ends at `distances` distances on both sides.
 #[must_use]
 pub fn whiskers_at_once(distances: usize) -> usize {
     (ENDS_AT_ONCE / (2 * distances)).clamp(1, MOST_WHISKERS)
 }
 
-/// What `of_side` makes of each side of each whisker, in their order, CF before CB.
+/// Results of `of_side` for each side of each whisker, in the order of `whiskers`, CF before CB.
 pub fn sides<R: Send>(
     whiskers: &[SweptWhisker],
     of_side: impl Fn(&SweptWhisker, Side) -> Vec<R> + Sync,
 ) -> Vec<(SweepPlace, R)> {
     let both = |swept| Side::BOTH.map(|side| (swept, side));
-    let faces: Vec<(&SweptWhisker, Side)> = whiskers.iter().flat_map(both).collect();
-    let of_face = |(swept, side): (&SweptWhisker, Side)| {
+    let sides: Vec<(&SweptWhisker, Side)> = whiskers.iter().flat_map(both).collect();
+    let placed = |(swept, side): (&SweptWhisker, Side)| {
         let place = swept.place.clone();
         let rows = of_side(swept, side).into_iter();
         rows.map(move |row| (place.clone(), row))
     };
-    faces.into_par_iter().flat_map_iter(of_face).collect()
+    sides.into_par_iter().flat_map_iter(placed).collect()
 }
 
-/// Why there is no state.
+/// Reason why a branch or a state does not exist.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum NoState {
-    /// The whisker at rest does not reach the pole.
+    /// The resting whisker does not reach the pole.
     #[error("out of reach: the tip of the resting whisker is {reach_mm:.9} mm from its base")]
     OutOfReach {
-        /// The farthest first touch of a point contact.
+        /// Distance from the base to the tip of the resting whisker, in mm.
         reach_mm: f64,
     },
-    /// The base has turned away from the pole.
+    /// The base is turned away from the pole.
     #[error(
         "lost touch: the whisker has moved away from the pole; must be between {:.9} and {:.9} deg", .stays_deg[0], .stays_deg[1]
     )]
     LostTouch {
-        /// The push angles that keep it on the pole, from the smaller to the larger.
+        /// Smallest and largest push angle in contact, in degrees.
         stays_deg: [f64; 2],
     },
-    /// The push goes beyond the fold.
+    /// The push angle lies beyond the fold.
     #[error("slipped off at {at_deg:.9} deg")]
     SlippedOff {
-        /// Signed push angle of the fold.
+        /// Signed push angle of the fold, in degrees.
         at_deg: f64,
     },
-    /// The push goes beyond the tip.
+    /// The push angle lies beyond the one at which the contact reaches the tip.
     #[error("pulled off at {at_deg:.9} deg")]
     PulledOff {
-        /// Signed push angle at which the tip reaches the pole.
+        /// Signed push angle at which the contact reaches the tip, in degrees.
         at_deg: f64,
     },
-    /// There are no unstable states.
+    /// The branch has no unstable states.
     #[error("no unstable state: pulled off at {at_deg:.9} deg, before any fold")]
     NoFold {
-        /// Signed push angle at which the tip reaches the pole.
+        /// Signed push angle at which the contact reaches the tip, in degrees.
         at_deg: f64,
     },
-    /// The unstable states lie elsewhere.
+    /// The branch has unstable states, but not at this push angle.
     #[error("the unstable states lie between {:.9} and {:.9} deg", .ends_deg[0], .ends_deg[1])]
     NotUnstable {
-        /// Signed push angles of the fold and of the branch's end.
+        /// Signed push angles of the fold and of the end of the branch, in degrees.
         ends_deg: [f64; 2],
     },
     /// The continuation failed.
-    #[error("the continuation of the branch got lost near {push_deg} deg")]
-    Lost {
-        /// Signed push angle.
+    #[error("the continuation of the branch failed near {push_deg} deg")]
+    Failed {
+        /// Signed push angle of the last node, in degrees.
         push_deg: f64,
     },
 }

@@ -1,9 +1,10 @@
-//! A branch resampled: points at uniform distances along it.
+//! Resampling of a branch at uniform distances along it.
 
 use crate::sheet::CurveNode;
 use glam::DVec2;
 
-/// Where along the curve `count` points go, and which of them is the fold: the two parts share the intervals by length.
+/// Positions of `count` points along a curve whose nodes are at `lengths`, and the index of the fold among them. The parts before and
+/// after the fold each get intervals in proportion to their length.
 pub fn targets(lengths: &[f64], fold: Option<usize>, count: usize) -> (Vec<f64>, Option<usize>) {
     let intervals = count - 1;
     let total = lengths[lengths.len() - 1];
@@ -22,10 +23,10 @@ pub fn targets(lengths: &[f64], fold: Option<usize>, count: usize) -> (Vec<f64>,
     (targets.collect(), Some(before))
 }
 
-/// Nodes that an interpolation takes.
+/// Maximum number of nodes of an interpolation.
 const NODES: usize = 6;
 
-/// The polynomial through the nodes around `target`, there, and the node before it.
+/// Index of the last node before `target`, and the point `(tau, load)` at `target` of the polynomial through the nodes around it.
 pub fn interpolate(nodes: &[CurveNode], lengths: &[f64], target: f64) -> (usize, DVec2) {
     let after = lengths.partition_point(|length| *length <= target);
     let near = after.saturating_sub(1);

@@ -1,31 +1,31 @@
-//! The whisker in one state, from base to tip.
+//! Shape of the whisker in one state, from base to tip.
 
 use super::columns::row;
-use super::{Branch, FINER, Found};
+use super::{Branch, FINER, StateAtPush};
 use crate::classify::Sliding;
 use crate::rod::{Rest, arclength};
 use crate::shooting::shape::{RodPoint, profile};
 use glam::DVec2;
 use serde::Serialize;
 
-/// The shape of a whisker in front of its pole: origin at the base, first axis along the base's tangent at first
-/// touch; since then the base has turned, and the pole has stayed where it is.
+/// Shape of a whisker at its pole, in the frame of the pole: the origin is at the base, the first axis along the base's tangent at
+/// first touch. A push rotates the base and leaves the pole.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Shape {
-    /// From the base to the tip.
+    /// Points of the whisker, from the base to the tip.
     pub points: Vec<ShapePoint>,
-    /// Centre of the pole.
+    /// Centre of the pole, `[x, y]` in mm.
     pub pole_mm: [f64; 2],
-    /// Its radius.
+    /// Radius of the pole, in mm.
     pub pole_radius_mm: f64,
-    /// Distance of the computed pole from where it stands, in whisker lengths.
+    /// Distance of the computed pole from its true position, in whisker lengths.
     pub residual: f64,
-    /// Which way the contact slides as the branch goes on, or that it sticks; `None` without friction.
+    /// Sliding direction of the contact in the direction of the branch; `None` without friction.
     pub sliding: Option<Sliding>,
 }
 
 row! {
-    /// One place of a whisker.
+    /// Point of a bent whisker.
     #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
     pub struct ShapePoint {
         /// Arclength from the base.
@@ -41,26 +41,26 @@ row! {
         /// Bending moment in the whisker.
         pub moment_nnm: f64,
         /// loaded (before the contact), contact or free (beyond it).
-        pub part: Part,
+        pub part: WhiskerPart,
     }
 }
 
-/// The parts of a whisker in contact.
+/// Part of a whisker in contact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Part {
-    /// Bent by the pole.
+pub enum WhiskerPart {
+    /// Between the base and the contact, bent by the pole.
     Loaded,
-    /// Touching it.
+    /// At the contact.
     Contact,
-    /// Beyond it.
+    /// Between the contact and the tip, unloaded.
     Free,
 }
 
 impl Shape {
-    /// The shape in the state `found` on `branch`: `count` places spread evenly along the whisker, and the contact.
+    /// Shape in the state `found` on `branch`, at `count` points evenly spaced along the whisker and at the contact.
     #[must_use]
-    pub fn new(branch: &Branch, found: &Found, count: usize) -> Self {
+    pub fn new(branch: &Branch, found: &StateAtPush, count: usize) -> Self {
         let (rod, row, units) = (&branch.level.rod, branch.row(), &branch.units);
         let contact = arclength(rod, found.tau).min(1.0);
         let mut at: Vec<f64> = uniform(count).filter(|s| *s != contact).collect();
@@ -68,7 +68,7 @@ impl Shape {
         at.insert(index, contact);
         let state = (DVec2::new(found.tau, found.load), found.push);
         let places = profile(rod, found.tau, found.load, FINER, &at);
-        // From the axes of the contact to those of first touch: the base's tangent is at `-push` there.
+        // Rotation from the axes of the contact to those of first touch, where the base's tangent is at `-push`.
         let base = &found.full;
         let to_base = DVec2::new(base.tangent.x, -base.tangent.y);
         let turn = DVec2::from_angle(-found.push).rotate(to_base);
@@ -89,9 +89,9 @@ impl Shape {
                 curvature_per_mm: place.curvature / length,
                 moment_nnm: place.moment * units.moment_nnm,
                 part: match i.cmp(&index) {
-                    std::cmp::Ordering::Less => Part::Loaded,
-                    std::cmp::Ordering::Equal => Part::Contact,
-                    std::cmp::Ordering::Greater => Part::Free,
+                    std::cmp::Ordering::Less => WhiskerPart::Loaded,
+                    std::cmp::Ordering::Equal => WhiskerPart::Contact,
+                    std::cmp::Ordering::Greater => WhiskerPart::Free,
                 },
             }
         });
@@ -107,7 +107,7 @@ impl Shape {
         }
     }
 
-    /// The resting whisker at first touch, `count` points in the same axes.
+    /// Shape of the resting whisker at first touch: `count` points `[x, y]` in mm, in the axes of [`Shape`].
     #[must_use]
     pub fn at_rest(branch: &Branch, count: usize) -> Vec<[f64; 2]> {
         let rest = Rest::new(&branch.level.rod);
@@ -117,7 +117,7 @@ impl Shape {
     }
 }
 
-/// `count` numbers, at least 2, from 0 to 1.
+/// Evenly spaced numbers from 0 to 1: `count`, but at least 2.
 fn uniform(count: usize) -> impl Iterator<Item = f64> {
     let last = count.max(2) - 1;
     (0..=last).map(move |i| i as f64 / last as f64)

@@ -1,36 +1,36 @@
-//! The state of a branch at a push angle.
+//! State of a branch at a push angle.
 
 use super::{Branch, NoState};
 use crate::sheet::Continuation;
 use crate::shooting::{FullState, Reading};
 
-/// A state found on a branch.
+/// State of a branch at a push angle.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Found {
-    /// `tau` of the contact.
+pub struct StateAtPush {
+    /// Contact coordinate `tau`.
     pub tau: f64,
-    /// Signed load.
+    /// Signed load, dimensionless.
     pub load: f64,
-    /// Push angle, signed, in radians: the one asked for but for the residual.
+    /// Requested push angle, signed, in radians.
     pub push: f64,
-    /// Whether it is on the stable part.
+    /// Whether the state is stable.
     pub stable: bool,
-    /// Everything else.
+    /// Result of the trajectory.
     pub full: FullState,
 }
 
 impl Branch {
-    /// A state of the branch in the units of people.
+    /// Values of `state` in mm, deg, uN and nN m.
     #[must_use]
-    pub fn read(&self, state: &Found) -> Reading {
+    pub fn read(&self, state: &StateAtPush) -> Reading {
         self.reading(state.tau, &state.full, state.push)
     }
 
-    /// The state after the signed push angle `push`, in radians, on the stable or the unstable part.
+    /// State at the signed push angle `push`, in radians, on the stable or the unstable part.
     ///
     /// # Errors
-    /// When there is no such state: the message tells how the whisker has left the pole, and at which push angle.
-    pub fn state(&self, push: f64, stable: bool) -> Result<Found, NoState> {
+    /// No such state exists. The error names how the whisker leaves the pole, and at which push angle.
+    pub fn state(&self, push: f64, stable: bool) -> Result<StateAtPush, NoState> {
         let Continuation { nodes, fold, end } = &self.continuation;
         let part = match (fold, stable) {
             (Some(fold), true) => &nodes[..=*fold],
@@ -43,7 +43,7 @@ impl Branch {
             }
         };
         let (first, last) = (&part[0], &part[part.len() - 1]);
-        // A push angle that was printed in degrees may come back some roundings beyond the end.
+        // A push angle that was printed in degrees may lie a few roundings beyond the end.
         let ends = [first.push.min(last.push), first.push.max(last.push)];
         let inside = push.clamp(ends[0], ends[1]);
         let push = if (inside - push).abs() <= 8.0 * f64::EPSILON * push.abs() {
@@ -56,7 +56,7 @@ impl Branch {
             let within = (first.push - push) * (last.push - push) <= 0.0;
             let sign = self.level.side.sign();
             return Err(match (stable, fold, end) {
-                _ if within => self.lost(),
+                _ if within => self.failed(),
                 (true, ..) if sign * push < 0.0 => NoState::LostTouch {
                     stays_deg: ends.map(f64::to_degrees),
                 },
@@ -67,7 +67,7 @@ impl Branch {
                 (true, None, _) => NoState::PulledOff { at_deg },
             });
         };
-        Ok(Found {
+        Ok(StateAtPush {
             tau: node.point.x,
             load: node.point.y,
             push,

@@ -1,30 +1,30 @@
-//! One whisker in front of a few poles; lengths in whisker lengths.
-#![allow(dead_code, reason = "each test program uses its own share")]
+//! Parameters of a scene with one whisker and a few pole distances, in whisker lengths.
+#![allow(dead_code, reason = "each test program uses a part of this module")]
 
 use std::fmt::Write;
 use whiskmap::engine::Engine;
 use whiskmap::map::{Panel, Summary};
 use whiskmap::scene::Scene;
 
-/// A scene, but for its text.
+/// Parameters of a scene; lengths other than `length_mm` in whisker lengths.
 #[derive(Clone, Debug)]
 pub struct Case {
     pub length_mm: f64,
     pub taper: f64,
-    /// `A*`.
+    /// Dimensionless curvature `A*`.
     pub bend: f64,
     pub pole: f64,
     pub friction: f64,
     pub tip_to_base: f64,
     pub stretch: f64,
-    /// Measured radii in place of the taper: parts of the length and of the base radius; none for a cone.
+    /// Measured radii that replace the taper, as `[arclength, radius]` over length and base radius; empty for a cone.
     pub rows: Vec<[f64; 2]>,
     pub pushes_deg: Vec<f64>,
     pub distances: Vec<f64>,
 }
 
 impl Case {
-    /// The scene file.
+    /// Text of the scene file.
     pub fn text(&self) -> String {
         let length = self.length_mm;
         let base_um = 1.5 * length;
@@ -73,7 +73,7 @@ impl Case {
         text
     }
 
-    /// With so many cells in a row that an engine is asked for them.
+    /// The case with enough cells in a row that an engine computes them.
     pub fn dense(mut self) -> Self {
         const COUNT: i32 = 40;
         let more = (1..=COUNT).map(|i| 70.0 * (f64::from(i) / f64::from(COUNT)).powi(2));
@@ -89,7 +89,7 @@ impl Case {
     }
 }
 
-/// The map of a scene without sweep.
+/// Summary and panel of a scene without sweep.
 pub fn compute(scene: &Scene, engine: Option<&mut dyn Engine>) -> (Summary, Panel) {
     let (summary, mut panels) = super::compute::compute(scene, engine);
     (summary, panels.remove(0))

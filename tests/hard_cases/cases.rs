@@ -1,4 +1,4 @@
-//! The named hard cases: whole maps of them, and cells exactly at their edges.
+//! Maps of the named hard cases, and cells exactly at the ends of their pushes.
 
 use super::case::{Case, compute};
 use super::named::named;
@@ -9,7 +9,7 @@ use whiskmap::rod::Side;
 use whiskmap::scene::Scene;
 use whiskmap::trace::{DetachmentKind, corner, curve};
 
-/// Every cell has all its numbers or none.
+/// Returns true if every cell has either all its values or none.
 pub fn is_complete(panel: &Panel) -> bool {
     panel.regime.iter().enumerate().all(|(cell, regime)| {
         let finite = panel.state.iter().all(|channel| channel[cell].is_finite());
@@ -18,7 +18,7 @@ pub fn is_complete(panel: &Panel) -> bool {
     })
 }
 
-/// The map of `case` without a doubtful cell.
+/// Map of `case`; panics if a cell is unresolved or doubtful.
 fn certain(name: &str, case: &Case) -> Panel {
     let (summary, panel) = compute(&case.scene(), None);
     let doubt = (summary.unresolved(), summary.disagreements);
@@ -34,11 +34,11 @@ fn every_named_case_is_certain() {
     }
 }
 
-/// How far before and beyond an end, in degrees, its cells are: the ends are known to 1e-8.
+/// Distances of cells from the end of a push, in degrees. The ends are accurate to 1e-8 degrees.
 const BESIDE: [f64; 2] = [1e-5, 1e-7];
 
-/// The map of one row next to `end_deg`: contact before it, detached by `kind` beyond it, and certain exactly there. With
-/// friction two branches can swap their ends, and what is beyond the one end is a state of the other branch.
+/// Checks the map of one row next to `end_deg`: contact before it, detachment by `kind` beyond it, and no unresolved cell at it. With
+/// friction two branches can exchange their ends. A state of the other branch then exists beyond the end.
 fn ends_at(name: &str, case: &Case, distance: f64, end_deg: f64, kind: DetachmentKind) {
     let detached = if kind == DetachmentKind::SlipOff {
         Regime::SlipOff
@@ -93,8 +93,8 @@ fn pushes_up_to_the_edge_and_past_it() {
     eprintln!("{ends} ends");
 }
 
-/// Just before the corner of fold and tip a whisker slips off, just beyond it is pulled off. A straight cylinder does so
-/// at 0.558538 of its length, and slip-off and pull-off are next to each other all around.
+/// Just before the corner of fold and tip a whisker slips off; just beyond it is pulled off. The corner of a straight cylinder is
+/// at 0.558538 of its length.
 #[test]
 fn both_sides_of_the_corner() {
     let mut corners = 0;
@@ -129,7 +129,7 @@ fn both_sides_of_the_corner() {
     eprintln!("{corners} corners");
 }
 
-/// A bend between 0 and 1e-9 of a whisker's length would underflow in `f32`.
+/// A dimensionless curvature between 0 and 1e-9 would underflow in `f32`.
 #[test]
 fn fainter_bends_are_refused() {
     let case = &named()[0].1;

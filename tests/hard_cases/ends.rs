@@ -1,4 +1,4 @@
-//! Where a push ends, asked in every way there is: `curve` from the sheet's edges, `branch` and `shape` by walking, `map` cell by cell.
+//! The end of a push, computed in three ways: `curve` from the edges of the sheet, `branch` and `shape` by continuation, `map` by cells.
 
 use super::case::Case;
 use super::random::even_in_log;
@@ -13,16 +13,16 @@ use whiskmap::sheet::Sheet;
 use whiskmap::shooting::batch::Method;
 use whiskmap::trace::{Detachment, DetachmentKind, NoState};
 
-/// How far before and after an end the others are asked, in degrees.
+/// Distance before and after an end at which shapes and maps are computed, in degrees.
 const BESIDE: f64 = 1e-6;
 
-/// What ends may differ by, in degrees: measured 1.5e-9.
+/// Tolerance of the difference between ends, in degrees; measured 1.5e-9.
 const SAME: f64 = 1e-8;
 
-/// The largest push angle that a map takes, in degrees.
+/// Largest push angle of a map, in degrees.
 const MOST_PUSH: f64 = 360.0;
 
-/// Whether all agree that a push at the only distance of `scene` ends like `end`.
+/// Checks that shapes, branch and map agree with `end` at the only distance of `scene`.
 pub fn agree(scene: &Scene, end: &Detachment) -> Result<(), TestCaseError> {
     let Some(push) = end.push_angle_deg else {
         prop_assert_eq!(end.kind, DetachmentKind::OutOfReach);
@@ -43,7 +43,7 @@ pub fn agree(scene: &Scene, end: &Detachment) -> Result<(), TestCaseError> {
         Some(NoState::PulledOff { at_deg }) => (DetachmentKind::PullOff, at_deg),
         other => return Err(TestCaseError::fail(format!("{end:?}: {other:?}"))),
     };
-    // Next to the corner both are right.
+    // Next to the corner both kinds are correct.
     prop_assert!(kind == end.kind || (at_deg - push).abs() < SAME);
     prop_assert!((at_deg - push).abs() < SAME, "{end:?}: {at_deg}");
     if push.abs() + BESIDE > MOST_PUSH || pulled_at_touch {
@@ -63,7 +63,7 @@ pub fn agree(scene: &Scene, end: &Detachment) -> Result<(), TestCaseError> {
         Regime::PullOff
     };
     prop_assert_eq!(regime(before), Some(Regime::Contact), "{:?}", end);
-    // With friction there can be a state beyond the end that no push leads to.
+    // With friction a state can exist beyond the end that no push from rest reaches.
     let beyond = regime(after);
     prop_assert!(
         beyond == Some(gone) || beyond == Some(Regime::Unreachable),
@@ -72,7 +72,7 @@ pub fn agree(scene: &Scene, end: &Detachment) -> Result<(), TestCaseError> {
     Ok(())
 }
 
-/// Any whisker with friction up to 1 and `A*` up to 10, in front of poles from a thousandth of its length.
+/// Strategy for whiskers with friction up to 1 and `A*` up to 10, at pole distances from a thousandth of the length.
 fn whiskers() -> impl Strategy<Value = Case> {
     let taper = prop_oneof![2 => Just(0.0), 1 => Just(1.0), 4 => 0.0..1.0_f64, 2 => 0.9..1.0_f64];
     let bend = prop_oneof![Just(0.0), even_in_log(1e-3, 1.0), 1.0..10.0_f64];
@@ -107,7 +107,7 @@ fn whiskers() -> impl Strategy<Value = Case> {
 }
 
 #[test]
-fn every_way_leads_to_the_same_end() {
+fn curves_branches_and_maps_agree_on_ends() {
     let config = Config {
         cases: 150,
         failure_persistence: None,
@@ -132,7 +132,7 @@ fn every_way_leads_to_the_same_end() {
     assert!(ends.get() > 400, "{}", ends.get());
 }
 
-/// The ends of a row are its own: a nearer row brings no others to light. This whisker straightens so far that it reaches the pole
+/// A nearer row in the same sheet does not change the ends of a row. This whisker straightens so far that it reaches the pole
 /// of a row that it does not touch at rest.
 #[test]
 fn a_row_has_the_same_ends_beside_a_nearer_one() {

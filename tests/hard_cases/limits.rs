@@ -1,13 +1,13 @@
-//! Limits checked against each other, each with its order: the detachment angle as one number tends to 0.
+//! Order of convergence of the detachment angle as one parameter tends to a limit.
 
 use whiskmap::rod::Side;
 use whiskmap::scene::{Curvature, Pole, Whisker};
 use whiskmap::trace::{Detachment, DetachmentKind, corner, curve};
 
-/// Distance of first touch in whisker lengths: every whisker here slips off there, on both sides.
+/// Distance of first touch, in whisker lengths, at which every whisker of this module slips off on both sides.
 const DISTANCE: f64 = 0.4;
 
-/// A whisker of 1 mm and its pole, away from the limits by as much as the numbers say.
+/// Whisker of 1 mm length and its pole, as deviations from a straight cylinder and a point.
 #[derive(Clone, Copy, Default)]
 struct Away {
     taper: f64,
@@ -37,7 +37,7 @@ impl Away {
         curve(&self.whisker(), &Pole::smooth(self.pole), side, &[distance])[0]
     }
 
-    /// Push angle of slip-off, as a magnitude, in degrees.
+    /// Magnitude of the push angle of slip-off, in degrees.
     fn slip(self, side: Side) -> f64 {
         let end = self.end(side, DISTANCE);
         assert_eq!(end.kind, DetachmentKind::SlipOff);
@@ -45,10 +45,10 @@ impl Away {
     }
 }
 
-/// Sizes over three decades: below, the 1e-8 degrees of the solution show.
+/// Deviations over three decades. Below, the solution error of 1e-8 degrees is visible.
 const SIZES: [f64; 4] = [1e-2, 1e-3, 1e-4, 1e-5];
 
-/// The orders of `miss` from decade to decade.
+/// Observed orders of `miss`, one per decade.
 fn orders(name: &str, miss: impl Fn(f64) -> f64) -> [f64; 3] {
     let misses = SIZES.map(|size| miss(size).abs());
     let orders = [0, 1, 2].map(|i| (misses[i] / misses[i + 1]).log10());
@@ -56,13 +56,14 @@ fn orders(name: &str, miss: impl Fn(f64) -> f64) -> [f64; 3] {
     orders
 }
 
-/// The farthest measured is 0.0041 off, for the thickest poles; the next term of the series is that small.
+/// Returns true if all `orders` equal `order`. The largest measured difference is 0.0041, for the thickest poles: the next term of
+/// the series.
 fn is(order: f64, orders: &[f64]) -> bool {
     orders.iter().all(|found| (found - order).abs() < 0.01)
 }
 
 #[test]
-fn small_tapers_are_cylinders() {
+fn small_tapers_tend_to_cylinders() {
     for side in Side::BOTH {
         let cylinder = Away::default().slip(side);
         let miss = |taper| {
@@ -79,7 +80,7 @@ fn small_tapers_are_cylinders() {
 }
 
 #[test]
-fn faint_bends_are_straight() {
+fn small_curvatures_tend_to_straight_whiskers() {
     for taper in [0.0, 0.95] {
         let straight = Away {
             taper,
@@ -94,13 +95,13 @@ fn faint_bends_are_straight() {
         }
         let mean = |bend| 0.5 * (slip(bend, Side::Cb) + slip(bend, Side::Cf)) - rest;
         let found = orders("mean of both sides", mean);
-        // The last of them is 2e-10 degrees, which rounding can tell.
+        // The last mean is 2e-10 degrees, so rounding affects its order.
         assert!(is(2.0, &found[..2]));
     }
 }
 
 #[test]
-fn thin_poles_are_points() {
+fn thin_poles_tend_to_points() {
     for (taper, bend) in [(0.0, 0.0), (0.95, 0.4)] {
         for side in Side::BOTH {
             let whisker = Away {
@@ -116,7 +117,7 @@ fn thin_poles_are_points() {
 }
 
 #[test]
-fn blunt_cones_are_perfect_ones_that_are_never_pulled_off() {
+fn blunt_cones_tend_to_perfect_ones_that_are_never_pulled_off() {
     for side in Side::BOTH {
         let cone = |tip: f64| Away {
             taper: 1.0 - tip,
@@ -136,7 +137,7 @@ fn blunt_cones_are_perfect_ones_that_are_never_pulled_off() {
                 .is_none()
         );
     }
-    // The straight cone's pull-off retreats into its tip.
+    // The corner of the straight cone tends to its tip.
     let from_tip = |tip: f64| {
         let cone = Away {
             taper: 1.0 - tip,

@@ -1,4 +1,4 @@
-//! What samples of a sheet do not see, and walks can lose: each was a wrong end once, or none.
+//! Ends that sheet samples can miss or at which continuation can fail. Each case once gave a wrong end or none.
 
 use super::case::Case;
 use super::ends::agree;
@@ -9,7 +9,7 @@ use whiskmap::shooting::ShootingMap;
 use whiskmap::shooting::batch::{Batch, InitialCondition, Method};
 use whiskmap::trace::DetachmentKind;
 
-/// A cylinder in front of a rough pole without a radius.
+/// Cylinder at a point contact with friction.
 fn cylinder(bend: f64, friction: f64, tip_to_base: f64, distance: f64) -> Case {
     Case {
         length_mm: 20.0,
@@ -25,7 +25,7 @@ fn cylinder(bend: f64, friction: f64, tip_to_base: f64, distance: f64) -> Case {
     }
 }
 
-/// Cylinders that coil up: the distance dips along the tip edge or along the fold so narrowly that samples of a sheet do not see it.
+/// Cylinders that coil up: the distance has a minimum along the tip edge or the fold that is too narrow for the samples of a sheet.
 #[test]
 fn narrow_dips_are_not_missed() {
     use DetachmentKind::{PullOff, SlipOff};
@@ -72,7 +72,7 @@ fn narrow_dips_are_not_missed() {
     }
 }
 
-/// How far apart the first two folds of `rod` at the arclength `s` are in `q = |load| s^2`, up to 40; on the CB side.
+/// Difference of the first two folds of `rod` with the contact at the arclength `s` in `q = |load| s^2`, up to 40, on the CB side.
 fn between_folds(rod: &Rod, s: f64) -> f64 {
     const STEP: f64 = 0.05;
     let condition = |i: i32| InitialCondition {
@@ -88,10 +88,10 @@ fn between_folds(rod: &Rod, s: f64) -> f64 {
     STEP * (second - first) as f64
 }
 
-/// Strongly bent whiskers with two folds so close together that a march along the load may step over both.
+/// Strongly bent whiskers with two folds so close together that sampling along the load may skip both.
 #[test]
 fn close_folds_are_not_missed() {
-    // Taper, `A*`, slope at the base, modulus gradient; the contact with the close folds, and the distance there.
+    // Taper, `A*`, slope at the base, modulus gradient, contact with the close folds, and distance there.
     let whiskers = [
         (0.196, 3.175, -2.506, 0.286, 0.8, 0.593),
         (0.142, 8.141, -2.119, 0.0, 0.25, 0.171),
@@ -152,7 +152,7 @@ fn failed_continuations_are_repeated_with_exact_nodes() {
     }
 }
 
-/// For two thirds of a degree the contact is beyond the tip, and comes back: between two nodes of a walk.
+/// For two thirds of a degree, between two nodes of the continuation, the contact lies beyond the tip.
 #[test]
 fn a_row_that_grazes_the_tip_ends_there() {
     let case = Case {
@@ -177,7 +177,7 @@ fn a_row_that_grazes_the_tip_ends_there() {
 }
 
 /// A stiff cone that is pulled off next to its reach: along the tip edge the push angle changes 29 times as fast as the logarithm of the
-/// distance, and an error of that counts for as much.
+/// distance, so an error of the logarithm counts 29 times.
 #[test]
 fn ends_that_change_fast_with_the_distance_are_as_exact() {
     let rod = Rod {
@@ -193,6 +193,6 @@ fn ends_that_change_fast_with_the_distance_are_as_exact() {
     let [found, exact] = [Method::fine(), Method::fine().doubled().doubled()].map(at_end);
     assert!(found.is_steep(), "{}", found.slope);
     let apart = (found.push - exact.push).to_degrees().abs();
-    // Measured 5e-12; 1.8e-10 in the usual steps.
+    // Measured 5e-12, and 1.8e-10 with the default steps.
     assert!(apart < 3e-11, "{apart:e}");
 }

@@ -1,5 +1,5 @@
-//! Whiskers and grids at the ends of every range: no NaN, no doubtful cell, the same answer at every resolution and in
-//! every unit, and the limits of each other where they must be.
+//! Whiskers and grids at the ends of every range: no NaN, no doubtful cell, results independent of resolution and
+//! units, and correct limits.
 #![allow(
     clippy::unwrap_used,
     clippy::panic,

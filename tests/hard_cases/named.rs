@@ -1,8 +1,8 @@
-//! The hard cases by name.
+//! Hard cases by name.
 
 use super::case::Case;
 
-/// A straight cylinder in front of a point.
+/// Straight cylinder at a point contact.
 const PLAIN: Case = Case {
     length_mm: 20.0,
     taper: 0.0,
@@ -16,17 +16,17 @@ const PLAIN: Case = Case {
     distances: Vec::new(),
 };
 
-/// Angles from a trillionth of a degree to a whole turn.
+/// Push angles in degrees, from a trillionth of a degree to a whole turn.
 const PUSHES: [f64; 14] = [
     1e-12, 1e-9, 1e-6, 1e-3, 0.1, 2.0, 10.0, 30.0, 60.0, 100.0, 150.0, 200.0, 280.0, 360.0,
 ];
 
-/// From next to the base to beyond the reach.
+/// Distances in whisker lengths, from next to the base to beyond the reach.
 const DISTANCES: [f64; 12] = [
     0.02, 0.05, 0.12, 0.3, 0.5, 0.7, 0.85, 0.95, 0.99, 1.0, 1.05, 1.3,
 ];
 
-/// Every hard case.
+/// All named cases, with the grid of [`PUSHES`] on both sides and [`DISTANCES`].
 pub fn named() -> Vec<(&'static str, Case)> {
     let cone = Case {
         taper: 0.95,
@@ -195,7 +195,7 @@ pub fn named() -> Vec<(&'static str, Case)> {
 fn with_grid(mut case: Case) -> Case {
     let cf = PUSHES.iter().rev().map(|push| -push);
     case.pushes_deg = cf.chain([0.0]).chain(PUSHES).collect();
-    // First touch must be outside of the pole.
+    // The base must be outside the pole.
     let outside = DISTANCES.into_iter().filter(|d| *d > case.pole);
     case.distances = outside.collect();
     case

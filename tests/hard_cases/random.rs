@@ -1,16 +1,16 @@
-//! Random whiskers on small grids, the same ones in every run.
-#![allow(dead_code, reason = "each test program uses its own share")]
+//! Reproducible random whiskers on small grids.
+#![allow(dead_code, reason = "each test program uses a part of this module")]
 
 use super::case::Case;
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngSeed, TestRunner};
 
-/// Evenly in the logarithm.
+/// Strategy for numbers that are uniform in the logarithm.
 pub fn even_in_log(from: f64, to: f64) -> impl Strategy<Value = f64> {
     (from.ln()..to.ln()).prop_map(f64::exp)
 }
 
-/// Push angles from a billionth of a degree to almost a whole turn, on both sides.
+/// Strategy for push angles in degrees, from 1e-12 to almost a whole turn, on both sides.
 fn pushes_deg() -> impl Strategy<Value = Vec<f64>> {
     let side = || {
         (
@@ -23,7 +23,7 @@ fn pushes_deg() -> impl Strategy<Value = Vec<f64>> {
     (side(), side()).prop_map(|(cf, cb)| vec![-cf.3, -cf.2, -cf.1, -cf.0, cb.0, cb.1, cb.2, cb.3])
 }
 
-/// Any whisker, with a grid from next to the pole or the base to beyond its reach.
+/// Strategy for whiskers, with a grid from next to the pole or the base to beyond the reach.
 pub fn cases() -> impl Strategy<Value = Case> {
     let taper = prop_oneof![
         1 => Just(0.0),
@@ -67,8 +67,8 @@ pub fn cases() -> impl Strategy<Value = Case> {
     )
 }
 
-/// Radii that swell and thin by a factor of up to 1.33 against a cone, from row to row or over several. A deep waist is a
-/// hinge: what is beyond it turns as a whole and never slips off.
+/// Strategy for radii that differ from a cone by a factor of up to 1.33. Deeper waists are excluded: a waist is a hinge, and
+/// the part beyond it rotates rigidly and never slips off.
 fn rows() -> impl Strategy<Value = Vec<[f64; 2]>> {
     let inner = prop::collection::vec((0.05..1.0_f64, even_in_log(0.75, 1.33)), 0..8);
     (inner, even_in_log(1e-3, 1.0), 0.1..1.0_f64).prop_map(|(inner, tip, end)| {
@@ -85,12 +85,12 @@ fn rows() -> impl Strategy<Value = Vec<[f64; 2]>> {
     })
 }
 
-/// Whiskers with measured radii.
+/// Strategy for whiskers with measured radii.
 pub fn measured() -> impl Strategy<Value = Case> {
     let stretch = prop_oneof![2 => Just(1.0), 1 => 1.0..1.3_f64];
     (cases(), rows(), stretch).prop_map(|(case, rows, stretch)| {
         let taper = 1.0 - rows[rows.len() - 1][1];
-        // The modulus at the tip must be between a 20th of that at the base and 20 times it.
+        // The modulus ratio of tip and base must be between 1/20 and 20.
         let change = case.tip_to_base - 1.0;
         let softest = if change < 0.0 {
             -0.95 / change
@@ -100,14 +100,14 @@ pub fn measured() -> impl Strategy<Value = Case> {
         Case {
             stretch: stretch.min(0.999 / taper).min(0.999 * softest).max(1.0),
             rows,
-            // Radii of less than a nanometre are refused.
+            // Scenes with radii of less than a nanometre are invalid.
             length_mm: case.length_mm.max(1.0),
             ..case
         }
     })
 }
 
-/// What draws `count` whiskers, the same ones in every run.
+/// Runner of `count` cases with a fixed seed.
 pub fn always_the_same(count: u32) -> TestRunner {
     TestRunner::new(Config {
         cases: count,

@@ -13,22 +13,22 @@ use whiskmap::shooting::batch::InitialCondition;
 /// Half as many steps as [`Resolution::FINE`].
 const HALF: Resolution = Resolution::of(10);
 
-/// Loads `q = |load| s^2` up to those of whiskers that do not coil up: only strong friction holds such a whisker, up to
+/// Largest load `q = |load| s^2` of a whisker that does not coil up. Only strong friction holds a coiled whisker, up to
 /// `q` of 1000 with a stiff tip.
 const MODERATE: f64 = 40.0;
 
-/// What was seen, at the worst, over all whiskers.
+/// Counts and largest errors over all whiskers.
 #[derive(Debug, Default)]
 struct Seen {
     states: usize,
-    /// States under loads beyond [`MODERATE`].
+    /// Number of states with loads above [`MODERATE`].
     coiled: usize,
-    /// How far halved steps move the poles, in whisker lengths, from the map's resolution and from half of it.
+    /// Largest change of the pole from halved steps, in whisker lengths, at the resolution of maps (`fine`) and at half of it (`half`).
     fine: f64,
     half: f64,
 }
 
-/// Maps `count` whiskers.
+/// Computes the maps of `count` whiskers.
 fn scan(count: u32, whiskers: &impl Strategy<Value = Case>) -> Seen {
     let seen = RefCell::new(Seen::default());
     let holds = |case: Case| {
@@ -76,7 +76,7 @@ fn two_thousand_whiskers_hold() {
 fn holds(seen: &Seen) {
     // Measured 5.6e-11, coiled up or not.
     assert!(seen.fine < 1e-10, "{seen:?}");
-    // Order 8 would be 256 times; measured 185.
+    // Order 8 is a factor of 256; measured 185.
     assert!(seen.half > 128.0 * seen.fine, "{seen:?}");
 }
 

@@ -1,4 +1,4 @@
-//! The states of a map in `f64`, and how far they are from those of twice as many steps.
+//! States of a map in `f64`, and their difference from states with halved steps.
 
 use rayon::prelude::*;
 use whiskmap::refine::{self, CellTarget, RefineOutcome, Refined};
@@ -8,7 +8,7 @@ use whiskmap::sheet::Sheet;
 use whiskmap::shooting::batch::{Batch, InitialCondition, Method};
 use whiskmap::shooting::{Resolution, ShootingMap};
 
-/// The cells of one whisker that have a guess, on both sides.
+/// Cells of one whisker that have a guess, on both sides.
 pub struct Shots {
     pub effects: Effects,
     pub sheets: Vec<Sheet>,
@@ -43,7 +43,7 @@ impl Shots {
         }
     }
 
-    /// What the refinement makes of them.
+    /// Refined states of the cells, one per shot.
     pub fn refined(&self) -> Vec<Refined> {
         let starts = self.shots.iter().map(|shot| (shot.tau, shot.load));
         let starts: Vec<(f64, f64)> = starts.collect();
@@ -52,7 +52,7 @@ impl Shots {
         refine::refine(method, &sheets, &self.shots, &starts)
     }
 
-    /// The trajectories that end at these states.
+    /// Initial conditions of the solved `cells`.
     pub fn conditions(&self, cells: &[Refined]) -> Vec<InitialCondition<'_>> {
         let solved = cells.iter().zip(&self.shots);
         solved
@@ -66,7 +66,7 @@ impl Shots {
     }
 }
 
-/// How far the poles of `conditions` move, in whisker lengths, when the steps of `resolution` are halved.
+/// Change of the pole of each of `conditions` if the steps of `resolution` are halved, in whisker lengths.
 pub fn halving(
     effects: Effects,
     conditions: &[InitialCondition],

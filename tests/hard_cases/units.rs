@@ -1,11 +1,11 @@
-//! Nothing depends on units: whiskers of 0.1 mm and of 1 m, soft and stiff, are the same whisker.
+//! Independence of units: maps of whiskers of 0.1 mm to 1 m, soft and stiff, differ only by scale factors.
 
 use super::case::{Case, compute};
 use super::named::named;
 use whiskmap::map::{Panel, STATE_CHANNELS};
 use whiskmap::scene::Scene;
 
-/// By what power of the length a channel grows, at the same proportions and modulus.
+/// Power of the length with which each channel grows at constant proportions and modulus.
 const POWERS: [(&str, i32); STATE_CHANNELS.len()] = [
     ("arc_length_mm", 1),
     ("contact_angle_deg", 0),
@@ -18,7 +18,7 @@ const POWERS: [(&str, i32); STATE_CHANNELS.len()] = [
     ("energy_nj", 3),
 ];
 
-/// Largest difference of a channel, relative to its largest value, after `factor`.
+/// Largest difference of a channel, with `b` divided by `factor`, relative to its largest value.
 fn difference(a: &[f32], b: &[f32], factor: f64) -> f64 {
     let pairs = || {
         a.iter()
@@ -40,7 +40,7 @@ fn map(case: &Case, gpa: &str) -> Panel {
     compute(&Scene::parse(&text, "hard").unwrap(), None).1
 }
 
-/// Measured 8.5e-8; two roundings to f32 are 1.2e-7.
+/// Largest measured difference 8.5e-8; two roundings to `f32` are 1.2e-7.
 #[test]
 fn lengths_and_moduli_scale() {
     for (name, case) in named() {

@@ -1,11 +1,11 @@
-//! Random whiskers of every set of effects, and states of them.
-#![allow(dead_code, reason = "each test program uses its own share")]
+//! Random whiskers for every set of effects, and random states of them.
+#![allow(dead_code, reason = "each test program uses a part of this module")]
 
 use std::sync::{Arc, LazyLock};
 use whiskmap::rod::{Effects, RadiusProfile, Rod, arclength};
 use whiskmap::shooting::batch::InitialCondition;
 
-/// A reproducible stream of numbers in `[0, 1)` (splitmix64).
+/// Reproducible stream of numbers in `[0, 1)` (splitmix64).
 pub struct Random(pub u64);
 
 impl Random {
@@ -22,7 +22,7 @@ impl Random {
     }
 }
 
-/// Taper and a parabola: what most whiskers have.
+/// Effects of most whiskers: taper and a parabola.
 pub const USUAL: Effects = Effects {
     taper: true,
     curvature: true,
@@ -31,7 +31,7 @@ pub const USUAL: Effects = Effects {
     profile: false,
 };
 
-/// Measured radii with a bulb at the base and a straight stretch in the middle.
+/// Measured radii with a bulb at the base and a cylindrical part in the middle, as `[arclength, radius]` over length and base radius.
 pub const ROWS: [[f64; 2]; 7] = [
     [0.0, 1.0],
     [0.05, 1.06],
@@ -42,12 +42,12 @@ pub const ROWS: [[f64; 2]; 7] = [
     [1.0, 0.08],
 ];
 
-/// Their profile, one for all: trajectories of one profile share blocks.
+/// Profile of [`ROWS`], shared by all rods: trajectories of one profile share blocks.
 static PROFILE: LazyLock<Arc<RadiusProfile>> =
     LazyLock::new(|| Arc::new(RadiusProfile::new(&ROWS, 1.0)));
 
-/// A whisker of taper up to 0.99 and `A*` up to 0.8, or a spiral that bends as much, or of measured radii, on either
-/// side of a pole of radius up to 0.03 with friction up to 0.5, up to twice as stiff at the tip as at the base.
+/// Random rod with taper up to 0.99 or measured radii, `A*` up to 0.8 or an equally bent spiral, and up to twice the modulus at the
+/// tip, on a random side of a pole of radius up to 0.03 with friction up to 0.5.
 pub fn rod(effects: Effects, random: &mut Random) -> Rod {
     let bend = f64::from(effects.curvature) * random.between(0.0, 0.8);
     let side = if random.unit() < 0.5 { 1.0 } else { -1.0 };
@@ -73,7 +73,7 @@ pub fn rod(effects: Effects, random: &mut Random) -> Rod {
     rod
 }
 
-/// A contact on `rod` under `q = |load| s^2` up to `most_q`, on the side of its pole.
+/// Random contact and load on `rod`, with `q = |load| s^2` up to `most_q`, on the side of its pole.
 pub fn condition<'a>(rod: &'a Rod, most_q: f64, random: &mut Random) -> InitialCondition<'a> {
     let tau = rod.tau_tip() * random.between(0.1, 1.0);
     let s = arclength(rod, tau);
@@ -81,7 +81,7 @@ pub fn condition<'a>(rod: &'a Rod, most_q: f64, random: &mut Random) -> InitialC
     InitialCondition { rod, tau, load }
 }
 
-/// `count` such states of random whiskers, eight of each. A test ends soon: its rods may stay until then.
+/// `count` states of random rods, eight of each. The rods are leaked until the test program ends.
 pub fn conditions(
     effects: Effects,
     count: usize,

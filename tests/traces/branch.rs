@@ -1,13 +1,13 @@
-//! What must hold along every branch.
+//! Properties of every branch.
 
 use super::{POLE, everything, whisker};
 use whiskmap::rod::Side;
 use whiskmap::scene::Pole;
-use whiskmap::trace::{Branch, BranchPoint, DetachmentKind, Mark, NoState, curve};
+use whiskmap::trace::{Branch, BranchMark, BranchPoint, DetachmentKind, NoState, curve};
 
 const DISTANCES: [f64; 4] = [0.5, 9.0, 17.5, 19.0];
 
-/// Runs `check` on the branch of every whisker that reaches its pole.
+/// Runs `check` on the branch of every whisker that reaches its pole, with `count` points.
 fn every_branch(count: usize, check: impl Fn(&str, &Branch, &[BranchPoint], f64)) {
     let mut followed = 0;
     for (whisker, pole) in everything() {
@@ -26,7 +26,7 @@ fn every_branch(count: usize, check: impl Fn(&str, &Branch, &[BranchPoint], f64)
                         );
                         let kind = match points
                             .iter()
-                            .find(|point| point.mark == Some(Mark::SlipOff))
+                            .find(|point| point.mark == Some(BranchMark::SlipOff))
                         {
                             Some(_) => DetachmentKind::SlipOff,
                             None => DetachmentKind::PullOff,
@@ -51,7 +51,7 @@ fn det_changes_its_sign_at_the_fold_and_only_there() {
     every_branch(100, |case, _, points, end| {
         let fold = points
             .iter()
-            .position(|point| point.mark == Some(Mark::SlipOff));
+            .position(|point| point.mark == Some(BranchMark::SlipOff));
         let stable = &points[..fold.unwrap_or(points.len())];
         assert!(stable.iter().all(|p| p.stable && p.det > 0.0), "{case}");
         if let Some(fold) = fold {
@@ -76,19 +76,19 @@ fn det_changes_its_sign_at_the_fold_and_only_there() {
 }
 
 #[test]
-fn a_branch_begins_at_first_touch_and_says_how_it_ends() {
+fn a_branch_begins_at_first_touch_and_marks_its_end() {
     every_branch(20, |case, _, points, _| {
         let (first, last) = (points[0], points[points.len() - 1]);
-        assert_eq!(first.mark, Some(Mark::FirstTouch), "{case}");
+        assert_eq!(first.mark, Some(BranchMark::FirstTouch), "{case}");
         assert!(
             first.push_angle_deg == 0.0 && first.force_un == 0.0,
             "{case}: {first:?}"
         );
         match last.mark {
-            Some(Mark::Tip | Mark::PullOff) => {
+            Some(BranchMark::Tip | BranchMark::PullOff) => {
                 assert!((last.arc_length_mm - 20.0).abs() < 1e-7, "{case}: {last:?}")
             }
-            Some(Mark::SecondFold) => assert!(!last.stable, "{case}"),
+            Some(BranchMark::SecondFold) => assert!(!last.stable, "{case}"),
             other => panic!("{case}: {other:?}"),
         }
         let marked = points.iter().filter(|point| point.mark.is_some()).count();
@@ -96,8 +96,8 @@ fn a_branch_begins_at_first_touch_and_says_how_it_ends() {
     });
 }
 
-/// Chords between neighbours, in push angle, contact angle and arclength of the contact; the fold divides the branch
-/// into two parts, each with a whole number of intervals. So many points that chords are as long as arcs.
+/// Chords between neighbours have equal lengths in push angle, contact angle and arclength of the contact. The fold divides the branch
+/// into two parts, each with a whole number of intervals. With 2000 points chords are as long as arcs.
 #[test]
 fn points_are_evenly_spaced() {
     for (tip, a) in [(30.0, 0.0), (6.0, 0.04), (0.0, 0.02)] {
@@ -113,7 +113,7 @@ fn points_are_evenly_spaced() {
                     .collect();
                 let fold = points
                     .iter()
-                    .position(|point| point.mark == Some(Mark::SlipOff));
+                    .position(|point| point.mark == Some(BranchMark::SlipOff));
                 let fold = fold.unwrap_or(chords.len());
                 for part in [&chords[..fold], &chords[fold..]] {
                     let shortest = part.iter().copied().fold(f64::INFINITY, f64::min);
@@ -132,9 +132,9 @@ fn chord(a: BranchPoint, b: BranchPoint) -> f64 {
     (push * push + angle * angle + arc * arc).sqrt()
 }
 
-/// The state at the push angle of a point is that point.
+/// The state at the push angle of a point equals the point.
 #[test]
-fn states_are_found_again() {
+fn states_reproduce_points() {
     every_branch(12, |case, branch, points, _| {
         for point in points.iter().filter(|point| point.mark.is_none()) {
             let push = point.push_angle_deg.to_radians();

@@ -1,4 +1,4 @@
-//! Where the answer is known exactly.
+//! Comparison with closed forms.
 
 use super::{POINT, whisker};
 use whiskmap::paper::elastica::{elastica, fold};
@@ -31,7 +31,7 @@ fn the_straight_cylinder_is_the_elastica() {
     }
 }
 
-/// Known from an evaluation by other means, to 9 digits.
+/// Values of an independent evaluation, to 9 digits.
 #[test]
 fn an_elastica_that_turns_by_60_degrees() {
     let state = elastica(60_f64.to_radians());
@@ -44,8 +44,8 @@ fn an_elastica_that_turns_by_60_degrees() {
     }
 }
 
-/// The lemniscate constant: `int_0^1 du/sqrt(1 - u^4)`. At a right angle the contact is 2 along and `across` away from the
-/// base, in lengths `1/sqrt(2f)`.
+/// The lemniscate constant is `int_0^1 du/sqrt(1 - u^4)`. At a right angle the contact is at 2 along and at `across` across the axis
+/// of the base, in units of `1/sqrt(2f)`.
 #[test]
 fn the_lemniscate_constant() {
     let state = elastica(std::f64::consts::FRAC_PI_2);
@@ -74,7 +74,7 @@ fn the_straight_cylinder_slips_at_its_closed_form() {
     }
 }
 
-/// `M = 3 E I theta (L - a)/(a L)` is the limit of small angles; what is missing shrinks with their square.
+/// `M = 3 E I theta (L - a)/(a L)` is the limit of small angles. The difference decreases with the square of the angle.
 #[test]
 fn a_straight_cone_tends_to_its_small_load_formula() {
     for (tip, a) in [
@@ -104,9 +104,9 @@ fn a_straight_cone_tends_to_its_small_load_formula() {
     }
 }
 
-/// What `whiskmap verify` prints; the points of the independent solver are among it.
+/// The checks of `whiskmap verify`, with the points of the independent solver.
 #[test]
-fn every_number_that_is_known_otherwise_is_reproduced() {
+fn every_independently_verified_value_is_reproduced() {
     let checks = checks();
     assert!(checks.len() > 30);
     for check in checks {

@@ -7,7 +7,7 @@ use whiskmap::sheet::Sheet;
 use whiskmap::shooting::batch::Method;
 use whiskmap::trace::{Branch, DetachmentKind, NoCorner, corner, curve};
 
-/// 1e-8 mm before the corner a push ends at the fold, 1e-8 mm behind it at the tip.
+/// A push ends at the fold 1e-8 mm before the corner, and at the tip 1e-8 mm beyond it.
 #[test]
 fn at_the_corner_slip_off_turns_into_pull_off() {
     let mut corners = 0;
@@ -17,7 +17,7 @@ fn at_the_corner_slip_off_turns_into_pull_off() {
             assert_eq!(corner.reason.is_none(), corner.distance_mm.is_some());
             let Some(distance) = corner.distance_mm else {
                 assert_eq!(corner.reason, Some(NoCorner::AlwaysSlipsOff));
-                // Then no push ends at the tip.
+                // No push ends at the tip then.
                 let distances: Vec<f64> = (1..40)
                     .map(|i| pole.radius_mm + 0.5 * f64::from(i))
                     .collect();
@@ -64,7 +64,7 @@ fn a_curve_is_the_end_of_each_branch() {
                 (last.base_moment_nnm, end.base_moment_nnm),
             ] {
                 let other = other.unwrap();
-                // A fold is known to the root of the rounding, but for the push angle.
+                // Only the push angle of a fold is more accurate than the square root of the rounding error.
                 assert!(
                     (one - other).abs() < 1e-6 * other.abs(),
                     "{side:?} {distance}: {one} {other}"
@@ -90,8 +90,8 @@ fn rows_out_of_reach_have_no_values() {
     );
 }
 
-/// Strongly bent cylinders with their vertex along the way: level curves in several pieces, and folds at push angles
-/// of the other sign. The first edge on the branch decides.
+/// Strongly bent cylinders with their vertex between base and tip have level curves in several pieces, and folds at push angles
+/// of the opposite sign. The first edge on the branch is the end of the push.
 #[test]
 fn the_branch_decides_where_rows_leave_the_sheet_more_than_once() {
     let (mut compared, mut several) = (0, 0);

@@ -1,4 +1,4 @@
-//! Curves, branches and shapes against closed forms, each other, and what must hold along them.
+//! Curves, branches and shapes: closed forms, agreement and properties.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod branch;
@@ -8,7 +8,7 @@ mod shape;
 
 use whiskmap::scene::{Curvature, Pole, Whisker};
 
-/// A whisker of 20 mm with a base radius of 30 um.
+/// Whisker of 20 mm length with a base radius of 30 um.
 fn whisker(tip_radius_um: f64, a_per_mm: f64) -> Whisker {
     Whisker {
         length_mm: 20.0,
@@ -26,7 +26,7 @@ fn whisker(tip_radius_um: f64, a_per_mm: f64) -> Whisker {
     }
 }
 
-/// Whiskers and poles from cylinder to perfect cone, straight to strongly bent, point to thick pole, smooth to rough.
+/// Combinations of whiskers from cylinder to perfect cone, straight to strongly bent, with poles from a point to thick, smooth and rough.
 fn everything() -> impl Iterator<Item = (Whisker, Pole)> {
     [30.0, 20.0, 6.0, 1.5, 0.1, 0.0]
         .into_iter()
@@ -42,12 +42,12 @@ fn everything() -> impl Iterator<Item = (Whisker, Pole)> {
 
 const POLES: [Pole; 4] = [POINT, POLE, Pole::smooth(1.0), ROUGH];
 
-/// A pole with friction.
+/// Pole with friction.
 const ROUGH: Pole = Pole {
     radius_mm: 0.25,
     friction: 0.4,
 };
 
-/// The paper's pole, and none at all.
+/// Pole of the paper, and a point contact.
 const POLE: Pole = Pole::smooth(0.25);
 const POINT: Pole = Pole::smooth(0.0);

@@ -1,11 +1,11 @@
-//! Shapes: geometry, statics, and the rest shape as a limit.
+//! Shapes: geometry, statics and limit at rest.
 
 use super::{POLE, everything, whisker};
 use whiskmap::rod::Side;
-use whiskmap::trace::{Branch, Part, Shape};
+use whiskmap::trace::{Branch, Shape, WhiskerPart};
 
-/// The base is at the origin and turned by the push angle, the contact touches the pole, and the moment at the base
-/// is what the pole puts there.
+/// The base is at the origin and rotated by the push angle, the contact touches the pole, and the moment at the base
+/// equals that of the pole's force.
 #[test]
 fn a_shape_fits_its_state() {
     for (whisker, pole) in everything() {
@@ -35,7 +35,7 @@ fn a_shape_fits_its_state() {
             let contact = shape
                 .points
                 .iter()
-                .find(|p| p.part == Part::Contact)
+                .find(|p| p.part == WhiskerPart::Contact)
                 .unwrap();
             let [x, y] = shape.pole_mm;
             let (dx, dy) = (x - contact.x_mm, y - contact.y_mm);
@@ -60,8 +60,8 @@ fn a_shape_fits_its_state() {
     }
 }
 
-/// Places are as far apart as the arclength says, tangents are the direction between them, and the curvature is how
-/// fast they turn: centred differences, so to the square of the spacing.
+/// Tangents agree with the directions between points, and curvatures with the change of the tangents: centred differences have errors
+/// of the square of the spacing.
 #[test]
 fn a_shape_is_a_curve() {
     let branch = Branch::new(&whisker(1.5, 0.02), &POLE, Side::Cb, 15.0).unwrap();
@@ -72,7 +72,7 @@ fn a_shape_is_a_curve() {
         for triple in points.windows(3) {
             let [a, b, c] = [triple[0], triple[1], triple[2]];
             let even = (c.arc_length_mm - b.arc_length_mm) / (b.arc_length_mm - a.arc_length_mm);
-            if (even - 1.0).abs() > 1e-6 || b.part == Part::Contact {
+            if (even - 1.0).abs() > 1e-6 || b.part == WhiskerPart::Contact {
                 continue;
             }
             let h = c.arc_length_mm - a.arc_length_mm;
@@ -96,12 +96,12 @@ fn without_a_push_the_whisker_is_at_rest() {
     for (whisker, pole) in everything() {
         let branch = Branch::new(&whisker, &pole, Side::Cf, 9.0).unwrap();
         let state = branch.state(0.0, true).unwrap();
-        // The contact is one place more.
+        // The contact is an additional point.
         let shape = Shape::new(&branch, &state, 50);
         let places = shape
             .points
             .iter()
-            .filter(|point| point.part != Part::Contact);
+            .filter(|point| point.part != WhiskerPart::Contact);
         for (point, [x, y]) in places.zip(Shape::at_rest(&branch, 50)) {
             let miss = (point.x_mm - x).hypot(point.y_mm - y);
             assert!(miss < 1e-10, "{whisker:?} {pole:?}: {point:?} {x} {y}");
@@ -109,7 +109,7 @@ fn without_a_push_the_whisker_is_at_rest() {
     }
 }
 
-/// However few places are asked for, and however near the contact.
+/// A shape is exact with few points and with a contact near the base.
 #[test]
 fn a_shape_is_exact_at_every_count() {
     for (whisker, pole) in everything() {

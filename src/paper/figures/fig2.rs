@@ -5,7 +5,7 @@ use crate::paper::whiskers::{CONE, CYLINDER, POLE, pole_distance_mm};
 use crate::render::{DrawnShape, Ink, Inset, Plot, Stroke, shapes};
 use crate::rod::Side;
 use crate::scene::Whisker;
-use crate::trace::{Branch, BranchPoint, Mark, NoState, Shape};
+use crate::trace::{Branch, BranchMark, BranchPoint, NoState, Shape};
 use serde::Serialize;
 
 /// Points along a whisker.
@@ -26,7 +26,9 @@ pub fn branch(whisker: &Whisker) -> Result<(Branch, BranchPoint), NoState> {
     let distance = pole_distance_mm(whisker, Side::Cb);
     let branch = Branch::new(whisker, &POLE, Side::Cb, distance)?;
     let points = branch.points(3)?;
-    let is_end = |point: &&BranchPoint| matches!(point.mark, Some(Mark::SlipOff | Mark::PullOff));
+    let is_end = |point: &&BranchPoint| {
+        matches!(point.mark, Some(BranchMark::SlipOff | BranchMark::PullOff))
+    };
     let end = points.iter().find(is_end).copied();
     Ok((branch, end.unwrap_or(points[0])))
 }

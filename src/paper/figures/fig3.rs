@@ -7,7 +7,7 @@ use crate::paper::whiskers::{CONE, CYLINDER, POLE, pole_distance_mm};
 use crate::render::{BranchAxis, Ink, Line, Note, Plot, Stroke, branches};
 use crate::rod::Side;
 use crate::scene::Whisker;
-use crate::trace::{Branch, BranchPoint, Mark, NoState};
+use crate::trace::{Branch, BranchMark, BranchPoint, NoState};
 use serde::Serialize;
 use serde::ser::{SerializeStruct, Serializer};
 
@@ -39,7 +39,7 @@ impl Serialize for NamedColumn {
 
 #[derive(Clone, Copy, Serialize)]
 struct MarkColumn {
-    mark: Option<Mark>,
+    mark: Option<BranchMark>,
 }
 
 const PUSH_ANGLE: BranchAxis = BranchAxis {

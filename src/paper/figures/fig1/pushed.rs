@@ -6,7 +6,7 @@ use crate::paper::figures::drawing::arc;
 use crate::paper::whiskers::{CONE, POLE};
 use crate::render::{Disc, Dot, Ink, Inset, Line, Note, Stroke};
 use crate::rod::{Rest, Side};
-use crate::trace::{Branch, NoState, Part, Shape, ShapePoint};
+use crate::trace::{Branch, NoState, Shape, ShapePoint, WhiskerPart};
 use glam::DVec2;
 
 /// Push angle of both panels, in degrees.
@@ -29,7 +29,7 @@ impl PushedWhisker {
         let at = shape
             .points
             .iter()
-            .find(|point| point.part == Part::Contact);
+            .find(|point| point.part == WhiskerPart::Contact);
         Ok(Self {
             contact: at.copied().unwrap_or(shape.points[0]),
             at_rest: Shape::at_rest(&branch, POINTS),
