@@ -1,15 +1,16 @@
-"""scipy's solve_bvp on cells of the cone's map: force and contact arclength for a wanted place of the pole.
+"""scipy's solve_bvp on cells of the cone's map: force and contact arclength for a given position of the pole.
 
     bvp_peer.py        prints JSON
 
-whiskmap's own formulation, the smallest there is: u runs from the contact (0) to the base (1), tau = T (1 - u),
-rho = exp(-beta tau), and the axes are those of the contact.
+The formulation is that of whiskmap, with the fewest equations: u runs from the contact (0) to the base (1),
+tau = T (1 - u), rho = exp(-beta tau), and the axes are those of the contact.
 
     theta' = -T (rho kappa_i(t) - f X/rho^3)   t' = -T rho 2A/sqrt(1 + t^2)   X' = -T rho cos(theta)
     Y' = -T rho sin(theta)
 
-At the contact theta = X = Y = 0; at the base t is known, and the pole is where it is wanted. Unknown parameters: T, f.
-Jacobians are analytic. Each cell starts from its neighbour's solution; the cells are one row of the map.
+At the contact theta = X = Y = 0; at the base t is known, and the pole is at its given position.
+Unknown parameters: T, f. Jacobians are analytic. Each cell starts from its neighbour's solution; the cells
+are one row of the map.
 """
 
 import json
@@ -25,9 +26,9 @@ from scipy.integrate import solve_bvp, solve_ivp
 
 CELLS = 54
 RUNS = 5
-# Meshes to start from, and tolerances; solve_bvp makes a mesh finer where it must.
+# Initial numbers of mesh nodes, and tolerances; solve_bvp refines a mesh where necessary.
 NODES, TOLERANCES = (20, 40, 60, 80, 100, 120, 160), (1e-3, 1e-6, 1e-7)
-# The Jacobians' differences from differences of the functions: central, and so exact to about 1e-9.
+# Largest difference between Jacobians and central differences of the functions, which are accurate to about 1e-9.
 JACOBIAN_TOLERANCE = 1e-6
 
 beta, bend, radius = WHISKER.taper, WHISKER.curvature, WHISKER.pole
@@ -59,7 +60,7 @@ def rhs_jacobian(u, y, parameters):
 
 
 def boundary(pole):
-    """Residuals and their Jacobians, for the pole's centre wanted at the complex number `pole` in the base's frame."""
+    """Residuals and their Jacobians, for the pole's centre at the complex number `pole` in the base's frame."""
 
     def centre(base):
         return -(base[1] + 1j * (base[2] + radius)) * exp(-1j * base[0])
@@ -80,7 +81,7 @@ def boundary(pole):
 
 
 def push(nodes, tolerance):
-    """The cells one after the other: contact arclengths, and seconds for each."""
+    """Solves the cells one after the other; returns their contact arclengths, and the seconds per cell."""
     T = -log1p(-beta * WHISKER.at(TOUCH)[3]) / beta
     resting, mesh = np.array([T, 0.0]), np.linspace(0, 1, nodes)
     whisker = solve_ivp(rhs, (0, 1), [0, 0, 0, TOUCH], t_eval=mesh, args=(resting,), rtol=1e-10, atol=1e-12)
@@ -101,7 +102,7 @@ def push(nodes, tolerance):
 
 
 def check_jacobians():
-    """Stops unless they agree with differences of the functions, at a state of no special kind."""
+    """Exits if the Jacobians differ from differences of the functions at a generic state."""
     random, step = np.random.default_rng(1), 1e-5
     u, y, parameters = np.linspace(0, 1, 5), random.uniform(0.2, 0.8, (4, 5)), np.array([1.4, 0.7])
     by_state, by_parameters = rhs_jacobian(u, y, parameters)

@@ -1,4 +1,4 @@
-"""Puts whiskmap's costs beside those of its peers, prints the ratios, and writes them with all they were made from.
+"""Compares the costs of whiskmap and its peers: prints the ratios, and writes them with the measurements.
 
     compare.py FOLDER PEERS.JSON        FOLDER: whiskmap.N.json, and heyoka.N.json, auto.N.json, bvp.N.json where measured,
                                         of the rounds N
@@ -13,19 +13,19 @@ from pathlib import Path
 from table import lines
 
 COMMAND = "benches/peers/run.sh"
-# For each of these errors, the cheapest run of either side whose largest error is at most that.
+# Error bounds. For each, the cheapest run within the bound is compared, for whiskmap and for the peer.
 RUNGS = (1e-4, 1e-6, 1e-8, 1e-10)
-# The cheapest mesh of solve_bvp with at most this error, as a part of the contact's arclength: whiskmap's is smaller.
+# Largest error of the mesh of solve_bvp, relative to the contact's arclength; the error of whiskmap is smaller.
 SOLVED = 1e-9
-# The steps of whiskmap's detachment points are the cheapest with at most this error in degrees.
+# Largest error of whiskmap's detachment points, in degrees.
 DETACHED = 1e-9
-# What is asked of whiskmap, peer over whiskmap; of trajectories from the rung 1e-8 on.
+# Required ratios of costs, peer over whiskmap; for trajectories only at errors of at most STRICT.
 TRAJECTORY, KERNEL, FOLD, EQUILIBRIUM, CELL = 3, 10, 300, 500, 5000
 STRICT = 1e-8
 
 
 def fastest(rounds):
-    """The same measurements, made several times, with the smallest of each time."""
+    """Returns the measurements of one round, each time replaced by the smallest of all rounds."""
     first = rounds[0]
     if isinstance(first, dict):
         return {
@@ -40,13 +40,13 @@ def fastest(rounds):
 
 
 def cheapest(rows, error, **wanted):
-    """The row with all that is wanted and at most this error that costs least, or None."""
+    """Returns the cheapest row with the values of `wanted` and an error of at most `error`, or None."""
     rows = [row for row in rows if row["error_max"] <= error and all(row[name] == wanted[name] for name in wanted)]
     return min(rows, key=lambda row: row["microseconds"], default=None)
 
 
 def ratio(peer, ours, required):
-    """Two rows and their ratio, which is None where one of them is."""
+    """Returns the costs and errors of two rows, and the ratio of their costs; None if a row is None."""
     return {
         "peer_microseconds": peer and peer["microseconds"],
         "peer_error": peer and peer["error_max"],
@@ -58,7 +58,7 @@ def ratio(peer, ours, required):
 
 
 def trajectories(whiskmap, heyoka):
-    """heyoka, and whiskmap's scalar kernel, beside its SIMD kernel on as many threads."""
+    """Yields ratios of heyoka and of whiskmap's scalar kernel to its SIMD kernel on as many threads."""
     ours = whiskmap["trajectories"]
     for threads in (1, 2):
         for rung in RUNGS if heyoka else ():
@@ -72,7 +72,7 @@ def trajectories(whiskmap, heyoka):
 
 
 def solutions(whiskmap, auto, bvp):
-    """AUTO and solve_bvp beside whiskmap's detachment points and cells."""
+    """Yields ratios of AUTO and solve_bvp to whiskmap's detachment points and cells."""
     fold, cell = cheapest(whiskmap["detachment"], radians(DETACHED)), whiskmap["cell"]
     cell = {"microseconds": cell["microseconds"], "error_max": cell["estimate"]}
     for row in auto["rows"] if auto else ():
@@ -95,7 +95,7 @@ def main():
     ratios = dict([*trajectories(whiskmap, heyoka), *solutions(whiskmap, auto, bvp)])
     for line in lines(whiskmap, versions, ratios):
         print(line)
-    answer = {
+    report = {
         "command": COMMAND,
         "machine": whiskmap["machine"],
         "versions": versions | {"python": platform.python_version()},
@@ -105,7 +105,7 @@ def main():
         "solve_bvp": bvp,
         "ratios": ratios,
     }
-    target.write_text(json.dumps(answer, indent=1) + "\n")
+    target.write_text(json.dumps(report, indent=1) + "\n")
 
 
 if __name__ == "__main__":

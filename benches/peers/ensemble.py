@@ -1,14 +1,15 @@
-"""The trajectories that whiskmap and heyoka both solve, with exact answers: whiskmap's bench writes them as CSV.
+"""The trajectories that whiskmap and heyoka solve, with exact results: whiskmap's benchmark writes them as CSV.
 
-Each is a whisker of some taper beta and bend A*, touched at arclength s with force f. Wanted are the base, as seen from
-the contact, and its first derivatives by s and f. Lengths are in whisker lengths, forces in E I_base / L_w^2.
+Each is a whisker of some taper beta and bend A*, with the contact at arclength s and the force f. The results are the
+position of the base from the contact, and its first derivatives by s and f. Lengths are in whisker lengths, forces in
+E I_base / L_w^2.
 """
 
 import numpy as np
 
 
 class Ensemble:
-    """Arrays with one entry for each trajectory."""
+    """Arrays with one entry per trajectory."""
 
     def __init__(self, path):
         table = np.genfromtxt(path, delimiter=",", names=True)
@@ -16,17 +17,17 @@ class Ensemble:
         self.position = table["x"] + 1j * table["y"]
         self.by_s = table["ln_d_by_s"] + 1j * table["phi_by_s"]
         self.by_force = table["ln_d_by_f"] + 1j * table["phi_by_f"]
-        # Radius at the contact, as a part of the base's.
+        # Radius at the contact over that at the base.
         self.radius = 1 - self.taper * self.s
 
         self.is_bent = bool(self.bend.any())
 
     def scenes(self):
-        """The straight whiskers and the bent ones, each as an ensemble of their own."""
+        """Returns two ensembles: the straight whiskers and the bent ones."""
         return [self._of(self.bend == 0), self._of(self.bend != 0)]
 
     def sort(self, key):
-        """Puts the trajectories in the order of `key`."""
+        """Sorts the trajectories by `key`."""
         self.__dict__ |= vars(self._of(np.argsort(key)))
 
     def _of(self, chosen):
@@ -45,7 +46,7 @@ class Ensemble:
         return t
 
     def error(self, position, by_s, by_force):
-        """For each trajectory, the largest difference of its six real numbers, each by its own size."""
+        """Returns the largest difference of the six real results of each trajectory, each relative to its own scale."""
         length, stiffness = self.s, (self.radius / self.s) ** 2
         differences = [
             (position - self.position) / length,

@@ -2,15 +2,15 @@
 
     heyoka_peer.py ENSEMBLE.CSV        prints JSON with one row for each number of threads, batch size and order
 
-Batch mode, non-compact, AVX-512 where there is, fast_math (10 % faster, no less exact), and the formulation that
-heyoka solves fastest of those tried. From the contact back to the base, in units of the contact's arclength s, with
+Batch mode, non-compact, AVX-512 if available, fast_math (10 % faster, equally exact), and the fastest of the
+formulations tried. From the contact back to the base, in units of the contact's arclength s, with
 d(sigma) = -da / rho, rho = exp(beta sigma) rho_c, and the unit tangent times rho as (C, S):
 
     C' = beta C + K S     S' = beta S - K C     K = k + p G x     x' = C     y' = S     G' = -3 beta G
     k' = beta k + 3 k m   m' = beta m - k^2 + 2 m^2
 
-x + iy is the contact seen from the base, along the contact's axes; G = (rho_c/rho)^3; p = f s^2/rho_c^3; k is rho times
-the resting curvature and m is k times the resting slope: polynomials only. Sensitivities, by s and by p:
+x + iy is the position of the contact from the base, along the contact's axes; G = (rho_c/rho)^3; p = f s^2/rho_c^3; k is
+rho times the resting curvature and m is k times the resting slope: polynomials only. Sensitivities, by s and by p:
 
     theta_s' = -p G x_s           x_s' = -S theta_s    y_s' = C theta_s
     theta_p' = -G x - p G x_p     x_p' = -S theta_p    y_p' = C theta_p
@@ -32,9 +32,9 @@ import numpy as np
 from ensemble import Ensemble
 
 RUNS = 15
-# One vector of the processor, and two in turn.
+# Batch sizes: one vector of the processor, and two interleaved.
 BATCHES = [vectors * heyoka.recommended_simd_size() for vectors in (1, 2)]
-# The tolerance chooses the order, ceil(1 - ln(tolerance)/2), and nothing else: one tolerance for each order will do.
+# The tolerance only determines the order, ceil(1 - ln(tolerance)/2), so one tolerance per order is enough.
 TOLERANCES = [1.5 * exp(2 - 2 * order) for order in range(5, 15)]
 fork = get_context("fork")
 
@@ -63,7 +63,7 @@ def system(is_bent):
 
 
 def start(ensemble):
-    """States, parameters and end times; one column for each trajectory."""
+    """Returns states, parameters and end times, with one column per trajectory."""
     beta, rho, t = ensemble.taper * ensemble.s, ensemble.radius, ensemble.slope()
     curvature = 2 * ensemble.bend * ensemble.s / np.hypot(1, t) ** 3
     zero, one = np.zeros_like(rho), np.ones_like(rho)
@@ -84,7 +84,7 @@ def error(ensemble, states):
 
 
 def solve(integrator, batches, states=None):
-    """Seconds to integrate all batches into `states`; without it, for what Python alone does around that."""
+    """Returns the seconds to integrate all batches into `states`; without `states`, those of the Python loop alone."""
     begin = np.zeros(integrator.batch_size)
     state, pars = integrator.state, integrator.pars
     spare = np.empty_like(state)
@@ -101,7 +101,7 @@ def solve(integrator, batches, states=None):
 
 
 def work(tolerance, scenes, barrier, answers, place):
-    """One process: its batches of each scene, RUNS times, each together with the other processes."""
+    """Runs one process: its batches of each scene, RUNS times, each at the same time as the other processes."""
     solvers = []
     for is_bent, batches in scenes:
         shape = batches[0].shape[1:]
@@ -121,7 +121,7 @@ def work(tolerance, scenes, barrier, answers, place):
 
 
 def row(scenes, threads, batch, tolerance):
-    """Cost and error of the scenes, solved with one tolerance; Python's own part of the time is subtracted."""
+    """Returns cost and error of the scenes at one tolerance, without the time of the Python loop."""
     batches = [[cut(array, batch) for array in start(ensemble)] for ensemble in scenes]
     barrier, answers = fork.Barrier(threads), fork.Queue()
     kinds = [ensemble.is_bent for ensemble in scenes]
@@ -161,7 +161,7 @@ def row(scenes, threads, batch, tolerance):
 
 
 def cut(array, batch):
-    """The columns of `array` in batches: the first axis counts those."""
+    """Returns the columns of `array` in batches along the first axis."""
     columns = array.reshape(*array.shape[:-1], -1, batch)
     return np.ascontiguousarray(np.moveaxis(columns, -2, 0))
 
@@ -170,7 +170,7 @@ def main():
     scenes = Ensemble(sys.argv[1]).scenes()
     for ensemble in scenes:
         load = ensemble.force * (ensemble.s / ensemble.radius) ** 2
-        # The number of steps grows with the load, and less with the length.
+        # The number of steps increases with the load and, less, with the length.
         ensemble.sort(load + 0.4 * start(ensemble)[2])
     rows = [row(scenes, *case) for case in cases()]
     json.dump({"version": heyoka.__version__, "rows": rows}, sys.stdout)

@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# What whiskmap's trajectories, detachment points and cells cost, beside heyoka, AUTO-07p and scipy's solve_bvp on the
-# same machine: prints the costs, errors and ratios, and writes outputs/peers.json. Installs the peers, AUTO on Debian
-# and Ubuntu only; a peer that cannot be installed is named and left out.
+# Measures whiskmap's trajectories, detachment points and cells, and heyoka, AUTO-07p and scipy's solve_bvp on the same
+# machine. Prints costs, errors and ratios, and writes outputs/peers.json. Installs the peers (AUTO only on Debian and
+# Ubuntu), and names and omits a peer that cannot be installed.
 set -euo pipefail
 here="$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)"
 root="$here/../.."
-# Peers are measured one by one, each on as many threads as it says; no library may start more.
+# Peers are measured one by one with a given number of threads; libraries must not start more.
 export OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1
 
 as_root() { if [ "$(id -u)" = 0 ]; then "$@"; else sudo -n "$@"; fi; }
@@ -45,7 +45,7 @@ else
     left_out AUTO-07p
 fi
 
-# A shared machine is slow for seconds at a time: all are measured in turn, and the fastest round of each counts.
+# A shared machine is slow for seconds at a time, so programs are measured in turn, and the fastest round of each counts.
 measure() {
     echo "measuring $1 ..."
     "$python" -B "$here/$1_peer.py" "${@:3}" >"$scratch/$1.$2.json"

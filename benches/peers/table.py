@@ -34,5 +34,5 @@ def lines(whiskmap, versions, ratios):
 
 
 def number(value, form):
-    """`value`, or a dash where there is none."""
+    """Formats `value`, or a dash for None."""
     return f"{value:{form}}" if value is not None else f"{'-':>{form.split('.')[0]}}"
