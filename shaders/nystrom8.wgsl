@@ -166,13 +166,13 @@ fn climb(step: Step, stage: Stage, pose: Pose) -> vec4<real> {
 fn integrate(path: Path, first: u32, count: u32) -> Apart {
     let steps = real(count);
     let none = Stage(0.0, 0.0, Both(1.0, 0.0), Both(1.0, 0.0), Both(1.0, 0.0));
-    let s2 = stage_at(path, steps, 0.05);
-    let s3 = stage_at(path, steps, 0.1);
-    let s4 = stage_at(path, steps, 0.3);
-    let s5 = stage_at(path, steps, 0.5);
-    let s6 = stage_at(path, steps, 0.7);
-    let s7 = stage_at(path, steps, 0.9);
-    let s8 = stage_at(path, steps, 1.0);
+    let s2 = stage_at(path, steps, NODE_2);
+    let s3 = stage_at(path, steps, NODE_3);
+    let s4 = stage_at(path, steps, NODE_4);
+    let s5 = stage_at(path, steps, NODE_5);
+    let s6 = stage_at(path, steps, NODE_6);
+    let s7 = stage_at(path, steps, NODE_7);
+    let s8 = stage_at(path, steps, NODE_8);
     let slower = path.tau.y / path.tau.x;
     let potential = 2.25 * path.rod.taper * path.rod.taper * path.h.x * path.h.x;
     // X = m (chi' - (m'/m) chi).
@@ -211,43 +211,39 @@ fn integrate(path: Path, first: u32, count: u32) -> Apart {
         let speed = Both(start.place.w, apart.x);
         let p1 = pose_at(path, step, none, Both(0.0, 0.0));
         let k1 = -product(step.reach, p1.tangent.cos);
-        var rise = (223.0 / 7938.0) * climb(step, none, p1);
-        var chi = 0.05 * speed + (1.0 / 800.0) * k1;
+        var rise = SPEED_1 * climb(step, none, p1);
+        var chi = NODE_2 * speed + STAGE_2_1 * k1;
         let k2 = pull(step, s2, pose_at(path, step, s2, chi), chi);
-        chi = 0.1 * speed + (1.0 / 600.0) * k1 + (1.0 / 300.0) * k2;
+        chi = NODE_3 * speed + STAGE_3_1 * k1 + STAGE_3_2 * k2;
         let p3 = pose_at(path, step, s3, chi);
         let k3 = pull(step, s3, p3, chi);
-        rise += (5875.0 / 36288.0) * climb(step, s3, p3);
-        chi = 0.3 * speed + (9.0 / 200.0) * k1 + (-9.0 / 100.0) * k2 + (9.0 / 100.0) * k3;
+        rise += SPEED_3 * climb(step, s3, p3);
+        chi = NODE_4 * speed + STAGE_4_1 * k1 + STAGE_4_2 * k2 + STAGE_4_3 * k3;
         let p4 = pose_at(path, step, s4, chi);
         let k4 = pull(step, s4, p4, chi);
-        rise += (4625.0 / 21168.0) * climb(step, s4, p4);
-        chi = 0.5 * speed + (-66701.0 / 197352.0) * k1 + (28325.0 / 32892.0) * k2 + (-2665.0 / 5482.0) * k3
-            + (2170.0 / 24669.0) * k4;
+        rise += SPEED_4 * climb(step, s4, p4);
+        chi = NODE_5 * speed + STAGE_5_1 * k1 + STAGE_5_2 * k2 + STAGE_5_3 * k3 + STAGE_5_4 * k4;
         let p5 = pose_at(path, step, s5, chi);
         let k5 = pull(step, s5, p5, chi);
-        rise += (41.0 / 224.0) * climb(step, s5, p5);
-        chi = 0.7 * speed + (227015747.0 / 304251000.0) * k1 + (-54897451.0 / 30425100.0) * k2
-            + (12942349.0 / 10141700.0) * k3 + (-9499.0 / 304251.0) * k4 + (539.0 / 9250.0) * k5;
+        rise += SPEED_5 * climb(step, s5, p5);
+        chi = NODE_6 * speed + STAGE_6_1 * k1 + STAGE_6_2 * k2 + STAGE_6_3 * k3 + STAGE_6_4 * k4 + STAGE_6_5 * k5;
         let p6 = pose_at(path, step, s6, chi);
         let k6 = pull(step, s6, p6, chi);
-        rise += (4625.0 / 21168.0) * climb(step, s6, p6);
-        chi = 0.9 * speed + (-1131891597.0 / 901789000.0) * k1 + (41964921.0 / 12882700.0) * k2
-            + (-6663147.0 / 3220675.0) * k3 + (270954.0 / 644135.0) * k4 + (-108.0 / 5875.0) * k5
-            + (114.0 / 1645.0) * k6;
+        rise += SPEED_6 * climb(step, s6, p6);
+        chi = NODE_7 * speed + STAGE_7_1 * k1 + STAGE_7_2 * k2 + STAGE_7_3 * k3 + STAGE_7_4 * k4 + STAGE_7_5 * k5
+            + STAGE_7_6 * k6;
         let p7 = pose_at(path, step, s7, chi);
         let k7 = pull(step, s7, p7, chi);
-        rise += (5875.0 / 36288.0) * climb(step, s7, p7);
-        chi = speed + (13836959.0 / 3667458.0) * k1 + (-17731450.0 / 1833729.0) * k2
-            + (1063919505.0 / 156478208.0) * k3 + (-33213845.0 / 39119552.0) * k4 + (13335.0 / 28544.0) * k5
-            + (-705.0 / 14272.0) * k6 + (1645.0 / 57088.0) * k7;
+        rise += SPEED_7 * climb(step, s7, p7);
+        chi = speed + STAGE_8_1 * k1 + STAGE_8_2 * k2 + STAGE_8_3 * k3 + STAGE_8_4 * k4 + STAGE_8_5 * k5
+            + STAGE_8_6 * k6 + STAGE_8_7 * k7;
         let p8 = pose_at(path, step, s8, chi);
         let k8 = pull(step, s8, p8, chi);
-        rise += (223.0 / 7938.0) * climb(step, s8, p8);
-        let end = speed + (223.0 / 7938.0) * k1 + (1175.0 / 8064.0) * k3 + (925.0 / 6048.0) * k4
-            + (41.0 / 448.0) * k5 + (925.0 / 14112.0) * k6 + (1175.0 / 72576.0) * k7;
-        let end_speed = speed + (223.0 / 7938.0) * k1 + (5875.0 / 36288.0) * k3 + (4625.0 / 21168.0) * k4
-            + (41.0 / 224.0) * k5 + (4625.0 / 21168.0) * k6 + (5875.0 / 36288.0) * k7 + (223.0 / 7938.0) * k8;
+        rise += SPEED_8 * climb(step, s8, p8);
+        let end = speed + POSITION_1 * k1 + POSITION_3 * k3 + POSITION_4 * k4 + POSITION_5 * k5 + POSITION_6 * k6
+            + POSITION_7 * k7;
+        let end_speed = speed + SPEED_1 * k1 + SPEED_3 * k3 + SPEED_4 * k4 + SPEED_5 * k5 + SPEED_6 * k6
+            + SPEED_7 * k7 + SPEED_8 * k8;
         apart.bent += product(product(step.turning, s8.inverse_scale), end).y;
         apart.y += rise.y;
         apart.along += rise.w;

@@ -16,6 +16,7 @@ use crate::shooting::batch::{Method, chunk_size};
 use glam::DVec2;
 use near_fold::FoldVerdict;
 use newton::newton;
+pub use newton::{LARGEST_Q, LEFT_BY_STEP, ROUNDING};
 use rayon::prelude::*;
 
 /// Residual, in whisker lengths, at which a state is accepted without another step.

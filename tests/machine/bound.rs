@@ -127,7 +127,7 @@ fn a_wrong_shader_breaks_its_bounds() {
     let rows = RandomRows::new(USUAL, 40, 3, |_, _| ());
     let text = shaders::cells(Precision::F32);
     for (good, bad) in [
-        ("(1175.0 / 8064.0) * k3", "(1176.0 / 8064.0) * k3"),
+        ("POSITION_3 * k3", "1.0009 * POSITION_3 * k3"),
         ("forcing * (3.0 + forcing", "forcing * (3.001 + forcing"),
         (
             "let faster = slower + softer",

@@ -1,6 +1,7 @@
 //! `f32` or `f64` in the shaders, and what follows from it.
 
 use super::base_point::GpuStart;
+use crate::refine::{LARGEST_Q, LEFT_BY_STEP, ROUNDING};
 use crate::shooting::Resolution;
 use std::fmt;
 
@@ -65,17 +66,17 @@ impl Precision {
     /// series of the resting parabola leaves out, some 100 times its 9th power, below rounding.
     #[must_use]
     pub const fn limits(self) -> [(&'static str, f64); 10] {
-        let [clear_of_fold, clear_of_tip, longest, of_way, rounding, rest] = match self {
-            Self::F32 => [0.05, 1e-6, 1e-5, 8e-7, 6e-14, 0.06],
-            Self::F64 => [1e-3, 1e-9, 1.5e-7, 2e-15, 6e-14, 0.02],
+        let [clear_of_fold, clear_of_tip, longest, of_way, rest] = match self {
+            Self::F32 => [0.05, 1e-6, 1e-5, 8e-7, 0.06],
+            Self::F64 => [1e-3, 1e-9, 1.5e-7, 2e-15, 0.02],
         };
         [
             ("GOAL", self.goal()),
-            ("LEFT_BY_STEP", 20.0),
-            ("LARGEST_Q", 12.0),
+            ("LEFT_BY_STEP", LEFT_BY_STEP),
+            ("LARGEST_Q", LARGEST_Q),
             ("JACOBIAN_ERROR", 1e-6),
             ("ROUNDING_OF_WAY", of_way),
-            ("ROUNDING", rounding),
+            ("ROUNDING", ROUNDING),
             ("LONGEST_STEP", longest),
             ("CLEAR_OF_FOLD", clear_of_fold),
             ("CLEAR_OF_TIP", clear_of_tip),

@@ -5,7 +5,7 @@ use super::base_point::{PLACES, WORKGROUP};
 use super::layout::OUTCOMES;
 use crate::plan::STATE_CHANNELS;
 use crate::rod::Effects;
-use crate::shooting::{REST_TANGENT, REST_TERMS};
+use crate::shooting::{Nystrom8, REST_TANGENT, REST_TERMS};
 
 /// Cells of rows as differences from references.
 const CELLS: [&str; 4] = [
@@ -40,7 +40,26 @@ fn constants(precision: Precision) -> String {
     for (code, (name, _)) in OUTCOMES.iter().enumerate() {
         text += &format!("const {name} = {code}u;\n");
     }
-    text + &rest_terms()
+    text + &tableau() + &rest_terms()
+}
+
+/// The coefficients of [`Nystrom8`] that are not 0: `NODE_i`, `STAGE_i_j`, `POSITION_j` and `SPEED_j`, counted from 1.
+fn tableau() -> String {
+    let mut text = String::new();
+    let mut define = |name: String, value: f64| {
+        if value != 0.0 {
+            text += &format!("const {name} = real({value:e});\n");
+        }
+    };
+    for (i, row) in (1..).zip(Nystrom8::STAGE_WEIGHTS) {
+        define(format!("NODE_{i}"), Nystrom8::NODES[i - 1]);
+        define(format!("POSITION_{i}"), Nystrom8::POSITION_WEIGHTS[i - 1]);
+        define(format!("SPEED_{i}"), Nystrom8::SPEED_WEIGHTS[i - 1]);
+        for (j, value) in (1..).zip(row) {
+            define(format!("STAGE_{i}_{j}"), value);
+        }
+    }
+    text
 }
 
 /// A function for the terms of the tangent's Taylor series along a parabola.
