@@ -12,6 +12,7 @@ use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_m
 use random_rods::{USUAL, conditions};
 use std::convert::Infallible;
 use std::hint::black_box;
+use std::ops::ControlFlow;
 use std::path::Path;
 use whiskmap::engine::gpu::{Gpu, Precision};
 use whiskmap::engine::{Cpu, Engine};
@@ -133,10 +134,16 @@ fn files(criterion: &mut Criterion) {
     let scene = scene();
     let plan = Plan::new(&scene).expect("the scene is small");
     let mut kept: Option<Panel> = None;
-    let Ok(_) = map::run(&scene, &plan, None, &mut |_| (), &mut |panels| {
-        kept = panels.into_iter().next();
-        Ok::<(), Infallible>(())
-    });
+    let Ok(_) = map::run(
+        &scene,
+        &plan,
+        None,
+        &mut |_| ControlFlow::Continue(()),
+        &mut |panels| {
+            kept = panels.into_iter().next();
+            Ok::<(), Infallible>(())
+        },
+    );
     let panel = kept.expect("the scene has a panel");
     let folder = tempfile::tempdir().expect("the system has a folder for temporary files");
     let about = MapDescription {

@@ -16,6 +16,7 @@ use rayon::ThreadPool;
 use serde_json::{Value, json};
 use std::convert::Infallible;
 use std::fmt::Write;
+use std::ops::ControlFlow;
 use std::time::Instant;
 use whiskmap::accuracy;
 use whiskmap::map::{self, Stage};
@@ -234,9 +235,13 @@ fn cell(pool: &ThreadPool) -> Value {
     plan.method.resolution = steps.resolution;
     let mut summary = None;
     let seconds = seconds(pool, || {
-        let Ok(done) = map::run(&scene, &plan, None, &mut |_| (), &mut |_| {
-            Ok::<(), Infallible>(())
-        });
+        let Ok(done) = map::run(
+            &scene,
+            &plan,
+            None,
+            &mut |_| ControlFlow::Continue(()),
+            &mut |_| Ok::<(), Infallible>(()),
+        );
         summary = Some(done);
     });
     let summary = summary.unwrap();

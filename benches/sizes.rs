@@ -7,6 +7,7 @@
 #![allow(clippy::expect_used, reason = "a benchmark that cannot start panics")]
 
 use std::convert::Infallible;
+use std::ops::ControlFlow;
 use whiskmap::map::{self, Stage};
 use whiskmap::plan::Plan;
 use whiskmap::scene::Scene;
@@ -80,7 +81,13 @@ impl Map {
         let mut seconds = [0.0; Stage::ALL.len()];
         for _ in 0..repeats {
             let discard = &mut |_| Ok::<(), Infallible>(());
-            let Ok(summary) = map::run(&self.scene, &self.plan, None, &mut |_| (), discard);
+            let Ok(summary) = map::run(
+                &self.scene,
+                &self.plan,
+                None,
+                &mut |_| ControlFlow::Continue(()),
+                discard,
+            );
             for (sum, (stage, _)) in seconds.iter_mut().zip(Stage::ALL) {
                 *sum += summary.stage_seconds(stage);
             }

@@ -2,42 +2,62 @@
 
 use crate::accuracy::cheapest;
 use crate::classify::Regime;
-use crate::engine::EngineError;
 #[cfg(feature = "gpu")]
-use crate::engine::gpu::{Gpu, Precision};
+use crate::engine::gpu::Gpu;
+use crate::engine::{Engine, EngineError, Precision};
 #[cfg(feature = "fit")]
 use crate::fit::{self, Fit};
-use crate::map::{self as stages, Panel, STATE_CHANNELS, Summary};
+use crate::map::{self as stages, Panel, Summary};
 #[cfg(feature = "fit")]
 use crate::measured::MeasuredPoints;
-use crate::plan::{Plan, PlanError};
+use crate::plan::{Channel, Plan, PlanError};
 use crate::rod::Side;
 #[cfg(feature = "fit")]
 use crate::scene::Parameter;
 use crate::scene::{Grid, Scene, SweepPlace, SweptWhisker};
 use crate::shooting::Resolution;
 use crate::trace::{Branch, Detachment, NoState, Shape, curve_at, sides, whiskers_at_once};
+use std::ops::ControlFlow;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
-/// How exact an answer is to be, and what shoots before the refinement.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+/// Accuracy, engine, progress and cancellation of a computation.
+///
+/// ```
+/// use whiskmap::{Options, Precision};
+///
+/// let mut options = Options::default();
+/// options.tolerance_deg = Some(1e-6);
+/// options.gpu = Some(Precision::F32);
+/// options.on_progress = Some(std::sync::Arc::new(|done, all| eprintln!("{done} of {all} cells")));
+/// ```
+#[derive(Clone, Default)]
+#[non_exhaustive]
 pub struct Options {
-    /// Error of push angles that is small enough, in degrees; without it, the finest steps are taken.
+    /// Maximum error of push angles, in degrees. Without it the finest steps are taken.
     pub tolerance_deg: Option<f64>,
-    /// Shoots cells on the preferred GPU before they are refined, in this precision.
-    #[cfg(feature = "gpu")]
+    /// Solves maps on the preferred GPU in this precision; an error without the feature `gpu`.
     pub gpu: Option<Precision>,
+    /// Is called with the number of finished cells and of all cells of a map, on the thread that computes it.
+    pub on_progress: Option<Arc<dyn Fn(usize, usize) + Send + Sync>>,
+    /// Set it to end a map with [`Error::Cancelled`] after the row batch under way.
+    pub cancel: Option<Arc<AtomicBool>>,
 }
 
-/// Why there is no answer at all; a cell without one is no error.
+/// Failure of a computation. A cell without an answer is no error.
+#[non_exhaustive]
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
-    /// A map that takes too much memory.
+    /// The map takes too much memory.
     #[error(transparent)]
     Plan(#[from] PlanError),
-    /// A GPU that cannot be had.
+    /// The GPU cannot be opened.
     #[error(transparent)]
     Engine(#[from] EngineError),
-    /// A tolerance below what rounding leaves.
+    /// [`Options::cancel`] was set.
+    #[error("cancelled")]
+    Cancelled,
+    /// The tolerance is below what rounding leaves.
     #[error("tolerance_deg {asked:e}: must be at least {least:e} for this scene")]
     Tolerance {
         /// The tolerance.
@@ -49,62 +69,113 @@ pub enum Error {
 
 /// A regime map in memory: one [`Panel`] for each whisker of the scene.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Map {
     /// The axes.
     pub grid: Grid,
-    /// The whiskers' cells, in the order of [`SceneData::whiskers`](crate::scene::SceneData::whiskers).
+    /// The cells of each whisker, in the order of [`Setup::whiskers`](crate::scene::Setup::whiskers).
     pub panels: Vec<Panel>,
     /// Counts and times of the run.
     pub summary: Summary,
 }
 
+/// Place and regime of one cell of a [`Map`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct MapCell {
+    /// Index of the whisker.
+    pub whisker: usize,
+    /// Index of the distance.
+    pub distance: usize,
+    /// Index of the push angle.
+    pub push_angle: usize,
+    /// Distance of the pole at first touch, in mm.
+    pub distance_mm: f64,
+    /// Push angle since first touch, in degrees; positive concave backward, negative concave forward.
+    pub push_angle_deg: f64,
+    /// The regime.
+    pub regime: Regime,
+}
+
 impl Map {
-    /// How many cells have this regime.
+    /// Shape of a whisker's cells: the number of distances and of push angles.
+    #[must_use]
+    pub const fn shape(&self) -> [usize; 2] {
+        [self.grid.distance_mm.len(), self.grid.push_angle_deg.len()]
+    }
+
+    /// Number of cells with this regime.
     #[must_use]
     pub fn count(&self, regime: Regime) -> u64 {
         let place = Regime::ALL.iter().position(|other| *other == regime);
         place.map_or(0, |place| self.summary.regimes[place])
     }
 
+    /// The values of a channel of a whisker, row by row, of shape `[distance][push_angle]`; NaN without contact. `None` beyond the
+    /// whiskers.
+    #[must_use]
+    pub fn channel(&self, whisker: usize, channel: Channel) -> Option<&[f32]> {
+        Some(self.panels.get(whisker)?.channel(channel))
+    }
+
+    /// Every cell with its regime: whisker by whisker, distance by distance, by push angle.
+    pub fn cells(&self) -> impl Iterator<Item = MapCell> + '_ {
+        let [_, width] = self.shape();
+        let panels = self.panels.iter().enumerate();
+        panels.flat_map(move |(whisker, panel)| {
+            panel.regimes().enumerate().map(move |(index, regime)| {
+                let (distance, push_angle) = (index / width, index % width);
+                MapCell {
+                    whisker,
+                    distance,
+                    push_angle,
+                    distance_mm: self.grid.distance_mm[distance],
+                    push_angle_deg: self.grid.push_angle_deg[push_angle],
+                    regime,
+                }
+            })
+        })
+    }
+
     /// The regime of a whisker at the index of a distance and of a push angle; `None` beyond the axes.
     #[must_use]
     pub fn regime(&self, whisker: usize, distance: usize, push_angle: usize) -> Option<Regime> {
-        let code = self.panels.get(whisker)?.regime[self.cell(distance, push_angle)?];
-        Regime::ALL.into_iter().find(|regime| regime.code() == code)
+        let index = self.index(distance, push_angle)?;
+        self.panels.get(whisker)?.regimes().nth(index)
     }
 
-    /// The value of one of [`STATE_CHANNELS`] there; `None` beyond the axes, without such a channel, and without contact.
+    /// The value of a channel there; `None` beyond the axes and without contact.
     #[must_use]
     pub fn value(
         &self,
-        channel: &str,
+        channel: Channel,
         whisker: usize,
         distance: usize,
         push_angle: usize,
     ) -> Option<f32> {
-        let channel = STATE_CHANNELS.iter().position(|name| *name == channel)?;
-        let cell = self.cell(distance, push_angle)?;
-        Some(self.panels.get(whisker)?.state[channel][cell]).filter(|value| value.is_finite())
+        let index = self.index(distance, push_angle)?;
+        let value = self.channel(whisker, channel)?.get(index).copied();
+        value.filter(|value| value.is_finite())
     }
 
-    fn cell(&self, distance: usize, push_angle: usize) -> Option<usize> {
-        let width = self.grid.push_angle_deg.len();
-        let is_inside = distance < self.grid.distance_mm.len() && push_angle < width;
-        is_inside.then_some(distance * width + push_angle)
+    fn index(&self, distance: usize, push_angle: usize) -> Option<usize> {
+        let [height, width] = self.shape();
+        (distance < height && push_angle < width).then_some(distance * width + push_angle)
     }
 }
 
 /// Computes the regime map of `scene`, every cell with its state, on all cores.
 ///
 /// ```
-/// use whiskmap::classify::Regime;
-/// use whiskmap::{Options, scene::Scene};
+/// use whiskmap::{Channel, Options, Regime, scene::Scene};
 ///
 /// let scene = Scene::parse(include_str!("../scenes/cone.toml"), "cone.toml")?.thinned(32, 1);
 /// let map = whiskmap::map(&scene, Options::default())?;
 /// assert_eq!(map.count(Regime::Unresolved), 0);
 /// assert_eq!(map.regime(0, 16, 16), Some(Regime::Contact));
-/// assert!(map.value("force_un", 0, 16, 16).is_some_and(|force| force > 0.0));
+/// assert!(map.value(Channel::Force, 0, 16, 16).is_some_and(|force| force > 0.0));
+/// assert_eq!(map.channel(0, Channel::Force).map(<[f32]>::len), Some(map.shape().iter().product()));
+/// assert!(map.cells().all(|cell| cell.regime != Regime::Unresolved));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
@@ -131,15 +202,13 @@ pub fn map(scene: &Scene, options: Options) -> Result<Map, Error> {
 /// grow with the number of whiskers. The first error of `each` ends the run.
 ///
 /// ```
-/// use whiskmap::classify::Regime;
-/// use whiskmap::{Options, scene::Scene};
+/// use whiskmap::{Options, Regime, scene::Scene};
 ///
 /// let scene = Scene::parse(include_str!("../scenes/morphology.toml"), "morphology.toml")?.thinned(8, 2);
 /// let mut contacts = Vec::new();
 /// whiskmap::for_each_panel(&scene, Options::default(), |whisker, panel| {
 ///     assert_eq!(whisker, contacts.len());
-///     let is_contact = |code: &&u32| **code == Regime::Contact.code();
-///     contacts.push(panel.regime.iter().filter(is_contact).count());
+///     contacts.push(panel.regimes().filter(|regime| *regime == Regime::Contact).count());
 ///     Ok::<(), whiskmap::Error>(())
 /// })?;
 /// assert_eq!(contacts.len(), scene.whisker_count());
@@ -165,19 +234,43 @@ fn run<E: From<Error> + Send>(
     options: Options,
     mut each: impl FnMut(usize, Panel) -> Result<(), E> + Send,
 ) -> Result<Summary, E> {
-    plan.method.resolution = resolution(scene, options, &plan.sides)?;
-    #[cfg(feature = "gpu")]
-    let mut gpu = options.gpu.map(Gpu::new).transpose().map_err(Error::from)?;
-    #[cfg(feature = "gpu")]
-    let engine = gpu.as_mut().map(|gpu| gpu as _);
-    #[cfg(not(feature = "gpu"))]
-    let engine = None;
+    plan.method.resolution = resolution(scene, &options, &plan.sides)?;
+    let mut engine = options.gpu.map(open).transpose().map_err(Error::from)?;
+    let engine = engine.as_mut().map(|engine| &mut **engine as _);
+    let (mut done, all) = (0, plan.cells);
+    let mut on_progress = |cells| {
+        done += cells;
+        if let Some(on_progress) = &options.on_progress {
+            on_progress(done, all);
+        }
+        let cancel = options.cancel.as_ref();
+        match cancel.is_some_and(|cancel| cancel.load(Ordering::Relaxed)) {
+            true => ControlFlow::Break(()),
+            false => ControlFlow::Continue(()),
+        }
+    };
     let mut whiskers = 0..plan.whiskers;
     let mut keep = |panels: Vec<Panel>| {
         let mut numbered = panels.into_iter().zip(&mut whiskers);
         numbered.try_for_each(|(panel, whisker)| each(whisker, panel))
     };
-    stages::run(scene, &plan, engine, &mut |_| (), &mut keep)
+    let summary = stages::run(scene, &plan, engine, &mut on_progress, &mut keep)?;
+    match summary.is_cancelled {
+        true => Err(Error::Cancelled.into()),
+        false => Ok(summary),
+    }
+}
+
+/// Opens the preferred GPU.
+#[cfg(feature = "gpu")]
+fn open(precision: Precision) -> Result<Box<dyn Engine>, EngineError> {
+    Gpu::new(precision).map(|gpu| Box::new(gpu) as _)
+}
+
+#[cfg(not(feature = "gpu"))]
+fn open(_: Precision) -> Result<Box<dyn Engine>, EngineError> {
+    let without = "this build is without the feature `gpu`";
+    Err(EngineError::NoAdapter(without.to_owned()))
 }
 
 /// Computes where every whisker of `scene` detaches: at each distance, CF before CB.
@@ -197,7 +290,7 @@ fn run<E: From<Error> + Send>(
 /// # Errors
 /// When the tolerance cannot be kept.
 pub fn curve(scene: &Scene, options: Options) -> Result<Vec<(SweepPlace, Detachment)>, Error> {
-    let resolution = resolution(scene, options, &Side::BOTH)?;
+    let resolution = resolution(scene, &options, &Side::BOTH)?;
     let distances = &scene.grid.distance_mm;
     let curves = |group: Vec<_>| {
         sides(&group, |own: &SweptWhisker, side| {
@@ -272,7 +365,7 @@ pub fn fit(
 }
 
 /// The steps that keep the tolerance, if there is one.
-fn resolution(scene: &Scene, options: Options, sides: &[Side]) -> Result<Resolution, Error> {
+fn resolution(scene: &Scene, options: &Options, sides: &[Side]) -> Result<Resolution, Error> {
     let Some(asked) = options.tolerance_deg else {
         return Ok(Resolution::FINE);
     };

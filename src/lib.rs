@@ -2,8 +2,8 @@
 //! slip off, and where is it pulled off?
 //!
 //! The mechanics are those of Hires, Pammer, Svoboda and Golomb (2013), "Tapered whiskers are required for
-//! active tactile sensation", eLife 2:e01350. `ARCHITECTURE.md` names the rooms and the way data takes
-//! through them.
+//! active tactile sensation", eLife 2:e01350. `ARCHITECTURE.md` names the modules and the order in which data
+//! passes them.
 //!
 //! ```
 //! use whiskmap::scene::Scene;
@@ -16,32 +16,17 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! [`map`](fn@map), [`for_each_panel`], [`curve`], [`branch`], [`shape`] and [`fit`](fn@fit) answer in memory; the modules are what they are made of. Features, all on by
-//! default: `cli` is the command `whiskmap`, `fit` least squares, `gpu` the compute shaders, `render` the pictures.
+//! [`map`](fn@map), [`for_each_panel`], [`curve`], [`branch`], [`shape`] and [`fit`](fn@fit) compute in memory; the modules below are the
+//! topics around them. All features are on by default: `cli` is the command `whiskmap`, `fit` least squares, `gpu` the compute shaders,
+//! `render` the pictures.
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
-pub mod accuracy;
-#[cfg(feature = "gpu")]
-pub mod bench;
-pub mod classify;
+// Topics for users.
 pub mod design;
-pub mod engine;
 #[cfg(feature = "fit")]
 pub mod fit;
-mod front;
-pub mod input;
-pub mod map;
 pub mod measured;
-mod newton;
-#[cfg(feature = "render")]
-#[allow(
-    clippy::disallowed_methods,
-    reason = "pictures and comparisons need not have the same bits on every machine"
-)]
-pub mod paper;
-pub mod plan;
-pub mod refine;
 #[cfg(feature = "render")]
 #[allow(
     clippy::disallowed_methods,
@@ -49,15 +34,50 @@ pub mod refine;
 )]
 pub mod render;
 pub mod scene;
-pub mod sheet;
 pub mod store;
 pub mod trace;
 pub mod uncertainty;
 
+// Internals, public for the command, the tests and the benches.
+#[doc(hidden)]
+pub mod accuracy;
+#[cfg(feature = "gpu")]
+#[doc(hidden)]
+pub mod bench;
+#[doc(hidden)]
+pub mod classify;
+#[doc(hidden)]
+pub mod engine;
+mod front;
+#[doc(hidden)]
+pub mod input;
+#[doc(hidden)]
+pub mod map;
+mod newton;
+#[cfg(feature = "render")]
+#[allow(
+    clippy::disallowed_methods,
+    reason = "pictures and comparisons need not have the same bits on every machine"
+)]
+#[doc(hidden)]
+pub mod paper;
+#[doc(hidden)]
+pub mod plan;
+#[doc(hidden)]
+pub mod refine;
+#[doc(hidden)]
+pub mod sheet;
+#[doc(hidden)]
+pub use whiskmap_mechanics::{numerics, rod, shooting};
+
+pub use classify::{Regime, Status};
+pub use engine::Precision;
 #[cfg(feature = "fit")]
 pub use front::fit;
-pub use front::{Error, Map, Options, branch, curve, for_each_panel, map, shape};
-pub use whiskmap_mechanics::{numerics, rod, shooting};
+pub use front::{Error, Map, MapCell, Options, branch, curve, for_each_panel, map, shape};
+pub use map::{Panel, Summary};
+pub use plan::{Channel, Channels};
+pub use rod::Side;
 
 /// README's code compiles.
 #[cfg(doctest)]

@@ -4,9 +4,11 @@
 use crate::compute;
 
 use compute::{compute, shipped};
+use std::sync::Arc;
 use whiskmap::map::{Panel, STATE_CHANNELS};
 use whiskmap::refine::TOLERANCE;
 use whiskmap::scene::{Parameter, Scene};
+use whiskmap::{Channel, Error, Options};
 
 #[test]
 fn shipped_scenes_have_no_doubtful_cell() {
@@ -114,4 +116,49 @@ fn first_touch_and_the_tip_are_decided() {
 #[test]
 fn first_touch_is_without_a_load() {
     compute::assert_no_load_at_touch(|scene| compute(scene, None).1.remove(0));
+}
+
+/// Every cell is announced once, and a map that is cancelled ends before its last panel.
+#[test]
+fn progress_is_complete_and_cancelling_ends_a_map() {
+    use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+    let scene = Scene::read("scenes/morphology.toml").unwrap();
+    let scene = scene.thinned(16, 3);
+    let count = Arc::new(AtomicUsize::new(0));
+    let mut options = Options::default();
+    let seen = Arc::clone(&count);
+    options.on_progress = Some(Arc::new(move |done, all| {
+        assert!(seen.swap(done, Ordering::Relaxed) < done && done <= all);
+    }));
+    let map = whiskmap::map(&scene, options.clone()).unwrap();
+    let cells = map.panels.len() * map.shape().iter().product::<usize>();
+    assert_eq!(count.swap(0, Ordering::Relaxed), cells);
+    assert_eq!(map.cells().count(), cells);
+    options.cancel = Some(Arc::new(AtomicBool::new(true)));
+    let mut kept = 0;
+    let cancelled = whiskmap::for_each_panel(&scene, options, |_, _| {
+        kept += 1;
+        Ok::<(), Error>(())
+    });
+    assert!(matches!(cancelled, Err(Error::Cancelled)) && kept == 0);
+    assert!((1..cells).contains(&count.load(Ordering::Relaxed)));
+}
+
+/// Channels of a map in memory are those of its panels, by name.
+#[test]
+fn channels_have_the_names_of_files() {
+    let names = Channel::ALL.map(Channel::name);
+    assert_eq!(names[..STATE_CHANNELS.len()], STATE_CHANNELS);
+    assert!(
+        names
+            .iter()
+            .all(|name| whiskmap::Channels::ALL.contains(name))
+    );
+    let scene = Scene::read("scenes/cone.toml").unwrap().thinned(8, 1);
+    let map = whiskmap::map(&scene, Options::default()).unwrap();
+    for (channel, values) in Channel::ALL.into_iter().zip(&map.panels[0].state) {
+        let bits = |values: &[f32]| values.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
+        assert_eq!(bits(map.channel(0, channel).unwrap()), bits(values));
+    }
+    assert!(map.channel(1, Channel::Force).is_none());
 }

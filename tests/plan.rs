@@ -3,6 +3,7 @@
 
 use std::collections::VecDeque;
 use std::convert::Infallible;
+use std::ops::ControlFlow;
 use std::sync::Arc;
 use whiskmap::engine::{Cells, Engine, EngineDescription, EngineError, Outcome, RowBatch};
 use whiskmap::map::{self, EngineCells, Panel, STATE_CHANNELS};
@@ -61,7 +62,13 @@ fn kept(push_angles: &str, distances: &str, more: &str) -> (usize, usize) {
     let plan = Plan::new(&scene).unwrap();
     let mut engine = Counting::default();
     let discard = &mut |_| Ok::<(), Infallible>(());
-    let Ok(summary) = map::run(&scene, &plan, Some(&mut engine), &mut |_| (), discard);
+    let Ok(summary) = map::run(
+        &scene,
+        &plan,
+        Some(&mut engine),
+        &mut |_| ControlFlow::Continue(()),
+        discard,
+    );
     // Rows of few cells have no base points.
     let is_asked = scene.grid.push_angle_deg.len() > 100;
     assert_eq!(engine.calls, if is_asked { plan.engine_calls } else { 0 });

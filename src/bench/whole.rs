@@ -14,6 +14,7 @@ use serde::Serialize;
 use std::convert::Infallible;
 use std::fmt;
 use std::hint::black_box;
+use std::ops::ControlFlow;
 
 /// A whole map by one engine, packed but not written.
 #[derive(Clone, Debug, Serialize)]
@@ -178,7 +179,13 @@ fn run(scene: &Scene, plan: &Plan, gpu: Option<&mut Gpu>) -> Result<Sample, Engi
         black_box(MapWriter::sample(&scene.grid, plan.channels, &panels));
         Ok::<(), Infallible>(())
     };
-    let Ok(summary) = map::run(scene, plan, engine, &mut |_| (), &mut keep);
+    let Ok(summary) = map::run(
+        scene,
+        plan,
+        engine,
+        &mut |_| ControlFlow::Continue(()),
+        &mut keep,
+    );
     if let Some(failure) = summary.engine_failure {
         return Err(failure);
     }

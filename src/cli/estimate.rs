@@ -3,6 +3,7 @@
 use super::failure::Failure;
 use clap::ValueEnum;
 use std::convert::Infallible;
+use std::ops::ControlFlow;
 use std::time::Instant;
 use whiskmap::engine::Engine;
 use whiskmap::map::{self, Panel, Stage, Summary};
@@ -65,7 +66,13 @@ pub fn files(scene: &Scene, plan: &Plan, formats: &[MapFormat]) -> Result<Vec<Fi
         groups.push(panels);
         Ok::<(), Infallible>(())
     };
-    let Ok(_) = map::run(&small, &small_plan, None, &mut |_| (), &mut keep);
+    let Ok(_) = map::run(
+        &small,
+        &small_plan,
+        None,
+        &mut |_| ControlFlow::Continue(()),
+        &mut keep,
+    );
     let by_cells = plan.cells as f64 / small_plan.cells as f64;
     let packed = formats.iter().map(|format| {
         let start = Instant::now();
@@ -181,7 +188,13 @@ impl MapSample {
         let (scene, plan) = thinned(scene, plan, lines)?;
         let engine = engine.as_mut().map(|engine| &mut **engine as _);
         let discard = &mut |_| Ok::<(), Infallible>(());
-        let Ok(summary) = map::run(&scene, &plan, engine, &mut |_| (), discard);
+        let Ok(summary) = map::run(
+            &scene,
+            &plan,
+            engine,
+            &mut |_| ControlFlow::Continue(()),
+            discard,
+        );
         match summary.engine_failure {
             Some(failure) => Err(failure.into()),
             None => Ok(Self {

@@ -2,6 +2,7 @@
 
 use super::failure::{Failure, check_resolved, message};
 use super::progress::Progress;
+use std::ops::ControlFlow;
 use std::io::{self, Write};
 use std::path::PathBuf;
 use std::time::Instant;
@@ -21,7 +22,11 @@ pub fn compute(
     mut keep: impl FnMut(Vec<Panel>) -> Result<(), StoreError> + Send,
 ) -> Result<Summary, Failure> {
     let bar = Progress::over(cells, "cells");
-    let result = map::run(scene, plan, engine, &mut |cells| bar.inc(cells), &mut keep);
+    let mut on_progress = |cells| {
+        bar.inc(cells);
+        ControlFlow::Continue(())
+    };
+    let result = map::run(scene, plan, engine, &mut on_progress, &mut keep);
     bar.finish();
     let summary = result?;
     if let Some(failure) = &summary.engine_failure {

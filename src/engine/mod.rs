@@ -9,6 +9,7 @@ mod columns;
 mod cpu;
 #[cfg(feature = "gpu")]
 pub mod gpu;
+mod precision;
 mod side;
 mod worker;
 
@@ -18,6 +19,7 @@ pub use batch::{
 pub use cells::{Cell, Cells, Outcome};
 pub use columns::{Column, SideColumns};
 pub use cpu::Cpu;
+pub use precision::Precision;
 pub use side::{FORCE, Values, WhiskerSide};
 pub use worker::Worker;
 
@@ -83,6 +85,7 @@ pub const fn on_gpu(effects: Effects) -> Result<(), &'static str> {
 }
 
 /// Failure of a device.
+#[non_exhaustive]
 #[derive(Clone, Debug, thiserror::Error)]
 pub enum EngineError {
     /// No adapter was found.

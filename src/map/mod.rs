@@ -19,6 +19,7 @@ pub use panel::Panel;
 use pipeline::Pipeline;
 pub use stages::Stage;
 use stages::{StageTimes, process_time};
+use std::ops::ControlFlow;
 use std::time::Instant;
 pub use summary::{Audit, EngineCells, Summary};
 use task::Task;
@@ -27,7 +28,8 @@ use task::Task;
 /// `rayon::ThreadPool::install`, or every stage of every row batch wakes the pool up.
 ///
 /// `engine` solves cells on a thread of its own, some batches ahead; the CPU engine solves all others, and everything after a failure.
-/// `on_progress(n)` is called after `n` more cells are finished. `keep` gets the finished panels in the order of the sweep, while the
+/// `on_progress(n)` is called after `n` more cells are finished; if it breaks, the run ends there and
+/// [`Summary::is_cancelled`] is set. `keep` gets the finished panels in the order of the sweep, while the
 /// next ones are computed: it holds at most one group of them.
 ///
 /// # Errors
@@ -36,7 +38,7 @@ pub fn run<E: Send>(
     scene: &Scene,
     plan: &Plan,
     engine: Option<&mut dyn Engine>,
-    on_progress: &mut dyn FnMut(usize),
+    on_progress: &mut dyn FnMut(usize) -> ControlFlow<()>,
     keep: &mut (dyn FnMut(Vec<Panel>) -> Result<(), E> + Send),
 ) -> Result<Summary, E> {
     let (start, cpu_start) = (Instant::now(), process_time());
@@ -53,9 +55,12 @@ pub fn run<E: Send>(
             let (before, mut kept) = (finished.take(), Ok(()));
             rayon::in_place_scope(|scope| {
                 scope.spawn(|_| kept = before.map_or(Ok(()), &mut keep));
-                finished = Some(pipeline.panels(on_progress));
+                finished = pipeline.panels(on_progress);
             });
             kept?;
+            if finished.is_none() {
+                break;
+            }
         }
         finished.map_or(Ok(()), keep)?;
         Ok(pipeline.finish())

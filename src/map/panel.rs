@@ -1,7 +1,7 @@
 //! One whisker's map.
 
 use crate::classify::{Regime, Status};
-use crate::plan::{Channels, STATE_CHANNELS};
+use crate::plan::{Channel, Channels, STATE_CHANNELS};
 use std::ops::Range;
 
 /// One whisker's map. Every vector has `distances * push_angles` cells; cell `(row, column)` is at
@@ -52,6 +52,28 @@ impl Panel {
             margin_deg: vec![0.0; cells],
             newton_steps: vec![0; cells],
         }
+    }
+
+    /// The values of `channel`, of shape `[distance][push_angle]`; NaN without a state, empty where the channel is not computed.
+    #[must_use]
+    pub fn channel(&self, channel: Channel) -> &[f32] {
+        match channel {
+            Channel::Residual => &self.residual,
+            Channel::Margin => &self.margin_deg,
+            state => &self.state[state as usize],
+        }
+    }
+
+    /// The regime of each cell, in the order of [`Panel::regime`].
+    pub fn regimes(&self) -> impl ExactSizeIterator<Item = Regime> + '_ {
+        let of = |code: &u32| {
+            Regime::ALL
+                .into_iter()
+                .find(|regime| regime.code() == *code)
+        };
+        self.regime
+            .iter()
+            .map(move |code| of(code).unwrap_or(Regime::Unresolved))
     }
 
     /// Some rows of so many columns, to be filled side by side.

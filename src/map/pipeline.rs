@@ -11,7 +11,7 @@ use super::task::Task;
 use crate::engine::{Cells, Cpu, RowBatch, WhiskerSide, Worker, on_gpu};
 use crate::shooting::Resolution;
 use std::collections::VecDeque;
-use std::ops::Range;
+use std::ops::{ControlFlow, Range};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -96,15 +96,26 @@ impl<'a> Pipeline<'a> {
         }
     }
 
-    /// Computes the panels of the next group.
-    pub fn panels(&mut self, on_progress: &mut dyn FnMut(usize)) -> Vec<Panel> {
+    /// Computes the panels of the next group; `None` if the run is cancelled.
+    pub fn panels(
+        &mut self,
+        on_progress: &mut dyn FnMut(usize) -> ControlFlow<()>,
+    ) -> Option<Vec<Panel>> {
         let mut panels = Vec::new();
-        while !self.advance(&mut panels, on_progress) {}
+        while let Some((cells, is_last)) = self.advance(&mut panels) {
+            self.summary.is_cancelled |= on_progress(cells).is_break();
+            if is_last || self.summary.is_cancelled {
+                break;
+            }
+        }
+        if self.summary.is_cancelled {
+            return None;
+        }
         let mut times = self.summary.stages;
         let count = || panels.iter().for_each(|panel| self.summary.count(panel));
         times.time(Stage::Classification, count);
         self.summary.stages = times;
-        panels
+        Some(panels)
     }
 
     /// Ends the run.
@@ -121,8 +132,9 @@ impl<'a> Pipeline<'a> {
         }
     }
 
-    /// Submits the next batches, and completes the first of the queue. Returns true if the `panels` are complete.
-    fn advance(&mut self, panels: &mut Vec<Panel>, on_progress: &mut dyn FnMut(usize)) -> bool {
+    /// Submits the next batches, and completes the first of the queue. Returns the number of its cells, and whether the `panels` are
+    /// complete; `None` without a further batch.
+    fn advance(&mut self, panels: &mut Vec<Panel>) -> Option<(usize, bool)> {
         let ahead = if self.worker.is_working() { AHEAD } else { 0 };
         while self.queue.len() <= ahead {
             let resolution = self.resolution.filter(|_| self.worker.is_working());
@@ -133,15 +145,12 @@ impl<'a> Pipeline<'a> {
             }
             self.queue.push_back(next);
         }
-        let Some(first) = self.queue.pop_front() else {
-            return true;
-        };
+        let first = self.queue.pop_front()?;
         let begun = Instant::now();
         let cells = first.is_for_engine().then(|| self.worker.collect());
         self.waiting += begun.elapsed();
         self.complete(&first.batch, cells.flatten(), panels);
-        on_progress(first.batch.cells());
-        first.is_last
+        Some((first.batch.cells(), first.is_last))
     }
 
     /// Completes the `cells` of an engine and writes them into `panels`, which are made if there are none.

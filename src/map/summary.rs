@@ -102,6 +102,8 @@ pub struct Summary {
     pub audit: Audit,
     /// Why the CPU went on in the engine's stead, if it did.
     pub engine_failure: Option<EngineError>,
+    /// Whether the run was cancelled: its last panels are missing.
+    pub is_cancelled: bool,
     pub(super) stages: StageTimes,
     pub(super) packing: Duration,
     pub(super) wall: Duration,

@@ -17,6 +17,61 @@ pub const STATE_CHANNELS: [&str; 9] = [
     "energy_nj",
 ];
 
+/// A channel of numbers of a map.
+#[non_exhaustive]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Channel {
+    /// Arclength of the contact from the base, in mm.
+    ArcLength,
+    /// Angle of the tangent at the contact from that at the base, in degrees.
+    ContactAngle,
+    /// Contact force, in uN.
+    Force,
+    /// Force on the base along the whisker, in uN.
+    BaseForceX,
+    /// Force on the base across the whisker, in uN.
+    BaseForceY,
+    /// Bending moment at the base, in nNm.
+    BaseMoment,
+    /// Push angle less the rotation of the chord from base to contact, in degrees.
+    PushChord,
+    /// Distance of the contact from the base, in mm.
+    ContactDistance,
+    /// Elastic energy, in nJ.
+    Energy,
+    /// Bound on the distance of the pole from its place, in whisker lengths.
+    Residual,
+    /// Push angle left until detachment, in degrees.
+    Margin,
+}
+
+impl Channel {
+    /// Every channel, those of a state in the order of [`STATE_CHANNELS`] first.
+    pub const ALL: [Self; STATE_CHANNELS.len() + 2] = [
+        Self::ArcLength,
+        Self::ContactAngle,
+        Self::Force,
+        Self::BaseForceX,
+        Self::BaseForceY,
+        Self::BaseMoment,
+        Self::PushChord,
+        Self::ContactDistance,
+        Self::Energy,
+        Self::Residual,
+        Self::Margin,
+    ];
+
+    /// Name in files, with the unit at its end, such as `force_un`.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Residual => "residual",
+            Self::Margin => "margin_deg",
+            state => STATE_CHANNELS[state as usize],
+        }
+    }
+}
+
 /// Channels beside those of a state.
 const OTHERS: [&str; 5] = ["regime", "status", "margin_deg", "newton_steps", "residual"];
 

@@ -3,7 +3,7 @@
 mod channels;
 mod effects;
 
-pub use channels::{Channels, STATE_CHANNELS};
+pub use channels::{Channel, Channels, STATE_CHANNELS};
 pub use effects::{Cost, Effect, effects};
 
 use crate::rod::{Effects, Rod, Side};

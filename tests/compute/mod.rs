@@ -4,6 +4,7 @@
 
 use std::collections::VecDeque;
 use std::convert::Infallible;
+use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::Arc;
 use whiskmap::engine::gpu::{Gpu, Precision};
@@ -24,10 +25,16 @@ pub fn compute_as(
     engine: Option<&mut dyn Engine>,
 ) -> (Summary, Vec<Panel>) {
     let mut all = Vec::new();
-    let Ok(summary) = map::run(scene, plan, engine, &mut |_| (), &mut |panels| {
-        all.extend(panels);
-        Ok::<(), Infallible>(())
-    });
+    let Ok(summary) = map::run(
+        scene,
+        plan,
+        engine,
+        &mut |_| ControlFlow::Continue(()),
+        &mut |panels| {
+            all.extend(panels);
+            Ok::<(), Infallible>(())
+        },
+    );
     (summary, all)
 }
 

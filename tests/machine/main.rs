@@ -139,7 +139,7 @@ fn missing_adapter(precision: Precision) -> Option<String> {
         error @ (EngineError::NoAdapter(_) | EngineError::Unsupported { .. }) => {
             Some(error.to_string())
         }
-        EngineError::Device(_) | EngineError::FailedAudit { .. } => None,
+        _ => None,
     }
 }
 

@@ -2,6 +2,7 @@
 
 use crate::compute::{Response, Watched, assert_identical, compute_as, open};
 use std::convert::Infallible;
+use std::ops::ControlFlow;
 use std::sync::mpsc;
 use std::time::Duration;
 use whiskmap::engine::gpu::{Gpu, Precision};
@@ -63,6 +64,7 @@ fn a_strip_is_solved_while_the_one_before_is_settled() {
             if settled < AT_ONCE {
                 wait(&calls, settled + 1);
             }
+            ControlFlow::Continue(())
         };
         let discard = &mut |_| Ok::<(), Infallible>(());
         let Ok(_) = map::run(&scene, &plan, Some(&mut engine), &mut one_more, discard);
@@ -131,7 +133,13 @@ fn an_engine_goes_from_run_to_run() {
     plan_of_sweep.panels_at_once = 1;
     for _ in 0..3 {
         let refuse = &mut |_| Err("no room");
-        let refused = map::run(&sweep, &plan_of_sweep, Some(&mut gpu), &mut |_| (), refuse);
+        let refused = map::run(
+            &sweep,
+            &plan_of_sweep,
+            Some(&mut gpu),
+            &mut |_| ControlFlow::Continue(()),
+            refuse,
+        );
         assert_eq!(refused.unwrap_err(), "no room");
         assert_identical(&fresh, &compute_as(&scene, &plan, Some(&mut gpu)).1);
     }
@@ -158,7 +166,13 @@ fn stages_follow_each_other(engine: Option<&mut dyn Engine>) {
         assert!(MapWriter::sample(&scene.grid, plan.channels, &panels) > 0);
         Ok::<(), Infallible>(())
     };
-    let Ok(summary) = map::run(&scene, &plan, engine, &mut |_| (), &mut keep);
+    let Ok(summary) = map::run(
+        &scene,
+        &plan,
+        engine,
+        &mut |_| ControlFlow::Continue(()),
+        &mut keep,
+    );
     for (stage, name) in Stage::ALL {
         let has_worked = has_engine || stage != Stage::BasePoints;
         assert_eq!(summary.stage_seconds(stage) > 0.0, has_worked, "{name}");

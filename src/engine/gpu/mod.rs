@@ -21,10 +21,10 @@ mod precision;
 pub mod shaders;
 mod stamps;
 
+pub use super::Precision;
 pub use adapters::{AdapterReport, adapters, named, preferred};
 pub use flight::Times;
 pub use guard::DRIVER_CALL;
-pub use precision::Precision;
 
 use super::{Cells, Engine, EngineDescription, EngineError, RowBatch};
 use crate::rod::Effects;

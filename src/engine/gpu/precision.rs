@@ -1,31 +1,12 @@
-//! `f32` or `f64` in the shaders, and what follows from it.
+//! Limits of the shaders by precision.
 
 use super::base_point::GpuStart;
+use crate::engine::Precision;
 use crate::refine::{LARGEST_Q, LEFT_BY_STEP, ROUNDING};
 use crate::shooting::Resolution;
-use std::fmt;
 
 /// The largest uniform buffer of every device.
 const UNIFORM_BYTES: usize = 1 << 16;
-
-/// The shaders' scalar.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
-pub enum Precision {
-    /// Every adapter.
-    F32,
-    /// Vulkan adapters with shaderFloat64.
-    F64,
-}
-
-impl fmt::Display for Precision {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::F32 => "f32",
-            Self::F64 => "f64",
-        })
-    }
-}
 
 impl Precision {
     /// How finely differences are integrated where the CPU takes `resolution`. In `f32` more steps than these only add rounding, since a
