@@ -2,8 +2,8 @@
 
 use super::failure::{Failure, check_resolved, message};
 use super::progress::Progress;
-use std::ops::ControlFlow;
 use std::io::{self, Write};
+use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::time::Instant;
 use whiskmap::classify::Regime;
