@@ -9,7 +9,10 @@ use crate::effect_sets;
 use crate::random_rods;
 
 use glam::DVec2;
-use whiskmap::refine::{TOLERANCE, states};
+use whiskmap::engine::{POWERS, RowTerms};
+use whiskmap::refine::{
+    CellTarget, RefineOutcome, RowOfCells, TOLERANCE, base_points, refine, states,
+};
 use whiskmap::rod::{Effects, Rod, Side, arclength};
 use whiskmap::scene::Scene;
 use whiskmap::sheet::Sheet;
@@ -228,4 +231,81 @@ fn the_energy_is_known_toward_the_tip() {
         eprintln!("{radius}: {energy:e}, {apart:e}");
         assert!(apart < bound, "{radius}: {apart:e}");
     }
+}
+
+/// Columns of a row.
+const COLUMNS: usize = 48;
+
+/// Between base points the Taylor polynomials of a row give the contact of each cell, on lattices and along continued rows.
+#[test]
+fn base_points_follow_their_row() {
+    let method = Method::fine();
+    let mut random = random_rods::Random(23);
+    // Rows and the largest error, on lattices and continued.
+    let mut found = [(0, 0.0_f64); 2];
+    for i in 0..60 {
+        let usual = random_rods::rod(random_rods::USUAL, &mut random);
+        let side = if usual.pole < 0.0 { Side::Cf } else { Side::Cb };
+        let rod = match i % 2 {
+            0 => usual,
+            _ => Rod {
+                bend: random.between(0.8, 1.5),
+                friction: side.sign() * random.between(0.6, 1.0),
+                ..usual
+            },
+        };
+        let distances = [(); 6].map(|()| random.between(0.1, 1.0));
+        let sheet = Sheet::new(method, &rod, side, &distances);
+        let pushes: Vec<f64> = (1..=COLUMNS).map(|i| 0.03 * i as f64).collect();
+        let rows = (0..distances.len()).map(|row| RowOfCells {
+            sheet: 0,
+            row,
+            pushes: &pushes,
+            first: 0,
+        });
+        let rows: Vec<RowOfCells> = rows.collect();
+        let all = base_points(method, &[&sheet], &rows);
+        let (count, worst) = &mut found[usize::from(sheet.is_continued())];
+        for (row, points) in rows.iter().zip(&all) {
+            *count += usize::from(!points.is_empty());
+            for point in points {
+                let pushes = &pushes[point.cells.start as usize..point.cells.end as usize];
+                let target = |push: &f64| CellTarget {
+                    rod: 0,
+                    tau: point.tau,
+                    load: point.load,
+                    pole: sheet.rows[row.row].pole(side.sign() * push),
+                };
+                let targets: Vec<CellTarget> = pushes.iter().map(target).collect();
+                let starts: Vec<(f64, f64)> = targets.iter().map(|at| (at.tau, at.load)).collect();
+                let refined = refine(method, &[&sheet], &targets, &starts);
+                for (push, refined) in pushes.iter().zip(refined) {
+                    if refined.outcome == RefineOutcome::Solved {
+                        let tau = tau_at(&point.row, side.sign() * push);
+                        *worst = worst.max((tau / refined.state.tau - 1.0).abs());
+                    }
+                }
+            }
+        }
+    }
+    eprintln!("rows and errors on lattices and continued: {found:?}");
+    // Measured 3.6e-7 and 2.5e-6: what a polynomial through 16 states leaves, friction of up to 1 among the continued.
+    for ((rows, worst), limit) in found.into_iter().zip([1e-6, 1e-5]) {
+        assert!(rows > 10 && worst < limit, "{found:?}");
+    }
+}
+
+/// `tau` where the push angle of a row's Taylor polynomials is `push`.
+fn tau_at(row: &[RowTerms; POWERS], push: f64) -> f64 {
+    let at = |w: f64, which: usize| {
+        let terms = row.iter().rev();
+        terms.fold([0.0; 2], |[value, slope], term| {
+            [value * w + term[which], slope * w + value]
+        })
+    };
+    let newton = (0..8).fold(0.0, |w, _| {
+        let [value, slope] = at(w, 0);
+        w + (push - value) / slope
+    });
+    at(newton, 1)[0]
 }
