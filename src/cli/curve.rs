@@ -91,7 +91,8 @@ pub fn run(args: &CurveArgs, files: &mut Files) -> Result<(), Failure> {
     let accuracy = args.tolerance.choose(&scene, &Side::BOTH)?;
     let resolution = accuracy.map_or(Resolution::FINE, |accuracy| accuracy.resolution);
     if let Some(draws) = draws {
-        return uncertainty::run(&scene, &draws, resolution, outputs);
+        let curve = || scene_curve(&scene, resolution, AXES);
+        return uncertainty::run(&scene, &draws, resolution, outputs, curve);
     }
     let mut drawn = Vec::new();
     let (mut unresolved, mut all) = (0, 0);
@@ -177,7 +178,7 @@ fn compare(args: &CurveArgs, scene: &Scene, path: &Path, files: &mut Files) -> R
 }
 
 /// Plots the detachment curve of the scene's first whisker.
-pub fn scene_curve(scene: &Scene, resolution: Resolution, axes: [CurveAxis; 2]) -> Plot {
+fn scene_curve(scene: &Scene, resolution: Resolution, axes: [CurveAxis; 2]) -> Plot {
     let SweptWhisker { whisker, pole, .. } = scene.first_whisker();
     let distances = &scene.grid.distance_mm;
     let of_side = |side| trace::curve_at(resolution, &whisker, &pole, side, distances);
@@ -195,7 +196,7 @@ fn plot(rows: &[Detachment], axes: [CurveAxis; 2]) -> Plot {
 }
 
 /// Horizontal and vertical axis of a plot.
-pub const AXES: [CurveAxis; 2] = [
+const AXES: [CurveAxis; 2] = [
     CurveAxis {
         label: "distance at first touch (mm)",
         value: |end| Some(end.distance_mm),

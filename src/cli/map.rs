@@ -7,7 +7,7 @@ use super::estimate::MapFormat;
 use super::failure::{Failure, message};
 use super::files::Files;
 use super::outputs::save;
-use super::sharded::{self, Shard};
+use super::sharded::{self, RunArgs};
 use super::summary::{compute, report};
 use super::tolerance::ToleranceArgs;
 use clap::Args;
@@ -43,7 +43,7 @@ pub struct MapArgs {
     scene: PathBuf,
     /// Folder for the files; created if it does not exist
     #[arg(short, long, value_name = "DIR", default_value = "outputs")]
-    pub output: PathBuf,
+    output: PathBuf,
     #[command(flatten)]
     engine: EngineArgs,
     /// Number of CPU threads [default: all cores]
@@ -58,18 +58,11 @@ pub struct MapArgs {
     /// Format of the map
     #[arg(long, value_enum, default_value = "exr")]
     format: MapFormat,
-    /// Resume an interrupted sweep: compute only missing and damaged blocks of the store
-    #[arg(long)]
-    pub resume: bool,
-    /// Compute one of N parts of a store, from 0/N to N-1/N
-    #[arg(long, value_name = "I/N")]
-    pub shard: Option<Shard>,
+    #[command(flatten)]
+    run: RunArgs,
     /// Write no picture
     #[arg(long)]
     no_png: bool,
-    /// Start even if the disk seems to have too little space
-    #[arg(long)]
-    pub force: bool,
 }
 
 pub fn run(args: &MapArgs, files: &mut Files) -> Result<(), Failure> {
@@ -96,7 +89,8 @@ pub fn run(args: &MapArgs, files: &mut Files) -> Result<(), Failure> {
     };
     files.folder("--output", &args.output)?;
     if args.format == MapFormat::Zarr {
-        return sharded::fill(args, files, &scene, plan, &about, &mut engine);
+        let path = args.output.join(format!("{}.zarr", scene.name));
+        return sharded::fill(&path, &args.run, files, &scene, plan, &about, &mut engine);
     }
     let file = args.output.join(format!("{}.exr", scene.name));
     let picture = (!args.no_png).then(|| file.with_extension("png"));
@@ -110,7 +104,7 @@ pub fn run(args: &MapArgs, files: &mut Files) -> Result<(), Failure> {
             )));
         }
     }
-    if !args.force {
+    if !args.run.force {
         disk::check(&args.output, MapFormat::Exr, &scene, &plan, plan.cells)?;
     }
     let (engine, why) = &mut engine;
@@ -161,10 +155,10 @@ impl MapArgs {
                 "grid: an EXR file has room for two sweep axes, the scene has {axes}"
             ));
         }
-        if self.resume {
+        if self.run.resume {
             return refuse("--resume: an EXR file is written at once".to_owned());
         }
-        if self.shard.is_some() {
+        if self.run.shard.is_some() {
             return refuse("--shard: an EXR file has one writer".to_owned());
         }
         let regimes = |channels: Channels| channels.contains("regime");

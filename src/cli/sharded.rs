@@ -5,9 +5,10 @@ use super::engine::OpenEngine;
 use super::estimate::MapFormat;
 use super::failure::{Failure, message};
 use super::files::Files;
-use super::map::MapArgs;
 use super::summary::{compute, report};
+use clap::Args;
 use rayon::prelude::*;
+use std::path::Path;
 use std::str::FromStr;
 use std::time::Instant;
 use whiskmap::map::Panel;
@@ -43,16 +44,29 @@ impl FromStr for Shard {
     }
 }
 
-/// Computes the blocks of this run, and writes each as soon as it is finished.
+#[derive(Debug, Args)]
+pub struct RunArgs {
+    /// Resume an interrupted sweep: compute only missing and damaged blocks of the store
+    #[arg(long)]
+    pub resume: bool,
+    /// Compute one of N parts of a store, from 0/N to N-1/N
+    #[arg(long, value_name = "I/N")]
+    pub shard: Option<Shard>,
+    /// Start even if the disk seems to have too little space
+    #[arg(long)]
+    pub force: bool,
+}
+
+/// Computes the blocks of this run of the store at `path`, and writes each as soon as it is finished.
 pub fn fill(
-    args: &MapArgs,
+    path: &Path,
+    args: &RunArgs,
     files: &mut Files,
     scene: &Scene,
     mut plan: Plan,
     about: &MapDescription<'_>,
     (engine, why): &mut OpenEngine,
 ) -> Result<(), Failure> {
-    let path = &args.output.join(format!("{}.zarr", scene.name));
     files.store("--output", path)?;
     let temporary = files.temporary();
     let start = Instant::now();
@@ -68,7 +82,7 @@ pub fn fill(
     let whiskers: usize = plan.parts.iter().map(ExactSizeIterator::len).sum();
     if !args.force {
         disk::check(
-            &args.output,
+            path.parent().unwrap_or(path),
             MapFormat::Zarr,
             scene,
             &plan,
@@ -114,7 +128,7 @@ pub fn fill(
         panel * whiskers,
         keep,
     )?;
-    report(scene, &summary, start, std::slice::from_ref(path))
+    report(scene, &summary, start, &[path.to_owned()])
 }
 
 /// Returns the missing and damaged ones of `blocks`, and warns of each damaged file.

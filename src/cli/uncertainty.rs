@@ -1,7 +1,6 @@
 //! `whiskmap curve --samples`: the detachment curve of randomly drawn whiskers.
 
 use super::arguments::whole;
-use super::curve::{AXES, scene_curve};
 use super::failure::{Failure, check_resolved, message};
 use super::outputs::OpenOutputs;
 use super::progress::Progress;
@@ -38,12 +37,13 @@ impl SampleArgs {
     }
 }
 
-/// Writes the percentiles of the `draws`, and plots them around the curve of the `scene` itself.
+/// Writes the percentiles of the `draws`, and plots them around the `curve` of the `scene` itself.
 pub fn run(
     scene: &Scene,
     draws: &Draws,
     resolution: Resolution,
     mut outputs: OpenOutputs,
+    curve: impl FnOnce() -> Plot,
 ) -> Result<(), Failure> {
     let bar = Progress::over(Side::BOTH.len() * draws.len(), "curves");
     let spread = |side| draws.spread(resolution, side, || bar.inc(1));
@@ -59,7 +59,7 @@ pub fn run(
     outputs.rows(&rows)?;
     outputs.finish(scene.title.clone(), || Plot {
         bands: bands(&rows),
-        ..scene_curve(scene, resolution, AXES)
+        ..curve()
     })?;
     let unresolved = rows.iter().map(|row| row.unresolved).sum();
     let all = rows.len() * draws.len();

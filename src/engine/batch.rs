@@ -176,6 +176,12 @@ impl RowBatch {
         }
     }
 
+    /// Pairs of the index of a cell in this batch and in `part`, a batch of some of its cells.
+    pub fn places_in<'a>(&'a self, part: &'a Self) -> impl Iterator<Item = (usize, usize)> + 'a {
+        let rows = self.rows.iter().zip(&part.rows);
+        rows.flat_map(|(whole, part)| part.each().map(|cell| whole.first + cell).zip(part.first..))
+    }
+
     /// Adds base points to all rows that have them, with trajectories in the steps of `resolution`.
     #[must_use]
     pub fn with_base_points(mut self, resolution: Resolution) -> Self {

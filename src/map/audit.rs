@@ -1,6 +1,5 @@
 //! Audit of an engine: a sample of its solved cells is compared with the CPU engine.
 
-use super::fallback::places;
 use super::summary::Audit;
 use crate::engine::{BatchRow, Cell, Cells, Outcome, RowBatch, Values, WhiskerSide};
 use crate::sheet::Sheet;
@@ -73,7 +72,7 @@ pub fn compare(batch: &RowBatch, cells: &Cells, rest: &RowBatch, found: &Cells) 
     let mut audit = Audit::default();
     let rows = batch.rows.iter().zip(&rest.rows);
     let rows = rows.flat_map(|(row, part)| part.each().map(move |cell| (row, cell)));
-    for ((row, cell), (index, from)) in rows.zip(places(batch, rest)) {
+    for ((row, cell), (index, from)) in rows.zip(batch.places_in(rest)) {
         if cells.outcome[index] == Outcome::Solved && found.outcome[from] != Outcome::OffSheet {
             let holds = holds(batch, row, cell, &cells.get(index), &found.get(from));
             audit.cells += 1;

@@ -35,7 +35,7 @@ pub fn complete(
                 counts.count(*outcome);
             }
             let mut without = 0;
-            for (index, from) in places(batch, &rest) {
+            for (index, from) in batch.places_in(&rest) {
                 if cells.outcome[index] != Outcome::Solved {
                     let cell = found.get(from);
                     let is_unasked = cells.outcome[index] == Outcome::NoBasePoint;
@@ -77,13 +77,4 @@ fn rest(batch: &RowBatch, cells: &Cells) -> RowBatch {
         wanted
     });
     batch.only(rows.collect::<Vec<_>>())
-}
-
-/// Pairs of the index of a cell in the whole `batch` and in the batch of the `rest`.
-pub fn places<'a>(
-    batch: &'a RowBatch,
-    rest: &'a RowBatch,
-) -> impl Iterator<Item = (usize, usize)> + 'a {
-    let rows = batch.rows.iter().zip(&rest.rows);
-    rows.flat_map(|(whole, part)| part.each().map(|cell| whole.first + cell).zip(part.first..))
 }

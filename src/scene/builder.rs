@@ -1,9 +1,17 @@
 //! The numbers of a scene as they are given, before the checks.
 
 use super::axis::AxisValues;
-use super::deviations::Deviations;
 use super::grid::SweepPlace;
 use super::parameter::Parameter;
+
+/// Standard deviations of the numbers of a scene. The numbers vary independently of each other.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Deviations {
+    /// Parameters that the scene gives, each with its standard deviation in the parameter's unit.
+    pub parameters: Vec<(Parameter, f64)>,
+    /// Standard deviation of the radius of every row of `whisker.profile`, in micrometres; `None` without a profile.
+    pub profile_radius_um: Option<f64>,
+}
 
 /// Numbers of a scene by parameter: those that are given.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

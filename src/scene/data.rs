@@ -1,6 +1,6 @@
 //! Data of a scene, and the whiskers of its sweep.
 
-use super::deviations::Deviations;
+use super::builder::Deviations;
 use super::grid::{FARTHEST, Grid, NEAREST, SweepPlace};
 use super::parameter::Parameter;
 use super::toml::SceneText;

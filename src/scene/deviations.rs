@@ -1,6 +1,6 @@
 //! `[uncertainty]`: standard deviations of the numbers of a scene.
 
-use super::builder::SceneBuilder;
+use super::builder::{Deviations, SceneBuilder};
 use super::error::SceneFault;
 use super::limits::{NumberLimits, digits};
 use super::parameter::Parameter;
@@ -10,15 +10,6 @@ pub(super) const ROWS: &str = "profile_radius_um";
 
 /// Largest standard deviation: the largest number that any key of a scene may have.
 const MOST: f64 = 1e5;
-
-/// Standard deviations of the numbers of a scene. The numbers vary independently of each other.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Deviations {
-    /// Parameters that the scene gives, each with its standard deviation in the parameter's unit.
-    pub parameters: Vec<(Parameter, f64)>,
-    /// Standard deviation of the radius of every row of `whisker.profile`, in micrometres; `None` without a profile.
-    pub profile_radius_um: Option<f64>,
-}
 
 /// Checks the deviations of a scene, if it has any.
 pub(super) fn checked(scene: &SceneBuilder) -> Result<Option<Deviations>, SceneFault> {

@@ -27,10 +27,10 @@ mod whisker;
 pub(crate) use grid::NEAREST;
 
 pub use axis::{AxisScale, AxisValues};
-pub use builder::SceneBuilder;
+pub use builder::{Deviations, SceneBuilder};
 pub use check::LONGEST_TITLE;
 pub use data::SceneData;
-pub use deviations::Deviations;
+
 pub use error::SceneError;
 pub use grid::{Grid, SweepAxis, SweepPlace};
 pub use limits::digits;

@@ -13,7 +13,8 @@ use toml_edit::{Document, Item};
 
 use crate::input::{bounded, did_you_mean, shortened};
 use crate::scene::axis::NOT_GROWING;
-use crate::scene::deviations::{self, Deviations};
+use crate::scene::builder::Deviations;
+use crate::scene::deviations;
 use crate::scene::error::{DECIMAL_POINTS, SceneError, SceneFault, has_tight_comma};
 use crate::scene::limits::digits;
 use crate::scene::parameter::Parameter;
