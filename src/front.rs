@@ -73,7 +73,7 @@ pub enum Error {
 pub struct Map {
     /// The axes.
     pub grid: Grid,
-    /// The cells of each whisker, in the order of [`Setup::whiskers`](crate::scene::Setup::whiskers).
+    /// The cells of each whisker, in the order of [`SceneData::whiskers`](crate::scene::SceneData::whiskers).
     pub panels: Vec<Panel>,
     /// Counts and times of the run.
     pub summary: Summary,
