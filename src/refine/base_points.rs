@@ -78,11 +78,13 @@ impl<'a> SpanFromTouch<'a> {
         let is_one = sheet.is_continued() || sheet.crossings[row].len() == 1;
         let is_simple = sheet.touches(row) && is_one && end.is_sound() && !end.is_at_touch();
         let span = sheet.spans(row).first()?.clone();
-        (is_simple && span.begins_at_touch()).then_some(Self {
+        let w_end = end.load * end.tau * end.tau;
+        let is_whole = span.begins_at_touch() && span.reaches(w_end.abs());
+        (is_simple && is_whole).then_some(Self {
             sheet,
             row,
             span,
-            w_end: end.load * end.tau * end.tau,
+            w_end,
         })
     }
 

@@ -39,12 +39,13 @@ impl Precision {
         }
     }
 
-    /// Limits of what the shaders vouch for, by their names there.
+    /// Limits of the shaders' certificate, by their names in WGSL.
     ///
-    /// `LEFT_BY_STEP` and `LARGEST_Q` are those of the refinement; of a step the Jacobian, a polynomial along the row, leaves at most
-    /// `JACOBIAN_ERROR`. `ROUNDING_OF_WAY` bounds the pole's miss over how far base and pole move from the
-    /// reference to the cell: measured on random whiskers at most 5.8e-7 in `f32`, in the median 5e-8. `FARTHEST_REST` keeps what the
-    /// series of the resting parabola leaves out, some 100 times its 9th power, below rounding.
+    /// `LEFT_BY_STEP` and `LARGEST_Q` are the refinement's. `JACOBIAN_ERROR` bounds the relative error of the Jacobian, a polynomial through
+    /// 16 states of the row: measured at most 3.3e-6, in one of 250,000 random cells in `f64`.
+    /// `ROUNDING_OF_WAY` bounds the pole's miss over the motion of base and pole from the base point to the cell: on random whiskers at
+    /// most 5.8e-7 in `f32`, in the median 5e-8. `FARTHEST_REST` keeps the remainder of the resting parabola's series, some 100 times
+    /// its 9th power, below rounding.
     #[must_use]
     pub const fn limits(self) -> [(&'static str, f64); 10] {
         let [clear_of_fold, clear_of_tip, longest, of_way, rest] = match self {
@@ -55,7 +56,7 @@ impl Precision {
             ("GOAL", self.goal()),
             ("LEFT_BY_STEP", LEFT_BY_STEP),
             ("LARGEST_Q", LARGEST_Q),
-            ("JACOBIAN_ERROR", 1e-6),
+            ("JACOBIAN_ERROR", 4e-6),
             ("ROUNDING_OF_WAY", of_way),
             ("ROUNDING", ROUNDING),
             ("LONGEST_STEP", longest),

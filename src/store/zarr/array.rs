@@ -250,11 +250,12 @@ fn chunk_codecs(kind: ValueKind, shape: &[usize], are_turned: bool) -> Value {
         "blocksize": shape.iter().product::<usize>() * size,
     } });
     let codecs = [little_endian(), blosc, json!({ "name": "crc32c" })];
-    let mut order: Vec<usize> = (0..shape.len()).collect();
-    order[shape.len() - 2..].reverse();
-    let transpose = json!({ "name": "transpose", "configuration": { "order": order } });
-    let first = are_turned.then_some(transpose);
-    first.into_iter().chain(codecs).collect()
+    let transpose = are_turned.then(|| {
+        let mut order: Vec<usize> = (0..shape.len()).collect();
+        order[shape.len() - 2..].reverse();
+        json!({ "name": "transpose", "configuration": { "order": order } })
+    });
+    transpose.into_iter().chain(codecs).collect()
 }
 
 /// Columns that are turned together: those of a cache line.

@@ -125,7 +125,13 @@ mod tests {
     fn values(count: usize, size: usize, is_noise: bool) -> Vec<u8> {
         let mut state = 1_u32;
         let value = |i: usize| {
-            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            // Xorshift (G. Marsaglia, 2003): all of its bits are noise.
+            for shift in [13, -17, 5] {
+                state ^= match shift {
+                    ..0 => state >> -shift,
+                    _ => state << shift,
+                };
+            }
             let smooth = (i as u32 / 7).to_be_bytes().map(|byte| byte ^ 0x5a);
             let value = if is_noise {
                 state.to_be_bytes()

@@ -146,8 +146,8 @@ fn a_sound_kernel_passes_its_audit(precision: Precision) {
 }
 
 /// Which one of a thousand cells is wrong, whatever submission it is in. The audit looks at 134 of
-/// 36,670 cells, so that it has one of 37 with a probability of 13 %, and the first choice is the sixth. It has one of those in a map of a million cells with 98 %.
-const CHOSEN: u32 = 5;
+/// 36,670 cells, so that it has one of 37 with a probability of 13 %, and the first choice is the third. It has one of those in a map of a million cells with 98 %.
+const CHOSEN: u32 = 2;
 
 /// The sample of the audit is the same in every run, and so are the cells that are wrong.
 fn a_kernel_that_is_wrong_in_one_cell_of_a_thousand_is_caught() {
