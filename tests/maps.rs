@@ -123,7 +123,7 @@ fn first_touch_is_without_a_load() {
 fn progress_is_complete_and_cancelling_ends_a_map() {
     use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
     let scene = Scene::read("scenes/morphology.toml").unwrap();
-    let scene = scene.thinned(16, 3);
+    let scene = scene.thinned(48, 3);
     let count = Arc::new(AtomicUsize::new(0));
     let mut options = Options::default();
     let seen = Arc::clone(&count);
