@@ -269,6 +269,8 @@ fn base_points_follow_their_row() {
         for (row, points) in rows.iter().zip(&all) {
             *count += usize::from(!points.is_empty());
             for point in points {
+                let here = point.row[0][1] / point.tau - 1.0;
+                assert!(here.abs() < 1e-12, "{here:e}");
                 let pushes = &pushes[point.cells.start as usize..point.cells.end as usize];
                 let target = |push: &f64| CellTarget {
                     rod: 0,

@@ -10,7 +10,7 @@ use std::ops::Range;
 pub enum Outcome {
     /// Solved, with a bound on the residual.
     Solved,
-    /// Solved, with the contact at the tip as far as the residual tells.
+    /// Solved, with the contact at the tip up to the residual.
     AtTip,
     /// No solution: the contact lies beyond the tip.
     BeyondTip,

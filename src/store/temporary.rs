@@ -1,6 +1,6 @@
 //! Temporary files and folders. They are removed when they are dropped and when the process is interrupted.
 //!
-//! Those of a killed process are removed by a later process of the same user, see [`Output::remove_leftovers`](super::Output).
+//! A later process of the same user removes the files of an interrupted one, see [`Output::remove_leftovers`](super::Output).
 
 use super::target::inherit;
 #[cfg(feature = "zarr")]

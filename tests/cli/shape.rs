@@ -95,8 +95,9 @@ fn sliding_toward_the_base_is_told() {
     }
     let map = place.map(&["scene.toml", "--no-png"]);
     map.assert_settled();
-    let told = "slide toward the base, against the assumed friction: force and moment are inexact";
-    assert!(map.count(told) > 10, "{map:?}");
+    let warning =
+        "slide toward the base, against the assumed friction: force and moment are inexact";
+    assert!(map.count(warning) > 10, "{map:?}");
     place.write("scene.toml", SCENE);
     assert!(!place.map(&["scene.toml", "--no-png"]).out.contains("slide"));
 }

@@ -77,9 +77,9 @@ fn draws_outside_of_the_limits_are_told() {
     let place = Place::with(&format!("{SCENE}[uncertainty]\ntip_radius_um = 1.5\n"));
     let run = place.run(&["curve", "scene.toml", "--samples", "50"]);
     assert_eq!(run.code, Some(0), "{run:?}");
-    let told = "draws were outside the scene's limits and were repeated\n";
+    let warning = "draws were outside the scene's limits and were repeated\n";
     assert!(
-        run.err.starts_with("note: ") && run.err.ends_with(told),
+        run.err.starts_with("note: ") && run.err.ends_with(warning),
         "{run:?}"
     );
 }

@@ -39,7 +39,7 @@ struct Seen {
 }
 
 impl Seen {
-    /// Of the cells of `gpu`, whose points get what `rest` adds, if there is one.
+    /// Misses and bounds of the cells that `gpu` solves. A second shader, `rest`, adds the digits beyond `f32`.
     fn of(rows: &RandomRows, gpu: &mut Gpu, rest: Option<&mut Gpu>) -> Self {
         let batch = rows.batch(gpu);
         let cells = solve(gpu, &batch);

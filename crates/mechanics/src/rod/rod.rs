@@ -66,7 +66,7 @@ pub struct Rod {
     pub profile: Option<Arc<RadiusProfile>>,
 }
 
-/// Radius over the base radius at which a perfect cone is cut. Contacts beyond it cannot be told from the tip in practice.
+/// Radius over the base radius at which a perfect cone is cut. Contacts beyond it are indistinguishable from the tip.
 pub const PERFECT_CONE_CUT: f64 = 1e-9;
 
 /// Arclength of the tip for this taper, in whisker lengths: 1, or slightly less for a perfect cone, which is cut.
