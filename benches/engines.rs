@@ -69,7 +69,7 @@ fn engines(criterion: &mut Criterion) {
     let mut engines: Vec<Box<dyn Engine>> = vec![Box::new(Cpu::default())];
     for precision in [Precision::F32, Precision::F64] {
         // Without a GPU driver only the CPU is measured.
-        engines.extend(Gpu::new(precision).map(|gpu| Box::new(gpu) as Box<dyn Engine>));
+        engines.extend(Gpu::open(None, precision).map(|gpu| Box::new(gpu) as Box<dyn Engine>));
     }
     for whiskers in [1, 32, 512] {
         let rows = RandomRows::new(USUAL, whiskers, 2, |_, _| ());

@@ -1,10 +1,10 @@
-// What the device could do at best: nothing but multiplications with additions, in independent accumulators.
+// Peak rate of the device: only multiplications with additions, in independent accumulators.
 
 const ROUNDS = 64u;
 
 @group(0) @binding(0) var<storage, read_write> ends: array<real>;
 
-// Eight in a row, so that the loop itself does not count.
+// Eight operations in a row, so that the cost of the loop is negligible.
 fn chain(x: vec4<real>, factor: vec4<real>, term: vec4<real>) -> vec4<real> {
     let two = fma(fma(x, factor, term), factor, term);
     let four = fma(fma(two, factor, term), factor, term);

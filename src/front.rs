@@ -264,7 +264,7 @@ fn run<E: From<Error> + Send>(
 /// Opens the preferred GPU.
 #[cfg(feature = "gpu")]
 fn open(precision: Precision) -> Result<Box<dyn Engine>, EngineError> {
-    Gpu::new(precision).map(|gpu| Box::new(gpu) as _)
+    Gpu::open(None, precision).map(|gpu| Box::new(gpu) as _)
 }
 
 #[cfg(not(feature = "gpu"))]

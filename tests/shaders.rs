@@ -20,7 +20,7 @@ fn validate(text: &str, precision: Precision, effects: &[Effects]) -> Result<(),
     let module = naga::front::wgsl::parse_str(text).map_err(|e| e.emit_to_string(text))?;
     let capabilities = match precision {
         Precision::F32 => Capabilities::empty(),
-        Precision::F64 => Capabilities::FLOAT64,
+        _ => Capabilities::FLOAT64,
     };
     let mut validator = Validator::new(ValidationFlags::all(), capabilities);
     let info = validator
@@ -60,7 +60,7 @@ fn a_broken_text_is_refused() {
     let none = [Effects::default()];
     let text = shaders::cells(Precision::F32);
     for (good, bad) in [
-        ("= reference[PLACES].xy", "= reference[PLACES].xyz"),
+        ("= base_point[POSITIONS].xy", "= base_point[POSITIONS].xyz"),
         ("override TAPER: bool;", ""),
     ] {
         assert!(text.contains(good));

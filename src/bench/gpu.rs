@@ -138,7 +138,7 @@ impl Sides {
             let trajectories = begun.elapsed();
             gpu.submit(Arc::new(batch))?;
             let cells = gpu.collect()?;
-            let times = gpu.take_times();
+            let times = std::mem::take(&mut gpu.times);
             let ms = |duration: Duration| 1e3 * duration.as_secs_f64();
             stages.upload += ms(trajectories + times.upload);
             stages.dispatch += ms(times.dispatch);
@@ -162,7 +162,8 @@ fn engine(
     one: &Candidate,
 ) -> Result<(), EngineError> {
     let start = Instant::now();
-    let mut gpu = Gpu::timed(one.adapter, one.precision)?;
+    let mut gpu = Gpu::open(Some(one.adapter), one.precision)?;
+    gpu.is_timed = true;
     let batches = sides.with_base_points(&gpu);
     sides.solve(&mut gpu, &batches)?;
     let first_result_s = start.elapsed().as_secs_f64();

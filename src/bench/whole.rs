@@ -143,7 +143,7 @@ pub fn measure(
         let measured = |one: &Candidate| report.engines.iter().any(|own| own.name == one.name);
         let found: Vec<Candidate> = candidates().filter(measured).collect();
         for one in found {
-            match Gpu::at(one.adapter, one.precision) {
+            match Gpu::open(Some(one.adapter), one.precision) {
                 Ok(gpu) => engines.push((one.name, Some(gpu), Vec::new())),
                 Err(why) => report.failures.push(format!("map by {}: {why}", one.name)),
             }
@@ -192,17 +192,17 @@ fn run(scene: &Scene, plan: &Plan, gpu: Option<&mut Gpu>) -> Result<Sample, Engi
     let ms = |stage| 1e3 * summary.stage_seconds(stage);
     let cells = summary.engine_cells;
     Ok(Sample {
-        seconds: summary.wall_seconds(),
-        host: summary.cpu_seconds().unwrap_or_default(),
+        seconds: summary.wall_seconds,
+        host: summary.cpu_seconds.unwrap_or_default(),
         stages: MapStages {
             sheets: ms(Stage::Sheets),
             guesses: ms(Stage::Guesses),
             base_points: ms(Stage::BasePoints),
-            device: 1e3 * summary.device_seconds(),
+            device: 1e3 * summary.device_seconds,
             refinement: ms(Stage::Refinement),
             classification: ms(Stage::Classification),
             packing: ms(Stage::Packing),
-            waiting: 1e3 * summary.waiting_seconds(),
+            waiting: 1e3 * summary.waiting_seconds,
         },
         fallback: cells.fallback(),
     })

@@ -19,6 +19,7 @@ macro_rules! named {
         $(#[$outer])*
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
         #[repr(u32)]
+        #[non_exhaustive]
         pub enum $kind { $($(#[$inner])* $variant = $code,)* }
 
         impl $kind {

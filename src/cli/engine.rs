@@ -124,11 +124,7 @@ impl EngineArgs {
     }
 
     fn gpu(&self, adapter: Option<usize>) -> Result<Box<dyn Engine>, EngineError> {
-        let gpu = match adapter {
-            Some(index) => Gpu::at(index, self.precision()),
-            None => Gpu::new(self.precision()),
-        };
-        gpu.map(|gpu| Box::new(gpu) as _)
+        Gpu::open(adapter, self.precision()).map(|gpu| Box::new(gpu) as _)
     }
 
     /// Opens the engine that is faster for `plan`, as estimated from samples of `scene`.

@@ -152,7 +152,7 @@ pub fn compare(
         let cpu = MapSample::measure(scene, plan, &mut None, [WIDE, lines])?;
         let with_engine = MapSample::measure(scene, plan, engine, [WIDE, lines])?;
         let seconds =
-            [cpu, with_engine].map(|sample| sample.summary.wall_seconds() * sample.by_cells(plan));
+            [cpu, with_engine].map(|sample| sample.summary.wall_seconds * sample.by_cells(plan));
         fastest = [0, 1].map(|i| f64::min(fastest[i], seconds[i]));
         let last = start.elapsed().as_secs_f64();
         left -= last;

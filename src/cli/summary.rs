@@ -106,17 +106,16 @@ fn print(scene: &Scene, summary: &Summary, seconds: f64, files: &[PathBuf]) -> i
     writeln!(out, "{rate:>12.0}  cells/s, in {seconds:.2} s")?;
     let stages =
         Stage::ALL.map(|(stage, name)| format!("{name} {:.2}", summary.stage_seconds(stage)));
-    let (wall, stages) = (summary.wall_seconds(), stages.join(", "));
+    let (wall, stages) = (summary.wall_seconds, stages.join(", "));
     writeln!(out, "{wall:>12.2}  s for the stages: {stages}")?;
-    if let Some(cpu) = summary.cpu_seconds() {
+    if let Some(cpu) = summary.cpu_seconds {
         writeln!(out, "{cpu:>12.2}  CPU s of all threads meanwhile")?;
     }
-    if summary.device_seconds() > 0.0 {
+    if summary.device_seconds > 0.0 {
         writeln!(
             out,
             "{:>12.2}  s of the engine beside them, {:.2} of these waited for",
-            summary.device_seconds(),
-            summary.waiting_seconds()
+            summary.device_seconds, summary.waiting_seconds
         )?;
     }
     for file in files {

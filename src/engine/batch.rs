@@ -36,8 +36,8 @@ pub struct BasePoint {
     pub push: f64,
     /// The state with its first derivatives, in the frame of the contact.
     pub state: FirstVariation,
-    /// Signed load over the row parameter `w`, which is `load tau^2` over its value at the end of the row.
-    pub per_way: f64,
+    /// Signed load per unit of the row parameter `w`, which is `load tau^2` over its value at the end of the row.
+    pub load_per_w: f64,
     /// Taylor polynomials of the row in `w`, less its value here.
     pub row: [RowTerms; POWERS],
     /// Its cells: indices among the columns of all sides.
@@ -152,28 +152,18 @@ impl RowBatch {
     /// A batch of some `cells` of each row, without base points.
     #[must_use]
     pub fn only(&self, cells: impl IntoIterator<Item = Vec<Range<usize>>>) -> Self {
-        let mut first = 0;
-        let rows = self.rows.iter().zip(cells).map(|(row, cells)| {
-            let row = BatchRow {
+        let (sides, pushes) = (Arc::clone(&self.sides), Arc::clone(&self.pushes));
+        let mut part = Self::new(self.method, sides, pushes, []);
+        (part.has_values, part.has_points) = (self.has_values, self.has_points);
+        for (row, cells) in self.rows.iter().zip(cells) {
+            part.rows.push(BatchRow {
                 cells,
-                first,
+                first: part.cells(),
                 base_points: 0..0,
                 ..*row
-            };
-            first += row.len();
-            row
-        });
-        Self {
-            method: self.method,
-            sides: Arc::clone(&self.sides),
-            rows: rows.collect(),
-            pushes: Arc::clone(&self.pushes),
-            has_values: self.has_values,
-            has_points: self.has_points,
-            base_points: Vec::new(),
-            trajectories: Vec::new(),
-            starts: Vec::new(),
+            });
         }
+        part
     }
 
     /// Pairs of the index of a cell in this batch and in `part`, a batch of some of its cells.

@@ -3,10 +3,13 @@
 use super::RowBatch;
 use crate::plan::STATE_CHANNELS;
 use glam::DVec2;
+use rayon::prelude::*;
 use std::ops::Range;
+use std::slice;
 
-/// What an engine made of a cell. A cell without a solution is data, not an error.
+/// Result of an engine for one cell. A cell without a solution is data, not an error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Outcome {
     /// Solved, with a bound on the residual.
     Solved,
@@ -35,7 +38,7 @@ pub enum Outcome {
 /// One cell of [`Cells`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cell {
-    /// What the engine made of it.
+    /// Result of the engine.
     pub outcome: Outcome,
     /// Newton steps taken.
     pub steps: u32,
@@ -48,9 +51,6 @@ pub struct Cell {
 }
 
 impl Cell {
-    /// Values of a cell without a solution.
-    pub const NO_VALUES: [f32; STATE_CHANNELS.len()] = [f32::NAN; STATE_CHANNELS.len()];
-
     /// A cell without a state.
     #[must_use]
     pub const fn new(outcome: Outcome, steps: u32) -> Self {
@@ -58,22 +58,59 @@ impl Cell {
             outcome,
             steps,
             residual: f32::NAN,
-            values: Self::NO_VALUES,
+            values: [f32::NAN; STATE_CHANNELS.len()],
             point: DVec2::NAN,
         }
     }
 
-    /// This cell with another outcome.
+    /// This cell as a run.
     #[must_use]
-    pub const fn with_outcome(self, outcome: Outcome) -> Self {
-        Self { outcome, ..self }
+    pub fn run(&self) -> CellRun<'_> {
+        CellRun {
+            outcome: self.outcome,
+            steps: slice::from_ref(&self.steps),
+            residual: slice::from_ref(&self.residual),
+            values: self.values.each_ref().map(slice::from_ref),
+            points: slice::from_ref(&self.point),
+        }
+    }
+}
+
+/// Adjacent cells of [`Cells`] with one outcome.
+#[derive(Clone, Copy, Debug)]
+pub struct CellRun<'a> {
+    /// Their outcome.
+    pub outcome: Outcome,
+    /// Newton steps taken.
+    pub steps: &'a [u32],
+    /// Bounds on the residuals.
+    pub residual: &'a [f32],
+    /// Channel values; empty if the batch wants none.
+    pub values: [&'a [f32]; STATE_CHANNELS.len()],
+    /// `(tau, load)` of the contacts; empty if the batch wants none.
+    pub points: &'a [DVec2],
+}
+
+impl CellRun<'_> {
+    /// The cell at `index`.
+    #[must_use]
+    pub fn get(&self, index: usize) -> Cell {
+        Cell {
+            outcome: self.outcome,
+            steps: self.steps[index],
+            residual: self.residual[index],
+            values: self
+                .values
+                .map(|column| column.get(index).copied().unwrap_or(f32::NAN)),
+            point: self.points.get(index).copied().unwrap_or(DVec2::NAN),
+        }
     }
 }
 
 /// The cells of a [`RowBatch`], in its order, as columns.
 #[derive(Clone, Debug, Default)]
 pub struct Cells {
-    /// What the engine made of each cell.
+    /// Result of the engine for each cell.
     pub outcome: Vec<Outcome>,
     /// Newton steps taken.
     pub steps: Vec<u32>,
@@ -85,19 +122,36 @@ pub struct Cells {
     pub points: Vec<DVec2>,
 }
 
+/// Lengths of the columns that `batch` wants: of every cell, of channel values, and of points.
+fn lengths(batch: &RowBatch) -> [usize; 3] {
+    let cells = batch.cells();
+    [true, batch.has_values, batch.has_points].map(|is_wanted| if is_wanted { cells } else { 0 })
+}
+
 impl Cells {
     /// Cells of `batch` that are still to be written, all with `outcome`.
     #[must_use]
     pub fn new(batch: &RowBatch, outcome: Outcome) -> Self {
-        let count = batch.cells();
-        let values = if batch.has_values { count } else { 0 };
-        let points = if batch.has_points { count } else { 0 };
+        let [cells, values, points] = lengths(batch);
         Self {
-            outcome: vec![outcome; count],
-            steps: vec![0; count],
-            residual: vec![0.0; count],
+            outcome: vec![outcome; cells],
+            steps: vec![0; cells],
+            residual: vec![0.0; cells],
             values: std::array::from_fn(|_| vec![0.0; values]),
             points: vec![DVec2::ZERO; points],
+        }
+    }
+
+    /// The columns of `cells`, which are those of `batch` in order.
+    #[must_use]
+    pub fn of(batch: &RowBatch, cells: &[Cell]) -> Self {
+        let [_, values, points] = lengths(batch).map(|length| &cells[..length]);
+        Self {
+            outcome: cells.par_iter().map(|cell| cell.outcome).collect(),
+            steps: cells.par_iter().map(|cell| cell.steps).collect(),
+            residual: cells.par_iter().map(|cell| cell.residual).collect(),
+            values: std::array::from_fn(|i| values.par_iter().map(|cell| cell.values[i]).collect()),
+            points: points.par_iter().map(|cell| cell.point).collect(),
         }
     }
 
@@ -116,78 +170,31 @@ impl Cells {
     /// Returns true if every column has the length that `batch` wants.
     #[must_use]
     pub fn fit(&self, batch: &RowBatch) -> bool {
-        let count = batch.cells();
-        let values = if batch.has_values { count } else { 0 };
-        let points = if batch.has_points { count } else { 0 };
-        [self.outcome.len(), self.steps.len(), self.residual.len()] == [count; 3]
+        let [cells, values, points] = lengths(batch);
+        [self.outcome.len(), self.steps.len(), self.residual.len()] == [cells; 3]
             && self.values.iter().all(|column| column.len() == values)
             && self.points.len() == points
+    }
+
+    /// The cells in `range`, of which all have the outcome of the first.
+    #[must_use]
+    pub fn run(&self, range: Range<usize>) -> CellRun<'_> {
+        CellRun {
+            outcome: self.outcome[range.start],
+            steps: &self.steps[range.clone()],
+            residual: &self.residual[range.clone()],
+            values: self
+                .values
+                .each_ref()
+                .map(|own| own.get(range.clone()).unwrap_or_default()),
+            points: self.points.get(range.clone()).unwrap_or_default(),
+        }
     }
 
     /// The cell at `index`.
     #[must_use]
     pub fn get(&self, index: usize) -> Cell {
-        Cell {
-            outcome: self.outcome[index],
-            steps: self.steps[index],
-            residual: self.residual[index],
-            values: self
-                .values
-                .each_ref()
-                .map(|column| column.get(index).copied().unwrap_or(f32::NAN)),
-            point: self.points.get(index).copied().unwrap_or(DVec2::NAN),
-        }
-    }
-
-    /// Replaces the cell at `index`.
-    pub fn set(&mut self, index: usize, cell: &Cell) {
-        self.rows_mut(std::slice::from_ref(&(index..index + 1)))[0].set(0, cell);
-    }
-
-    /// Splits the cells at growing, disjoint `ranges`, which can be written side by side.
-    pub(super) fn rows_mut(&mut self, ranges: &[Range<usize>]) -> Vec<CellsMut<'_>> {
-        let mut rest = CellsMut {
-            outcome: &mut self.outcome,
-            steps: &mut self.steps,
-            residual: &mut self.residual,
-            values: self.values.each_mut().map(Vec::as_mut_slice),
-            points: &mut self.points,
-        };
-        let mut from = 0;
-        let parts = ranges.iter().map(|range| {
-            rest.take(range.start - from);
-            from = range.end;
-            rest.take(range.len())
-        });
-        parts.collect()
-    }
-}
-
-/// Some cells of [`Cells`].
-pub(super) struct CellsMut<'a> {
-    outcome: &'a mut [Outcome],
-    steps: &'a mut [u32],
-    residual: &'a mut [f32],
-    values: [&'a mut [f32]; STATE_CHANNELS.len()],
-    points: &'a mut [DVec2],
-}
-
-/// Removes the first `count` elements of a column and returns them; nothing of an empty column.
-fn take<'a, T>(column: &mut &'a mut [T], count: usize) -> &'a mut [T] {
-    column
-        .split_off_mut(..count.min(column.len()))
-        .unwrap_or_default()
-}
-
-impl<'a> CellsMut<'a> {
-    fn take(&mut self, count: usize) -> Self {
-        Self {
-            outcome: take(&mut self.outcome, count),
-            steps: take(&mut self.steps, count),
-            residual: take(&mut self.residual, count),
-            values: self.values.each_mut().map(|column| take(column, count)),
-            points: take(&mut self.points, count),
-        }
+        self.run(index..index + 1).get(0)
     }
 
     /// Replaces the cell at `index`.

@@ -1,13 +1,10 @@
 //! The CPU engine: guesses from the lattice, refined by Newton's method in `f64` on the threads of the current pool.
 
-use super::cells::CellsMut;
 use super::{BatchRow, Cell, Cells, Engine, EngineDescription, EngineError, Outcome, RowBatch};
 use crate::numerics::Unit;
 use crate::refine::{CellTarget, RefineOutcome, Refined, TOLERANCE, refine};
-use crate::sheet::Guess;
 use rayon::prelude::*;
 use std::collections::VecDeque;
-use std::ops::Range;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -26,84 +23,74 @@ impl Cpu {
     pub fn solve(&mut self, batch: &RowBatch) -> Cells {
         let begun = Instant::now();
         let rows = batch.rows.par_iter();
-        let guessed: Vec<Vec<Option<CellTarget>>> =
-            rows.map(|row| cell_targets(batch, row)).collect();
+        let targets: Vec<Vec<Option<CellTarget>>> = rows.map(|row| targets(batch, row)).collect();
         self.guesses += begun.elapsed();
         let begun = Instant::now();
-        let flat: Vec<CellTarget> = guessed.iter().flatten().flatten().copied().collect();
-        let starts: Vec<_> = flat
-            .iter()
-            .map(|target| (target.tau, target.load))
-            .collect();
+        let flat: Vec<CellTarget> = targets.iter().flatten().flatten().copied().collect();
+        let starts: Vec<(f64, f64)> = flat.iter().map(|own| (own.tau, own.load)).collect();
         let refined = refine(batch.method, &batch.sheets(), &flat, &starts);
-        let mut cells = Cells::new(batch, Outcome::OffSheet);
-        let ranges = batch
-            .rows
-            .iter()
-            .map(|row| row.first..row.first + row.len());
-        let ranges: Vec<Range<usize>> = ranges.collect();
-        let mut after = 0;
-        let rows = batch.rows.iter().zip(guessed).zip(cells.rows_mut(&ranges));
-        let rows = rows.map(|((row, guessed), into)| {
-            let from = after;
-            after += guessed.iter().flatten().count();
-            (row, guessed, &refined[from..after], into)
+        let mut rest = refined.as_slice();
+        let rows = batch.rows.iter().zip(&targets).map(|(row, targets)| {
+            let count = targets.iter().flatten().count();
+            (row, targets, rest.split_off(..count).unwrap_or_default())
         });
         let rows: Vec<_> = rows.collect();
-        rows.into_par_iter()
-            .for_each(|(row, guessed, refined, into)| write(batch, row, &guessed, refined, into));
+        let cells = rows
+            .into_par_iter()
+            .flat_map_iter(|(row, targets, refined)| {
+                let mut refined = refined.iter();
+                row.each().zip(targets).map(move |(cell, target)| {
+                    let found = target.and_then(|_| refined.next());
+                    solved(batch, row, cell, found)
+                })
+            });
+        let cells = Cells::of(batch, &cells.collect::<Vec<_>>());
         self.refinement += begun.elapsed();
         cells
     }
 }
 
 /// The target of each cell of `row`; none where the sheet has no guess.
-fn cell_targets(batch: &RowBatch, row: &BatchRow) -> Vec<Option<CellTarget>> {
+fn targets(batch: &RowBatch, row: &BatchRow) -> Vec<Option<CellTarget>> {
     let side = &batch.sides[row.side];
     let at_touch = side.sheet.rows[row.row].pole(0.0);
     let magnitudes = row.each().map(|cell| side.columns.magnitudes[cell]);
-    let guesses = side.sheet.guesses(row.row, magnitudes);
-    let target = |(guess, cell): (Option<Guess>, usize)| {
-        guess.map(|Guess { tau, load }| CellTarget {
+    let guesses = side.sheet.guesses(row.row, magnitudes).into_iter();
+    let targets = guesses.zip(row.each()).map(|(guess, cell)| {
+        guess.map(|guess| CellTarget {
             // Sides of a group are few.
             rod: row.side as u32,
-            tau,
-            load,
+            tau: guess.tau,
+            load: guess.load,
             pole: side.columns.columns[cell].turn.rotate(at_touch),
         })
-    };
-    guesses.into_iter().zip(row.each()).map(target).collect()
+    });
+    targets.collect()
 }
 
-/// Writes the `refined` of the cells that have a guess, and all others as off the sheet.
-fn write(
-    batch: &RowBatch,
-    row: &BatchRow,
-    guessed: &[Option<CellTarget>],
-    refined: &[Refined],
-    mut into: CellsMut,
-) {
-    let side = &batch.sides[row.side];
-    let mut refined = refined.iter();
-    for ((index, cell), target) in row.each().enumerate().zip(guessed) {
-        let found = target.and_then(|_| refined.next());
-        let cell = found.map_or(Cell::new(Outcome::OffSheet, 0), |found| {
-            let outcome = match found.outcome {
-                RefineOutcome::Solved => {
-                    let push = side.columns.columns[cell].push;
-                    let has_values = batch.has_values;
-                    return side.solved(row.row, push, &found.state, found.steps, has_values);
-                }
-                RefineOutcome::BeyondTip => Outcome::BeyondTip,
-                RefineOutcome::BeyondFold => Outcome::BeyondFold,
-                RefineOutcome::NotConverged => Outcome::NotConverged,
-            };
-            Cell {
-                residual: found.state.residual as f32,
-                ..Cell::new(outcome, found.steps)
-            }
-        });
-        into.set(index, &cell);
+/// The cell of `row` in the column `cell`, as it was refined; off the sheet if it was not.
+fn solved(batch: &RowBatch, row: &BatchRow, cell: usize, refined: Option<&Refined>) -> Cell {
+    let Some(Refined {
+        state,
+        outcome,
+        steps,
+    }) = refined
+    else {
+        return Cell::new(Outcome::OffSheet, 0);
+    };
+    let outcome = match outcome {
+        RefineOutcome::Solved => {
+            let side = &batch.sides[row.side];
+            let push = side.columns.columns[cell].push;
+            return side.solved(row.row, push, state, *steps, batch.has_values);
+        }
+        RefineOutcome::BeyondTip => Outcome::BeyondTip,
+        RefineOutcome::BeyondFold => Outcome::BeyondFold,
+        RefineOutcome::NotConverged => Outcome::NotConverged,
+    };
+    Cell {
+        residual: state.residual as f32,
+        ..Cell::new(outcome, *steps)
     }
 }
 

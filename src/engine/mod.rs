@@ -9,23 +9,42 @@ mod columns;
 mod cpu;
 #[cfg(feature = "gpu")]
 pub mod gpu;
-mod precision;
 mod side;
 mod worker;
 
 pub use batch::{
     BasePoint, BaseTrajectory, BatchRow, MOST_TRAJECTORY_STEPS, POWERS, RowBatch, RowTerms,
 };
-pub use cells::{Cell, Cells, Outcome};
+pub use cells::{Cell, CellRun, Cells, Outcome};
 pub use columns::{Column, SideColumns};
 pub use cpu::Cpu;
-pub use precision::Precision;
 pub use side::{FORCE, Values, WhiskerSide};
 pub use worker::Worker;
 
 use crate::rod::Effects;
 use crate::shooting::Resolution;
+use std::fmt;
 use std::sync::Arc;
+
+/// Floating-point type of the GPU engine's shaders.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+#[non_exhaustive]
+pub enum Precision {
+    /// Every adapter.
+    F32,
+    /// Vulkan adapters with shaderFloat64.
+    F64,
+}
+
+impl fmt::Display for Precision {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::F32 => "f32",
+            Self::F64 => "f64",
+        })
+    }
+}
 
 /// Name and hardware of an engine, as printed and stored.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -72,12 +72,13 @@ impl WhiskerSide {
             true => Outcome::AtTip,
             false => Outcome::Solved,
         };
+        let unsolved = Cell::new(outcome, steps);
         let values = has_values.then(|| self.values(row, state.tau, &state.full, push));
         Cell {
             residual: state.residual as f32,
-            values: values.map_or(Cell::NO_VALUES, |all| all.map(|value| value as f32)),
+            values: values.map_or(unsolved.values, |all| all.map(|value| value as f32)),
             point: DVec2::new(state.tau, state.load),
-            ..Cell::new(outcome, steps)
+            ..unsolved
         }
     }
 

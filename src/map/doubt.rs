@@ -47,7 +47,10 @@ pub fn solve(
             Some((span, Some(nodes))) => {
                 let [first, last] = [0, nodes.len() - 1].map(|i| sign * nodes[i].push);
                 if magnitude > last {
-                    Some(before.with_outcome(beyond(span.edge)))
+                    Some(Cell {
+                        outcome: beyond(span.edge),
+                        ..before
+                    })
                 } else {
                     let node = level.state_at_push(nodes, sign * magnitude.max(first));
                     let state = node.map(|node| state(&level, &node, push));
@@ -59,7 +62,7 @@ pub fn solve(
             None if pieces.iter().all(Option::is_some) => {
                 let end = boundary.detachment();
                 let outcome = end.map_or(Outcome::OffSheet, |span| beyond(span.edge));
-                Some(before.with_outcome(outcome))
+                Some(Cell { outcome, ..before })
             }
             _ => None,
         };

@@ -6,56 +6,44 @@ use crate::engine::{Cells, Cpu, Outcome, RowBatch};
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// What became of a batch.
-pub struct CompletedBatch {
-    /// All cells.
-    pub cells: Cells,
-    /// Result of the audit.
-    pub audit: Audit,
-}
-
-/// Completes the `cells` of an engine on the CPU, or solves all cells there without an engine's. Cells are counted in `counts`: with a
-/// disabled engine (`has_failed`), those without a base point count as solved by the CPU instead.
+/// Completes the `cells` of an engine on the CPU, or solves all cells there without an engine's. Counts cells in `counts`; with a failed
+/// engine (`has_failed`), those without a base point count as solved by the CPU instead. Returns all cells and the result of the audit.
 pub fn complete(
     batch: &RowBatch,
     cells: Option<Cells>,
     has_failed: bool,
     cpu: &mut Cpu,
     counts: &mut EngineCells,
-) -> CompletedBatch {
+) -> (Cells, Audit) {
     let mut audit = Audit::default();
     if let Some(mut cells) = cells {
         let rest = rest(batch, &cells);
         let found = cpu.solve(&rest);
         audit = audit::compare(batch, &cells, &rest, &found);
-        let solved = cells.outcome.iter().filter(|own| **own == Outcome::Solved);
-        let solved = solved.count() as u64;
         if audit.differing == 0 {
             for outcome in &cells.outcome {
                 counts.count(*outcome);
             }
             let mut without = 0;
             for (index, from) in batch.places_in(&rest) {
-                if cells.outcome[index] != Outcome::Solved {
-                    let cell = found.get(from);
-                    let is_unasked = cells.outcome[index] == Outcome::NoBasePoint;
-                    without += u64::from(is_unasked && cell.outcome != Outcome::OffSheet);
-                    cells.set(index, &cell);
+                let before = cells.outcome[index];
+                if before != Outcome::Solved {
+                    let is_on_sheet = found.outcome[from] != Outcome::OffSheet;
+                    without += u64::from(before == Outcome::NoBasePoint && is_on_sheet);
+                    cells.set(index, &found.get(from));
                 }
             }
-            counts.add_unasked(without, has_failed);
-            return CompletedBatch { cells, audit };
+            counts.add_others(without, has_failed);
+            return (cells, audit);
         }
-        audit.turned_over = solved;
+        let solved = cells.outcome.iter().filter(|own| **own == Outcome::Solved);
+        audit.turned_over = solved.count() as u64;
     }
     let cells = cpu.solve(batch);
-    let on_sheet = cells
-        .outcome
-        .iter()
-        .filter(|own| **own != Outcome::OffSheet);
-    let has_failed = has_failed || audit.differing > 0;
-    counts.add_unasked(on_sheet.count() as u64, has_failed);
-    CompletedBatch { cells, audit }
+    let is_on_sheet = |own: &&Outcome| **own != Outcome::OffSheet;
+    let on_sheet = cells.outcome.iter().filter(is_on_sheet).count();
+    counts.add_others(on_sheet as u64, has_failed || audit.differing > 0);
+    (cells, audit)
 }
 
 /// The cells that the CPU solves: those that are not certified, and the sample of the audit.

@@ -9,7 +9,6 @@ mod rows;
 mod sliding;
 mod stages;
 mod summary;
-mod task;
 
 use crate::engine::{Engine, Worker};
 use crate::plan::Plan;
@@ -18,11 +17,10 @@ use crate::scene::Scene;
 pub use panel::Panel;
 use pipeline::Pipeline;
 pub use stages::Stage;
-use stages::{StageTimes, process_time};
+use stages::{StageTimes, process_seconds};
 use std::ops::ControlFlow;
 use std::time::Instant;
 pub use summary::{Audit, EngineCells, Summary};
-use task::Task;
 
 /// Computes the panels of `scene` according to `plan`, on the threads of the current pool; call it within
 /// `rayon::ThreadPool::install`, or every stage of every row batch wakes the pool up.
@@ -41,14 +39,12 @@ pub fn run<E: Send>(
     on_progress: &mut dyn FnMut(usize) -> ControlFlow<()>,
     keep: &mut (dyn FnMut(Vec<Panel>) -> Result<(), E> + Send),
 ) -> Result<Summary, E> {
-    let (start, cpu_start) = (Instant::now(), process_time());
-    let task = Task::new(scene, plan, engine.is_some());
-    let resolution = engine
-        .as_ref()
-        .map(|own| own.resolution(plan.method.resolution));
+    let (start, cpu_start) = (Instant::now(), process_seconds());
+    let resolution = engine.as_ref();
+    let resolution = resolution.map(|own| own.resolution(plan.method.resolution));
     let mut packing = StageTimes::default();
-    let summary = Worker::with(engine, |worker| {
-        let mut pipeline = Pipeline::new(&task, worker, resolution);
+    let mut summary = Worker::with(engine, |worker| {
+        let mut pipeline = Pipeline::new(scene, plan, worker, resolution);
         let mut keep = |panels| packing.time(Stage::Packing, || keep(panels));
         let mut finished: Option<Vec<Panel>> = None;
         for _ in plan.groups() {
@@ -65,12 +61,10 @@ pub fn run<E: Send>(
         finished.map_or(Ok(()), keep)?;
         Ok(pipeline.finish())
     })?;
-    Ok(Summary {
-        packing: packing.of(Stage::Packing),
-        wall: start.elapsed(),
-        cpu: process_time()
-            .zip(cpu_start)
-            .map(|(end, start)| end - start),
-        ..summary
-    })
+    let packing = packing.0[Stage::Packing as usize];
+    summary.stages.0[Stage::Packing as usize] = packing;
+    summary.wall_seconds = start.elapsed().as_secs_f64();
+    let cpu = process_seconds().zip(cpu_start);
+    summary.cpu_seconds = cpu.map(|(end, start)| end - start);
+    Ok(summary)
 }

@@ -12,7 +12,7 @@ pub struct Panel {
     pub regime: Vec<u32>,
     /// [`Status`] codes.
     pub status: Vec<u32>,
-    /// One vector per name in [`STATE_CHANNELS`]; NaN where there is no contact, empty where it is not wanted.
+    /// One vector per name in [`STATE_CHANNELS`]; NaN without contact, empty if the channel is not computed.
     pub state: [Vec<f32>; STATE_CHANNELS.len()],
     /// Distance of the solution's pole centre from the wanted one, relative to the whisker's length; that of
     /// the last state computed where a cell is unresolved, NaN where there is no contact.
@@ -24,7 +24,7 @@ pub struct Panel {
 }
 
 impl Panel {
-    /// A panel of so many cells, none of which has an answer; of a state it has these `channels`.
+    /// A panel of unresolved cells with the channels of a state among `channels`.
     #[must_use]
     pub fn unresolved(cells: usize, channels: Channels) -> Self {
         let mut panel = Self::unwritten(cells, channels);
@@ -37,8 +37,7 @@ impl Panel {
         panel
     }
 
-    /// Creates a panel of zeros, of which every cell must be written. Memory of zeros costs nothing until it is written, row by
-    /// row on all threads.
+    /// Creates a panel of zeros, of which every cell must be written. Zeroed memory costs nothing until it is written, on all threads.
     pub(super) fn unwritten(cells: usize, channels: Channels) -> Self {
         let of_state = STATE_CHANNELS.map(|name| {
             let cells = if channels.contains(name) { cells } else { 0 };
@@ -76,7 +75,7 @@ impl Panel {
             .map(move |code| of(code).unwrap_or(Regime::Unresolved))
     }
 
-    /// Some rows of so many columns, to be filled side by side.
+    /// The `rows` of a panel that is `width` cells wide, which can be written side by side.
     pub(super) fn rows_mut(&mut self, width: usize, rows: Range<usize>) -> Vec<RowMut<'_>> {
         let cells = rows.start * width..rows.end * width;
         let mut state = self.state.each_mut().map(|channel| {
@@ -114,7 +113,7 @@ impl Panel {
 pub(super) struct RowMut<'a> {
     pub regime: &'a mut [u32],
     pub status: &'a mut [u32],
-    /// Empty where it is not wanted.
+    /// Empty if the channel is not computed.
     pub state: [&'a mut [f32]; STATE_CHANNELS.len()],
     pub residual: &'a mut [f32],
     pub margin_deg: &'a mut [f32],

@@ -1,97 +1,81 @@
 //! The row batches of a run in order. An engine solves the next ones while the threads of the pool complete and classify one.
 //!
-//! Cells are collected in order, and the audit of a batch ends before those of the next one are used, so that no race decides about a cell.
+//! Cells are collected in order, and the audit of a batch ends before those of the next one are used, so that the bytes do not depend on
+//! the speed of a thread.
 
 use super::fallback::complete;
 use super::panel::Panel;
 use super::rows;
-use super::stages::{Stage, StageTimes};
-use super::summary::Summary;
-use super::task::Task;
-use crate::engine::{Cells, Cpu, RowBatch, WhiskerSide, Worker, on_gpu};
+use super::stages::Stage;
+use super::summary::{EngineCells, Summary};
+use crate::engine::{Cells, Cpu, RowBatch, SideColumns, WhiskerSide, Worker, on_gpu};
+use crate::plan::{CELLS_IN_FLIGHT, Plan};
+use crate::scene::{Scene, SweptWhisker};
+use crate::sheet::Sheet;
 use crate::shooting::Resolution;
+use rayon::prelude::*;
 use std::collections::VecDeque;
 use std::ops::{ControlFlow, Range};
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
-/// A batch of a run.
-struct QueuedBatch {
-    batch: Arc<RowBatch>,
-    /// Whether it is the last one of its group of panels.
-    is_last: bool,
-}
-
-/// The batches of a run that are still to be made.
-struct Batches<'a> {
-    task: &'a Task<'a>,
-    groups: Box<dyn Iterator<Item = Range<usize>> + 'a>,
-    /// The sides of the last batch's group, and the number of their rows in batches.
-    begun: Option<(Arc<[WhiskerSide]>, usize)>,
-}
-
-impl Batches<'_> {
-    /// Makes the next batch, with base points in the steps of `resolution` if an engine may solve it.
-    fn next(
-        &mut self,
-        resolution: Option<Resolution>,
-        times: &mut StageTimes,
-    ) -> Option<QueuedBatch> {
-        let (task, method) = (self.task, self.task.plan.method);
-        let (sides, from) = match self.begun.take() {
-            Some(begun) => begun,
-            None => {
-                let whiskers = self.groups.next()?;
-                (times.time(Stage::Sheets, || task.sides(whiskers)), 0)
-            }
-        };
-        let height = task.scene.grid.distance_mm.len();
-        let all = sides.len() * height;
-        let to = all.min(from + task.rows_at_once);
-        let rows = (from..to).map(|i| (i / height, i % height));
-        let pushes = Arc::clone(&task.pushes);
-        let mut batch = RowBatch::new(method, Arc::clone(&sides), pushes, rows);
-        batch.has_values = task.plan.channels.has_state();
-        if let Some(resolution) = resolution.filter(|_| on_gpu(method.effects).is_ok()) {
-            batch = times.time(Stage::BasePoints, || batch.with_base_points(resolution));
-        }
-        self.begun = (to < all).then_some((sides, to));
-        Some(QueuedBatch {
-            batch: Arc::new(batch),
-            is_last: to == all,
-        })
-    }
-}
+/// Cells per thread in a batch for the CPU alone: nearly all blocks of the refinement are full, and little memory is new.
+const CELLS_PER_THREAD: usize = 8192;
 
 /// Batches submitted ahead of the one that is completed: one that the engine solves, and one that waits.
 const AHEAD: usize = 2;
 
-/// A run under way.
+/// A run: its batches and results.
 pub struct Pipeline<'a> {
+    scene: &'a Scene,
+    plan: &'a Plan,
+    rows_at_once: usize,
+    columns: Vec<Arc<SideColumns>>,
+    /// Signed push angles of the columns of all sides, in radians.
+    pushes: Arc<[f64]>,
+    /// The whiskers of each group of panels whose batches are still to be made.
+    groups: Box<dyn Iterator<Item = Range<usize>> + 'a>,
+    /// The sides of the group of the last batch, and the number of their rows in batches.
+    begun: Option<(Arc<[WhiskerSide]>, usize)>,
+    /// The batches made and not completed, each with whether it is the last one of its group.
+    queue: VecDeque<(Arc<RowBatch>, bool)>,
     worker: Worker,
     cpu: Cpu,
     /// Resolution of base points for the engine, if there is one.
     resolution: Option<Resolution>,
-    batches: Batches<'a>,
-    queue: VecDeque<QueuedBatch>,
-    waiting: Duration,
     summary: Summary,
 }
 
 impl<'a> Pipeline<'a> {
     /// A run before its first batch; base points for the engine of `worker` are in the steps of `resolution`.
-    pub fn new(task: &'a Task<'a>, worker: Worker, resolution: Option<Resolution>) -> Self {
+    pub fn new(
+        scene: &'a Scene,
+        plan: &'a Plan,
+        worker: Worker,
+        resolution: Option<Resolution>,
+    ) -> Self {
+        let push_angle_deg = &scene.grid.push_angle_deg;
+        let cells = (CELLS_PER_THREAD * rayon::current_num_threads()).min(CELLS_IN_FLIGHT);
+        let rows_on_cpu = (cells / push_angle_deg.len()).max(1);
+        let mut pushes: Vec<f64> = Vec::new();
+        let columns = plan.sides.iter().map(|side| {
+            // A row has fewer columns than `u32` can count.
+            let side = SideColumns::new(push_angle_deg, *side, pushes.len() as u32);
+            pushes.extend(side.columns.iter().map(|column| column.push));
+            Arc::new(side)
+        });
         Self {
+            scene,
+            plan,
+            rows_at_once: resolution.map_or(rows_on_cpu, |_| plan.rows_at_once),
+            columns: columns.collect(),
+            pushes: pushes.into(),
+            groups: Box::new(plan.groups()),
+            begun: None,
+            queue: VecDeque::new(),
             worker,
             cpu: Cpu::default(),
             resolution,
-            batches: Batches {
-                task,
-                groups: Box::new(task.plan.groups()),
-                begun: None,
-            },
-            queue: VecDeque::new(),
-            waiting: Duration::ZERO,
             summary: Summary::default(),
         }
     }
@@ -119,70 +103,101 @@ impl<'a> Pipeline<'a> {
     }
 
     /// Ends the run.
-    pub fn finish(mut self) -> Summary {
-        self.summary.stages.add(Stage::Guesses, self.cpu.guesses);
-        self.summary
-            .stages
-            .add(Stage::Refinement, self.cpu.refinement);
-        Summary {
-            device: self.worker.busy,
-            engine_failure: self.worker.failure,
-            waiting: self.waiting,
-            ..self.summary
+    pub fn finish(self) -> Summary {
+        let mut summary = self.summary;
+        summary.stages.0[Stage::Guesses as usize] = self.cpu.guesses;
+        summary.stages.0[Stage::Refinement as usize] = self.cpu.refinement;
+        summary.device_seconds = self.worker.busy.as_secs_f64();
+        summary.engine_failure = self.worker.failure;
+        if self.resolution.is_none() {
+            summary.engine_cells = EngineCells::default();
         }
+        summary
     }
 
     /// Submits the next batches, and completes the first of the queue. Returns the number of its cells, and whether the `panels` are
     /// complete; `None` without a further batch.
     fn advance(&mut self, panels: &mut Vec<Panel>) -> Option<(usize, bool)> {
         let ahead = if self.worker.is_working() { AHEAD } else { 0 };
-        while self.queue.len() <= ahead {
-            let resolution = self.resolution.filter(|_| self.worker.is_working());
-            let next = self.batches.next(resolution, &mut self.summary.stages);
-            let Some(next) = next else { break };
-            if next.is_for_engine() {
-                self.worker.submit(Arc::clone(&next.batch));
+        while self.queue.len() <= ahead
+            && let Some((batch, is_last)) = self.next_batch()
+        {
+            let batch = Arc::new(batch);
+            if !batch.base_points.is_empty() {
+                self.worker.submit(Arc::clone(&batch));
             }
-            self.queue.push_back(next);
+            self.queue.push_back((batch, is_last));
         }
-        let first = self.queue.pop_front()?;
+        let (batch, is_last) = self.queue.pop_front()?;
         let begun = Instant::now();
-        let cells = first.is_for_engine().then(|| self.worker.collect());
-        self.waiting += begun.elapsed();
-        self.complete(&first.batch, cells.flatten(), panels);
-        Some((first.batch.cells(), first.is_last))
+        let is_submitted = !batch.base_points.is_empty();
+        let cells = is_submitted.then(|| self.worker.collect()).flatten();
+        self.summary.waiting_seconds += begun.elapsed().as_secs_f64();
+        self.complete(&batch, cells, panels);
+        Some((batch.cells(), is_last))
+    }
+
+    /// Makes the next batch, with base points if the engine may solve it. Returns it with whether it is the last one of its group.
+    fn next_batch(&mut self) -> Option<(RowBatch, bool)> {
+        let (sides, from) = match self.begun.take() {
+            Some(begun) => begun,
+            None => {
+                let whiskers = self.groups.next()?;
+                let mut times = self.summary.stages;
+                let sides = times.time(Stage::Sheets, || self.sides(whiskers));
+                self.summary.stages = times;
+                (sides, 0)
+            }
+        };
+        let method = self.plan.method;
+        let height = self.scene.grid.distance_mm.len();
+        let all = sides.len() * height;
+        let to = all.min(from + self.rows_at_once);
+        let rows = (from..to).map(|i| (i / height, i % height));
+        let mut batch = RowBatch::new(method, Arc::clone(&sides), Arc::clone(&self.pushes), rows);
+        batch.has_values = self.plan.channels.has_state();
+        let is_for_engine = self.worker.is_working() && on_gpu(method.effects).is_ok();
+        if let Some(resolution) = self.resolution.filter(|_| is_for_engine) {
+            let times = &mut self.summary.stages;
+            batch = times.time(Stage::BasePoints, || batch.with_base_points(resolution));
+        }
+        self.begun = (to < all).then_some((sides, to));
+        Some((batch, to == all))
+    }
+
+    /// Every side of some of the whiskers, in order.
+    fn sides(&self, whiskers: Range<usize>) -> Arc<[WhiskerSide]> {
+        let whiskers: Vec<SweptWhisker> = whiskers.map(|index| self.scene.whisker(index)).collect();
+        let of_whisker = |swept| self.columns.iter().map(move |columns| (swept, columns));
+        let pairs: Vec<(&SweptWhisker, &Arc<SideColumns>)> =
+            whiskers.iter().flat_map(of_whisker).collect();
+        let sides = pairs.into_par_iter().map(|(swept, columns)| {
+            let rod = swept.rod(columns.side);
+            let distances = self.scene.grid.distance_mm.iter();
+            let distances: Vec<f64> = distances.map(|d| d / swept.whisker.length_mm).collect();
+            let sheet = Sheet::new(self.plan.method, &rod, columns.side, &distances);
+            WhiskerSide::new(Arc::clone(columns), swept.whisker.units(), sheet)
+        });
+        sides.collect::<Vec<_>>().into()
     }
 
     /// Completes the `cells` of an engine and writes them into `panels`, which are made if there are none.
     fn complete(&mut self, batch: &RowBatch, cells: Option<Cells>, panels: &mut Vec<Panel>) {
-        let task = self.batches.task;
-        let width = task.scene.grid.push_angle_deg.len();
-        let sides = task.sides_per_panel();
+        let (width, sides) = (self.scene.grid.push_angle_deg.len(), self.columns.len());
         if panels.is_empty() {
-            let cells = width * task.scene.grid.distance_mm.len();
-            let panel = |_| Panel::unwritten(cells, task.plan.channels);
+            let cells = width * self.scene.grid.distance_mm.len();
+            let panel = |_| Panel::unwritten(cells, self.plan.channels);
             *panels = (0..batch.sides.len() / sides).map(panel).collect();
         }
         let summary = &mut self.summary;
         let has_failed = self.worker.failure.is_some();
-        let mut counts = summary.engine_cells;
-        let done = complete(batch, cells, has_failed, &mut self.cpu, &mut counts);
-        if self.resolution.is_some() {
-            summary.engine_cells = counts;
-        }
-        summary.audit += done.audit;
-        let fill = || rows::fill(batch, &done.cells, sides, width, panels);
+        let counts = &mut summary.engine_cells;
+        let (cells, audit) = complete(batch, cells, has_failed, &mut self.cpu, counts);
+        summary.audit += audit;
+        let fill = || rows::fill(batch, &cells, sides, width, panels);
         summary.stages.time(Stage::Classification, fill);
-        if done.audit.differing > 0 {
-            self.worker
-                .fail_audit(done.audit.differing, done.audit.cells);
+        if audit.differing > 0 {
+            self.worker.fail_audit(audit.differing, audit.cells);
         }
-    }
-}
-
-impl QueuedBatch {
-    /// Returns true if an engine can solve some of its cells.
-    fn is_for_engine(&self) -> bool {
-        !self.batch.base_points.is_empty()
     }
 }

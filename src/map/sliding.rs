@@ -1,4 +1,4 @@
-//! Which states of a map slide as friction is computed for: the others have a status of their own.
+//! Statuses of states whose contact does not slide toward the tip, as the computed friction assumes.
 
 use crate::classify::{ContactHistory, Regime, Sliding, Status};
 use crate::engine::WhiskerSide;
@@ -6,15 +6,15 @@ use crate::sheet::{LevelCurve, rows_per_batch};
 use glam::DVec2;
 use rayon::prelude::*;
 
-/// A state that was found.
+/// A state of a row.
 pub struct FoundState {
     /// Column of the panel.
     pub column: usize,
-    /// Whether a push from first touch leads there.
+    /// Contact if a push from first touch reaches the state.
     pub regime: Regime,
     /// `(tau, load)`.
     pub point: DVec2,
-    /// A magnitude, in radians.
+    /// Magnitude of the push angle, in radians.
     pub push: f64,
 }
 
@@ -25,21 +25,20 @@ pub struct FoundRow {
 }
 
 impl FoundRow {
-    /// Columns of the states that do not slide toward the tip, and what their statuses become. Where it is not known what a push makes of
-    /// the contact, it counts as sticking.
-    fn marks(&self, side: &WhiskerSide, dragged: Option<&ContactHistory>) -> Vec<(usize, Status)> {
+    /// Columns and statuses of the states that do not slide toward the tip. A contact with an unknown history counts as sticking.
+    fn marks(&self, side: &WhiskerSide, history: Option<&ContactHistory>) -> Vec<(usize, Status)> {
         let (sheet, states) = (&side.sheet, &self.states);
-        let is_led_to = |state: &&FoundState| state.regime == Regime::Contact;
-        let led_to = states.iter().filter(is_led_to).map(|state| {
-            let sliding = dragged.map(|dragged| dragged.sliding(state.push));
+        let is_reached = |state: &&FoundState| state.regime == Regime::Contact;
+        let reached = states.iter().filter(is_reached).map(|state| {
+            let sliding = history.map(|history| history.sliding(state.push));
             (state.column, sliding.unwrap_or(Sliding::Sticks))
         });
-        let apart: Vec<&FoundState> = states.iter().filter(|state| !is_led_to(state)).collect();
+        let apart: Vec<&FoundState> = states.iter().filter(|state| !is_reached(state)).collect();
         let points: Vec<DVec2> = apart.iter().map(|state| state.point).collect();
         let slidings = Sliding::at(sheet.level(self.row).method, &sheet.rod, &points);
         let apart = apart.iter().zip(slidings);
         let apart = apart.filter_map(|(state, sliding)| Some((state.column, sliding?)));
-        let marked = led_to
+        let marked = reached
             .chain(apart)
             .filter_map(|(column, sliding)| match sliding {
                 Sliding::Tip => None,
@@ -50,13 +49,13 @@ impl FoundRow {
     }
 }
 
-/// Writes the statuses of the states of `rows` of `side` into those of a panel that is `width` cells wide.
+/// Writes the statuses of the states of `rows` of `side` into the `status` of a panel that is `width` cells wide.
 pub fn mark(side: &WhiskerSide, rows: &[FoundRow], width: usize, status: &mut [u32]) {
     let marks = rows.par_chunks(rows_per_batch(rows.len())).map(|rows| {
         let levels: Vec<LevelCurve> = rows.iter().map(|row| side.sheet.level(row.row)).collect();
-        let dragged = ContactHistory::of(&levels).into_iter();
-        rows.iter().zip(dragged).flat_map(|(row, dragged)| {
-            let marks = row.marks(side, dragged.as_ref()).into_iter();
+        let histories = ContactHistory::of(&levels).into_iter();
+        rows.iter().zip(histories).flat_map(|(row, history)| {
+            let marks = row.marks(side, history.as_ref()).into_iter();
             marks.map(|(column, status)| (row.row * width + column, status))
         })
     });

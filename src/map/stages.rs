@@ -4,6 +4,7 @@ use std::time::{Duration, Instant};
 
 /// A stage of a run. Stages follow each other for one row batch; only packing runs beside the others.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Stage {
     /// Folds, lattices and exact row boundaries.
     Sheets,
@@ -33,36 +34,25 @@ impl Stage {
 
 /// Wall time per stage, in the order of [`Stage::ALL`].
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct StageTimes([Duration; Stage::ALL.len()]);
+pub(super) struct StageTimes(pub [Duration; Stage::ALL.len()]);
 
 impl StageTimes {
-    /// Does `work` and adds its wall time to `stage`.
+    /// Calls `work` and adds its wall time to `stage`.
     pub fn time<R>(&mut self, stage: Stage, work: impl FnOnce() -> R) -> R {
         let begun = Instant::now();
         let done = work();
-        self.add(stage, begun.elapsed());
+        self.0[stage as usize] += begun.elapsed();
         done
     }
-
-    /// Adds wall time to `stage`.
-    pub fn add(&mut self, stage: Stage, time: Duration) {
-        self.0[stage as usize] += time;
-    }
-
-    /// Wall time of `stage`.
-    pub const fn of(&self, stage: Stage) -> Duration {
-        self.0[stage as usize]
-    }
 }
 
-/// CPU time of this process since it started; `None` where the system has no such clock.
-#[cfg(unix)]
-pub(super) fn process_time() -> Option<Duration> {
-    let time = rustix::time::clock_gettime(rustix::time::ClockId::ProcessCPUTime);
-    Some(Duration::new(time.tv_sec as u64, time.tv_nsec as u32))
-}
-
-#[cfg(not(unix))]
-pub(super) const fn process_time() -> Option<Duration> {
+/// CPU seconds of this process since it started; `None` where the system has no such clock.
+pub(super) fn process_seconds() -> Option<f64> {
+    #[cfg(unix)]
+    {
+        let time = rustix::time::clock_gettime(rustix::time::ClockId::ProcessCPUTime);
+        Some(time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64)
+    }
+    #[cfg(not(unix))]
     None
 }

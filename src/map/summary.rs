@@ -1,4 +1,4 @@
-//! What a run says about itself when it is done.
+//! Counts and times of a run.
 
 use super::stages::StageTimes;
 use super::{Panel, Stage};
@@ -6,7 +6,6 @@ use crate::classify::{Regime, Status};
 use crate::engine::{EngineError, Outcome};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
-use std::time::Duration;
 
 /// Outcomes of the cells of a run with an engine.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -48,8 +47,8 @@ impl EngineCells {
         }
     }
 
-    /// Counts cells that the engine did not get, because it had failed or had no base point for them.
-    pub(super) const fn add_unasked(&mut self, cells: u64, has_failed: bool) {
+    /// Counts cells that the engine did not get, because it had failed or they had no base point.
+    pub(super) const fn add_others(&mut self, cells: u64, has_failed: bool) {
         match has_failed {
             true => self.on_cpu_instead += cells,
             false => self.without_base_point += cells,
@@ -76,7 +75,7 @@ impl std::ops::AddAssign for Audit {
     }
 }
 
-/// Cells that are counted together: they stay in a core's nearest cache.
+/// Cells that are counted together: they stay in a core's innermost cache.
 const AT_ONCE: usize = 2048;
 
 /// Counts and times of a run.
@@ -96,36 +95,38 @@ pub struct Summary {
     pub toward_base: u64,
     /// Cells with a state whose contact sticks.
     pub sticking: u64,
-    /// What became of the engine's cells.
+    /// Outcomes of the engine's cells.
     pub engine_cells: EngineCells,
-    /// What came of looking at some of them once more.
+    /// Result of the engine's audit.
     pub audit: Audit,
-    /// Why the CPU went on in the engine's stead, if it did.
+    /// Failure of the engine, after which the CPU solved all cells.
     pub engine_failure: Option<EngineError>,
     /// Whether the run was cancelled: its last panels are missing.
     pub is_cancelled: bool,
+    /// Seconds from the first sheet to the last panel kept.
+    pub wall_seconds: f64,
+    /// CPU seconds of the process during the run, over all its threads; `None` where the system has no such clock.
+    pub cpu_seconds: Option<f64>,
+    /// Busy seconds of the engine, beside the stages.
+    pub device_seconds: f64,
+    /// Seconds of [`Self::device_seconds`] for which the threads waited for the engine.
+    pub waiting_seconds: f64,
     pub(super) stages: StageTimes,
-    pub(super) packing: Duration,
-    pub(super) wall: Duration,
-    pub(super) cpu: Option<Duration>,
-    pub(super) device: Duration,
-    pub(super) waiting: Duration,
 }
 
 impl Summary {
     /// Adds a finished panel.
     pub(super) fn count(&mut self, panel: &Panel) {
-        let parts = panel
-            .regime
-            .par_chunks(AT_ONCE)
-            .zip(panel.status.par_chunks(AT_ONCE));
-        let numbers = panel.residual.par_chunks(AT_ONCE);
-        let parts = parts.zip(numbers.zip(panel.newton_steps.par_chunks(AT_ONCE)));
-        let parts = parts.map(|((regimes, statuses), (residuals, steps))| {
-            let mut part = Self::default();
-            part.count_cells(regimes, statuses, residuals, steps);
-            part
-        });
+        let codes = [&panel.regime, &panel.status, &panel.newton_steps];
+        let [regimes, statuses, steps] = codes.map(|codes| codes.par_chunks(AT_ONCE));
+        let parts = (regimes, statuses, panel.residual.par_chunks(AT_ONCE), steps);
+        let parts = parts
+            .into_par_iter()
+            .map(|(regimes, statuses, residuals, steps)| {
+                let mut part = Self::default();
+                part.count_cells(regimes, statuses, residuals, steps);
+                part
+            });
         let parts: Vec<Self> = parts.collect();
         for part in parts {
             for (cells, more) in self.regimes.iter_mut().zip(part.regimes) {
@@ -140,7 +141,7 @@ impl Summary {
         }
     }
 
-    /// Counts some cells: their codes of regime and status, their residuals and steps.
+    /// Counts cells by their codes of regime and status, their residuals and steps.
     fn count_cells(&mut self, regimes: &[u32], statuses: &[u32], residuals: &[f32], steps: &[u32]) {
         let of = |codes: &[u32], code: u32| codes.iter().filter(|own| **own == code).count() as u64;
         self.regimes = Regime::ALL.map(|regime| of(regimes, regime.code()));
@@ -163,7 +164,7 @@ impl Summary {
         self.regimes.iter().sum()
     }
 
-    /// Cells without an answer.
+    /// Cells without a regime.
     #[must_use]
     pub fn unresolved(&self) -> u64 {
         self.regimes[Regime::ALL.len() - 1]
@@ -172,33 +173,6 @@ impl Summary {
     /// Wall seconds of `stage`. All stages but [`Stage::Packing`] follow each other.
     #[must_use]
     pub const fn stage_seconds(&self, stage: Stage) -> f64 {
-        match stage {
-            Stage::Packing => self.packing.as_secs_f64(),
-            _ => self.stages.of(stage).as_secs_f64(),
-        }
-    }
-
-    /// CPU seconds of the process during the run, over all its threads; `None` where the system has no such clock.
-    #[must_use]
-    pub fn cpu_seconds(&self) -> Option<f64> {
-        self.cpu.as_ref().map(Duration::as_secs_f64)
-    }
-
-    /// Seconds from the first sheet to the last panel kept.
-    #[must_use]
-    pub const fn wall_seconds(&self) -> f64 {
-        self.wall.as_secs_f64()
-    }
-
-    /// Seconds for which the engine worked on what it was asked, beside the stages.
-    #[must_use]
-    pub const fn device_seconds(&self) -> f64 {
-        self.device.as_secs_f64()
-    }
-
-    /// Seconds of [`Self::device_seconds`] for which the threads waited for its answers: nothing but the engine and the packing of panels went on.
-    #[must_use]
-    pub const fn waiting_seconds(&self) -> f64 {
-        self.waiting.as_secs_f64()
+        self.stages.0[stage as usize].as_secs_f64()
     }
 }

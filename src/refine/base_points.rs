@@ -153,7 +153,7 @@ fn expand(sheet: &Sheet, row: &RowOfCells, w_end: f64, found: &[ExactState]) -> 
                 load,
                 push,
                 state: variation,
-                per_way: w_end / (tau * tau),
+                load_per_w: w_end / (tau * tau),
                 row: row_here,
                 cells: row.first + from as u32..row.first + to as u32,
             });

@@ -55,12 +55,14 @@ pub fn shipped() -> Vec<Scene> {
 
 /// The GPU engine.
 pub fn open(precision: Precision) -> Gpu {
-    Gpu::new(precision).unwrap_or_else(|error| panic!("{error}"))
+    Gpu::open(None, precision).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// The GPU engine with this shader.
 pub fn open_with(precision: Precision, shader: String) -> Gpu {
-    Gpu::with_shader(precision, shader).unwrap_or_else(|error| panic!("{error}"))
+    let mut gpu = open(precision);
+    gpu.shader = shader;
+    gpu
 }
 
 /// The cells of a run with an engine, whoever solved them, without those of the audit.

@@ -110,7 +110,7 @@ fn residuals_are_bounds(precision: Precision) {
     let mut gpu = open(precision);
     let (mut rest, median, worst) = match precision {
         Precision::F32 => (None, 2e-9, 1e-7),
-        Precision::F64 => (Some(open_with(precision, remainders())), 1e-14, 1e-11),
+        _ => (Some(open_with(precision, remainders())), 1e-14, 1e-11),
     };
     for (name, rows) in every_kind(100) {
         let seen = Seen::of(&rows, &mut gpu, rest.as_mut());

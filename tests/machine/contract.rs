@@ -188,7 +188,7 @@ fn a_nan_hurts_only_the_cells_of_its_base_point(precision: Precision) {
         ("tau", |base| base.tau = f64::NAN),
         ("load", |base| base.load = f64::INFINITY),
         ("push angle", |base| base.push = f64::NAN),
-        ("row parameter", |base| base.per_way = f64::NAN),
+        ("row parameter", |base| base.load_per_w = f64::NAN),
         ("row", |base| base.row[3][1] = f64::NAN),
         ("position", |base| base.state.full.position.y = f64::NAN),
         ("derivative", |base| {

@@ -135,7 +135,7 @@ fn main() -> ExitCode {
 
 /// Why no adapter computes in `precision`, or `None` if one does or fails otherwise.
 fn missing_adapter(precision: Precision) -> Option<String> {
-    match Gpu::new(precision).err()? {
+    match Gpu::open(None, precision).err()? {
         error @ (EngineError::NoAdapter(_) | EngineError::Unsupported { .. }) => {
             Some(error.to_string())
         }

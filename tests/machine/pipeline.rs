@@ -179,13 +179,10 @@ fn stages_follow_each_other(engine: Option<&mut dyn Engine>) {
     }
     let beside = summary.stage_seconds(Stage::Packing);
     let all = Stage::ALL.map(|(stage, _)| summary.stage_seconds(stage));
-    let sequence = all.iter().sum::<f64>() - beside + summary.waiting_seconds();
-    let wall = summary.wall_seconds();
+    let sequence = all.iter().sum::<f64>() - beside + summary.waiting_seconds;
+    let wall = summary.wall_seconds;
     // Sums of rounded seconds.
     assert!(sequence <= wall + 1e-9, "{all:?}: {sequence} of {wall}");
-    assert_eq!(summary.device_seconds() > 0.0, has_engine);
-    assert_eq!(
-        summary.cpu_seconds().is_some_and(|cpu| cpu > 0.0),
-        cfg!(unix)
-    );
+    assert_eq!(summary.device_seconds > 0.0, has_engine);
+    assert_eq!(summary.cpu_seconds.is_some_and(|cpu| cpu > 0.0), cfg!(unix));
 }

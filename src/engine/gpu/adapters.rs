@@ -1,9 +1,9 @@
-//! Which adapters there are, and which one is taken.
+//! The adapters of this machine, and which one the engine uses.
 
 use super::Precision;
 use wgpu::{AdapterInfo, DeviceType};
 
-/// An adapter as a person wants to see it.
+/// Description of an adapter.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct AdapterReport {
     /// Name, interface, kind and driver.
@@ -27,7 +27,7 @@ impl AdapterReport {
         }
     }
 
-    /// The place of its kind in the order of preference, and the kind's name.
+    /// Rank of the adapter's kind in the order of preference, and the kind's name.
     const fn ranked_kind(&self) -> (u8, &'static str) {
         match self.info.device_type {
             DeviceType::DiscreteGpu => (0, "discrete GPU"),
@@ -38,7 +38,7 @@ impl AdapterReport {
         }
     }
 
-    /// What it is, in words.
+    /// Name of the adapter's kind.
     #[must_use]
     pub const fn kind(&self) -> &'static str {
         self.ranked_kind().1
@@ -55,26 +55,26 @@ pub(super) fn enumerate() -> Vec<wgpu::Adapter> {
     pollster::block_on(instance.enumerate_adapters(wgpu::Backends::all()))
 }
 
-/// Every adapter of every interface, for people to see.
+/// Describes every adapter of every interface.
 #[must_use]
 pub fn adapters() -> Vec<AdapterReport> {
     enumerate().iter().map(AdapterReport::new).collect()
 }
 
-/// The first of the best kind among those that are `good`.
+/// Index of the first `good` adapter of the best kind.
 fn best(reports: &[AdapterReport], good: impl Fn(&AdapterReport) -> bool) -> Option<usize> {
     (0..reports.len())
         .filter(|&i| good(&reports[i]))
         .min_by_key(|&i| reports[i].ranked_kind().0)
 }
 
-/// Which adapter the engine takes: the first of the best kind among those with this precision.
+/// Index of the adapter that the engine uses by default: the first of the best kind that has this precision.
 #[must_use]
 pub fn preferred(reports: &[AdapterReport], precision: Precision) -> Option<usize> {
     best(reports, |report| report.computes_in(precision))
 }
 
-/// Which adapter has `part` in its name, whatever the case: the first of the best kind, with this precision if there is one.
+/// Index of the adapter with `part` in its name, ignoring case: the first of the best kind, with this precision if there is one.
 #[must_use]
 pub fn named(reports: &[AdapterReport], part: &str, precision: Precision) -> Option<usize> {
     let part = part.to_lowercase();

@@ -7,12 +7,12 @@ use std::sync::{Arc, mpsc};
 use std::time::Duration;
 use wgpu::BufferUsages as Usage;
 
-/// How long a device may take for a submission: hundreds of times what the pace aims at.
+/// Maximum time of a submission: hundreds of times the goal of the pace.
 const PATIENCE: Duration = Duration::from_secs(60);
 
-/// A device, its queue, and the errors that nobody has seen yet.
+/// A device, its queue, and the errors that have not been returned yet.
 ///
-/// wgpu reports errors when it likes; they wait until [`Device::check`] hands the first one out.
+/// wgpu reports errors at any time; they are kept until [`Device::check`] returns the first one.
 #[derive(Debug)]
 pub struct Device {
     pub info: wgpu::AdapterInfo,
@@ -22,28 +22,20 @@ pub struct Device {
 }
 
 impl Device {
-    /// Opens the preferred adapter for shaders of this precision.
-    pub fn open(precision: Precision) -> Result<Self, EngineError> {
+    /// Opens the adapter at `index` of [`adapters`](super::adapters), or the [`preferred`] one.
+    pub fn open(index: Option<usize>, precision: Precision) -> Result<Self, EngineError> {
         let found = enumerate();
         let reports: Vec<_> = found.iter().map(AdapterReport::new).collect();
-        let chosen = preferred(&reports, precision);
-        let Some(chosen) = chosen.or_else(|| preferred(&reports, Precision::F32)) else {
-            let tried = "no driver of Vulkan, Metal or DirectX 12 answered".to_owned();
-            return Err(EngineError::NoAdapter(tried));
-        };
-        Self::on(&found[chosen], precision)
-    }
-
-    /// Opens the adapter that is at `index` of [`adapters`](super::adapters).
-    pub fn at(index: usize, precision: Precision) -> Result<Self, EngineError> {
-        let found = enumerate();
-        let adapter = found.get(index).ok_or_else(|| {
-            EngineError::NoAdapter(format!("there are {}, not one at {index}", found.len()))
+        let preferred = |precision| preferred(&reports, precision);
+        let index = index
+            .or_else(|| preferred(precision))
+            .or_else(|| preferred(Precision::F32));
+        let adapter = index.and_then(|index| found.get(index)).ok_or_else(|| {
+            EngineError::NoAdapter(match index {
+                Some(index) => format!("there are {}, not one at {index}", found.len()),
+                None => "no driver of Vulkan, Metal or DirectX 12 was found".to_owned(),
+            })
         })?;
-        Self::on(adapter, precision)
-    }
-
-    fn on(adapter: &wgpu::Adapter, precision: Precision) -> Result<Self, EngineError> {
         let features = adapter.features();
         if precision == Precision::F64 && !features.contains(wgpu::Features::SHADER_F64) {
             return Err(EngineError::Unsupported {
@@ -66,7 +58,7 @@ impl Device {
             .map_err(|error| EngineError::Device(error.to_string()))?;
         let (sender, errors) = mpsc::channel();
         let note = move |what: String| {
-            // In one line, whatever the device says; without a receiver there is nobody to tell.
+            // In one line, whatever the device reports. The receiver lives as long as the device.
             let line = what.split_whitespace().collect::<Vec<_>>().join(" ");
             let _ = sender.send(line);
         };
@@ -83,7 +75,7 @@ impl Device {
         })
     }
 
-    /// The first error that has come in since the last call, if any.
+    /// Returns the first error since the last call, if any.
     pub fn check(&self) -> Result<(), EngineError> {
         let mut unseen = self.errors.try_iter();
         let first = unseen.next();
@@ -91,7 +83,7 @@ impl Device {
         first.map_or(Ok(()), |what| Err(EngineError::Device(what)))
     }
 
-    /// Waits until everything up to `submission` is done.
+    /// Waits until all submissions up to `submission` are done.
     pub fn wait(&self, submission: wgpu::SubmissionIndex) -> Result<(), EngineError> {
         let waiting = wgpu::PollType::Wait {
             submission_index: Some(submission),
@@ -108,7 +100,7 @@ impl Device {
         self.handle.limits().max_storage_buffer_binding_size
     }
 
-    /// A new buffer.
+    /// Creates a buffer.
     pub fn buffer(
         &self,
         label: &str,
@@ -124,7 +116,7 @@ impl Device {
         self.check().map(|()| buffer)
     }
 
-    /// What `read` makes of the first `size` bytes of `buffer`, which were asked for before the device was waited for.
+    /// Applies `read` to the first `size` bytes of `buffer`, which [`copy_back`] has mapped.
     pub fn read<R>(
         buffer: &wgpu::Buffer,
         size: u64,
@@ -139,14 +131,14 @@ impl Device {
         Ok(result)
     }
 
-    /// Uploads `bytes`, `what` they are, to `kept`, a buffer that grows when it must.
-    pub fn upload<'a>(
+    /// Returns `kept`, or a new buffer in its place if it has less than `size` bytes of `what`.
+    pub fn grown<'a>(
         &self,
         what: &'static str,
         kept: &'a mut Option<wgpu::Buffer>,
-        bytes: &[u8],
+        size: u64,
+        usage: Usage,
     ) -> Result<&'a wgpu::Buffer, EngineError> {
-        let size = bytes.len() as u64;
         let most = self.most_bytes();
         if size > most {
             return Err(EngineError::Unsupported {
@@ -156,24 +148,61 @@ impl Device {
         }
         let buffer = match kept.take() {
             Some(buffer) if buffer.size() >= size => buffer,
-            _ => {
-                let usage = Usage::STORAGE | Usage::UNIFORM | Usage::COPY_DST;
-                self.buffer(what, size, usage)?
-            }
+            _ => self.buffer(what, size, usage)?,
         };
-        self.queue.write_buffer(&buffer, 0, bytes);
         Ok(kept.insert(buffer))
+    }
+
+    /// Uploads `bytes` of `what` to `kept`, which is replaced if it is too small.
+    pub fn upload<'a>(
+        &self,
+        what: &'static str,
+        kept: &'a mut Option<wgpu::Buffer>,
+        bytes: &[u8],
+    ) -> Result<&'a wgpu::Buffer, EngineError> {
+        let usage = Usage::STORAGE | Usage::UNIFORM | Usage::COPY_DST;
+        let buffer = self.grown(what, kept, bytes.len() as u64, usage)?;
+        self.queue.write_buffer(buffer, 0, bytes);
+        Ok(buffer)
+    }
+
+    /// Compiles the entry point `entry` of `shader` with the values of its `constants`.
+    pub fn pipeline(
+        &self,
+        entry: &str,
+        shader: &str,
+        constants: &[(&str, f64)],
+    ) -> Result<wgpu::ComputePipeline, EngineError> {
+        let module = wgpu::ShaderModuleDescriptor {
+            label: Some(entry),
+            source: wgpu::ShaderSource::Wgsl(shader.into()),
+        };
+        let module = self.handle.create_shader_module(module);
+        self.check()?;
+        let pipeline = wgpu::ComputePipelineDescriptor {
+            label: Some(entry),
+            layout: None,
+            module: &module,
+            entry_point: Some(entry),
+            compilation_options: wgpu::PipelineCompilationOptions {
+                constants,
+                ..Default::default()
+            },
+            cache: None,
+        };
+        let pipeline = self.handle.create_compute_pipeline(&pipeline);
+        self.check().map(|()| pipeline)
     }
 }
 
-/// Has the first `size` bytes of `from` copied to `readback`, for [`Device::read`].
-pub fn answer(
+/// Copies the first `size` bytes of `from` to `readback` and maps them, for [`Device::read`].
+pub fn copy_back(
     commands: &mut wgpu::CommandEncoder,
     from: &wgpu::Buffer,
     readback: &wgpu::Buffer,
     size: u64,
 ) {
     commands.copy_buffer_to_buffer(from, 0, readback, 0, size);
-    // Whether it worked is told by `get_mapped_range`.
+    // `get_mapped_range` returns the error, if any.
     commands.map_buffer_on_submit(readback, wgpu::MapMode::Read, ..size, |_| ());
 }

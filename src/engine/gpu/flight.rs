@@ -1,31 +1,18 @@
-//! A submission under way, in buffers that are used again and again.
+//! A submission on the device, in buffers that are used again.
 
 use super::EngineError;
-use super::base_point::Packed;
-use super::device::{Device, answer};
-use super::layout::{BufferLayout, read_cells};
+use super::cells::{CELL_BYTES, read_cells};
+use super::device::{Device, copy_back};
+use super::packing::Packed;
 use super::pending::PendingBatch;
 use super::stamps::Stamps;
-use std::ops::Range;
 use std::time::{Duration, Instant};
 use wgpu::BufferUsages as Usage;
 
-/// What a submission needs beside what it carries.
-#[derive(Clone, Copy, Debug)]
-pub struct Call<'a> {
-    pub device: &'a Device,
-    pub layout: &'a BufferLayout,
-    pub pipeline: &'a wgpu::ComputePipeline,
-    /// The push angles.
-    pub pushes: (&'a wgpu::Buffer, usize),
-    /// Whether it is timed by the device.
-    pub timed: bool,
-}
-
-/// What the stages of submissions took.
+/// Times of the stages of submissions.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Times {
-    /// Packing and handing over.
+    /// Packing and submitting.
     pub upload: Duration,
     /// The shader, by the device's own clock; 0 where it has none.
     pub dispatch: Duration,
@@ -35,118 +22,103 @@ pub struct Times {
     pub readback: Duration,
 }
 
-/// Room for what a submission reads and writes.
-#[derive(Debug)]
+/// Buffers of a submission, which grow when they must.
+#[derive(Debug, Default)]
 pub struct Buffers {
     stamps: Option<Stamps>,
     groups: Option<wgpu::Buffer>,
     base_points: Option<wgpu::Buffer>,
     starts: Option<wgpu::Buffer>,
-    cells: wgpu::Buffer,
-    readback: wgpu::Buffer,
+    cells: Option<wgpu::Buffer>,
+    readback: Option<wgpu::Buffer>,
 }
 
-impl Buffers {
-    fn new(call: &Call, bytes: u64) -> Result<Self, EngineError> {
-        let device = call.device;
-        Ok(Self {
-            stamps: Stamps::new(device, call.timed)?,
-            groups: None,
-            base_points: None,
-            starts: None,
-            cells: device.buffer(
-                "cells",
-                bytes,
-                Usage::STORAGE | Usage::COPY_SRC | Usage::COPY_DST,
-            )?,
-            readback: device.buffer("readback", bytes, Usage::MAP_READ | Usage::COPY_DST)?,
-        })
-    }
-}
-
-/// A submission under way.
+/// A submission on the device.
 #[derive(Debug)]
 pub struct Flight {
     /// Number of cells.
     pub cells: usize,
     /// End of its base points in the batch.
     base_points_end: usize,
-    /// When it was handed to the queue.
+    /// Time of the submission.
     pub submitted: Instant,
     index: wgpu::SubmissionIndex,
     buffers: Buffers,
 }
 
-/// These bytes of a buffer.
-fn bytes_of(binding: u32, buffer: &wgpu::Buffer, bytes: Range<u64>) -> wgpu::BindGroupEntry<'_> {
+/// Binds a buffer from `offset` on: `size` bytes, or all to its end.
+fn binding(
+    binding: u32,
+    buffer: &wgpu::Buffer,
+    offset: usize,
+    size: Option<usize>,
+) -> wgpu::BindGroupEntry<'_> {
     wgpu::BindGroupEntry {
         binding,
         resource: wgpu::BindingResource::Buffer(wgpu::BufferBinding {
             buffer,
-            offset: bytes.start,
-            size: wgpu::BufferSize::new(bytes.end - bytes.start),
+            offset: offset as u64,
+            size: size.and_then(|size| wgpu::BufferSize::new(size as u64)),
         }),
     }
 }
 
 impl Flight {
-    /// Sends the cells of references on their way, in buffers of a finished flight if they are large enough.
+    /// Submits packed cells in the `buffers` of a finished flight; `is_timed` by the device's clock.
     pub fn submit(
-        call: &Call,
-        buffers: Option<Buffers>,
+        device: &Device,
+        pipeline: &wgpu::ComputePipeline,
+        pushes: &wgpu::Buffer,
+        is_timed: bool,
+        mut buffers: Buffers,
         packed: &Packed,
     ) -> Result<Self, EngineError> {
-        let (device, layout) = (call.device, call.layout);
-        let bytes = (packed.cells * layout.cell) as u64;
-        let mut buffers = match buffers {
-            Some(buffers) if buffers.cells.size() >= bytes => buffers,
-            _ => Buffers::new(call, bytes)?,
-        };
+        if is_timed && buffers.stamps.is_none() {
+            buffers.stamps = Stamps::new(device)?;
+        }
+        let bytes = (packed.cells * CELL_BYTES) as u64;
+        let usage = Usage::STORAGE | Usage::COPY_SRC | Usage::COPY_DST;
+        let cells = device.grown("cells", &mut buffers.cells, bytes, usage)?;
+        let usage = Usage::MAP_READ | Usage::COPY_DST;
+        let readback = device.grown("readback", &mut buffers.readback, bytes, usage)?;
         let groups = bytemuck::cast_slice(&packed.groups);
         let groups = device.upload("groups", &mut buffers.groups, groups)?;
         let base_points =
             device.upload("base points", &mut buffers.base_points, &packed.base_points)?;
         let starts = device.upload("steps", &mut buffers.starts, &packed.starts)?;
-        let pushes = (call.pushes.1 * layout.push) as u64;
-        let room = (packed.starts.len() / packed.dispatches.len()) as u64;
-        let steps = (0..).map(|dispatch| dispatch * room..(dispatch + 1) * room);
-        let bindings = packed
-            .dispatches
-            .iter()
-            .zip(steps)
-            .map(|(of_dispatch, steps)| {
-                let groups_here = [of_dispatch.start, of_dispatch.end]
-                    .map(|i| (i * size_of::<[u32; 4]>()) as u64);
-                let entries = [
-                    bytes_of(0, groups, groups_here[0]..groups_here[1]),
-                    bytes_of(1, base_points, 0..packed.base_points.len() as u64),
-                    bytes_of(2, starts, steps),
-                    bytes_of(3, call.pushes.0, 0..pushes),
-                    bytes_of(4, &buffers.cells, 0..bytes),
-                ];
-                device.handle.create_bind_group(&wgpu::BindGroupDescriptor {
-                    label: Some("cells"),
-                    layout: &call.pipeline.get_bind_group_layout(0),
-                    entries: &entries,
-                })
-            });
+        let room = packed.starts.len() / packed.dispatches.len();
+        let dispatches = packed.dispatches.iter().enumerate();
+        let bindings = dispatches.map(|(index, own)| {
+            let entries = [
+                binding(0, groups, own.start * size_of::<[u32; 4]>(), None),
+                binding(1, base_points, 0, None),
+                binding(2, starts, index * room, Some(room)),
+                binding(3, pushes, 0, None),
+                binding(4, cells, 0, None),
+            ];
+            device.handle.create_bind_group(&wgpu::BindGroupDescriptor {
+                label: Some("cells"),
+                layout: &pipeline.get_bind_group_layout(0),
+                entries: &entries,
+            })
+        });
         let bindings: Vec<wgpu::BindGroup> = bindings.collect();
         let mut commands = device.handle.create_command_encoder(&Default::default());
-        // A cell that the shader does not write must not have the answer of another submission.
-        commands.clear_buffer(&buffers.cells, 0, Some(bytes));
+        // A cell that the shader does not write must not keep the value of another submission.
+        commands.clear_buffer(cells, 0, Some(bytes));
         {
             let mut pass = commands.begin_compute_pass(&wgpu::ComputePassDescriptor {
                 label: Some("cells"),
                 timestamp_writes: buffers.stamps.as_ref().map(Stamps::writes),
             });
-            pass.set_pipeline(call.pipeline);
+            pass.set_pipeline(pipeline);
             for (bindings, groups) in bindings.iter().zip(&packed.dispatches) {
                 pass.set_bind_group(0, bindings, &[]);
                 // The pace keeps them below what `u32` can count.
                 pass.dispatch_workgroups(groups.len() as u32, 1, 1);
             }
         }
-        answer(&mut commands, &buffers.cells, &buffers.readback, bytes);
+        copy_back(&mut commands, cells, readback, bytes);
         if let Some(stamps) = &buffers.stamps {
             stamps.resolve(&mut commands);
         }
@@ -166,7 +138,6 @@ impl Flight {
     pub fn finish(
         self,
         device: &Device,
-        layout: &BufferLayout,
         pending: &mut PendingBatch,
         times: &mut Times,
     ) -> Result<Buffers, EngineError> {
@@ -174,11 +145,13 @@ impl Flight {
         device.wait(self.index)?;
         let arrived = Instant::now();
         times.waiting += arrived - begun;
-        let size = (self.cells * layout.cell) as u64;
         let base_points = pending.received..self.base_points_end;
-        Device::read(&self.buffers.readback, size, |bytes| {
-            read_cells(bytes, &pending.batch, base_points, &mut pending.cells);
-        })?;
+        if let Some(readback) = &self.buffers.readback {
+            let size = (self.cells * CELL_BYTES) as u64;
+            Device::read(readback, size, |bytes| {
+                read_cells(bytes, &pending.batch, base_points, &mut pending.cells);
+            })?;
+        }
         pending.received = self.base_points_end;
         times.readback += arrived.elapsed();
         if let Some(stamps) = &self.buffers.stamps {

@@ -1,22 +1,21 @@
 //! The GPU engine: WGSL compute shaders through wgpu, one cell per invocation.
 //!
-//! The shaders are joined from whole pieces ([`shaders`]), in `f32` or `f64` by a type alias; each set of
-//! effects has a pipeline of its own, made from `override` constants. Work goes out in submissions short
-//! enough for any watchdog, at most two in flight; a device that fails is an error.
+//! The shaders are joined from whole pieces ([`shaders`]), in `f32` or `f64` by a type alias. Each set of effects has a pipeline of its own,
+//! made from `override` constants. Work is sent in submissions short enough for driver watchdogs, at most two in flight. A device that
+//! fails is an error.
 //!
-//! Absent on purpose: a second try on a lost device. A [`Worker`](super::Worker) does without it.
+//! Deliberately absent: a second attempt on a lost device. [`Worker`](super::Worker) continues without it.
 
 mod adapters;
 mod base_point;
-mod bytes;
+mod cells;
 mod device;
 mod flight;
 mod guard;
-mod layout;
 mod pace;
+mod packing;
 mod peak;
 mod pending;
-mod pipeline;
 mod precision;
 pub mod shaders;
 mod stamps;
@@ -29,11 +28,12 @@ pub use guard::DRIVER_CALL;
 use super::{Cells, Engine, EngineDescription, EngineError, RowBatch};
 use crate::rod::Effects;
 use crate::shooting::Resolution;
+use cells::CELL_BYTES;
 use device::Device;
-use flight::{Buffers, Call, Flight};
-use layout::BufferLayout;
+use flight::{Buffers, Flight};
+use pace::Pace;
+use packing::{Packed, WORKGROUP};
 use pending::PendingBatch;
-use pipeline::Pipeline;
 use std::collections::hash_map::Entry;
 use std::collections::{HashMap, VecDeque};
 use std::sync::Arc;
@@ -43,97 +43,58 @@ use std::time::Instant;
 #[derive(Debug)]
 pub struct Gpu {
     precision: Precision,
-    /// In place of [`shaders::cells`].
-    shader: Option<String>,
-    layout: BufferLayout,
+    /// Text of the shader, by default [`shaders::cells`]: tests replace it before the first batch.
+    pub shader: String,
+    /// Whether the device's clock times submissions.
+    pub is_timed: bool,
+    /// Times of the stages of all submissions.
+    pub times: Times,
     device: Device,
     pushes: Option<wgpu::Buffer>,
     /// Buffers that no flight uses.
     buffers: Vec<Buffers>,
-    pipelines: HashMap<Effects, Pipeline>,
+    /// For each set of effects, the compiled shader and its pace.
+    pipelines: HashMap<Effects, (wgpu::ComputePipeline, Pace)>,
     /// The batches submitted and not collected.
     pending: VecDeque<PendingBatch>,
-    /// The submissions under way, in order, each with whether it has the last cells of its batch.
+    /// The submissions in flight, in order, each with whether it has the last cells of its batch.
     flights: VecDeque<(Flight, bool)>,
-    /// Since when the device has had nothing else to do, as far as is known.
+    /// Earliest time at which the device may have become idle.
     idle_since: Instant,
-    /// Whether the device times its work.
-    timed: bool,
-    times: Times,
-    /// What it has failed of.
+    /// The first failure, which all later calls return.
     failure: Option<EngineError>,
 }
 
-/// Submissions in flight: one runs while the answers of the other are read.
+/// Submissions in flight: one runs while the cells of the other are read.
 const IN_FLIGHT: usize = 2;
 
-/// About the most dispatches of a submission: 4 MiB for where their steps start.
+/// Approximate maximum number of dispatches of a submission: 4 MiB for starts of steps.
 const MOST_DISPATCHES: usize = 64;
 
 impl Gpu {
-    /// Opens the [`preferred`] adapter.
+    /// Opens the adapter at `index` of [`adapters`], or the [`preferred`] one.
     ///
     /// # Errors
-    /// [`EngineError::NoAdapter`] without a driver, [`EngineError::Unsupported`] where the adapter has no
-    /// `f64`, [`EngineError::Device`] when the driver refuses a device.
-    pub fn new(precision: Precision) -> Result<Self, EngineError> {
-        Device::open(precision).map(|device| Self::with_device(precision, device))
-    }
-
-    /// Opens the adapter that is at `index` of [`adapters`].
-    ///
-    /// # Errors
-    /// Those of [`Gpu::new`].
-    pub fn at(index: usize, precision: Precision) -> Result<Self, EngineError> {
-        Device::at(index, precision).map(|device| Self::with_device(precision, device))
-    }
-
-    /// Opens the adapter at `index`, and lets the device time its work.
-    ///
-    /// # Errors
-    /// Those of [`Gpu::new`].
-    pub fn timed(index: usize, precision: Precision) -> Result<Self, EngineError> {
+    /// [`EngineError::NoAdapter`] without such an adapter, [`EngineError::Unsupported`] if the adapter has no `f64`,
+    /// [`EngineError::Device`] if the driver refuses a device.
+    pub fn open(index: Option<usize>, precision: Precision) -> Result<Self, EngineError> {
         Ok(Self {
-            timed: true,
-            ..Self::at(index, precision)?
-        })
-    }
-
-    fn with_device(precision: Precision, device: Device) -> Self {
-        Self {
             precision,
-            shader: None,
-            layout: BufferLayout::of(precision),
-            device,
+            shader: shaders::cells(precision),
+            is_timed: false,
+            times: Times::default(),
+            device: Device::open(index, precision)?,
             pushes: None,
             buffers: Vec::new(),
             pipelines: HashMap::new(),
             pending: VecDeque::new(),
             flights: VecDeque::new(),
             idle_since: Instant::now(),
-            timed: false,
-            times: Times::default(),
             failure: None,
-        }
-    }
-
-    /// What its stages have taken since this was asked last.
-    pub fn take_times(&mut self) -> Times {
-        std::mem::take(&mut self.times)
-    }
-
-    /// Opens the [`preferred`] adapter for a shader other than [`shaders::cells`]: a seam for tests, which spoil it.
-    ///
-    /// # Errors
-    /// Those of [`Gpu::new`].
-    pub fn with_shader(precision: Precision, shader: String) -> Result<Self, EngineError> {
-        Ok(Self {
-            shader: Some(shader),
-            ..Self::new(precision)?
         })
     }
 
-    /// Does `work`, unless it has failed before: then it fails again.
+    /// Calls `work`; after a failure, returns the failure instead.
     fn working<R>(
         &mut self,
         work: impl FnOnce(&mut Self) -> Result<R, EngineError>,
@@ -150,41 +111,33 @@ impl Gpu {
         worked
     }
 
-    /// Sends submissions as long as there is something to send, and not enough of them are in flight.
+    /// Sends submissions until enough are in flight or nothing is left to send.
     fn send(&mut self) -> Result<(), EngineError> {
-        let Self {
-            precision,
-            layout,
-            device,
-            ..
-        } = self;
+        let (device, precision) = (&self.device, self.precision);
         while self.flights.len() < IN_FLIGHT
             && let Some(pending) = self.pending.iter_mut().find(|own| own.is_waiting())
         {
             let begun = Instant::now();
             let batch = Arc::clone(&pending.batch);
-            let pushes = (layout.pushes)(&batch.pushes);
+            let pushes = packing::pushes(precision, &batch.pushes);
             let pushes = device.upload("push angles", &mut self.pushes, &pushes)?;
-            let pipeline = match self.pipelines.entry(batch.method.effects) {
+            let effects = batch.method.effects;
+            let (pipeline, pace) = match self.pipelines.entry(effects) {
                 Entry::Occupied(known) => known.into_mut(),
                 Entry::Vacant(new) => {
-                    let text = self.shader.clone();
-                    let text = text.unwrap_or_else(|| shaders::cells(*precision));
-                    let effects = batch.method.effects;
-                    new.insert(Pipeline::new(device, &text, layout, *precision, effects)?)
+                    let constants = shaders::overrides(effects);
+                    let pipeline = device.pipeline("solve_cells", &self.shader, &constants)?;
+                    // The last group of each base point may have one cell, and each base point has a step at least.
+                    let groups = device.handle.limits().max_compute_workgroups_per_dimension;
+                    let groups = groups.saturating_sub(precision.most_steps() as u32).max(1);
+                    let pace = Pace::new(device.most_bytes(), CELL_BYTES, groups, WORKGROUP);
+                    new.insert((pipeline, pace))
                 }
             };
-            let call = Call {
-                device,
-                layout,
-                pipeline: &pipeline.handle,
-                pushes: (pushes, batch.pushes.len()),
-                timed: self.timed,
-            };
-            let steps = MOST_DISPATCHES * precision.most_steps();
-            let part = pending.next(pipeline.pace.cells, steps);
-            let packed = (layout.packed)(&batch, part, precision.most_steps());
-            let flight = Flight::submit(&call, self.buffers.pop(), &packed)?;
+            let part = pending.next(pace.cells, MOST_DISPATCHES * precision.most_steps());
+            let packed = Packed::new(precision, &batch, part);
+            let buffers = self.buffers.pop().unwrap_or_default();
+            let flight = Flight::submit(device, pipeline, pushes, self.is_timed, buffers, &packed)?;
             self.flights.push_back((flight, !pending.is_waiting()));
             self.times.upload += begun.elapsed();
         }
@@ -195,20 +148,20 @@ impl Gpu {
     fn receive(&mut self) -> Result<(), EngineError> {
         let pending = self.pending.iter_mut().find(|own| !own.is_done());
         let (Some(pending), Some((flight, is_last))) = (pending, self.flights.pop_front()) else {
-            let lost = "a batch has no submission under way";
+            let lost = "a batch has no submission in flight";
             return Err(EngineError::Device(lost.to_owned()));
         };
         let (count, started) = (flight.cells, flight.submitted.max(self.idle_since));
-        let buffers = flight.finish(&self.device, &self.layout, pending, &mut self.times)?;
+        let buffers = flight.finish(&self.device, pending, &mut self.times)?;
         self.buffers.push(buffers);
         self.idle_since = Instant::now();
-        if let Some(Pipeline { pace, .. }) = self.pipelines.get_mut(&pending.batch.method.effects) {
+        if let Some((_, pace)) = self.pipelines.get_mut(&pending.batch.method.effects) {
             pace.learn(count, is_last, self.idle_since - started);
         }
         Ok(())
     }
 
-    /// The device: a seam for tests, which destroy it.
+    /// The device, which tests destroy.
     #[must_use]
     pub const fn device(&self) -> &wgpu::Device {
         &self.device.handle

@@ -1,18 +1,17 @@
-//! How many cells go into one submission: decided from times, without a device.
+//! Number of cells of a submission: decided from times, without a device.
 
 use std::time::Duration;
 
-/// What a submission should take: long against its own cost, short against the two seconds after
-/// which some systems reset a GPU.
+/// Time of a submission: long against its overhead, short against the two seconds after which some systems reset a GPU.
 const GOAL: Duration = Duration::from_millis(75);
 
-/// Cells of the first submission, when nothing is known yet: some 10 ms on two cores of a CPU.
+/// Cells of the first submission, before any time is known: about 10 ms on two cores of a CPU.
 const FIRST: usize = 4096;
 
-/// Most cells per submission: 48 MiB for the answers of one; larger submissions are no faster.
+/// Maximum number of cells of a submission: 48 MiB of results; larger submissions are no faster.
 const MOST: usize = 1 << 20;
 
-/// Cells per submission, learnt from the submissions before.
+/// Number of cells per submission, adapted to the times of the previous ones.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Pace {
     /// Cells of the next submission.
@@ -22,8 +21,7 @@ pub struct Pace {
 }
 
 impl Pace {
-    /// For buffers of at most `most_bytes` with at most `cell_bytes` per cell, and `most_groups` groups of
-    /// `group` cells.
+    /// Returns the pace for buffers of at most `most_bytes` with `cell_bytes` per cell, and for `most_groups` groups of `group` cells.
     pub fn new(most_bytes: u64, cell_bytes: usize, most_groups: u32, group: u32) -> Self {
         let by_bytes = usize::try_from(most_bytes).unwrap_or(usize::MAX) / cell_bytes;
         let by_groups = most_groups as usize * group as usize;
@@ -35,8 +33,8 @@ impl Pace {
         }
     }
 
-    /// Learns that `cells` took at most `time`. The first submission of a pipeline compiles it and tells
-    /// nothing; one of the last cells of a question tells only that larger ones take too long.
+    /// Adapts to a submission of `cells` that took at most `time`. The first one of a pipeline is ignored, since it compiles the pipeline;
+    /// the last one of a batch, which is not full, can only slow the pace down.
     pub fn learn(&mut self, cells: usize, is_last: bool, time: Duration) {
         if std::mem::replace(&mut self.warm, true) && (!is_last || time > GOAL) {
             let fitting = cells as f64 * GOAL.as_secs_f64() / time.as_secs_f64().max(1e-6);
@@ -56,7 +54,7 @@ mod tests {
     }
 
     #[test]
-    fn the_first_submission_teaches_nothing() {
+    fn the_first_submission_is_ignored() {
         assert_eq!(warm().cells, FIRST);
     }
 

@@ -1,23 +1,22 @@
-//! What the device could do at best.
+//! Peak rate of the device.
 
-use super::base_point::WORKGROUP;
-use super::pipeline::compile;
+use super::packing::WORKGROUP;
 use super::{EngineError, Gpu, shaders};
 use std::time::Instant;
 
 /// Workgroups of a dispatch.
 const GROUPS: u32 = 1024;
 
-/// Entry points of `shaders/peak.wgsl`, and their accumulators: too few wait for themselves, too many for memory.
+/// Entry points of `shaders/peak.wgsl`, and their accumulators: too few wait for one another's results, too many for memory.
 const KERNELS: [(&str, u64); 2] = [("peak_of_8", 8), ("peak_of_16", 16)];
 
 /// Operations of an invocation for each accumulator: 64 rounds of eight.
 const OPERATIONS: u64 = 2 * 8 * 64;
 
-/// Seconds, beside which the way to the device and back is nothing, and well below what a watchdog allows.
+/// Shortest timed submission, in seconds: long against the latency of the device, short against any watchdog.
 const LONG_ENOUGH: f64 = 0.05;
 
-/// Most dispatches on the clock; a power of 2.
+/// Maximum number of timed dispatches; a power of 2.
 const MOST: u32 = 1 << 14;
 
 impl Gpu {
@@ -36,19 +35,19 @@ impl Gpu {
             })
     }
 
-    /// Seconds of the kernel `entry`, over its invocations.
+    /// Seconds per invocation of the kernel `entry`.
     fn seconds_of_invocation(&self, entry: &str, runs: usize) -> Result<f64, EngineError> {
         let device = &self.device;
-        let pipeline = compile(device, entry, &shaders::peak(self.precision), &[])?;
+        let pipeline = device.pipeline(entry, &shaders::peak(self.precision), &[])?;
         let invocations = u64::from(GROUPS * WORKGROUP);
         let usage = wgpu::BufferUsages::STORAGE;
-        let ends = device.buffer("ends", 8 * invocations, usage)?;
+        let sums = device.buffer("sums", 8 * invocations, usage)?;
         let bindings = device.handle.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("peak"),
             layout: &pipeline.get_bind_group_layout(0),
             entries: &[wgpu::BindGroupEntry {
                 binding: 0,
-                resource: ends.as_entire_binding(),
+                resource: sums.as_entire_binding(),
             }],
         });
         let seconds = |dispatches: u32| {

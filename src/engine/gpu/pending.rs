@@ -1,21 +1,21 @@
-//! A batch under way on the device: sent in parts, whose cells come back in the same order.
+//! A batch on the device: sent in parts, whose cells return in the same order.
 
 use crate::engine::{Cells, Outcome, RowBatch};
 use std::ops::Range;
 use std::sync::Arc;
 
-/// A batch under way.
+/// A batch of which parts are on the device.
 #[derive(Debug)]
 pub struct PendingBatch {
     pub batch: Arc<RowBatch>,
-    /// The cells; those that have not come back are [`Outcome::NoBasePoint`].
+    /// The cells; those that have not returned are [`Outcome::NoBasePoint`].
     pub cells: Cells,
-    /// Number of base points whose cells have come back.
+    /// Number of base points whose cells have returned.
     pub received: usize,
     sent: BatchPart,
 }
 
-/// Some base points of a batch, and the starts of their steps.
+/// Base points of a batch, and the starts of their steps.
 #[derive(Clone, Debug)]
 pub struct BatchPart {
     pub base_points: Range<usize>,
@@ -40,7 +40,7 @@ impl PendingBatch {
         self.sent.base_points.end < self.batch.base_points.len()
     }
 
-    /// Returns true if all cells have come back.
+    /// Returns true if all cells have returned.
     pub fn is_done(&self) -> bool {
         self.received == self.batch.base_points.len()
     }
@@ -48,11 +48,7 @@ impl PendingBatch {
     /// The part to send next: at least one base point, at most `cells` cells and about `steps` steps.
     pub fn next(&mut self, cells: usize, steps: usize) -> BatchPart {
         let [first, first_start] = [self.sent.base_points.end, self.sent.starts.end];
-        let RowBatch {
-            base_points,
-            trajectories,
-            ..
-        } = &*self.batch;
+        let (base_points, trajectories) = (&self.batch.base_points, &self.batch.trajectories);
         let (mut count, mut cells_here, mut steps_here) = (0, 0, 0);
         for (base, trajectory) in base_points.iter().zip(trajectories).skip(first) {
             let cells_with_it = cells_here + base.cells.len();

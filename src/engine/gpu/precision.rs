@@ -5,12 +5,12 @@ use crate::engine::Precision;
 use crate::refine::{LARGEST_Q, LEFT_BY_STEP, ROUNDING};
 use crate::shooting::Resolution;
 
-/// The largest uniform buffer of every device.
+/// Largest uniform buffer that every device allows, in bytes.
 const UNIFORM_BYTES: usize = 1 << 16;
 
 impl Precision {
-    /// How finely differences are integrated where the CPU takes `resolution`. In `f32` more steps than these only add rounding, since a
-    /// difference has a small part of the integrator's error; with fewer, derivatives are not good enough for a step.
+    /// Resolution of the differences where the CPU integrates with `resolution`. Differences have a small part of the integrator's error:
+    /// in `f32` more steps only add rounding, and with fewer the derivatives are too inexact for a Newton step.
     #[must_use]
     pub fn resolution(self, resolution: Resolution) -> Resolution {
         match self {
@@ -19,7 +19,7 @@ impl Precision {
         }
     }
 
-    /// Steps of all references of a dispatch: as many as every device takes as uniforms.
+    /// Maximum number of steps of all base points of a dispatch: as many as every device allows as uniforms.
     #[must_use]
     pub(super) const fn most_steps(self) -> usize {
         UNIFORM_BYTES
@@ -29,8 +29,8 @@ impl Precision {
             }
     }
 
-    /// The largest bound on a pole's miss that the shaders vouch for, in whisker lengths; nearer to the base it goes with the
-    /// contact's arclength, since forces do.
+    /// Largest residual bound that the shaders certify, in whisker lengths. Near the base it is proportional to the contact's arclength,
+    /// as forces are.
     #[must_use]
     pub const fn goal(self) -> f64 {
         match self {
@@ -44,12 +44,12 @@ impl Precision {
     /// `LEFT_BY_STEP` and `LARGEST_Q` are the refinement's. `JACOBIAN_ERROR` bounds the relative error of the Jacobian, a polynomial through
     /// 16 states of the row. With 1e-6 and 4e-6, single random cells in `f64` missed the pole by 1.6 and 1.2 times their bound; with 6e-6
     /// none did (`tests/machine/bound.rs`).
-    /// `ROUNDING_OF_WAY` bounds the pole's miss over the motion of base and pole from the base point to the cell: on random whiskers at
+    /// `ROUNDING_OF_MOTION` bounds the residual over the motion of base and pole from the base point to the cell: on random whiskers at
     /// most 5.8e-7 in `f32`, in the median 5e-8. `FARTHEST_REST` keeps the remainder of the resting parabola's series, some 100 times
     /// its 9th power, below rounding.
     #[must_use]
     pub const fn limits(self) -> [(&'static str, f64); 10] {
-        let [clear_of_fold, clear_of_tip, longest, of_way, rest] = match self {
+        let [clear_of_fold, clear_of_tip, longest, of_motion, rest] = match self {
             Self::F32 => [0.05, 1e-6, 1e-5, 8e-7, 0.06],
             Self::F64 => [1e-3, 1e-9, 1.5e-7, 2e-15, 0.02],
         };
@@ -58,7 +58,7 @@ impl Precision {
             ("LEFT_BY_STEP", LEFT_BY_STEP),
             ("LARGEST_Q", LARGEST_Q),
             ("JACOBIAN_ERROR", 6e-6),
-            ("ROUNDING_OF_WAY", of_way),
+            ("ROUNDING_OF_MOTION", of_motion),
             ("ROUNDING", ROUNDING),
             ("LONGEST_STEP", longest),
             ("CLEAR_OF_FOLD", clear_of_fold),

@@ -1,17 +1,20 @@
 //! The shaders' text: whole pieces in order, after one that Rust writes.
 
 use super::Precision;
-use super::base_point::{PLACES, WORKGROUP};
-use super::layout::OUTCOMES;
+use super::base_point::QUADS;
+use super::cells::OUTCOMES;
+use super::packing::WORKGROUP;
 use crate::plan::STATE_CHANNELS;
 use crate::rod::Effects;
 use crate::shooting::{Nystrom8, REST_TANGENT, REST_TERMS};
 
-/// Cells of rows as differences from references.
-const CELLS: [&str; 4] = [
+/// Pieces of the shader that solves cells of rows as differences from base points.
+const CELLS: [&str; 6] = [
     include_str!("../../../shaders/numbers.wgsl"),
     include_str!("../../../shaders/difference.wgsl"),
+    include_str!("../../../shaders/intrinsic.wgsl"),
     include_str!("../../../shaders/nystrom8.wgsl"),
+    include_str!("../../../shaders/row.wgsl"),
     include_str!("../../../shaders/cells.wgsl"),
 ];
 
@@ -28,7 +31,7 @@ fn constants(precision: Precision) -> String {
          const CHANNELS = {channels};\n",
         precision == Precision::F64,
     );
-    for (name, quad) in PLACES {
+    for (name, quad) in QUADS {
         text += &format!("const {name} = {quad}u;\n");
     }
     for (name, value) in precision.limits() {

@@ -1,14 +1,14 @@
-//! The device's own clock around a submission.
+//! Time of a submission by the device's clock.
 
 use super::EngineError;
-use super::device::{Device, answer};
+use super::device::{Device, copy_back};
 use std::time::Duration;
 use wgpu::BufferUsages as Usage;
 
 /// Bytes of two time stamps.
 const BYTES: u64 = 16;
 
-/// Where the times of one submission go.
+/// Time stamps of one submission.
 #[derive(Debug)]
 pub struct Stamps {
     set: wgpu::QuerySet,
@@ -17,10 +17,10 @@ pub struct Stamps {
 }
 
 impl Stamps {
-    /// `None` where they are not `wanted`, or the device has no such clock.
-    pub fn new(device: &Device, wanted: bool) -> Result<Option<Self>, EngineError> {
+    /// Returns `None` if the device has no clock.
+    pub fn new(device: &Device) -> Result<Option<Self>, EngineError> {
         let features = device.handle.features();
-        if !wanted || !features.contains(wgpu::Features::TIMESTAMP_QUERY) {
+        if !features.contains(wgpu::Features::TIMESTAMP_QUERY) {
             return Ok(None);
         }
         let set = device.handle.create_query_set(&wgpu::QuerySetDescriptor {
@@ -36,7 +36,7 @@ impl Stamps {
         }))
     }
 
-    /// Before and after a pass.
+    /// Stamps before and after a pass.
     pub fn writes(&self) -> wgpu::ComputePassTimestampWrites<'_> {
         wgpu::ComputePassTimestampWrites {
             query_set: &self.set,
@@ -45,13 +45,13 @@ impl Stamps {
         }
     }
 
-    /// Sends the times after the pass on their way.
+    /// Copies the stamps back after the pass.
     pub fn resolve(&self, commands: &mut wgpu::CommandEncoder) {
         commands.resolve_query_set(&self.set, 0..2, &self.resolved, 0);
-        answer(commands, &self.resolved, &self.readback, BYTES);
+        copy_back(commands, &self.resolved, &self.readback, BYTES);
     }
 
-    /// How long its pass took, once it is done.
+    /// Returns the time of the pass, which is done.
     pub fn read(&self, device: &Device) -> Result<Duration, EngineError> {
         let [start, end]: [u64; 2] =
             Device::read(&self.readback, BYTES, bytemuck::pod_read_unaligned)?;

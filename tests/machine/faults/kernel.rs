@@ -20,7 +20,7 @@ tests! {
 }
 
 /// The last line of the entry point.
-const LAST: &str = "answer(id, cell);";
+const LAST: &str = "write_cell(id, cell);";
 
 /// The GPU engine with `LAST` replaced; `cell` is the sound answer, `wrong` a copy of it.
 fn spoilt(precision: Precision, with: &str) -> Gpu {
@@ -59,7 +59,7 @@ fn numbers_that_are_none_are_refined_in_f64_and_counted(precision: Precision) {
             1.0 / 7.0,
         ),
     ] {
-        let mut gpu = spoilt(precision, &format!("{none} answer(id, wrong);"));
+        let mut gpu = spoilt(precision, &format!("{none} write_cell(id, wrong);"));
         let (summary, panels) = compute(&scene, Some(&mut gpu));
         assert!(summary.engine_failure.is_none(), "{summary:?}");
         let cells = summary.engine_cells;
@@ -79,8 +79,8 @@ fn a_kernel_that_does_nothing_is_noticed() {
     let scene = cone(64);
     let (_, cpu) = compute(&scene, None);
     for writes in [
-        "if id == 0xffffffffu { answer(id, wrong); }",
-        "wrong = Cell(); answer(id, wrong);",
+        "if id == 0xffffffffu { write_cell(id, wrong); }",
+        "wrong = Cell(); write_cell(id, wrong);",
     ] {
         let mut gpu = spoilt(Precision::F32, writes);
         let (summary, panels) = compute(&scene, Some(&mut gpu));
@@ -122,15 +122,15 @@ fn assert_caught(scene: &Scene, gpu: &mut Gpu) {
 
 /// Contacts that are wrong by 1e-5 of themselves, loads of one sign, and whole answers.
 const WRONG: [&str; 3] = [
-    "wrong.numbers[0] += 1e-5 * f32(reference[CONTACT].w);",
-    "wrong.numbers[5] += 1e-5 * f32(reference[CONTACT].z * reference[CONTACT].z * reference[CONTACT].y * reference[PLACES].z);",
+    "wrong.numbers[0] += 1e-5 * f32(base_point[CONTACT].w);",
+    "wrong.numbers[5] += 1e-5 * f32(base_point[CONTACT].z * base_point[CONTACT].z * base_point[CONTACT].y * base_point[POSITIONS].z);",
     "wrong = solve(push + 1e-4, steps);",
 ];
 
 fn a_kernel_that_is_wrong_everywhere_is_caught(precision: Precision) {
     let scene = cone(64);
     for wrong in WRONG {
-        let mut gpu = spoilt(precision, &format!("{wrong} answer(id, wrong);"));
+        let mut gpu = spoilt(precision, &format!("{wrong} write_cell(id, wrong);"));
         assert_caught(&scene, &mut gpu);
     }
 }
@@ -153,9 +153,9 @@ const CHOSEN: u32 = 2;
 fn a_kernel_that_is_wrong_in_one_cell_of_a_thousand_is_caught() {
     let scene = cone(256);
     let wrong = format!(
-        "let mixed = (bitcast<u32>(f32(here.x)) ^ bitcast<u32>(f32(reference[CONTACT].x))) * 2654435761u;
+        "let mixed = (bitcast<u32>(f32(here.x)) ^ bitcast<u32>(f32(base_point[CONTACT].x))) * 2654435761u;
          if (mixed >> 8u) % 1000u == {CHOSEN}u {{ {} }}
-         answer(id, wrong);",
+         write_cell(id, wrong);",
         WRONG[0]
     );
     assert_caught(&scene, &mut spoilt(Precision::F32, &wrong));

@@ -1,47 +1,14 @@
-//! Push angles and cells as bytes, as `shaders/nystrom8.wgsl` and `shaders/cells.wgsl` have them.
+//! Cells as the shaders write them: differences from their base points.
 
-use super::Precision;
-use super::base_point::{Packed, packed};
-use super::bytes::{Scalar, bytes, halves};
-use super::pending::BatchPart;
-use crate::engine::{BasePoint, Cells, FORCE, Outcome, RowBatch};
+use crate::engine::{BasePoint, Cell, Cells, FORCE, Outcome, RowBatch};
 use crate::plan::STATE_CHANNELS;
 use crate::rod::{Rod, arclength};
 use bytemuck::{Pod, Zeroable};
 use glam::DVec2;
 use std::ops::Range;
 
-/// What buffers hold, for shaders of one precision.
-#[derive(Debug)]
-pub struct BufferLayout {
-    /// Bytes of a push angle.
-    pub push: usize,
-    /// Bytes of a cell.
-    pub cell: usize,
-    /// Push angles to bytes.
-    pub pushes: fn(&[f64]) -> Vec<u8>,
-    /// A part of a batch to bytes, with room for so many steps: [`packed`].
-    pub packed: fn(&RowBatch, BatchPart, usize) -> Packed,
-}
-
-impl BufferLayout {
-    /// The layout for shaders of this precision.
-    pub const fn of(precision: Precision) -> Self {
-        match precision {
-            Precision::F32 => Self::with::<f32>(),
-            Precision::F64 => Self::with::<f64>(),
-        }
-    }
-
-    const fn with<T: Scalar>() -> Self {
-        Self {
-            push: size_of::<[T; 2]>(),
-            cell: size_of::<GpuCell>(),
-            pushes: |pushes| bytes(pushes.iter().map(|push| halves::<T>(*push))),
-            packed: packed::<T>,
-        }
-    }
-}
+/// Bytes of a cell.
+pub const CELL_BYTES: usize = size_of::<GpuCell>();
 
 /// The codes that the shaders write, from 0. A kernel that writes nothing leaves zeros, which are no solution.
 pub const OUTCOMES: [(&str, Outcome); 5] = [
@@ -75,46 +42,38 @@ impl GpuCell {
     fn point(&self, rod: &Rod, base: &BasePoint) -> DVec2 {
         let [arc, _, force, ..] = self.numbers.map(f64::from);
         let tau = rod.tau(arclength(rod, base.tau) + arc);
-        DVec2::new(
-            tau,
-            (base.state.full.force + force) / rod.radius(tau).powi(2),
-        )
+        let force = base.state.full.force + force;
+        DVec2::new(tau, force / rod.radius(tau).powi(2))
     }
 }
 
 /// Writes the cells of some base points of `batch`, which are in `bytes`, into `cells`.
 pub fn read_cells(bytes: &[u8], batch: &RowBatch, base_points: Range<usize>, cells: &mut Cells) {
-    let mut bytes = bytes;
+    let bytes = bytes.chunks_exact(CELL_BYTES);
+    let mut read = bytes.map(bytemuck::pod_read_unaligned::<GpuCell>);
     for index in base_points {
         let (base, trajectory) = (&batch.base_points[index], &batch.trajectories[index]);
-        let (own, rest) = bytes.split_at(base.cells.len() * size_of::<GpuCell>());
-        bytes = rest;
-        let own: Vec<GpuCell> = bytemuck::pod_collect_to_vec(own);
-        let into = trajectory.first_cell..trajectory.first_cell + own.len();
-        for (outcome, cell) in cells.outcome[into.clone()].iter_mut().zip(&own) {
-            *outcome = cell.outcome();
-        }
-        cells.steps[into.clone()].fill(1);
-        for (residual, cell) in cells.residual[into.clone()].iter_mut().zip(&own) {
-            *residual = cell.residual;
-        }
         let unit_values = &batch.sides[base.rod as usize].unit_values;
-        for (i, column) in cells.values.iter_mut().enumerate() {
-            let Some(column) = column.get_mut(into.clone()) else {
-                continue;
+        let first = trajectory.first_cell;
+        for (index, cell) in (first..first + base.cells.len()).zip(&mut read) {
+            let mut values = trajectory.values;
+            for ((value, unit), number) in values.iter_mut().zip(unit_values).zip(cell.numbers) {
+                *value += unit * f64::from(number);
+            }
+            // The force at first touch is 0 up to rounding.
+            values[FORCE] = values[FORCE].max(0.0);
+            let point = match batch.has_points {
+                true => cell.point(batch.rod(base), base),
+                false => DVec2::NAN,
             };
-            let (known, unit) = (trajectory.values[i], unit_values[i]);
-            // The force at first touch is 0 but for rounding.
-            let least = if i == FORCE { 0.0 } else { f64::NEG_INFINITY };
-            for (value, cell) in column.iter_mut().zip(&own) {
-                *value = (known + unit * f64::from(cell.numbers[i])).max(least) as f32;
-            }
-        }
-        if let Some(points) = cells.points.get_mut(into) {
-            let rod = batch.rod(base);
-            for (point, cell) in points.iter_mut().zip(&own) {
-                *point = cell.point(rod, base);
-            }
+            let cell = Cell {
+                outcome: cell.outcome(),
+                steps: 1,
+                residual: cell.residual,
+                values: values.map(|value| value as f32),
+                point,
+            };
+            cells.set(index, &cell);
         }
     }
 }
@@ -123,12 +82,13 @@ pub fn read_cells(bytes: &[u8], batch: &RowBatch, base_points: Range<usize>, cel
 #[allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 mod tests {
     use super::*;
-    use crate::engine::gpu::base_point::GpuStart;
+    use crate::engine::gpu::Precision;
+    use crate::engine::gpu::base_point::{GpuStart, Scalar};
     use crate::engine::gpu::shaders;
     use naga::TypeInner;
     use std::mem::offset_of;
 
-    /// Name, size and members, in the eyes of the shader and of Rust.
+    /// Name, size, and members with their offsets.
     type Struct = (String, usize, Vec<(String, usize)>);
 
     fn in_shader(precision: Precision) -> Vec<Struct> {
@@ -144,23 +104,22 @@ mod tests {
         structs.collect()
     }
 
-    macro_rules! in_rust {
-        ($type:ty, $name:literal, $($member:ident)+) => {
-            (
-                $name.to_owned(),
-                size_of::<$type>(),
-                vec![$((stringify!($member).to_owned(), offset_of!($type, $member))),+],
-            )
-        };
-    }
-
     fn agrees<T: Scalar>(precision: Precision) {
         let shader = in_shader(precision);
-        let rust = in_rust!(GpuStart<T>, "StepStart", place tangents);
-        assert_eq!(shader.iter().find(|s| s.0 == rust.0), Some(&rust));
-        // Of the last numbers that the shader writes one is none.
+        let members = [
+            ("place", offset_of!(GpuStart<T>, place)),
+            ("tangents", offset_of!(GpuStart<T>, tangents)),
+        ];
+        let members = members.map(|(name, offset)| (name.to_owned(), offset));
+        let start = (
+            "StepStart".to_owned(),
+            size_of::<GpuStart<T>>(),
+            members.into(),
+        );
+        assert_eq!(shader.iter().find(|s| s.0 == start.0), Some(&start));
+        // The shader writes one number more, which is unused.
         let numbers = shader.iter().find(|s| s.0 == "Cell").unwrap().1;
-        assert_eq!(numbers + size_of::<u32>(), size_of::<GpuCell>());
+        assert_eq!(numbers + size_of::<u32>(), CELL_BYTES);
         assert_eq!(offset_of!(GpuCell, unused), numbers);
     }
 
