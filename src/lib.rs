@@ -18,7 +18,7 @@
 //!
 //! [`map`](fn@map), [`for_each_panel`], [`curve`], [`branch`], [`shape`] and [`fit`](fn@fit) compute in memory; the modules below are the
 //! topics around them. All features are on by default: `cli` is the command `whiskmap`, `fit` least squares, `gpu` the compute shaders,
-//! `render` the pictures.
+//! `render` the pictures. `ndarray`, which is off by default, adds views of channels as arrays.
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 

@@ -166,3 +166,22 @@ fn channels_have_the_names_of_files() {
     }
     assert!(map.channel(1, Channel::Force).is_none());
 }
+
+/// A view has the values of its channel at distance and push angle, in this order.
+#[cfg(feature = "ndarray")]
+#[test]
+fn views_have_the_values_at_distance_and_push_angle() {
+    let scene = Scene::read("scenes/cone.toml").unwrap().thinned(8, 1);
+    let scene = scene.to_builder().distance_mm([5.0, 10.0, 15.0]).build();
+    let map = whiskmap::map(&scene.unwrap(), Options::default()).unwrap();
+    let [height, width] = map.shape();
+    for channel in Channel::ALL {
+        let view = map.view(0, channel).unwrap();
+        assert_eq!(view.dim(), (height, width));
+        for ((distance, push), value) in view.indexed_iter() {
+            let known = map.value(channel, 0, distance, push);
+            assert_eq!(value.is_finite().then_some(*value), known);
+        }
+    }
+    assert!(map.view(1, Channel::Force).is_none());
+}

@@ -20,12 +20,12 @@ fi
 export XDG_RUNTIME_DIR="${XDG_RUNTIME_DIR:-/tmp}"
 
 cargo fmt --check
-cargo clippy --all-targets --profile checked --locked -- -D warnings
+cargo clippy --all-targets --all-features --profile checked --locked -- -D warnings
 cargo clippy --lib --no-default-features --profile checked --locked -- -D warnings
-RUSTDOCFLAGS="-D warnings" cargo doc --no-deps --locked --profile checked
+RUSTDOCFLAGS="-D warnings" cargo doc --no-deps --all-features --locked --profile checked
 log="$(mktemp)"
 trap 'rm -f "$log"' EXIT
-cargo test --profile checked --locked --no-fail-fast | tee "$log"
+cargo test --all-features --profile checked --locked --no-fail-fast | tee "$log"
 # Another user may ignore the tests that only root can run.
 if grep -E '^test .* \.\.\. ignored' "$log" | grep -v 'only root can'; then
     echo "error: tests were ignored, for the reasons above; all tests must run" >&2

@@ -1,71 +1,15 @@
-//! The front of the library: a scene in, answers in memory out.
+//! Regime maps in memory.
 
-use crate::accuracy::cheapest;
+use super::{Error, Options, resolution};
 use crate::classify::Regime;
 #[cfg(feature = "gpu")]
 use crate::engine::gpu::Gpu;
 use crate::engine::{Engine, EngineError, Precision};
-#[cfg(feature = "fit")]
-use crate::fit::{self, Fit};
 use crate::map::{self as stages, Panel, Summary};
-#[cfg(feature = "fit")]
-use crate::measured::MeasuredPoints;
-use crate::plan::{Channel, Plan, PlanError};
-use crate::rod::Side;
-#[cfg(feature = "fit")]
-use crate::scene::Parameter;
-use crate::scene::{Grid, Scene, SweepPlace, SweptWhisker};
-use crate::shooting::Resolution;
-use crate::trace::{Branch, Detachment, NoState, Shape, curve_at, sides, whiskers_at_once};
+use crate::plan::{Channel, Plan};
+use crate::scene::{Grid, Scene};
 use std::ops::ControlFlow;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
-
-/// Accuracy, engine, progress and cancellation of a computation.
-///
-/// ```
-/// use whiskmap::{Options, Precision};
-///
-/// let mut options = Options::default();
-/// options.tolerance_deg = Some(1e-6);
-/// options.gpu = Some(Precision::F32);
-/// options.on_progress = Some(std::sync::Arc::new(|done, all| eprintln!("{done} of {all} cells")));
-/// ```
-#[derive(Clone, Default)]
-#[non_exhaustive]
-pub struct Options {
-    /// Maximum error of push angles, in degrees. Without it the finest steps are taken.
-    pub tolerance_deg: Option<f64>,
-    /// Solves maps on the preferred GPU in this precision; an error without the feature `gpu`.
-    pub gpu: Option<Precision>,
-    /// Is called with the number of finished cells and of all cells of a map, on the thread that computes it.
-    pub on_progress: Option<Arc<dyn Fn(usize, usize) + Send + Sync>>,
-    /// Set it to end a map with [`Error::Cancelled`] after the row batch under way.
-    pub cancel: Option<Arc<AtomicBool>>,
-}
-
-/// Failure of a computation. A cell without an answer is no error.
-#[non_exhaustive]
-#[derive(Debug, thiserror::Error)]
-pub enum Error {
-    /// The map takes too much memory.
-    #[error(transparent)]
-    Plan(#[from] PlanError),
-    /// The GPU cannot be opened.
-    #[error(transparent)]
-    Engine(#[from] EngineError),
-    /// [`Options::cancel`] was set.
-    #[error("cancelled")]
-    Cancelled,
-    /// The tolerance is below what rounding leaves.
-    #[error("tolerance_deg {asked:e}: must be at least {least:e} for this scene")]
-    Tolerance {
-        /// The tolerance.
-        asked: f64,
-        /// What the finest steps leave, by the program's own estimate.
-        least: f64,
-    },
-}
+use std::sync::atomic::Ordering;
 
 /// A regime map in memory: one [`Panel`] for each whisker of the scene.
 #[derive(Clone, Debug)]
@@ -111,11 +55,29 @@ impl Map {
         place.map_or(0, |place| self.summary.regimes[place])
     }
 
-    /// The values of a channel of a whisker, row by row, of shape `[distance][push_angle]`; NaN without contact. `None` beyond the
-    /// whiskers.
+    /// The values of a channel of a whisker, row by row, of shape `[distance][push_angle]`; NaN without contact. `None` without such a
+    /// whisker.
     #[must_use]
     pub fn channel(&self, whisker: usize, channel: Channel) -> Option<&[f32]> {
         Some(self.panels.get(whisker)?.channel(channel))
+    }
+
+    /// The values of a channel of a whisker as a view of shape `[distance][push_angle]`; NaN without contact. `None` without such a
+    /// whisker.
+    ///
+    /// ```
+    /// use whiskmap::{Channel, Options, scene::Scene};
+    ///
+    /// let scene = Scene::parse(include_str!("../../scenes/cone.toml"), "cone.toml")?.thinned(8, 1);
+    /// let map = whiskmap::map(&scene, Options::default())?;
+    /// let force = map.view(0, Channel::Force).ok_or("no whisker")?;
+    /// assert_eq!(force.dim(), (scene.grid.distance_mm.len(), scene.grid.push_angle_deg.len()));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[cfg(feature = "ndarray")]
+    #[must_use]
+    pub fn view(&self, whisker: usize, channel: Channel) -> Option<ndarray::ArrayView2<'_, f32>> {
+        ndarray::ArrayView2::from_shape(self.shape(), self.channel(whisker, channel)?).ok()
     }
 
     /// Every cell with its regime: whisker by whisker, distance by distance, by push angle.
@@ -144,7 +106,7 @@ impl Map {
         self.panels.get(whisker)?.regimes().nth(index)
     }
 
-    /// The value of a channel there; `None` beyond the axes and without contact.
+    /// The value of a channel of a whisker at the index of a distance and of a push angle; `None` beyond the axes and without contact.
     #[must_use]
     pub fn value(
         &self,
@@ -169,7 +131,7 @@ impl Map {
 /// ```
 /// use whiskmap::{Channel, Options, Regime, scene::Scene};
 ///
-/// let scene = Scene::parse(include_str!("../scenes/cone.toml"), "cone.toml")?.thinned(32, 1);
+/// let scene = Scene::parse(include_str!("../../scenes/cone.toml"), "cone.toml")?.thinned(32, 1);
 /// let map = whiskmap::map(&scene, Options::default())?;
 /// assert_eq!(map.count(Regime::Unresolved), 0);
 /// assert_eq!(map.regime(0, 16, 16), Some(Regime::Contact));
@@ -204,7 +166,7 @@ pub fn map(scene: &Scene, options: Options) -> Result<Map, Error> {
 /// ```
 /// use whiskmap::{Options, Regime, scene::Scene};
 ///
-/// let scene = Scene::parse(include_str!("../scenes/morphology.toml"), "morphology.toml")?.thinned(8, 2);
+/// let scene = Scene::parse(include_str!("../../scenes/morphology.toml"), "morphology.toml")?.thinned(8, 2);
 /// let mut contacts = Vec::new();
 /// whiskmap::for_each_panel(&scene, Options::default(), |whisker, panel| {
 ///     assert_eq!(whisker, contacts.len());
@@ -217,7 +179,7 @@ pub fn map(scene: &Scene, options: Options) -> Result<Map, Error> {
 ///
 /// # Errors
 /// When one panel takes more than [`MEMORY_LIMIT`](crate::plan::MEMORY_LIMIT), the tolerance cannot be kept, or there is no GPU where
-/// one was asked for; and any error of `each`.
+/// one is required; and any error of `each`.
 pub fn for_each_panel<E: From<Error> + Send>(
     scene: &Scene,
     options: Options,
@@ -271,107 +233,4 @@ fn open(precision: Precision) -> Result<Box<dyn Engine>, EngineError> {
 fn open(_: Precision) -> Result<Box<dyn Engine>, EngineError> {
     let without = "this build is without the feature `gpu`";
     Err(EngineError::NoAdapter(without.to_owned()))
-}
-
-/// Computes where every whisker of `scene` detaches: at each distance, CF before CB.
-///
-/// ```
-/// use whiskmap::trace::DetachmentKind;
-/// use whiskmap::{Options, scene::Scene};
-///
-/// let cone = Scene::parse(include_str!("../scenes/cone.toml"), "cone.toml")?;
-/// let curve = whiskmap::curve(&cone.to_builder().distance_mm([15.6604597633658]).build()?, Options::default())?;
-/// let (_, cb) = &curve[1];
-/// assert_eq!(cb.kind, DetachmentKind::SlipOff);
-/// assert!(cb.push_angle_deg.is_some_and(|push| (push - 15.60793).abs() < 1e-5));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-///
-/// # Errors
-/// When the tolerance cannot be kept.
-pub fn curve(scene: &Scene, options: Options) -> Result<Vec<(SweepPlace, Detachment)>, Error> {
-    let resolution = resolution(scene, &options, &Side::BOTH)?;
-    let distances = &scene.grid.distance_mm;
-    let curves = |group: Vec<_>| {
-        sides(&group, |own: &SweptWhisker, side| {
-            curve_at(resolution, &own.whisker, &own.pole, side, distances)
-        })
-    };
-    let groups = scene.whisker_groups(whiskers_at_once(distances.len()));
-    Ok(groups.flat_map(curves).collect())
-}
-
-/// Follows the states of the scene's first whisker in front of one pole, from first touch at `distance_mm` through the fold.
-///
-/// ```
-/// use whiskmap::{rod::Side, scene::Scene};
-///
-/// let cone = Scene::parse(include_str!("../scenes/cone.toml"), "cone.toml")?;
-/// let points = whiskmap::branch(&cone, 15.66, Side::Cb)?.points(50)?;
-/// assert!(points[0].stable && !points[49].stable);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-///
-/// # Errors
-/// When the whisker at rest does not reach the pole, or the continuation gets lost.
-pub fn branch(scene: &Scene, distance_mm: f64, side: Side) -> Result<Branch, NoState> {
-    let first = scene.first_whisker();
-    Branch::new(&first.whisker, &first.pole, side, distance_mm)
-}
-
-/// The stable shape of the scene's first whisker, in 200 places, after a push from first touch at `distance_mm`.
-///
-/// ```
-/// use whiskmap::scene::Scene;
-///
-/// let cone = Scene::parse(include_str!("../scenes/cone.toml"), "cone.toml")?;
-/// assert!(whiskmap::shape(&cone, 15.66, 10.0).is_ok());
-/// let slipped = whiskmap::shape(&cone, 15.66, 20.0).err();
-/// assert!(slipped.is_some_and(|why| why.to_string().starts_with("slipped off at 15.6")));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-///
-/// # Errors
-/// When there is no such state: the message tells how the whisker has left the pole, and at which push angle.
-pub fn shape(scene: &Scene, distance_mm: f64, push_angle_deg: f64) -> Result<Shape, NoState> {
-    let branch = branch(scene, distance_mm, Side::of_push(push_angle_deg))?;
-    let state = branch.state(push_angle_deg.to_radians(), true)?;
-    Ok(Shape::new(&branch, &state, 200))
-}
-
-/// Fits parameters of the scene's first whisker and of its pole to measured detachments, from the scene's values on.
-///
-/// ```
-/// use whiskmap::measured::MeasuredPoints;
-/// use whiskmap::scene::{Parameter, Scene};
-///
-/// let cone = Scene::parse(include_str!("../scenes/cone.toml"), "cone.toml")?;
-/// let points = MeasuredPoints::parse("side,distance_mm,push_angle_deg\ncb,15.6604597633658,15.60793\n", "points.csv")?;
-/// let start = cone.with(Parameter::TipRadiusUm, 3.0)?;
-/// let fit = whiskmap::fit(&start, &points, &[Parameter::TipRadiusUm])?;
-/// assert!((fit.estimates[0].value - 1.5).abs() < 1e-5);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-///
-/// # Errors
-/// When a parameter cannot be free, a point is beyond the whisker, points are too few, or the iteration does not converge.
-#[cfg(feature = "fit")]
-pub fn fit(
-    scene: &Scene,
-    points: &MeasuredPoints,
-    free: &[Parameter],
-) -> Result<Fit, fit::FitError> {
-    fit::fit(scene, points, free)
-}
-
-/// The steps that keep the tolerance, if there is one.
-fn resolution(scene: &Scene, options: &Options, sides: &[Side]) -> Result<Resolution, Error> {
-    let Some(asked) = options.tolerance_deg else {
-        return Ok(Resolution::FINE);
-    };
-    let accuracy = cheapest(scene, sides, asked).map_err(|finest| Error::Tolerance {
-        asked,
-        least: finest.error_deg,
-    })?;
-    Ok(accuracy.resolution)
 }

@@ -1,0 +1,103 @@
+//! Detachment curves, branches, shapes and fits in memory.
+
+use super::{Error, Options, resolution};
+#[cfg(feature = "fit")]
+use crate::fit::{self, Fit};
+#[cfg(feature = "fit")]
+use crate::measured::MeasuredPoints;
+use crate::rod::Side;
+#[cfg(feature = "fit")]
+use crate::scene::Parameter;
+use crate::scene::{Scene, SweepPlace, SweptWhisker};
+use crate::trace::{Branch, Detachment, NoState, Shape, curve_at, sides, whiskers_at_once};
+
+/// Computes where every whisker of `scene` detaches: at each distance, CF before CB.
+///
+/// ```
+/// use whiskmap::trace::DetachmentKind;
+/// use whiskmap::{Options, scene::Scene};
+///
+/// let cone = Scene::parse(include_str!("../../scenes/cone.toml"), "cone.toml")?;
+/// let curve = whiskmap::curve(&cone.to_builder().distance_mm([15.6604597633658]).build()?, Options::default())?;
+/// let (_, cb) = &curve[1];
+/// assert_eq!(cb.kind, DetachmentKind::SlipOff);
+/// assert!(cb.push_angle_deg.is_some_and(|push| (push - 15.60793).abs() < 1e-5));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// When the tolerance cannot be kept.
+pub fn curve(scene: &Scene, options: Options) -> Result<Vec<(SweepPlace, Detachment)>, Error> {
+    let resolution = resolution(scene, &options, &Side::BOTH)?;
+    let distances = &scene.grid.distance_mm;
+    let curves = |group: Vec<_>| {
+        sides(&group, |own: &SweptWhisker, side| {
+            curve_at(resolution, &own.whisker, &own.pole, side, distances)
+        })
+    };
+    let groups = scene.whisker_groups(whiskers_at_once(distances.len()));
+    Ok(groups.flat_map(curves).collect())
+}
+
+/// Follows the states of the scene's first whisker in front of one pole, from first touch at `distance_mm` through the fold.
+///
+/// ```
+/// use whiskmap::{rod::Side, scene::Scene};
+///
+/// let cone = Scene::parse(include_str!("../../scenes/cone.toml"), "cone.toml")?;
+/// let points = whiskmap::branch(&cone, 15.66, Side::Cb)?.points(50)?;
+/// assert!(points[0].stable && !points[49].stable);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// When the whisker at rest does not reach the pole, or the continuation fails.
+pub fn branch(scene: &Scene, distance_mm: f64, side: Side) -> Result<Branch, NoState> {
+    let first = scene.first_whisker();
+    Branch::new(&first.whisker, &first.pole, side, distance_mm)
+}
+
+/// The stable shape of the scene's first whisker, in 200 places, after a push from first touch at `distance_mm`.
+///
+/// ```
+/// use whiskmap::scene::Scene;
+///
+/// let cone = Scene::parse(include_str!("../../scenes/cone.toml"), "cone.toml")?;
+/// assert!(whiskmap::shape(&cone, 15.66, 10.0).is_ok());
+/// let slipped = whiskmap::shape(&cone, 15.66, 20.0).err();
+/// assert!(slipped.is_some_and(|why| why.to_string().starts_with("slipped off at 15.6")));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// When there is no such state: the error contains how the whisker left the pole, and at which push angle.
+pub fn shape(scene: &Scene, distance_mm: f64, push_angle_deg: f64) -> Result<Shape, NoState> {
+    let branch = branch(scene, distance_mm, Side::of_push(push_angle_deg))?;
+    let state = branch.state(push_angle_deg.to_radians(), true)?;
+    Ok(Shape::new(&branch, &state, 200))
+}
+
+/// Fits parameters of the scene's first whisker and of its pole to measured detachments, from the scene's values on.
+///
+/// ```
+/// use whiskmap::measured::MeasuredPoints;
+/// use whiskmap::scene::{Parameter, Scene};
+///
+/// let cone = Scene::parse(include_str!("../../scenes/cone.toml"), "cone.toml")?;
+/// let points = MeasuredPoints::parse("side,distance_mm,push_angle_deg\ncb,15.6604597633658,15.60793\n", "points.csv")?;
+/// let start = cone.with(Parameter::TipRadiusUm, 3.0)?;
+/// let fit = whiskmap::fit(&start, &points, &[Parameter::TipRadiusUm])?;
+/// assert!((fit.estimates[0].value - 1.5).abs() < 1e-5);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// When a parameter cannot be free, a point is beyond the whisker, points are too few, or the iteration does not converge.
+#[cfg(feature = "fit")]
+pub fn fit(
+    scene: &Scene,
+    points: &MeasuredPoints,
+    free: &[Parameter],
+) -> Result<Fit, fit::FitError> {
+    fit::fit(scene, points, free)
+}
