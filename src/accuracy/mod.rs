@@ -1,7 +1,6 @@
-//! What a resolution costs in accuracy, measured by doubling its steps on a sample of the scene, and the cheapest
-//! resolution that suffices.
+//! Error of a resolution, measured by doubling its steps on a sample of the scene, and the cheapest sufficient resolution.
 //!
-//! Newton's method adds the residual that it may leave, which counts for more the nearer the pole is.
+//! Newton's method adds its largest residual, whose angle is largest at the nearest pole.
 
 mod sample;
 
@@ -11,29 +10,29 @@ use crate::scene::Scene;
 use crate::shooting::Resolution;
 use sample::Sample;
 
-/// A resolution, and what it leaves.
+/// A resolution and its estimated error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Accuracy {
-    /// The steps.
+    /// Steps of trajectories.
     pub resolution: Resolution,
-    /// Estimated error, in degrees, of what [`BOUNDED`] names, over the whole scene.
+    /// Estimated error of the quantities in [`BOUNDED`] over the whole scene, in degrees.
     pub error_deg: f64,
 }
 
-/// What a tolerance bounds, and what it does not. A state's place is that of its pole, seen from the base: a direction and
-/// a distance, of which an error of a part of itself counts as that many radians. At a fold everything else changes with
-/// the square root of the push angle.
+/// Quantities that a tolerance bounds, and those that it does not. The error of a state is the one of its pole as seen from the base: of
+/// its direction, and of the logarithm of its distance as radians. At a fold all other quantities change with the square root of the push
+/// angle.
 pub const BOUNDED: &str = "push angles: where states stand and where they detach; not contact angles, arclengths, \
                            forces and moments, which next to a fold change faster";
 
-/// By how much the worst of the sample may be exceeded elsewhere. The largest factor met in all shipped scenes, over
-/// tolerances from 1e-2 to 1e-8 degrees, is 1.5 (`tests/accuracy.rs`).
+/// Largest error of the scene over the largest of the sample. The largest factor measured in all shipped scenes, over tolerances from 1e-2
+/// to 1e-8 degrees, is 1.5 (`tests/accuracy.rs`).
 const SAFETY: f64 = 4.0;
 
-/// The cheapest rung of [`Resolution::LADDER`] whose estimate for `sides` of the scene is within `tolerance_deg`.
+/// Returns the cheapest rung of [`Resolution::LADDER`] whose estimate for `sides` of the scene is within `tolerance_deg`.
 ///
 /// # Errors
-/// Where none is: the finest, and its estimate.
+/// If there is none, the finest rung with its estimate.
 pub fn cheapest(scene: &Scene, sides: &[Side], tolerance_deg: f64) -> Result<Accuracy, Accuracy> {
     let sample = Sample::new(scene, sides);
     let lengths = scene.corner_whiskers().map(|own| own.whisker.length_mm);

@@ -1,4 +1,4 @@
-//! States and detachments from all over a scene, its corners among them.
+//! Sample of the states and detachments of a scene, with its corners.
 
 use crate::refine::states;
 use crate::rod::{Effects, Rod, Side};
@@ -9,20 +9,20 @@ use crate::shooting::{Resolution, ShootingMap};
 use glam::DVec2;
 use rayon::prelude::*;
 
-/// Values of an axis that take part: its ends, and some between. The ends of pushes get better with more distances, near
-/// the reach of the whisker above all.
+/// Maximum number of values of each axis: its ends, and some between. Detachments need more distances, above all near the reach of the
+/// whisker.
 const PUSHES: usize = 12;
 const DISTANCES: usize = 64;
 const WHISKERS: usize = 4;
 
-/// States to integrate once and again.
+/// States to integrate at several resolutions.
 pub struct Sample {
     effects: Effects,
-    /// Each with points of its sheet.
+    /// Rods with points of their sheets.
     rods: Vec<(Rod, Vec<Point>)>,
 }
 
-/// A state, or with an edge, where a push ends.
+/// A state, or with an edge, a detachment.
 struct Point {
     tau: f64,
     load: f64,
@@ -30,7 +30,7 @@ struct Point {
 }
 
 impl Sample {
-    /// A sample of `scene`; its states are known as well as coarse steps know them.
+    /// Returns a sample of `scene`, with states at a coarse resolution.
     pub fn new(scene: &Scene, sides: &[Side]) -> Self {
         let whiskers = whiskers(scene);
         let pairs: Vec<_> = whiskers
@@ -53,7 +53,7 @@ impl Sample {
                     load: state.load,
                     edge: None,
                 });
-                // What ends at first touch does so at every resolution.
+                // A push that ends at first touch does so at every resolution.
                 let crossings = sheet.crossings.iter().flatten();
                 let ends = crossings.filter(|end| end.is_sound() && !end.is_at_touch());
                 let ends = ends.map(|end| Point {
@@ -68,7 +68,7 @@ impl Sample {
         Self { effects, rods }
     }
 
-    /// The largest error at `resolution`, in radians, as twice as many steps see it.
+    /// Returns the largest error at `resolution` against twice as many steps, in radians.
     pub fn error(&self, resolution: Resolution) -> f64 {
         let points: Vec<(&Rod, &Point)> = self
             .rods
@@ -94,8 +94,8 @@ impl Sample {
     }
 }
 
-/// How far the `end` of a push whose pole has `moved` moves along its edge, where the distance is held: the direction of the
-/// pole, less what it changes with the distance. On a fold contact and load change both in the same proportion.
+/// Returns the shift of the push angle of a detachment whose pole has `moved`, along its `edge` at constant distance: the change of the
+/// pole's direction, less its change with the distance. On a fold, contact and load change both in the same proportion.
 fn shift(rough: &ShootingMap, moved: DVec2, end: &Point, edge: Edge) -> f64 {
     let by_contact = rough.by_tau * end.tau;
     let by_load = rough.by_load * end.load;
@@ -107,12 +107,12 @@ fn shift(rough: &ShootingMap, moved: DVec2, end: &Point, edge: Edge) -> f64 {
     (moved.y - moved.x * along.y / along.x).abs()
 }
 
-/// The larger; a number that is none is worse than any.
+/// Returns the larger number; NaN is infinite.
 fn worse(a: f64, b: f64) -> f64 {
     if b.is_nan() { f64::INFINITY } else { a.max(b) }
 }
 
-/// The whiskers at some values of the sweep's axes: at the ends alone where there are many.
+/// Returns the whiskers at some values of the sweep's axes: at their ends alone if there are more than two axes.
 fn whiskers(scene: &Scene) -> Vec<SweptWhisker> {
     let mut few = SceneData::clone(scene);
     let most = if few.grid.sweep.len() > 2 {
@@ -126,7 +126,7 @@ fn whiskers(scene: &Scene) -> Vec<SweptWhisker> {
     few.whiskers().collect()
 }
 
-/// At most `most` values, the first and the last among them.
+/// Returns at most `most` values, with the first and the last.
 fn spread(values: &[f64], most: usize) -> Vec<f64> {
     let (last, count) = (values.len() - 1, values.len().min(most));
     (0..count)

@@ -1,10 +1,10 @@
-//! The CPU: scalar, vectors on one thread, vectors on all.
+//! Measurements of the CPU engine: scalar, SIMD vectors on one thread, and on all threads.
 
 use super::peak::peak;
 use super::solver::{Hit, Solver};
 use super::task::{Task, places};
-use super::watch::watch;
-use super::{Engine, Measurement, Report, Rung, Stages, pool};
+use super::timing::timed;
+use super::{Engine, Measurement, Report, Rung, pool};
 use crate::engine::EngineError;
 use crate::numerics::Unit;
 use crate::shooting::Resolution;
@@ -12,7 +12,7 @@ use crate::shooting::batch::flops_of_nystrom8;
 use std::convert::Infallible;
 use std::time::Instant;
 
-/// After a residual below this, in whisker lengths, one more Newton step reaches the rounding.
+/// Residual, in whisker lengths, below which one more Newton step reaches rounding.
 const TOLERANCE: f64 = 1e-7;
 
 /// Adds the rows of the CPU engine to `report`.
@@ -20,7 +20,7 @@ pub fn measure(
     task: &Task,
     runs: usize,
     report: &mut Report,
-    said: &mut dyn FnMut(&str),
+    on_step: &mut dyn FnMut(&str),
 ) -> Result<(), EngineError> {
     let all = rayon::current_num_threads();
     let vectors = Unit::detect();
@@ -30,7 +30,7 @@ pub fn measure(
     }
     for (unit, threads) in engines {
         let name = format!("cpu {unit}");
-        said(&format!("{name}, {threads} threads"));
+        on_step(&format!("{name}, {threads} threads"));
         let pool = pool(threads)?;
         let solver = |resolution| Solver {
             unit,
@@ -38,7 +38,9 @@ pub fn measure(
             tolerance: TOLERANCE,
         };
         let start = Instant::now();
-        pool.install(|| solver(Resolution::FINE).solve(task.effects, &task.rods, &task.shots[..1]));
+        pool.install(|| {
+            solver(Resolution::FINE).solve(task.effects, &task.rods, &task.targets[..1])
+        });
         let first_result_s = start.elapsed().as_secs_f64();
         let mut engine = Engine {
             name,
@@ -49,7 +51,7 @@ pub fn measure(
         };
         let mut rows = Resolution::LADDER.map(|resolution| {
             pool.install(|| {
-                // Before each row: a machine with other work is slower at times.
+                // Before each row, because a machine with other work is slower at times.
                 engine.peak_gflops = engine.peak_gflops.max(peak(unit));
                 row(task, runs, &engine, solver(resolution))
             })
@@ -63,10 +65,10 @@ pub fn measure(
     Ok(())
 }
 
-/// The row of `engine`, on the threads of the current pool.
+/// Measures a row of `engine` on the threads of the current pool.
 fn row(task: &Task, runs: usize, engine: &Engine, solver: Solver) -> Measurement {
-    let Ok((seconds, hits)) = watch(runs, || {
-        let hits = solver.solve(task.effects, &task.rods, &task.shots);
+    let Ok((seconds, hits)) = timed(runs, || {
+        let hits = solver.solve(task.effects, &task.rods, &task.targets);
         Ok::<Vec<Hit>, Infallible>(hits)
     });
     let resolution = solver.resolution;
@@ -78,10 +80,7 @@ fn row(task: &Task, runs: usize, engine: &Engine, solver: Solver) -> Measurement
         integrator: "nystrom8",
         steps: resolution.least,
     };
-    let stages = Stages {
-        dispatch: 1e3 * seconds.median,
-        ..Stages::default()
-    };
+    let stages = [0.0, 1e3 * seconds.median, 0.0, 0.0];
     let errors = task.errors(&places(&hits));
     Measurement::new(engine, rung, seconds, stages, Some(work), errors)
 }

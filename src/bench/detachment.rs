@@ -1,7 +1,7 @@
-//! The curve of detachment, from coarse to exact.
+//! Detachment curves, from coarse to fine steps.
 
-use super::task::{EXACT, Spread, faces};
-use super::watch::{Timing, watch};
+use super::task::{EXACT, Spread, whisker_sides};
+use super::timing::{Timing, timed};
 use crate::scene::Scene;
 use crate::shooting::Resolution;
 use crate::trace::{Detachment, curve_at};
@@ -14,9 +14,9 @@ use std::convert::Infallible;
 pub struct Detachments {
     /// Steps per trajectory at the fold of a cylinder.
     pub steps: u32,
-    /// Points of the curves.
+    /// Number of points of the curves.
     pub points: usize,
-    /// Seconds for all of them.
+    /// Seconds for all points.
     pub seconds: Timing,
     /// Microseconds per point.
     pub us_per_point: f64,
@@ -24,11 +24,11 @@ pub struct Detachments {
     pub angle_deg: Spread,
 }
 
-/// Every rung of the ladder.
+/// Measures every rung of the ladder.
 pub fn measure(scene: &Scene, runs: usize) -> Vec<Detachments> {
-    let faces = faces(scene);
+    let sides = whisker_sides(scene);
     let curves = |resolution: Resolution| -> Vec<Detachment> {
-        faces
+        sides
             .par_iter()
             .flat_map_iter(|(own, side)| {
                 let distances = &scene.grid.distance_mm;
@@ -40,7 +40,7 @@ pub fn measure(scene: &Scene, runs: usize) -> Vec<Detachments> {
     Resolution::LADDER
         .iter()
         .map(|resolution| {
-            let Ok((seconds, found)) = watch(runs, || Ok::<_, Infallible>(curves(*resolution)));
+            let Ok((seconds, found)) = timed(runs, || Ok::<_, Infallible>(curves(*resolution)));
             let pairs = found.iter().zip(&exact);
             let apart = pairs.filter_map(|(found, exact)| {
                 let exact = exact.push_angle_deg?;

@@ -1,8 +1,8 @@
-//! Every GPU adapter, in `f32` and, where it can, in `f64`: the cells of the scene as differences from references of their rows.
+//! Measurements of every GPU adapter, in `f32` and, if supported, in `f64`.
 
-use super::task::{Task, faces};
-use super::watch::watch;
-use super::{Engine, Measurement, Report, Rung, Stages};
+use super::task::{Task, whisker_sides};
+use super::timing::{median, timed};
+use super::{Engine, Measurement, Report, Rung};
 use crate::engine::gpu::{Gpu, Precision, adapters};
 use crate::engine::{
     Engine as _, EngineError, Outcome, RowBatch, SideColumns, WhiskerSide, on_gpu,
@@ -13,34 +13,34 @@ use crate::shooting::batch::Method;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// A GPU engine that may be measured.
+/// A GPU engine that can be measured.
 pub struct Candidate {
-    /// In the rows.
+    /// Name in the rows.
     pub name: String,
     /// Index among the [`adapters`].
     pub adapter: usize,
     pub precision: Precision,
 }
 
-/// Every adapter in `f32` and, where it can, in `f64`.
-pub fn candidates() -> impl Iterator<Item = Candidate> {
+/// Returns every adapter in `f32` and, if supported, in `f64`.
+pub fn candidates() -> Vec<Candidate> {
     let all = adapters();
-    let is_alone = all.len() == 1;
-    all.into_iter()
-        .enumerate()
-        .flat_map(move |(adapter, report)| {
-            let precisions = [Precision::F32, Precision::F64].into_iter();
-            let has =
-                move |precision: &Precision| *precision == Precision::F32 || report.shader_f64;
-            precisions.filter(has).map(move |precision| Candidate {
-                name: match is_alone {
-                    true => format!("gpu {precision}"),
-                    false => format!("gpu {adapter} {precision}"),
-                },
+    let mut candidates = Vec::new();
+    for (adapter, report) in all.iter().enumerate() {
+        let f64 = report.shader_f64.then_some(Precision::F64);
+        for precision in std::iter::once(Precision::F32).chain(f64) {
+            let name = match all.len() {
+                1 => format!("gpu {precision}"),
+                _ => format!("gpu {adapter} {precision}"),
+            };
+            candidates.push(Candidate {
+                name,
                 adapter,
                 precision,
-            })
-        })
+            });
+        }
+    }
+    candidates
 }
 
 /// Adds the rows of every adapter to `report`; one that fails is named with its reason.
@@ -49,113 +49,85 @@ pub fn measure(
     task: &Task,
     runs: usize,
     report: &mut Report,
-    said: &mut dyn FnMut(&str),
+    on_step: &mut dyn FnMut(&str),
 ) {
     if let Err(why) = on_gpu(task.effects) {
         report.failures.push(format!("GPU: {why}"));
         return;
     }
-    let sides = Sides::of(scene, task);
+    let requests = Request::all(scene, task);
     let all = adapters();
     let without = all.iter().filter(|adapter| !adapter.shader_f64);
     let without = without.map(|adapter| format!("{}: no f64 in shaders", adapter.info.name));
     report.failures.extend(without);
     for one in candidates() {
         let adapter = &all[one.adapter].info.name;
-        said(&format!("gpu {}, {adapter}", one.precision));
-        if let Err(why) = engine(&sides, task, runs, report, &one) {
+        on_step(&format!("gpu {}, {adapter}", one.precision));
+        if let Err(why) = measure_one(&requests, task, runs, report, &one) {
             let failure = format!("{adapter}, {}: {why}", one.precision);
             report.failures.push(failure);
         }
     }
 }
 
-/// The requests to the engines.
-struct Sides {
-    method: Method,
-    all: Vec<Side>,
-}
-
-/// A shot of the task, and `(tau, load)` of its state.
-type Point = (usize, (f64, f64));
-
-/// A whisker on one side.
-struct Side {
+/// The cells of a whisker side.
+struct Request {
     batch: RowBatch,
-    /// The shot in the task of each cell, if it has one.
-    shots: Vec<Option<usize>>,
+    /// Index of the target of each cell, if it has one.
+    targets: Vec<Option<usize>>,
 }
 
-impl Sides {
-    fn of(scene: &Scene, task: &Task) -> Self {
+impl Request {
+    /// The cells of all whisker sides of `scene`.
+    fn all(scene: &Scene, task: &Task) -> Vec<Self> {
         let method = Method::fine().with_effects(task.effects);
-        let push_angle_deg = &scene.grid.push_angle_deg;
-        let all = faces(scene).into_iter().zip(&task.rods).enumerate();
-        let all = all.map(|(index, ((own, side), rod))| {
+        let sides = whisker_sides(scene).into_iter().zip(&task.rods).enumerate();
+        let requests = sides.map(|(index, ((own, side), rod))| {
             let distances = scene.grid.distance_mm.iter();
             let distances: Vec<f64> = distances.map(|d| d / own.whisker.length_mm).collect();
             let sheet = Sheet::new(method, rod, side, &distances);
-            let columns = SideColumns::new(push_angle_deg, side, 0);
+            let columns = SideColumns::new(&scene.grid.push_angle_deg, side, 0);
             let pushes: Vec<f64> = columns.columns.iter().map(|own| own.push).collect();
-            let poles = sheet
-                .rows
-                .iter()
-                .flat_map(|row| pushes.iter().map(|push| row.pole(*push)));
-            let shots = poles.map(|pole| task.shot(index as u32, pole)).collect();
+            let rows = sheet.rows.iter();
+            let poles = rows.flat_map(|row| pushes.iter().map(|push| row.pole(*push)));
+            let targets = poles.map(|pole| task.target(index as u32, pole)).collect();
             let rows = (0..distances.len()).map(|row| (0, row));
             let side = WhiskerSide::new(Arc::new(columns), own.whisker.units(), sheet);
             let mut batch = RowBatch::new(method, [side].into(), pushes.into(), rows);
-            (batch.has_values, batch.has_points) = (true, true);
-            Side { batch, shots }
+            batch.has_points = true;
+            Self { batch, targets }
         });
-        Self {
-            method,
-            all: all.collect(),
-        }
+        requests.collect()
     }
 
-    /// Adds base points for `gpu`.
-    fn with_base_points(&self, gpu: &Gpu) -> Vec<RowBatch> {
-        let resolution = gpu.resolution(self.method.resolution);
-        let batches = self.all.iter().map(|side| side.batch.clone());
-        batches
-            .map(|batch| batch.with_base_points(resolution))
-            .collect()
-    }
-
-    /// The states that `gpu` solves, and the times of its stages.
-    fn solve(
-        &self,
-        gpu: &mut Gpu,
-        batches: &[RowBatch],
-    ) -> Result<(Vec<Point>, Stages), EngineError> {
-        let (mut points, mut stages) = (Vec::new(), Stages::default());
-        for (side, batch) in self.all.iter().zip(batches) {
-            let begun = Instant::now();
-            let mut batch = batch.clone();
-            let base_points = std::mem::take(&mut batch.base_points);
-            batch.set_base_points(base_points, gpu.resolution(self.method.resolution));
-            let trajectories = begun.elapsed();
-            gpu.submit(Arc::new(batch))?;
-            let cells = gpu.collect()?;
-            let times = std::mem::take(&mut gpu.times);
-            let ms = |duration: Duration| 1e3 * duration.as_secs_f64();
-            stages.upload += ms(trajectories + times.upload);
-            stages.dispatch += ms(times.dispatch);
-            stages.waiting += ms(times.waiting);
-            stages.readback += ms(times.readback);
-            let found = cells.outcome.iter().zip(&cells.points).zip(&side.shots);
-            points.extend(found.filter_map(|((outcome, point), shot)| {
-                let shot = shot.filter(|_| *outcome == Outcome::Solved)?;
-                Some((shot, (point.x, point.y)))
-            }));
-        }
-        Ok((points, stages))
+    /// Solves `batch`, these cells with base points. Returns the index of each target solved with `(tau, load)`, and the milliseconds of
+    /// the stages.
+    fn solve(&self, gpu: &mut Gpu, batch: &RowBatch) -> Result<(Points, [f64; 4]), EngineError> {
+        let begun = Instant::now();
+        let mut batch = batch.clone();
+        let base_points = std::mem::take(&mut batch.base_points);
+        batch.set_base_points(base_points, gpu.resolution(batch.method.resolution));
+        let trajectories = begun.elapsed();
+        gpu.submit(Arc::new(batch))?;
+        let cells = gpu.collect()?;
+        let times = std::mem::take(&mut gpu.times);
+        let upload = trajectories + times.upload;
+        let stages = [upload, times.dispatch, times.waiting, times.readback];
+        let found = cells.outcome.iter().zip(&cells.points).zip(&self.targets);
+        let points = found.filter_map(|((outcome, point), target)| {
+            let target = target.filter(|_| *outcome == Outcome::Solved)?;
+            Some((target, (point.x, point.y)))
+        });
+        let ms = |duration: Duration| 1e3 * duration.as_secs_f64();
+        Ok((points.collect(), stages.map(ms)))
     }
 }
 
-fn engine(
-    sides: &Sides,
+/// Index of a target, and `(tau, load)` of its state.
+type Points = Vec<(usize, (f64, f64))>;
+
+fn measure_one(
+    requests: &[Request],
     task: &Task,
     runs: usize,
     report: &mut Report,
@@ -164,37 +136,50 @@ fn engine(
     let start = Instant::now();
     let mut gpu = Gpu::open(Some(one.adapter), one.precision)?;
     gpu.is_timed = true;
-    let batches = sides.with_base_points(&gpu);
-    sides.solve(&mut gpu, &batches)?;
-    let first_result_s = start.elapsed().as_secs_f64();
+    let resolution = one.precision.resolution(Method::fine().resolution);
+    let batches = requests.iter().map(|own| own.batch.clone());
+    let batches: Vec<RowBatch> = batches
+        .map(|batch| batch.with_base_points(resolution))
+        .collect();
+    let mut first_result_s = None;
+    let mut of_runs: [Vec<f64>; 4] = Default::default();
+    let mut run = || {
+        let (mut points, mut stages) = (Vec::new(), [0.0; 4]);
+        for (request, batch) in requests.iter().zip(&batches) {
+            let (more, ms) = request.solve(&mut gpu, batch)?;
+            points.extend(more);
+            stages = std::array::from_fn(|i| stages[i] + ms[i]);
+        }
+        first_result_s.get_or_insert(start.elapsed().as_secs_f64());
+        for (all, ms) in of_runs.iter_mut().zip(stages) {
+            all.push(ms);
+        }
+        Ok::<_, EngineError>(points)
+    };
+    run()?;
+    let (seconds, points) = timed(runs, run)?;
+    let (targets, points): (Vec<usize>, Vec<(f64, f64)>) = points.into_iter().unzip();
     let engine = Engine {
         name: one.name.clone(),
         threads: None,
         adapter: gpu.describe().adapter,
         peak_gflops: 1e-9 * gpu.peak(runs)?,
-        first_result_s,
+        first_result_s: first_result_s.unwrap_or_default(),
     };
-    let mut stages = Vec::new();
-    let (seconds, points) = watch(runs, || {
-        let (points, of_run) = sides.solve(&mut gpu, &batches)?;
-        stages.push(of_run);
-        Ok::<_, EngineError>(points)
-    })?;
-    // The first run warms up.
-    let stages = Stages::medians(&stages[1..]);
-    let rung = Rung {
-        integrator: "differences",
-        steps: one.precision.resolution(sides.method.resolution).least,
-    };
-    let (shots, points): (Vec<usize>, Vec<(f64, f64)>) = points.into_iter().unzip();
     if points.is_empty() {
         let failure = format!("{}: no state beside a base point", engine.name);
         report.failures.push(failure);
         return Ok(());
     }
-    report.engines.push(engine.clone());
-    let errors = task.only(&shots).errors(&points);
+    // The first two runs warm up.
+    let stages = of_runs.map(|ms| median(ms.into_iter().skip(2)));
+    let rung = Rung {
+        integrator: "differences",
+        steps: resolution.least,
+    };
+    let errors = task.only(&targets).errors(&points);
     let row = Measurement::new(&engine, rung, seconds, stages, None, errors);
+    report.engines.push(engine);
     report.rows.push(row);
     Ok(())
 }

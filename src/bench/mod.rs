@@ -1,58 +1,62 @@
-//! What accuracy costs in time: every engine of this machine, from coarse to exact, on the states of a scene; and what whole maps take.
+//! Error against time for every engine of this machine, on the states of a scene; and times of whole maps.
 //!
-//! The CPU is given shots, which start from the guesses of the lattice, a GPU those of the same cells whose rows have references, which
-//! are found before. Errors are those of the engine's
-//! answers as far finer steps see them; times are medians, without the first run, which warms up.
+//! The CPU solves targets from the guesses of the lattice. A GPU solves those of the same cells whose rows have base points, which are
+//! found beforehand. Errors are differences from much finer steps. Times are medians, without the first run, which warms up.
 
 mod cpu;
 mod detachment;
 mod gpu;
-mod pareto;
 mod peak;
 mod solver;
 mod task;
-mod watch;
+mod timing;
 mod whole;
 
 pub use detachment::Detachments;
 pub use solver::Solver;
 pub use task::{Errors, Spread};
-pub use watch::{NOISY, Timing};
-pub use whole::{MapStages, Verdict, WholeMap};
+pub use timing::{NOISY, Timing};
+pub use whole::{Verdict, WholeMap};
 
 use crate::engine::EngineError;
 use crate::plan::SAMPLE_VALUES;
 use crate::scene::Scene;
 use serde::Serialize;
+use std::collections::BTreeMap;
 use std::fmt;
 use task::{Task, Work};
+use timing::median;
+
+/// Milliseconds by the name of a stage.
+pub type StageTimes = BTreeMap<String, f64>;
 
 /// One engine at one accuracy.
 #[derive(Clone, Debug, Serialize)]
 pub struct Measurement {
-    /// Which engine.
+    /// Name of the engine.
     pub engine: String,
     /// Threads of the CPU engine.
     pub threads: Option<usize>,
-    /// How accurate it was asked to be.
+    /// Integrator and steps.
     pub rung: Rung,
     /// Seconds for all states.
     pub seconds: Timing,
-    /// Milliseconds of the stages.
-    pub stages_ms: Stages,
+    /// Milliseconds of the stages, medians of the runs; 0 where the engine has no such stage. `upload`: trajectories of base points, packing
+    /// and submitting; `dispatch`: solving, by the device's clock on a GPU that has one; `waiting`: for the device; `readback`: unpacking.
+    pub stages_ms: StageTimes,
     /// Microseconds per state.
     pub us_per_state: f64,
     /// States per second.
     pub states_per_s: f64,
     /// Trajectories per second.
     pub trajectories_per_s: f64,
-    /// Billions of floating-point operations per second in the integration, where they are counted: on the CPU.
+    /// Billions of floating-point operations per second in the integration, counted on the CPU only.
     pub gflops: Option<f64>,
     /// Floating-point rate as a part of the engine's peak.
     pub of_peak: Option<f64>,
-    /// How far off the answers are.
+    /// Errors of the states.
     pub errors: Errors,
-    /// Whether no other row is both faster and closer.
+    /// Whether no other row is both faster and more accurate.
     pub pareto: bool,
 }
 
@@ -61,7 +65,7 @@ impl Measurement {
         engine: &Engine,
         rung: Rung,
         seconds: Timing,
-        stages_ms: Stages,
+        stages_ms: [f64; 4],
         work: Option<Work>,
         errors: Errors,
     ) -> Self {
@@ -73,7 +77,11 @@ impl Measurement {
             threads: engine.threads,
             rung,
             seconds,
-            stages_ms,
+            stages_ms: STAGES
+                .map(str::to_owned)
+                .into_iter()
+                .zip(stages_ms)
+                .collect(),
             us_per_state: 1e6 * seconds.median / states,
             states_per_s: states / seconds.median,
             trajectories_per_s: trajectories / seconds.median,
@@ -85,7 +93,10 @@ impl Measurement {
     }
 }
 
-/// How accurate a row was asked to be.
+/// Stages of a row, in the order of the work.
+const STAGES: [&str; 4] = ["upload", "dispatch", "waiting", "readback"];
+
+/// Integrator and steps of a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Rung {
     /// The integrator of the engine.
@@ -100,48 +111,31 @@ impl fmt::Display for Rung {
     }
 }
 
-/// Milliseconds per stage, medians of the runs; 0 where an engine has no such stage.
-#[derive(Clone, Copy, Debug, Default, Serialize)]
-pub struct Stages {
-    /// Trajectories of references, packing and handing to the device.
-    pub upload: f64,
-    /// Solving: by the device's own clock on a GPU that has one.
-    pub dispatch: f64,
-    /// Waiting for the device.
-    pub waiting: f64,
-    /// Unpacking.
-    pub readback: f64,
+/// Returns the median of each stage in several runs.
+fn medians(runs: &[StageTimes]) -> StageTimes {
+    let stages = runs.first().into_iter().flat_map(BTreeMap::keys);
+    let of_runs = |stage: &String| median(runs.iter().map(|run| run[stage]));
+    stages
+        .map(|stage| (stage.clone(), of_runs(stage)))
+        .collect()
 }
 
-impl Stages {
-    /// The medians of the stages in several runs.
-    fn medians(runs: &[Self]) -> Self {
-        let median = |stage: fn(&Self) -> f64| watch::median(runs.iter().map(stage));
-        Self {
-            upload: median(|run| run.upload),
-            dispatch: median(|run| run.dispatch),
-            waiting: median(|run| run.waiting),
-            readback: median(|run| run.readback),
-        }
-    }
-}
-
-/// An engine by itself.
+/// An engine and its peak rate.
 #[derive(Clone, Debug, Serialize)]
 pub struct Engine {
-    /// Its name in the rows.
+    /// Name in the rows.
     pub name: String,
     /// Threads of the CPU engine.
     pub threads: Option<usize>,
     /// Processor or adapter, with driver.
     pub adapter: String,
-    /// Billions of multiplications and additions per second: the most that was measured.
+    /// Billions of multiplications and additions per second: the largest rate measured.
     pub peak_gflops: f64,
-    /// Seconds from nothing to the first answer: opening, compiling, one shot.
+    /// Seconds from the start to the first result: opening, compiling, one cell.
     pub first_result_s: f64,
 }
 
-/// Everything that was measured.
+/// All measurements of a scene.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Report {
     /// Title of the scene.
@@ -154,38 +148,38 @@ pub struct Report {
     pub engines: Vec<Engine>,
     /// The rows, engine by engine.
     pub rows: Vec<Measurement>,
-    /// The curve of detachment, from coarse to exact.
+    /// Detachment curves, from coarse to fine steps.
     pub detachments: Vec<Detachments>,
     /// Cells of each whole map.
     pub map_cells: usize,
-    /// Whole maps: that of the CPU engine on all threads, then one of each GPU engine.
+    /// Whole maps: of the CPU engine on all threads, then of each GPU engine.
     pub maps: Vec<WholeMap>,
-    /// Which of them is done first, where there is a GPU engine.
+    /// Comparison of the CPU engine with the fastest GPU engine, if there is one.
     pub verdict: Option<Verdict>,
     /// Engines that could not be measured, and why.
     pub failures: Vec<String>,
 }
 
-/// How much is measured.
+/// Size of the sample, and number of runs.
 #[derive(Clone, Copy, Debug)]
 pub struct Effort {
     /// Push angles, and distances, of the sample.
     pub lines: usize,
-    /// Push angles, and distances, of whole maps at most.
+    /// Maximum number of push angles, and of distances, of whole maps.
     pub map_lines: usize,
     /// Timed runs of each row.
     pub runs: usize,
 }
 
 impl Effort {
-    /// For numbers to be quoted.
+    /// Effort for numbers to be quoted.
     pub const FULL: Self = Self {
         lines: 128,
         map_lines: 1024,
         runs: 7,
     };
 
-    /// For a first look.
+    /// Effort for a first look.
     pub const QUICK: Self = Self {
         lines: 48,
         map_lines: 256,
@@ -193,38 +187,39 @@ impl Effort {
     };
 }
 
-/// Measures every engine on a sample of `scene`; `said` is told what comes next. `None` if no cell of the sample has a state.
+/// Measures every engine on a sample of `scene`, and calls `on_step` with the name of each next step. `None` if no cell of the sample has a
+/// state.
 ///
 /// # Errors
-/// When not even the CPU's threads can be had.
+/// If threads cannot be started.
 pub fn run(
     scene: &Scene,
     effort: Effort,
-    said: &mut dyn FnMut(&str),
+    on_step: &mut dyn FnMut(&str),
 ) -> Result<Option<Report>, EngineError> {
     let of_maps = scene.thinned(effort.map_lines, SAMPLE_VALUES);
     let scene = scene.thinned(effort.lines, SAMPLE_VALUES);
-    said("the exact answers");
+    on_step("the exact states");
     let task = Task::new(&scene);
-    if task.shots.is_empty() {
+    if task.targets.is_empty() {
         return Ok(None);
     }
     let mut report = Report {
         scene: scene.title.clone(),
-        states: task.shots.len(),
+        states: task.targets.len(),
         runs: effort.runs,
         ..Report::default()
     };
-    cpu::measure(&task, effort.runs, &mut report, said)?;
-    gpu::measure(&scene, &task, effort.runs, &mut report, said);
-    said("detachments");
+    cpu::measure(&task, effort.runs, &mut report, on_step)?;
+    gpu::measure(&scene, &task, effort.runs, &mut report, on_step);
+    on_step("detachments");
     report.detachments = detachment::measure(&scene, effort.runs);
-    pareto::mark(&mut report.rows);
-    whole::measure(&of_maps, effort.runs, &mut report, said)?;
+    mark_pareto(&mut report.rows);
+    whole::measure(&of_maps, effort.runs, &mut report, on_step)?;
     Ok(Some(report))
 }
 
-/// An engine with its threads.
+/// Returns the name of an engine with its threads.
 #[must_use]
 pub fn named(engine: &str, threads: Option<usize>) -> String {
     match threads {
@@ -233,8 +228,18 @@ pub fn named(engine: &str, threads: Option<usize>) -> String {
     }
 }
 
-/// So many threads.
+/// Starts `threads` threads.
 fn pool(threads: usize) -> Result<rayon::ThreadPool, EngineError> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     pool.map_err(|error| EngineError::Device(error.to_string()))
+}
+
+/// Marks the rows that no other row beats in both time and worst push-angle error.
+fn mark_pareto(rows: &mut [Measurement]) {
+    let place = |row: &Measurement| [row.us_per_state, row.errors.angle_deg.worst];
+    let places: Vec<[f64; 2]> = rows.iter().map(place).collect();
+    for (row, here) in rows.iter_mut().zip(&places) {
+        let beats = |other: &[f64; 2]| other[0] <= here[0] && other[1] <= here[1] && other != here;
+        row.pareto = !places.iter().any(beats);
+    }
 }

@@ -1,18 +1,17 @@
-//! What the processor could do at best: nothing but multiplications with additions, in as many independent accumulators as it
-//! takes.
+//! Peak rate of the processor: only multiplications with additions, in independent accumulators.
 
 use crate::numerics::{Lanes, SimdTask, Unit, WIDTH};
 use std::hint::black_box;
 use std::time::Instant;
 
-/// Rounds on the clock: milliseconds.
+/// Timed rounds: milliseconds.
 const ROUNDS: u32 = 1 << 20;
 
-/// Numbers of accumulators that are tried: too few wait for themselves, too many for memory. Which ones are best depends on
-/// the registers of the unit, and on how many rounds the processor takes for one addition.
+/// Numbers of accumulators that are tried: too few wait for one another's results, too many for memory. The best number depends on the
+/// registers of the unit and on the latency of an addition.
 const ACCUMULATORS: [usize; 8] = [4, 6, 7, 8, 10, 12, 14, 16];
 
-/// Billions of operations per second of all threads of the pool at once, by the best number of accumulators.
+/// Billions of operations per second of all threads of the pool together, with the best number of accumulators.
 pub fn peak(unit: Unit) -> f64 {
     let rate = |accumulators| {
         let start = Instant::now();
@@ -23,7 +22,7 @@ pub fn peak(unit: Unit) -> f64 {
     ACCUMULATORS.map(rate).into_iter().fold(0.0, f64::max)
 }
 
-/// Multiplies and adds in every accumulator, and tells how many operations that were.
+/// Multiplies and adds in every accumulator, and returns the number of operations.
 #[derive(Clone, Copy, Debug)]
 struct MultiplyAndAdd {
     /// One of [`ACCUMULATORS`].

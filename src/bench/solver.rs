@@ -1,4 +1,4 @@
-//! Newton's method on shots alone, in `f64` on the CPU: on any SIMD unit, at any resolution.
+//! Newton's method alone, in `f64` on the CPU: on any SIMD unit, at any resolution.
 
 use crate::numerics::Unit;
 use crate::refine::CellTarget;
@@ -7,13 +7,13 @@ use crate::shooting::batch::{Batch, InitialCondition, Method};
 use crate::shooting::{Resolution, ShootingMap};
 use rayon::prelude::*;
 
-/// Shots that go through all steps as one batch: enough for full lanes, few enough to stay in the inner cache.
+/// Targets of a batch: enough for full lanes, few enough to stay in the inner cache.
 const BATCH: usize = 1024;
 
-/// Newton steps that a shot may take.
+/// Maximum number of Newton steps of a target.
 const MOST_STEPS: u32 = 4;
 
-/// What was made of a shot.
+/// Last state computed for a target.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
     /// `tau` of the contact.
@@ -26,52 +26,52 @@ pub struct Hit {
     pub steps: u32,
 }
 
-/// How the CPU solves shots.
+/// How the CPU solves targets.
 #[derive(Clone, Copy, Debug)]
 pub struct Solver {
-    /// What integrates.
+    /// Unit that integrates.
     pub unit: Unit,
-    /// How finely.
+    /// Steps of trajectories.
     pub resolution: Resolution,
-    /// Residual, in whisker lengths, after which one more step is the last.
+    /// Residual, in whisker lengths, below which the next step is the last.
     pub tolerance: f64,
 }
 
 impl Solver {
-    /// Solves `shots`, each on one of `rods`; answers in the same order.
+    /// Solves `targets`, each on one of `rods`; returns the states in the same order.
     #[must_use]
-    pub fn solve(self, effects: Effects, rods: &[Rod], shots: &[CellTarget]) -> Vec<Hit> {
-        shots
+    pub fn solve(self, effects: Effects, rods: &[Rod], targets: &[CellTarget]) -> Vec<Hit> {
+        targets
             .par_chunks(BATCH)
-            .flat_map_iter(|shots| self.solve_batch(effects, rods, shots))
+            .flat_map_iter(|targets| self.solve_batch(effects, rods, targets))
             .collect()
     }
 
-    fn solve_batch(self, effects: Effects, rods: &[Rod], shots: &[CellTarget]) -> Vec<Hit> {
+    fn solve_batch(self, effects: Effects, rods: &[Rod], targets: &[CellTarget]) -> Vec<Hit> {
         let method = Method::new(self.resolution).with_effects(effects);
         let batch = Batch::new(method).on(self.unit);
-        let start = |shot: &CellTarget| Hit {
-            tau: shot.tau,
-            load: shot.load,
+        let start = |target: &CellTarget| Hit {
+            tau: target.tau,
+            load: target.load,
             residual: f64::INFINITY,
             steps: 0,
         };
-        let mut hits: Vec<Hit> = shots.iter().map(start).collect();
-        let mut open: Vec<usize> = (0..shots.len()).collect();
+        let mut hits: Vec<Hit> = targets.iter().map(start).collect();
+        let mut open: Vec<usize> = (0..targets.len()).collect();
         for round in 0..=MOST_STEPS {
             let condition = |&i: &usize| InitialCondition {
-                rod: &rods[shots[i].rod as usize],
+                rod: &rods[targets[i].rod as usize],
                 tau: hits[i].tau,
                 load: hits[i].load,
             };
             let conditions: Vec<InitialCondition> = open.iter().map(condition).collect();
             let maps: Vec<ShootingMap> = batch.shoot(&conditions);
             for ((&i, condition), map) in open.iter().zip(&conditions).zip(&maps) {
-                let (hit, shot) = (&mut hits[i], &shots[i]);
-                hit.residual = map.pole.distance(shot.pole);
+                let (hit, target) = (&mut hits[i], &targets[i]);
+                hit.residual = map.pole.distance(target.pole);
                 if round < MOST_STEPS && hit.residual.is_finite() {
                     let s = arclength(condition.rod, hit.tau);
-                    let step = map.newton_step(shot.pole, s, hit.load);
+                    let step = map.newton_step(target.pole, s, hit.load);
                     hit.tau += step.x;
                     hit.load += step.y;
                     hit.steps += 1;

@@ -1,8 +1,8 @@
-//! Whole maps, engine by engine: what the stages take of the CPU, what of it a device could still take, and which engine is done first.
+//! Times of whole maps by engine and stage, and a verdict on the faster engine.
 
 use super::gpu::{Candidate, candidates};
-use super::watch::{Timing, median};
-use super::{Report, named, pool};
+use super::timing::{Timing, median};
+use super::{Report, StageTimes, medians, named, pool};
 use crate::engine::gpu::Gpu;
 use crate::engine::{Engine, EngineError, on_gpu};
 use crate::map::{self, Panel, Stage};
@@ -19,42 +19,22 @@ use std::ops::ControlFlow;
 /// A whole map by one engine, packed but not written.
 #[derive(Clone, Debug, Serialize)]
 pub struct WholeMap {
-    /// Which engine, with its threads if it is the CPU's.
+    /// Name of the engine, with its threads for the CPU engine.
     pub engine: String,
     /// Seconds from the plan to the last panel packed.
     pub seconds: Timing,
-    /// What they were spent on.
-    pub stages_ms: MapStages,
+    /// Wall milliseconds by stage, medians of the runs: `sheets`, `base_points`, `guesses`, `refinement` and `classification` in sequence;
+    /// beside them `packing`, `device` (the busy engine) and `waiting` for it.
+    pub stages_ms: StageTimes,
     /// CPU microseconds of the process per cell; 0 where the system has no such clock. A software adapter's threads are included.
     pub host_us_per_cell: f64,
-    /// Guesses and refinement as a part of all stages: what an engine could still take over.
+    /// Part of guesses and refinement in all stages, which an engine could still compute.
     pub device_can_take: f64,
     /// Cells that fell back to the CPU.
     pub fallback: u64,
 }
 
-/// Wall milliseconds of a map by stage, medians of the runs. Packing and the engine work beside the other stages.
-#[derive(Clone, Copy, Debug, Default, Serialize)]
-pub struct MapStages {
-    /// Folds, lattices and boundaries.
-    pub sheets: f64,
-    /// Guesses from the lattice, of cells that no device solves.
-    pub guesses: f64,
-    /// Base points of rows.
-    pub base_points: f64,
-    /// The engine, from its first request to its last response.
-    pub device: f64,
-    /// Newton's method.
-    pub refinement: f64,
-    /// Audit, regimes and units.
-    pub classification: f64,
-    /// Packing.
-    pub packing: f64,
-    /// Waiting for the engine.
-    pub waiting: f64,
-}
-
-/// Which engine is done first with whole maps.
+/// Comparison of engines by their times for whole maps.
 #[derive(Clone, Debug, Serialize)]
 pub struct Verdict {
     /// The faster one of the CPU engine and the fastest GPU engine.
@@ -63,7 +43,7 @@ pub struct Verdict {
     pub slower: String,
     /// The medians' ratio, at least 1.
     pub times: f64,
-    /// Whether runs of the slower one were as fast as runs of the faster one.
+    /// Whether a run of the slower one was as fast as a run of the faster one.
     pub within_spread: bool,
     /// Whether the timing of either is noisy.
     pub is_noisy: bool,
@@ -112,11 +92,11 @@ impl Verdict {
     }
 }
 
-/// What one run has taken, in seconds.
+/// Times of one run: wall and CPU seconds, and milliseconds by stage.
 struct Sample {
     seconds: f64,
     host: f64,
-    stages: MapStages,
+    stages_ms: StageTimes,
     fallback: u64,
 }
 
@@ -125,7 +105,7 @@ pub fn measure(
     scene: &Scene,
     runs: usize,
     report: &mut Report,
-    said: &mut dyn FnMut(&str),
+    on_step: &mut dyn FnMut(&str),
 ) -> Result<(), EngineError> {
     let plan = match Plan::new(scene) {
         Ok(plan) => plan,
@@ -141,8 +121,7 @@ pub fn measure(
     let mut engines: Vec<(String, Option<Gpu>, Vec<Sample>)> = vec![(cpu, None, Vec::new())];
     if on_gpu(plan.method.effects).is_ok() {
         let measured = |one: &Candidate| report.engines.iter().any(|own| own.name == one.name);
-        let found: Vec<Candidate> = candidates().filter(measured).collect();
-        for one in found {
+        for one in candidates().into_iter().filter(measured) {
             match Gpu::open(Some(one.adapter), one.precision) {
                 Ok(gpu) => engines.push((one.name, Some(gpu), Vec::new())),
                 Err(why) => report.failures.push(format!("map by {}: {why}", one.name)),
@@ -153,7 +132,7 @@ pub fn measure(
     for round in 0..=runs {
         let mut working = Vec::new();
         for (name, mut gpu, mut samples) in engines {
-            said(&format!("map {round} of {runs} by {name}"));
+            on_step(&format!("map {round} of {runs} by {name}"));
             let sample = pool.install(|| run(scene, &plan, gpu.as_mut()));
             match sample {
                 Ok(sample) => {
@@ -172,7 +151,7 @@ pub fn measure(
     Ok(())
 }
 
-/// One map.
+/// Computes one map.
 fn run(scene: &Scene, plan: &Plan, gpu: Option<&mut Gpu>) -> Result<Sample, EngineError> {
     let engine = gpu.map(|gpu| gpu as &mut dyn Engine);
     let mut keep = |panels: Vec<Panel>| {
@@ -189,46 +168,35 @@ fn run(scene: &Scene, plan: &Plan, gpu: Option<&mut Gpu>) -> Result<Sample, Engi
     if let Some(failure) = summary.engine_failure {
         return Err(failure);
     }
-    let ms = |stage| 1e3 * summary.stage_seconds(stage);
-    let cells = summary.engine_cells;
+    let stages = Stage::ALL.map(|(stage, name)| (name, summary.stage_seconds(stage)));
+    let engine = [
+        ("device", summary.device_seconds),
+        ("waiting", summary.waiting_seconds),
+    ];
+    let stages = stages.into_iter().chain(engine);
     Ok(Sample {
         seconds: summary.wall_seconds,
         host: summary.cpu_seconds.unwrap_or_default(),
-        stages: MapStages {
-            sheets: ms(Stage::Sheets),
-            guesses: ms(Stage::Guesses),
-            base_points: ms(Stage::BasePoints),
-            device: 1e3 * summary.device_seconds,
-            refinement: ms(Stage::Refinement),
-            classification: ms(Stage::Classification),
-            packing: ms(Stage::Packing),
-            waiting: 1e3 * summary.waiting_seconds,
-        },
-        fallback: cells.fallback(),
+        stages_ms: stages
+            .map(|(name, s)| (name.replace(' ', "_"), 1e3 * s))
+            .collect(),
+        fallback: summary.engine_cells.fallback(),
     })
 }
 
 fn summed_up(engine: String, cells: usize, samples: &[Sample]) -> WholeMap {
-    let of = |what: fn(&Sample) -> f64| median(samples.iter().map(what));
-    let stages = MapStages {
-        sheets: of(|run| run.stages.sheets),
-        guesses: of(|run| run.stages.guesses),
-        base_points: of(|run| run.stages.base_points),
-        device: of(|run| run.stages.device),
-        refinement: of(|run| run.stages.refinement),
-        classification: of(|run| run.stages.classification),
-        packing: of(|run| run.stages.packing),
-        waiting: of(|run| run.stages.waiting),
-    };
-    let for_devices = stages.guesses + stages.refinement;
-    let for_cpus = stages.sheets + stages.base_points + stages.classification + stages.packing;
+    let stages_ms: Vec<StageTimes> = samples.iter().map(|run| run.stages_ms.clone()).collect();
+    let stages_ms = medians(&stages_ms);
+    let sum = |names: &[&str]| names.iter().filter_map(|name| stages_ms.get(*name)).sum();
+    let for_devices: f64 = sum(&["guesses", "refinement"]);
+    let for_cpus: f64 = sum(&["sheets", "base_points", "classification", "packing"]);
     WholeMap {
         engine,
         seconds: Timing::of(samples.iter().map(|run| run.seconds)),
-        stages_ms: stages,
-        host_us_per_cell: 1e6 * of(|run| run.host) / cells as f64,
+        host_us_per_cell: 1e6 * median(samples.iter().map(|run| run.host)) / cells as f64,
         device_can_take: for_devices / (for_devices + for_cpus),
         fallback: samples.last().map_or(0, |run| run.fallback),
+        stages_ms,
     }
 }
 
@@ -240,7 +208,7 @@ mod tests {
         WholeMap {
             engine: engine.to_owned(),
             seconds: Timing::of(seconds.iter().copied()),
-            stages_ms: MapStages::default(),
+            stages_ms: StageTimes::new(),
             host_us_per_cell: 0.0,
             device_can_take: 0.0,
             fallback: 0,
@@ -259,37 +227,37 @@ mod tests {
             let of = |one: Verdict| (one.faster, one.slower, one.times, one.within_spread);
             Verdict::of(&maps).map(of)
         };
-        let says = |faster: &str, slower: &str, times, within_spread| {
+        let wanted = |faster: &str, slower: &str, times, within_spread| {
             Some((faster.to_owned(), slower.to_owned(), times, within_spread))
         };
         assert_eq!(verdict(&[]), None);
         assert_eq!(verdict(&[&cpu]), None);
         let all = verdict(&[&cpu, &slow, &fast]);
-        assert_eq!(all, says("fast", "cpu", 2.0, false));
-        assert_eq!(verdict(&[&cpu, &slow]), says("cpu", "slow", 2.0, false));
+        assert_eq!(all, wanted("fast", "cpu", 2.0, false));
+        assert_eq!(verdict(&[&cpu, &slow]), wanted("cpu", "slow", 2.0, false));
         let near = map("near", &[2.05, 2.5, 3.0]);
-        assert_eq!(verdict(&[&cpu, &near]), says("cpu", "near", 1.25, true));
+        assert_eq!(verdict(&[&cpu, &near]), wanted("cpu", "near", 1.25, true));
     }
 
     #[test]
     fn a_verdict_on_noisy_timings_names_no_faster_engine() {
-        let says = |cpu: &[f64], gpu: &[f64]| {
+        let text = |cpu: &[f64], gpu: &[f64]| {
             let verdict = Verdict::of(&[map("cpu", cpu), map("gpu", gpu)]);
             verdict.map(|verdict| verdict.to_string())
         };
-        let quiet = says(&[1.95, 2.0, 2.05], &[2.0, 2.1, 2.2]);
+        let quiet = text(&[1.95, 2.0, 2.05], &[2.0, 2.1, 2.2]);
         let wanted = "cpu and gpu are equally fast, within their spread";
         assert_eq!(quiet.as_deref(), Some(wanted));
         for (cpu, gpu) in [
             ([1.0, 2.0, 3.0], [2.0, 2.1, 2.2]),
             ([1.95, 2.0, 2.05], [2.0, 2.5, 3.0]),
         ] {
-            let noisy = says(&cpu, &gpu).unwrap_or_default();
+            let noisy = text(&cpu, &gpu).unwrap_or_default();
             assert!(noisy.starts_with("too noisy to tell"), "{noisy}");
             assert!(noisy.contains("an idle machine"), "{noisy}");
         }
         // Noise does not matter where no runs overlap.
-        let apart = says(&[1.0, 2.0, 3.0], &[8.0, 9.0, 10.0]);
+        let apart = text(&[1.0, 2.0, 3.0], &[8.0, 9.0, 10.0]);
         assert_eq!(apart.as_deref(), Some("cpu is 4.5 times as fast as gpu"));
     }
 }

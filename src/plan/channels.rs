@@ -1,4 +1,4 @@
-//! What a map tells of every cell, and the choice of it that is computed and stored.
+//! Channels of a map, and the selection that is computed and stored.
 
 use crate::input::did_you_mean;
 use std::fmt;
@@ -72,10 +72,10 @@ impl Channel {
     }
 }
 
-/// Channels beside those of a state.
+/// Names of the channels that are not of a state.
 const OTHERS: [&str; 5] = ["regime", "status", "margin_deg", "newton_steps", "residual"];
 
-/// How many channels there are.
+/// Number of channels.
 const COUNT: usize = OTHERS.len() + STATE_CHANNELS.len();
 
 /// Some of the channels of a map.
@@ -112,8 +112,8 @@ impl Channels {
         Self::those(|other| other == name || self.contains(other))
     }
 
-    /// The channels to store where there may be friction: with it, channels of a state bring `status`, which marks the states that are
-    /// off ([`Status::MARKS`](crate::classify::Status::MARKS)).
+    /// Returns the channels to store: with friction, channels of a state are stored with `status`, which marks inexact states
+    /// ([`Status::MARKS`](crate::classify::Status::MARKS)).
     #[must_use]
     pub fn with_marks(self, has_friction: bool) -> Self {
         if has_friction && self.has_state() {
@@ -123,26 +123,26 @@ impl Channels {
         }
     }
 
-    /// Whether there is one of this name among them.
+    /// Returns true if the selection has the channel `name`.
     #[must_use]
     pub fn contains(&self, name: &str) -> bool {
         self.names().any(|own| own == name)
     }
 
-    /// Their names: regime and status, those of a state, those of the numerics.
+    /// Returns the names: regime and status, channels of a state, channels of the numerics.
     pub fn names(&self) -> impl Iterator<Item = &'static str> {
         let chosen = names().zip(self.0);
         chosen.filter_map(|(name, is_chosen)| is_chosen.then_some(name))
     }
 
-    /// Whether there is one of a state among them.
+    /// Returns true if the selection has a channel of a state.
     #[must_use]
     pub fn has_state(&self) -> bool {
         STATE_CHANNELS.iter().any(|name| self.contains(name))
     }
 }
 
-/// The names of all channels.
+/// Returns the names of all channels.
 fn names() -> impl Iterator<Item = &'static str> + Clone {
     let (verdict, numerics) = OTHERS.split_at(2);
     let all = verdict.iter().chain(&STATE_CHANNELS).chain(numerics);
@@ -158,7 +158,7 @@ impl fmt::Display for Channels {
 impl FromStr for Channels {
     type Err = String;
 
-    /// Names with commas between them.
+    /// Parses names with commas between them.
     fn from_str(list: &str) -> Result<Self, String> {
         let wanted: Vec<&str> = list.split(',').map(str::trim).collect();
         match wanted.iter().find(|name| !Self::ALL.contains(name)) {

@@ -1,4 +1,4 @@
-//! The effects by name: which are on, and which line of the scene decides it. The only list of them.
+//! The only list of effects by name: whether each is on, and which line of the scene decides it.
 
 use crate::rod::Effects;
 use crate::scene::{Parameter, Scene, SceneData, SweptWhisker, Whisker};
@@ -6,28 +6,28 @@ use crate::scene::{Parameter, Scene, SceneData, SweptWhisker, Whisker};
 /// An effect of the scene.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Effect {
-    /// What people call it.
+    /// Name for users.
     pub name: &'static str,
-    /// Whether it changes anything in this scene.
+    /// Whether the effect changes anything in this scene.
     pub on: bool,
-    /// The keys of the scene that decide it, with their values.
+    /// Keys of the scene that decide, with their values.
     pub why: String,
-    /// What it costs in the integration loop when it is on.
+    /// Cost in the integration loop if the effect is on.
     pub cost: Cost,
 }
 
-/// What an effect costs in the integration loop.
+/// Cost of an effect in the integration loop.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Cost {
     /// Work at every step: sets of such effects have kernels of their own.
     Kernel,
-    /// Nothing: it only changes where a trajectory starts.
+    /// Nothing: the effect only changes the start of a trajectory.
     Start,
-    /// Nothing: it is a faster taper, and a steeper modulus gradient.
+    /// Nothing: the effect is a faster taper and a steeper modulus gradient.
     Taper,
 }
 
-/// Every effect; `kernels` are those that the kernels of the run have.
+/// Returns every effect; `kernels` are the effects in the kernels of the run.
 #[must_use]
 pub fn effects(scene: &Scene, kernels: Effects) -> Vec<Effect> {
     let SceneData { whisker, pole, .. } = &**scene;
@@ -90,7 +90,7 @@ pub fn effects(scene: &Scene, kernels: Effects) -> Vec<Effect> {
     effects
 }
 
-/// A key that changes nothing at `neutral`, which is also what leaving it out means.
+/// Describes a key that changes nothing at `neutral`, its default.
 fn given(key: &str, value: f64, neutral: f64) -> String {
     if value == neutral {
         format!("{key} is {neutral} or left out")
@@ -99,7 +99,7 @@ fn given(key: &str, value: f64, neutral: f64) -> String {
     }
 }
 
-/// An axis that stands in for the whisker's own value.
+/// Describes an axis that replaces the whisker's own value.
 fn swept(key: &str, axis: &[f64]) -> String {
     match axis {
         [first, .., last] => format!("{key} {first} to {last}"),

@@ -1,4 +1,4 @@
-//! What will be computed, decided before anything is: pure, no device, no disk, no clock.
+//! What will be computed, decided beforehand: without a device, a disk or a clock.
 
 mod channels;
 mod effects;
@@ -11,64 +11,64 @@ use crate::scene::Scene;
 use crate::shooting::batch::Method;
 use std::ops::Range;
 
-/// Bytes that a run may take for its panels.
+/// Maximum memory of a run, in bytes.
 pub const MEMORY_LIMIT: u64 = 4 << 30;
 
 /// Bytes per cell of a panel: 14 channels of 4 bytes.
 const BYTES_PER_CELL: u64 = 14 * 4;
 
-/// Bytes per cell in flight: shots, answers and states of the refinement, with an engine references of three strips.
+/// Bytes per cell in flight: targets and states of the refinement, and with an engine the base points of three row batches.
 const BYTES_IN_FLIGHT: u64 = 1536;
 
-/// Cells settled, or handed to an engine, at once: enough for every lane of a GPU, little memory.
+/// Cells of a row batch: enough for every lane of a GPU, in little memory.
 pub const CELLS_IN_FLIGHT: usize = 1 << 17;
 
-/// Rows handed to an engine at once: the references of each take some 40 KiB, however few its cells are.
+/// Rows of a row batch for an engine: the base points of each take about 40 KiB, however few its cells are.
 const ROWS_IN_FLIGHT: usize = 1 << 10;
 
-/// Cells of the panels computed, and packed, together: enough for several threads, little memory.
+/// Cells of the panels computed and packed together: enough for several threads, in little memory.
 const CELLS_OF_PANELS: usize = 1 << 18;
 
-/// Most panels computed together: each has two sheets of some 100 KiB.
+/// Maximum number of panels computed together: each has two sheets of about 100 KiB.
 const MOST_PANELS: usize = 64;
 
-/// Most push angles, and distances, of a sample that is computed to see how long a scene takes: 16384 cells per whisker. Twelve
-/// estimates of shipped scenes were 0.9 to 1.9 times what their runs took right after, on two cores busy with other work.
-/// Estimates of the cone repeated in one process differed by a factor of 1.25; with 32 lines, of 2.6.
+/// Maximum number of push angles, and of distances, of a sample that estimates the time of a scene: 16,384 cells per whisker. Twelve
+/// estimates of shipped scenes were 0.9 to 1.9 times their runs, on two cores busy with other work. Repeated estimates of the cone
+/// differed by a factor of 1.25; with 32 lines by 2.6.
 pub const SAMPLE_LINES: usize = 128;
 
-/// Values of a sweep's axis in such a sample: four whiskers where there are two axes.
+/// Values of each sweep axis in such a sample.
 pub const SAMPLE_VALUES: usize = 2;
 
-/// States of a trajectory for the rod itself: cos and sin of its tilt, two coordinates.
+/// Number of states of a trajectory for the rod: cos and sin of its tilt, and two coordinates.
 pub const ROD_STATES: usize = 4;
 
-/// A run.
+/// The sizes and effects of a run.
 #[derive(Clone, Debug)]
 pub struct Plan {
     /// Whiskers of the sweep.
     pub whiskers: usize,
-    /// The effects that the scene calls for, and the resolution of the refinement.
+    /// Effects of the scene, and resolution of the refinement.
     pub method: Method,
-    /// The sides that the push angles ask for; first touch itself belongs to CB.
+    /// Sides of the push angles; first touch belongs to CB.
     pub sides: Vec<Side>,
     /// Cells of all panels.
     pub cells: usize,
-    /// The whiskers to compute, in some runs of their indices.
+    /// Whiskers to compute, as ranges of their indices.
     pub parts: Vec<Range<usize>>,
-    /// What to compute of each cell.
+    /// Channels to compute.
     pub channels: Channels,
-    /// Panels computed together, so that small panels fill an engine too.
+    /// Panels computed together, so that small panels fill an engine.
     pub panels_at_once: usize,
-    /// Most rows of a panel handed to an engine at once.
+    /// Maximum number of rows of a batch for an engine.
     pub rows_at_once: usize,
-    /// Calls of an engine at most, each with the rows of some whiskers and sides; rows of few cells need none.
+    /// Maximum number of batches for an engine.
     pub engine_calls: usize,
-    /// Most bytes that panels and cells in flight take.
+    /// Maximum memory of panels and cells in flight, in bytes.
     pub bytes: u64,
 }
 
-/// A run that takes more than [`MEMORY_LIMIT`].
+/// Error of a run that takes more than [`MEMORY_LIMIT`].
 #[derive(Debug, thiserror::Error, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum PlanError {
@@ -103,13 +103,13 @@ pub enum PlanError {
     },
 }
 
-/// Bytes of the cells in flight.
+/// Returns the memory of cells in flight, in bytes.
 fn bytes_in_flight(scene: &Scene) -> u64 {
     CELLS_IN_FLIGHT.max(scene.grid.push_angle_deg.len()) as u64 * BYTES_IN_FLIGHT
 }
 
 impl Plan {
-    /// The plan for `scene`.
+    /// Returns the plan for `scene`.
     ///
     /// # Errors
     /// When one panel takes more than [`MEMORY_LIMIT`].
@@ -173,15 +173,15 @@ impl Plan {
         Ok(Self { bytes, ..plan })
     }
 
-    /// The sides that the push angles of `scene` ask for.
+    /// Returns the sides of the push angles of `scene`.
     #[must_use]
     pub fn sides(scene: &Scene) -> Vec<Side> {
         let pushes = &scene.grid.push_angle_deg;
-        let asked = |side: &Side| pushes.iter().any(|push| Side::of_push(*push) == *side);
-        Side::BOTH.into_iter().filter(asked).collect()
+        let is_wanted = |side: &Side| pushes.iter().any(|push| Side::of_push(*push) == *side);
+        Side::BOTH.into_iter().filter(is_wanted).collect()
     }
 
-    /// The whiskers that are computed together, one group after the other.
+    /// Returns the groups of whiskers that are computed together, in order.
     pub fn groups(&self) -> impl Iterator<Item = Range<usize>> + '_ {
         self.parts.iter().flat_map(|part| {
             let firsts = part.clone().step_by(self.panels_at_once);
@@ -189,13 +189,13 @@ impl Plan {
         })
     }
 
-    /// States of a trajectory for the derivatives of the rod: those by the force, and where they do not follow, two by the contact.
+    /// Number of states of a trajectory for derivatives of the rod: by the force and, if they do not follow from it, two by the contact.
     #[must_use]
     pub const fn derivative_states(&self) -> usize {
         if self.method.effects.similar() { 3 } else { 5 }
     }
 
-    /// States of a trajectory for the rest shape: cos and sin of its tangent, if it is curved.
+    /// Number of states of a trajectory for the rest shape: cos and sin of its tangent, if it is curved.
     #[must_use]
     pub const fn rest_states(&self) -> usize {
         if self.method.effects.curvature { 2 } else { 0 }

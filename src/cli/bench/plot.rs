@@ -41,8 +41,14 @@ fn point(row: &Measurement) -> [f64; 2] {
 /// Returns the dot of a row, if it has one: open and in the `ink` of its line if the row is noisy, black if no other row beats it.
 fn dot(row: &Measurement, ink: Ink) -> Option<Dot> {
     let (ink, name) = match (row.pareto, row.seconds.is_noisy) {
-        (true, false) => (Ink::Black, "no other is faster and closer".to_owned()),
-        (true, true) => (ink, "no other is faster and closer, but noisy".to_owned()),
+        (true, false) => (
+            Ink::Black,
+            "no other is faster and more accurate".to_owned(),
+        ),
+        (true, true) => (
+            ink,
+            "no other is faster and more accurate, but noisy".to_owned(),
+        ),
         (false, true) => {
             let most = 100.0 * NOISY;
             (ink, format!("noisy: runs more than {most:.0} % apart"))
@@ -60,7 +66,7 @@ fn dot(row: &Measurement, ink: Ink) -> Option<Dot> {
 #[cfg(test)]
 mod tests {
     use super::plot;
-    use whiskmap::bench::{Errors, Measurement, Rung, Spread, Stages, Timing};
+    use whiskmap::bench::{Errors, Measurement, Rung, Spread, StageTimes, Timing};
     use whiskmap::render::Ink;
 
     const EXACT: Spread = Spread {
@@ -83,7 +89,7 @@ mod tests {
                 spread: 0.0,
                 is_noisy,
             },
-            stages_ms: Stages::default(),
+            stages_ms: StageTimes::new(),
             us_per_state: 1.0,
             states_per_s: 1.0,
             trajectories_per_s: 1.0,

@@ -60,10 +60,10 @@ pub fn tables(report: &Report) -> io::Result<()> {
             "{:15} {:16}  {:8.2} {:8.2} {:8.2} {:8.2}",
             row.engine,
             row.rung.to_string(),
-            stages.upload,
-            stages.dispatch,
-            stages.waiting,
-            stages.readback
+            stages["upload"],
+            stages["dispatch"],
+            stages["waiting"],
+            stages["readback"]
         )?;
     }
     writeln!(
@@ -124,14 +124,14 @@ fn maps(out: &mut impl Write, report: &Report) -> io::Result<()> {
             out,
             "{:16} {:6.1} {:7.1} {:7.1} {:7.1} {:7.1} {:8.1} {:7.1} {:7.1}",
             map.engine,
-            stages.sheets,
-            stages.base_points,
-            stages.device,
-            stages.waiting,
-            stages.guesses,
-            stages.refinement,
-            stages.classification,
-            stages.packing
+            stages["sheets"],
+            stages["base_points"],
+            stages["device"],
+            stages["waiting"],
+            stages["guesses"],
+            stages["refinement"],
+            stages["classification"],
+            stages["packing"]
         )?;
     }
     writeln!(

@@ -1,12 +1,12 @@
-//! Seconds, often enough to trust them.
+//! Times of repeated runs.
 
 use serde::Serialize;
 use std::time::Instant;
 
-/// A larger spread makes a timing noisy.
+/// Largest spread of a timing that is not noisy.
 pub const NOISY: f64 = 0.2;
 
-/// What several runs took, in seconds.
+/// Times of several runs, in seconds.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Timing {
     /// The median of the runs.
@@ -15,7 +15,7 @@ pub struct Timing {
     pub fastest: f64,
     /// The slowest run.
     pub slowest: f64,
-    /// The slowest less the fastest, over the median.
+    /// Difference of the slowest and the fastest run, over the median.
     pub spread: f64,
     /// Whether the spread is above [`NOISY`].
     pub is_noisy: bool,
@@ -38,19 +38,19 @@ impl Timing {
     }
 }
 
-/// Times `work` in `runs` runs, after one that does not count, and returns what the last one found.
-pub fn watch<T, E>(runs: usize, mut work: impl FnMut() -> Result<T, E>) -> Result<(Timing, T), E> {
-    let mut found = work()?;
+/// Times `work` in `runs` runs after one that does not count, and returns the result of the last one.
+pub fn timed<T, E>(runs: usize, mut work: impl FnMut() -> Result<T, E>) -> Result<(Timing, T), E> {
+    let mut result = work()?;
     let mut seconds = Vec::with_capacity(runs);
     for _ in 0..runs {
         let start = Instant::now();
-        found = work()?;
+        result = work()?;
         seconds.push(start.elapsed().as_secs_f64());
     }
-    Ok((Timing::of(seconds.into_iter()), found))
+    Ok((Timing::of(seconds.into_iter()), result))
 }
 
-/// The median; of an even number, the larger one of the two in the middle.
+/// Returns the median; of an even number of values, the larger one of the two in the middle.
 pub fn median(values: impl IntoIterator<Item = f64>) -> f64 {
     let mut values: Vec<f64> = values.into_iter().collect();
     values.sort_by(f64::total_cmp);
