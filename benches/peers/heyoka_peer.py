@@ -100,7 +100,7 @@ def solve(integrator, batches, states=None):
     return perf_counter() - before
 
 
-def work(tolerance, scenes, barrier, answers, place):
+def work(tolerance, scenes, barrier, results, place):
     """Runs one process: its batches of each scene, RUNS times, each at the same time as the other processes."""
     solvers = []
     for is_bent, batches in scenes:
@@ -117,27 +117,27 @@ def work(tolerance, scenes, barrier, answers, place):
         whole = sum(solve(*solver) for solver in solvers)
         barrier.wait()
         seconds.append((whole, sum(solve(integrator, batches) for integrator, batches, _ in solvers)))
-    answers.put((place, [states for _, _, states in solvers], seconds, solvers[0][0].order))
+    results.put((place, [states for _, _, states in solvers], seconds, solvers[0][0].order))
 
 
 def row(scenes, threads, batch, tolerance):
     """Returns cost and error of the scenes at one tolerance, without the time of the Python loop."""
     batches = [[cut(array, batch) for array in start(ensemble)] for ensemble in scenes]
-    barrier, answers = fork.Barrier(threads), fork.Queue()
+    barrier, results = fork.Barrier(threads), fork.Queue()
     kinds = [ensemble.is_bent for ensemble in scenes]
     shares = [
         [(kind, [array[place::threads] for array in each]) for kind, each in zip(kinds, batches)]
         for place in range(threads)
     ]
     processes = [
-        fork.Process(target=work, args=(tolerance, share, barrier, answers, place))
+        fork.Process(target=work, args=(tolerance, share, barrier, results, place))
         for place, share in enumerate(shares)
     ]
     for process in processes:
         process.start()
     states, net, python = [np.empty_like(each[0]) for each in batches], [], []
     for _ in processes:
-        place, found, seconds, order = answers.get()
+        place, found, seconds, order = results.get()
         for whole, part in zip(states, found):
             whole[place::threads] = part
         net.append([whole - loop for whole, loop in seconds])

@@ -19,16 +19,16 @@ def lines(whiskmap, versions, ratios):
     for name, version in versions.items():
         yield f"{name} {version}" if version else f"{name} is NOT measured here"
     yield ""
-    yield f"{'':26}{'peer':>17}{'whiskmap':>17}{'ratio':>8}{'asked':>6}"
+    yield f"{'':26}{'peer':>17}{'whiskmap':>17}{'ratio':>8}{'goal':>6}"
     for name, each in ratios.items():
         sides = "".join(
             number(each[f"{side}_microseconds"], "9.4g") + number(each[f"{side}_error"], "8.0e")
             for side in ("peer", "whiskmap")
         )
-        asked, verdict = "", ""
+        goal, verdict = "", ""
         if each["required"] is not None and each["ratio"] is not None:
-            asked, verdict = each["required"], "met" if each["ratio"] >= each["required"] else "short"
-        yield f"{name:26}{sides}{number(each['ratio'], '8.4g')}{asked:>6} {verdict}".rstrip()
+            goal, verdict = each["required"], "met" if each["ratio"] >= each["required"] else "short"
+        yield f"{name:26}{sides}{number(each['ratio'], '8.4g')}{goal:>6} {verdict}".rstrip()
     yield ""
     yield from NOTES.splitlines()
 
