@@ -77,7 +77,7 @@ pub fn run(args: &CurveArgs, files: &mut Files) -> Result<(), Failure> {
     let whiskers = scene.whisker_count();
     if args.outputs.has_plot() && whiskers > 1 {
         let keys = scene.grid.sweep.iter();
-        let keys = keys.map(|axis| format!("grid.{}", axis.parameter.axis()));
+        let keys = keys.map(|axis| axis.parameter.axis_key());
         let keys = keys.collect::<Vec<_>>().join(", ");
         return Err(Failure::Input(format!(
             "--plot: the scene sweeps {whiskers} whiskers over {keys}; a plot shows one"

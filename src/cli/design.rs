@@ -97,10 +97,8 @@ pub fn run(args: &DesignArgs, files: &mut Files) -> Result<(), Failure> {
     let found = design::design(&scene, args.parameter, &target);
     let found = found.map_err(|why| match why {
         DesignError::Sweep(_) => Failure::Input(why.to_string()),
-        DesignError::Lacking { .. } | DesignError::Fixed { .. } => {
-            Failure::Input(format!("{}: --for {why}", path.display()))
-        }
         DesignError::Distance(why) => Failure::Scene(why),
+        _ => Failure::Input(format!("{}: --for {why}", path.display())),
     })?;
     if let Some(picture) = picture {
         let plot = designs(args.parameter, &target, &found);

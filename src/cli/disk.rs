@@ -45,7 +45,7 @@ fn refused(folder: &Path, needed: u64, free: u64) -> Option<String> {
     })
 }
 
-/// Free bytes for this user on the disk of `folder`; `None` if the system has no answer.
+/// Free bytes for this user on the disk of `folder`; `None` if the system does not report them.
 #[cfg(unix)]
 fn free(folder: &Path) -> Option<u64> {
     let disk = rustix::fs::statvfs(folder).ok()?;

@@ -1,4 +1,4 @@
-//! The command line: the only module that prints and knows exit codes.
+//! The command line: the only module that prints, and that chooses exit codes.
 //!
 //! Results go to standard output, messages to standard error. Exit code 2 is for invalid input, 1 for failures while running,
 //! 128 + the signal's number for interrupts.

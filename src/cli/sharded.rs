@@ -145,7 +145,6 @@ fn unfinished(store: &ZarrStore, blocks: Vec<usize>) -> Result<Vec<usize>, Failu
     for (block, state) in blocks.into_iter().zip(states) {
         match state {
             BlockState::Done => continue,
-            BlockState::Missing => {}
             BlockState::Damaged(faults) => {
                 for fault in faults {
                     message(&format!("warning: {fault}: its block is recomputed"));
@@ -154,6 +153,7 @@ fn unfinished(store: &ZarrStore, blocks: Vec<usize>) -> Result<Vec<usize>, Failu
             BlockState::Unreadable(faults) => {
                 faults.into_iter().next().map_or(Ok(()), Err)?;
             }
+            _ => {}
         }
         unfinished.push(block);
     }

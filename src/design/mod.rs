@@ -56,6 +56,7 @@ pub struct Design {
 
 /// Error of a design.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum DesignError {
     /// The scene sweeps whiskers, along this axis.
     #[error("grid.{0}: must be left out, as one number of one whisker is varied")]

@@ -18,44 +18,33 @@ const RADIUS_SLACK: f64 = 0.1;
 /// Least ratio of actual and predicted reduction with which a step is taken.
 const LEAST_RATIO: f64 = 1e-4;
 
-/// Why an iteration ends before it converges.
-pub(super) enum LeastSquaresFailure {
-    /// There is no Jacobian.
-    NoJacobian,
-    /// It takes more than 100 steps for each parameter.
-    TooManySteps,
-    /// The residuals at the start are not finite.
-    NotFinite,
-}
-
-/// A problem of least squares.
-pub(super) trait LeastSquares {
-    /// Residuals at `x`.
-    fn residuals(&self, x: &[f64]) -> Vec<f64>;
-    /// Columns of the Jacobian at `x`, where the residuals are known; `None` where there is none.
-    fn jacobian(&self, x: &[f64], residuals: &[f64]) -> Option<Vec<Vec<f64>>>;
-}
+/// Why there is no Jacobian.
+pub(super) const NO_JACOBIAN: &str = "a parameter cannot be changed enough for a derivative: the scene refuses it, or a point is out of reach";
 
 /// Minimises the sum of the squares from `x` on. Returns the place and the sum.
 ///
-/// The iteration ends where the relative change of the sum, or of the scaled parameters, is at most `tolerance`.
+/// `residuals_at` returns the residuals at a place. `jacobian_at` returns the columns of the Jacobian at a place with these
+/// residuals, or `None` where there is none. The iteration ends where the relative change of the sum, or of the scaled
+/// parameters, is at most `tolerance`.
+///
+/// # Errors
+/// The reason why the iteration ends before it converges.
 pub(super) fn minimise(
-    problem: &impl LeastSquares,
+    residuals_at: impl Fn(&[f64]) -> Vec<f64>,
+    jacobian_at: impl Fn(&[f64], &[f64]) -> Option<Vec<Vec<f64>>>,
     mut x: Vec<f64>,
     tolerance: f64,
-) -> Result<(Vec<f64>, f64), LeastSquaresFailure> {
-    let mut residuals = problem.residuals(&x);
+) -> Result<(Vec<f64>, f64), &'static str> {
+    let mut residuals = residuals_at(&x);
     let mut length = norm(&residuals);
     let mut scales = vec![0.0; x.len()];
     let mut radius = f64::INFINITY;
     let mut steps = 0;
     if !length.is_finite() {
-        return Err(LeastSquaresFailure::NotFinite);
+        return Err("numbers overflow");
     }
     loop {
-        let mut columns = problem
-            .jacobian(&x, &residuals)
-            .ok_or(LeastSquaresFailure::NoJacobian)?;
+        let mut columns = jacobian_at(&x, &residuals).ok_or(NO_JACOBIAN)?;
         for (column, scale) in columns.iter_mut().zip(&mut scales) {
             *scale = norm(column).max(*scale);
             // A parameter on which nothing depends stays.
@@ -105,7 +94,7 @@ pub(super) fn minimise(
             let moved: Vec<f64> = moved
                 .map(|((x, step), scale)| if *scale > 0.0 { x + step / scale } else { *x })
                 .collect();
-            let there = problem.residuals(&moved);
+            let there = residuals_at(&moved);
             let there_length = norm(&there);
             predicted /= length * length;
             let actual = 1.0 - (there_length / length) * (there_length / length);
@@ -139,7 +128,7 @@ pub(super) fn minimise(
                 return Ok((x, length * length));
             }
             if steps >= MOST_STEPS * (scales.len() + 1) {
-                return Err(LeastSquaresFailure::TooManySteps);
+                return Err("it takes too many steps");
             }
             if is_better {
                 break;

@@ -16,8 +16,9 @@ pub use verdict::{LikelyCause, NotAFit};
 use crate::input::CsvError;
 use crate::measured::{Comparison, MeasuredPoints};
 use crate::scene::{Parameter, Scene, SceneError, SweptWhisker, digits};
-use bounded::{NO_DERIVATIVE, best};
+use bounded::best;
 use covariance::Covariance;
+use least_squares::NO_JACOBIAN;
 use misfit::Misfit;
 
 /// Result of a fit.
@@ -63,6 +64,7 @@ pub struct Estimate {
 
 /// Error of a fit.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum FitError {
     /// No parameter is free.
     #[error("no parameter is free")]
@@ -133,7 +135,7 @@ pub fn fit(scene: &Scene, points: &MeasuredPoints, free: &[Parameter]) -> Result
     let jacobian = here.as_ref().and_then(|here| misfit.jacobian(&best, here));
     let (here, mut jacobian) = here
         .zip(jacobian)
-        .ok_or(FitError::NotConverged(NO_DERIVATIVE))?;
+        .ok_or(FitError::NotConverged(NO_JACOBIAN))?;
     let ranges = misfit.ranges(&fitted);
     let is_at_limit = |i: usize| ranges[i].contains(&best[i]);
     // The limit determines such a parameter, not the points.

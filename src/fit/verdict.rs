@@ -39,6 +39,7 @@ pub struct NotAFit {
 
 /// Likely mistake in a file of points.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum LikelyCause {
     /// All angles are below 6.3, and the scene predicts tens of degrees.
     Radians,

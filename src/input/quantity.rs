@@ -13,6 +13,7 @@ use super::names::shortened;
 /// assert!(Quantity::LengthMm.parse("30deg").is_err());
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Quantity {
     /// A length, in millimetres.
     LengthMm,

@@ -63,6 +63,21 @@ impl Panel {
         }
     }
 
+    /// The values of the channel `name` as bytes, 4 for each cell; none where the channel is not computed.
+    pub(crate) fn bytes(&self, name: &str) -> &[u8] {
+        let codes = match name {
+            "regime" => &self.regime,
+            "status" => &self.status,
+            "newton_steps" => &self.newton_steps,
+            _ => {
+                let channel = Channel::ALL.into_iter().find(|own| own.name() == name);
+                let values = channel.map_or(&[][..], |channel| self.channel(channel));
+                return bytemuck::cast_slice(values);
+            }
+        };
+        bytemuck::cast_slice(codes)
+    }
+
     /// The regime of each cell, in the order of [`Panel::regime`].
     pub fn regimes(&self) -> impl ExactSizeIterator<Item = Regime> + '_ {
         let of = |code: &u32| {

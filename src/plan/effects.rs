@@ -32,7 +32,7 @@ pub enum Cost {
 pub fn effects(scene: &Scene, kernels: Effects) -> Vec<Effect> {
     let SceneData { whisker, pole, .. } = &**scene;
     let why = |parameter: Parameter, own: String| match scene.grid.axis(parameter) {
-        Some(values) => swept(&format!("grid.{}", parameter.axis()), values),
+        Some(values) => swept(parameter.axis_key(), values),
         None => own,
     };
     let taper = match &whisker.profile {

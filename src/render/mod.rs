@@ -22,6 +22,7 @@ use whiskmap_plot::ScaleError;
 
 /// A picture that cannot be drawn. Every message is complete; there is no chain of sources to print.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum RenderError {
     /// The map lacks what is to be drawn, or it is damaged.
     #[error(transparent)]

@@ -39,6 +39,7 @@ pub enum AxisValues {
 /// Spacing of the values of a range.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Deserialize)]
 #[serde(rename_all = "lowercase")]
+#[non_exhaustive]
 pub enum AxisScale {
     /// Equal differences.
     #[default]

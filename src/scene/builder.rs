@@ -135,6 +135,11 @@ impl SceneBuilder {
         self
     }
 
+    /// Returns true if there is an axis along which whiskers differ in `parameter`.
+    pub(super) fn sweeps(&self, parameter: Parameter) -> bool {
+        self.sweep.iter().any(|(own, _)| *own == parameter)
+    }
+
     /// Sets the standard deviations of the numbers.
     #[must_use]
     pub fn uncertainty(mut self, deviations: Deviations) -> Self {

@@ -8,9 +8,7 @@ use super::data::SceneData;
 use super::deviations;
 use super::error::SceneFault;
 use super::grid::{FARTHEST, Grid, NEAREST};
-use super::limits::{
-    MOST_STRETCH, NumberLimits, STIFFEST_TIP, digits, friction_limits, length_limits,
-};
+use super::limits::{MOST_STRETCH, NumberLimits, STIFFEST_TIP, digits, limits};
 use super::parameter::Parameter;
 use super::profile;
 use super::shape;
@@ -79,16 +77,16 @@ fn whisker(numbers: &Numbers, rows: Option<&[[f64; 2]]>) -> Result<Whisker, Scen
         let value = numbers.get(parameter).unwrap_or(1.0);
         limits.check(parameter.key(), value)
     };
-    let length_mm = check(length_limits(), Parameter::LengthMm)?;
+    let length_mm = check(limits(Parameter::LengthMm), Parameter::LengthMm)?;
     let radii = profile::radii(numbers, rows, length_mm)?;
     let modulus = numbers.get(Parameter::YoungsModulusGpa);
     let unit = modulus.and_then(|gpa| other_unit(gpa, MODULUS_GPA, &MODULUS_UNITS));
     let unit = unit.map(|unit| format!("is it in {unit}?"));
-    let limits = NumberLimits::between(1e-6, 1e4).remarks(unit);
-    let youngs_modulus_gpa = check(limits, Parameter::YoungsModulusGpa)?;
+    let modulus = Parameter::YoungsModulusGpa;
+    let youngs_modulus_gpa = check(limits(modulus).remarks(unit), modulus)?;
     let (curvature, euler_spiral) = shape::shape(numbers, length_mm)?;
-    let limits = NumberLimits::between(1.0 / STIFFEST_TIP, STIFFEST_TIP);
-    let modulus_tip_to_base = check_or_one(limits, Parameter::ModulusTipToBase)?;
+    let ratio = Parameter::ModulusTipToBase;
+    let modulus_tip_to_base = check_or_one(limits(ratio), ratio)?;
     let own_taper = 1.0 - radii.tip_radius_um / radii.base_radius_um;
     let pointed = 1.0 / own_taper;
     let gradient = modulus_tip_to_base - 1.0;
@@ -169,7 +167,7 @@ fn pole(numbers: &Numbers, whisker: &Whisker, grid: &Grid) -> Result<Pole, Scene
     };
     Ok(Pole {
         radius_mm: check(NumberLimits::below(0.0, end), Parameter::PoleRadiusMm)?,
-        friction: check(friction_limits(), Parameter::Friction)?,
+        friction: check(limits(Parameter::Friction), Parameter::Friction)?,
     })
 }
 

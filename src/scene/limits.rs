@@ -4,25 +4,32 @@ use std::fmt;
 use std::ops::{Bound, RangeBounds};
 
 use super::error::SceneFault;
-
-/// Coulomb's coefficient. The whiskers of rats on steel have about 0.5. Up to 1, every end of 25,000 random whiskers was found
-/// (`benches/NOTES.md`).
-pub(super) fn friction_limits() -> NumberLimits {
-    NumberLimits::between(0.0, 1.0).remarks([
-        "with more, whiskers coil around the pole for turns on end, and not all ends are known",
-    ])
-}
-
-/// Length of a whisker in millimetres.
-pub(super) fn length_limits() -> NumberLimits {
-    NumberLimits::between(1e-3, 1e5)
-}
+use super::parameter::Parameter;
 
 /// Largest ratio of the moduli at tip and base, and of base and tip. Measured ratios lie between 0.7 and 1.4.
 pub(super) const STIFFEST_TIP: f64 = 20.0;
 
 /// Largest arc stretch.
 pub(super) const MOST_STRETCH: f64 = 2.0;
+
+/// The limits of a parameter, whatever the other numbers are. Other numbers narrow some of them.
+///
+/// Coulomb's coefficient is about 0.5 for whiskers of rats on steel. Up to 1, every end of 25,000 random whiskers was found
+/// (`benches/NOTES.md`).
+pub(super) fn limits(parameter: Parameter) -> NumberLimits {
+    match parameter {
+        Parameter::LengthMm | Parameter::BaseRadiusUm => NumberLimits::between(1e-3, 1e5),
+        Parameter::TipRadiusUm => NumberLimits::between(0.0, 1e5),
+        Parameter::Taper => NumberLimits::between(0.0, 1.0),
+        Parameter::YoungsModulusGpa => NumberLimits::between(1e-6, 1e4),
+        Parameter::ModulusTipToBase => NumberLimits::between(1.0 / STIFFEST_TIP, STIFFEST_TIP),
+        Parameter::ArcStretch => NumberLimits::between(1.0, MOST_STRETCH),
+        Parameter::Friction => NumberLimits::between(0.0, 1.0).remarks([
+            "with more, whiskers coil around the pole for turns on end, and not all ends are known",
+        ]),
+        _ => NumberLimits::between(-1e6, 1e6),
+    }
+}
 
 /// A range of numbers. NaN is in none, and no range here reaches infinity.
 pub(super) struct NumberLimits {

@@ -7,6 +7,7 @@ macro_rules! parameters {
     }) => {
         $(#[$outer])*
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+        #[non_exhaustive]
         pub enum $kind { $($(#[$inner])* $parameter,)* }
 
         impl $kind {
@@ -29,6 +30,11 @@ macro_rules! parameters {
             #[must_use]
             pub const fn key(self) -> &'static str {
                 match self { $(Self::$parameter => $key),* }
+            }
+
+            /// The name as a key of the table `grid`.
+            const fn grid_key(self) -> &'static str {
+                match self { $(Self::$parameter => concat!("grid.", $name)),* }
             }
 
             /// Title in charts.
@@ -109,6 +115,15 @@ impl Parameter {
         match self {
             Self::ParabolaPerMm => "curvature_per_mm",
             _ => self.name(),
+        }
+    }
+
+    /// Key of the axis of the sweep in a scene file, such as `grid.taper`.
+    #[must_use]
+    pub const fn axis_key(self) -> &'static str {
+        match self {
+            Self::ParabolaPerMm => "grid.curvature_per_mm",
+            _ => self.grid_key(),
         }
     }
 }

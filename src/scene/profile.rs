@@ -2,7 +2,7 @@
 
 use super::builder::Numbers;
 use super::error::SceneFault;
-use super::limits::{NumberLimits, digits};
+use super::limits::{NumberLimits, digits, limits};
 use super::parameter::Parameter;
 
 /// Key of the measured rows.
@@ -59,7 +59,7 @@ pub(super) fn radii(
         let absent = || SceneFault::new(keys[end], "is left out, and there is no whisker.profile");
         ends[end].ok_or_else(absent)
     };
-    let base_radius_um = NumberLimits::between(1e-3, 1e5).check(keys[0], given(0)?)?;
+    let base_radius_um = limits(Parameter::BaseRadiusUm).check(keys[0], given(0)?)?;
     let tip_radius_um =
         NumberLimits::between(0.0, ("base_radius_um", base_radius_um)).check(keys[1], given(1)?)?;
     Ok(Radii {

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use super::builder::SceneBuilder;
 use super::data::SceneData;
 use super::error::{SceneError, SceneFault};
-use super::limits::NumberLimits;
+use super::limits::limits;
 use super::parameter::Parameter;
 use super::toml::SceneText;
 
@@ -49,8 +49,7 @@ impl SceneBuilder {
         let refused = |fault| SceneError::of_fault("", "", fault);
         if let Some(taper) = self.numbers.get(Parameter::Taper) {
             // Next to the ends of this range, the rounding of the tip's radius would hide what lies beyond.
-            let limits = NumberLimits::between(0.0, 1.0);
-            limits
+            limits(Parameter::Taper)
                 .check(Parameter::Taper.name(), taper)
                 .map_err(refused)?;
             let key = Parameter::BaseRadiusUm.key();

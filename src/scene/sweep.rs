@@ -3,9 +3,7 @@
 use super::builder::SceneBuilder;
 use super::error::SceneFault;
 use super::grid::{Grid, SweepAxis, SweepPlace};
-use super::limits::{
-    MOST_STRETCH, NumberLimits, STIFFEST_TIP, digits, friction_limits, length_limits,
-};
+use super::limits::{digits, limits};
 use super::parameter::Parameter;
 use super::shape;
 
@@ -17,15 +15,8 @@ pub(super) fn axes(
     let checked = scene.sweep.iter().map(|(parameter, values)| {
         let parameter = *parameter;
         let limits = match parameter {
-            Parameter::Taper => NumberLimits::between(0.0, 1.0),
-            Parameter::TipRadiusUm => NumberLimits::between(0.0, 1e5),
-            Parameter::BaseRadiusUm => NumberLimits::between(1e-3, 1e5),
-            Parameter::LengthMm => length_limits(),
             Parameter::ParabolaPerMm => shape::parabola_limits(lengths_mm[1]),
-            Parameter::Friction => friction_limits(),
-            Parameter::ModulusTipToBase => NumberLimits::between(1.0 / STIFFEST_TIP, STIFFEST_TIP),
-            Parameter::ArcStretch => NumberLimits::between(1.0, MOST_STRETCH),
-            _ => NumberLimits::between(-1e6, 1e6),
+            _ => limits(parameter),
         };
         // An axis replaces the scene's own number, which must be valid nevertheless.
         if let Some(own) = scene.numbers.get(parameter) {
@@ -34,7 +25,7 @@ pub(super) fn axes(
                 shape::refuse_faint(own, lengths_mm[0])?;
             }
         }
-        let values = values.checked(&key(parameter), &limits)?;
+        let values = values.checked(parameter.axis_key(), &limits)?;
         Ok(SweepAxis { parameter, values })
     });
     let mut axes: Vec<SweepAxis> = checked.collect::<Result<_, _>>()?;
@@ -46,29 +37,23 @@ pub(super) fn axes(
     Ok(axes)
 }
 
-/// Key of an axis.
-fn key(parameter: Parameter) -> String {
-    format!("grid.{}", parameter.axis())
-}
-
 /// The least and the greatest length of the whiskers, in millimetres.
 pub(super) fn lengths_mm(scene: &SceneBuilder) -> Result<[f64; 2], SceneFault> {
-    let limits = length_limits();
     let length = Parameter::LengthMm;
+    let limits = limits(length);
     let own = scene.numbers.get(length);
     let own = own.ok_or_else(|| SceneFault::new(length.key(), "is left out"))?;
     limits.check(length.key(), own)?;
     let Some((_, axis)) = scene.sweep.iter().find(|(own, _)| *own == length) else {
         return Ok([own; 2]);
     };
-    let values = axis.checked(&key(length), &limits)?;
+    let values = axis.checked(length.axis_key(), &limits)?;
     Ok([values[0], values[values.len() - 1]])
 }
 
 /// Refuses axes of parameters that another part of the scene determines.
 pub(super) fn refuse_at_odds(scene: &SceneBuilder) -> Result<(), SceneFault> {
     let given = |parameter| scene.numbers.get(parameter).is_some();
-    let swept = |wanted| scene.sweep.iter().any(|(own, _)| *own == wanted);
     let is_measured = scene.rows.is_some();
     let is_spiral = given(Parameter::SpiralPerMm) || given(Parameter::SpiralPerMm2);
     for (parameter, _) in &scene.sweep {
@@ -79,24 +64,24 @@ pub(super) fn refuse_at_odds(scene: &SceneBuilder) -> Result<(), SceneFault> {
             Parameter::LengthMm if is_measured => {
                 "must be left out: whisker.profile has the radii of one length"
             }
-            Parameter::TipRadiusUm if swept(Parameter::Taper) => {
+            Parameter::TipRadiusUm if scene.sweeps(Parameter::Taper) => {
                 "must be left out: grid.taper gives every whisker of the sweep its tip"
             }
             Parameter::ParabolaPerMm | Parameter::VertexMm if is_spiral => {
                 "must be left out: the whisker is an Euler spiral"
             }
             Parameter::VertexMm
-                if !given(Parameter::ParabolaPerMm) && !swept(Parameter::ParabolaPerMm) =>
+                if !given(Parameter::ParabolaPerMm) && !scene.sweeps(Parameter::ParabolaPerMm) =>
             {
                 "must be left out: there is no parabola; give parabola_per_mm or grid.curvature_per_mm"
             }
             own if !Parameter::SWEPT.contains(own) => "must be left out: no axis varies it",
             _ => continue,
         };
-        return Err(SceneFault::new(key(*parameter), must));
+        return Err(SceneFault::new(parameter.axis_key(), must));
     }
     match scene.numbers.get(Parameter::TipRadiusUm) {
-        Some(tip) if swept(Parameter::Taper) => {
+        Some(tip) if scene.sweeps(Parameter::Taper) => {
             let must = "must be left out: grid.taper gives every whisker of the sweep its tip";
             let key = Parameter::TipRadiusUm.key();
             Err(SceneFault::of_value(key, digits(tip), must))
@@ -131,7 +116,7 @@ pub(super) fn check_corners(
     };
     let mut axes = place.values();
     if let Some((parameter, _)) = axes.find(|(parameter, _)| fault.key == parameter.key()) {
-        fault = SceneFault::new(key(parameter), fault.must);
+        fault = SceneFault::new(parameter.axis_key(), fault.must);
     }
     if !is_everywhere {
         let values = place.values();

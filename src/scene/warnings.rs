@@ -89,10 +89,7 @@ impl SceneData {
     /// The number of `parameter`: its axis, or the scene's `own` value.
     fn number(&self, parameter: Parameter, own: f64) -> SceneNumber {
         match self.grid.axis(parameter) {
-            Some(values) => {
-                let key = format!("grid.{}", parameter.axis());
-                SceneNumber::new(key, values.iter().copied())
-            }
+            Some(values) => SceneNumber::new(parameter.axis_key(), values.iter().copied()),
             None => SceneNumber::new(parameter.key(), [own]),
         }
     }

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 /// A file that cannot be written or read. Every message is complete: there is no chain of sources to print.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum StoreError {
     /// The file system refused to read.
     #[error("cannot read {file}: {1}", file = .0.display())]

@@ -101,7 +101,7 @@ mod tests {
         fs::write(&one, "").unwrap();
         fs::hard_link(&one, &hard).unwrap();
         assert!(FileId::is_confirmed(&one, &hard));
-        // What cannot be opened cannot be told apart.
+        // A file that cannot be opened cannot be compared.
         assert!(FileId::is_confirmed(&one, &other));
         fs::write(&other, "").unwrap();
         assert!(!FileId::is_confirmed(&one, &other));

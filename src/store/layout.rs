@@ -1,6 +1,6 @@
 //! The place of each value in an EXR map: parts, channels, tiles and blocks.
 
-use super::{Channels, Panel, STATE_CHANNELS};
+use super::{Channels, STATE_CHANNELS};
 use crate::scene::Grid;
 use exr::block::BlockIndex;
 use exr::math::{RoundingMode, Vec2};
@@ -87,18 +87,18 @@ impl AtlasLayout {
         block * self.block_height()
     }
 
-    /// The samples of a block of a panel, line by line, in the order of the file.
+    /// The samples of a block of a panel, line by line, in the order of the file, from all samples of each channel.
     pub(super) fn lines<'a>(
         &self,
         block: usize,
-        channels: &'a [ExrChannel<'_>],
+        channels: &'a [&[u8]],
     ) -> impl Iterator<Item = &'a [u8]> + Clone {
         let line = self.push_angles * SAMPLE_BYTES;
         let first = self.first_row(block);
         let rows = first..(first + self.block_height()).min(self.distances);
         rows.flat_map(move |row| {
             let channels = channels.iter();
-            channels.map(move |channel| &channel.bytes[row * line..][..line])
+            channels.map(move |samples| &samples[row * line..][..line])
         })
     }
 
@@ -125,15 +125,16 @@ impl AtlasLayout {
         attributes: &HashMap<Text, AttributeValue>,
     ) -> Headers {
         let size = Vec2(self.columns * self.push_angles, self.rows * self.distances);
-        let nothing = Panel::unresolved(0, channels);
-        let described = parts(&nothing, channels).into_iter().map(|part| {
-            let channels = part.channels.into_iter();
-            let channels = channels.map(|own| ChannelDescription::named(own.name, own.kind));
-            let mut header = Header::new(Text::from(part.name), size, channels.collect())
-                .with_encoding(COMPRESSION, self.blocks(), LineOrder::Increasing);
-            header.own_attributes.other = attributes.clone();
-            header
-        });
+        let described =
+            parts(channels).into_iter().map(|(part, channels)| {
+                let channels = channels.into_iter();
+                let channels =
+                    channels.map(|name| ChannelDescription::named(name, sample_type(name)));
+                let mut header = Header::new(Text::from(part), size, channels.collect())
+                    .with_encoding(COMPRESSION, self.blocks(), LineOrder::Increasing);
+                header.own_attributes.other = attributes.clone();
+                header
+            });
         described.collect()
     }
 }
@@ -141,55 +142,30 @@ impl AtlasLayout {
 /// Lossless.
 const COMPRESSION: Compression = Compression::ZIP16;
 
-/// A part of an EXR map, with its channels sorted by name, as EXR demands.
-pub(super) struct ExrPart<'a> {
-    pub(super) name: &'static str,
-    pub(super) channels: Vec<ExrChannel<'a>>,
+/// Name and channels of each part of an EXR map with these `channels`, in the order of the file. The channels of a part are
+/// sorted by name, as EXR demands.
+pub(super) fn parts(channels: Channels) -> Vec<(&'static str, Vec<&'static str>)> {
+    let part = |name: &&str| match *name {
+        "regime" | "status" => "regime",
+        state if STATE_CHANNELS.contains(&state) => "state",
+        _ => "numerics",
+    };
+    let names: Vec<&'static str> = channels.names().collect();
+    let parts = names.chunk_by(|one, next| part(one) == part(next));
+    let sorted = parts.map(|own| {
+        let mut own = own.to_vec();
+        own.sort_unstable();
+        (part(&own[0]), own)
+    });
+    sorted.collect()
 }
 
-/// A channel of a panel, with its samples as bytes.
-pub(super) struct ExrChannel<'a> {
-    pub(super) name: &'static str,
-    pub(super) kind: SampleType,
-    pub(super) bytes: &'a [u8],
-}
-
-/// The parts of a panel that have some of the `channels`, in the order of the file.
-pub(super) fn parts(panel: &Panel, channels: Channels) -> Vec<ExrPart<'_>> {
-    let mut state: Vec<_> = STATE_CHANNELS
-        .into_iter()
-        .zip(&panel.state)
-        .map(|(name, values)| quantity(name, values))
-        .collect();
-    state.sort_unstable_by_key(|channel| channel.name);
-    let regime = vec![
-        number("regime", &panel.regime),
-        number("status", &panel.status),
-    ];
-    let numerics = vec![
-        quantity("margin_deg", &panel.margin_deg),
-        number("newton_steps", &panel.newton_steps),
-        quantity("residual", &panel.residual),
-    ];
-    [("regime", regime), ("state", state), ("numerics", numerics)]
-        .map(|(name, mut own)| {
-            own.retain(|channel| channels.contains(channel.name));
-            let channels = own;
-            ExrPart { name, channels }
-        })
-        .into_iter()
-        .filter(|part| !part.channels.is_empty())
-        .collect()
-}
-
-fn quantity<'a>(name: &'static str, values: &'a [f32]) -> ExrChannel<'a> {
-    let (kind, bytes) = (SampleType::F32, bytemuck::cast_slice(values));
-    ExrChannel { name, kind, bytes }
-}
-
-fn number<'a>(name: &'static str, values: &'a [u32]) -> ExrChannel<'a> {
-    let (kind, bytes) = (SampleType::U32, bytemuck::cast_slice(values));
-    ExrChannel { name, kind, bytes }
+/// Type of the samples of a channel.
+pub(super) fn sample_type(name: &str) -> SampleType {
+    match name {
+        "regime" | "status" | "newton_steps" => SampleType::U32,
+        _ => SampleType::F32,
+    }
 }
 
 /// Bytes of one sample; every channel is 32 bits wide.

@@ -55,7 +55,7 @@ impl Output {
         }))
     }
 
-    /// Removes the temporary files that killed processes of the same user left in the folder of a regular file: at once on the
+    /// Removes the temporary files that interrupted processes of the same user left in the folder of a regular file: at once on the
     /// same host, after a day on another one.
     pub fn remove_leftovers(&self) {
         if let Destination::Regular { file, .. } = &self.0 {

@@ -2,7 +2,7 @@
 
 use super::attributes;
 use super::layout::{self, AtlasLayout, SAMPLE_BYTES};
-use super::{CellCounts, Channels, Panel, StoreError, header};
+use super::{CellCounts, Channels, StoreError, header};
 use crate::scene::Grid;
 use exr::block::UncompressedBlock;
 use exr::block::chunk::Chunk;
@@ -123,12 +123,8 @@ impl StoredMap {
     /// The names of all channels, part by part.
     #[must_use]
     pub fn channels(&self) -> Vec<&'static str> {
-        let nothing = Panel::unresolved(0, self.channels);
-        let parts = layout::parts(&nothing, self.channels).into_iter();
-        parts
-            .flat_map(|part| part.channels)
-            .map(|own| own.name)
-            .collect()
+        let parts = layout::parts(self.channels).into_iter();
+        parts.flat_map(|(_, channels)| channels).collect()
     }
 
     /// A channel of all panels: `[second sweep axis][first sweep axis][distance][push angle]`, the last axis fastest.
@@ -154,7 +150,7 @@ impl StoredMap {
     }
 
     fn read(&self, name: &str, panels: Range<usize>) -> Result<ChannelValues, StoreError> {
-        let (part, channel, kind) = self.find(name)?;
+        let (part, channel) = self.find(name)?;
         let mut file = open(&self.path)?;
         let mut bytes = Vec::new();
         for panel in panels {
@@ -166,21 +162,19 @@ impl StoredMap {
                     })?;
             }
         }
-        Ok(match kind {
+        Ok(match layout::sample_type(name) {
             SampleType::U32 => ChannelValues::U32(bytemuck::pod_collect_to_vec(&bytes)),
             _ => ChannelValues::F32(bytemuck::pod_collect_to_vec(&bytes)),
         })
     }
 
-    /// Part, index in the part, and type of a channel.
-    fn find(&self, name: &str) -> Result<(usize, usize, SampleType), StoreError> {
-        let nothing = Panel::unresolved(0, self.channels);
-        for (part, about) in layout::parts(&nothing, self.channels).iter().enumerate() {
-            if let Some(place) = about.channels.iter().position(|own| own.name == name) {
-                return Ok((part, place, about.channels[place].kind));
-            }
-        }
-        Err(StoreError::UnknownChannel {
+    /// Part of a channel, and its index in the part.
+    fn find(&self, name: &str) -> Result<(usize, usize), StoreError> {
+        let parts = layout::parts(self.channels);
+        let mut parts = parts.iter().map(|(_, channels)| channels).enumerate();
+        let found =
+            parts.find_map(|(part, own)| Some((part, own.iter().position(|own| *own == name)?)));
+        found.ok_or_else(|| StoreError::UnknownChannel {
             path: self.path.clone(),
             name: name.to_owned(),
             known: self.channels().join(", "),

@@ -10,6 +10,7 @@ use std::path::Path;
 
 /// A map or a store.
 #[derive(Debug)]
+#[non_exhaustive]
 pub enum MapSource {
     /// An EXR file.
     Exr(Box<StoredMap>),

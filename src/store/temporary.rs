@@ -51,7 +51,7 @@ impl TemporaryFiles {
         std::mem::forget(list);
     }
 
-    /// Checks that files can be made in `folder`, and removes those that killed processes have left there.
+    /// Checks that files can be made in `folder`, and removes those that interrupted processes have left there.
     ///
     /// # Errors
     ///
@@ -99,7 +99,7 @@ impl TemporaryFile {
             builder.prefix(&prefix).rand_bytes(RANDOM);
             let make = || builder.make_in(folder, |path| options.open(path));
             let (file, listed) = files.make(make, NamedTempFile::path)?;
-            // Without locks, a killed process's file stays.
+            // Without locks, the file of an interrupted process stays.
             let _ = file.as_file().lock();
             // Before it was locked, another process may have removed it as a leftover.
             if matches!(file.path().try_exists(), Ok(false)) {
@@ -135,7 +135,7 @@ impl TemporaryFile {
 
     /// Removes the temporary files beside this one whose processes are gone. Files of other users stay.
     ///
-    /// A killed process of this host has lost its lock. Locks of other hosts may not be visible here, so their files must also
+    /// A process that has ended has lost its lock. Locks of other hosts may not be visible here, so their files must also
     /// be [`ABANDONED`] by the clock that dates them and this file.
     pub(super) fn remove_leftovers(&self) {
         let (Some(folder), Ok(own)) = (self.file.path().parent(), self.file.as_file().metadata())
@@ -171,7 +171,7 @@ impl TemporaryFile {
 }
 
 /// A folder that gets its name when it is complete. It is removed when it is dropped and when the process is interrupted. A
-/// killed process leaves it.
+/// process that ends without unwinding leaves it.
 #[cfg(feature = "zarr")]
 #[derive(Debug)]
 pub struct TemporaryFolder {

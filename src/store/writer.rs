@@ -1,7 +1,7 @@
 //! Writes an EXR map, some panels at a time.
 
 use super::attributes::{self, MapDescription, attribute};
-use super::layout::{self, AtlasLayout, ExrChannel, ExrPart, SAMPLE_BYTES};
+use super::layout::{self, AtlasLayout, SAMPLE_BYTES};
 use super::tally::{self, CellCounts};
 use super::{Channels, Output, Panel, StoreError, TemporaryFiles, header, zip};
 use crate::classify::Regime;
@@ -107,25 +107,21 @@ impl MapWriter {
                 panels: all,
             });
         }
-        let channels = self.channels;
-        let parts: Vec<_> = panels
-            .iter()
-            .map(|panel| layout::parts(panel, channels))
-            .collect();
-        for (index, parts) in (first..).zip(&parts) {
-            self.check_sizes(index, parts)?;
+        for (index, panel) in (first..).zip(panels) {
+            self.check_sizes(index, panel)?;
         }
         self.count(first, panels)?;
 
         let blocks = self.layout.blocks_per_panel();
         let of_panel = self.tables.len() * blocks;
         let part = |task: usize| task % of_panel / blocks;
+        let parts = layout::parts(self.channels);
         let chunks: Vec<Vec<u8>> = (0..panels.len() * of_panel)
             .into_par_iter()
             .map(|task| {
                 let (panel, part) = (task / of_panel, part(task));
-                let channels = &parts[panel][part].channels;
-                self.chunk(first + panel, part, task % blocks, channels)
+                let samples = samples(&panels[panel], &parts[part].1);
+                self.chunk(first + panel, part, task % blocks, &samples)
             })
             .collect::<exr::error::Result<_>>()
             .map_err(StoreError::at(&self.path, StoreError::Encode))?;
@@ -148,10 +144,10 @@ impl MapWriter {
     pub fn sample(grid: &Grid, channels: Channels, panels: &[Panel]) -> u64 {
         let layout = AtlasLayout::of(grid);
         let packed = panels.par_iter().map(|panel| {
-            let parts = layout::parts(panel, channels).into_iter();
-            let bytes = parts.map(|part| {
+            let bytes = layout::parts(channels).into_iter().map(|(_, part)| {
+                let samples = samples(panel, &part);
                 let blocks = 0..layout.blocks_per_panel();
-                let pack = |block| zip::pack(layout.lines(block, &part.channels)).len() as u64;
+                let pack = |block| zip::pack(layout.lines(block, &samples)).len() as u64;
                 blocks.map(pack).sum::<u64>()
             });
             bytes.sum::<u64>()
@@ -206,10 +202,10 @@ impl MapWriter {
             .map_err(StoreError::at(&self.path, StoreError::Write))
     }
 
-    fn check_sizes(&self, index: usize, parts: &[ExrPart<'_>]) -> Result<(), StoreError> {
+    fn check_sizes(&self, index: usize, panel: &Panel) -> Result<(), StoreError> {
         let expected = self.layout.cells();
-        for own in parts.iter().flat_map(|part| &part.channels) {
-            let (channel, cells) = (own.name, own.bytes.len() / SAMPLE_BYTES);
+        for channel in self.channels.names() {
+            let cells = panel.bytes(channel).len() / SAMPLE_BYTES;
             if cells != expected {
                 return Err(StoreError::PanelSize {
                     index,
@@ -252,16 +248,16 @@ impl MapWriter {
         Ok(())
     }
 
-    /// One compressed block of one part of a panel.
+    /// One compressed block of one part of a panel, from the samples of the part's channels.
     fn chunk(
         &self,
         panel: usize,
         part: usize,
         block: usize,
-        channels: &[ExrChannel<'_>],
+        samples: &[&[u8]],
     ) -> exr::error::Result<Vec<u8>> {
         let layout = &self.layout;
-        let compressed_pixels_le = zip::pack(layout.lines(block, channels));
+        let compressed_pixels_le = zip::pack(layout.lines(block, samples));
         let compressed_block = match layout.tile(panel) {
             Some(tile) => CompressedBlock::Tile(CompressedTileBlock {
                 coordinates: TileCoordinates {
@@ -284,4 +280,9 @@ impl MapWriter {
         chunk.write(&mut bytes, self.headers.len())?;
         Ok(bytes)
     }
+}
+
+/// The samples of some channels of a panel, as bytes.
+fn samples<'a>(panel: &'a Panel, channels: &[&str]) -> Vec<&'a [u8]> {
+    channels.iter().map(|name| panel.bytes(name)).collect()
 }

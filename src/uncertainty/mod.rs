@@ -36,6 +36,7 @@ pub struct Draws {
 
 /// Error of drawing whiskers.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum DrawError {
     /// The scene has no `[uncertainty]`.
     #[error(

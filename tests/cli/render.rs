@@ -174,6 +174,22 @@ fn the_ending_decides_what_is_written() {
     assert!(output.stdout == place.bytes("a.png") && output.stderr.is_empty());
 }
 
+/// A missing folder, and a folder in the place of the picture.
+#[test]
+fn a_picture_that_cannot_be_written_leaves_nothing() {
+    let place = mapped(SCENE);
+    for ending in ["png", "svg"] {
+        let (nowhere, taken) = (format!("nowhere/map.{ending}"), format!("taken.{ending}"));
+        std::fs::create_dir(place.path(&taken)).unwrap();
+        for (path, why) in [(&nowhere, "No such file"), (&taken, "is a directory")] {
+            let run = place.run(&["render", "outputs/scene.exr", "-o", path]);
+            run.assert_refused(&[&format!("--output {path}: {why}")]);
+        }
+        assert_eq!(names(&place.path("")), ["outputs", "scene.toml", &taken]);
+        std::fs::remove_dir(place.path(&taken)).unwrap();
+    }
+}
+
 #[test]
 fn scale_and_width_are_chosen() {
     let place = mapped(SCENE);

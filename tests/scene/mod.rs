@@ -1,4 +1,4 @@
-//! The scene room: shipped scenes are accepted, bad ones are refused with a message that helps, nothing panics.
+//! Shipped scenes are accepted. Wrong scenes are refused with the place, the value and what is allowed. No text panics.
 #![allow(
     clippy::unwrap_used,
     clippy::expect_used,

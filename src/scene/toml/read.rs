@@ -81,13 +81,9 @@ fn checked(
 ) -> Result<Scene, SceneError> {
     let refused = |why: toml_edit::de::Error| SceneError::of_toml(origin, text, &why);
     let document = Document::parse(text).map_err(|why| refused(why.into()))?;
-    let grid = document.get("grid").and_then(Item::as_table_like);
-    let axes: Vec<String> = grid.map_or_else(Vec::new, |grid| {
-        grid.iter().map(|(axis, _)| axis.to_owned()).collect()
-    });
-    let mut table = SceneTable::deserialize(Deserializer::from(document)).map_err(refused)?;
+    let table = SceneTable::deserialize(Deserializer::from(document)).map_err(refused)?;
     let mut lines = None;
-    let built = build(&mut table, &axes, folder, &mut lines);
+    let built = build(table, text, folder, &mut lines);
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
     built
         .and_then(|(mut builder, csv)| {
@@ -106,47 +102,44 @@ fn checked(
         .map_err(|fault| located(fault, lines.as_deref(), origin, text))
 }
 
-/// The description that the tables give, with `axes` in the order of the file, and the CSV file that it names. The lines of its
-/// rows are left in `lines`.
+/// The description that the tables of `text` give, and the CSV file that it names. The lines of its rows are left in `lines`.
 fn build(
-    table: &mut SceneTable,
-    axes: &[String],
+    table: SceneTable,
+    text: &str,
     folder: Option<&Path>,
     lines: &mut Option<Vec<usize>>,
 ) -> Result<(SceneBuilder, Option<CsvRows>), SceneFault> {
-    let numbers = table.numbers();
-    let mut sweep = table.grid.take_sweep();
-    sweep.sort_by_key(|(parameter, _)| axes.iter().position(|axis| axis == parameter.axis()));
-    let curvature = table.whisker.curvature.as_ref();
-    let is_empty = curvature.is_some_and(|own| {
-        own.parabola_per_mm.is_none() && own.vertex_mm.is_none() && own.euler_spiral.is_none()
-    });
-    let bends = |own: &Parameter| [Parameter::ParabolaPerMm, Parameter::VertexMm].contains(own);
-    if is_empty && !sweep.iter().any(|(own, _)| bends(own)) {
+    let SceneTable {
+        mut builder,
+        rows,
+        deviations,
+    } = table;
+    let mut bends = [
+        Parameter::ParabolaPerMm,
+        Parameter::VertexMm,
+        Parameter::SpiralPerMm,
+    ]
+    .into_iter();
+    let is_bent = bends.any(|own| builder.numbers.get(own).is_some() || builder.sweeps(own));
+    if !is_bent && place_in(text, "whisker.curvature").is_some() {
         let must = "must have either parabola_per_mm, and vertex_mm if need be, or euler_spiral";
         return Err(SceneFault::new("whisker.curvature", must));
     }
-    let (rows, csv) = match table.whisker.profile.take().map(|profile| profile.rows) {
-        None => (None, None),
-        Some(ListedRows::Listed(rows)) => (Some(rows.into_iter().map(|row| row.0).collect()), None),
+    let csv = match rows {
+        None => None,
+        Some(ListedRows::Listed(rows)) => {
+            builder.rows = Some(rows.into_iter().map(|row| row.0).collect());
+            None
+        }
         Some(ListedRows::Named(name)) => {
             let csv = CsvRows::read(&name, folder);
             let csv = csv.map_err(|must| SceneFault::new(ROWS_KEY, must))?;
             *lines = Some(csv.lines.clone());
-            (Some(csv.values.clone()), Some(csv))
+            builder.rows = Some(csv.values.clone());
+            Some(csv)
         }
     };
-    let builder = SceneBuilder {
-        title: std::mem::take(&mut table.title),
-        numbers,
-        rows,
-        push_angle_deg: std::mem::take(&mut table.grid.push_angle_deg),
-        distance_mm: std::mem::take(&mut table.grid.distance_mm),
-        sweep,
-        uncertainty: table.uncertainty.as_ref().map(uncertainty).transpose()?,
-        name: table.output.take().and_then(|output| output.name),
-        stem: String::new(),
-    };
+    builder.uncertainty = deviations.as_ref().map(uncertainty).transpose()?;
     Ok((builder, csv))
 }
 

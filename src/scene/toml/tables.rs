@@ -1,152 +1,169 @@
-//! The tables of a scene file: right in shape, not yet checked in value.
+//! The keys of a scene file, and a reader that accepts these and no others.
 
 use std::collections::BTreeMap;
 use std::fmt;
 
 use serde::Deserialize;
 use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
-use serde::de::{Deserializer, MapAccess, SeqAccess, Visitor};
+use serde::de::{DeserializeSeed, Deserializer, Error, MapAccess, SeqAccess, Visitor};
 
 use super::rows::ListedRows;
+use crate::scene::SceneBuilder;
 use crate::scene::axis::{AxisScale, AxisValues};
-use crate::scene::builder::Numbers;
 use crate::scene::parameter::Parameter;
+use crate::scene::profile;
 
-/// Tables with these keys and no others.
-macro_rules! tables {
-    ($($(#[$doc:meta])* $name:ident { $($key:ident: $kind:ty,)* })*) => {$(
-        $(#[$doc])*
-        #[derive(Deserialize)]
-        #[serde(deny_unknown_fields)]
-        pub(super) struct $name {
-            $(pub $key: $kind,)*
+/// The value of a key: its kind, and its place in the description.
+#[derive(Clone, Copy, PartialEq)]
+enum KeyValue {
+    Title,
+    Number(Parameter),
+    Rows,
+    PushAngles,
+    Distances,
+    Sweep(Parameter),
+    OutputName,
+    Deviations,
+    Table,
+}
+
+/// Keys that may be left out, also in a table that is given; the axes of the sweep may be left out, too.
+const OPTIONAL: [&str; 14] = [
+    Parameter::BaseRadiusUm.key(),
+    Parameter::TipRadiusUm.key(),
+    "whisker.profile",
+    "whisker.curvature",
+    Parameter::ParabolaPerMm.key(),
+    Parameter::VertexMm.key(),
+    "whisker.curvature.euler_spiral",
+    "whisker.projection",
+    "whisker.modulus_gradient",
+    "pole",
+    "contact",
+    "output",
+    "output.name",
+    "uncertainty",
+];
+
+/// Every key of a scene file that is no table of keys.
+fn keys() -> impl Iterator<Item = (&'static str, KeyValue)> {
+    let numbers = Parameter::ALL
+        .into_iter()
+        .filter(|own| *own != Parameter::Taper)
+        .map(|own| (own.key(), KeyValue::Number(own)));
+    let axes = Parameter::SWEPT.map(|own| (own.axis_key(), KeyValue::Sweep(own)));
+    let before = [("title", KeyValue::Title)];
+    let between = [
+        (profile::KEY, KeyValue::Rows),
+        ("grid.push_angle_deg", KeyValue::PushAngles),
+        ("grid.distance_mm", KeyValue::Distances),
+    ];
+    let after = [
+        ("output.name", KeyValue::OutputName),
+        ("uncertainty", KeyValue::Deviations),
+    ];
+    let all = before.into_iter().chain(numbers).chain(between);
+    all.chain(axes).chain(after)
+}
+
+/// Names and values of the keys of the table at `path`, which is empty or ends in a dot.
+fn keys_in(path: &str) -> Vec<(&'static str, KeyValue)> {
+    let mut inside: Vec<(&str, KeyValue)> = Vec::new();
+    for (key, value) in keys() {
+        let (name, value) = match key.strip_prefix(path).map(|key| (key, key.split_once('.'))) {
+            None => continue,
+            Some((_, Some((table, _)))) => (table, KeyValue::Table),
+            Some((name, None)) => (name, value),
+        };
+        if inside.iter().all(|(other, _)| *other != name) {
+            inside.push((name, value));
         }
-    )*};
+    }
+    inside
 }
 
-tables! {
-    /// The whole file.
-    SceneTable {
-        title: String,
-        whisker: WhiskerTable,
-        pole: Option<PoleTable>,
-        contact: Option<ContactTable>,
-        grid: GridTable,
-        output: Option<OutputTable>,
-        uncertainty: Option<BTreeMap<String, f64>>,
-    }
-    /// `[whisker]`
-    WhiskerTable {
-        length_mm: f64,
-        base_radius_um: Option<f64>,
-        tip_radius_um: Option<f64>,
-        youngs_modulus_gpa: f64,
-        profile: Option<ProfileTable>,
-        curvature: Option<CurvatureTable>,
-        projection: Option<ProjectionTable>,
-        modulus_gradient: Option<GradientTable>,
-    }
-    /// `[whisker.profile]`
-    ProfileTable { rows: ListedRows, }
-    /// `[whisker.curvature]`
-    CurvatureTable {
-        parabola_per_mm: Option<f64>,
-        vertex_mm: Option<f64>,
-        euler_spiral: Option<SpiralTable>,
-    }
-    /// `[whisker.curvature.euler_spiral]`
-    SpiralTable { per_mm: f64, per_mm2: f64, }
-    /// `[whisker.projection]`
-    ProjectionTable { arc_stretch: f64, }
-    /// `[whisker.modulus_gradient]`
-    GradientTable { tip_to_base: f64, }
-    /// `[pole]`
-    PoleTable { radius_mm: f64, }
-    /// `[contact]`
-    ContactTable { friction: f64, }
-    /// `[grid]`
-    GridTable {
-        push_angle_deg: AxisValues,
-        distance_mm: AxisValues,
-        taper: Option<AxisValues>,
-        tip_radius_um: Option<AxisValues>,
-        base_radius_um: Option<AxisValues>,
-        length_mm: Option<AxisValues>,
-        curvature_per_mm: Option<AxisValues>,
-        vertex_mm: Option<AxisValues>,
-        pole_radius_mm: Option<AxisValues>,
-        friction: Option<AxisValues>,
-        modulus_tip_to_base: Option<AxisValues>,
-        arc_stretch: Option<AxisValues>,
-    }
-    /// `[output]`
-    OutputTable { name: Option<String>, }
+/// The values of a scene file: right in shape, not yet checked. The axes of the sweep are in the order of the file.
+#[derive(Default)]
+pub(super) struct SceneTable {
+    pub builder: SceneBuilder,
+    pub rows: Option<ListedRows>,
+    /// Standard deviations by name.
+    pub deviations: Option<BTreeMap<String, f64>>,
 }
 
-impl SceneTable {
-    /// The numbers that the tables give.
-    pub fn numbers(&self) -> Numbers {
-        let whisker = &self.whisker;
-        let curvature = whisker.curvature.as_ref();
-        let spiral = curvature.and_then(|own| own.euler_spiral.as_ref());
-        let gradient = whisker.modulus_gradient.as_ref();
-        let projection = whisker.projection.as_ref();
-        let mut numbers = Numbers::default();
-        for (parameter, value) in [
-            (Parameter::LengthMm, Some(whisker.length_mm)),
-            (Parameter::BaseRadiusUm, whisker.base_radius_um),
-            (Parameter::TipRadiusUm, whisker.tip_radius_um),
-            (
-                Parameter::YoungsModulusGpa,
-                Some(whisker.youngs_modulus_gpa),
-            ),
-            (
-                Parameter::ParabolaPerMm,
-                curvature.and_then(|own| own.parabola_per_mm),
-            ),
-            (Parameter::VertexMm, curvature.and_then(|own| own.vertex_mm)),
-            (Parameter::SpiralPerMm, spiral.map(|own| own.per_mm)),
-            (Parameter::SpiralPerMm2, spiral.map(|own| own.per_mm2)),
-            (
-                Parameter::ModulusTipToBase,
-                gradient.map(|own| own.tip_to_base),
-            ),
-            (Parameter::ArcStretch, projection.map(|own| own.arc_stretch)),
-            (
-                Parameter::PoleRadiusMm,
-                self.pole.as_ref().map(|own| own.radius_mm),
-            ),
-            (
-                Parameter::Friction,
-                self.contact.as_ref().map(|own| own.friction),
-            ),
-        ] {
-            if let Some(value) = value {
-                numbers.set(parameter, value);
+impl<'de> Deserialize<'de> for SceneTable {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let mut scene = Self::default();
+        let path = String::new();
+        let reader = TableReader(path, &mut scene);
+        reader.deserialize(deserializer).map(|()| scene)
+    }
+}
+
+/// Reads the table at a path, which is empty or ends in a dot, into a scene.
+struct TableReader<'a>(String, &'a mut SceneTable);
+
+impl<'de> DeserializeSeed<'de> for TableReader<'_> {
+    type Value = ();
+
+    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<(), D::Error> {
+        deserializer.deserialize_map(self)
+    }
+}
+
+impl<'de> Visitor<'de> for TableReader<'_> {
+    type Value = ();
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a table")
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut table: A) -> Result<(), A::Error> {
+        let Self(path, scene) = self;
+        let keys = keys_in(&path);
+        let mut missing = keys.clone();
+        missing.retain(|(name, value)| {
+            let is_axis = matches!(value, KeyValue::Sweep(_));
+            !is_axis && !OPTIONAL.contains(&&*format!("{path}{name}"))
+        });
+        while let Some(key @ (name, value)) = table.next_key_seed(KeyReader(&keys))? {
+            missing.retain(|other| *other != key);
+            let builder = &mut scene.builder;
+            match value {
+                KeyValue::Title => builder.title = table.next_value()?,
+                KeyValue::Number(parameter) => builder.numbers.set(parameter, table.next_value()?),
+                KeyValue::Rows => scene.rows = Some(table.next_value()?),
+                KeyValue::PushAngles => builder.push_angle_deg = table.next_value()?,
+                KeyValue::Distances => builder.distance_mm = table.next_value()?,
+                KeyValue::Sweep(parameter) => {
+                    builder.sweep.push((parameter, table.next_value()?));
+                }
+                KeyValue::OutputName => builder.name = Some(table.next_value()?),
+                KeyValue::Deviations => scene.deviations = Some(table.next_value()?),
+                KeyValue::Table => {
+                    table.next_value_seed(TableReader(format!("{path}{name}."), scene))?;
+                }
             }
         }
-        numbers
+        let absent = missing.first();
+        absent.map_or(Ok(()), |(name, _)| Err(A::Error::missing_field(name)))
     }
 }
 
-impl GridTable {
-    /// Takes out the axes along which whiskers differ.
-    pub fn take_sweep(&mut self) -> Vec<(Parameter, AxisValues)> {
-        let axes = [
-            (Parameter::Taper, self.taper.take()),
-            (Parameter::TipRadiusUm, self.tip_radius_um.take()),
-            (Parameter::BaseRadiusUm, self.base_radius_um.take()),
-            (Parameter::LengthMm, self.length_mm.take()),
-            (Parameter::ParabolaPerMm, self.curvature_per_mm.take()),
-            (Parameter::VertexMm, self.vertex_mm.take()),
-            (Parameter::PoleRadiusMm, self.pole_radius_mm.take()),
-            (Parameter::Friction, self.friction.take()),
-            (Parameter::ModulusTipToBase, self.modulus_tip_to_base.take()),
-            (Parameter::ArcStretch, self.arc_stretch.take()),
-        ];
-        let axes = axes.into_iter();
-        axes.filter_map(|(parameter, axis)| Some((parameter, axis?)))
-            .collect()
+/// Reads one of these keys.
+struct KeyReader<'a>(&'a [(&'static str, KeyValue)]);
+
+impl<'de> DeserializeSeed<'de> for KeyReader<'_> {
+    type Value = (&'static str, KeyValue);
+
+    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<Self::Value, D::Error> {
+        let name = String::deserialize(deserializer)?;
+        let known = self.0.iter().find(|(own, _)| *own == name);
+        known.copied().ok_or_else(|| {
+            let names = self.0.iter().map(|(own, _)| format!("`{own}`"));
+            let names = names.collect::<Vec<_>>().join(", ");
+            D::Error::custom(format!("unknown field `{name}`, expected one of {names}"))
+        })
     }
 }
 

@@ -96,7 +96,7 @@ fn document(scene: &SceneBuilder) -> DocumentMut {
     put(root, "grid.push_angle_deg", &scene.push_angle_deg);
     put(root, "grid.distance_mm", &scene.distance_mm);
     for (parameter, values) in &scene.sweep {
-        put(root, &format!("grid.{}", parameter.axis()), values);
+        put(root, parameter.axis_key(), values);
     }
     if let Some(name) = &scene.name {
         put(root, "output.name", name.as_str());

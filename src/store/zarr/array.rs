@@ -278,7 +278,7 @@ fn turned(lines: &[u8], width: usize) -> Vec<u8> {
     turned
 }
 
-/// Attributes by which xarray knows what an array holds.
+/// The attributes of an array by which xarray labels its values: unit and name.
 pub(super) fn about(units: Option<&str>, long_name: &str) -> Map<String, Value> {
     let mut about = Map::new();
     if let Some(units) = units {

@@ -14,6 +14,7 @@ use std::path::Path;
 
 /// How thoroughly a block's files are checked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum CheckDepth {
     /// Identity, length and index of each file.
     Structure,
@@ -25,6 +26,7 @@ pub enum CheckDepth {
 
 /// The state of a block on disk.
 #[derive(Debug)]
+#[non_exhaustive]
 pub enum BlockState {
     /// A file is missing: the block is not finished.
     Missing,

@@ -18,7 +18,7 @@ const MOST_METADATA: u64 = 16 << 20;
 
 impl ZarrStore {
     /// Creates the store, or joins the one that is there, restores metadata that are missing or damaged, and removes temporary
-    /// files of killed processes. Returns the damaged files that it has replaced.
+    /// files of interrupted processes. Returns the damaged files that it has replaced.
     ///
     /// If several processes create a store at the same time, one creates it, and the others join it.
     ///

@@ -2,10 +2,11 @@
 
 use super::array::ZarrArray;
 use super::files::write;
+use super::metadata::CELLS;
 use super::{ZarrStore, shard};
 use crate::classify::Regime;
 use crate::scene::Scene;
-use crate::store::{Channels, Panel, STATE_CHANNELS, StoreError, TemporaryFiles};
+use crate::store::{Channels, Panel, StoreError, TemporaryFiles};
 use rayon::prelude::*;
 use serde_json::Map;
 use std::borrow::Cow;
@@ -68,21 +69,18 @@ impl ZarrStore {
 
 /// The values of a panel for the array `name`, as bytes.
 fn values<'a>(name: &str, panel: &'a Panel) -> Cow<'a, [u8]> {
-    let codes = |codes: &[u32]| codes.iter().map(|code| *code as u8).collect();
-    let state = STATE_CHANNELS.iter().position(|own| *own == name);
-    match (name, state) {
-        (_, Some(place)) => bytemuck::cast_slice(&panel.state[place]).into(),
-        ("regime", _) => codes(&panel.regime),
-        ("status", _) => codes(&panel.status),
-        ("newton_steps", _) => bytemuck::cast_slice(&panel.newton_steps).into(),
-        ("residual", _) => bytemuck::cast_slice(&panel.residual).into(),
-        ("margin_deg", _) => bytemuck::cast_slice(&panel.margin_deg).into(),
-        _ => {
+    match name {
+        "regime" | "status" => {
+            let codes: &[u32] = bytemuck::cast_slice(panel.bytes(name));
+            codes.iter().map(|code| *code as u8).collect()
+        }
+        CELLS => {
             let count = |regime: Regime| {
                 let codes = panel.regime.iter();
                 codes.filter(|code| **code == regime.code()).count() as u32
             };
             bytemuck::pod_collect_to_vec(&Regime::ALL.map(count)).into()
         }
+        _ => panel.bytes(name).into(),
     }
 }

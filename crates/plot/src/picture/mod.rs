@@ -92,6 +92,7 @@ pub enum Primitive {
 
 /// The file format of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum PictureFormat {
     /// PNG: pixels.
     Png,
