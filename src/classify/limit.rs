@@ -1,6 +1,9 @@
 //! Slid distance of a contact that slides all along a push, toward the tip or toward the base, as a piecewise polynomial.
+//!
+//! The row span's parameter `w` may turn back along a row with friction, so the variable is the push angle.
 
 use super::sliding::{rate, slid};
+use crate::numerics::newton_form::{Polynomial, through_runs};
 use crate::sheet::{Continuation, LevelCurve, NODE_MISS, continuations};
 use crate::shooting::FirstVariation;
 use crate::shooting::batch::{Batch, InitialCondition};
@@ -8,7 +11,7 @@ use crate::shooting::batch::{Batch, InitialCondition};
 /// Slid distance of one row's contact by push, from first touch to the end of its stable states: the arclength of the contact minus
 /// the distance rolled around the pole, in whisker lengths.
 #[derive(Clone, Debug)]
-pub struct SlidingLimit(Vec<SlidingKnot>);
+pub struct SlidingLimit(Vec<LimitSegment>);
 
 /// State at which a limit is interpolated.
 #[derive(Clone, Copy, Debug)]
@@ -66,94 +69,96 @@ impl SlidingLimit {
                         },
                     }
                 });
-                Some(Self(knots.collect()))
+                let knots: Vec<SlidingKnot> = knots.collect();
+                let segments = knots.windows(2);
+                let segments = segments.map(|pair| LimitSegment::new(pair[0], pair[1]));
+                Some(Self(segments.collect()))
             })
             .collect()
     }
 
     /// Push angles of the knots, then push angles between them at which the limit reverses, in radians.
     pub fn pushes(&self) -> impl Iterator<Item = f64> {
-        let reversals = self
-            .0
-            .windows(2)
-            .flat_map(|pair| LimitSegment::new(pair[0], pair[1]).reversals());
-        let knots = self.0.iter().map(|knot| knot.push);
+        let knots = self.0.first().map(|first| first.from);
+        let knots = knots.into_iter().chain(self.0.iter().map(|to| to.to));
+        let reversals = self.0.iter().flat_map(LimitSegment::reversals);
         knots.chain(reversals.flatten())
     }
 
     /// Returns true if the limit moves toward the base anywhere.
     pub fn falls(&self) -> bool {
-        let mut pairs = self
-            .0
-            .windows(2)
-            .map(|pair| LimitSegment::new(pair[0], pair[1]));
-        self.0.iter().any(|knot| knot.by_push < 0.0)
-            || pairs.any(|pair| pair.reversals().iter().any(Option::is_some))
+        self.0.iter().any(LimitSegment::falls)
     }
 
     /// Slid distance at `push`, in whisker lengths; `None` beyond the end.
     pub fn slid(&self, push: f64) -> Option<f64> {
-        let after = self.0.partition_point(|knot| knot.push <= push);
-        let after = after.clamp(1, self.0.len() - 1);
-        let [from, to] = [self.0.get(after - 1)?, self.0.get(after)?];
-        (push <= to.push).then(|| LimitSegment::new(*from, *to).at(push))
+        let at = self.0.partition_point(|segment| segment.to <= push);
+        let segment = self.0.get(at).or(self.0.last())?;
+        (push <= segment.to).then(|| segment.at(push))
     }
 }
 
-/// Polynomial of the slid distance between two knots. Its variable is the fraction of the interval from the first knot or, if the
-/// second knot is a fold, the square root of the fraction from there.
+/// Polynomial of the slid distance between two knots. Its variable `x` grows from 0 to 1. It is the fraction of the interval or, if the
+/// second knot is a fold, 1 minus the square root of the fraction that is left.
+#[derive(Clone, Debug)]
 struct LimitSegment {
+    /// Push angles of the knots, in radians.
     from: f64,
-    width: f64,
+    to: f64,
     /// Whether the second knot is a fold.
-    to_fold: bool,
-    /// Coefficients, of the constant first.
-    powers: [f64; 4],
+    is_to_fold: bool,
+    /// Slid distance, with a value and a slope at each knot.
+    cubic: Polynomial<4>,
 }
 
 impl LimitSegment {
-    /// Cubic Hermite polynomial or, next to a fold, the parabola in the square root that has the slope of the first knot.
+    /// Cubic Hermite polynomial or, next to a fold, the parabola that has the slope of the first knot.
     fn new(from: SlidingKnot, to: SlidingKnot) -> Self {
-        let width = to.push - from.push;
-        let secant = to.slid - from.slid;
-        let to_fold = to.by_push.is_infinite();
-        let powers = if to_fold {
-            // At the first knot the derivative by the root is twice the derivative by the fraction.
-            let bend = secant - 2.0 * from.by_push * width;
-            [to.slid, -secant - bend, bend, 0.0]
+        let is_to_fold = to.by_push.is_infinite();
+        let [begin, end] = [from, to].map(|knot| knot.by_push * (to.push - from.push));
+        let slopes = if is_to_fold {
+            // At the first knot, the fraction changes twice as fast as `x`. The slopes of a parabola have the secant as their mean.
+            [2.0 * begin, 2.0 * (to.slid - from.slid - begin)]
         } else {
-            let [a, b] = [from, to].map(|knot| knot.by_push * width - secant);
-            [from.slid, secant + a, -2.0 * a - b, a + b]
+            [begin, end]
         };
+        let differences = through_runs(&[[from.slid], [to.slid]], &slopes.map(|slope| [slope]))[0];
         Self {
             from: from.push,
-            width,
-            to_fold,
-            powers,
+            to: to.push,
+            is_to_fold,
+            cubic: Polynomial::on_even_nodes(2, differences.map(|[difference]| difference)),
         }
     }
 
     fn at(&self, push: f64) -> f64 {
-        let fraction = (push - self.from) / self.width;
-        let x = if self.to_fold {
-            (1.0 - fraction).max(0.0).sqrt()
+        let fraction = (push - self.from) / (self.to - self.from);
+        let x = if self.is_to_fold {
+            1.0 - (1.0 - fraction).max(0.0).sqrt()
         } else {
             fraction
         };
-        let [c0, c1, c2, c3] = self.powers;
-        x.mul_add(x.mul_add(x.mul_add(c3, c2), c1), c0)
+        self.cubic.at(x).0
+    }
+
+    /// Returns true if the slid distance falls anywhere.
+    fn falls(&self) -> bool {
+        let slopes = [0.0, 1.0].map(|x| self.cubic.at(x).1);
+        slopes.iter().any(|slope| *slope < 0.0) || self.reversals().iter().any(Option::is_some)
     }
 
     /// Push angles at which the slid distance reverses, in radians.
     fn reversals(&self) -> [Option<f64>; 2] {
-        let [_, c1, c2, c3] = self.powers;
+        // The slope is `c1 + 2 c2 x + 3 c3 x^2`.
+        let [_, c1, second, c3] = self.cubic.differences;
+        let c2 = second - c3;
         let root = c2.mul_add(c2, -3.0 * c1 * c3).sqrt();
         // The second root follows by division, so that neither root cancels.
         let q = -(c2 + root.copysign(c2));
         [q / (3.0 * c3), c1 / q].map(|x| {
-            let fraction = if self.to_fold { 1.0 - x * x } else { x };
+            let fraction = if self.is_to_fold { x * (2.0 - x) } else { x };
             let is_within = x > 0.0 && x < 1.0;
-            is_within.then_some(fraction.mul_add(self.width, self.from))
+            is_within.then_some(fraction.mul_add(self.to - self.from, self.from))
         })
     }
 }

@@ -6,7 +6,7 @@
 use crate::rod::{Rod, arclength};
 use crate::sheet::CurveNode;
 use crate::shooting::FirstVariation;
-use crate::shooting::batch::{Batch, InitialCondition, Method};
+use crate::shooting::batch::{Batch, Method};
 use glam::DVec2;
 use serde::Serialize;
 
@@ -37,13 +37,7 @@ impl Sliding {
         if rod.friction == 0.0 {
             return vec![None; points.len()];
         }
-        let conditions = points.iter().map(|point| InitialCondition {
-            rod,
-            tau: point.x,
-            load: point.y,
-        });
-        let conditions: Vec<InitialCondition> = conditions.collect();
-        let shot = Batch::new(method).shoot::<FirstVariation>(&conditions);
+        let shot = Batch::new(method).shoot_at(rod, points.iter().copied());
         let states = shot.iter().zip(points);
         let states = states.map(|(variation, point)| Self::of(variation, rod, point.x));
         states.collect()

@@ -6,9 +6,10 @@ use crate::numerics::Bracket;
 use crate::scene::{Parameter, Scene};
 use crate::trace::{DetachmentKind, curve};
 use rayon::prelude::*;
+use std::convert::Infallible;
 
-/// Halvings of the interval between two samples until a change of kind is exact.
-const HALVINGS: u32 = 50;
+/// Width of the interval of a change of kind, in parts of the interval between two samples: 50 halvings.
+const CHANGE_WIDTH: f64 = 1e-15;
 
 /// A scene, the parameter that varies, and the target.
 pub struct DesignSearch<'a> {
@@ -65,14 +66,17 @@ impl DesignSearch<'_> {
 
     /// The last end of the kind of `before`, and the first end of another kind between it and `after`.
     fn change(&self, mut before: DesignEnd, mut after: DesignEnd) -> [DesignEnd; 2] {
-        for _ in 0..HALVINGS {
-            let middle = self.end(before.value.midpoint(after.value));
-            if middle.kind == before.kind {
-                before = middle;
-            } else {
-                after = middle;
-            }
-        }
+        let mut bracket = Bracket {
+            below: before.value,
+            above: after.value,
+        };
+        let width = CHANGE_WIDTH * (after.value - before.value).abs();
+        let Ok(()) = bracket.halve(width, |value| {
+            let middle = self.end(value);
+            let is_before = middle.kind == before.kind;
+            *(if is_before { &mut before } else { &mut after }) = middle;
+            Ok::<bool, Infallible>(is_before)
+        });
         [before, after]
     }
 

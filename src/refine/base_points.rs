@@ -5,15 +5,12 @@
 
 use super::row_states::{ExactState, RowState, row_states};
 use crate::engine::{BasePoint, MOST_TRAJECTORY_STEPS, RowTerms};
-use crate::numerics::chebyshev::{Chebyshev, chebyshev_points};
-use crate::numerics::{WIDTH, nearest_turn};
+use crate::numerics::chebyshev::{CHEBYSHEV_COUNT as NODES, CHEBYSHEV_POINTS, taylor_at_points};
+use crate::numerics::nearest_turn;
 use crate::rod::Rest;
 use crate::sheet::{RowSpan, Sheet};
 use crate::shooting::batch::Method;
 use rayon::prelude::*;
-
-/// Number of base points of a row: as many as polynomials are expanded around side by side.
-pub const NODES: usize = WIDTH;
 
 /// Cells of one row for an engine.
 #[derive(Clone, Copy, Debug)]
@@ -90,9 +87,8 @@ impl<'a> SpanFromTouch<'a> {
 
     /// Returns approximate states at the Chebyshev points of the row parameter.
     fn states(&self) -> [RowState<'a>; NODES] {
-        let points = chebyshev_points(NODES);
-        std::array::from_fn(|m| {
-            let w = points[m] * self.w_end;
+        CHEBYSHEV_POINTS.map(|point| {
+            let w = point * self.w_end;
             let [_, tau] = self.span.at(w.abs());
             RowState {
                 sheet: self.sheet,
@@ -123,8 +119,8 @@ fn expand(sheet: &Sheet, row: &RowOfCells, w_end: f64, found: &[ExactState]) -> 
             push, *tau, resting, by_tau.x, by_tau.y, by_load.x, by_load.y,
         ];
     }
-    let points = std::array::from_fn(|m| chebyshev_points(NODES)[m]);
-    let expanded = Chebyshev::through(&terms).taylor_side_by_side(&points);
+    let points = &*CHEBYSHEV_POINTS;
+    let expanded = taylor_at_points(&terms);
     let mut base_points = Vec::with_capacity(NODES);
     let mut from = 0;
     for (m, row_here) in expanded.into_iter().enumerate() {

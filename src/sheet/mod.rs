@@ -20,8 +20,7 @@ mod span;
 
 pub use continuation::level_curve::{CurveNode, LevelCurve, ON_CURVE};
 pub use continuation::{Continuation, NODE_MISS, continuations};
-pub use edges::edge_newton::{EdgeIterate, EdgeStart, edge_newton};
-pub use edges::edge_problem::EdgeProblem;
+pub use edges::edge_newton::{EdgeIterate, EdgeProblem, EdgeStart, edge_newton};
 pub use fold::FoldPoint;
 pub use row::{Crossing, Edge, Row};
 pub use span::{Guess, RowSpan, SpanNode};

@@ -6,7 +6,7 @@ use crate::numerics::Bracket;
 use crate::rod::{Rest, Side};
 use crate::scene::{Pole, Whisker};
 use crate::sheet::{Crossing, Edge, Sheet};
-use crate::shooting::batch::{Batch, InitialCondition, Method};
+use crate::shooting::batch::{Batch, Method};
 use crate::shooting::{FirstVariation, Reader, Reading, Resolution};
 use serde::{Deserialize, Serialize};
 
@@ -118,12 +118,8 @@ pub fn curve_at(
             end.ok_or(DetachmentKind::Unresolved)
         })
         .collect();
-    let conditions: Vec<InitialCondition> = ends
-        .iter()
-        .flatten()
-        .map(|&&Crossing { tau, load, .. }| InitialCondition { rod, tau, load })
-        .collect();
-    let states = Batch::new(method).shoot::<FirstVariation>(&conditions);
+    let points = ends.iter().flatten().map(|end| (end.tau, end.load));
+    let states: Vec<FirstVariation> = Batch::new(method).shoot_at(rod, points);
     let mut states = states.into_iter();
     let rows = distances_mm.iter().zip(&sheet.rows).zip(&ends);
     rows.map(|((distance_mm, row), end)| {

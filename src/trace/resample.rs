@@ -1,5 +1,6 @@
 //! Resampling of a branch at uniform distances along it.
 
+use crate::numerics::newton_form::{Polynomial, stencil, through_nodes};
 use crate::sheet::CurveNode;
 use glam::DVec2;
 
@@ -28,21 +29,12 @@ const NODES: usize = 6;
 
 /// Index of the last node before `target`, and the point `(tau, load)` at `target` of the polynomial through the nodes around it.
 pub fn interpolate(nodes: &[CurveNode], lengths: &[f64], target: f64) -> (usize, DVec2) {
-    let after = lengths.partition_point(|length| *length <= target);
-    let near = after.saturating_sub(1);
-    let first = after
-        .saturating_sub(NODES / 2)
-        .min(nodes.len().saturating_sub(NODES));
-    let around = first..nodes.len().min(first + NODES);
-    let point = around
-        .clone()
-        .map(|i| {
-            let others = around.clone().filter(|j| *j != i);
-            let weight: f64 = others
-                .map(|j| (target - lengths[j]) / (lengths[i] - lengths[j]))
-                .product();
-            weight * nodes[i].point
-        })
-        .sum();
-    (near, point)
+    let near = lengths.partition_point(|length| *length <= target);
+    let near = near.saturating_sub(1);
+    let around = lengths.iter().zip(nodes);
+    let around = around.skip(stencil(near, NODES, nodes.len()));
+    let point = |(length, node): (&f64, &CurveNode)| (*length, node.point.to_array());
+    let polynomials: [Polynomial<NODES>; 2] = through_nodes(around.map(point));
+    let point = polynomials.map(|polynomial| polynomial.at(target).0);
+    (near, point.into())
 }

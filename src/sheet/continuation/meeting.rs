@@ -2,8 +2,7 @@
 
 use crate::sheet::continuation::corrector::correct;
 use crate::sheet::continuation::level_curve::{CurveNode, LevelCurve, ON_CURVE};
-use crate::sheet::edges::edge_newton::{EdgeStart, edge_newton};
-use crate::sheet::edges::edge_problem::EdgeProblem;
+use crate::sheet::edges::edge_newton::{EdgeProblem, EdgeStart, edge_newton};
 use crate::sheet::row::Edge;
 use glam::DVec2;
 

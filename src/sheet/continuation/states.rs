@@ -5,7 +5,7 @@ use crate::rod::arclength;
 use crate::sheet::continuation::corrector::correct;
 use crate::sheet::continuation::level_curve::{CurveNode, LevelCurve, ON_CURVE};
 use crate::sheet::row::Crossing;
-use crate::shooting::batch::{Batch, InitialCondition};
+use crate::shooting::batch::Batch;
 use crate::shooting::{FirstVariation, FullState};
 use glam::DVec2;
 
@@ -18,15 +18,8 @@ impl LevelCurve {
     #[must_use]
     pub fn touch(&self) -> Option<CurveNode> {
         let at_touch = self.row.first_touch(&self.rod);
-        let condition = InitialCondition {
-            rod: &self.rod,
-            tau: at_touch.x,
-            load: at_touch.y,
-        };
-        let full = Batch::new(self.method)
-            .shoot::<FirstVariation>(&[condition])
-            .pop()?
-            .full;
+        let mut shot = Batch::new(self.method).shoot_at(&self.rod, [at_touch]);
+        let FirstVariation { full, .. } = shot.pop()?;
         Some(CurveNode {
             push: 0.0,
             ..self.node(at_touch, &full, 0.0, 0.0)

@@ -1,4 +1,6 @@
 //! Crossings by bisection between two samples of an edge, where Newton's method fails because the distance has an extremum nearby.
+//!
+//! The trials of all intervals share batches. So each interval halves its [`Bracket`] here, and not in [`Bracket::bisect`].
 
 use crate::numerics::Bracket;
 use crate::rod::{Rod, Side};
@@ -6,15 +8,8 @@ use crate::sheet::edges::predictor::EdgeSample;
 use crate::sheet::fold::first_folds;
 use crate::sheet::row::Edge;
 use crate::shooting::SecondVariation;
-use crate::shooting::batch::{Batch, InitialCondition, Method};
+use crate::shooting::batch::{Batch, Method};
 use glam::DVec2;
-
-/// Interval between two samples of an edge, and the `ln D` to find in it.
-pub struct EdgeInterval {
-    pub edge: Edge,
-    pub samples: [EdgeSample; 2],
-    pub target: f64,
-}
 
 /// Point `(tau, load)` of an edge, and the pole and derivatives there.
 pub type EdgePoint = (DVec2, SecondVariation);
@@ -28,55 +23,70 @@ const MOST_EDGE_HALVINGS: usize = 64;
 const HALVINGS_BEFORE_LEAP: usize = 12;
 const LEAP: f64 = 0.25;
 
-/// Bisection in progress on one interval of an edge.
-struct EdgeBisection {
-    /// Index of the interval.
-    index: usize,
+/// Bisection of the interval between two samples of an edge.
+pub struct EdgeBisection {
+    edge: Edge,
+    /// Points `(tau, load)` of the samples.
+    samples: [DVec2; 2],
+    /// Wanted `ln D`.
+    target: f64,
     /// Place of the next trial: the part of the line between the samples, from 0 to 1.
     part: f64,
     /// Parts that bracket the target.
     parts: Bracket,
-    /// Misses in `ln D` at the ends of the bracket. `largest` is the largest magnitude of any miss.
+    /// Misses in `ln D` at the ends of the bracket, and the largest magnitude of any miss.
     ends: [f64; 2],
     largest: f64,
-    halvings: usize,
-    /// True if the next trial is the result.
-    is_last: bool,
+    /// Number of halvings that are left.
+    left: usize,
+    found: Option<EdgePoint>,
 }
 
 impl EdgeBisection {
-    fn new(index: usize, between: &EdgeInterval) -> Self {
-        let ends = between
-            .samples
-            .map(|sample| sample.ln_distance - between.target);
+    /// Creates the bisection for the `ln D` `target`. If both samples are on the same side of it, the closer one is the result.
+    pub fn new(edge: Edge, samples: [EdgeSample; 2], target: f64) -> Self {
+        let ends = samples.map(|sample| sample.ln_distance - target);
         let parts = Bracket::new([0.0, 1.0], ends);
         let sizes = ends.map(f64::abs);
-        let is_last = (ends[0] <= 0.0) == (ends[1] <= 0.0);
+        let is_between = (ends[0] <= 0.0) != (ends[1] <= 0.0);
+        let closer = f64::from(u8::from(sizes[0] > sizes[1]));
         Self {
-            index,
-            part: match is_last {
-                true if sizes[0] <= sizes[1] => 0.0,
-                true => 1.0,
-                false => parts.middle(),
-            },
+            edge,
+            samples: samples.map(|sample| DVec2::new(sample.tau, sample.load)),
+            target,
+            part: if is_between { parts.middle() } else { closer },
             parts,
             ends,
             largest: sizes[0].max(sizes[1]),
-            halvings: 0,
-            is_last,
+            left: if is_between { MOST_EDGE_HALVINGS } else { 0 },
+            found: None,
         }
     }
 
-    /// Halves the bracket at a trial that misses the target by `miss`. Returns false if the distance leaps over the target.
-    fn halve(&mut self, miss: f64) -> bool {
+    /// Returns `(tau, load)` of the next trial, on the line between the samples.
+    fn trial(&self) -> DVec2 {
+        let [from, to] = self.samples;
+        from + self.part * (to - from)
+    }
+
+    /// Halves the bracket at a trial. Returns false if the bisection ends, without a result if there is no point at the trial or the
+    /// distance leaps over the target.
+    fn halve(&mut self, point: Option<EdgePoint>) -> bool {
+        let Some((_, here)) = &point else {
+            return false;
+        };
+        if self.left == 0 {
+            self.found = point;
+            return false;
+        }
+        let miss = libm::log(here.map.pole.length()) - self.target;
         self.parts.shrink(self.part, miss);
         self.largest = self.largest.max(miss.abs());
         self.ends[usize::from((miss <= 0.0) != (self.ends[0] <= 0.0))] = miss;
         self.part = self.parts.middle();
-        self.halvings += 1;
-        self.is_last = self.halvings == MOST_EDGE_HALVINGS;
+        self.left -= 1;
         let leaps = (self.ends[1] - self.ends[0]).abs() > LEAP * self.largest;
-        !leaps || self.halvings < HALVINGS_BEFORE_LEAP
+        !leaps || self.left + HALVINGS_BEFORE_LEAP > MOST_EDGE_HALVINGS
     }
 }
 
@@ -86,69 +96,38 @@ pub fn bisect(
     method: Method,
     rod: &Rod,
     side: Side,
-    all: &[EdgeInterval],
+    mut all: Vec<EdgeBisection>,
 ) -> Vec<Option<EdgePoint>> {
-    let mut found = vec![None; all.len()];
-    let mut open: Vec<EdgeBisection> = all
-        .iter()
-        .enumerate()
-        .map(|(index, between)| EdgeBisection::new(index, between))
-        .collect();
-    while !open.is_empty() {
-        let mut points = points(method, rod, side, all, &open).into_iter();
-        open.retain_mut(|search| {
-            let Some(Some(point)) = points.next() else {
-                return false;
+    for edge in [Edge::Fold, Edge::Tip] {
+        let open = all.iter_mut().filter(|search| search.edge == edge);
+        let mut open: Vec<&mut EdgeBisection> = open.collect();
+        while !open.is_empty() {
+            let trials: Vec<DVec2> = open.iter().map(|search| search.trial()).collect();
+            let points = match edge {
+                Edge::Fold => folds(method, rod, side, &trials),
+                Edge::Tip => {
+                    let shot = Batch::new(method).shoot_at(rod, trials.iter().copied());
+                    trials.into_iter().zip(shot).map(Some).collect()
+                }
             };
-            if search.is_last {
-                found[search.index] = Some(point);
-                return false;
-            }
-            let (_, here) = point;
-            search.halve(libm::log(here.map.pole.length()) - all[search.index].target)
-        });
+            let mut points = points.into_iter();
+            open.retain_mut(|search| search.halve(points.next().flatten()));
+        }
     }
-    found
+    all.into_iter().map(|search| search.found).collect()
 }
 
-/// Returns the next trial of each bisection. Bisections for several distances between the same samples share their trials as long as all
-/// of them are on the same side.
-fn points(
-    method: Method,
-    rod: &Rod,
-    side: Side,
-    all: &[EdgeInterval],
-    open: &[EdgeBisection],
-) -> Vec<Option<EdgePoint>> {
-    let place = |search: &EdgeBisection| {
-        let [from, to] = all[search.index].samples;
-        let [from, to] = [from, to].map(|sample| DVec2::new(sample.tau, sample.load));
-        from + search.part * (to - from)
-    };
-    let on = |edge: Edge| open.iter().filter(move |s| all[s.index].edge == edge);
-    let mut contacts: Vec<f64> = on(Edge::Fold).map(|search| place(search).x).collect();
+/// Returns the fold at the contact of each trial. Bisections for several distances between the same samples share their trials as long as
+/// all of them are on the same side.
+fn folds(method: Method, rod: &Rod, side: Side, trials: &[DVec2]) -> Vec<Option<EdgePoint>> {
+    let mut contacts: Vec<f64> = trials.iter().map(|trial| trial.x).collect();
     contacts.sort_by(f64::total_cmp);
     contacts.dedup();
     let folds = first_folds(method, rod, side, &contacts);
-    let conditions: Vec<InitialCondition> = on(Edge::Tip)
-        .map(|search| InitialCondition {
-            rod,
-            tau: all[search.index].samples[0].tau,
-            load: place(search).y,
-        })
-        .collect();
-    let mut shots = Batch::new(method)
-        .shoot::<SecondVariation>(&conditions)
-        .into_iter();
-    open.iter()
-        .map(|search| match all[search.index].edge {
-            Edge::Fold => {
-                let tau = place(search).x;
-                let contact = contacts.binary_search_by(|other| other.total_cmp(&tau));
-                let fold = folds[contact.ok()?]?;
-                Some((DVec2::new(tau, fold.load), fold.variation))
-            }
-            Edge::Tip => Some((place(search), shots.next()?)),
-        })
-        .collect()
+    let fold = |trial: &DVec2| {
+        let contact = contacts.binary_search_by(|other| other.total_cmp(&trial.x));
+        let fold = folds[contact.ok()?]?;
+        Some((DVec2::new(trial.x, fold.load), fold.variation))
+    };
+    trials.iter().map(fold).collect()
 }

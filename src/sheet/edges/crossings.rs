@@ -7,11 +7,10 @@
 use crate::numerics::nearest_turn;
 use crate::rod::{Rod, Side};
 use crate::sheet::edges::Edges;
-use crate::sheet::edges::bisection::{EdgeInterval, EdgePoint, bisect};
+use crate::sheet::edges::bisection::{EdgeBisection, EdgePoint, bisect};
 use crate::sheet::edges::edge_newton::{
-    EdgeIterate, EdgeStart, edge_newton, edge_newton_predicted,
+    EdgeIterate, EdgeProblem, EdgeStart, edge_newton, edge_newton_predicted,
 };
-use crate::sheet::edges::edge_problem::EdgeProblem;
 use crate::sheet::edges::predictor::{EdgeSample, Prediction};
 use crate::sheet::row::{Crossing, Edge, REACH_SLACK, Row};
 use crate::shooting::batch::Method;
@@ -135,22 +134,22 @@ fn correct(
         }
     };
     let reached = |(c, iterate): (&CrossingCandidate, &EdgeIterate)| {
-        let residual = iterate.miss.abs() + iterate.left * iterate.left;
-        crossing(c, (iterate.point, iterate.here), residual)
+        crossing(c, (iterate.point, iterate.here), iterate.residual)
     };
     let mut corrected: Vec<Crossing> = candidates.iter().zip(&iterates).map(reached).collect();
     let has_failed =
         |i: &usize| !(corrected[*i].is_sound() && candidates[*i].holds(iterates[*i].point));
     let failed: Vec<usize> = (0..candidates.len()).filter(has_failed).collect();
-    let between: Vec<EdgeInterval> = failed
-        .iter()
-        .map(|&i| EdgeInterval {
-            edge: candidates[i].edge,
-            samples: candidates[i].between,
-            target: libm::log(rows[candidates[i].row].pole_distance),
-        })
-        .collect();
-    for (i, point) in failed.into_iter().zip(bisect(method, rod, side, &between)) {
+    let between = failed.iter().map(|&i| {
+        let CrossingCandidate { edge, between, .. } = candidates[i];
+        EdgeBisection::new(
+            edge,
+            between,
+            libm::log(rows[candidates[i].row].pole_distance),
+        )
+    });
+    let bisected = bisect(method, rod, side, between.collect());
+    for (i, point) in failed.into_iter().zip(bisected) {
         let c = &candidates[i];
         let row = &rows[c.row];
         let bisected = point.map(|point| {

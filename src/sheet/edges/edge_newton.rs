@@ -2,11 +2,27 @@
 //! equations, for `D` and `det = 0`, determine contact and load. On the tip edge `D` alone determines the load.
 
 use crate::newton::{BatchNewton, LaneSharing, NewtonOutcome, NewtonProblem, NewtonStep};
-use crate::rod::Rod;
-use crate::sheet::edges::edge_problem::EdgeProblem;
-use crate::shooting::batch::{Batch, InitialCondition, Method};
-use crate::shooting::{SecondVariation, ShootingMap};
+use crate::rod::{Rod, arclength};
+use crate::sheet::edges::predictor::SecondDerivatives;
+use crate::sheet::row::Edge;
+use crate::shooting::batch::{Batch, Method};
+use crate::shooting::{SecondVariation, ShootingMap, limited};
 use glam::DVec2;
+
+/// Newton problem for one point of an edge.
+#[derive(Clone, Copy, Debug)]
+pub struct EdgeProblem<'a> {
+    /// Whisker and pole.
+    pub rod: &'a Rod,
+    /// Edge on which the point lies.
+    pub edge: Edge,
+    /// Distance `D` of the pole's centre from the base, in whisker lengths.
+    pub pole_distance: f64,
+    /// Start of Newton's method, `(tau, load)`.
+    pub start: DVec2,
+    /// Second derivatives at `start`, if the start is a good prediction.
+    pub second: Option<SecondDerivatives>,
+}
 
 /// Last iterate of an edge Newton.
 #[derive(Clone, Copy, Debug)]
@@ -15,12 +31,57 @@ pub struct EdgeIterate {
     pub point: DVec2,
     /// Pole and derivatives at `point`.
     pub here: SecondVariation,
-    /// Remaining miss in `ln D`.
-    pub miss: f64,
-    /// Remaining step length, as [`limited`](crate::shooting::limited) measures it: the square of the last step, or the step that was not taken.
-    pub left: f64,
+    /// Remaining error: the miss in `ln D`, plus the square of the remaining step as [`limited`] measures it. The remaining step is the
+    /// square of the last one, or the step that was not taken.
+    pub residual: f64,
     /// True if a step was short enough to be the last one.
     pub has_converged: bool,
+}
+
+impl EdgeProblem<'_> {
+    /// Returns the miss in `ln D` at the state `here`.
+    fn miss(&self, here: &SecondVariation) -> f64 {
+        libm::log(self.pole_distance / here.map.pole.length())
+    }
+
+    /// Returns the next step in `(tau, load)` from `at`, where the state is `here`, and its length.
+    fn step(&self, at: DVec2, here: &SecondVariation) -> (DVec2, f64) {
+        let miss = self.miss(here);
+        let step = match self.edge {
+            Edge::Fold => fold_step(here, miss),
+            Edge::Tip => DVec2::new(0.0, load_step(here, miss)),
+        };
+        limited(step, arclength(self.rod, at.x), at.y)
+    }
+
+    /// Returns the iterate at `point`, from which a step of the length `left` remains.
+    fn iterate(&self, point: DVec2, here: SecondVariation, left: f64) -> EdgeIterate {
+        EdgeIterate {
+            point,
+            here,
+            residual: self.miss(&here).abs() + left * left,
+            has_converged: true,
+        }
+    }
+}
+
+/// Returns the step in load toward the point at the same contact whose `ln D` is larger by `miss`, to second order. Where the distance
+/// has its maximum, as for a straight whisker at first touch, a first-order step would go half as far.
+fn load_step(here: &SecondVariation, miss: f64) -> f64 {
+    let (slope, second) = (here.map.by_load.x, here.by_load_load.x);
+    let slope_there = (slope * slope + 2.0 * second * miss).max(0.0).sqrt();
+    2.0 * miss / (slope + slope_there.copysign(slope))
+}
+
+/// Returns the step in `(tau, load)` toward the point of the fold whose `ln D` is larger by `miss`.
+fn fold_step(here: &SecondVariation, miss: f64) -> DVec2 {
+    let by_distance = DVec2::new(here.map.by_tau.x, here.map.by_load.x);
+    let by_det = here.det_gradient();
+    let det = here.map.det();
+    DVec2::new(
+        miss * by_det.y + det * by_distance.y,
+        -miss * by_det.x - det * by_distance.x,
+    ) / by_distance.perp_dot(by_det)
 }
 
 /// Number of rounds at the coarse resolution. From the guess of a cell next to the fold, they reach the error of that resolution.
@@ -73,52 +134,41 @@ impl<'a> NewtonProblem<'a> for EdgeSearch<'a, '_> {
     }
 }
 
-/// Solves all `problems`. Returns one iterate for each, with its remaining error in `miss` and `left`.
+/// Solves all `problems`. Returns one iterate for each, with its remaining error.
 #[must_use]
 pub fn edge_newton(method: Method, start: EdgeStart, problems: &[EdgeProblem]) -> Vec<EdgeIterate> {
-    let newton = BatchNewton::new(method, EDGE_TRAJECTORIES);
-    let newton = match start {
-        EdgeStart::Coarse => BatchNewton {
-            coarse_rounds: COARSE_ROUNDS,
-            most_trajectories: COARSE_ROUNDS + EDGE_TRAJECTORIES,
-            ..newton
-        },
-        EdgeStart::Fine => newton,
-        EdgeStart::Shared => BatchNewton {
-            sharing: LaneSharing::Open,
-            ..newton
-        },
-    };
+    let mut newton = BatchNewton::new(method, EDGE_TRAJECTORIES);
+    match start {
+        EdgeStart::Coarse => {
+            newton.coarse_rounds = COARSE_ROUNDS;
+            newton.most_trajectories += COARSE_ROUNDS;
+        }
+        EdgeStart::Fine => {}
+        EdgeStart::Shared => newton.sharing = LaneSharing::Open,
+    }
     let search = |problem| EdgeSearch { problem, left: 0.0 };
     let mut searches: Vec<EdgeSearch> = problems.iter().map(search).collect();
     let iterates = newton.solve(&mut searches, problems.iter().map(|problem| problem.start));
     let ended = searches.iter().zip(iterates);
-    let ended = ended.map(|(search, iterate)| EdgeIterate {
-        point: iterate.point,
-        here: iterate.state,
-        miss: search.problem.miss(&iterate.state),
-        left: search.left,
+    let ended = ended.map(|(EdgeSearch { problem, left }, iterate)| EdgeIterate {
         has_converged: iterate.outcome == NewtonOutcome::Converged,
+        ..problem.iterate(iterate.point, iterate.state, *left)
     });
     ended.collect()
 }
 
-/// Solves all `problems` from predictions. With predicted second derivatives, most problems need a single trajectory with first
+/// Solves all `problems` of one rod from predictions. With predicted second derivatives, most problems need a single trajectory with first
 /// derivatives. Toward the tip, second derivatives by the load are enough. This is one step of another kernel, not a loop.
 #[must_use]
 pub fn edge_newton_predicted(method: Method, problems: &[EdgeProblem]) -> Vec<EdgeIterate> {
-    let conditions = problems.iter().map(|problem| InitialCondition {
-        rod: problem.rod,
-        tau: problem.start.x,
-        load: problem.start.y,
-    });
-    let conditions: Vec<InitialCondition> = conditions.collect();
-    let maps = Batch::new(method)
-        .padded()
-        .shoot::<ShootingMap>(&conditions);
-    let mut iterates = Vec::with_capacity(problems.len());
-    let (mut open, mut again) = (Vec::new(), Vec::new());
-    for (i, (problem, map)) in problems.iter().zip(maps).enumerate() {
+    let Some(first) = problems.first() else {
+        return Vec::new();
+    };
+    let starts = problems.iter().map(|problem| problem.start);
+    let maps: Vec<ShootingMap> = Batch::new(method).padded().shoot_at(first.rod, starts);
+    let mut open = Vec::new();
+    let predicted = problems.iter().zip(maps).enumerate();
+    let predicted = predicted.map(|(i, (problem, map))| {
         let [by_tau_tau, by_tau_load, by_load_load] = problem.second.unwrap_or_default();
         let here = SecondVariation {
             map,
@@ -127,28 +177,20 @@ pub fn edge_newton_predicted(method: Method, problems: &[EdgeProblem]) -> Vec<Ed
             by_load_load,
         };
         let (step, length) = problem.step(problem.start, &here);
-        let there = here.extrapolated(step);
-        let is_last = problem.second.is_some() && length <= LAST_EDGE_STEP;
-        if !is_last {
+        let there = problem.start + step;
+        if problem.second.is_none() || length > LAST_EDGE_STEP {
             // A long step, or one without second derivatives, can end far from the edge.
             let is_good = problem.second.is_some() && length < SECOND_OFF;
-            let start = problem.start + if is_good { step } else { DVec2::ZERO };
-            open.push(i);
-            again.push(EdgeProblem { start, ..*problem });
+            let start = if is_good { there } else { problem.start };
+            open.push((i, EdgeProblem { start, ..*problem }));
         }
-        let left = length * length;
-        iterates.push(EdgeIterate {
-            point: problem.start + step,
-            here: there,
-            miss: problem.miss(&there),
-            left: left + SECOND_OFF * left.sqrt(),
-            has_converged: is_last,
-        });
-    }
-    for (i, iterate) in open
-        .into_iter()
-        .zip(edge_newton(method, EdgeStart::Shared, &again))
-    {
+        let left = length * length + SECOND_OFF * length;
+        problem.iterate(there, here.extrapolated(step), left)
+    });
+    let mut iterates: Vec<EdgeIterate> = predicted.collect();
+    let (places, again): (Vec<usize>, Vec<EdgeProblem>) = open.into_iter().unzip();
+    let solved = edge_newton(method, EdgeStart::Shared, &again);
+    for (i, iterate) in places.into_iter().zip(solved) {
         iterates[i] = iterate;
     }
     iterates
@@ -157,7 +199,6 @@ pub fn edge_newton_predicted(method: Method, problems: &[EdgeProblem]) -> Vec<Ed
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sheet::row::Edge;
 
     /// Starts are off by 1e-8 and 1e-5; second derivatives are known, wrong or missing.
     #[test]
@@ -180,16 +221,11 @@ mod tests {
                 second: None,
             };
             if edge == Edge::Tip {
-                let at_start = [InitialCondition {
-                    rod: &rod,
-                    tau: start.x,
-                    load: start.y,
-                }];
-                let here = Batch::new(method).shoot::<SecondVariation>(&at_start)[0];
-                problem.pole_distance = here.map.pole.length();
+                let here: Vec<ShootingMap> = Batch::new(method).shoot_at(&rod, [start]);
+                problem.pole_distance = here[0].pole.length();
             }
             let known = edge_newton(method, EdgeStart::Shared, &[problem])[0];
-            assert!(known.has_converged && known.miss.abs() < 1e-12, "{edge:?}");
+            assert!(known.has_converged && known.residual < 1e-12, "{edge:?}");
             let here = &known.here;
             let seconds = [here.by_tau_tau, here.by_tau_load, here.by_load_load];
             for off in [1e-8, 1e-5] {
@@ -204,7 +240,7 @@ mod tests {
                     let found = edge_newton_predicted(method, &[predicted])[0];
                     let away = (found.point / known.point - DVec2::ONE).abs();
                     assert!(
-                        found.has_converged && found.miss.abs() < 1e-12,
+                        found.has_converged && found.residual < 1e-12,
                         "{edge:?} {off}"
                     );
                     assert!(away.max_element() < 2e-9, "{edge:?} {off}: {away}");

@@ -3,8 +3,6 @@
 mod bisection;
 pub mod crossings;
 pub mod edge_newton;
-pub mod edge_problem;
-mod extremum;
 mod predictor;
 mod tip_edge;
 
@@ -110,10 +108,9 @@ impl Edges {
 )]
 mod tests {
     use super::*;
-    use crate::numerics::lobatto::LOBATTO_COUNT;
+    use crate::numerics::chebyshev::CHEBYSHEV_COUNT;
     use crate::rod::{Rest, Side};
-    use crate::sheet::edges::edge_newton::{EdgeStart, edge_newton};
-    use crate::sheet::edges::edge_problem::EdgeProblem;
+    use crate::sheet::edges::edge_newton::{EdgeProblem, EdgeStart, edge_newton};
     use crate::sheet::fold::contact_nodes::SPACING;
     use crate::sheet::row::Edge;
     use crate::sheet::row::Row;
@@ -169,7 +166,7 @@ mod tests {
                 }
             }
             assert!(checked > 20);
-            let extrema = edges.tip.len() - LOBATTO_COUNT;
+            let extrema = edges.tip.len() - CHEBYSHEV_COUNT;
             assert_eq!(edges.tip_edge.unwrap().extrema().len(), extrema);
         }
     }

@@ -1,11 +1,9 @@
 //! The predictor of crossings: points of an edge between its samples, usually so accurate that one trajectory confirms them.
 
 use crate::numerics::Bracket;
-use crate::numerics::newton_form::{
-    Polynomial, RootProblem, even_nodes, stencil, through_slopes, through_values,
-};
+use crate::numerics::newton_form::{Polynomial, RootProblem, stencil, through_runs};
 use crate::sheet::fold::contact_nodes::ContactNodes;
-use crate::sheet::fold::coordinate::{Hermite, STENCIL, hermite};
+use crate::sheet::fold::coordinate::{Hermite, STENCIL};
 use glam::DVec2;
 
 /// Computed point of an edge.
@@ -120,18 +118,17 @@ impl FoldEdge {
                 [a.x, a.y, b.x, b.y, c.x, c.y]
             })
             .collect();
-        let pieces = through_slopes(&values, &slopes)
+        let pieces = through_runs(&values, &slopes)
             .iter()
-            .zip(through_values::<6, STENCIL>(&second))
+            .zip(through_runs::<6, STENCIL>(&second, &[]))
             .zip(contacts.ln_tau.iter().zip(&contacts.ln_q))
             .map(|((terms, second), (ln_tau, ln_q))| FoldPiece {
-                ln_distance: hermite(terms.map(|term| term[0])),
-                phi: hermite(terms.map(|term| term[1])),
+                ln_distance: Hermite::on_even_nodes(2, terms.map(|term| term[0])),
+                phi: Hermite::on_even_nodes(2, terms.map(|term| term[1])),
                 ln_tau: *ln_tau,
                 ln_q: *ln_q,
-                second: std::array::from_fn(|i| Polynomial {
-                    nodes: even_nodes(1),
-                    differences: second.map(|term| term[i]),
+                second: std::array::from_fn(|i| {
+                    Polynomial::on_even_nodes(1, second.map(|term| term[i]))
                 }),
             })
             .collect();

@@ -3,17 +3,15 @@
 //! It is sampled at Chebyshev-Lobatto points of the load, and at the extrema of the distance. Between two samples the distance then grows
 //! or falls throughout.
 
-use crate::numerics::divided_differences::through_nodes;
-use crate::numerics::lobatto::{LOBATTO_COUNT, LOBATTO_NODES, LobattoPolynomial};
-use crate::numerics::newton_form::RootProblem;
+use crate::numerics::chebyshev::{CHEBYSHEV_COUNT, LOBATTO_NODES};
+use crate::numerics::newton_form::{Polynomial, RootProblem, through_nodes};
 use crate::numerics::{Bracket, nearest_turn};
 use crate::rod::Rod;
-use crate::sheet::edges::extremum::DistanceExtremum;
 use crate::sheet::edges::predictor::{EdgeSample, LAST_STEP_ALONG_EDGE, Prediction, place_between};
 use crate::sheet::fold::FoldPoint;
 use crate::sheet::lattice::directions;
-use crate::shooting::ShootingMap;
-use crate::shooting::batch::{Batch, InitialCondition, Method};
+use crate::shooting::batch::{Batch, Method};
+use crate::shooting::{SecondVariation, ShootingMap};
 use glam::DVec2;
 use std::f64::consts::FRAC_PI_2;
 
@@ -22,9 +20,9 @@ use std::f64::consts::FRAC_PI_2;
 pub struct TipEdge {
     tau: f64,
     corner: f64,
-    ln_distance: LobattoPolynomial,
-    phi: LobattoPolynomial,
-    by_load: [LobattoPolynomial; 2],
+    ln_distance: Polynomial<CHEBYSHEV_COUNT>,
+    phi: Polynomial<CHEBYSHEV_COUNT>,
+    by_load: [Polynomial<CHEBYSHEV_COUNT>; 2],
 }
 
 /// Largest error of the slopes of the polynomial through the distances, relative to the steepest slope, or to 1.
@@ -68,6 +66,50 @@ impl SampledTipEdge {
     }
 }
 
+/// Newton step toward an extremum, relative to the width of its bracket, after which the iteration stops. The remaining error is its
+/// square.
+const LAST_STEP_TO_EXTREMUM: f64 = 1e-7;
+
+/// Extremum of the distance along the tip edge, as its samples predict it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct DistanceExtremum {
+    /// Index of the sample before the extremum.
+    after: usize,
+    /// Predicted signed load `f/rho^2`.
+    load: f64,
+    /// Loads that bracket the root of `dlnD/dload`.
+    loads: Bracket,
+    /// Second derivatives of `(ln D, phi)` by the load.
+    by_load_load: DVec2,
+}
+
+impl DistanceExtremum {
+    /// Returns the load of the extremum and the map there. The polynomials usually determine the second derivatives so well that one
+    /// trajectory suffices; otherwise Newton's method computes its own.
+    fn polished(&self, method: Method, rod: &Rod, tau: f64) -> (f64, ShootingMap) {
+        let (load, by_load_load) = (self.load, self.by_load_load);
+        let last_step = LAST_STEP_TO_EXTREMUM * (self.loads.above - self.loads.below).abs();
+        let map_at = |load| Batch::new(method).shoot_at::<ShootingMap>(rod, [(tau, load)])[0];
+        let map = map_at(load);
+        let step = -map.by_load.x / by_load_load.x;
+        if step.abs() <= last_step {
+            let here = SecondVariation {
+                map,
+                by_load_load,
+                ..SecondVariation::default()
+            };
+            return (load + step, here.extrapolated(DVec2::new(0.0, step)).map);
+        }
+        let newton = |load| {
+            let here = Batch::new(method).shoot_at::<SecondVariation>(rod, [(tau, load)])[0];
+            let slope = here.map.by_load.x;
+            (slope, load - slope / here.by_load_load.x)
+        };
+        let load = self.loads.newton(load, |_| last_step, newton).x;
+        (load, map_at(load))
+    }
+}
+
 /// Maps of the tip edge at several loads.
 struct TipLoads<'a> {
     rod: &'a Rod,
@@ -81,17 +123,9 @@ struct TipLoads<'a> {
 
 impl<'a> TipLoads<'a> {
     fn new(method: Method, rod: &'a Rod, corner: &'a FoldPoint, parts: &'a [f64]) -> Self {
-        let condition = |part| InitialCondition {
-            rod,
-            tau: corner.tau,
-            load: part * corner.load,
-        };
-        let before_corner = &parts[..parts.len() - 1];
-        let conditions: Vec<InitialCondition> =
-            before_corner.iter().copied().map(condition).collect();
-        let mut maps = Batch::new(method)
-            .padded()
-            .shoot::<ShootingMap>(&conditions);
+        let before_corner = parts[..parts.len() - 1].iter();
+        let points = before_corner.map(|part| (corner.tau, part * corner.load));
+        let mut maps: Vec<ShootingMap> = Batch::new(method).padded().shoot_at(rod, points);
         maps.push(corner.variation.map);
         let mut phis = vec![0.0; parts.len()];
         directions(corner.load, parts, maps.iter(), &mut phis);
@@ -117,12 +151,7 @@ impl<'a> TipLoads<'a> {
             };
             samples.push(sample(*part, part * self.corner.load, &self.maps[m]));
             for extremum in extrema.iter().filter(|extremum| extremum.after == m) {
-                let at_tip = InitialCondition {
-                    rod: self.rod,
-                    tau: self.corner.tau,
-                    load: extremum.load,
-                };
-                let (load, map) = extremum.polished(method, at_tip);
+                let (load, map) = extremum.polished(method, self.rod, self.corner.tau);
                 samples.push(sample(load / self.corner.load, load, &map));
             }
         }
@@ -168,16 +197,13 @@ impl TipEdge {
     /// Interpolates the maps `sampled` at the Lobatto points.
     fn new(sampled: &TipLoads) -> Self {
         let (tau, corner) = (sampled.corner.tau, sampled.corner.load);
-        let numbers =
-            |number: fn(&ShootingMap) -> f64| std::array::from_fn(|m| number(&sampled.maps[m]));
-        let values: [[f64; LOBATTO_COUNT]; 4] = [
-            numbers(|map| libm::log(map.pole.length())),
-            std::array::from_fn(|m| sampled.phis[m]),
-            numbers(|map| map.by_load.x),
-            numbers(|map| map.by_load.y),
-        ];
-        let values = values.each_ref().map(|values| &values[..]);
-        let [ln_distance, phi, by_load @ ..] = through_nodes(&*LOBATTO_NODES, values);
+        let maps = sampled.maps.iter().zip(&sampled.phis);
+        let values = maps.map(|(map, phi)| {
+            let ln_distance = libm::log(map.pole.length());
+            [ln_distance, *phi, map.by_load.x, map.by_load.y]
+        });
+        let nodes = sampled.parts.iter().copied();
+        let [ln_distance, phi, by_load @ ..] = through_nodes(nodes.zip(values));
         Self {
             tau,
             corner,
@@ -201,7 +227,7 @@ impl TipEdge {
 
     /// Returns the extrema: sign changes of `dlnD/dload`. Three places from sample to sample are tested, because two extrema may be
     /// close.
-    pub fn extrema(&self) -> Vec<DistanceExtremum> {
+    pub(super) fn extrema(&self) -> Vec<DistanceExtremum> {
         let slope = &self.by_load[0];
         let mut extrema = Vec::new();
         let (mut from, mut at_from) = (0.0, slope.at(0.0).0);

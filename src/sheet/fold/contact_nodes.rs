@@ -4,10 +4,10 @@
 //! on where the whisker ends. So interpolation is nearly as accurate at the tip as elsewhere. Each trajectory provides derivatives, so
 //! Hermite interpolation gives the values between nodes.
 
-use crate::numerics::newton_form::{stencil, through_slopes};
+use crate::numerics::newton_form::{stencil, through_runs};
 use crate::rod::{Rod, Side};
 use crate::sheet::fold::change::{jumps, least_q, q, slopes_at};
-use crate::sheet::fold::coordinate::{Hermite, STENCIL, hermite, tau_of, u_of};
+use crate::sheet::fold::coordinate::{Hermite, STENCIL, tau_of, u_of};
 use crate::sheet::fold::{FoldPoint, first_folds};
 use crate::sheet::row::Row;
 use crate::shooting::ShootingMap;
@@ -100,10 +100,10 @@ impl ContactNodes {
             .iter()
             .map(|fold| slopes_at(rod, fold, spacing))
             .collect();
-        let both = through_slopes(&values, &slopes);
+        let both = through_runs(&values, &slopes);
         let polynomials = |which: usize| {
-            both.iter()
-                .map(move |of| hermite(of.map(|term| term[which])))
+            let runs = both.iter();
+            runs.map(move |run| Hermite::on_even_nodes(2, run.map(|term| term[which])))
         };
         let tip = folds.len() - 1 - BEYOND_TIP;
         Some(Self {
@@ -166,7 +166,7 @@ mod tests {
     use super::*;
     use crate::rod::Rest;
     use crate::shooting::ShootingMap;
-    use crate::shooting::batch::{Batch, InitialCondition};
+    use crate::shooting::batch::Batch;
 
     /// Compares slopes with differences between neighbours, at a node in the middle and at the tip.
     #[test]
@@ -208,8 +208,7 @@ mod tests {
         assert!((differ(folds.map(|fold| q(&fold).ln())) - ln_q).abs() < 1e-5);
         for part in [0.0, 0.5, 1.0] {
             let shot = |fold: &FoldPoint| {
-                let (tau, load) = (fold.tau, part * fold.load);
-                Batch::new(method).shoot::<ShootingMap>(&[InitialCondition { rod, tau, load }])[0]
+                Batch::new(method).shoot_at::<ShootingMap>(rod, [(fold.tau, part * fold.load)])[0]
             };
             let slope = nodes.slope(i, part, &shot(&nodes.folds[i]));
             let maps = folds.map(|fold| shot(&fold));

@@ -1,7 +1,7 @@
 //! The coordinate `u` along the whisker, in which contact nodes are evenly spaced, and polynomials from node to node.
 
 use crate::numerics::Bracket;
-use crate::numerics::newton_form::{Polynomial, even_nodes};
+use crate::numerics::newton_form::Polynomial;
 use crate::rod::{Rod, arclength};
 
 /// Returns `u = ln tau + tau`. Toward the base the sheet depends on the contact through its logarithm, because everything scales; toward
@@ -26,8 +26,7 @@ pub fn slope_of_u(rod: &Rod, tau: f64) -> f64 {
     slope
 }
 
-/// Relative step in `tau` at which the iteration stops. The remaining error is its square after a Newton step; after a bisection it is
-/// harmless.
+/// Relative step in `tau` at which the iteration stops. The remaining error is its square.
 const LAST_TAU_STEP: f64 = 1e-9;
 
 /// Returns the inverse of [`u_of`], by Newton's method for `ln tau` from `near`.
@@ -40,25 +39,20 @@ pub fn tau_of(rod: &Rod, u: f64, near: f64) -> f64 {
     };
     let most = if u < 1.0 { libm::exp(u) } else { u };
     // The bracketed function is `u - u_of(tau)`, which falls with `tau`.
-    let mut bracket = Bracket {
+    let bracket = Bracket {
         below: most.min(end),
         above: 0.0,
     };
-    let mut tau = if near < bracket.below {
+    let start = if near < bracket.below {
         near
     } else {
         bracket.middle()
     };
-    for _ in 0..100 {
+    let newton = |tau| {
         let miss = u - u_of(rod, tau);
-        let newton = tau * libm::exp(miss / slope_of_u(rod, tau));
-        let next = bracket.next(tau, miss, newton);
-        if (next - tau).abs() <= LAST_TAU_STEP * tau {
-            return next;
-        }
-        tau = next;
-    }
-    tau
+        (miss, tau * libm::exp(miss / slope_of_u(rod, tau)))
+    };
+    bracket.newton(start, |tau| LAST_TAU_STEP * tau, newton).x
 }
 
 /// Number of nodes through which a [`Hermite`] polynomial passes.
@@ -69,11 +63,3 @@ pub const TERMS: usize = 2 * STENCIL;
 
 /// Function of the contact as a polynomial of the number of nodes, whole or fractional, from the first node of a stencil.
 pub type Hermite = Polynomial<TERMS>;
-
-/// Returns the polynomial with these divided differences.
-pub const fn hermite(differences: [f64; TERMS]) -> Hermite {
-    Polynomial {
-        nodes: even_nodes(2),
-        differences,
-    }
-}

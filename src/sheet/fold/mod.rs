@@ -6,9 +6,9 @@ pub mod coordinate;
 
 use crate::newton::{BatchNewton, LaneSharing, NewtonProblem, NewtonStep};
 use crate::numerics::Bracket;
-use crate::numerics::newton_form::{Polynomial, RootProblem, stencil};
+use crate::numerics::newton_form::{RootProblem, stencil, through_nodes};
 use crate::rod::{Rod, Side, arclength};
-use crate::shooting::batch::{Batch, InitialCondition, Method};
+use crate::shooting::batch::{Batch, Method};
 use crate::shooting::{SecondVariation, ShootingMap};
 use glam::DVec2;
 
@@ -113,14 +113,12 @@ fn march(
         let from = samples.len();
         let first = samples.last().map_or(begin, |q| q + step);
         samples.extend((0..SAMPLES_PER_ROUND).map(|i| step.mul_add(i as f64, first)));
-        let conditions: Vec<InitialCondition> = open
-            .iter()
-            .flat_map(|m| samples[from..].iter().map(|q| (taus[m.index], q * m.scale)))
-            .map(|(tau, load)| InitialCondition { rod, tau, load })
-            .collect();
-        let maps = Batch::new(method)
-            .padded()
-            .shoot::<ShootingMap>(&conditions);
+        let points = |m: &ContactMarch| {
+            let (tau, scale) = (taus[m.index], m.scale);
+            samples[from..].iter().map(move |q| (tau, q * scale))
+        };
+        let points = open.iter().flat_map(points);
+        let maps: Vec<ShootingMap> = Batch::new(method).padded().shoot_at(rod, points);
         let mut maps = maps.chunks(SAMPLES_PER_ROUND);
         open.retain_mut(|march| {
             let shot = maps.next().unwrap_or_default();
@@ -163,7 +161,9 @@ fn root(samples: &[f64], dets: &[f64], at: usize) -> f64 {
     let around = start..(start + DET_STENCIL).min(samples.len());
     let part = if samples[around.end - 1] <= EVEN_UP_TO {
         let offset = (at - start) as f64;
-        let polynomial = Polynomial::<DET_STENCIL>::through(&dets[around]);
+        let values = dets[around].iter().enumerate();
+        let [polynomial] =
+            through_nodes::<DET_STENCIL, 1>(values.map(|(i, det)| (i as f64, [*det])));
         let problem = RootProblem {
             target: 0.0,
             near: offset + secant,

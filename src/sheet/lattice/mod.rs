@@ -6,16 +6,16 @@
 
 mod row_span;
 
-use crate::numerics::lobatto::{LOBATTO_COUNT, LOBATTO_NODES};
+use crate::numerics::chebyshev::{CHEBYSHEV_COUNT, LOBATTO_NODES};
 use crate::numerics::nearest_turn;
-use crate::numerics::newton_form::through_slopes;
-use crate::numerics::newton_form_simd::Numbers;
+use crate::numerics::newton_form::through_runs;
+use crate::numerics::newton_form_simd::LaneNumbers;
 use crate::rod::{Rod, Side};
 use crate::sheet::certificate::stays_positive;
 use crate::sheet::fold::contact_nodes::ContactNodes;
 use crate::sheet::fold::coordinate::TERMS;
 use crate::shooting::ShootingMap;
-use crate::shooting::batch::{Batch, InitialCondition, Method};
+use crate::shooting::batch::{Batch, Method};
 
 /// Trajectories by contact node and load, with polynomials between them.
 #[derive(Clone, Debug)]
@@ -30,22 +30,22 @@ pub struct Lattice {
 /// Lattice points of one contact node, `[load]`.
 #[derive(Clone, Copy, Debug, Default)]
 struct LoadLine {
-    ln_distance: Numbers,
+    ln_distance: LaneNumbers,
     /// Direction of the pole in radians, continuous from first touch.
-    phi: Numbers,
+    phi: LaneNumbers,
     /// Derivatives of `ln_distance` and `phi` by the index of the contact node.
-    slopes: [Numbers; 2],
+    slopes: [LaneNumbers; 2],
     /// `det D^2`, divided by its value at first touch and by the remaining part of the load up to the fold. It is positive and smooth up
     /// to the fold.
-    clearance: Numbers,
+    clearance: LaneNumbers,
 }
 
 /// Hermite polynomials along one stencil of contact nodes, as divided differences, one polynomial for each load.
 #[derive(Clone, Copy, Debug)]
 struct LatticePatch {
-    ln_distance: [Numbers; TERMS],
+    ln_distance: [LaneNumbers; TERMS],
     /// Divided differences of the direction of the pole, in radians.
-    phi: [Numbers; TERMS],
+    phi: [LaneNumbers; TERMS],
 }
 
 impl LoadLine {
@@ -75,19 +75,12 @@ impl LoadLine {
 impl Lattice {
     /// Computes the lattice over `contacts`.
     pub fn new(method: Method, rod: &Rod, side: Side, contacts: &ContactNodes) -> Self {
-        let conditions: Vec<InitialCondition> = LOBATTO_NODES
-            .iter()
-            .flat_map(|part| {
-                contacts.folds.iter().map(move |fold| InitialCondition {
-                    rod,
-                    tau: fold.tau,
-                    load: part * fold.load,
-                })
-            })
-            .collect();
-        let maps = Batch::new(method)
-            .padded()
-            .shoot::<ShootingMap>(&conditions);
+        let folds = contacts.folds.iter();
+        let points = LOBATTO_NODES.iter().flat_map(|part| {
+            let folds = folds.clone();
+            folds.map(move |fold| (fold.tau, part * fold.load))
+        });
+        let maps: Vec<ShootingMap> = Batch::new(method).padded().shoot_at(rod, points);
         let count = contacts.folds.len();
         let lines: Vec<LoadLine> = (0..count)
             .map(|i| LoadLine::new(contacts, i, maps[i..].iter().step_by(count)))
@@ -102,7 +95,7 @@ impl Lattice {
     /// Returns true if no fold is hidden below the first folds, at the contact nodes or between them. The loads are evenly spaced in the
     /// angle of which they are the cosine.
     pub fn is_certified(&self) -> bool {
-        const BELOW_FOLD: usize = LOBATTO_COUNT - 1;
+        const BELOW_FOLD: usize = CHEBYSHEV_COUNT - 1;
         let count = self.lines.len();
         self.lines
             .iter()
@@ -112,16 +105,16 @@ impl Lattice {
 
     /// Returns the direction of the pole at the fold in radians, one for each contact node, continuous from first touch.
     pub fn phi_at_fold(&self) -> impl Iterator<Item = f64> {
-        self.lines.iter().map(|line| line.phi[LOBATTO_COUNT - 1])
+        self.lines.iter().map(|line| line.phi[CHEBYSHEV_COUNT - 1])
     }
 }
 
 /// Interpolates each [`STENCIL`](crate::sheet::fold::coordinate::STENCIL) neighbours of `lines`, or all of them where there are fewer.
 fn patches(lines: &[LoadLine]) -> Vec<LatticePatch> {
-    let through = |value: fn(&LoadLine) -> Numbers, slope: usize| {
-        let values: Vec<Numbers> = lines.iter().map(value).collect();
-        let slopes: Vec<Numbers> = lines.iter().map(|line| line.slopes[slope]).collect();
-        through_slopes(&values, &slopes).into_iter()
+    let through = |value: fn(&LoadLine) -> LaneNumbers, slope: usize| {
+        let values: Vec<LaneNumbers> = lines.iter().map(value).collect();
+        let slopes: Vec<LaneNumbers> = lines.iter().map(|line| line.slopes[slope]).collect();
+        through_runs(&values, &slopes).into_iter()
     };
     through(|line| line.ln_distance, 0)
         .zip(through(|line| line.phi, 1))

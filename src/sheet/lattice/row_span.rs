@@ -1,8 +1,8 @@
 //! Row spans from the lattice: the level curve of `D` of one row, load by load.
 
-use crate::numerics::lobatto::{LOBATTO_COUNT, LOBATTO_NODES};
+use crate::numerics::chebyshev::{CHEBYSHEV_COUNT, LOBATTO_NODES};
 use crate::numerics::newton_form::{RootProblem, stencil};
-use crate::numerics::newton_form_simd::{Numbers, SimdRoots, Terms, keep, pack};
+use crate::numerics::newton_form_simd::{LaneNumbers, SimdRoots, Terms, keep, pack};
 use crate::numerics::{Bracket, Lanes, SimdTask, Unit, WIDTH};
 use crate::sheet::fold::contact_nodes::ContactNodes;
 use crate::sheet::fold::coordinate::STENCIL;
@@ -18,8 +18,6 @@ const PATCH_SPAN: usize = 3;
 /// Newton step toward the contact of a row, in contact nodes, after which the iteration stops. The remaining error is its square, which
 /// is less than the interpolation error.
 const LAST_CONTACT_STEP: f64 = 5e-5;
-
-const _: () = assert!(LOBATTO_COUNT <= WIDTH, "a row's loads go together");
 
 impl Lattice {
     /// Returns the contact node after which `ln D` crosses `target` at the load `m`, or the one nearest to `near` if there are several.
@@ -42,7 +40,7 @@ impl Lattice {
     #[must_use]
     pub fn span(&self, contacts: &ContactNodes, row: &Row) -> RowSpan {
         let target = libm::log(row.pole_distance);
-        let mut after = [0; LOBATTO_COUNT];
+        let mut after = [0; CHEBYSHEV_COUNT];
         let (mut first, mut count, mut near) = (0, 0, 0);
         for (m, after) in after.iter_mut().enumerate() {
             let Some(i) = self.crossing(m, target, near) else {
@@ -128,13 +126,13 @@ impl Lattice {
 }
 
 /// SIMD task that computes the exponential of each number.
-struct Exponentials([Numbers; 2]);
+struct Exponentials([LaneNumbers; 2]);
 
 impl SimdTask for Exponentials {
-    type Output = [Numbers; 2];
+    type Output = [LaneNumbers; 2];
 
     #[inline(always)]
-    fn run<T: Lanes>(mut self) -> [Numbers; 2] {
+    fn run<T: Lanes>(mut self) -> [LaneNumbers; 2] {
         for numbers in &mut self.0 {
             for from in (0..WIDTH).step_by(T::LANES) {
                 keep(numbers, from, exp::<T>(pack(numbers, from)));

@@ -135,7 +135,7 @@ impl<'a> SpanCells<'a> {
 mod tests {
     use super::super::{PUSH_MARGIN, SpanNode};
     use super::*;
-    use crate::numerics::lobatto::{LOBATTO_COUNT, LOBATTO_NODES};
+    use crate::numerics::chebyshev::{CHEBYSHEV_COUNT, LOBATTO_NODES};
     use std::f64::consts::FRAC_PI_2;
 
     /// Returns a span through loads of a lattice from `first` on, where `w` is the load and `tau` a line.
@@ -163,8 +163,8 @@ mod tests {
         let push = |load: f64| (FRAC_PI_2 * load).sin();
         let load = |push: f64| push.asin() / FRAC_PI_2;
         for (first, count) in [
-            (0, LOBATTO_COUNT),
-            (1, LOBATTO_COUNT - 1),
+            (0, CHEBYSHEV_COUNT),
+            (1, CHEBYSHEV_COUNT - 1),
             (4, 12),
             (0, 9),
             (5, 4),
@@ -176,14 +176,14 @@ mod tests {
                 .collect();
             let span = span(first, &pushes);
             // The span of a row that leaves the lattice extends one load beyond its nodes, with less accuracy.
-            let error = if count == LOBATTO_COUNT {
+            let error = if count == CHEBYSHEV_COUNT {
                 1e-6
             } else {
                 1e-2 / count as f64
             };
             let ends = [
                 first.saturating_sub(1),
-                (first + count).min(LOBATTO_COUNT - 1),
+                (first + count).min(CHEBYSHEV_COUNT - 1),
             ];
             let [least, most] = ends.map(|m| push(LOBATTO_NODES[m]));
             for i in 0..=1000 {
@@ -222,7 +222,7 @@ mod tests {
             .into_iter()
             .chain(few)
         {
-            for first in [0, 1, LOBATTO_COUNT - push.len()] {
+            for first in [0, 1, CHEBYSHEV_COUNT - push.len()] {
                 let pushes = (0..=400).map(|i| f64::from(i) / 1000.0);
                 for guess in span(first, push).guesses(pushes).into_iter().flatten() {
                     assert!(push.len() > 1 && guess.tau.is_finite() && guess.load.is_finite());

@@ -7,8 +7,7 @@
 mod cells;
 
 use crate::numerics::WIDTH;
-use crate::numerics::divided_differences::through_nodes;
-use crate::numerics::newton_form::{Polynomial, stencil};
+use crate::numerics::newton_form::{Polynomial, stencil, through_nodes};
 
 /// Start of Newton's method for one cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -131,21 +130,8 @@ impl RowSpan {
 
     /// Returns the push angle and `tau` as polynomials of `w` through `N` nodes, from the node `from` on.
     fn polynomials<const N: usize>(&self, from: usize) -> [Polynomial<N>; 2] {
-        let nodes = &self.nodes[from..self.nodes.len().min(from + N)];
-        let numbers = |number: fn(&SpanNode) -> f64| {
-            let mut numbers = [0.0; WIDTH];
-            for (slot, node) in numbers.iter_mut().zip(nodes) {
-                *slot = number(node);
-            }
-            numbers
-        };
-        let [w, push, tau] = [
-            numbers(|node| node.w),
-            numbers(|node| node.push),
-            numbers(|node| node.tau),
-        ];
-        let count = nodes.len();
-        through_nodes(&w[..count], [&push[..count], &tau[..count]])
+        let nodes = self.nodes[from..].iter();
+        through_nodes(nodes.map(|node| (node.w, [node.push, node.tau])))
     }
 
     /// Returns the polynomials around the interval after the node `i`.

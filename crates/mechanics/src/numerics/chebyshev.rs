@@ -1,220 +1,85 @@
-//! Expansions in Chebyshev polynomials on `[0, 1]`, through values at Chebyshev points of the first kind.
+//! Chebyshev points on `[0, 1]`, and Taylor expansions of the polynomial through them.
 //!
-//! With `y = 2 x - 1`, `f(x) = c_0 + c_1 T_1(y) + ... + c_(N-1) T_(N-1)(y)` is the polynomial through `N` values. The
-//! coefficients of an analytic function fall geometrically, and the error is about the first coefficient left out (L. N.
-//! Trefethen, *Approximation Theory and Approximation Practice*, SIAM 2013, chapters 3 and 8). The ends of the interval are
-//! no points: the expansion is evaluated there, but the function need not be known there. Clenshaw's recurrence evaluates
-//! it. On the interval it is as stable as the barycentric formula (J.-P. Berrut and L. N. Trefethen, SIAM Review 46, 501,
-//! 2004), needs no special case at a point, and gives derivatives as well.
+//! A polynomial through Chebyshev points is nearly the best of its degree, and as accurate at the ends as in the middle (L. N. Trefethen,
+//! *Approximation Theory and Approximation Practice*, SIAM 2013, chapters 3 and 8). A polynomial through some of the points is not.
 
-use crate::numerics::{Lanes, Real, SimdTask, Unit, WIDTH};
+use crate::numerics::{Lanes, SimdTask, Unit, WIDTH};
 use std::f64::consts::FRAC_PI_2;
-use std::sync::OnceLock;
+use std::sync::LazyLock;
 
-/// The largest number of points of an expansion.
-pub const MOST_POINTS: usize = 40;
+/// Number of Chebyshev points: one for each lane.
+pub const CHEBYSHEV_COUNT: usize = WIDTH;
 
-/// Number of last coefficients that [`Chebyshev::tail`] looks at: an odd or even function has every other coefficient 0.
-const TAIL: usize = 3;
+/// The points of the second kind (Chebyshev-Lobatto), growing: the extrema of a Chebyshev polynomial, with both ends.
+pub static LOBATTO_NODES: LazyLock<[f64; CHEBYSHEV_COUNT]> = LazyLock::new(|| {
+    let node = |m: usize| libm::sin(FRAC_PI_2 * m as f64 / (CHEBYSHEV_COUNT - 1) as f64).powi(2);
+    std::array::from_fn(node)
+});
 
-/// Points and transform for one number of points.
-struct ChebyshevGrid {
-    points: Vec<f64>,
-    /// `[j][k]`: weight of the value at the point `j` in the coefficient `k`.
-    transform: Vec<[f64; MOST_POINTS]>,
-}
+/// The points of the first kind, growing: the zeros of a Chebyshev polynomial. The ends of the interval are no points, so a function need
+/// not be known there.
+pub static CHEBYSHEV_POINTS: LazyLock<[f64; CHEBYSHEV_COUNT]> = LazyLock::new(|| {
+    let angle = |j: usize| FRAC_PI_2 * (2 * j + 1) as f64 / (2 * CHEBYSHEV_COUNT) as f64;
+    std::array::from_fn(|j| libm::sin(angle(j)).powi(2))
+});
 
-/// Grids of 1, 2, ... points, each computed at its first use.
-static GRIDS: [OnceLock<ChebyshevGrid>; MOST_POINTS] = [const { OnceLock::new() }; MOST_POINTS];
-
-impl ChebyshevGrid {
-    fn of(count: usize) -> &'static Self {
-        GRIDS[count - 1].get_or_init(|| Self::new(count))
-    }
-
-    fn new(count: usize) -> Self {
-        // Angles are whole multiples of this part of a right angle, at most a full turn.
-        let angle = |multiple: usize| FRAC_PI_2 * multiple as f64 / count as f64;
-        let point = |j: usize| libm::sin(0.5 * angle(2 * j + 1)).powi(2);
-        let weight = |j: usize, k: usize| {
-            let cos = libm::cos(angle(k * (2 * j + 1) % (4 * count)));
-            let sign = if k.is_multiple_of(2) { 1.0 } else { -1.0 };
-            let each = if k == 0 { 1.0 } else { 2.0 };
-            sign * each * cos / count as f64
-        };
-        let row = |j| std::array::from_fn(|k| if k < count { weight(j, k) } else { 0.0 });
-        Self {
-            points: (0..count).map(point).collect(),
-            transform: (0..count).map(row).collect(),
-        }
-    }
-}
-
-/// The `count` Chebyshev points of the first kind on `[0, 1]`, growing: `sin^2((2 j + 1) pi/(4 count))`.
-///
-/// # Panics
-///
-/// If `count` is 0 or larger than [`MOST_POINTS`].
-#[must_use]
-pub fn chebyshev_points(count: usize) -> &'static [f64] {
-    &ChebyshevGrid::of(count).points
-}
-
-/// Expansion of `D` functions on `[0, 1]` in Chebyshev polynomials.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Chebyshev<const D: usize> {
-    /// Coefficients `[k][function]` of the polynomials `T_k(2 x - 1)`.
-    pub coefficients: Vec<[f64; D]>,
-}
-
-impl<const D: usize> Chebyshev<D> {
-    /// The expansion through `values` `[point][function]` at the [`chebyshev_points`], one value for each point.
-    ///
-    /// # Panics
-    ///
-    /// If there are no values, or more than [`MOST_POINTS`].
-    #[must_use]
-    pub fn through(values: &[[f64; D]]) -> Self {
-        let transform = &ChebyshevGrid::of(values.len()).transform;
-        let mut coefficients = Unit::detect().run(Transform { values, transform });
-        coefficients.truncate(values.len());
-        Self { coefficients }
-    }
-
-    /// Size of the last coefficients of each function: an estimate of the expansion's error where coefficients still fall.
-    /// A single point gives 0.
-    #[must_use]
-    pub fn tail(&self) -> [f64; D] {
-        let last = self.coefficients.iter().skip(1).rev().take(TAIL);
-        last.fold([0.0; D], |mut tail, coefficients| {
-            for (tail, coefficient) in tail.iter_mut().zip(coefficients) {
-                *tail = tail.max(coefficient.abs());
-            }
-            tail
-        })
-    }
-
-    /// Values of the functions at `x`.
-    #[must_use]
-    pub fn at(&self, x: f64) -> [f64; D] {
-        self.taylor::<1>(x)[0]
-    }
-
-    /// Values of the functions at `x`, and their derivatives by `x`.
-    #[must_use]
-    pub fn with_slope(&self, x: f64) -> [[f64; D]; 2] {
-        self.taylor(x)
-    }
-
-    /// Taylor coefficients `[power][function]` around `x`: the `i`-th derivative over `i!` is the factor of the `i`-th power.
-    #[must_use]
-    pub fn taylor<const P: usize>(&self, x: f64) -> [[f64; D]; P] {
-        let mut terms = [[0.0; D]; P];
-        for function in 0..D {
-            let series: [f64; P] = self.series(function, x);
-            for (terms, term) in terms.iter_mut().zip(series) {
-                terms[function] = term;
-            }
-        }
-        terms
-    }
-
-    /// Taylor coefficients `[place][power][function]` around [`WIDTH`] places side by side.
-    #[must_use]
-    pub fn taylor_side_by_side<const P: usize>(
-        &self,
-        places: &[f64; WIDTH],
-    ) -> [[[f64; D]; P]; WIDTH] {
-        Unit::detect().run(SideBySide {
-            expansion: self,
-            places,
-        })
-    }
-
-    /// Taylor coefficients of one function around `x`, by Clenshaw's recurrence with truncated power series in place of
-    /// numbers.
-    #[inline(always)]
-    fn series<T: Real, const P: usize>(&self, function: usize, x: T) -> [T; P] {
-        let (zero, two) = (T::of(0.0), T::of(2.0));
-        let y = two.mul_add(x, T::of(-1.0));
-        let (mut later, mut latest) = ([zero; P], [zero; P]);
-        // `factor y b + c - d`, where `y` grows by twice the distance from `x`.
-        let combine = |factor: T, b: [T; P], c: f64, d: [T; P]| {
-            let mut sum = [zero; P];
-            for power in (0..P).rev() {
-                let rest = if power == 0 {
-                    T::of(c) - d[0]
-                } else {
-                    (two * factor).mul_add(b[power - 1], -d[power])
-                };
-                sum[power] = (factor * y).mul_add(b[power], rest);
-            }
-            sum
-        };
-        for coefficients in self.coefficients.iter().skip(1).rev() {
-            let sum = combine(two, later, coefficients[function], latest);
-            (later, latest) = (sum, later);
-        }
-        let constant = self
-            .coefficients
-            .first()
-            .map_or(0.0, |first| first[function]);
-        combine(T::of(1.0), later, constant, latest)
-    }
-}
-
-/// Coefficients from values: plain loops, which a compiler turns into vectors of any unit, without fused products.
-struct Transform<'a, const D: usize> {
-    values: &'a [[f64; D]],
-    transform: &'a [[f64; MOST_POINTS]],
-}
-
-impl<const D: usize> SimdTask for Transform<'_, D> {
-    type Output = Vec<[f64; D]>;
-
-    #[inline(always)]
-    fn run<T: Lanes>(self) -> Vec<[f64; D]> {
-        let mut columns = [[0.0; MOST_POINTS]; D];
-        for (values, weights) in self.values.iter().zip(self.transform) {
-            for (column, value) in columns.iter_mut().zip(values) {
-                for (coefficient, weight) in column.iter_mut().zip(weights) {
-                    *coefficient += weight * value;
+/// Weights `[power][at][around]`: Taylor coefficients around the point `around` of the polynomial that is 1 at the point `at` and 0 at
+/// the others.
+static TAYLOR_WEIGHTS: LazyLock<Vec<[[f64; CHEBYSHEV_COUNT]; CHEBYSHEV_COUNT]>> =
+    LazyLock::new(|| {
+        let points = &*CHEBYSHEV_POINTS;
+        let mut weights = vec![[[0.0; CHEBYSHEV_COUNT]; CHEBYSHEV_COUNT]; CHEBYSHEV_COUNT];
+        for at in 0..CHEBYSHEV_COUNT {
+            for around in 0..CHEBYSHEV_COUNT {
+                let mut series = [0.0; CHEBYSHEV_COUNT];
+                series[0] = 1.0;
+                for other in (0..CHEBYSHEV_COUNT).filter(|other| *other != at) {
+                    let [to_other, apart] = [around, at].map(|i| points[i] - points[other]);
+                    for power in (0..CHEBYSHEV_COUNT).rev() {
+                        let lower = if power == 0 { 0.0 } else { series[power - 1] };
+                        series[power] = (series[power] * to_other + lower) / apart;
+                    }
+                }
+                for (weights, term) in weights.iter_mut().zip(series) {
+                    weights[at][around] = term;
                 }
             }
         }
-        let mut coefficients = vec![[0.0; D]; MOST_POINTS];
-        for (k, row) in coefficients.iter_mut().enumerate() {
-            for (coefficient, column) in row.iter_mut().zip(&columns) {
-                *coefficient = column[k];
-            }
-        }
-        coefficients
-    }
+        weights
+    });
+
+/// Taylor coefficients `[around][power][function]` around each of the [`CHEBYSHEV_POINTS`] of the polynomials through `values`
+/// `[point][function]` there. The `i`-th derivative over `i!` is the factor of the `i`-th power.
+#[must_use]
+pub fn taylor_at_points<const D: usize, const P: usize>(
+    values: &[[f64; D]; CHEBYSHEV_COUNT],
+) -> [[[f64; D]; P]; CHEBYSHEV_COUNT] {
+    let weights = &TAYLOR_WEIGHTS[..P];
+    Unit::detect().run(TaylorSums { values, weights })
 }
 
-/// Taylor coefficients around one place in each lane.
-struct SideBySide<'a, const D: usize, const P: usize> {
-    expansion: &'a Chebyshev<D>,
-    places: &'a [f64; WIDTH],
+/// Sums of weighted values: plain loops, which a compiler turns into vectors of any unit, without fused products.
+struct TaylorSums<'a, const D: usize, const P: usize> {
+    values: &'a [[f64; D]; CHEBYSHEV_COUNT],
+    weights: &'a [[[f64; CHEBYSHEV_COUNT]; CHEBYSHEV_COUNT]],
 }
 
-impl<const D: usize, const P: usize> SimdTask for SideBySide<'_, D, P> {
-    type Output = [[[f64; D]; P]; WIDTH];
+impl<const D: usize, const P: usize> SimdTask for TaylorSums<'_, D, P> {
+    type Output = [[[f64; D]; P]; CHEBYSHEV_COUNT];
 
     #[inline(always)]
     fn run<T: Lanes>(self) -> Self::Output {
-        let mut terms = [[[0.0; D]; P]; WIDTH];
-        for from in (0..WIDTH).step_by(T::LANES) {
-            let mut places = [0.0; WIDTH];
-            places[..T::LANES].copy_from_slice(&self.places[from..from + T::LANES]);
-            let x = T::pack(places);
+        let mut terms = [[[0.0; D]; P]; CHEBYSHEV_COUNT];
+        for (power, weights) in self.weights.iter().enumerate() {
             for function in 0..D {
-                let series: [T; P] = self.expansion.series(function, x);
-                for (power, term) in series.into_iter().enumerate() {
-                    let lanes = term.unpack();
-                    for (terms, term) in terms[from..].iter_mut().zip(&lanes[..T::LANES]) {
-                        terms[power][function] = *term;
+                let mut sums = [0.0; CHEBYSHEV_COUNT];
+                for (weights, values) in weights.iter().zip(self.values) {
+                    for (sum, weight) in sums.iter_mut().zip(weights) {
+                        *sum += weight * values[function];
                     }
+                }
+                for (terms, sum) in terms.iter_mut().zip(sums) {
+                    terms[power][function] = sum;
                 }
             }
         }

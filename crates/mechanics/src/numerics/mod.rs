@@ -2,9 +2,7 @@
 
 mod bracket;
 pub mod chebyshev;
-pub mod divided_differences;
 pub mod gauss;
-pub mod lobatto;
 pub mod newton_form;
 pub mod newton_form_simd;
 mod real;

@@ -1,5 +1,5 @@
-//! Interpolating polynomials in Newton's form. A node may count twice, with a value and a slope (Hermite interpolation): the
-//! derivatives that a trajectory carries replace other trajectories.
+//! Interpolating polynomials in Newton's form: the only polynomials that are evaluated or solved. A node may count twice, with a value
+//! and a slope (Hermite interpolation): the derivatives that a trajectory carries replace other trajectories.
 
 use crate::numerics::Bracket;
 
@@ -13,14 +13,16 @@ pub struct Polynomial<const N: usize> {
 }
 
 impl<const N: usize> Polynomial<N> {
-    /// The polynomial through `values[0]` at 0, `values[1]` at 1, ... Values after the first `N` are ignored.
+    /// The polynomial with these divided differences on the nodes 0, 1, ..., each repeated `each` times.
     #[must_use]
-    pub fn through(values: &[f64]) -> Self {
-        let values: Vec<[f64; 1]> = values.iter().map(|value| [*value]).collect();
-        Self {
-            nodes: even_nodes(1),
-            differences: through_values(&values)[0].map(|[difference]| difference),
+    pub const fn on_even_nodes(each: usize, differences: [f64; N]) -> Self {
+        let mut nodes = [0.0; N];
+        let mut i = 0;
+        while i < N {
+            nodes[i] = (i / each) as f64;
+            i += 1;
         }
+        Self { nodes, differences }
     }
 
     /// The value and the slope at `t`.
@@ -69,63 +71,86 @@ pub struct RootProblem {
     pub bracket: Bracket,
 }
 
-/// The nodes 0, 1, ..., each repeated `each` times.
+/// The polynomials of `F` functions through at most `N` points `(node, values)` with growing nodes. The degree is less than the number
+/// of points. Points after the first `N` are ignored.
+///
+/// ```
+/// use whiskmap_mechanics::numerics::newton_form::through_nodes;
+///
+/// let [square] = through_nodes::<4, 1>([(0.0, [0.0]), (1.0, [1.0]), (3.0, [9.0])]);
+/// assert_eq!(square.at(2.0), (4.0, 4.0)); // value and slope
+/// ```
 #[must_use]
-pub const fn even_nodes<const N: usize>(each: usize) -> [f64; N] {
-    let mut nodes = [0.0; N];
-    let mut i = 0;
-    while i < N {
-        nodes[i] = (i / each) as f64;
-        i += 1;
+#[inline]
+pub fn through_nodes<const N: usize, const F: usize>(
+    points: impl IntoIterator<Item = (f64, [f64; F])>,
+) -> [Polynomial<N>; F] {
+    let (mut nodes, mut values, mut terms) = ([0.0; N], [[0.0; F]; N], [[0.0; F]; N]);
+    let mut count = 0;
+    let slots = nodes.iter_mut().zip(&mut values);
+    for ((node, values), point) in slots.zip(points) {
+        (*node, *values) = point;
+        count += 1;
     }
-    nodes
+    let keep = |level: usize, differences: &[[f64; F]]| terms[level] = differences[0];
+    divide(N, &nodes[..count], &mut values[..count], &[], keep);
+    std::array::from_fn(|function| Polynomial {
+        nodes,
+        differences: terms.map(|term| term[function]),
+    })
 }
 
-/// Divided differences `[start][term][function]` of `F` functions with `values[node][function]` at the nodes 0, 1, ... The
-/// polynomials of `start` go through the `N` nodes from `start` on. With fewer than `N` nodes there is one start.
+/// Divided differences `[start][term][function]` of `F` functions with `values[node][function]` at the nodes 0, 1, ...
+///
+/// The polynomials of `start` go through the nodes from `start` on: through `N` values or, with `slopes`, through `N / 2` values and
+/// slopes. With fewer nodes there is one start.
 #[must_use]
-pub fn through_values<const F: usize, const N: usize>(values: &[[f64; F]]) -> Vec<[[f64; F]; N]> {
-    divided_differences(1, values, &[])
-}
-
-/// Divided differences as from [`through_values`], for polynomials through the `values` and `slopes` at `N / 2` nodes each.
-#[must_use]
-pub fn through_slopes<const F: usize, const N: usize>(
+pub fn through_runs<const F: usize, const N: usize>(
     values: &[[f64; F]],
     slopes: &[[f64; F]],
 ) -> Vec<[[f64; F]; N]> {
-    divided_differences(2, values, slopes)
-}
-
-/// Divided differences with `each` terms for every node: 1 for values, 2 for values and slopes.
-fn divided_differences<const F: usize, const N: usize>(
-    each: usize,
-    values: &[[f64; F]],
-    slopes: &[[f64; F]],
-) -> Vec<[[f64; F]; N]> {
-    let terms = each * values.len();
+    let each = if slopes.is_empty() { 1 } else { 2 };
+    let repeated = || (0..each * values.len()).map(|i| i / each);
+    let nodes: Vec<f64> = repeated().map(|i| i as f64).collect();
+    let mut differences: Vec<[f64; F]> = repeated().map(|i| values[i]).collect();
     let mut runs = vec![[[0.0; F]; N]; values.len().saturating_sub(N / each) + 1];
-    let mut differences: Vec<[f64; F]> = (0..terms).map(|i| values[i / each]).collect();
-    for level in 0..N.min(terms) {
-        if level > 0 {
-            for i in 0..terms - level {
-                let apart = (i + level) / each - i / each;
-                if apart == 0 {
-                    differences[i] = slopes[i / each];
-                    continue;
-                }
-                let part = 1.0 / apart as f64;
-                let next = differences[i + 1];
-                for (here, next) in differences[i].iter_mut().zip(next) {
-                    *here = (next - *here) * part;
-                }
-            }
-        }
+    divide(N, &nodes, &mut differences, slopes, |level, differences| {
         for (run, difference) in runs.iter_mut().zip(differences.iter().step_by(each)) {
             run[level] = *difference;
         }
-    }
+    });
     runs
+}
+
+/// Replaces `values` at growing `nodes` by divided differences, `levels` times at most. Calls `take` with each level, the values as level 0.
+/// Of two equal nodes `2 i` and `2 i + 1`, the difference is `slopes[i]`.
+#[inline]
+fn divide<const F: usize>(
+    levels: usize,
+    nodes: &[f64],
+    values: &mut [[f64; F]],
+    slopes: &[[f64; F]],
+    mut take: impl FnMut(usize, &[[f64; F]]),
+) {
+    if nodes.is_empty() {
+        return;
+    }
+    take(0, values);
+    for level in 1..levels.min(nodes.len()) {
+        let count = nodes.len() - level;
+        for i in 0..count {
+            let apart = nodes[i + level] - nodes[i];
+            if apart == 0.0 {
+                values[i] = slopes[i / 2];
+                continue;
+            }
+            let (part, next) = (1.0 / apart, values[i + 1]);
+            for (here, next) in values[i].iter_mut().zip(next) {
+                *here = (next - *here) * part;
+            }
+        }
+        take(level, &values[..count]);
+    }
 }
 
 /// The first of the `around` nodes that surround the interval from `at` to `at + 1`, where there are `count` nodes in all.

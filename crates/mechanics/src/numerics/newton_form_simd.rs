@@ -4,7 +4,7 @@ use crate::numerics::newton_form::{Polynomial, RootProblem};
 use crate::numerics::{Lanes, SimdTask, Unit, WIDTH};
 
 /// One number for each lane.
-pub type Numbers = [f64; WIDTH];
+pub type LaneNumbers = [f64; WIDTH];
 
 /// Iterations of Newton's method. The last step of each lane shows if they suffice.
 const ITERATIONS: usize = 3;
@@ -15,7 +15,7 @@ pub enum Terms<'a, const N: usize> {
     /// All lanes share one polynomial.
     Same(&'a [f64; N]),
     /// Each lane has its own polynomial: `[term][lane]`.
-    Each(&'a [Numbers; N]),
+    Each(&'a [LaneNumbers; N]),
 }
 
 impl<const N: usize> Terms<'_, N> {
@@ -56,7 +56,12 @@ impl<const N: usize, const M: usize> SimdRoots<'_, N, M> {
     /// Values `[other][lane]` of the other polynomials at the roots of the `problems`, which belong to the lanes from `first` on.
     /// A root that a few iterations side by side do not find is solved alone.
     #[must_use]
-    pub fn solve(&self, first: usize, problems: &[RootProblem], last_step: f64) -> [Numbers; M] {
+    pub fn solve(
+        &self,
+        first: usize,
+        problems: &[RootProblem],
+        last_step: f64,
+    ) -> [LaneNumbers; M] {
         let numbers = |number: fn(&RootProblem) -> f64| {
             let mut numbers = [0.0; WIDTH];
             for (slot, problem) in numbers[first..].iter_mut().zip(problems) {
@@ -108,11 +113,11 @@ impl<const N: usize, const M: usize> SimdRoots<'_, N, M> {
 /// Task and result of Newton's method side by side.
 struct Newton<'a, const N: usize, const M: usize> {
     roots: &'a SimdRoots<'a, N, M>,
-    targets: Numbers,
-    place: Numbers,
+    targets: LaneNumbers,
+    place: LaneNumbers,
     /// The last step in each lane.
-    step: Numbers,
-    others: [Numbers; M],
+    step: LaneNumbers,
+    others: [LaneNumbers; M],
 }
 
 impl<const N: usize, const M: usize> SimdTask for Newton<'_, N, M> {
@@ -145,7 +150,7 @@ impl<const N: usize, const M: usize> SimdTask for Newton<'_, N, M> {
 
 /// Lanes with the numbers from index `from` on.
 #[inline(always)]
-pub fn pack<T: Lanes>(numbers: &Numbers, from: usize) -> T {
+pub fn pack<T: Lanes>(numbers: &LaneNumbers, from: usize) -> T {
     let mut lanes = [0.0; WIDTH];
     lanes[..WIDTH - from].copy_from_slice(&numbers[from..]);
     T::pack(lanes)
@@ -153,7 +158,7 @@ pub fn pack<T: Lanes>(numbers: &Numbers, from: usize) -> T {
 
 /// Stores `lanes` in the numbers from index `from` on.
 #[inline(always)]
-pub fn keep<T: Lanes>(numbers: &mut Numbers, from: usize, lanes: T) {
+pub fn keep<T: Lanes>(numbers: &mut LaneNumbers, from: usize, lanes: T) {
     numbers[from..from + T::LANES].copy_from_slice(&lanes.unpack()[..T::LANES]);
 }
 
@@ -161,6 +166,7 @@ pub fn keep<T: Lanes>(numbers: &mut Numbers, from: usize, lanes: T) {
 mod tests {
     use super::*;
     use crate::numerics::Bracket;
+    use crate::numerics::newton_form::through_nodes;
 
     const N: usize = 12;
 
@@ -168,7 +174,8 @@ mod tests {
     fn rising(lane: usize) -> Polynomial<N> {
         let power = 1.0 + (0.618 * lane as f64).fract() * 2.0;
         let value = |node: usize| 3.0 * (1.0 - (1.0 - node as f64 / (N - 1) as f64).powf(power));
-        Polynomial::through(&std::array::from_fn::<_, N, _>(value))
+        let [rising] = through_nodes((0..N).map(|node| (node as f64, [value(node)])));
+        rising
     }
 
     /// With a polynomial for every lane and with one for all, on every unit; and from a place so far that most are solved alone.
@@ -191,7 +198,7 @@ mod tests {
                 near: 10.9,
                 bracket: Bracket::new([0.0, (N - 1) as f64], [0.0, 3.0]),
             });
-            let places: Numbers = std::array::from_fn(|lane| {
+            let places: LaneNumbers = std::array::from_fn(|lane| {
                 let polynomial = if is_same { same } else { rising(lane) };
                 polynomial.solve(&far[lane], 1e-4)
             });
@@ -216,7 +223,7 @@ mod tests {
     }
 
     /// The other polynomials at `places`.
-    fn check(others: [Numbers; 2], places: &Numbers) {
+    fn check(others: [LaneNumbers; 2], places: &LaneNumbers) {
         for (lane, place) in places.iter().enumerate() {
             let wanted = [lane + 1, WIDTH + 1].map(|other| rising(other).at(*place).0);
             for (numbers, wanted) in others.iter().zip(wanted) {

@@ -166,6 +166,18 @@ impl Batch {
         outputs
     }
 
+    /// The outputs of one rod at `points` `(tau, load)`, in their order.
+    #[must_use]
+    pub fn shoot_at<O: OutputSet>(
+        &self,
+        rod: &Rod,
+        points: impl IntoIterator<Item = impl Into<(f64, f64)>>,
+    ) -> Vec<O> {
+        let points = points.into_iter().map(Into::into);
+        let conditions = points.map(|(tau, load)| InitialCondition { rod, tau, load });
+        self.shoot(&conditions.collect::<Vec<_>>())
+    }
+
     /// Computes the outputs of a chunk on this thread.
     fn chunk<O: OutputSet>(&self, conditions: &[InitialCondition], outputs: &mut [O]) {
         self.for_each(conditions.iter().copied(), |i, output| outputs[i] = *output);
