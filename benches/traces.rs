@@ -6,7 +6,7 @@ use criterion::{Criterion, criterion_group, criterion_main};
 use std::hint::black_box;
 use whiskmap::rod::Side;
 use whiskmap::scene::Scene;
-use whiskmap::trace::{Branch, Shape, corner, curve};
+use whiskmap::trace::{Branch, WhiskerShape, corner, curve};
 
 fn traces(criterion: &mut Criterion) {
     let text = include_str!("../scenes/cone.toml");
@@ -32,7 +32,7 @@ fn traces(criterion: &mut Criterion) {
         });
     });
     group.bench_function("shape, 200 places", |bench| {
-        bench.iter(|| Shape::new(&branch, black_box(&state), 200));
+        bench.iter(|| WhiskerShape::new(&branch, black_box(&state), 200));
     });
     group.finish();
 }

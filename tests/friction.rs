@@ -11,7 +11,7 @@ use whiskmap::rod::{Rest, Rod, Side, arclength};
 use whiskmap::scene::Scene;
 use whiskmap::sheet::{CurveNode, LevelCurve, Row};
 use whiskmap::shooting::batch::Method;
-use whiskmap::trace::{Branch, Shape};
+use whiskmap::trace::{Branch, WhiskerShape};
 
 /// Scene of the cone of the paper's first figure, with curvature `a_per_mm`, at a pole of this radius and friction.
 fn cone(a_per_mm: f64, radius_mm: f64, friction: f64) -> Scene {
@@ -72,7 +72,7 @@ fn friction_takes_energy_only_toward_the_tip() {
                     counts[usize::from(sliding == Sliding::Base)] += 1;
                     let state = branch.state(push, true).unwrap();
                     assert_eq!(
-                        Shape::new(&branch, &state, 2).sliding,
+                        WhiskerShape::new(&branch, &state, 2).sliding,
                         Some(sliding),
                         "{case}"
                     );
@@ -239,7 +239,7 @@ fn cells_that_slide_toward_the_base_are_marked() {
             let side = Side::of_push(*push);
             let branch = Branch::new(&scene.whisker, &scene.pole, side, *distance).unwrap();
             let state = branch.state(push.to_radians(), true).unwrap();
-            let sliding = Shape::new(&branch, &state, 2).sliding;
+            let sliding = WhiskerShape::new(&branch, &state, 2).sliding;
             assert_eq!(sliding == Some(Sliding::Base), slides, "{distance} {push}");
             assert_eq!(
                 sliding == Some(Sliding::Sticks),

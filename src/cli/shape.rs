@@ -10,7 +10,7 @@ use whiskmap::classify::Sliding;
 use whiskmap::render::{DrawnShape, Ink, Line, Stroke, shapes};
 use whiskmap::rod::Side;
 use whiskmap::scene::digits;
-use whiskmap::trace::{Branch, NoState, Shape, ShapePoint};
+use whiskmap::trace::{Branch, NoState, ShapePoint, WhiskerShape};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -73,7 +73,7 @@ pub fn run(args: &ShapeArgs, files: &mut Files) -> Result<(), Failure> {
     let branch = Branch::new(&whisker, &scene.pole, side, distance).map_err(refused)?;
     let state = branch.state(push_deg.to_radians(), stable);
     let count = args.points as usize;
-    let shape = Shape::new(&branch, &state.map_err(refused)?, count);
+    let shape = WhiskerShape::new(&branch, &state.map_err(refused)?, count);
     let how = match shape.sliding {
         Some(Sliding::Base) => Some("slides toward the base"),
         Some(Sliding::Sticks) => Some("sticks at an earlier position"),
@@ -98,7 +98,7 @@ pub fn run(args: &ShapeArgs, files: &mut Files) -> Result<(), Failure> {
     };
     outputs.finish(title(&scene, &[distance]), || {
         let mut plot = shapes("", &[drawn]);
-        let at_rest = Shape::at_rest(&branch, count);
+        let at_rest = WhiskerShape::at_rest(&branch, count);
         let at_rest = Line::new(at_rest, Ink::Grey, Stroke::Solid).named("first touch");
         plot.lines.insert(0, at_rest);
         plot

@@ -9,7 +9,7 @@ use crate::rod::Side;
 #[cfg(feature = "fit")]
 use crate::scene::Parameter;
 use crate::scene::{Scene, SweepPlace, SweptWhisker};
-use crate::trace::{Branch, Detachment, NoState, Shape, curve_at, sides, whiskers_at_once};
+use crate::trace::{Branch, Detachment, NoState, WhiskerShape, curve_at, sides, whiskers_at_once};
 
 /// Computes where every whisker of `scene` detaches: at each distance, CF before CB.
 ///
@@ -71,10 +71,10 @@ pub fn branch(scene: &Scene, distance_mm: f64, side: Side) -> Result<Branch, NoS
 ///
 /// # Errors
 /// When there is no such state: the error contains how the whisker left the pole, and at which push angle.
-pub fn shape(scene: &Scene, distance_mm: f64, push_angle_deg: f64) -> Result<Shape, NoState> {
+pub fn shape(scene: &Scene, distance_mm: f64, push_angle_deg: f64) -> Result<WhiskerShape, NoState> {
     let branch = branch(scene, distance_mm, Side::of_push(push_angle_deg))?;
     let state = branch.state(push_angle_deg.to_radians(), true)?;
-    Ok(Shape::new(&branch, &state, 200))
+    Ok(WhiskerShape::new(&branch, &state, 200))
 }
 
 /// Fits parameters of the scene's first whisker and of its pole to measured detachments, from the scene's values on.

@@ -8,7 +8,7 @@ use crate::engine::{BasePoint, MOST_TRAJECTORY_STEPS, RowTerms};
 use crate::numerics::chebyshev::{CHEBYSHEV_COUNT as NODES, CHEBYSHEV_POINTS, taylor_at_points};
 use crate::numerics::nearest_turn;
 use crate::rod::Rest;
-use crate::sheet::{RowSpan, Sheet};
+use crate::sheet::Sheet;
 use crate::shooting::batch::Method;
 use rayon::prelude::*;
 
@@ -32,8 +32,8 @@ pub struct RowOfCells<'a> {
 #[must_use]
 pub fn base_points(method: Method, sheets: &[&Sheet], rows: &[RowOfCells]) -> Vec<Vec<BasePoint>> {
     let wanted = rows.par_iter().map(|row| {
-        let span = SpanFromTouch::new(sheets[row.sheet as usize], row.row)?;
-        (row.pushes.len() > NODES).then(|| (span.w_end, span.states()))
+        let has_many = row.pushes.len() > NODES;
+        has_many.then(|| wanted_states(sheets[row.sheet as usize], row.row))?
     });
     let wanted: Vec<Option<(f64, [RowState; NODES])>> = wanted.collect();
     let flat = wanted.iter().flatten().flat_map(|(_, states)| states);
@@ -59,45 +59,23 @@ pub fn base_points(method: Method, sheets: &[&Sheet], rows: &[RowOfCells]) -> Ve
     expanded.map(Option::unwrap_or_default).collect()
 }
 
-/// Span of a row from first touch to a sound end.
-struct SpanFromTouch<'a> {
-    sheet: &'a Sheet,
-    row: usize,
-    span: RowSpan,
-    /// Signed row parameter `load tau^2` at the end.
-    w_end: f64,
-}
-
-impl<'a> SpanFromTouch<'a> {
-    fn new(sheet: &'a Sheet, row: usize) -> Option<Self> {
-        let end = sheet.crossings[row].first()?;
-        // On a lattice, a row with more crossings may be in several pieces.
-        let is_one = sheet.is_continued() || sheet.crossings[row].len() == 1;
-        let is_simple = sheet.touches(row) && is_one && end.is_sound() && !end.is_at_touch();
-        let span = sheet.spans(row).first()?.clone();
-        let w_end = end.load * end.tau * end.tau;
-        let is_whole = span.begins_at_touch() && span.reaches(w_end.abs());
-        (is_simple && is_whole).then_some(Self {
-            sheet,
-            row,
-            span,
-            w_end,
-        })
-    }
-
-    /// Returns approximate states at the Chebyshev points of the row parameter.
-    fn states(&self) -> [RowState<'a>; NODES] {
-        CHEBYSHEV_POINTS.map(|point| {
-            let w = point * self.w_end;
-            let [_, tau] = self.span.at(w.abs());
-            RowState {
-                sheet: self.sheet,
-                row: self.row,
-                w,
-                tau,
-            }
-        })
-    }
+/// Returns the signed row parameter `load tau^2` at the end of a row that goes from first touch to a sound end in one span, and
+/// approximate states at the Chebyshev points of the row parameter.
+fn wanted_states(sheet: &Sheet, row: usize) -> Option<(f64, [RowState<'_>; NODES])> {
+    let end = sheet.crossings[row].first()?;
+    // On a lattice, a row with more crossings may be in several pieces.
+    let is_one = sheet.is_continued() || sheet.crossings[row].len() == 1;
+    let is_simple = sheet.touches(row) && is_one && end.is_sound() && !end.is_at_touch();
+    let spans = sheet.spans(row);
+    let span = spans.first()?;
+    let w_end = end.load * end.tau * end.tau;
+    let state = |point: f64| {
+        let w = point * w_end;
+        let [_, tau] = span.at(w.abs());
+        RowState { sheet, row, w, tau }
+    };
+    let is_whole = is_simple && span.begins_at_touch() && span.reaches(w_end.abs());
+    is_whole.then(|| (w_end, CHEBYSHEV_POINTS.map(state)))
 }
 
 /// Returns the base points at the states `found` of a row, each with the cells nearest to it.

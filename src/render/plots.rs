@@ -5,7 +5,7 @@
 use crate::design::{Design, DesignEnd, DesignTarget};
 use crate::measured::ComparedPoint;
 use crate::scene::Parameter;
-use crate::trace::{BranchMark, BranchPoint, Detachment, DetachmentKind, Shape};
+use crate::trace::{BranchMark, BranchPoint, Detachment, DetachmentKind, WhiskerShape};
 use crate::uncertainty::EndSpread;
 use whiskmap_plot::{Band, Disc, Dot, Ink, Line, Plot, Shade, Stroke};
 
@@ -116,7 +116,7 @@ pub fn measured(points: &[ComparedPoint]) -> Vec<Dot> {
 #[derive(Clone, Debug)]
 pub struct DrawnShape {
     /// The whisker and its pole.
-    pub shape: Shape,
+    pub shape: WhiskerShape,
     /// Colour of the whisker.
     pub ink: Ink,
     /// Solid or dashed.

@@ -31,7 +31,7 @@ use crate::shooting::batch::Method;
 use continuation::pieces::{ContinuedRow, stable_pieces};
 use edges::crossings::crossings;
 use rayon::prelude::*;
-use samples::SheetSamples;
+use samples::{SheetCase, SheetSamples};
 use std::borrow::Cow;
 
 /// Number of rows, of `rows` in total, that one batch of continuations follows: 32 to 128. Each thread gets a batch, and lanes stay full
@@ -77,10 +77,11 @@ impl Sheet {
         let nearest = rows
             .iter()
             .min_by(|a, b| a.pole_distance.total_cmp(&b.pole_distance));
-        let samples = nearest.and_then(|nearest| SheetSamples::new(method, rod, side, nearest));
+        let case = SheetCase { method, rod, side };
+        let samples = nearest.and_then(|nearest| SheetSamples::new(case, nearest));
         let is_certified = samples.as_ref().is_some_and(|samples| samples.is_certified);
         let mut crossings = match &samples {
-            Some(samples) => crossings(method, rod, side, &samples.edges, &rows),
+            Some(samples) => crossings(case, &samples.edges, &rows),
             None => vec![Vec::new(); rows.len()],
         };
         let fold_grows = samples
@@ -150,7 +151,8 @@ impl Sheet {
     /// Returns the fold with the contact at the tip, where slip-off turns into pull-off. Returns `None` if it is not found.
     #[must_use]
     pub fn fold_at_tip(method: Method, rod: &Rod, side: Side) -> Option<FoldPoint> {
-        fold::first_folds(method, rod, side, &[rod.tau_tip()]).pop()?
+        let case = SheetCase { method, rod, side };
+        fold::first_folds(case, &[rod.tau_tip()]).pop()?
     }
 
     /// Returns true if all rows are followed by continuation, because the samples of the sheet are not certified.

@@ -5,11 +5,38 @@ use crate::sheet::edges::Edges;
 use crate::sheet::fold::contact_nodes::{ContactNodes, NARROW_SPACING, SPACING};
 use crate::sheet::lattice::Lattice;
 use crate::sheet::row::Row;
-use crate::shooting::batch::Method;
+use crate::shooting::batch::{Batch, Method, OutputSet};
 
 /// Largest negative load, relative to the fold load, that counts as unloaded. At the soft tip of a strongly curved cone, rounding of
 /// first touch (1e-13 of the length) is a load of 1e-8.
 const UNLOADED: f64 = 1e-6;
+
+/// Whisker side to sample, with the integration method.
+#[derive(Clone, Copy, Debug)]
+pub struct SheetCase<'a> {
+    /// Integration method of the trajectories.
+    pub method: Method,
+    /// Whisker and pole.
+    pub rod: &'a Rod,
+    /// Whisker side.
+    pub side: Side,
+}
+
+impl SheetCase<'_> {
+    /// Returns the case at the coarse resolution.
+    pub const fn coarsely(self) -> Self {
+        let method = self.method.coarsely();
+        Self { method, ..self }
+    }
+
+    /// Computes the outputs at `points` `(tau, load)` in padded blocks ([`Batch::padded`]).
+    pub fn shoot<O: OutputSet>(
+        &self,
+        points: impl IntoIterator<Item = impl Into<(f64, f64)>>,
+    ) -> Vec<O> {
+        Batch::new(self.method).padded().shoot_at(self.rod, points)
+    }
+}
 
 /// Samples of the sheet: contact nodes, lattice and edges.
 #[derive(Clone, Debug)]
@@ -24,11 +51,11 @@ pub struct SheetSamples {
 impl SheetSamples {
     /// Samples the sheet from the tip down to the row `nearest` to the base, and again at a narrow spacing if the samples are not certified.
     /// Returns `None` if some contact has no fold, or no stable state at first touch.
-    pub fn new(method: Method, rod: &Rod, side: Side, nearest: &Row) -> Option<Self> {
+    pub fn new(case: SheetCase, nearest: &Row) -> Option<Self> {
         let sampled = |spacing| {
-            let contacts = ContactNodes::new(method, rod, side, nearest, spacing)?;
-            let lattice = Lattice::new(method.coarsely(), rod, side, &contacts);
-            let edges = Edges::new(method, rod, &contacts, &lattice);
+            let contacts = ContactNodes::new(case, nearest, spacing)?;
+            let lattice = Lattice::new(case.coarsely(), &contacts);
+            let edges = Edges::new(case, &contacts, &lattice);
             Some(Self {
                 is_certified: lattice.is_certified() && edges.are_certified(),
                 contacts,

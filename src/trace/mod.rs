@@ -12,7 +12,7 @@ mod state;
 
 pub use branch::{Branch, BranchPoint};
 pub use curve::{Corner, Detachment, DetachmentKind, NoCorner, corner, curve, curve_at};
-pub use shape::{Shape, ShapePoint, WhiskerPart};
+pub use shape::{ShapePoint, WhiskerPart, WhiskerShape};
 pub use state::StateAtPush;
 
 pub(crate) use columns::row;

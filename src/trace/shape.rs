@@ -11,7 +11,7 @@ use serde::Serialize;
 /// Shape of a whisker at its pole, in the frame of the pole: the origin is at the base, the first axis along the base's tangent at
 /// first touch. A push rotates the base and leaves the pole.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Shape {
+pub struct WhiskerShape {
     /// Points of the whisker, from the base to the tip.
     pub points: Vec<ShapePoint>,
     /// Centre of the pole, `[x, y]` in mm.
@@ -57,7 +57,7 @@ pub enum WhiskerPart {
     Free,
 }
 
-impl Shape {
+impl WhiskerShape {
     /// Shape in the state `found` on `branch`, at `count` points evenly spaced along the whisker and at the contact.
     #[must_use]
     pub fn new(branch: &Branch, found: &StateAtPush, count: usize) -> Self {
@@ -107,7 +107,7 @@ impl Shape {
         }
     }
 
-    /// Shape of the resting whisker at first touch: `count` points `[x, y]` in mm, in the axes of [`Shape`].
+    /// Shape of the resting whisker at first touch: `count` points `[x, y]` in mm, in the axes of [`WhiskerShape`].
     #[must_use]
     pub fn at_rest(branch: &Branch, count: usize) -> Vec<[f64; 2]> {
         let rest = Rest::new(&branch.level.rod);

@@ -5,7 +5,7 @@ use crate::paper::whiskers::{CONE, CYLINDER, POLE, pole_distance_mm};
 use crate::render::{DrawnShape, Ink, Inset, Plot, Stroke, shapes};
 use crate::rod::Side;
 use crate::scene::Whisker;
-use crate::trace::{Branch, BranchMark, BranchPoint, NoState, Shape};
+use crate::trace::{Branch, BranchMark, BranchPoint, NoState, WhiskerShape};
 use serde::Serialize;
 
 /// Points along a whisker.
@@ -66,7 +66,7 @@ fn panel(
     let mut rows = Vec::new();
     for &(solution, push_angle_deg, stroke) in states {
         let found = branch.state(push_angle_deg.to_radians(), stroke == Stroke::Solid)?;
-        let shape = Shape::new(branch, &found, POINTS);
+        let shape = WhiskerShape::new(branch, &found, POINTS);
         let state = ShapeState {
             solution,
             push_angle_deg,

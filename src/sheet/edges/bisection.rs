@@ -3,12 +3,12 @@
 //! The trials of all intervals share batches. So each interval halves its [`Bracket`] here, and not in [`Bracket::bisect`].
 
 use crate::numerics::Bracket;
-use crate::rod::{Rod, Side};
 use crate::sheet::edges::predictor::EdgeSample;
 use crate::sheet::fold::first_folds;
 use crate::sheet::row::Edge;
+use crate::sheet::samples::SheetCase;
 use crate::shooting::SecondVariation;
-use crate::shooting::batch::{Batch, Method};
+use crate::shooting::batch::Batch;
 use glam::DVec2;
 
 /// Point `(tau, load)` of an edge, and the pole and derivatives there.
@@ -92,21 +92,16 @@ impl EdgeBisection {
 
 /// Returns the point of each interval at which `ln D` is the target, or the closer end if both are on the same side of it. An entry is
 /// `None` where a fold is missing, or the distance leaps over the target.
-pub fn bisect(
-    method: Method,
-    rod: &Rod,
-    side: Side,
-    mut all: Vec<EdgeBisection>,
-) -> Vec<Option<EdgePoint>> {
+pub fn bisect(case: SheetCase, mut all: Vec<EdgeBisection>) -> Vec<Option<EdgePoint>> {
     for edge in [Edge::Fold, Edge::Tip] {
         let open = all.iter_mut().filter(|search| search.edge == edge);
         let mut open: Vec<&mut EdgeBisection> = open.collect();
         while !open.is_empty() {
             let trials: Vec<DVec2> = open.iter().map(|search| search.trial()).collect();
             let points = match edge {
-                Edge::Fold => folds(method, rod, side, &trials),
+                Edge::Fold => folds(case, &trials),
                 Edge::Tip => {
-                    let shot = Batch::new(method).shoot_at(rod, trials.iter().copied());
+                    let shot = Batch::new(case.method).shoot_at(case.rod, trials.iter().copied());
                     trials.into_iter().zip(shot).map(Some).collect()
                 }
             };
@@ -119,11 +114,11 @@ pub fn bisect(
 
 /// Returns the fold at the contact of each trial. Bisections for several distances between the same samples share their trials as long as
 /// all of them are on the same side.
-fn folds(method: Method, rod: &Rod, side: Side, trials: &[DVec2]) -> Vec<Option<EdgePoint>> {
+fn folds(case: SheetCase, trials: &[DVec2]) -> Vec<Option<EdgePoint>> {
     let mut contacts: Vec<f64> = trials.iter().map(|trial| trial.x).collect();
     contacts.sort_by(f64::total_cmp);
     contacts.dedup();
-    let folds = first_folds(method, rod, side, &contacts);
+    let folds = first_folds(case, &contacts);
     let fold = |trial: &DVec2| {
         let contact = contacts.binary_search_by(|other| other.total_cmp(&trial.x));
         let fold = folds[contact.ok()?]?;

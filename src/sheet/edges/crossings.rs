@@ -5,7 +5,6 @@
 //! rounding. Each crossing is predicted and then corrected.
 
 use crate::numerics::nearest_turn;
-use crate::rod::{Rod, Side};
 use crate::sheet::edges::Edges;
 use crate::sheet::edges::bisection::{EdgeBisection, EdgePoint, bisect};
 use crate::sheet::edges::edge_newton::{
@@ -13,7 +12,7 @@ use crate::sheet::edges::edge_newton::{
 };
 use crate::sheet::edges::predictor::{EdgeSample, Prediction};
 use crate::sheet::row::{Crossing, Edge, REACH_SLACK, Row};
-use crate::shooting::batch::Method;
+use crate::sheet::samples::SheetCase;
 use glam::DVec2;
 
 /// Row with two samples of an edge between which it crosses.
@@ -56,13 +55,7 @@ fn predict(edges: &Edges, edge: Edge, pair: [&EdgeSample; 2], target: f64) -> Pr
 }
 
 /// Returns the crossings of each row, `[row][crossing]`, sorted by push angle.
-pub fn crossings(
-    method: Method,
-    rod: &Rod,
-    side: Side,
-    edges: &Edges,
-    rows: &[Row],
-) -> Vec<Vec<Crossing>> {
+pub fn crossings(case: SheetCase, edges: &Edges, rows: &[Row]) -> Vec<Vec<Crossing>> {
     let targets: Vec<f64> = rows
         .iter()
         .map(|row| libm::log(row.pole_distance) - REACH_SLACK)
@@ -80,7 +73,7 @@ pub fn crossings(
                     && after == 0
                     && (row.is_at_reach() || row.is_reached() != reached[0]);
                 if at_touch && row.is_reached() != reached[1] {
-                    found[index].push(Crossing::at_touch(rod));
+                    found[index].push(Crossing::at_touch(case.rod));
                 } else if !at_touch && reached[0] != reached[1] {
                     candidates.push(CrossingCandidate {
                         row: index,
@@ -92,7 +85,7 @@ pub fn crossings(
             }
         }
     }
-    let corrected = correct(method, rod, side, rows, &candidates);
+    let corrected = correct(case, rows, &candidates);
     for (candidate, crossing) in candidates.iter().zip(corrected) {
         found[candidate.row].push(crossing);
     }
@@ -104,13 +97,8 @@ pub fn crossings(
 
 /// Corrects the candidates by Newton's method, or else by bisection between the samples; steep crossings are corrected again with twice
 /// the steps. Returns one crossing for each candidate.
-fn correct(
-    method: Method,
-    rod: &Rod,
-    side: Side,
-    rows: &[Row],
-    candidates: &[CrossingCandidate],
-) -> Vec<Crossing> {
+fn correct(case: SheetCase, rows: &[Row], candidates: &[CrossingCandidate]) -> Vec<Crossing> {
+    let SheetCase { method, rod, side } = case;
     let problems: Vec<EdgeProblem> = candidates
         .iter()
         .map(|c| EdgeProblem {
@@ -148,7 +136,7 @@ fn correct(
             libm::log(rows[candidates[i].row].pole_distance),
         )
     });
-    let bisected = bisect(method, rod, side, between.collect());
+    let bisected = bisect(case, between.collect());
     for (i, point) in failed.into_iter().zip(bisected) {
         let c = &candidates[i];
         let row = &rows[c.row];

@@ -7,14 +7,14 @@ mod predictor;
 mod tip_edge;
 
 use crate::numerics::nearest_turn;
-use crate::rod::{Rest, Rod, arclength};
+use crate::rod::{Rest, arclength};
 use crate::sheet::certificate::is_as_steep_as;
 use crate::sheet::edges::predictor::{EdgeSample, FoldEdge, Prediction};
 use crate::sheet::edges::tip_edge::{SampledTipEdge, TipEdge};
 use crate::sheet::fold::contact_nodes::ContactNodes;
 use crate::sheet::lattice::Lattice;
 use crate::sheet::row::Edge;
-use crate::shooting::batch::Method;
+use crate::sheet::samples::SheetCase;
 
 /// Sampled edges of a sheet.
 #[derive(Clone, Debug)]
@@ -37,7 +37,8 @@ pub struct Edges {
 
 impl Edges {
     /// Samples both edges; `lattice` provides the whole turns of the pole's direction.
-    pub fn new(method: Method, rod: &Rod, contacts: &ContactNodes, lattice: &Lattice) -> Self {
+    pub fn new(case: SheetCase, contacts: &ContactNodes, lattice: &Lattice) -> Self {
+        let rod = case.rod;
         let fold: Vec<EdgeSample> = contacts.folds[..=contacts.tip]
             .iter()
             .zip(lattice.phi_at_fold())
@@ -58,7 +59,7 @@ impl Edges {
             samples: mut tip,
             edge: tip_edge,
             at_touch,
-        } = SampledTipEdge::new(method, rod, corner);
+        } = SampledTipEdge::new(case, corner);
         let rest = Rest::new(rod);
         let (tip_at_rest, _) = rest.at_arclength(arclength(rod, rod.tau_tip()));
         let pole = rest.pole_at_distance(tip_at_rest.length()).length();
@@ -109,11 +110,12 @@ impl Edges {
 mod tests {
     use super::*;
     use crate::numerics::chebyshev::CHEBYSHEV_COUNT;
-    use crate::rod::{Rest, Side};
+    use crate::rod::{Rest, Rod, Side};
     use crate::sheet::edges::edge_newton::{EdgeProblem, EdgeStart, edge_newton};
     use crate::sheet::fold::contact_nodes::SPACING;
     use crate::sheet::row::Edge;
     use crate::sheet::row::Row;
+    use crate::shooting::batch::Method;
     use glam::DVec2;
 
     /// Compares predictions in the middle between samples with the results of Newton's method from there.
@@ -128,9 +130,14 @@ mod tests {
             };
             let method = Method::fine();
             let row = Row::new(&Rest::new(&rod), 0.1);
-            let contacts = ContactNodes::new(method, &rod, side, &row, SPACING).unwrap();
-            let lattice = Lattice::new(method.coarsely(), &rod, side, &contacts);
-            let edges = Edges::new(method, &rod, &contacts, &lattice);
+            let case = SheetCase {
+                method,
+                rod: &rod,
+                side,
+            };
+            let contacts = ContactNodes::new(case, &row, SPACING).unwrap();
+            let lattice = Lattice::new(case.coarsely(), &contacts);
+            let edges = Edges::new(case, &contacts, &lattice);
             let mut checked = 0;
             for (edge, samples) in [(Edge::Fold, &edges.fold), (Edge::Tip, &edges.tip)] {
                 for pair in samples.windows(2) {

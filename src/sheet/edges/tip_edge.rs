@@ -6,11 +6,11 @@
 use crate::numerics::chebyshev::{CHEBYSHEV_COUNT, LOBATTO_NODES};
 use crate::numerics::newton_form::{Polynomial, RootProblem, through_nodes};
 use crate::numerics::{Bracket, nearest_turn};
-use crate::rod::Rod;
 use crate::sheet::edges::predictor::{EdgeSample, LAST_STEP_ALONG_EDGE, Prediction, place_between};
 use crate::sheet::fold::FoldPoint;
 use crate::sheet::lattice::directions;
-use crate::shooting::batch::{Batch, Method};
+use crate::sheet::samples::SheetCase;
+use crate::shooting::batch::Batch;
 use crate::shooting::{SecondVariation, ShootingMap};
 use glam::DVec2;
 use std::f64::consts::FRAC_PI_2;
@@ -44,22 +44,22 @@ pub struct SampledTipEdge {
 
 impl SampledTipEdge {
     /// Samples the edge up to the `corner`: at few loads, or at many if the few are not certified.
-    pub fn new(method: Method, rod: &Rod, corner: &FoldPoint) -> Self {
-        let sampled = TipLoads::new(method, rod, corner, &*LOBATTO_NODES);
+    pub fn new(case: SheetCase, corner: &FoldPoint) -> Self {
+        let sampled = TipLoads::new(case, corner, &*LOBATTO_NODES);
         let edge = TipEdge::new(&sampled);
         let at_touch = sampled.maps[0];
         if edge.is_certified() {
             return Self {
-                samples: sampled.samples(method, &edge.extrema()),
+                samples: sampled.samples(&edge.extrema()),
                 edge: Some(edge),
                 at_touch,
             };
         }
         let part = |i| libm::sin(FRAC_PI_2 * i as f64 / MANY_TIP_INTERVALS as f64).powi(2);
         let parts: Vec<f64> = (0..=MANY_TIP_INTERVALS).map(part).collect();
-        let sampled = TipLoads::new(method, rod, corner, &parts);
+        let sampled = TipLoads::new(case, corner, &parts);
         Self {
-            samples: sampled.samples(method, &sampled.extrema()),
+            samples: sampled.samples(&sampled.extrema()),
             edge: None,
             at_touch,
         }
@@ -86,10 +86,11 @@ pub(super) struct DistanceExtremum {
 impl DistanceExtremum {
     /// Returns the load of the extremum and the map there. The polynomials usually determine the second derivatives so well that one
     /// trajectory suffices; otherwise Newton's method computes its own.
-    fn polished(&self, method: Method, rod: &Rod, tau: f64) -> (f64, ShootingMap) {
+    fn polished(&self, case: SheetCase, tau: f64) -> (f64, ShootingMap) {
         let (load, by_load_load) = (self.load, self.by_load_load);
         let last_step = LAST_STEP_TO_EXTREMUM * (self.loads.above - self.loads.below).abs();
-        let map_at = |load| Batch::new(method).shoot_at::<ShootingMap>(rod, [(tau, load)])[0];
+        let map_at =
+            |load| Batch::new(case.method).shoot_at::<ShootingMap>(case.rod, [(tau, load)])[0];
         let map = map_at(load);
         let step = -map.by_load.x / by_load_load.x;
         if step.abs() <= last_step {
@@ -101,7 +102,8 @@ impl DistanceExtremum {
             return (load + step, here.extrapolated(DVec2::new(0.0, step)).map);
         }
         let newton = |load| {
-            let here = Batch::new(method).shoot_at::<SecondVariation>(rod, [(tau, load)])[0];
+            let here: SecondVariation =
+                Batch::new(case.method).shoot_at(case.rod, [(tau, load)])[0];
             let slope = here.map.by_load.x;
             (slope, load - slope / here.by_load_load.x)
         };
@@ -112,7 +114,7 @@ impl DistanceExtremum {
 
 /// Maps of the tip edge at several loads.
 struct TipLoads<'a> {
-    rod: &'a Rod,
+    case: SheetCase<'a>,
     corner: &'a FoldPoint,
     /// Loads in parts of the corner's load; the last one is 1.
     parts: &'a [f64],
@@ -122,15 +124,15 @@ struct TipLoads<'a> {
 }
 
 impl<'a> TipLoads<'a> {
-    fn new(method: Method, rod: &'a Rod, corner: &'a FoldPoint, parts: &'a [f64]) -> Self {
+    fn new(case: SheetCase<'a>, corner: &'a FoldPoint, parts: &'a [f64]) -> Self {
         let before_corner = parts[..parts.len() - 1].iter();
         let points = before_corner.map(|part| (corner.tau, part * corner.load));
-        let mut maps: Vec<ShootingMap> = Batch::new(method).padded().shoot_at(rod, points);
+        let mut maps: Vec<ShootingMap> = case.shoot(points);
         maps.push(corner.variation.map);
         let mut phis = vec![0.0; parts.len()];
         directions(corner.load, parts, maps.iter(), &mut phis);
         Self {
-            rod,
+            case,
             corner,
             parts,
             maps,
@@ -139,7 +141,7 @@ impl<'a> TipLoads<'a> {
     }
 
     /// Returns the samples before the corner, including the `extrema` of the distance.
-    fn samples(&self, method: Method, extrema: &[DistanceExtremum]) -> Vec<EdgeSample> {
+    fn samples(&self, extrema: &[DistanceExtremum]) -> Vec<EdgeSample> {
         let mut samples: Vec<EdgeSample> = Vec::new();
         for (m, part) in self.parts[..self.parts.len() - 1].iter().enumerate() {
             let sample = |place: f64, load: f64, map: &ShootingMap| EdgeSample {
@@ -151,7 +153,7 @@ impl<'a> TipLoads<'a> {
             };
             samples.push(sample(*part, part * self.corner.load, &self.maps[m]));
             for extremum in extrema.iter().filter(|extremum| extremum.after == m) {
-                let (load, map) = extremum.polished(method, self.rod, self.corner.tau);
+                let (load, map) = extremum.polished(self.case, self.corner.tau);
                 samples.push(sample(load / self.corner.load, load, &map));
             }
         }

@@ -5,13 +5,13 @@
 //! Hermite interpolation gives the values between nodes.
 
 use crate::numerics::newton_form::{stencil, through_runs};
-use crate::rod::{Rod, Side};
+use crate::rod::Rod;
 use crate::sheet::fold::change::{jumps, least_q, q, slopes_at};
 use crate::sheet::fold::coordinate::{Hermite, STENCIL, tau_of, u_of};
 use crate::sheet::fold::{FoldPoint, first_folds};
 use crate::sheet::row::Row;
+use crate::sheet::samples::SheetCase;
 use crate::shooting::ShootingMap;
-use crate::shooting::batch::Method;
 use glam::DVec2;
 
 /// Spacing of the contact nodes in `u`.
@@ -58,13 +58,8 @@ const SURELY_BELOW: f64 = 0.75;
 
 /// Returns the folds of nodes from the base outward. The first ones are so close to the base that a whisker held there does not reach the
 /// pole of `nearest`, whatever its shape.
-fn folds_down_to(
-    method: Method,
-    rod: &Rod,
-    side: Side,
-    nearest: &Row,
-    spacing: f64,
-) -> Option<Vec<FoldPoint>> {
+fn folds_down_to(case: SheetCase, nearest: &Row, spacing: f64) -> Option<Vec<FoldPoint>> {
+    let rod = case.rod;
     let tau_tip = rod.tau_tip();
     let u_tip = u_of(rod, tau_tip);
     let mut near = tau_tip;
@@ -81,7 +76,7 @@ fn folds_down_to(
     let range = (u_tip - u_of(rod, rod.tau(reach.min(1.0)))).min(LONGEST_RANGE);
     let count = (range / spacing) as usize + BEYOND_TIP + BEYOND_NEAREST + 2;
     let taus: Vec<f64> = (0..count).map(&mut tau).collect();
-    let folds = first_folds(method, rod, side, &taus);
+    let folds = first_folds(case, &taus);
     let mut folds: Vec<FoldPoint> = folds.into_iter().collect::<Option<_>>()?;
     folds.reverse();
     Some(folds)
@@ -90,8 +85,9 @@ fn folds_down_to(
 impl ContactNodes {
     /// Computes the nodes of `rod` from its tip down to `nearest`, the row nearest to the base, and some beyond both. Returns `None`
     /// where a fold is missing.
-    pub fn new(method: Method, rod: &Rod, side: Side, nearest: &Row, spacing: f64) -> Option<Self> {
-        let folds = folds_down_to(method, rod, side, nearest, spacing)?;
+    pub fn new(case: SheetCase, nearest: &Row, spacing: f64) -> Option<Self> {
+        let rod = case.rod;
+        let folds = folds_down_to(case, nearest, spacing)?;
         let values: Vec<[f64; 2]> = folds
             .iter()
             .map(|f| [libm::log(f.tau), libm::log(q(f))])
@@ -164,9 +160,9 @@ impl ContactNodes {
 )]
 mod tests {
     use super::*;
-    use crate::rod::Rest;
+    use crate::rod::{Rest, Side};
     use crate::shooting::ShootingMap;
-    use crate::shooting::batch::Batch;
+    use crate::shooting::batch::{Batch, Method};
 
     /// Compares slopes with differences between neighbours, at a node in the middle and at the tip.
     #[test]
@@ -185,22 +181,26 @@ mod tests {
                     friction: side.sign() * friction,
                     ..slender.clone()
                 };
-                let method = Method::fine();
+                let case = SheetCase {
+                    method: Method::fine(),
+                    rod: &rod,
+                    side,
+                };
                 let row = Row::new(&Rest::new(&rod), 0.3);
-                let nodes = ContactNodes::new(method, &rod, side, &row, SPACING).unwrap();
+                let nodes = ContactNodes::new(case, &row, SPACING).unwrap();
                 for i in [2, nodes.tip] {
-                    check(&nodes, method, side, i);
+                    check(&nodes, case, i);
                 }
             }
         }
     }
 
-    fn check(nodes: &ContactNodes, method: Method, side: Side, i: usize) {
+    fn check(nodes: &ContactNodes, case: SheetCase, i: usize) {
         const STEP: f64 = 1e-3;
         let rod = &nodes.rod;
         let u = u_of(rod, nodes.folds[i].tau);
         let around = [-STEP, STEP].map(|step| tau_of(rod, step.mul_add(SPACING, u), 1.0));
-        let folds = first_folds(method, rod, side, &around);
+        let folds = first_folds(case, &around);
         let folds = [0, 1].map(|end| folds[end].unwrap());
         let differ = |[a, b]: [f64; 2]| (b - a) / (2.0 * STEP);
         let [ln_tau, ln_q] = nodes.slopes[i];
@@ -208,7 +208,8 @@ mod tests {
         assert!((differ(folds.map(|fold| q(&fold).ln())) - ln_q).abs() < 1e-5);
         for part in [0.0, 0.5, 1.0] {
             let shot = |fold: &FoldPoint| {
-                Batch::new(method).shoot_at::<ShootingMap>(rod, [(fold.tau, part * fold.load)])[0]
+                Batch::new(case.method).shoot_at::<ShootingMap>(rod, [(fold.tau, part * fold.load)])
+                    [0]
             };
             let slope = nodes.slope(i, part, &shot(&nodes.folds[i]));
             let maps = folds.map(|fold| shot(&fold));

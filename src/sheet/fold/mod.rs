@@ -7,8 +7,8 @@ pub mod coordinate;
 use crate::newton::{BatchNewton, LaneSharing, NewtonProblem, NewtonStep};
 use crate::numerics::Bracket;
 use crate::numerics::newton_form::{RootProblem, stencil, through_nodes};
-use crate::rod::{Rod, Side, arclength};
-use crate::shooting::batch::{Batch, Method};
+use crate::rod::{Rod, arclength};
+use crate::sheet::samples::SheetCase;
 use crate::shooting::{SecondVariation, ShootingMap};
 use glam::DVec2;
 
@@ -59,18 +59,18 @@ const POLISH_TRAJECTORIES: u32 = 60;
 
 /// Returns the first folds of `rod` at the contacts `taus`, in the same order. An entry is `None` where there is no fold up to
 /// [`MARCH_END`], or no stable state at first touch.
-pub fn first_folds(method: Method, rod: &Rod, side: Side, taus: &[f64]) -> Vec<Option<FoldPoint>> {
+pub fn first_folds(case: SheetCase, taus: &[f64]) -> Vec<Option<FoldPoint>> {
+    let rod = case.rod;
     let begin = if rod.profile.is_none() && rod.gradient >= 0.0 {
         SURELY_STABLE
     } else {
         0.0
     };
-    let marched = march(method.coarsely(), rod, side, taus, begin);
-    let mut folds = polish(method, rod, marched);
+    let mut folds = polish(case, march(case.coarsely(), taus, begin));
     // With friction and a stiff tip, the first fold can lie at `q` of 1000, where the coarse resolution fails.
     let failed: Vec<usize> = (0..taus.len()).filter(|&i| folds[i].is_none()).collect();
     let again: Vec<f64> = failed.iter().map(|&i| taus[i]).collect();
-    let fine = polish(method, rod, march(method, rod, side, &again, 0.0));
+    let fine = polish(case, march(case, &again, 0.0));
     for (i, fold) in failed.into_iter().zip(fine) {
         folds[i] = fold;
     }
@@ -88,18 +88,13 @@ struct FoldBracket {
 
 /// Samples the loads of every contact from `q = begin` outward until `det` changes its sign. An entry is `None` also where the first
 /// sample is not stable.
-fn march(
-    method: Method,
-    rod: &Rod,
-    side: Side,
-    taus: &[f64],
-    begin: f64,
-) -> Vec<Option<FoldBracket>> {
+fn march(case: SheetCase, taus: &[f64], begin: f64) -> Vec<Option<FoldBracket>> {
     struct ContactMarch {
         index: usize,
         scale: f64,
         dets: Vec<f64>,
     }
+    let SheetCase { rod, side, .. } = case;
     let mut found = vec![None; taus.len()];
     let mut open: Vec<ContactMarch> = (0..taus.len())
         .map(|index| ContactMarch {
@@ -118,7 +113,7 @@ fn march(
             samples[from..].iter().map(move |q| (tau, q * scale))
         };
         let points = open.iter().flat_map(points);
-        let maps: Vec<ShootingMap> = Batch::new(method).padded().shoot_at(rod, points);
+        let maps: Vec<ShootingMap> = case.shoot(points);
         let mut maps = maps.chunks(SAMPLES_PER_ROUND);
         open.retain_mut(|march| {
             let shot = maps.next().unwrap_or_default();
@@ -210,7 +205,8 @@ impl<'a> NewtonProblem<'a> for FoldProblem<'a> {
 }
 
 /// Solves `det(load) = 0` inside the brackets.
-fn polish(method: Method, rod: &Rod, marched: Vec<Option<FoldBracket>>) -> Vec<Option<FoldPoint>> {
+fn polish(case: SheetCase, marched: Vec<Option<FoldBracket>>) -> Vec<Option<FoldPoint>> {
+    let rod = case.rod;
     let found: Vec<FoldBracket> = marched.iter().flatten().copied().collect();
     let problem = |marched: &FoldBracket| FoldProblem {
         rod,
@@ -223,7 +219,7 @@ fn polish(method: Method, rod: &Rod, marched: Vec<Option<FoldBracket>>) -> Vec<O
             Some(_) => LaneSharing::Open,
             None => LaneSharing::All,
         },
-        ..BatchNewton::new(method, POLISH_TRAJECTORIES)
+        ..BatchNewton::new(case.method, POLISH_TRAJECTORIES)
     };
     let mut problems: Vec<FoldProblem> = found.iter().map(problem).collect();
     let starts = found.iter().map(|fold| DVec2::new(fold.tau, fold.guess));

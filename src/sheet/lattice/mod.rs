@@ -10,12 +10,12 @@ use crate::numerics::chebyshev::{CHEBYSHEV_COUNT, LOBATTO_NODES};
 use crate::numerics::nearest_turn;
 use crate::numerics::newton_form::through_runs;
 use crate::numerics::newton_form_simd::LaneNumbers;
-use crate::rod::{Rod, Side};
+use crate::rod::Side;
 use crate::sheet::certificate::stays_positive;
 use crate::sheet::fold::contact_nodes::ContactNodes;
 use crate::sheet::fold::coordinate::TERMS;
+use crate::sheet::samples::SheetCase;
 use crate::shooting::ShootingMap;
-use crate::shooting::batch::{Batch, Method};
 
 /// Trajectories by contact node and load, with polynomials between them.
 #[derive(Clone, Debug)]
@@ -74,19 +74,19 @@ impl LoadLine {
 
 impl Lattice {
     /// Computes the lattice over `contacts`.
-    pub fn new(method: Method, rod: &Rod, side: Side, contacts: &ContactNodes) -> Self {
+    pub fn new(case: SheetCase, contacts: &ContactNodes) -> Self {
         let folds = contacts.folds.iter();
         let points = LOBATTO_NODES.iter().flat_map(|part| {
             let folds = folds.clone();
             folds.map(move |fold| (fold.tau, part * fold.load))
         });
-        let maps: Vec<ShootingMap> = Batch::new(method).padded().shoot_at(rod, points);
+        let maps: Vec<ShootingMap> = case.shoot(points);
         let count = contacts.folds.len();
         let lines: Vec<LoadLine> = (0..count)
             .map(|i| LoadLine::new(contacts, i, maps[i..].iter().step_by(count)))
             .collect();
         Self {
-            side,
+            side: case.side,
             patches: patches(&lines),
             lines,
         }

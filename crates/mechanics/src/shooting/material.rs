@@ -1,7 +1,7 @@
 //! Bending stiffness along the rod.
 
 use crate::numerics::Real;
-use crate::shooting::{Section, Stage};
+use crate::shooting::{Section, StepStage};
 
 /// Coefficients at a stage of a step of the equation after Liouville's transformation. With the inverse compliance `m^2` and
 /// `chi = m (theta - theta_0)/f` it is `chi'' = (m''/m) chi - (rho/m) cos(theta)`, see [`Nystrom8`]. `m_0` and `rho_0` are
@@ -24,14 +24,14 @@ pub trait Material<T: Real>: Copy {
     fn compliance(self, section: &Section<T>) -> T;
 
     /// The coefficients at a stage of a step that starts at `from`, on a rod of this taper, if it tapers.
-    fn liouville(self, taper: Option<T>, from: &Section<T>, stage: &Stage<T>) -> Liouville<T>;
+    fn liouville(self, taper: Option<T>, from: &Section<T>, stage: &StepStage<T>) -> Liouville<T>;
 
     /// `m'/m` and `m/m_0` at a stage, which turn `chi'` back into a lever. `None` if they are 0 and 1.
     fn liouville_scale(
         self,
         taper: Option<T>,
         from: &Section<T>,
-        stage: &Stage<T>,
+        stage: &StepStage<T>,
         inverse_scale: T,
     ) -> Option<[T; 2]>;
 }
@@ -51,7 +51,7 @@ impl<T: Real> Material<T> for Uniform {
     }
 
     #[inline(always)]
-    fn liouville(self, taper: Option<T>, _: &Section<T>, stage: &Stage<T>) -> Liouville<T> {
+    fn liouville(self, taper: Option<T>, _: &Section<T>, stage: &StepStage<T>) -> Liouville<T> {
         let shrunk = stage.shrunk;
         Liouville {
             inverse_scale: shrunk * shrunk * shrunk,
@@ -68,7 +68,7 @@ impl<T: Real> Material<T> for Uniform {
         self,
         taper: Option<T>,
         _: &Section<T>,
-        stage: &Stage<T>,
+        stage: &StepStage<T>,
         _: T,
     ) -> Option<[T; 2]> {
         match taper {
@@ -107,7 +107,7 @@ impl<T: Real> Material<T> for Graded<T> {
     }
 
     #[inline(always)]
-    fn liouville(self, taper: Option<T>, from: &Section<T>, stage: &Stage<T>) -> Liouville<T> {
+    fn liouville(self, taper: Option<T>, from: &Section<T>, stage: &StepStage<T>) -> Liouville<T> {
         let taper = taper.unwrap_or(T::of(0.0));
         let [inverse, fall] = self.fall(&from.at(stage));
         let uniform = Uniform.liouville(Some(taper), from, stage);
@@ -126,7 +126,7 @@ impl<T: Real> Material<T> for Graded<T> {
         self,
         taper: Option<T>,
         from: &Section<T>,
-        stage: &Stage<T>,
+        stage: &StepStage<T>,
         inverse_scale: T,
     ) -> Option<[T; 2]> {
         let taper = taper.unwrap_or(T::of(0.0));

@@ -20,7 +20,7 @@ pub mod sensitivity;
 pub mod shape;
 
 pub use integrator::{
-    BackwardCompliance, Integrator, Nystrom8, STAGES, Scales, Stage, collocate, integrate,
+    BackwardCompliance, Integrator, Nystrom8, STAGES, Scales, StepStage, collocate, integrate,
 };
 pub use intrinsic::{
     Bent, Intrinsic, Spiral, Straight, TANGENT as REST_TANGENT, TERMS as REST_TERMS,

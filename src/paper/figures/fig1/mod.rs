@@ -8,7 +8,7 @@ use crate::paper::whiskers::{CONE, FIG5_LEFT, POLE};
 use crate::render::{Disc, Ink, Line, Note, Plot, Stroke};
 use crate::rod::Side;
 use crate::scene::Whisker;
-use crate::trace::{Branch, NoState, Shape};
+use crate::trace::{Branch, NoState, WhiskerShape};
 use glam::DVec2;
 use serde::Serialize;
 
@@ -110,7 +110,7 @@ fn sides() -> Result<FigurePanel, NoState> {
         (Side::Cb, "cb", "CB: \u{3b8}_p > 0", 0.0),
     ] {
         let branch = Branch::new(&CONE, &POLE, side, TOUCH_MM)?;
-        let points = Shape::at_rest(&branch, POINTS);
+        let points = WhiskerShape::at_rest(&branch, POINTS);
         rows.extend(whisker_points(name, &points));
         let moved = |points: &[[f64; 2]]| -> Vec<_> {
             points.iter().map(|[x, y]| [x + start, *y]).collect()

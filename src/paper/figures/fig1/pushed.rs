@@ -6,7 +6,7 @@ use crate::paper::figures::drawing::arc;
 use crate::paper::whiskers::{CONE, POLE};
 use crate::render::{Disc, Dot, Ink, Inset, Line, Note, Stroke};
 use crate::rod::{Rest, Side};
-use crate::trace::{Branch, NoState, Shape, ShapePoint, WhiskerPart};
+use crate::trace::{Branch, NoState, ShapePoint, WhiskerPart, WhiskerShape};
 use glam::DVec2;
 
 /// Push angle of both panels, in degrees.
@@ -14,7 +14,7 @@ const PUSH_DEG: f64 = 30.0;
 
 /// A whisker pushed CB, in the axes of first touch.
 struct PushedWhisker {
-    shape: Shape,
+    shape: WhiskerShape,
     at_rest: Vec<[f64; 2]>,
     contact: ShapePoint,
     /// Straight distance of the contact from the base.
@@ -25,14 +25,14 @@ impl PushedWhisker {
     fn new() -> Result<Self, NoState> {
         let branch = Branch::new(&CONE, &POLE, Side::Cb, TOUCH_MM)?;
         let state = branch.state(PUSH_DEG.to_radians(), true)?;
-        let shape = Shape::new(&branch, &state, POINTS);
+        let shape = WhiskerShape::new(&branch, &state, POINTS);
         let at = shape
             .points
             .iter()
             .find(|point| point.part == WhiskerPart::Contact);
         Ok(Self {
             contact: at.copied().unwrap_or(shape.points[0]),
-            at_rest: Shape::at_rest(&branch, POINTS),
+            at_rest: WhiskerShape::at_rest(&branch, POINTS),
             distance_mm: branch.read(&state).contact_distance_mm,
             shape,
         })

@@ -9,7 +9,7 @@ use crate::rod::Rod;
 use crate::rod::rod::pointed;
 use glam::DVec2;
 use parabola::Parabola;
-use spiral::EulerSpiral;
+use spiral::SpiralRest;
 
 /// The undeflected shape of a [`Rod`] in the frame of the base: the origin is the base, the first axis its tangent.
 #[derive(Clone, Copy, Debug)]
@@ -22,7 +22,7 @@ pub struct Rest {
 #[derive(Clone, Copy, Debug)]
 enum Form {
     Parabola(Parabola),
-    EulerSpiral(EulerSpiral),
+    EulerSpiral(SpiralRest),
 }
 
 impl Rest {
@@ -31,7 +31,7 @@ impl Rest {
     pub fn new(rod: &Rod) -> Self {
         Self {
             form: match rod.spiral {
-                Some(coefficients) => Form::EulerSpiral(EulerSpiral::new(coefficients)),
+                Some(coefficients) => Form::EulerSpiral(SpiralRest::new(coefficients)),
                 None => Form::Parabola(Parabola::new(rod)),
             },
             pole: rod.pole,

@@ -20,12 +20,12 @@ const TURN_PER_PANEL: f64 = 1.0;
 
 /// An Euler spiral in the frame of the base.
 #[derive(Clone, Copy, Debug)]
-pub struct EulerSpiral {
+pub struct SpiralRest {
     k0: f64,
     k1: f64,
 }
 
-impl EulerSpiral {
+impl SpiralRest {
     /// The spiral whose curvature is `k0 + k1 s`.
     pub fn new([k0, k1]: [f64; 2]) -> Self {
         Self { k0, k1 }

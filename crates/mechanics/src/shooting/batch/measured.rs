@@ -11,7 +11,7 @@ use crate::numerics::{Lanes, Vector, WIDTH};
 use crate::rod::RadiusProfile;
 use crate::shooting::{
     BackwardCompliance, Integrator, Intrinsic, Measured, Nystrom8, PieceSteps, RodSystem, Scales,
-    Section, Sensitivity, Stage, State, collocate,
+    Section, Sensitivity, State, StepStage, collocate,
 };
 
 /// Integration along one piece: its extent and its steps in each lane.
@@ -190,7 +190,7 @@ impl<T: Lanes> GatherMaterial<T> for Measured<T> {
                 let lanes = span.takes(i);
                 let takes = T::pack(lanes);
                 // Waiting lanes take a step of length 0.
-                let end = Stage {
+                let end = StepStage {
                     along: takes * scales.end().along,
                     grown: takes.mul_add(scales.end().grown - one, one),
                     ..*scales.end()

@@ -12,7 +12,7 @@
 use crate::numerics::gauss::{AT, FLAT, Integrals, NODES, Weight, integrals};
 use crate::numerics::{Real, Vector, rotated_by_small};
 use crate::shooting::integrator::{Levers, upright};
-use crate::shooting::{Intrinsic, Measured, RodSystem, Section, Sensitivity, Stage, State};
+use crate::shooting::{Intrinsic, Measured, RodSystem, Section, Sensitivity, State, StepStage};
 
 /// Iterations after the first prediction, in each of which levers follow from angles.
 const ITERATIONS: usize = 2;
@@ -52,7 +52,7 @@ impl<T: Real> BackwardCompliance<'_, T> {
 #[inline(always)]
 pub fn collocate<T: Real, I: Intrinsic<T>, S: Sensitivity<T>>(
     system: &RodSystem<T, I, Measured<T>>,
-    end: &Stage<T>,
+    end: &StepStage<T>,
     from: &Section<T>,
     weights: &Integrals<T>,
     (rest, (rod, (angles, (levers, sums)))): State<T, I, S>,

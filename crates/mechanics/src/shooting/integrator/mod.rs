@@ -31,7 +31,7 @@ pub const STAGES: usize = 8;
 
 /// Changes of the cross-section from the start of a step to one of its stages.
 #[derive(Clone, Copy, Debug)]
-pub struct Stage<T> {
+pub struct StepStage<T> {
     /// `sigma` from the start of the step.
     pub sigma: T,
     /// Arclength toward the base, over the radius at the start of the step.
@@ -47,7 +47,7 @@ pub struct Stage<T> {
 /// The stages of a step, which all steps of a trajectory share.
 #[derive(Clone, Copy, Debug)]
 pub struct Scales<T> {
-    stages: [Stage<T>; STAGES],
+    stages: [StepStage<T>; STAGES],
     /// Taper of the rod. `None` for a cylinder.
     pub taper: Option<T>,
 }
@@ -66,7 +66,7 @@ impl<T: Real> Scales<T> {
             let root = x.mul_add(growth, one);
             let shrunk = (-x).mul_add((-x).mul_add(even, odd), one);
             let cube = shrunk * shrunk * shrunk;
-            *stage = Stage {
+            *stage = StepStage {
                 along: half * growth * (root + one),
                 grown: root * root,
                 inverse_cube: cube * cube,
@@ -82,7 +82,7 @@ impl<T: Real> Scales<T> {
     #[inline(always)]
     pub fn cylinder<M: Integrator>(h: T) -> Self {
         let one = T::of(1.0);
-        let start = Stage {
+        let start = StepStage {
             sigma: h,
             along: h,
             grown: one,
@@ -102,13 +102,13 @@ impl<T: Real> Scales<T> {
 
     /// The stage `i`.
     #[inline(always)]
-    pub fn stage(&self, i: usize) -> &Stage<T> {
+    pub fn stage(&self, i: usize) -> &StepStage<T> {
         &self.stages[i]
     }
 
     /// The end of the step.
     #[inline(always)]
-    pub fn end(&self) -> &Stage<T> {
+    pub fn end(&self) -> &StepStage<T> {
         &self.stages[STAGES - 1]
     }
 }
@@ -117,7 +117,7 @@ impl<T: Real> Section<T> {
     /// The section at a stage of a step that starts at this section.
     #[inline(always)]
     #[must_use]
-    pub fn at(&self, stage: &Stage<T>) -> Self {
+    pub fn at(&self, stage: &StepStage<T>) -> Self {
         Self {
             rho: self.rho * stage.grown,
             inverse_cube: self.inverse_cube * stage.inverse_cube,
