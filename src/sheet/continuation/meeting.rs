@@ -17,10 +17,11 @@ const LOWEST_GRAZE: f64 = 1e-12;
 
 /// Chord from one node of a level curve to the next.
 pub struct Chord<'a> {
-    level: &'a LevelCurve,
-    from: CurveNode,
-    to: CurveNode,
-    is_stable: bool,
+    pub level: &'a LevelCurve,
+    pub from: CurveNode,
+    pub to: CurveNode,
+    /// True if the nodes belong to the stable part.
+    pub is_stable: bool,
 }
 
 /// Edge between two nodes of a level curve.
@@ -33,22 +34,7 @@ pub enum Meeting {
     Unclear,
 }
 
-impl<'a> Chord<'a> {
-    /// Creates the chord between two nodes of the stable or the unstable part.
-    pub const fn new(
-        level: &'a LevelCurve,
-        from: CurveNode,
-        to: CurveNode,
-        is_stable: bool,
-    ) -> Self {
-        Self {
-            level,
-            from,
-            to,
-            is_stable,
-        }
-    }
-
+impl Chord<'_> {
     /// Returns true if the chord may meet an edge.
     pub fn may_meet(&self) -> bool {
         self.crossed().iter().any(Option::is_some)

@@ -130,7 +130,12 @@ impl<'a> Stepper<'a> {
 
     /// Returns the chord from the last node to `next`.
     pub fn chord(&self, next: CurveNode) -> Chord<'a> {
-        Chord::new(self.level, *self.last(), next, self.fold.is_none())
+        Chord {
+            level: self.level,
+            from: *self.last(),
+            to: next,
+            is_stable: self.fold.is_none(),
+        }
     }
 
     /// Returns true if the chord to `next` is about as long as the curve.

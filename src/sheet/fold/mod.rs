@@ -1,6 +1,5 @@
 //! The fold edge: for each contact, the first load at which the Jacobian is singular.
 
-mod change;
 pub mod contact_nodes;
 pub mod coordinate;
 
@@ -21,6 +20,13 @@ pub struct FoldPoint {
     pub load: f64,
     /// Pole and its first and second derivatives at the fold.
     pub variation: SecondVariation,
+}
+
+impl FoldPoint {
+    /// Returns the row parameter `|load| tau^2`.
+    pub fn q(&self) -> f64 {
+        self.load.abs() * self.tau * self.tau
+    }
 }
 
 /// Number of samples of `q = |load| s^2` for each round of the march. Measured radii multiply `q` by their softness.
@@ -150,28 +156,19 @@ const DET_STENCIL: usize = 10;
 
 /// Returns the `q` at which `dets` vanishes between the sample `at` and the next one.
 fn root(samples: &[f64], dets: &[f64], at: usize) -> f64 {
-    let [low, high] = [dets[at], dets[at + 1]];
-    let secant = low / (low - high);
+    let [from, to] = [samples[at], samples[at + 1]];
     let start = stencil(at, DET_STENCIL, dets.len());
-    let around = start..(start + DET_STENCIL).min(samples.len());
-    let part = if samples[around.end - 1] <= EVEN_UP_TO {
-        let offset = (at - start) as f64;
-        let values = dets[around].iter().enumerate();
-        let [polynomial] =
-            through_nodes::<DET_STENCIL, 1>(values.map(|(i, det)| (i as f64, [*det])));
-        let problem = RootProblem {
-            target: 0.0,
-            near: offset + secant,
-            bracket: Bracket {
-                below: offset + 1.0,
-                above: offset,
-            },
-        };
-        polynomial.solve(&problem, LAST_STEP_BETWEEN_SAMPLES) - offset
-    } else {
-        secant
+    let around = samples.iter().copied().zip(dets).skip(start);
+    let [det] = through_nodes::<DET_STENCIL, 1>(around.map(|(q, det)| (q, [*det])));
+    let problem = RootProblem {
+        target: 0.0,
+        near: from + dets[at] / (dets[at] - dets[at + 1]) * (to - from),
+        bracket: Bracket {
+            below: to,
+            above: from,
+        },
     };
-    samples[at] + part * (samples[at + 1] - samples[at])
+    det.solve(&problem, LAST_STEP_BETWEEN_SAMPLES * (to - from))
 }
 
 /// Root-finding problem for the load at which `det` vanishes inside a bracket.

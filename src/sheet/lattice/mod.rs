@@ -85,9 +85,16 @@ impl Lattice {
         let lines: Vec<LoadLine> = (0..count)
             .map(|i| LoadLine::new(contacts, i, maps[i..].iter().step_by(count)))
             .collect();
+        let through = |value: fn(&LoadLine) -> LaneNumbers, slope: usize| {
+            let values: Vec<LaneNumbers> = lines.iter().map(value).collect();
+            let slopes: Vec<LaneNumbers> = lines.iter().map(|line| line.slopes[slope]).collect();
+            through_runs(&values, &slopes).into_iter()
+        };
+        let patches = through(|line| line.ln_distance, 0).zip(through(|line| line.phi, 1));
+        let patches = patches.map(|(ln_distance, phi)| LatticePatch { ln_distance, phi });
         Self {
             side: case.side,
-            patches: patches(&lines),
+            patches: patches.collect(),
             lines,
         }
     }
@@ -107,19 +114,6 @@ impl Lattice {
     pub fn phi_at_fold(&self) -> impl Iterator<Item = f64> {
         self.lines.iter().map(|line| line.phi[CHEBYSHEV_COUNT - 1])
     }
-}
-
-/// Interpolates each [`STENCIL`](crate::sheet::fold::coordinate::STENCIL) neighbours of `lines`, or all of them where there are fewer.
-fn patches(lines: &[LoadLine]) -> Vec<LatticePatch> {
-    let through = |value: fn(&LoadLine) -> LaneNumbers, slope: usize| {
-        let values: Vec<LaneNumbers> = lines.iter().map(value).collect();
-        let slopes: Vec<LaneNumbers> = lines.iter().map(|line| line.slopes[slope]).collect();
-        through_runs(&values, &slopes).into_iter()
-    };
-    through(|line| line.ln_distance, 0)
-        .zip(through(|line| line.phi, 1))
-        .map(|(ln_distance, phi)| LatticePatch { ln_distance, phi })
-        .collect()
 }
 
 /// Writes into `phis` the directions of the pole in radians, continuous from first touch. The `maps` are those of one contact under these

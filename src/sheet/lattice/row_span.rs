@@ -40,61 +40,57 @@ impl Lattice {
     #[must_use]
     pub fn span(&self, contacts: &ContactNodes, row: &Row) -> RowSpan {
         let target = libm::log(row.pole_distance);
-        let mut after = [0; CHEBYSHEV_COUNT];
-        let (mut first, mut count, mut near) = (0, 0, 0);
-        for (m, after) in after.iter_mut().enumerate() {
-            let Some(i) = self.crossing(m, target, near) else {
-                if count == 0 {
-                    continue;
-                }
-                break;
-            };
-            if count == 0 {
-                first = m;
+        // Each load at which the row crosses the lattice, and the contact node after which it does.
+        let mut crossed: Vec<(usize, usize)> = Vec::with_capacity(CHEBYSHEV_COUNT);
+        for m in 0..CHEBYSHEV_COUNT {
+            let near = crossed.last().map_or(0, |(_, i)| *i);
+            match self.crossing(m, target, near) {
+                Some(i) => crossed.push((m, i)),
+                None if crossed.is_empty() => {}
+                None => break,
             }
-            near = i;
-            *after = i;
-            count += 1;
         }
-        let end = first + count;
-        let mut nodes = Vec::with_capacity(count);
-        let mut from = first;
-        while from < end {
-            let [mut low, mut high] = [after[from]; 2];
-            let mut to = from + 1;
-            while to < end && high.max(after[to]) - low.min(after[to]) < PATCH_SPAN {
-                [low, high] = [low.min(after[to]), high.max(after[to])];
-                to += 1;
-            }
-            let start = stencil((low + high) / 2, STENCIL, self.lines.len());
-            self.cross(contacts, row, start, &after[from..to], from, &mut nodes);
-            from = to;
+        let mut nodes = Vec::with_capacity(crossed.len());
+        let mut rest = &crossed[..];
+        while let [(_, i), ..] = rest {
+            let [mut low, mut high] = [*i; 2];
+            let fits = |(_, i): &&(usize, usize)| {
+                (low, high) = (low.min(*i), high.max(*i));
+                high - low < PATCH_SPAN
+            };
+            let (served, after) = rest.split_at(rest.iter().take_while(fits).count());
+            self.cross(contacts, row, served, &mut nodes);
+            rest = after;
         }
         // The fold load changes little from contact to contact.
-        let next = |node: Option<&SpanNode>, m: usize, to: Option<usize>| {
-            let part = LOBATTO_NODES.get(to?)?;
-            Some(node?.w * part / LOBATTO_NODES[m])
+        let next = |node: Option<&SpanNode>, crossed: Option<&(usize, usize)>, forward: bool| {
+            let (node, (m, _)) = node.zip(crossed)?;
+            let to = if forward { m + 1 } else { m.checked_sub(1)? };
+            let part = LOBATTO_NODES.get(to)?;
+            Some(node.w * part / LOBATTO_NODES[*m])
         };
         let beyond = [
-            next(nodes.first(), first, first.checked_sub(1)),
-            next(nodes.last(), end.saturating_sub(1), Some(end)),
+            next(nodes.first(), crossed.first(), false),
+            next(nodes.last(), crossed.last(), true),
         ];
         RowSpan::on_lattice(self.side.sign(), nodes, beyond)
     }
 
-    /// Adds the span's nodes from the load `from` on, where `ln D` crosses that of `row` after the contact nodes `after`. The patch that
-    /// begins at the contact node `start` serves all of them.
+    /// Adds the span's nodes at neighbouring loads that one patch serves. Each load comes with the contact node after which `ln D` crosses
+    /// that of `row`.
     fn cross(
         &self,
         contacts: &ContactNodes,
         row: &Row,
-        start: usize,
-        after: &[usize],
-        from: usize,
+        crossed: &[(usize, usize)],
         nodes: &mut Vec<SpanNode>,
     ) {
+        let after = crossed.iter().map(|(_, i)| *i);
+        let [low, high] = [after.clone().min(), after.max()].map(Option::unwrap_or_default);
+        let start = stencil((low + high) / 2, STENCIL, self.lines.len());
+        let from = crossed.first().map_or(0, |(m, _)| *m);
         let (patch, target) = (&self.patches[start], libm::log(row.pole_distance));
-        let problem = |(m, &i): (usize, &usize)| {
+        let problem = |&(m, i): &(usize, usize)| {
             let offset = i as f64 - start as f64;
             let ends = [i, i + 1].map(|i| self.lines[i].ln_distance[m]);
             RootProblem {
@@ -103,7 +99,7 @@ impl Lattice {
                 bracket: Bracket::new([offset, offset + 1.0], ends),
             }
         };
-        let problems: Vec<RootProblem> = (from..).zip(after).map(problem).collect();
+        let problems: Vec<RootProblem> = crossed.iter().map(problem).collect();
         let folds = [&contacts.ln_tau[start], &contacts.ln_q[start]];
         let roots = SimdRoots {
             nodes: &folds[0].nodes,
@@ -117,7 +113,7 @@ impl Lattice {
         let [phi, ln_tau, ln_q] = roots.solve(from, &problems, LAST_CONTACT_STEP);
         let [tau, q] = Unit::detect().run(Exponentials([ln_tau, ln_q]));
         let sign = self.side.sign();
-        nodes.extend((from..from + after.len()).map(|m| SpanNode {
+        nodes.extend(crossed.iter().map(|&(m, _)| SpanNode {
             w: q[m] * LOBATTO_NODES[m],
             push: sign * (phi[m] - row.touch),
             tau: tau[m],

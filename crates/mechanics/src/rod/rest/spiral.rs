@@ -70,22 +70,17 @@ impl SpiralRest {
     pub fn arclength_of_chord(&self, chord: f64) -> f64 {
         let reach = self.at_arclength(1.0).0.length();
         // The function is the chord less the length, which falls.
-        let mut bracket = Bracket {
+        let bracket = Bracket {
             below: if chord < reach { 1.0 } else { chord + 1.0 },
             above: chord,
         };
-        let mut s = chord;
-        for _ in 0..200 {
+        let newton = |s| {
             let (point, tangent) = self.at_arclength(s);
             let length = point.length();
-            let newton = s - (length - chord) * length / point.dot(tangent);
-            let next = bracket.next(s, chord - length, newton);
-            // The step is at the level of rounding.
-            if (next - s).abs() <= 2.0 * f64::EPSILON * s {
-                return next;
-            }
-            s = next;
-        }
-        s
+            let next = s - (length - chord) * length / point.dot(tangent);
+            (chord - length, next)
+        };
+        // The last step is at the level of rounding.
+        bracket.newton(chord, |s| 2.0 * f64::EPSILON * s, newton).x
     }
 }
