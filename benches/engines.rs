@@ -121,10 +121,9 @@ fn sheets(criterion: &mut Criterion) {
             }));
         }
     }
-    let starts: Vec<(f64, f64)> = shots.iter().map(|shot| (shot.tau, shot.load)).collect();
     group.throughput(Throughput::Elements(shots.len() as u64));
     group.bench_function("refinement", |b| {
-        b.iter(|| refine(method, &[&sheet], black_box(&shots), &starts));
+        b.iter(|| refine(method, &[&sheet], black_box(&shots)));
     });
     group.finish();
 }

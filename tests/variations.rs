@@ -279,8 +279,7 @@ fn base_points_follow_their_row() {
                     pole: sheet.rows[row.row].pole(side.sign() * push),
                 };
                 let targets: Vec<CellTarget> = pushes.iter().map(target).collect();
-                let starts: Vec<(f64, f64)> = targets.iter().map(|at| (at.tau, at.load)).collect();
-                let refined = refine(method, &[&sheet], &targets, &starts);
+                let refined = refine(method, &[&sheet], &targets);
                 for (push, refined) in pushes.iter().zip(refined) {
                     if refined.outcome == RefineOutcome::Solved {
                         let tau = tau_at(&point.row, side.sign() * push);

@@ -27,8 +27,7 @@ impl Cpu {
         self.guesses += begun.elapsed();
         let begun = Instant::now();
         let flat: Vec<CellTarget> = targets.iter().flatten().flatten().copied().collect();
-        let starts: Vec<(f64, f64)> = flat.iter().map(|own| (own.tau, own.load)).collect();
-        let refined = refine(batch.method, &batch.sheets(), &flat, &starts);
+        let refined = refine(batch.method, &batch.sheets(), &flat);
         let mut rest = refined.as_slice();
         let rows = batch.rows.iter().zip(&targets).map(|(row, targets)| {
             let count = targets.iter().flatten().count();

@@ -120,34 +120,18 @@ pub enum RefineOutcome {
     NotConverged,
 }
 
-/// Refines `starts`, pairs `(tau, load)`, by `method` toward `targets`, each on the sheet `sheets[target.rod]`. Returns one cell for each
-/// target.
+/// Refines the guesses of `targets` by `method`, each on the sheet `sheets[target.rod]`. Returns one cell for each target.
 #[must_use]
-pub fn refine(
-    method: Method,
-    sheets: &[&Sheet],
-    targets: &[CellTarget],
-    starts: &[(f64, f64)],
-) -> Vec<Refined> {
+pub fn refine(method: Method, sheets: &[&Sheet], targets: &[CellTarget]) -> Vec<Refined> {
     let mut cells = vec![Refined::default(); targets.len()];
     let size = chunk_size(targets.len());
-    cells
-        .par_chunks_mut(size)
-        .zip(targets.par_chunks(size).zip(starts.par_chunks(size)))
-        .for_each(|(cells, (targets, starts))| {
-            refine_chunk(method, sheets, targets, starts, cells);
-        });
+    let chunks = cells.par_chunks_mut(size).zip(targets.par_chunks(size));
+    chunks.for_each(|(cells, targets)| refine_chunk(method, sheets, targets, cells));
     cells
 }
 
-fn refine_chunk(
-    method: Method,
-    sheets: &[&Sheet],
-    targets: &[CellTarget],
-    starts: &[(f64, f64)],
-    cells: &mut [Refined],
-) {
-    let starts = starts.iter().map(|(tau, load)| DVec2::new(*tau, *load));
+fn refine_chunk(method: Method, sheets: &[&Sheet], targets: &[CellTarget], cells: &mut [Refined]) {
+    let starts = targets.iter().map(|at| DVec2::new(at.tau, at.load));
     let all: Vec<(usize, DVec2)> = starts.enumerate().collect();
     newton(method, sheets, targets, &all, STEPS, cells);
     let failed = (0..cells.len()).filter(|&i| cells[i].outcome == RefineOutcome::NotConverged);
@@ -200,11 +184,7 @@ pub fn states(
     pushes_deg: &[f64],
 ) -> Vec<(CellTarget, ContactState)> {
     let targets = cell_targets(sheet, 0, pushes_deg);
-    let starts: Vec<_> = targets
-        .iter()
-        .map(|target| (target.tau, target.load))
-        .collect();
-    let cells = refine(method, &[sheet], &targets, &starts);
+    let cells = refine(method, &[sheet], &targets);
     let solved = targets.into_iter().zip(cells);
     let solved = solved.filter(|(_, cell)| cell.outcome == RefineOutcome::Solved);
     solved.map(|(target, cell)| (target, cell.state)).collect()

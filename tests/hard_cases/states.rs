@@ -45,11 +45,9 @@ impl Shots {
 
     /// Refined states of the cells, one per shot.
     pub fn refined(&self) -> Vec<Refined> {
-        let starts = self.shots.iter().map(|shot| (shot.tau, shot.load));
-        let starts: Vec<(f64, f64)> = starts.collect();
         let sheets: Vec<&Sheet> = self.sheets.iter().collect();
         let method = Method::fine().with_effects(self.effects);
-        refine::refine(method, &sheets, &self.shots, &starts)
+        refine::refine(method, &sheets, &self.shots)
     }
 
     /// Initial conditions of the solved `cells`.

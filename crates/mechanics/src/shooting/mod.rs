@@ -31,4 +31,4 @@ pub use map::{
 pub use material::{Graded, Liouville, Material, Measured, Uniform};
 pub use reading::{Reader, Reading};
 pub use resolution::{PieceSteps, Resolution};
-pub use rhs::{Carried, Planar, RodSystem, Section, Sensitivity, Shape, State};
+pub use rhs::{Carried, NoSensitivity, Planar, RodSystem, Section, Sensitivity, TrajectoryState};

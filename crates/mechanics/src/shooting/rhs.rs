@@ -38,9 +38,9 @@ pub trait Sensitivity<T: Real>: 'static {
 
 /// The empty set of derivatives: the shape alone.
 #[derive(Clone, Copy, Debug)]
-pub struct Shape;
+pub struct NoSensitivity;
 
-impl<T: Real> Sensitivity<T> for Shape {
+impl<T: Real> Sensitivity<T> for NoSensitivity {
     type Pairs = ();
     type Sums = ();
 
@@ -60,7 +60,7 @@ pub type Carried<T, S> = (
 );
 
 /// State of a trajectory: rest shape, rod, derivatives.
-pub type State<T, I, S> = (<I as Intrinsic<T>>::State, (Planar<T>, Carried<T, S>));
+pub type TrajectoryState<T, I, S> = (<I as Intrinsic<T>>::State, (Planar<T>, Carried<T, S>));
 
 /// Equations of the rod, its rest shape and its derivatives.
 #[derive(Clone, Copy, Debug)]
@@ -79,8 +79,8 @@ impl<T: Real, I: Intrinsic<T>, C: Material<T>> RodSystem<T, I, C> {
     pub fn rhs<S: Sensitivity<T>>(
         &self,
         section: Section<T>,
-        (rest, (rod, (angles, (levers, _)))): State<T, I, S>,
-    ) -> State<T, I, S> {
+        (rest, (rod, (angles, (levers, _)))): TrajectoryState<T, I, S>,
+    ) -> TrajectoryState<T, I, S> {
         let [c, s, x, _, bent] = rod;
         let rho = section.rho;
         let w = self.material.compliance(&section);

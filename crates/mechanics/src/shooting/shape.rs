@@ -2,8 +2,8 @@
 
 use crate::rod::{Rest, Rod, arclength};
 use crate::shooting::{
-    BackwardCompliance, Bent, Graded, Intrinsic, Measured, Nystrom8, Resolution, RodSystem, Scales,
-    Section, Shape, Spiral, State, collocate, integrate,
+    BackwardCompliance, Bent, Graded, Intrinsic, Measured, NoSensitivity, Nystrom8, Resolution,
+    RodSystem, Scales, Section, Spiral, TrajectoryState, collocate, integrate,
 };
 use glam::DVec2;
 
@@ -79,7 +79,7 @@ impl ShapeTrajectory<'_> {
     fn points<I: Intrinsic<f64>>(&self, intrinsic: I, rest: I::State, at: &[f64]) -> Vec<RodPoint> {
         let deflected = at.partition_point(|s| *s < self.contact);
         let tangent = self.tangent;
-        let mut state: State<f64, I, Shape> = (
+        let mut state: TrajectoryState<f64, I, NoSensitivity> = (
             rest,
             ([tangent.x, tangent.y, 0.0, 0.0, 0.0], ((), ((), ()))),
         );
@@ -105,15 +105,15 @@ impl ShapeTrajectory<'_> {
         &self,
         intrinsic: I,
         (mut from, to): (f64, f64),
-        mut state: State<f64, I, Shape>,
-    ) -> State<f64, I, Shape> {
+        mut state: TrajectoryState<f64, I, NoSensitivity>,
+    ) -> TrajectoryState<f64, I, NoSensitivity> {
         let gradient = self.rod.gradient;
         let Some(profile) = &self.rod.profile else {
             let (steps, h) = share(self.steps, self.tau, from - to);
             let system = self.system(intrinsic, Graded { gradient });
             let scales = Scales::tapered::<Nystrom8>(self.rod.taper, h);
             let section = self.section(from);
-            return integrate::<Nystrom8, f64, _, _, Shape>(
+            return integrate::<Nystrom8, f64, _, _, NoSensitivity>(
                 &system, &scales, section, steps, state,
             );
         };
@@ -141,7 +141,7 @@ impl ShapeTrajectory<'_> {
                         from: section.arclength,
                         length: section.rho * scales.end().along,
                     };
-                    state = collocate::<f64, _, Shape>(
+                    state = collocate::<f64, _, NoSensitivity>(
                         &system,
                         scales.end(),
                         &section,

@@ -7,9 +7,9 @@ use whiskmap_mechanics::numerics::{Real, Vector};
 use whiskmap_mechanics::rod::{Effects, Rod};
 use whiskmap_mechanics::shooting::batch::{Batch, InitialCondition, Method};
 use whiskmap_mechanics::shooting::{
-    Graded, Integrator, Intrinsic, Material, Nystrom8, Planar, Resolution, RodSystem, STAGES,
-    Scales, SecondVariation, Section, Sensitivity, Shape, ShootingMap, State, Straight, Uniform,
-    integrate,
+    Graded, Integrator, Intrinsic, Material, NoSensitivity, Nystrom8, Planar, Resolution,
+    RodSystem, STAGES, Scales, SecondVariation, Section, Sensitivity, ShootingMap, Straight,
+    TrajectoryState, Uniform, integrate,
 };
 
 const EFFECTS: Effects = Effects {
@@ -33,8 +33,8 @@ impl Integrator for Rk4 {
         system: &RodSystem<T, I, C>,
         scales: &Scales<T>,
         from: Section<T>,
-        y: State<T, I, S>,
-    ) -> State<T, I, S> {
+        y: TrajectoryState<T, I, S>,
+    ) -> TrajectoryState<T, I, S> {
         let h = scales.end().sigma;
         let half = T::of(0.5) * h;
         let (middle, end) = (from.at(scales.stage(1)), from.at(scales.end()));
@@ -105,7 +105,7 @@ fn end<M: Integrator>(load: f64, steps: u32) -> DVec2 {
     let contact = ((), ([1.0, 0.0, 0.0, 0.0, 0.0], NOTHING));
     let scales = Scales::cylinder::<M>(h);
     let (_, ([_, _, x, y, _], _)) =
-        integrate::<M, f64, _, _, Shape>(&system, &scales, section, steps, contact);
+        integrate::<M, f64, _, _, NoSensitivity>(&system, &scales, section, steps, contact);
     DVec2::new(x, y)
 }
 
@@ -213,8 +213,13 @@ fn ln_pole(rod: &Rod, tau: HyperDual64, load: HyperDual64) -> [HyperDual64; 2] {
     let scales = Scales::tapered::<Rk4>(Dual::of(rod.taper), h);
     let DVec2 { x, y } = rod.contact_tangent();
     let contact: Planar<Dual> = [x, y, 0.0, 0.0, 0.0].map(Dual::of);
-    let (_, (end, _)) =
-        integrate::<Rk4, _, _, _, Shape>(&system, &scales, from, steps, ((), (contact, NOTHING)));
+    let (_, (end, _)) = integrate::<Rk4, _, _, _, NoSensitivity>(
+        &system,
+        &scales,
+        from,
+        steps,
+        ((), (contact, NOTHING)),
+    );
     let [c, s, x, y, _] = end.map(|dual| dual.0);
     let (wx, wy) = (-x + rod.to_pole().x, -y + rod.to_pole().y);
     let ln_distance = (wx * wx + wy * wy).ln() * 0.5;

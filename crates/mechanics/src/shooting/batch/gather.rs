@@ -5,7 +5,7 @@ use crate::shooting::batch::InitialCondition;
 use crate::shooting::contact::{arc, parabola_tangent};
 use crate::shooting::{
     Bent, Graded, Integrator, Intrinsic, Material, Resolution, RodSystem, Scales, Section,
-    Sensitivity, Spiral, State, Straight, Uniform, integrate,
+    Sensitivity, Spiral, Straight, TrajectoryState, Uniform, integrate,
 };
 
 /// One initial condition for each lane.
@@ -56,8 +56,8 @@ pub trait GatherMaterial<T: Lanes> {
     fn to_base<M: Integrator, I: Intrinsic<T>, S: Sensitivity<T>, const ADVANCES: bool>(
         contacts: &Contacts<T>,
         intrinsic: I,
-        state: State<T, I, S>,
-    ) -> State<T, I, S>;
+        state: TrajectoryState<T, I, S>,
+    ) -> TrajectoryState<T, I, S>;
 }
 
 /// The state at the base after `state` at the `contacts`, in steps of equal length.
@@ -73,8 +73,8 @@ fn evenly<
     contacts: &Contacts<T>,
     intrinsic: I,
     material: C,
-    state: State<T, I, S>,
-) -> State<T, I, S> {
+    state: TrajectoryState<T, I, S>,
+) -> TrajectoryState<T, I, S> {
     let one = T::of(1.0);
     let h = contacts.tau / T::of(f64::from(contacts.steps));
     let (scales, rho) = if ADVANCES {
@@ -105,8 +105,8 @@ impl<T: Lanes> GatherMaterial<T> for Uniform {
     fn to_base<M: Integrator, I: Intrinsic<T>, S: Sensitivity<T>, const ADVANCES: bool>(
         contacts: &Contacts<T>,
         intrinsic: I,
-        state: State<T, I, S>,
-    ) -> State<T, I, S> {
+        state: TrajectoryState<T, I, S>,
+    ) -> TrajectoryState<T, I, S> {
         evenly::<M, T, I, Self, S, ADVANCES>(contacts, intrinsic, Self, state)
     }
 }
@@ -122,8 +122,8 @@ impl<T: Lanes> GatherMaterial<T> for Graded<T> {
     fn to_base<M: Integrator, I: Intrinsic<T>, S: Sensitivity<T>, const ADVANCES: bool>(
         contacts: &Contacts<T>,
         intrinsic: I,
-        state: State<T, I, S>,
-    ) -> State<T, I, S> {
+        state: TrajectoryState<T, I, S>,
+    ) -> TrajectoryState<T, I, S> {
         let gradient = lanes(contacts.conditions, |condition| condition.rod.gradient);
         evenly::<M, T, I, Self, S, ADVANCES>(contacts, intrinsic, Self { gradient }, state)
     }

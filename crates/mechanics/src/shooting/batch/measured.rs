@@ -11,7 +11,7 @@ use crate::numerics::{Lanes, Vector, WIDTH};
 use crate::rod::RadiusProfile;
 use crate::shooting::{
     BackwardCompliance, Integrator, Intrinsic, Measured, Nystrom8, PieceSteps, RodSystem, Scales,
-    Section, Sensitivity, State, StepStage, collocate,
+    Section, Sensitivity, StepStage, TrajectoryState, collocate,
 };
 
 /// Integration along one piece: its extent and its steps in each lane.
@@ -145,8 +145,8 @@ impl<T: Lanes> GatherMaterial<T> for Measured<T> {
     fn to_base<M: Integrator, I: Intrinsic<T>, S: Sensitivity<T>, const ADVANCES: bool>(
         contacts: &Contacts<T>,
         intrinsic: I,
-        start: State<T, I, S>,
-    ) -> State<T, I, S> {
+        start: TrajectoryState<T, I, S>,
+    ) -> TrajectoryState<T, I, S> {
         let (zero, one) = (T::of(0.0), T::of(1.0));
         let [tau, s] = [contacts.tau.unpack(), contacts.s.unpack()];
         let Some(profile) = &contacts.conditions[0].rod.profile else {

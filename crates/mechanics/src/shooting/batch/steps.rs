@@ -5,7 +5,8 @@ use super::gather::{Conditions, Gather, lanes};
 use crate::numerics::{Lanes, LanesTask, SimdTask, Unit, WIDTH};
 use crate::shooting::contact::radius_and_arclength;
 use crate::shooting::{
-    Bent, Nystrom8, RodSystem, Scales, Section, Shape, Spiral, State, Straight, Uniform, integrate,
+    Bent, NoSensitivity, Nystrom8, RodSystem, Scales, Section, Spiral, Straight, TrajectoryState,
+    Uniform, integrate,
 };
 use glam::DVec2;
 use std::marker::PhantomData;
@@ -125,7 +126,7 @@ impl<T: Lanes, I: Gather<T>> LanesTask<T> for FollowSteps<'_, I> {
             inverse_cube: one / (radius * radius * radius),
             arclength: s,
         };
-        let mut state: State<T, I, Shape> =
+        let mut state: TrajectoryState<T, I, NoSensitivity> =
             (at_rest, ([cos, sin, zero, zero, zero], ((), ((), ()))));
         let mut turned = [0.0; WIDTH];
         for step in 0..steps.iter().copied().max().unwrap_or_default() {
@@ -147,7 +148,8 @@ impl<T: Lanes, I: Gather<T>> LanesTask<T> for FollowSteps<'_, I> {
                     };
                 }
             }
-            state = integrate::<Nystrom8, T, _, _, Shape>(&system, &scales, section, 1, state);
+            state =
+                integrate::<Nystrom8, T, _, _, NoSensitivity>(&system, &scales, section, 1, state);
             section = section.at(scales.end());
             let (_, ([.., bent], _)) = state;
             let bent = bent.unpack();

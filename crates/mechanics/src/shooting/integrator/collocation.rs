@@ -12,7 +12,9 @@
 use crate::numerics::gauss::{AT, FLAT, Integrals, NODES, Weight, integrals};
 use crate::numerics::{Real, Vector, rotated_by_small};
 use crate::shooting::integrator::{Levers, upright};
-use crate::shooting::{Intrinsic, Measured, RodSystem, Section, Sensitivity, State, StepStage};
+use crate::shooting::{
+    Intrinsic, Measured, RodSystem, Section, Sensitivity, StepStage, TrajectoryState,
+};
 
 /// Iterations after the first prediction, in each of which levers follow from angles.
 const ITERATIONS: usize = 2;
@@ -55,8 +57,8 @@ pub fn collocate<T: Real, I: Intrinsic<T>, S: Sensitivity<T>>(
     end: &StepStage<T>,
     from: &Section<T>,
     weights: &Integrals<T>,
-    (rest, (rod, (angles, (levers, sums)))): State<T, I, S>,
-) -> State<T, I, S> {
+    (rest, (rod, (angles, (levers, sums)))): TrajectoryState<T, I, S>,
+) -> TrajectoryState<T, I, S> {
     let [c, s, x, y, bent] = rod;
     let length = from.rho * end.along;
     let course = system.intrinsic.course(from, rest);

@@ -7,7 +7,9 @@ pub use collocation::{BackwardCompliance, collocate};
 pub use nystrom8::Nystrom8;
 
 use crate::numerics::{Real, hyperbolic_small};
-use crate::shooting::{Intrinsic, Material, Planar, RodSystem, Section, Sensitivity, State};
+use crate::shooting::{
+    Intrinsic, Material, Planar, RodSystem, Section, Sensitivity, TrajectoryState,
+};
 
 /// An explicit one-step method with fixed steps.
 pub trait Integrator: Copy + Send + Sync + 'static {
@@ -19,8 +21,8 @@ pub trait Integrator: Copy + Send + Sync + 'static {
         system: &RodSystem<T, I, C>,
         scales: &Scales<T>,
         from: Section<T>,
-        state: State<T, I, S>,
-    ) -> State<T, I, S>;
+        state: TrajectoryState<T, I, S>,
+    ) -> TrajectoryState<T, I, S>;
 }
 
 /// Quantities that turn angles: `X` and the levers of the derivatives.
@@ -133,8 +135,8 @@ pub fn integrate<M: Integrator, T: Real, I: Intrinsic<T>, C: Material<T>, S: Sen
     scales: &Scales<T>,
     from: Section<T>,
     steps: u32,
-    mut state: State<T, I, S>,
-) -> State<T, I, S> {
+    mut state: TrajectoryState<T, I, S>,
+) -> TrajectoryState<T, I, S> {
     let mut section = from;
     for _ in 0..steps {
         let (rest, (rod, carried)) = M::step::<T, I, C, S>(system, scales, section, state);

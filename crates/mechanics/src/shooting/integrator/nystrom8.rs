@@ -12,7 +12,7 @@
 
 use crate::numerics::{Real, Vector, rotated_by_small};
 use crate::shooting::integrator::{Integrator, Levers, STAGES, Scales};
-use crate::shooting::{Intrinsic, Material, RodSystem, Section, Sensitivity, State};
+use crate::shooting::{Intrinsic, Material, RodSystem, Section, Sensitivity, TrajectoryState};
 
 /// The Nystrom method of order 8 with 8 stages: the integrator of all kernels on rods without a measured profile.
 #[derive(Clone, Copy, Debug)]
@@ -89,8 +89,8 @@ impl Integrator for Nystrom8 {
         system: &RodSystem<T, I, C>,
         scales: &Scales<T>,
         from: Section<T>,
-        (rest, (rod, (angles, (levers, sums)))): State<T, I, S>,
-    ) -> State<T, I, S> {
+        (rest, (rod, (angles, (levers, sums)))): TrajectoryState<T, I, S>,
+    ) -> TrajectoryState<T, I, S> {
         let [c, s, x, y, bent] = rod;
         let h = scales.end().sigma;
         let speed: Levers<T, S> = ([x], levers);
