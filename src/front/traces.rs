@@ -71,7 +71,11 @@ pub fn branch(scene: &Scene, distance_mm: f64, side: Side) -> Result<Branch, NoS
 ///
 /// # Errors
 /// When there is no such state: the error contains how the whisker left the pole, and at which push angle.
-pub fn shape(scene: &Scene, distance_mm: f64, push_angle_deg: f64) -> Result<WhiskerShape, NoState> {
+pub fn shape(
+    scene: &Scene,
+    distance_mm: f64,
+    push_angle_deg: f64,
+) -> Result<WhiskerShape, NoState> {
     let branch = branch(scene, distance_mm, Side::of_push(push_angle_deg))?;
     let state = branch.state(push_angle_deg.to_radians(), true)?;
     Ok(WhiskerShape::new(&branch, &state, 200))
