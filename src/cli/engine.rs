@@ -169,7 +169,6 @@ const NAME: &str = "WGPU_ADAPTER_NAME";
 /// without an adapter.
 ///
 /// # Errors
-///
 /// If the wanted or named adapter is not among the `reports`.
 pub fn chosen(
     reports: &[AdapterReport],

@@ -136,7 +136,6 @@ const ROUNDS: f64 = 3.0;
 /// compiles, does not count.
 ///
 /// # Errors
-///
 /// If the engine fails.
 pub fn compare(
     scene: &Scene,

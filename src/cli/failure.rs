@@ -115,7 +115,6 @@ pub fn message(line: &str) {
 /// Warns if some of `all` results are unresolved; `see` names the place that marks them.
 ///
 /// # Errors
-///
 /// If all of them are unresolved.
 pub fn check_resolved(
     unresolved: u64,

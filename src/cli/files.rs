@@ -56,7 +56,6 @@ impl Files {
     /// Opens the output of `option`.
     ///
     /// # Errors
-    ///
     /// If the output is an input, is inside one, is another output, or cannot be written.
     pub fn output(&mut self, option: &str, path: &Path) -> Result<Output, Failure> {
         if path == Path::new(STDOUT) {
@@ -76,7 +75,6 @@ impl Files {
     /// Declares the store of `option`, a folder that need not exist.
     ///
     /// # Errors
-    ///
     /// If the store is an input, is inside one, or is a file.
     pub fn store(&mut self, option: &str, path: &Path) -> Result<(), Failure> {
         check_folder(option, path)?;

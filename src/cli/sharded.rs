@@ -134,7 +134,6 @@ pub fn fill(
 /// Returns the missing and damaged ones of `blocks`, and warns of each damaged file.
 ///
 /// # Errors
-///
 /// If a file cannot be read, because it may be complete.
 fn unfinished(store: &ZarrStore, blocks: Vec<usize>) -> Result<Vec<usize>, Failure> {
     let states: Vec<BlockState> = blocks

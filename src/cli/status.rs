@@ -119,10 +119,10 @@ pub fn run(args: &StatusArgs, temporary: &TemporaryFiles) -> Result<(), Failure>
 }
 
 fn report(store: &ZarrStore, found: &StoreBlocks) -> Result<(), Failure> {
-    let panel = store.grid().push_angle_deg.len() * store.grid().distance_mm.len();
-    let cells = panel * store.grid().whisker_count();
+    let grid = &store.scene.grid;
+    let cells = grid.push_angle_deg.len() * grid.distance_mm.len() * grid.whisker_count();
     let mut out = std::io::stdout().lock();
-    writeln!(out, "{}", store.title())?;
+    writeln!(out, "{}", store.scene.title)?;
     writeln!(out, "{:>12}  of {} blocks", found.done, store.block_count())?;
     writeln!(
         out,

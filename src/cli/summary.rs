@@ -40,7 +40,6 @@ pub fn compute(
 /// Prints the summary of a map since `start` and the names of its `files`; warns of unresolved cells.
 ///
 /// # Errors
-///
 /// If every cell is unresolved.
 pub fn report(
     scene: &Scene,

@@ -29,7 +29,6 @@ pub struct MapOptions<'a> {
 /// sweep axis to the right and the second upwards.
 ///
 /// # Errors
-///
 /// The map has more than two sweep axes, it lacks the channel, the channel cannot have the requested colour scale, or the map is
 /// damaged.
 pub fn map(map: &MapSlice, options: &MapOptions<'_>) -> Result<Picture, RenderError> {

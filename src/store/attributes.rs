@@ -141,7 +141,6 @@ fn axes(grid: &Grid) -> Vec<AxisAttribute> {
 /// The grid that the attribute `axes` describes.
 ///
 /// # Errors
-///
 /// An axis is unknown, missing or one too many, or its values are not increasing.
 pub(super) fn decode_axes(mut found: Vec<AxisAttribute>) -> Result<Grid, String> {
     for axis in &found {

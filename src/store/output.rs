@@ -39,7 +39,6 @@ impl Output {
     /// The file that will be at `path` once it is finished; until then its bytes are in one of the temporary `files`.
     ///
     /// # Errors
-    ///
     /// `path` leads to a folder, or to a file that is read-only or whose owner cannot be kept, or through a link that must not be
     /// followed; or its folder does not exist or is not writable.
     pub fn create(path: &Path, files: &TemporaryFiles) -> io::Result<Self> {
@@ -92,7 +91,6 @@ impl Output {
     /// the machine damages neither. It takes 1 to 5 ms.
     ///
     /// # Errors
-    ///
     /// An error of [`Output::finish`].
     #[cfg(feature = "zarr")]
     pub(super) fn finish_durably(self) -> io::Result<()> {
@@ -103,7 +101,6 @@ impl Output {
     /// do this at the same time one succeeds.
     ///
     /// # Errors
-    ///
     /// [`AlreadyExists`](io::ErrorKind::AlreadyExists), or an error of [`Output::finish`].
     #[cfg(feature = "zarr")]
     pub(super) fn finish_new(self) -> io::Result<()> {
@@ -133,7 +130,6 @@ impl Output {
     /// Flushes the file and gives it its name.
     ///
     /// # Errors
-    ///
     /// The file cannot be renamed, or the device takes no more.
     pub fn finish(self) -> io::Result<()> {
         match self.0 {

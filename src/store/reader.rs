@@ -27,7 +27,6 @@ impl ChannelValues {
     /// The value of a cell.
     ///
     /// # Panics
-    ///
     /// There is no such cell.
     #[must_use]
     pub fn value(&self, cell: usize) -> f64 {
@@ -74,7 +73,6 @@ impl StoredMap {
     /// Reads the header of a map.
     ///
     /// # Errors
-    ///
     /// The file cannot be read, is not EXR, is not a map of this program, or is damaged.
     pub fn open(path: &Path) -> Result<Self, StoreError> {
         let mut file = open(path)?;
@@ -114,7 +112,6 @@ impl StoredMap {
     /// The attribute `name`; texts such as `scene` and `adapter` are JSON strings.
     ///
     /// # Errors
-    ///
     /// There is no such attribute, or it is not JSON.
     pub fn attribute(&self, name: &str) -> Result<serde_json::Value, StoreError> {
         header::parse(&self.meta, name).map_err(StoreError::at(&self.path, StoreError::NotAMap))
@@ -130,7 +127,6 @@ impl StoredMap {
     /// A channel of all panels: `[second sweep axis][first sweep axis][distance][push angle]`, the last axis fastest.
     ///
     /// # Errors
-    ///
     /// There is no such channel, or the file is damaged.
     pub fn read_channel(&self, name: &str) -> Result<ChannelValues, StoreError> {
         self.read(name, 0..self.layout.panels())
@@ -139,7 +135,6 @@ impl StoredMap {
     /// A channel of one panel: `[distance][push angle]`. No other panel is read.
     ///
     /// # Errors
-    ///
     /// There is no such channel or panel, or the file is damaged.
     pub fn read_panel(&self, name: &str, index: usize) -> Result<ChannelValues, StoreError> {
         let panels = self.layout.panels();

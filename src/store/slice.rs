@@ -33,7 +33,6 @@ impl MapSlice {
     /// The part of `stored` at the values nearest to those `wanted`, which must be values of the axes if `exact`.
     ///
     /// # Errors
-    ///
     /// An axis is unknown or given twice, ends more than half a step before the value, or does not have it although `exact`.
     pub fn new(
         stored: MapSource,
@@ -161,7 +160,6 @@ impl MapSlice {
     /// Returns true if a whisker of the part has friction with its pole, or this version cannot read the scene.
     ///
     /// # Errors
-    ///
     /// The map or store has no scene.
     pub fn has_friction(&self) -> Result<bool, StoreError> {
         let text = self.stored.attribute("scene")?;
@@ -215,7 +213,6 @@ impl MapSlice {
     /// A channel of one whisker of the part: `[distance][push angle]`.
     ///
     /// # Errors
-    ///
     /// There is no such channel or whisker, or it is missing or damaged.
     pub fn read_panel(&self, channel: &str, whisker: usize) -> Result<ChannelValues, StoreError> {
         let panels = self.grid.whisker_count();
@@ -243,7 +240,6 @@ impl MapSlice {
     /// The `channels` of one whisker of the part; other channels are those of an unresolved whisker.
     ///
     /// # Errors
-    ///
     /// An error of [`MapSlice::read_panel`].
     pub fn panel(&self, channels: Channels, whisker: usize) -> Result<Panel, StoreError> {
         let mut panel = Panel::unresolved(self.rows.len() * self.columns.len(), channels);
@@ -270,7 +266,6 @@ impl MapSlice {
     /// The codes of a channel that occur in the part.
     ///
     /// # Errors
-    ///
     /// An error of [`MapSlice::read_panel`].
     pub fn codes(&self, channel: &str) -> Result<BTreeSet<u32>, StoreError> {
         // The header of a whole map has the counts.

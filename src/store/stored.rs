@@ -23,7 +23,6 @@ impl MapSource {
     /// Opens the map at `path`, or the store if it is a folder.
     ///
     /// # Errors
-    ///
     /// It cannot be read, or this program did not write it.
     pub fn open(path: &Path) -> Result<Self, StoreError> {
         #[cfg(feature = "zarr")]
@@ -39,7 +38,7 @@ impl MapSource {
         match self {
             Self::Exr(map) => &map.title,
             #[cfg(feature = "zarr")]
-            Self::Zarr(store) => store.title(),
+            Self::Zarr(store) => &store.scene.title,
         }
     }
 
@@ -49,7 +48,7 @@ impl MapSource {
         match self {
             Self::Exr(map) => &map.grid,
             #[cfg(feature = "zarr")]
-            Self::Zarr(store) => store.grid(),
+            Self::Zarr(store) => &store.scene.grid,
         }
     }
 
@@ -59,14 +58,13 @@ impl MapSource {
         match self {
             Self::Exr(map) => map.channels(),
             #[cfg(feature = "zarr")]
-            Self::Zarr(store) => store.channels().names().collect(),
+            Self::Zarr(store) => store.channels.names().collect(),
         }
     }
 
     /// The attribute `name`, such as `scene`, `engine` or `tolerances`.
     ///
     /// # Errors
-    ///
     /// There is no such attribute.
     pub fn attribute(&self, name: &str) -> Result<Value, StoreError> {
         match self {
@@ -79,7 +77,6 @@ impl MapSource {
     /// The version that wrote it, if it is not compatible with this version.
     ///
     /// # Errors
-    ///
     /// There is no such attribute.
     pub fn foreign_version(&self) -> Result<Option<String>, StoreError> {
         let version = self.attribute("whiskmap_version")?;
@@ -108,7 +105,6 @@ impl MapSource {
     /// A channel of one whisker: `[distance][push angle]`.
     ///
     /// # Errors
-    ///
     /// There is no such channel or whisker, or it is missing or damaged.
     pub fn read_panel(&self, name: &str, whisker: usize) -> Result<ChannelValues, StoreError> {
         match self {

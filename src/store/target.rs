@@ -21,7 +21,6 @@ impl OutputTarget {
     /// Follows the symbolic links of `path` and checks what is there.
     ///
     /// # Errors
-    ///
     /// A link must not be followed, or `path` leads to a folder, or to a file without write permission.
     pub(super) fn of(path: &Path) -> io::Result<Self> {
         check_links(folder_of(path))?;
@@ -56,7 +55,6 @@ impl OutputTarget {
 /// Checks every symbolic link among the folders that `path` names.
 ///
 /// # Errors
-///
 /// A link must not be followed: it belongs to another user, in a folder that others may write to.
 pub fn check_links(path: &Path) -> io::Result<()> {
     let mut links = path.ancestors().filter(|folder| folder.is_symlink());
@@ -103,7 +101,6 @@ fn check_link(_: &Path) -> io::Result<()> {
 /// are dropped, as by every write.
 ///
 /// # Errors
-///
 /// This user may not give files that owner or group. Without them, other users could read or write the new file.
 #[cfg(unix)]
 pub(super) fn inherit(file: &File, replaced: &Metadata) -> io::Result<()> {

@@ -54,7 +54,6 @@ impl TemporaryFiles {
     /// Checks that files can be made in `folder`, and removes those that interrupted processes have left there.
     ///
     /// # Errors
-    ///
     /// The folder does not exist or is not writable.
     pub fn prepare(&self, folder: &Path) -> io::Result<()> {
         let file = TemporaryFile::create(folder, None, self)?;
@@ -184,7 +183,6 @@ impl TemporaryFolder {
     /// An empty folder beside `target`.
     ///
     /// # Errors
-    ///
     /// The folder of `target` does not exist, is not writable, or lies behind a link that must not be followed.
     pub fn create(target: &Path, files: &TemporaryFiles) -> io::Result<Self> {
         check_links(folder_of(target))?;
@@ -211,7 +209,6 @@ impl TemporaryFolder {
     /// Gives the folder its name.
     ///
     /// # Errors
-    ///
     /// A file, or a folder that is not empty, has the name.
     pub fn finish(self, target: &Path) -> io::Result<()> {
         fs::rename(self.folder.path(), target)?;

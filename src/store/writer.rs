@@ -42,7 +42,6 @@ impl MapWriter {
     /// Begins the map that will be at `path`. Until it is finished, its bytes are in one of the temporary `files`.
     ///
     /// # Errors
-    ///
     /// The folder is not writable, or the map is too large for EXR or has more than two sweep axes.
     pub fn create(
         path: &Path,
@@ -97,7 +96,6 @@ impl MapWriter {
     /// Compresses the next panels in parallel and appends them, in the order of the sweep.
     ///
     /// # Errors
-    ///
     /// A panel is one too many, has the wrong size or a code without a name, or the disk is full.
     pub fn write_panels(&mut self, panels: &[Panel]) -> Result<(), StoreError> {
         let (first, all) = (self.written, self.layout.panels());
@@ -158,7 +156,6 @@ impl MapWriter {
     /// Writes counts and checksum into the header and gives the map its name. Returns the counts.
     ///
     /// # Errors
-    ///
     /// A panel is missing, or the file cannot be written or renamed; then no map appears.
     pub fn finish(
         mut self,

@@ -146,7 +146,7 @@ fn tables_fit_a_terminal_and_pictures_are_drawn() {
 }
 
 #[test]
-fn what_cannot_be_written_is_said_before_any_work() {
+fn an_output_that_cannot_be_written_is_refused_before_any_work() {
     let place = Place::with(SCENE);
     for (arguments, why) in [
         (["--plot", "b.jpg"], "must end in .png or .svg"),

@@ -4,7 +4,7 @@ use super::traces::{BRANCH, CB, SHAPE, cells, good};
 use super::{Place, SCENE};
 
 #[test]
-fn a_branch_has_as_many_points_as_asked_for() {
+fn a_branch_has_the_requested_number_of_points() {
     let place = Place::with(SCENE);
     let run = good(&place, &[&CB[..], &["--points", "17"]].concat());
     let rows = cells(&run.out, BRANCH);

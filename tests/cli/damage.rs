@@ -220,7 +220,7 @@ fn what_is_no_file_is_neither_read_nor_removed() {
 }
 
 #[test]
-fn scenes_that_differ_in_line_endings_are_told_apart() {
+fn scenes_that_differ_in_line_endings_are_distinguished() {
     let place = Place::with(SMALL);
     good(&place, "out", &[]);
     place.write("scene.toml", &SMALL.replace('\n', "\r\n"));

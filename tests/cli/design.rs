@@ -59,7 +59,7 @@ fn a_value_is_a_line() {
 }
 
 #[test]
-fn what_is_out_of_reach_says_what_is_not() {
+fn an_unreachable_target_is_refused_with_the_angles_that_are_reached() {
     let place = Place::with(SCENE);
     let none = |more: &[&str], parts: &[&str]| {
         let run = run(&place, more);

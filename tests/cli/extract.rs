@@ -198,23 +198,25 @@ fn a_store_of_a_slice_has_the_values_of_the_whole() {
     let [whole, slice] =
         ["scene.zarr", "slice.zarr"].map(|name| ZarrStore::open(&place.path(name)).unwrap());
     let row = whole
-        .grid()
+        .scene
+        .grid
         .distance_mm
         .iter()
         .position(|d| (d - 5.1).abs() < 0.1);
     let row = row.unwrap();
     assert_eq!(
-        slice.grid().distance_mm,
-        whole.grid().distance_mm[row..=row]
+        slice.scene.grid.distance_mm,
+        whole.scene.grid.distance_mm[row..=row]
     );
-    assert_eq!(slice.grid().axis(Parameter::Friction), Some(&[0.3][..]));
+    assert_eq!(slice.scene.grid.axis(Parameter::Friction), Some(&[0.3][..]));
     assert!(
         slice
-            .title()
+            .scene
+            .title
             .starts_with("A sweep in blocks, friction = 0.3, distance_mm = 5.143")
     );
-    assert_eq!(slice.channels(), whole.channels());
-    for name in slice.channels().names() {
+    assert_eq!(slice.channels, whole.channels);
+    for name in slice.channels.names() {
         for whisker in 0..12 {
             let own = slice.read_panel(name, whisker).unwrap();
             let from = whole

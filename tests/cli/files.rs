@@ -168,7 +168,7 @@ fn links_stay_and_their_files_are_made_or_replaced() {
 
 /// A limit on the file size simulates a full disk; the shell ignores its signal.
 #[test]
-fn a_full_disk_is_said_in_one_line() {
+fn a_full_disk_is_reported_in_one_line() {
     let place = Place::with(SCENE);
     place.map(&["scene.toml", "-o", "."]);
     fs::rename(place.path("scene.exr"), place.path("whole.exr")).unwrap();
@@ -193,7 +193,7 @@ fn a_full_disk_is_said_in_one_line() {
 }
 
 #[test]
-fn a_full_device_is_said_too() {
+fn a_full_device_is_reported() {
     let place = Place::with(SCENE);
     for (option, name) in [("--csv", "t.csv"), ("--plot", "p.svg"), ("--plot", "p.png")] {
         symlink("/dev/full", place.path(name)).unwrap();

@@ -162,7 +162,7 @@ fn what_is_not_determined_is_null() {
 }
 
 #[test]
-fn limits_and_signs_are_told() {
+fn limits_and_signs_are_reported() {
     let place = place();
     place.write(
         "points.csv",

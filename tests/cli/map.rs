@@ -126,7 +126,7 @@ pub const HINGED: &str = "title = 'A hinge'\n[whisker]\nlength_mm = 20\nyoungs_m
                           [grid]\npush_angle_deg = [5, 10]\ndistance_mm = [5, 8]\n";
 
 #[test]
-fn a_map_without_any_answer_is_written_and_fails() {
+fn a_map_without_any_resolved_cell_is_written_and_fails() {
     let place = Place::with(HINGED);
     let run = place.run(&["map", "scene.toml", "-o", ".", "--engine", "cpu"]);
     assert_eq!(run.code, Some(1), "{run:?}");

@@ -34,7 +34,7 @@ fn a_map_with_friction_keeps_the_status_of_loads() {
         let map = StoredMap::open(&place.path("outputs/scene.exr")).unwrap();
         assert_eq!(map.channels(), wanted);
         let store = ZarrStore::open(&place.path("outputs/scene.zarr")).unwrap();
-        assert!(store.channels().names().eq(wanted.iter().copied()));
+        assert!(store.channels.names().eq(wanted.iter().copied()));
     }
     // Verdicts and margins are exact with friction, too.
     let place = place(0.3);

@@ -88,7 +88,7 @@ fn figures_refuse_points_beyond_reach() {
 }
 
 #[test]
-fn verify_says_pass_for_every_number_but_one_of_the_papers() {
+fn verify_passes_every_number_but_one_of_the_papers() {
     let run = good(&Place::with(SCENE), &["verify"]);
     let said = |verdict| {
         run.out

@@ -120,7 +120,7 @@ fn size(path: &std::path::Path) -> u64 {
 
 /// The sample is 4 of 9 whiskers with all their lines. The estimate lacks headers: 4 KB, and 15 files of metadata.
 #[test]
-fn the_size_of_files_is_foretold() {
+fn the_size_of_files_is_estimated() {
     let sweep = STRAIGHT.replace("tip_radius_um = 30\n", "");
     let sweep = sweep.replace("count = 8", "count = 200");
     let sweep = sweep.replace("[5.0, 10.0]", "{ from = 2, to = 20, count = 200 }");

@@ -164,7 +164,7 @@ fn no_output_is_another_output() {
 }
 
 #[test]
-fn a_folder_is_wanted_and_a_file_is_named() {
+fn a_file_in_the_place_of_a_folder_is_named() {
     let place = Place::with(SCENE);
     place.write("file.exr", "");
     let is_none = "must be a folder, but file.exr is not one";

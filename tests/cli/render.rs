@@ -256,7 +256,7 @@ fn scale_and_width_are_chosen() {
 }
 
 #[test]
-fn boxes_are_not_drawn_without_a_word() {
+fn boxes_are_drawn_with_a_warning() {
     let place = Place::with(&SCENE.replace("A small map", "A small \u{5730}\u{56f3}"));
     let warned = |run: &Run| {
         let line = run.err.lines().last().unwrap_or_default();

@@ -7,7 +7,7 @@ use whiskmap::scene::Scene;
 use whiskmap::trace::Branch;
 
 #[test]
-fn a_shape_is_the_state_asked_for() {
+fn a_shape_is_the_requested_state() {
     let place = Place::with(SCENE);
     let at = [
         "shape",
@@ -70,7 +70,7 @@ fn states_that_do_not_exist_have_a_reason() {
 
 /// A contact that slides toward the base is reported by a warning, a column, and a line of the summary.
 #[test]
-fn sliding_toward_the_base_is_told() {
+fn sliding_toward_the_base_is_reported() {
     let rough = SCENE.replace("[grid]", "[contact]\nfriction = 0.3\n[grid]");
     let place = Place::with(&rough);
     let shape =

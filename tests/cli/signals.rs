@@ -100,7 +100,7 @@ fn a_waiting_run_is_interrupted_and_an_ignored_signal_is_not_handled() {
 }
 
 #[test]
-fn what_a_killed_run_leaves_is_removed_by_the_next_one() {
+fn leftovers_of_an_interrupted_run_are_removed_by_the_next_one() {
     let place = Place::with(&long());
     place.write("small.toml", SCENE);
     let mut killed = begun(

@@ -81,7 +81,7 @@ fn has_the_values_of_the_map(scene: &str) {
     good(&place, "zarr", &[]);
     let exr = StoredMap::open(&place.path("exr/scene.exr")).unwrap();
     let zarr = ZarrStore::open(&place.path("zarr/scene.zarr")).unwrap();
-    assert_eq!(*zarr.grid(), exr.grid);
+    assert_eq!(zarr.scene.grid, exr.grid);
     for channel in exr.channels() {
         for whisker in 0..6 {
             let [a, b] = [
@@ -152,7 +152,7 @@ pub fn begun(place: &Place, folder: &str, blocks: usize) -> Child {
 }
 
 #[test]
-fn a_killed_run_goes_on_where_it_was() {
+fn an_interrupted_run_is_resumed_with_equal_bytes() {
     let place = Place::with(SWEEP);
     good(&place, "whole", &[]);
     for blocks in 0..7 {
@@ -212,7 +212,7 @@ fn goes_on(place: &Place) {
 }
 
 #[test]
-fn an_interrupted_run_says_how_to_go_on() {
+fn an_interrupted_run_prints_how_to_resume() {
     let place = Place::with(SWEEP);
     good(&place, "whole", &[]);
     let child = begun(&place, "out", 2);
@@ -227,7 +227,7 @@ fn an_interrupted_run_says_how_to_go_on() {
 }
 
 #[test]
-fn a_store_is_not_continued_otherwise_than_it_was_begun() {
+fn a_store_is_resumed_with_its_own_settings_only() {
     let place = Place::with(SWEEP);
     good(&place, ".", &["--shard=0/8"]);
     map(&place, ".", &[]).assert_refused(&["scene.zarr exists already", "--resume"]);
@@ -251,7 +251,7 @@ fn a_store_is_not_continued_otherwise_than_it_was_begun() {
 
 /// Nobody can create files in `/sys`, not even root.
 #[test]
-fn a_store_that_cannot_be_written_is_said_before_any_work() {
+fn a_store_that_cannot_be_written_is_refused_before_any_work() {
     let place = Place::with(SWEEP);
     good(&place, ".", &["--shard=0/8"]);
     let before = files(&place.path("scene.zarr"));

@@ -24,7 +24,7 @@ fn shell(place: &Place, script: &[&str], variables: &[(&str, &str)]) -> Run {
 }
 
 #[test]
-fn the_tasks_of_the_script_fill_the_store_and_a_last_job_tells() {
+fn the_tasks_of_the_script_fill_the_store_and_a_last_job_verifies_it() {
     let place = Place::with(SWEEP);
     good(&place, "whole", &["--channels=regime,force_un"]);
     let folder = "it's \"a\" folder $HOME";
@@ -151,7 +151,7 @@ fn submit_refuses_what_no_task_could_do() {
 
 /// The lines for GNU parallel and Kubernetes in the documentation run.
 #[test]
-fn other_schedulers_fill_the_store_as_the_pages_say() {
+fn other_schedulers_fill_the_store_as_documented() {
     let page = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/sweeps.md");
     let page = fs::read_to_string(page).unwrap();
     let block = |with: &str| {

@@ -4,7 +4,7 @@ use super::{Place, SCENE};
 use whiskmap::accuracy::BOUNDED;
 
 #[test]
-fn it_says_what_it_picked_and_keeps_it_with_the_map() {
+fn the_selected_steps_are_printed_and_stored_with_the_map() {
     let place = Place::with(SCENE);
     let run = place.map(&["scene.toml", "--tolerance", "1e-6deg", "--no-png"]);
     assert!(run.err.contains("steps of order 8"), "{}", run.err);
@@ -20,7 +20,7 @@ fn it_says_what_it_picked_and_keeps_it_with_the_map() {
 
 /// Coarser steps change the results by at most the tolerance.
 #[test]
-fn a_curve_is_as_exact_as_asked() {
+fn a_curve_meets_its_tolerance() {
     let place = Place::with(SCENE);
     let angles = |arguments: &[&str]| -> Vec<f64> {
         let run = place.run(&[&["curve", "scene.toml"][..], arguments].concat());

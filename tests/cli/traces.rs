@@ -31,7 +31,7 @@ pub fn cells<'a>(text: &'a str, header: &str) -> Vec<Vec<&'a str>> {
 }
 
 #[test]
-fn tables_and_plots_go_where_they_are_told() {
+fn tables_and_plots_are_written_to_the_given_files() {
     let place = Place::with(SCENE);
     let shape = [
         "shape",

@@ -73,7 +73,7 @@ fn other_commands_leave_the_table_alone() {
 }
 
 #[test]
-fn draws_outside_of_the_limits_are_told() {
+fn draws_outside_of_the_limits_are_counted() {
     let place = Place::with(&format!("{SCENE}[uncertainty]\ntip_radius_um = 1.5\n"));
     let run = place.run(&["curve", "scene.toml", "--samples", "50"]);
     assert_eq!(run.code, Some(0), "{run:?}");

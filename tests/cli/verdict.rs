@@ -7,7 +7,7 @@ use serde_json::Value;
 
 /// Data in radians are not a fit: exit code 1, and no file except the JSON.
 #[test]
-fn what_is_not_a_fit_says_so() {
+fn values_that_are_not_a_fit_are_reported() {
     let place = place();
     let text = "side,distance_mm,push_angle_deg,sd_deg\ncf,10,-0.859,0.01\ncf,15,-0.508,0.01\ncb,10,0.7,0.01\ncb,15,0.33,0.01\n";
     place.write("points.csv", text);

@@ -1,4 +1,4 @@
-//! Measured points and fits: known parameters come back, and what cannot be known says so.
+//! Measured points and fits: known parameters come back, and parameters that cannot be known have no standard error.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod known;

@@ -74,7 +74,7 @@ fn trials(have_deviations: bool) -> (usize, f64) {
 }
 
 #[test]
-fn standard_errors_tell_how_far_off_a_fit_is() {
+fn standard_errors_are_as_large_as_the_errors_of_fits() {
     for have_deviations in [true, false] {
         // Measured: 98 and 97, and mean squares of 0.98 and 1.07.
         let (within, squares) = trials(have_deviations);

@@ -55,7 +55,7 @@ fn lines_are_counted_as_an_editor_does() {
 }
 
 #[test]
-fn what_is_wrong_is_told() {
+fn errors_name_the_line_the_value_and_what_is_allowed() {
     let with = |old: &str, new: &str| {
         let text = GOOD.replacen(old, new, 1);
         assert_ne!(text, GOOD);

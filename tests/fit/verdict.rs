@@ -88,7 +88,7 @@ fn absurd_deviations_are_not_a_fit() {
     }
 }
 
-/// Their range is that of their errors; a third of it says nothing of the fit.
+/// Their range is that of their errors; a third of it does not bound the fit.
 #[test]
 fn repeated_measurements_at_one_distance_stay_a_fit() {
     let text = "side,distance_mm,push_angle_deg\ncb,15,18\ncb,15,20.5\ncb,15,16\n";

@@ -82,7 +82,7 @@ fn boundary(angles: &[f64], margins: &[f32]) -> Vec<Vec<[f64; 2]>> {
 }
 
 #[test]
-fn the_cell_nearest_detachment_tells_where_it_is() {
+fn the_boundary_follows_from_the_cell_nearest_detachment() {
     let nan = f32::NAN;
     let margins = [nan, 4.0, 14.5, 4.0, nan, 2.0, 12.0, nan];
     assert_eq!(

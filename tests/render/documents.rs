@@ -47,7 +47,7 @@ fn an_svg_document_has_the_cells_as_pixels_and_the_rest_as_such() {
 }
 
 #[test]
-fn the_width_is_what_was_asked_for() {
+fn a_picture_has_the_requested_width() {
     let scene = scene(6, 5, None, None);
     let panels = [flat(&scene, &[2; 30], 3.0)];
     for width in [300, 1001, 3000] {

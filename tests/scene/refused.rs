@@ -1,4 +1,4 @@
-//! What is refused, and how the message says so.
+//! Refused scenes, and the place, the value and the limits in their messages.
 
 use std::fs;
 use std::path::Path;
@@ -104,7 +104,7 @@ fn values_at_odds_with_each_other_are_refused() {
 }
 
 #[test]
-fn unreadable_files_are_told_apart() {
+fn unreadable_files_have_different_messages() {
     let folder = tempfile::tempdir().unwrap();
     let file = |name: &str, bytes: &[u8]| {
         let path = folder.path().join(name);

@@ -68,15 +68,15 @@ fn bits(samples: &ChannelValues) -> Vec<u64> {
 fn all_of_store(path: &Path) -> Result<Vec<u64>, StoreError> {
     let store = ZarrStore::open(path)?;
     let mut all: Vec<u64> = Vec::new();
-    for channel in store.channels().names() {
-        for whisker in 0..store.grid().whisker_count() {
+    for channel in store.channels.names() {
+        for whisker in 0..store.scene.grid.whisker_count() {
             all.extend(bits(&store.read_panel(channel, whisker)?));
         }
     }
     for block in 0..store.block_count() {
         all.extend(store.regimes(block)?);
     }
-    let grid = store.grid();
+    let grid = &store.scene.grid;
     all.extend(grid.distance_mm.iter().map(|value| value.to_bits()));
     all.extend(grid.push_angle_deg.iter().map(|value| value.to_bits()));
     Ok(all)

@@ -105,7 +105,7 @@ fn a_panel_that_does_not_fit_is_refused() {
 }
 
 #[test]
-fn an_unknown_channel_is_answered_with_the_known_ones() {
+fn an_unknown_channel_is_refused_with_the_known_ones() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("map.exr");
     write(&path, &scene(2, 2, None, None));
@@ -119,7 +119,7 @@ fn an_unknown_channel_is_answered_with_the_known_ones() {
 }
 
 #[test]
-fn other_files_are_told_apart() {
+fn files_of_other_kinds_are_distinguished() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("map.exr");
     let missing = StoredMap::open(&path).unwrap_err();

@@ -50,7 +50,6 @@ impl FigurePanel {
 /// Computes every figure of the paper that shows theory, with measured detachments where the paper shows such.
 ///
 /// # Errors
-///
 /// A branch cannot be followed.
 pub fn figures(measured: &Measurements) -> Result<Vec<Figure>, NoState> {
     Ok(vec![

@@ -2,7 +2,7 @@
 
 use super::blocks::Blocks;
 use super::blosc;
-use serde_json::{Map, Value, json};
+use serde_json::{Value, json};
 
 /// Kinds of values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -68,39 +68,9 @@ pub(super) struct ZarrArray {
 }
 
 impl ZarrArray {
-    /// Values of each cell, `[sweep axes.., distance, push angle]`, in blocks.
-    pub(super) fn of_cells(
-        name: &str,
-        kind: ValueKind,
-        blocks: &Blocks,
-        dimensions: &[&str],
-        about: Value,
-    ) -> Self {
-        let [chunk, filled] = blocks.distances();
-        let [distances, push_angles] = blocks.panel();
-        let sizes = [[distances, filled, chunk], [push_angles; 3]];
-        // Columns make quantities 8 % smaller, but a line of margins is the one before it, shifted.
-        let is_turned = kind == ValueKind::Quantity && name != "margin_deg";
-        let width = is_turned.then_some(push_angles);
-        Self::in_blocks(name, kind, blocks, (&sizes, width), dimensions, about)
-    }
-
-    /// `count` values of each whisker, `[sweep axes.., value]`, in blocks.
-    pub(super) fn of_whiskers(
-        name: &str,
-        kind: ValueKind,
-        blocks: &Blocks,
-        count: usize,
-        dimensions: &[&str],
-        about: Value,
-    ) -> Self {
-        let sizes = (&[[count; 3]][..], None);
-        Self::in_blocks(name, kind, blocks, sizes, dimensions, about)
-    }
-
-    /// An array whose last dimensions have these `sizes`: in all, in a block's file, and in a chunk, whose lines of `width` values
-    /// are stored as columns.
-    fn in_blocks(
+    /// An array in blocks. Its first dimensions are the sweep axes. Its last dimensions have these `sizes`: in all, in a block's
+    /// file, and in a chunk, whose lines of `width` values are stored as columns.
+    pub(super) fn in_blocks(
         name: &str,
         kind: ValueKind,
         blocks: &Blocks,
@@ -108,8 +78,8 @@ impl ZarrArray {
         dimensions: &[&str],
         about: Value,
     ) -> Self {
-        let [axes, block] = blocks.sweep();
-        let sweep = axes.iter().zip(block).map(|(all, block)| [*all, *block, 1]);
+        let sweep = blocks.axes.iter().zip(&blocks.shape);
+        let sweep = sweep.map(|(all, block)| [*all, *block, 1]);
         let sizes: Vec<[usize; 3]> = sweep.chain(sizes.iter().copied()).collect();
         let [all, file, chunk] =
             [0, 1, 2].map(|which| -> Vec<usize> { sizes.iter().map(|size| size[which]).collect() });
@@ -216,7 +186,6 @@ impl ZarrArray {
     /// The values of frames of Blosc, as bytes.
     ///
     /// # Errors
-    ///
     /// A frame is not as [`pack`](Self::pack) writes it.
     pub(super) fn unpack<'a>(
         &self,
@@ -279,12 +248,12 @@ fn turned(lines: &[u8], width: usize) -> Vec<u8> {
 }
 
 /// The attributes of an array by which xarray labels its values: unit and name.
-pub(super) fn about(units: Option<&str>, long_name: &str) -> Map<String, Value> {
-    let mut about = Map::new();
+pub(super) fn about(units: Option<&str>, long_name: &str) -> Value {
+    let mut about = json!({});
     if let Some(units) = units {
-        about.insert("units".to_owned(), json!(units));
+        about["units"] = json!(units);
     }
-    about.insert("long_name".to_owned(), json!(long_name));
+    about["long_name"] = json!(long_name);
     about
 }
 

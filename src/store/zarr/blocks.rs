@@ -16,11 +16,11 @@ const CELLS_OF_A_CHUNK: usize = 1 << 20;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Blocks {
     /// Values of each sweep axis.
-    axes: Vec<usize>,
+    pub(super) axes: Vec<usize>,
     /// Values of each sweep axis in a block; the last block of an axis may have fewer.
-    shape: Vec<usize>,
-    /// Distances and push angles.
-    panel: [usize; 2],
+    pub(super) shape: Vec<usize>,
+    /// Distances and push angles of a panel.
+    pub(super) panel: [usize; 2],
 }
 
 impl Blocks {
@@ -106,16 +106,6 @@ impl Blocks {
     /// Number of slots, each for one whisker, of a block's files.
     pub(super) fn slots(&self) -> usize {
         self.shape.iter().product()
-    }
-
-    /// Values along every sweep axis, in all and in a block.
-    pub(super) fn sweep(&self) -> [&[usize]; 2] {
-        [&self.axes, &self.shape]
-    }
-
-    /// Distances and push angles of a panel.
-    pub(super) const fn panel(&self) -> [usize; 2] {
-        self.panel
     }
 
     /// Distances of a chunk, and of a panel filled up to whole chunks.

@@ -57,7 +57,6 @@ pub(super) fn pack(values: &[u8], size: usize) -> Vec<u8> {
 /// Appends the values of a `frame`, `count` values of `size` bytes, to `values`.
 ///
 /// # Errors
-///
 /// The frame is not as [`pack`] writes it, or it has another number of values.
 pub(super) fn unpack(
     frame: &[u8],

@@ -121,7 +121,6 @@ impl ZarrStore {
     /// Missing and damaged metadata and coordinates, which [`ZarrStore::begin`] and [`ZarrStore::restore_metadata`] write again.
     ///
     /// # Errors
-    ///
     /// The store is of another version, whose metadata may differ, or a file cannot be read.
     pub fn metadata_faults(&self) -> Result<Vec<StoreError>, StoreError> {
         let version = self.attribute("whiskmap_version")?;
@@ -141,7 +140,6 @@ impl ZarrStore {
     /// was damaged.
     ///
     /// # Errors
-    ///
     /// A file cannot be removed, or all blocks belong to another store: then the root is wrong, not the blocks.
     pub fn remove_damaged(&self, block: usize) -> Result<bool, StoreError> {
         if self.owner() == BlockOwner::Other {

@@ -23,7 +23,6 @@ impl ZarrStore {
     /// If several processes create a store at the same time, one creates it, and the others join it.
     ///
     /// # Errors
-    ///
     /// The existing store was created with other settings or must not exist, or one of its folders cannot be written.
     pub fn begin(&self, temporary: &TemporaryFiles) -> Result<Vec<PathBuf>, StoreError> {
         let made = check_links(&self.path).and_then(|()| fs::create_dir_all(&self.path));
@@ -52,7 +51,6 @@ impl ZarrStore {
     /// Writes missing and damaged metadata and coordinates again. Returns the damaged files.
     ///
     /// # Errors
-    ///
     /// A file cannot be read or written.
     pub fn restore_metadata(&self, temporary: &TemporaryFiles) -> Result<Vec<PathBuf>, StoreError> {
         let (mut damaged, mut failures) = (Vec::new(), Vec::new());

@@ -1,6 +1,7 @@
 //! The arrays and attributes of a store.
 
-use super::array::{NOT_COMPUTED, ValueKind, ZarrArray, about};
+use super::array::ValueKind::{self, Code, Coordinate, Count, Quantity};
+use super::array::{NOT_COMPUTED, ZarrArray, about};
 use super::blocks::Blocks;
 use super::identity::{AGREED, StoreIdentity};
 use crate::classify::{Regime, Status};
@@ -14,62 +15,23 @@ pub(super) const CELLS: &str = "regime_cells";
 /// Coordinate with the codes of the regimes, the last axis of [`CELLS`].
 const CODES: &str = "regime_code";
 
-/// Name, unit and meaning of every channel.
-const MEANINGS: [(&str, Option<&str>, &str); 14] = [
-    ("regime", None, "what becomes of the whisker"),
-    ("status", None, "how that was settled"),
-    (
-        "arc_length_mm",
-        Some("mm"),
-        "arclength from the base to the contact",
-    ),
-    (
-        "contact_angle_deg",
-        Some("degree"),
-        "angle of the whisker at the contact",
-    ),
-    (
-        "force_un",
-        Some("uN"),
-        "force between pole and whisker, normal to both",
-    ),
-    (
-        "base_force_x_un",
-        Some("uN"),
-        "force that the pole puts on the base, along its tangent",
-    ),
-    (
-        "base_force_y_un",
-        Some("uN"),
-        "force that the pole puts on the base, across its tangent",
-    ),
-    (
-        "base_moment_nnm",
-        Some("nN m"),
-        "moment that the pole puts on the base",
-    ),
-    (
-        "push_chord_deg",
-        Some("degree"),
-        "angle at the base between the contact and the resting whisker as far away",
-    ),
-    (
-        "contact_distance_mm",
-        Some("mm"),
-        "straight distance from the base to the contact",
-    ),
-    ("energy_nj", Some("nJ"), "energy of bending"),
-    (
-        "margin_deg",
-        Some("degree"),
-        "push angle left until detachment",
-    ),
-    ("newton_steps", None, "Newton steps"),
-    (
-        "residual",
-        Some("1"),
-        "distance from the wanted pole over the whisker's length",
-    ),
+/// Name, kind, unit and meaning of every channel.
+#[rustfmt::skip]
+const CHANNELS: [(&str, ValueKind, Option<&str>, &str); 14] = [
+    ("regime", Code, None, "what becomes of the whisker"),
+    ("status", Code, None, "how that was settled"),
+    ("arc_length_mm", Quantity, Some("mm"), "arclength from the base to the contact"),
+    ("contact_angle_deg", Quantity, Some("degree"), "angle of the whisker at the contact"),
+    ("force_un", Quantity, Some("uN"), "force between pole and whisker, normal to both"),
+    ("base_force_x_un", Quantity, Some("uN"), "force that the pole puts on the base, along its tangent"),
+    ("base_force_y_un", Quantity, Some("uN"), "force that the pole puts on the base, across its tangent"),
+    ("base_moment_nnm", Quantity, Some("nN m"), "moment that the pole puts on the base"),
+    ("push_chord_deg", Quantity, Some("degree"), "angle at the base between the contact and the resting whisker as far away"),
+    ("contact_distance_mm", Quantity, Some("mm"), "straight distance from the base to the contact"),
+    ("energy_nj", Quantity, Some("nJ"), "energy of bending"),
+    ("margin_deg", Quantity, Some("degree"), "push angle left until detachment"),
+    ("newton_steps", Count, None, "Newton steps"),
+    ("residual", Quantity, Some("1"), "distance from the wanted pole over the whisker's length"),
 ];
 
 /// The arrays that are filled block by block. The regimes, which mark a block as finished, are the last.
@@ -78,39 +40,40 @@ pub(super) fn arrays(grid: &Grid, blocks: &Blocks, channels: Channels) -> Vec<Za
     let sweep: Vec<&str> = sweep.collect();
     let of_cells = [&sweep[..], &["distance_mm", "push_angle_deg"]].concat();
     let of_regimes = [&sweep[..], &[CODES]].concat();
-    let mut arrays = vec![ZarrArray::of_whiskers(
+    let mut arrays = vec![ZarrArray::in_blocks(
         CELLS,
-        ValueKind::Count,
+        Count,
         blocks,
-        Regime::ALL.len(),
+        (&[[Regime::ALL.len(); 3]], None),
         &of_regimes,
-        Value::Object(about(None, "cells of each regime")),
+        about(None, "cells of each regime"),
     )];
-    let mut names: Vec<&str> = channels.names().filter(|name| *name != "regime").collect();
-    names.push("regime");
-    for name in names {
-        let kind = match name {
-            "regime" | "status" => ValueKind::Code,
-            "newton_steps" => ValueKind::Count,
-            _ => ValueKind::Quantity,
-        };
-        let about = Value::Object(of_channel(name));
-        arrays.push(ZarrArray::of_cells(name, kind, blocks, &of_cells, about));
+    let ([distances, push_angles], [chunk, filled]) = (blocks.panel, blocks.distances());
+    let sizes = [[distances, filled, chunk], [push_angles; 3]];
+    let [regime, others @ ..] = &CHANNELS;
+    for &(name, kind, units, meaning) in others.iter().chain([regime]) {
+        if name != "regime" && !channels.contains(name) {
+            continue;
+        }
+        // Columns make quantities 8 % smaller, but a line of margins is the one before it, shifted.
+        let is_turned = kind == Quantity && name != "margin_deg";
+        let sizes = (&sizes[..], is_turned.then_some(push_angles));
+        let about = with_flags(name, about(units, meaning));
+        arrays.push(ZarrArray::in_blocks(
+            name, kind, blocks, sizes, &of_cells, about,
+        ));
     }
     arrays
 }
 
 /// The attributes of a channel; codes are flags of the CF conventions.
-fn of_channel(name: &str) -> Map<String, Value> {
-    let meaning = MEANINGS.iter().find(|(own, ..)| *own == name);
-    let (_, units, long_name) = *meaning.unwrap_or(&("", None, ""));
-    let mut about = about(units, long_name);
+fn with_flags(name: &str, mut about: Value) -> Value {
     let mut flags = |codes: Vec<u32>, names: Vec<&str>| {
         let names = names.iter().map(|name| word(name));
         let names = names.chain(["not_computed".to_owned()]).collect::<Vec<_>>();
         let codes = codes.into_iter().chain([u32::from(NOT_COMPUTED)]);
-        about.insert("flag_values".to_owned(), json!(codes.collect::<Vec<_>>()));
-        about.insert("flag_meanings".to_owned(), json!(names.join(" ")));
+        about["flag_values"] = json!(codes.collect::<Vec<_>>());
+        about["flag_meanings"] = json!(names.join(" "));
     };
     match name {
         "regime" => flags(
@@ -156,16 +119,14 @@ pub(super) fn coordinates(grid: &Grid) -> Vec<(ZarrArray, Vec<u8>)> {
     });
     let mut all = Vec::new();
     for (name, units, title, values) in sweep.chain(inside) {
-        let about = Value::Object(about(Some(units), title));
-        let array = ZarrArray::of_axis(name, ValueKind::Coordinate, values.len(), about);
+        let about = about(Some(units), title);
+        let array = ZarrArray::of_axis(name, Coordinate, values.len(), about);
         all.push((array, bytemuck::cast_slice(values).to_vec()));
     }
     let codes = Regime::ALL.map(|regime| regime.code() as u8).to_vec();
-    let about = Value::Object(of_channel("regime"));
-    all.push((
-        ZarrArray::of_axis(CODES, ValueKind::Code, codes.len(), about),
-        codes,
-    ));
+    let (_, _, units, meaning) = CHANNELS[0];
+    let about = with_flags("regime", about(units, meaning));
+    all.push((ZarrArray::of_axis(CODES, Code, codes.len(), about), codes));
     all
 }
 

@@ -33,14 +33,17 @@ use std::path::{Path, PathBuf};
 
 /// A Zarr store on disk.
 #[derive(Debug)]
+#[non_exhaustive]
 pub struct ZarrStore {
+    /// The scene with which the store was created.
+    pub scene: Scene,
+    /// The channels that are stored.
+    pub channels: Channels,
     path: PathBuf,
     attributes: Map<String, Value>,
     identity: StoreIdentity,
     /// Whether the store may exist when it is begun.
     may_exist: bool,
-    scene: Scene,
-    channels: Channels,
     blocks: Blocks,
     arrays: Vec<ZarrArray>,
 }
@@ -52,7 +55,6 @@ impl ZarrStore {
     /// The store at `path`, which [`begin`](Self::begin) creates; it exists already only if it `may_exist`. Regimes are always stored.
     ///
     /// # Errors
-    ///
     /// The store was created with another scene, version, engine, accuracy or choice of channels, or it exists although it must
     /// not.
     pub fn join(
@@ -83,7 +85,6 @@ impl ZarrStore {
     /// Opens a store to read it.
     ///
     /// # Errors
-    ///
     /// There is no store, another program wrote it, or its metadata are damaged.
     pub fn open(path: &Path) -> Result<Self, StoreError> {
         let attributes = files::attributes(path)?;
@@ -129,28 +130,9 @@ impl ZarrStore {
         }
     }
 
-    /// Title of the scene, one line.
-    #[must_use]
-    pub fn title(&self) -> &str {
-        &self.scene.title
-    }
-
-    /// The axes.
-    #[must_use]
-    pub fn grid(&self) -> &Grid {
-        &self.scene.grid
-    }
-
-    /// The channels that are stored.
-    #[must_use]
-    pub fn channels(&self) -> Channels {
-        self.channels
-    }
-
     /// The attribute `name`, such as `scene` or `tolerances`.
     ///
     /// # Errors
-    ///
     /// There is no such attribute.
     pub fn attribute(&self, name: &str) -> Result<Value, StoreError> {
         let value = self.attributes.get(name).cloned();

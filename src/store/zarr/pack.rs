@@ -38,7 +38,6 @@ impl ZarrStore {
     /// Writes the panels of a block.
     ///
     /// # Errors
-    ///
     /// The disk is full, the folder is not writable, or the store is no longer at its path.
     pub fn write(
         &self,

@@ -14,7 +14,6 @@ impl ZarrStore {
     /// Number of cells of each regime in a block.
     ///
     /// # Errors
-    ///
     /// The block is missing or damaged.
     pub fn regimes(&self, block: usize) -> Result<[u64; Regime::ALL.len()], StoreError> {
         let mut regimes = [0; Regime::ALL.len()];
@@ -32,7 +31,6 @@ impl ZarrStore {
     /// A channel of one whisker: `[distance][push angle]`.
     ///
     /// # Errors
-    ///
     /// There is no such channel, or the whisker's block is missing or damaged.
     pub fn read_panel(&self, name: &str, whisker: usize) -> Result<ChannelValues, StoreError> {
         let array = self
@@ -52,7 +50,7 @@ impl ZarrStore {
         let frames = frames.skip(self.blocks.slot(block, index) * chunks);
         let values = array.unpack(frames.take(chunks));
         let values = values.map_err(StoreError::at(&file, StoreError::Damaged))?;
-        let [distances, push_angles] = self.blocks.panel();
+        let [distances, push_angles] = self.blocks.panel;
         let bytes = &values[..distances * push_angles * array.kind.size()];
         Ok(match array.kind {
             ValueKind::Code => {

@@ -63,7 +63,6 @@ impl ColourScale {
     /// Chooses a scale for the summarised values.
     ///
     /// # Errors
-    ///
     /// The range is not two finite numbers in increasing order, or the scale is logarithmic and its range begins at or below 0, or no
     /// value is above 0.
     pub fn new(summary: &ValueSummary, options: ScaleOptions) -> Result<Self, ScaleError> {

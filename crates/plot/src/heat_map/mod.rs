@@ -108,7 +108,6 @@ impl HeatMap {
     /// Lays the heat map out. `panel` returns the contents of panel `row * columns + column`; panels are drawn one by one.
     ///
     /// # Errors
-    ///
     /// Errors of `panel`.
     pub fn picture<E>(
         &self,

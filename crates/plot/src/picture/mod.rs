@@ -141,7 +141,6 @@ impl Picture {
     /// Returns the bytes of the picture as a file; equal pictures give equal bytes.
     ///
     /// # Errors
-    ///
     /// The PNG encoder refuses the pixels.
     pub fn encode(&self, format: PictureFormat) -> Result<Vec<u8>, EncodeError> {
         Ok(match format {

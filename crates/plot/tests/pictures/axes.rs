@@ -140,7 +140,7 @@ fn a_large_disc_widens_both_axes() {
 }
 
 #[test]
-fn logarithmic_axes_tell_the_numbers_themselves() {
+fn logarithmic_axes_are_labelled_with_the_numbers_themselves() {
     let points = [[0.1, 1e-8], [1.0, 1e-5], [10.0, 1e-2]];
     let plot = |points: &[[f64; 2]]| Plot {
         x_label: "time (mm)".to_owned(),
