@@ -147,10 +147,8 @@ impl MapArgs {
             return Ok(());
         }
         let refuse = |why: String| Err(Failure::Input(format!("{why}; give --format zarr")));
-        let axes = scene.grid.sweep.iter().map(|axis| axis.parameter.axis());
-        let axes: Vec<&str> = axes.collect();
-        if axes.len() > 2 {
-            let axes = axes.join(", ");
+        if scene.grid.sweep.len() > 2 {
+            let axes = scene.grid.sweep_names();
             return refuse(format!(
                 "grid: an EXR file has room for two sweep axes, the scene has {axes}"
             ));

@@ -34,9 +34,7 @@ pub struct MapOptions<'a> {
 pub fn map(map: &MapSlice, options: &MapOptions<'_>) -> Result<Picture, RenderError> {
     let grid = map.grid();
     if grid.sweep.len() > 2 {
-        let axes = grid.sweep.iter().map(|axis| axis.parameter.axis());
-        let axes: Vec<_> = axes.collect();
-        return Err(RenderError::TooManyAxes(axes.join(", ")));
+        return Err(RenderError::TooManyAxes(grid.sweep_names()));
     }
     let channel = options.channel.unwrap_or("regime");
     let (shading, legend) = match map.names(channel) {

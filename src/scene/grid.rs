@@ -40,6 +40,13 @@ impl Grid {
         axis.map(|axis| &*axis.values)
     }
 
+    /// Names of the axes along which whiskers differ, with commas between them.
+    #[must_use]
+    pub fn sweep_names(&self) -> String {
+        let names = self.sweep.iter().map(|axis| axis.parameter.axis());
+        names.collect::<Vec<_>>().join(", ")
+    }
+
     /// The axes along x and along y of an atlas of at most two axes. A single axis of curvatures lies along y.
     #[must_use]
     pub fn atlas(&self) -> [Option<&SweepAxis>; 2] {

@@ -17,7 +17,7 @@ pub struct Output(Destination);
 
 #[derive(Debug)]
 enum Destination {
-    Stdout(io::Stdout),
+    Stdout,
     Regular {
         file: TemporaryFile,
         target: PathBuf,
@@ -33,7 +33,7 @@ impl Output {
     /// Standard output, written as it comes.
     #[must_use]
     pub fn stdout() -> Self {
-        Self(Destination::Stdout(io::stdout()))
+        Self(Destination::Stdout)
     }
 
     /// The file that will be at `path` once it is finished; until then its bytes are in one of the temporary `files`.
@@ -81,7 +81,7 @@ impl Output {
     #[must_use]
     pub fn id(&self) -> Option<FileId> {
         match &self.0 {
-            Destination::Stdout(_) => Some(FileId::STDOUT),
+            Destination::Stdout => Some(FileId::STDOUT),
             Destination::Regular { target, .. } => FileId::of(target),
             Destination::Stream { .. } => None,
         }
@@ -112,18 +112,24 @@ impl Output {
 
     #[cfg(feature = "zarr")]
     fn finish_synced(mut self, finish: fn(Self) -> io::Result<()>) -> io::Result<()> {
-        let folder = match &mut self.0 {
-            Destination::Regular { file, target } => {
-                file.file().sync_all()?;
-                Some(folder_of(target).to_owned())
-            }
-            _ => None,
-        };
+        let folder = self.target().map(|target| folder_of(target).to_owned());
+        if let (Some(file), true) = (self.file(), folder.is_some()) {
+            file.sync_all()?;
+        }
         finish(self)?;
         // Only Unix opens folders.
         match folder {
             Some(folder) if cfg!(unix) => File::open(folder)?.sync_all(),
             _ => Ok(()),
+        }
+    }
+
+    /// The file that has the bytes until the output is finished; `None` for standard output.
+    fn file(&mut self) -> Option<&mut File> {
+        match &mut self.0 {
+            Destination::Stdout => None,
+            Destination::Regular { file, .. } => Some(file.file()),
+            Destination::Stream { kept, .. } => Some(kept),
         }
     }
 
@@ -133,7 +139,7 @@ impl Output {
     /// The file cannot be renamed, or the device takes no more.
     pub fn finish(self) -> io::Result<()> {
         match self.0 {
-            Destination::Stdout(mut stdout) => stdout.flush(),
+            Destination::Stdout => io::stdout().flush(),
             Destination::Regular { file, target } => file.persist(&target),
             Destination::Stream { mut kept, target } => {
                 // What is open for appending is never shortened or overwritten, even where it is a file.
@@ -147,28 +153,23 @@ impl Output {
 
 impl Write for Output {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        match &mut self.0 {
-            Destination::Stdout(stdout) => stdout.write(bytes),
-            Destination::Regular { file, .. } => file.file().write(bytes),
-            Destination::Stream { kept, .. } => kept.write(bytes),
+        match self.file() {
+            Some(file) => file.write(bytes),
+            None => io::stdout().write(bytes),
         }
     }
 
     fn flush(&mut self) -> io::Result<()> {
-        match &mut self.0 {
-            Destination::Stdout(stdout) => stdout.flush(),
-            Destination::Regular { file, .. } => file.file().flush(),
-            Destination::Stream { kept, .. } => kept.flush(),
+        match self.file() {
+            Some(file) => file.flush(),
+            None => io::stdout().flush(),
         }
     }
 }
 
 impl Seek for Output {
     fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
-        match &mut self.0 {
-            Destination::Stdout(_) => Err(io::ErrorKind::NotSeekable.into()),
-            Destination::Regular { file, .. } => file.file().seek(to),
-            Destination::Stream { kept, .. } => kept.seek(to),
-        }
+        let file = self.file();
+        file.map_or(Err(io::ErrorKind::NotSeekable.into()), |file| file.seek(to))
     }
 }

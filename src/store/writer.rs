@@ -48,15 +48,14 @@ impl MapWriter {
         about: &MapDescription<'_>,
         files: &TemporaryFiles,
     ) -> Result<Self, StoreError> {
-        let sweep = &about.scene.grid.sweep;
-        if sweep.len() > 2 {
-            let names: Vec<&str> = sweep.iter().map(|axis| axis.parameter.axis()).collect();
+        let grid = &about.scene.grid;
+        if grid.sweep.len() > 2 {
             return Err(StoreError::TooManyAxes {
                 path: path.to_owned(),
-                axes: names.join(", "),
+                axes: grid.sweep_names(),
             });
         }
-        let layout = AtlasLayout::of(&about.scene.grid);
+        let layout = AtlasLayout::of(grid);
         let mut attributes = attributes::encode(about);
         attributes.extend([attribute("counts", &" ".repeat(attributes::counts_width()))]);
         let headers = layout.headers(about.channels, &attributes);

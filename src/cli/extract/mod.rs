@@ -79,10 +79,8 @@ fn map(
         let why = format!("a map needs the channel {missing}; name a .csv or .npy");
         return refuse(path, &why);
     }
-    let sweep = slice.grid().sweep.iter();
-    let axes: Vec<&str> = sweep.map(|axis| axis.parameter.axis()).collect();
-    if axes.len() > 2 {
-        let axes = axes.join(", ");
+    if slice.grid().sweep.len() > 2 {
+        let axes = slice.grid().sweep_names();
         let why = format!(
             "a map holds at most two sweep axes, the slice has {axes}; give --at for the others"
         );

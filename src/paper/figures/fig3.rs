@@ -7,7 +7,7 @@ use crate::paper::whiskers::{CONE, CYLINDER, POLE, pole_distance_mm};
 use crate::render::{BranchAxis, Ink, Line, Note, Plot, Stroke, branches};
 use crate::rod::Side;
 use crate::scene::Whisker;
-use crate::trace::{Branch, BranchMark, BranchPoint, NoState};
+use crate::trace::{Branch, BranchPoint, NoState};
 use serde::Serialize;
 use serde::ser::{SerializeStruct, Serializer};
 
@@ -16,30 +16,21 @@ const POINTS: usize = 160;
 /// Distance of the second pole of the cylinder.
 const NEAR_MM: f64 = 10.0;
 
-/// A state on a branch, in the first columns of a table.
-#[derive(Clone, Copy, Serialize)]
-struct BranchState {
-    distance_mm: f64,
-    side: Side,
-    stable: bool,
-    push_angle_deg: f64,
-}
+/// A row of a table: a state on a branch, and name and value of a column for the upright axis of the panel.
+struct BranchRow(BranchPoint, &'static str, f64);
 
-/// A column of a table: its name, and its value in a row.
-#[derive(Clone, Copy)]
-struct NamedColumn(&'static str, f64);
-
-impl Serialize for NamedColumn {
+impl Serialize for BranchRow {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut columns = serializer.serialize_struct("NamedColumn", 1)?;
-        columns.serialize_field(self.0, &self.1)?;
+        let Self(point, column, value) = self;
+        let mut columns = serializer.serialize_struct("BranchRow", 6)?;
+        columns.serialize_field("distance_mm", &point.distance_mm)?;
+        columns.serialize_field("side", &point.side)?;
+        columns.serialize_field("stable", &point.stable)?;
+        columns.serialize_field("push_angle_deg", &point.push_angle_deg)?;
+        columns.serialize_field(column, value)?;
+        columns.serialize_field("mark", &point.mark)?;
         columns.end()
     }
-}
-
-#[derive(Clone, Copy, Serialize)]
-struct MarkColumn {
-    mark: Option<BranchMark>,
 }
 
 const PUSH_ANGLE: BranchAxis = BranchAxis {
@@ -150,21 +141,8 @@ fn column(
 }
 
 /// The table of a panel, with the values of its upright axis in a column of this name.
-fn rows(
-    points: &[BranchPoint],
-    column: &'static str,
-    axis: BranchAxis,
-) -> Vec<(BranchState, NamedColumn, MarkColumn)> {
-    let row = |point: &BranchPoint| {
-        let state = BranchState {
-            distance_mm: point.distance_mm,
-            side: point.side,
-            stable: point.stable,
-            push_angle_deg: point.push_angle_deg,
-        };
-        let upwards = NamedColumn(column, (axis.value)(point));
-        (state, upwards, MarkColumn { mark: point.mark })
-    };
+fn rows(points: &[BranchPoint], column: &'static str, axis: BranchAxis) -> Vec<BranchRow> {
+    let row = |point: &BranchPoint| BranchRow(*point, column, (axis.value)(point));
     points.iter().map(row).collect()
 }
 
