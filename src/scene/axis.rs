@@ -60,6 +60,12 @@ impl From<Vec<f64>> for AxisValues {
     }
 }
 
+impl From<&[f64]> for AxisValues {
+    fn from(values: &[f64]) -> Self {
+        Self::List(values.to_vec())
+    }
+}
+
 impl<const N: usize> From<[f64; N]> for AxisValues {
     fn from(values: [f64; N]) -> Self {
         Self::List(values.to_vec())

@@ -15,13 +15,13 @@ use std::collections::HashMap;
 /// Numbers of panels and of cells in a panel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct AtlasLayout {
-    /// Panels along x, one per value of the first sweep axis.
+    /// Number of panels along x, one per value of the first sweep axis.
     pub columns: usize,
-    /// Panels along y, one per value of the second.
+    /// Number of panels along y, one per value of the second sweep axis.
     pub rows: usize,
-    /// Cells along x in a panel, one per push angle.
+    /// Number of cells along x in a panel, one per push angle.
     pub push_angles: usize,
-    /// Cells along y in a panel, one per distance.
+    /// Number of cells along y in a panel, one per distance.
     pub distances: usize,
 }
 

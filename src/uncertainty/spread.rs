@@ -15,7 +15,7 @@ row! {
         pub distance_mm: f64,
         /// How the scene's own push ends: slip-off, pull-off, out-of-reach or unresolved.
         pub kind: DetachmentKind,
-        /// Where it ends: positive CB, negative CF.
+        /// Push angle at the end of the scene's own push: positive CB, negative CF.
         pub push_angle_deg: Option<f64>,
         /// Samples that slip off.
         pub slip_off: u64,
@@ -27,19 +27,19 @@ row! {
         pub unresolved: u64,
         /// 5th percentile of the push angles at detachment.
         pub p5_deg: Option<f64>,
-        /// 25th percentile.
+        /// 25th percentile of the push angles at detachment.
         pub p25_deg: Option<f64>,
-        /// Median, the 50th percentile.
+        /// Median of the push angles at detachment.
         pub p50_deg: Option<f64>,
-        /// 75th percentile.
+        /// 75th percentile of the push angles at detachment.
         pub p75_deg: Option<f64>,
-        /// 95th percentile.
+        /// 95th percentile of the push angles at detachment.
         pub p95_deg: Option<f64>,
         /// Mean push angle at detachment.
         pub mean_deg: Option<f64>,
-        /// Standard deviation of the samples.
+        /// Standard deviation of the push angles at detachment, from the samples.
         pub sd_deg: Option<f64>,
-        /// Standard deviation to first order, from derivatives alone.
+        /// Standard deviation of the push angle to first order, from derivatives alone.
         pub sd_first_order_deg: Option<f64>,
     }
 }

@@ -78,7 +78,7 @@ fn a_slice_with_friction_keeps_the_status_of_loads() {
     );
     extract(&["--channel=energy_nj", "-o", "s.zarr"]);
     let store = ZarrStore::open(&place.path("s.zarr")).unwrap();
-    assert!(store.channels().contains("status"));
+    assert!(store.channels.contains("status"));
 
     let marked = marked(&place);
     assert!(marked > 10);

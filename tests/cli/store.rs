@@ -309,7 +309,7 @@ fn channels_that_are_not_wanted_are_not_stored() {
     }
     assert!(some.read_channel("status").is_err());
     let store = ZarrStore::open(&place.path("some/scene.zarr")).unwrap();
-    assert_eq!(store.channels().to_string(), "regime, force_un");
+    assert_eq!(store.channels.to_string(), "regime, force_un");
     let place = place.path("some/scene.zarr");
     assert!(place.join("force_un").exists() && !place.join("status").exists());
 }
