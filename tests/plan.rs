@@ -35,8 +35,8 @@ impl Engine for Counting {
     fn collect(&mut self) -> Result<Cells, EngineError> {
         let batch = self.submitted.pop_front().unwrap();
         let mut cells = Cells::new(&batch, Outcome::NoBasePoint);
-        for (base, trajectory) in batch.base_points.iter().zip(&batch.trajectories) {
-            let from = trajectory.first_cell;
+        for base in &batch.base_points {
+            let from = base.trajectory.first_cell;
             cells.outcome[from..from + base.cells.len()].fill(Outcome::OutsideTrust);
         }
         Ok(cells)

@@ -19,8 +19,8 @@ pub const MOST_TRAJECTORY_STEPS: u32 = 512;
 /// Base points per rayon task.
 const CHUNK: usize = 64;
 
-/// Numbers that are expanded along a row: push angle, `tau`, the direction of the point of the resting whisker that is as far from the
-/// base as the contact, and the derivatives of `(ln D, phi)` by `tau` and by load.
+/// Numbers that are expanded along a row: push angle, `tau`, direction of the resting whisker's point at the distance of the contact, and
+/// the derivatives of `(ln D, phi)` by `tau` and by load.
 pub type RowTerms = [f64; 7];
 
 /// An exact state of a row, with the Taylor expansion of the row around it.
@@ -42,9 +42,11 @@ pub struct BasePoint {
     pub row: [RowTerms; POWERS],
     /// Its cells: indices among the columns of all sides.
     pub cells: Range<u32>,
+    /// Its trajectory, and its place in a batch.
+    pub trajectory: BaseTrajectory,
 }
 
-/// What an engine needs of a base point beside the point itself.
+/// Trajectory of a base point, and its place in a batch.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct BaseTrajectory {
     /// Steps of the trajectory.
@@ -75,14 +77,8 @@ pub struct BatchRow {
 impl BatchRow {
     /// Number of cells.
     #[must_use]
-    pub fn len(&self) -> usize {
+    pub fn count(&self) -> usize {
         self.cells.iter().map(Range::len).sum()
-    }
-
-    /// Returns true if there is no cell.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        self.cells.iter().all(Range::is_empty)
     }
 
     /// The cells to solve, in order.
@@ -108,9 +104,7 @@ pub struct RowBatch {
     pub has_points: bool,
     /// Base points of all rows; none before [`RowBatch::with_base_points`].
     pub base_points: Vec<BasePoint>,
-    /// The trajectory of each base point.
-    pub trajectories: Vec<BaseTrajectory>,
-    /// Starts of the steps of these trajectories, one trajectory after the other.
+    /// Starts of the steps of their trajectories, one trajectory after the other.
     pub starts: Vec<StepStart>,
 }
 
@@ -144,7 +138,6 @@ impl RowBatch {
             rows,
             pushes,
             base_points: Vec::new(),
-            trajectories: Vec::new(),
             starts: Vec::new(),
         }
     }
@@ -200,12 +193,11 @@ impl RowBatch {
     }
 
     /// Replaces the base points, which are those of the rows in order, and integrates their trajectories.
-    pub fn set_base_points(&mut self, base_points: Vec<BasePoint>, resolution: Resolution) {
+    pub fn set_base_points(&mut self, mut base_points: Vec<BasePoint>, resolution: Resolution) {
         let rows = self.rows.iter();
         let row_of = rows.flat_map(|row| std::iter::repeat_n(row, row.base_points.len()));
-        let pairs: Vec<(&BatchRow, &BasePoint)> = row_of.zip(&base_points).collect();
-        let parts = pairs.par_chunks(CHUNK);
-        let parts = parts.map(|pairs| {
+        let mut pairs: Vec<(&BatchRow, &mut BasePoint)> = row_of.zip(&mut base_points).collect();
+        let parts = pairs.par_chunks_mut(CHUNK).map(|pairs| {
             let conditions = pairs.iter().map(|(_, base)| InitialCondition {
                 rod: self.rod(base),
                 tau: base.tau,
@@ -219,21 +211,18 @@ impl RowBatch {
             });
             let steps: Vec<u32> = steps.collect();
             let (starts, bent) = step_starts(&conditions, &steps);
-            let trajectories = pairs.iter().zip(steps).zip(bent);
-            let trajectories = trajectories.map(|((&(row, base), steps), bent)| {
+            for ((row, base), (steps, bent)) in pairs.iter_mut().zip(steps.into_iter().zip(bent)) {
                 let side = &self.sides[row.side];
-                BaseTrajectory {
+                base.trajectory = BaseTrajectory {
                     steps,
                     bent,
                     first_cell: row.first + (base.cells.start - side.columns.first) as usize,
                     values: side.base_values(row.row, base),
-                }
-            });
-            (trajectories.collect(), starts)
+                };
+            }
+            starts
         });
-        let parts: Vec<(Vec<BaseTrajectory>, Vec<StepStart>)> = parts.collect();
-        let (trajectories, starts): (Vec<_>, Vec<_>) = parts.into_iter().unzip();
-        (self.trajectories, self.starts) = (trajectories.concat(), starts.concat());
+        self.starts = parts.collect::<Vec<Vec<StepStart>>>().concat();
         self.base_points = base_points;
     }
 
@@ -252,6 +241,6 @@ impl RowBatch {
     /// Number of cells.
     #[must_use]
     pub fn cells(&self) -> usize {
-        self.rows.last().map_or(0, |last| last.first + last.len())
+        self.rows.last().map_or(0, |last| last.first + last.count())
     }
 }

@@ -5,10 +5,10 @@ use crate::engine::{BatchRow, Cell, Cells, Outcome, RowBatch, Values, WhiskerSid
 use crate::sheet::Sheet;
 use std::ops::Range;
 
-/// One of so many cells is audited.
+/// Cells for each audited one.
 const ONE_IN: u64 = 256;
 
-/// Minimum number of audited cells of a whisker side, about.
+/// Approximate minimum number of audited cells of a whisker side.
 const AT_LEAST: u64 = 64;
 
 /// Maximum difference of a value, as a part of the largest along the row or of a radian.
@@ -24,7 +24,7 @@ pub struct AuditSample {
 }
 
 impl AuditSample {
-    /// The sample of `row` of `sheet`, which has so many columns.
+    /// Returns the sample of `row` of `sheet` with `columns` columns.
     pub fn new(sheet: &Sheet, row: usize, columns: usize) -> Self {
         let cells = (sheet.rows.len() * columns) as u64;
         let distance = sheet.rows[row].pole_distance;
@@ -44,7 +44,7 @@ impl AuditSample {
         }
     }
 
-    /// The audited ones of `cells`.
+    /// Returns the audited cells among `cells`.
     pub fn of(&self, cells: Range<usize>) -> impl Iterator<Item = usize> + use<> {
         let Self { seed, one_in } = *self;
         let all = cells.start as u64..cells.end as u64;
@@ -63,8 +63,8 @@ fn mixed(z: u64) -> u64 {
     z ^ (z >> 31)
 }
 
-/// Factor by which a miss of the pole may change values more than the push does: next to the tip of a cone they change faster with its
-/// distance. Measured at most 1.5 on 2,000 random whiskers.
+/// Largest ratio of the change of values by a miss of the pole to their change by the push: next to the tip of a cone, values change faster
+/// with the distance. Measured at most 1.5 on 2,000 random whiskers.
 const BY_DISTANCE: f64 = 4.0;
 
 /// Compares the solved `cells` of an engine with those of the `rest` that the CPU `found`.
@@ -92,20 +92,18 @@ fn holds(batch: &RowBatch, row: &BatchRow, cell: usize, theirs: &Cell, ours: &Ce
     }
     let side = &batch.sides[row.side];
     let push = side.columns.columns[cell].push;
-    let of_row = &batch.trajectories[row.base_points.clone()];
+    let of_row = &batch.base_points[row.base_points.clone()];
     let ours = ours.values.map(f64::from);
-    let sizes = sizes(side, of_row.iter().map(|base| base.values).chain([ours]));
+    let values = of_row.iter().map(|base| base.trajectory.values);
+    let sizes = sizes(side, values.chain([ours]));
     let miss = f64::from(theirs.residual).min(LARGEST_MISS);
     let miss_angle = miss / side.sheet.rows[row.row].pole_distance;
     let column = side.columns.first + cell as u32;
-    let base = batch.base_points[row.base_points.clone()].iter();
-    let base = base
-        .zip(of_row)
-        .find(|(base, _)| base.cells.contains(&column));
+    let base = of_row.iter().find(|base| base.cells.contains(&column));
     (0..ours.len()).all(|i| {
-        let by_miss = base.map_or(0.0, |(base, known)| {
+        let by_miss = base.map_or(0.0, |base| {
             let part_of_turn = (miss_angle / (push - base.push).abs()).min(1.0);
-            BY_DISTANCE * part_of_turn * (ours[i] - known.values[i]).abs()
+            BY_DISTANCE * part_of_turn * (ours[i] - base.trajectory.values[i]).abs()
         });
         (ours[i] - f64::from(theirs.values[i])).abs() <= TOLERANCE * sizes[i] + by_miss
     })

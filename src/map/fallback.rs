@@ -50,7 +50,7 @@ pub fn complete(
 fn rest(batch: &RowBatch, cells: &Cells) -> RowBatch {
     let rows = batch.rows.par_iter().map(|row| {
         let side = &batch.sides[row.side];
-        let outcomes = &cells.outcome[row.first..row.first + row.len()];
+        let outcomes = &cells.outcome[row.first..row.first + row.count()];
         let sample = AuditSample::new(&side.sheet, row.row, side.columns.len());
         let mut wanted: Vec<Range<usize>> = Vec::new();
         let mut from = 0;

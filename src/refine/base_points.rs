@@ -4,7 +4,7 @@
 //! gives the components of the state that are analytic along the row. Each base point carries it as Taylor polynomials around itself.
 
 use super::row_states::{ExactState, RowState, row_states};
-use crate::engine::{BasePoint, MOST_TRAJECTORY_STEPS, RowTerms};
+use crate::engine::{BasePoint, BaseTrajectory, MOST_TRAJECTORY_STEPS, RowTerms};
 use crate::numerics::chebyshev::{CHEBYSHEV_COUNT as NODES, CHEBYSHEV_POINTS, taylor_at_points};
 use crate::numerics::nearest_turn;
 use crate::rod::Rest;
@@ -130,6 +130,7 @@ fn expand(sheet: &Sheet, row: &RowOfCells, w_end: f64, found: &[ExactState]) -> 
                 load_per_w: w_end / (tau * tau),
                 row: row_here,
                 cells: row.first + from as u32..row.first + to as u32,
+                trajectory: BaseTrajectory::default(),
             });
         }
         from = to;

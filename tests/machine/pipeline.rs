@@ -1,4 +1,4 @@
-//! The strips of a map on their way: the engine solves one while the one before is settled, and no race decides about a cell.
+//! Row batches in order: an engine solves one while the previous one is completed, and results do not depend on threads.
 
 use crate::compute::{Response, Watched, assert_identical, compute_as, open};
 use std::convert::Infallible;
@@ -16,15 +16,15 @@ tests! {
     Nothing:
         stages_are_one_sequence;
     Adapter:
-        a_strip_is_solved_while_the_one_before_is_settled,
-        what_becomes_of_a_cell_does_not_depend_on_threads,
+        a_batch_is_solved_while_the_previous_one_is_completed,
+        outcomes_do_not_depend_on_threads,
         a_response_of_too_few_cells_is_a_failure,
         an_engine_goes_from_run_to_run,
         stages_are_one_sequence_beside_an_engine;
 }
 
 /// The paper's cone, and a plan that takes its rows by eights.
-fn in_strips() -> (Scene, Plan) {
+fn in_batches() -> (Scene, Plan) {
     let scene = Scene::read("scenes/cone.toml").unwrap().thinned(64, 1);
     let mut plan = Plan::new(&scene).unwrap();
     plan.rows_at_once = 8;
@@ -36,17 +36,17 @@ fn on_threads<R: Send>(count: usize, work: impl FnOnce() -> R + Send) -> R {
     pool.unwrap().install(work)
 }
 
-/// Strips of which both are known to be under way at some moment; the last ones are out of reach, and nothing is asked about them.
+/// Batches of which the engine certainly gets all; the last ones of the map are out of reach and have no base points.
 const AT_ONCE: usize = 8;
 
-/// The answer to a call waits until the strip before is settled, and that one for the call: in turn, one of them would wait in vain.
-fn a_strip_is_solved_while_the_one_before_is_settled() {
-    let (scene, plan) = in_strips();
+/// The response to a call waits until the previous batch is completed, which waits for the call: in sequence, one would wait for ever.
+fn a_batch_is_solved_while_the_previous_one_is_completed() {
+    let (scene, plan) = in_batches();
     let gpu = open(Precision::F32);
     let wait = |other: &mpsc::Receiver<usize>, until: usize| {
         while other.recv_timeout(Duration::from_secs(60)).unwrap() < until {}
     };
-    let ((call_begins, calls), (strip_ends, ends)) = (mpsc::channel(), mpsc::channel());
+    let ((call_begins, calls), (batch_ends, ends)) = (mpsc::channel(), mpsc::channel());
     let call = move |before: usize, gpu: &mut Gpu, solve: &dyn Fn(&mut Gpu) -> Response| {
         let cells = solve(gpu)?;
         call_begins.send(before + 1).unwrap();
@@ -57,24 +57,24 @@ fn a_strip_is_solved_while_the_one_before_is_settled() {
     };
     let mut engine = Watched::new(gpu, call);
     on_threads(1, move || {
-        let mut settled = 0;
+        let mut completed = 0;
         let mut one_more = |_| {
-            settled += 1;
-            strip_ends.send(settled).unwrap();
-            if settled < AT_ONCE {
-                wait(&calls, settled + 1);
+            completed += 1;
+            batch_ends.send(completed).unwrap();
+            if completed < AT_ONCE {
+                wait(&calls, completed + 1);
             }
             ControlFlow::Continue(())
         };
         let discard = &mut |_| Ok::<(), Infallible>(());
         let Ok(_) = map::run(&scene, &plan, Some(&mut engine), &mut one_more, discard);
-        assert_eq!(settled, 16);
+        assert_eq!(completed, 16);
     });
 }
 
-/// The fifth call fails, or its answers are wrong, which an audit finds while the sixth is under way: no cell of either is the engine's.
-fn what_becomes_of_a_cell_does_not_depend_on_threads() {
-    let (scene, plan) = in_strips();
+/// The fifth call fails, or its cells are wrong, which the audit finds while the sixth is submitted: all cells of both are the CPU's.
+fn outcomes_do_not_depend_on_threads() {
+    let (scene, plan) = in_batches();
     let run = |threads: usize, is_wrong: bool| -> (Summary, Vec<Panel>) {
         let gpu = open(Precision::F32);
         let call = |before, gpu: &mut Gpu, solve: &dyn Fn(&mut Gpu) -> Response| {
@@ -102,9 +102,9 @@ fn what_becomes_of_a_cell_does_not_depend_on_threads() {
     }
 }
 
-/// An engine that forgets a cell is not believed, and no cell is lost.
+/// An engine that returns too few cells is disabled, and the map is complete.
 fn a_response_of_too_few_cells_is_a_failure() {
-    let (scene, plan) = in_strips();
+    let (scene, plan) = in_batches();
     let gpu = open(Precision::F32);
     let forget = |_, gpu: &mut Gpu, solve: &dyn Fn(&mut Gpu) -> Response| {
         let mut cells = solve(gpu)?;
@@ -115,15 +115,15 @@ fn a_response_of_too_few_cells_is_a_failure() {
     let (summary, panels) = compute_as(&scene, &plan, Some(&mut engine));
     let failure = summary.engine_failure.unwrap().to_string();
     assert!(failure.contains("a response of"), "{failure}");
-    // It may have answered what was under way, which nobody believes.
+    // Responses to batches already submitted are discarded.
     assert!((1..=3).contains(&engine.calls), "{}", engine.calls);
     assert_eq!(summary.engine_cells.solved, 0);
     assert_identical(&compute_as(&scene, &plan, None).1, &panels);
 }
 
-/// What is under way when a run ends early is no answer to the next run's questions.
+/// Cells of batches that were submitted when a run ended early do not appear in the next run.
 fn an_engine_goes_from_run_to_run() {
-    let (scene, plan) = in_strips();
+    let (scene, plan) = in_batches();
     let mut gpu = open(Precision::F32);
     let fresh = compute_as(&scene, &plan, Some(&mut gpu)).1;
     let sweep = Scene::read("scenes/morphology.toml")
@@ -160,7 +160,7 @@ fn stages_are_one_sequence_beside_an_engine() {
 
 /// Asserts that every stage takes time, and that no second counts for two stages.
 fn stages_follow_each_other(engine: Option<&mut dyn Engine>) {
-    let (scene, plan) = in_strips();
+    let (scene, plan) = in_batches();
     let has_engine = engine.is_some();
     let mut keep = |panels: Vec<Panel>| {
         assert!(MapWriter::sample(&scene.grid, plan.channels, &panels) > 0);

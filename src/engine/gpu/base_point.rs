@@ -1,7 +1,7 @@
 //! Base points and starts of steps in the layout of the shaders.
 
 use super::Precision;
-use crate::engine::{BasePoint, BaseTrajectory, MOST_TRAJECTORY_STEPS, POWERS};
+use crate::engine::{BasePoint, MOST_TRAJECTORY_STEPS, POWERS};
 use crate::numerics::Real;
 use crate::rod::{Rest, Rod, arclength};
 use crate::shooting::StateDerivative;
@@ -100,7 +100,7 @@ pub const QUADS: [(&str, usize); 13] = {
 };
 
 impl<T: Scalar> GpuBasePoint<T> {
-    pub fn new(rod: &Rod, base: &BasePoint, first_step: u32, trajectory: &BaseTrajectory) -> Self {
+    pub fn new(rod: &Rod, base: &BasePoint, first_step: u32) -> Self {
         let BasePoint {
             tau, load, state, ..
         } = base;
@@ -122,12 +122,12 @@ impl<T: Scalar> GpuBasePoint<T> {
         let rest = Rest::parabola_tangent(rod, s);
         let [k0, k1] = rod.spiral.unwrap_or_default();
         let [high, low] = halves(base.push);
-        let steps = [trajectory.steps, first_step].map(|count| T::of(count.into()));
+        let steps = [base.trajectory.steps, first_step].map(|count| T::of(count.into()));
         Self {
             contact: [*tau, *load, rod.radius(*tau), s].map(T::of),
             rod: [rod.taper, rod.bend, k0, k1].map(T::of),
             positions: [to_pole.x, to_pole.y, full.position.x, full.position.y].map(T::of),
-            base: [full.tangent.x, full.tangent.y, trajectory.bent, energy].map(T::of),
+            base: [full.tangent.x, full.tangent.y, base.trajectory.bent, energy].map(T::of),
             rest: [rest.x, rest.y, rod.tau_tip() - tau, base.load_per_w].map(T::of),
             by_tau: numbers(&state.by_tau),
             by_load: numbers(&state.by_load),

@@ -52,11 +52,11 @@ pub fn read_cells(bytes: &[u8], batch: &RowBatch, base_points: Range<usize>, cel
     let bytes = bytes.chunks_exact(CELL_BYTES);
     let mut read = bytes.map(bytemuck::pod_read_unaligned::<GpuCell>);
     for index in base_points {
-        let (base, trajectory) = (&batch.base_points[index], &batch.trajectories[index]);
+        let base = &batch.base_points[index];
         let unit_values = &batch.sides[base.rod as usize].unit_values;
-        let first = trajectory.first_cell;
+        let first = base.trajectory.first_cell;
         for (index, cell) in (first..first + base.cells.len()).zip(&mut read) {
-            let mut values = trajectory.values;
+            let mut values = base.trajectory.values;
             for ((value, unit), number) in values.iter_mut().zip(unit_values).zip(cell.numbers) {
                 *value += unit * f64::from(number);
             }

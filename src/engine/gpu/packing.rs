@@ -74,14 +74,14 @@ fn packed<T: Scalar>(batch: &RowBatch, part: BatchPart, most_steps: usize) -> Pa
     let mut starts = batch.starts[part.starts].iter();
     let (mut first_group, mut steps_here) = (0, 0);
     for (index, at) in (0..).zip(part.base_points) {
-        let (base, trajectory) = (&batch.base_points[at], &batch.trajectories[at]);
-        let steps = trajectory.steps as usize;
+        let base = &batch.base_points[at];
+        let steps = base.trajectory.steps as usize;
         if steps_here + steps > most_steps {
             packed.close(first_group, room);
             (first_group, steps_here) = (packed.groups.len(), 0);
         }
         // A dispatch has fewer steps, and a batch fewer cells, than `u32` can count.
-        let one = GpuBasePoint::<T>::new(batch.rod(base), base, steps_here as u32, trajectory);
+        let one = GpuBasePoint::<T>::new(batch.rod(base), base, steps_here as u32);
         packed
             .base_points
             .extend_from_slice(bytemuck::bytes_of(&one));
@@ -125,7 +125,7 @@ mod tests {
             moment_nnm: 1.0,
         };
         let sides = [WhiskerSide::new(columns, units, sheet)];
-        let base = |&(_, cells): &(u32, u32)| BasePoint {
+        let base = |&(steps, cells): &(u32, u32)| BasePoint {
             rod: 0,
             tau: 0.5,
             load: 1.0,
@@ -134,10 +134,10 @@ mod tests {
             load_per_w: 1.0,
             row: Default::default(),
             cells: 0..cells,
-        };
-        let trajectory = |&(steps, _): &(u32, u32)| BaseTrajectory {
-            steps,
-            ..BaseTrajectory::default()
+            trajectory: BaseTrajectory {
+                steps,
+                ..BaseTrajectory::default()
+            },
         };
         let count = all.iter().map(|(steps, _)| *steps as usize).sum();
         let start = |radius| StepStart {
@@ -146,7 +146,6 @@ mod tests {
         };
         RowBatch {
             base_points: all.iter().map(base).collect(),
-            trajectories: all.iter().map(trajectory).collect(),
             starts: (0..count).map(start).collect(),
             ..RowBatch::new(method, sides.into(), [].into(), [])
         }

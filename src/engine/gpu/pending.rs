@@ -48,11 +48,10 @@ impl PendingBatch {
     /// The part to send next: at least one base point, at most `cells` cells and about `steps` steps.
     pub fn next(&mut self, cells: usize, steps: usize) -> BatchPart {
         let [first, first_start] = [self.sent.base_points.end, self.sent.starts.end];
-        let (base_points, trajectories) = (&self.batch.base_points, &self.batch.trajectories);
         let (mut count, mut cells_here, mut steps_here) = (0, 0, 0);
-        for (base, trajectory) in base_points.iter().zip(trajectories).skip(first) {
+        for base in &self.batch.base_points[first..] {
             let cells_with_it = cells_here + base.cells.len();
-            let steps_with_it = steps_here + trajectory.steps as usize;
+            let steps_with_it = steps_here + base.trajectory.steps as usize;
             if count > 0 && (cells_with_it > cells || steps_with_it > steps) {
                 break;
             }

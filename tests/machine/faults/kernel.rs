@@ -22,7 +22,7 @@ tests! {
 /// The last line of the entry point.
 const LAST: &str = "write_cell(id, cell);";
 
-/// The GPU engine with `LAST` replaced; `cell` is the sound answer, `wrong` a copy of it.
+/// The GPU engine with `LAST` replaced; `cell` is the sound cell, `wrong` a copy of it.
 fn spoilt(precision: Precision, with: &str) -> Gpu {
     let text = shaders::cells(precision);
     assert_eq!(text.matches(LAST).count(), 1);
@@ -32,7 +32,7 @@ fn spoilt(precision: Precision, with: &str) -> Gpu {
     open_with(precision, text.replace(LAST, &format!("{numbers}\n{with}")))
 }
 
-/// The map of `scene` in one strip of rows, as by `gpu`.
+/// The map of `scene` in one row batch by `gpu`.
 fn at_once(scene: &Scene, gpu: &mut Gpu) -> (Summary, Vec<Panel>) {
     let mut plan = Plan::new(scene).unwrap();
     plan.rows_at_once = 2 * scene.grid.distance_mm.len();
@@ -74,7 +74,7 @@ fn numbers_that_are_none_are_refined_in_f64_and_counted(precision: Precision) {
     }
 }
 
-/// The map is right, so only what the engine did for it tells.
+/// The map is right, so only the counts show the fault.
 fn a_kernel_that_does_nothing_is_noticed() {
     let scene = cone(64);
     let (_, cpu) = compute(&scene, None);
@@ -120,7 +120,7 @@ fn assert_caught(scene: &Scene, gpu: &mut Gpu) {
     assert_identical(&compute(scene, None).1, &panels);
 }
 
-/// Contacts that are wrong by 1e-5 of themselves, loads of one sign, and whole answers.
+/// Contacts and base moments that are wrong by 1e-5, and whole cells.
 const WRONG: [&str; 3] = [
     "wrong.numbers[0] += 1e-5 * f32(base_point[CONTACT].w);",
     "wrong.numbers[5] += 1e-5 * f32(base_point[CONTACT].z * base_point[CONTACT].z * base_point[CONTACT].y * base_point[POSITIONS].z);",

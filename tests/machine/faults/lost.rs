@@ -20,14 +20,14 @@ tests! {
         lost_with_batches_submitted;
 }
 
-/// 16 calls of 8 rows each.
-fn in_strips(scene: &Scene) -> Plan {
+/// A plan of 16 calls of 8 rows each.
+fn in_batches(scene: &Scene) -> Plan {
     let mut plan = Plan::new(scene).unwrap();
     plan.rows_at_once = 8;
     plan
 }
 
-/// So many cells a sound run counts.
+/// Number of cells that a sound run counts.
 fn sound_cells(scene: &Scene, plan: &Plan) -> u64 {
     let (summary, _) = compute_as(scene, plan, Some(&mut open(Precision::F32)));
     assert_eq!(summary.engine_cells.on_cpu_instead, 0);
@@ -36,14 +36,18 @@ fn sound_cells(scene: &Scene, plan: &Plan) -> u64 {
 
 fn lost_between_two_calls() {
     let scene = cone(64);
-    let plan = in_strips(&scene);
+    let plan = in_batches(&scene);
     let all = sound_cells(&scene, &plan);
     let (_, cpu) = compute_as(&scene, &plan, None);
     for call in [0, 1, 7, 12] {
         let gpu = open(Precision::F32);
         let mut engine = sabotaged(gpu, call, wgpu::Device::destroy);
         let (summary, panels) = compute_as(&scene, &plan, Some(&mut engine));
-        assert_eq!(engine.calls, call + 1, "a lost device is not asked again");
+        assert_eq!(
+            engine.calls,
+            call + 1,
+            "a lost device gets no further batch"
+        );
         assert!(matches!(
             summary.engine_failure,
             Some(EngineError::Device(_))
@@ -110,7 +114,7 @@ fn lost_within_a_call() {
 /// Whenever the other thread comes, all cells are counted once, as the engine's or not.
 fn lost_to_another_thread() {
     let scene = cone(64);
-    let plan = in_strips(&scene);
+    let plan = in_batches(&scene);
     let all = sound_cells(&scene, &plan);
     let (_, cpu) = compute_as(&scene, &plan, None);
     for _ in 0..10 {
