@@ -1,4 +1,4 @@
-//! Tests that need something of the machine. A GPU: one contract in every precision, faults, strips of rows, whole maps and the
+//! Tests that need something of the machine. A GPU: one contract in every precision, faults, row batches, whole maps and the
 //! program. Root: files of other users.
 //!
 //! A test that cannot run here is ignored with the reason, which needs a harness other than that of the standard library.
