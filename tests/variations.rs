@@ -9,11 +9,10 @@ use crate::effect_sets;
 use crate::random_rods;
 
 use glam::DVec2;
-use whiskmap::engine::{POWERS, RowTerms};
-use whiskmap::refine::{
-    CellTarget, RefineOutcome, RowOfCells, TOLERANCE, base_points, refine, states,
-};
-use whiskmap::rod::{Effects, Rod, Side, arclength};
+use std::sync::Arc;
+use whiskmap::engine::{POWERS, RowBatch, RowTerms, SideColumns, WhiskerSide};
+use whiskmap::refine::{CellTarget, RefineOutcome, TOLERANCE, base_points, refine, states};
+use whiskmap::rod::{Effects, Rod, Side, Units, arclength};
 use whiskmap::scene::Scene;
 use whiskmap::sheet::Sheet;
 use whiskmap::shooting::batch::{Batch, InitialCondition, Method};
@@ -236,6 +235,13 @@ fn the_energy_is_known_toward_the_tip() {
 /// Columns of a row.
 const COLUMNS: usize = 48;
 
+/// Values in whisker lengths and `E I_base/L_w^2`.
+const NO_UNITS: Units = Units {
+    length_mm: 1.0,
+    force_un: 1.0,
+    moment_nnm: 1.0,
+};
+
 /// Between base points the Taylor polynomials of a row give the contact of each cell, on lattices and along continued rows.
 #[test]
 fn base_points_follow_their_row() {
@@ -256,17 +262,17 @@ fn base_points_follow_their_row() {
         };
         let distances = [(); 6].map(|()| random.between(0.1, 1.0));
         let sheet = Sheet::new(method, &rod, side, &distances);
-        let pushes: Vec<f64> = (1..=COLUMNS).map(|i| 0.03 * i as f64).collect();
-        let rows = (0..distances.len()).map(|row| RowOfCells {
-            sheet: 0,
-            row,
-            pushes: &pushes,
-            first: 0,
-        });
-        let rows: Vec<RowOfCells> = rows.collect();
-        let all = base_points(method, &[&sheet], &rows);
+        let push = |i: usize| (side.sign() * 0.03 * i as f64).to_degrees();
+        let mut push_angle_deg: Vec<f64> = (1..=COLUMNS).map(push).collect();
+        push_angle_deg.sort_by(f64::total_cmp);
+        let columns = Arc::new(SideColumns::new(&push_angle_deg, side, 0));
+        let sides = [WhiskerSide::new(Arc::clone(&columns), NO_UNITS, sheet)];
+        let rows = (0..distances.len()).map(|row| (0, row));
+        let batch = RowBatch::new(method, sides.into(), [].into(), rows);
+        let (sheet, pushes) = (&batch.sides[0].sheet, &columns.magnitudes);
+        let all = base_points(&batch);
         let (count, worst) = &mut found[usize::from(sheet.is_continued())];
-        for (row, points) in rows.iter().zip(&all) {
+        for (row, points) in batch.rows.iter().zip(&all) {
             *count += usize::from(!points.is_empty());
             for point in points {
                 let here = point.row[0][1] / point.tau - 1.0;
@@ -279,7 +285,7 @@ fn base_points_follow_their_row() {
                     pole: sheet.rows[row.row].pole(side.sign() * push),
                 };
                 let targets: Vec<CellTarget> = pushes.iter().map(target).collect();
-                let refined = refine(method, &[&sheet], &targets);
+                let refined = refine(method, &[sheet], &targets);
                 for (push, refined) in pushes.iter().zip(refined) {
                     if refined.outcome == RefineOutcome::Solved {
                         let tau = tau_at(&point.row, side.sign() * push);

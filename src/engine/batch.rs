@@ -1,7 +1,7 @@
 //! The request to an engine: the cells of some rows.
 
 use super::{Values, WhiskerSide};
-use crate::refine::{RowOfCells, base_points};
+use crate::refine::base_points;
 use crate::rod::Rod;
 use crate::sheet::Sheet;
 use crate::shooting::batch::{InitialCondition, Method, StepStart, step_starts};
@@ -168,20 +168,7 @@ impl RowBatch {
     /// Adds base points to all rows that have them, with trajectories in the steps of `resolution`.
     #[must_use]
     pub fn with_base_points(mut self, resolution: Resolution) -> Self {
-        let sheets: Vec<&Sheet> = self.sheets();
-        let rows = self.rows.iter().map(|row| {
-            let columns = &self.sides[row.side].columns;
-            RowOfCells {
-                // Sides of a group are few.
-                sheet: row.side as u32,
-                row: row.row,
-                pushes: &columns.magnitudes,
-                first: columns.first,
-            }
-        });
-        let rows: Vec<RowOfCells> = rows.collect();
-        let found = base_points(self.method, &sheets, &rows);
-        drop((rows, sheets));
+        let found = base_points(&self);
         let mut base_points = Vec::with_capacity(found.iter().map(Vec::len).sum());
         for (row, found) in self.rows.iter_mut().zip(found) {
             let from = base_points.len();

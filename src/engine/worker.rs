@@ -47,7 +47,7 @@ impl Worker {
                 failure: None,
                 busy: Duration::ZERO,
             });
-            // A panic of the thread is in `failure` by now, or nobody waited for its result.
+            // A panic of the thread is in `failure` by now, or no cells were collected after it.
             let _ = thread.map(ScopedJoinHandle::join);
             done
         })
@@ -64,7 +64,7 @@ impl Worker {
         let Some(requests) = &self.requests else {
             return;
         };
-        // If the thread has ended, its last response says why, or that there is none.
+        // If the thread has ended, its last response is the failure, or `collect` finds none.
         let _ = requests.send(Arc::clone(&batch));
         self.submitted.push_back(batch);
     }
@@ -101,7 +101,8 @@ impl Worker {
     }
 }
 
-/// Lets `engine` solve what is `requested` until no batch can come or no response is received. Unless it fails, no batch stays submitted.
+/// Solves the `requested` batches by `engine` until the requests end or responses are no longer received. Unless the engine fails, no batch
+/// stays submitted.
 fn serve(engine: &mut dyn Engine, requested: &Receiver<Arc<RowBatch>>, respond: &Sender<Response>) {
     let (mut submitted, mut is_received) = (0, true);
     let mut since = Instant::now();

@@ -54,10 +54,10 @@ pub enum Error {
     #[error("cancelled")]
     Cancelled,
     /// No resolution keeps the tolerance.
-    #[error("tolerance_deg {asked:e}: must be at least {least:e} for this scene")]
+    #[error("tolerance_deg {tolerance_deg:e}: must be at least {least:e} for this scene")]
     Tolerance {
         /// The tolerance.
-        asked: f64,
+        tolerance_deg: f64,
         /// Estimated error of the finest steps.
         least: f64,
     },
@@ -65,11 +65,11 @@ pub enum Error {
 
 /// The cheapest resolution that keeps the tolerance of `options`, or the finest without one.
 fn resolution(scene: &Scene, options: &Options, sides: &[Side]) -> Result<Resolution, Error> {
-    let Some(asked) = options.tolerance_deg else {
+    let Some(tolerance_deg) = options.tolerance_deg else {
         return Ok(Resolution::FINE);
     };
-    let accuracy = cheapest(scene, sides, asked).map_err(|finest| Error::Tolerance {
-        asked,
+    let accuracy = cheapest(scene, sides, tolerance_deg).map_err(|finest| Error::Tolerance {
+        tolerance_deg,
         least: finest.error_deg,
     })?;
     Ok(accuracy.resolution)

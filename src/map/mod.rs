@@ -31,7 +31,7 @@ pub use summary::{Audit, EngineCells, Summary};
 /// next ones are computed: it holds at most one group of them.
 ///
 /// # Errors
-/// The first error of `keep`, which ends the run. A cell without an answer is no error.
+/// The first error of `keep`, which ends the run. An unresolved cell is no error.
 pub fn run<E: Send>(
     scene: &Scene,
     plan: &Plan,

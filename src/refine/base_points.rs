@@ -4,57 +4,45 @@
 //! gives the components of the state that are analytic along the row. Each base point carries it as Taylor polynomials around itself.
 
 use super::row_states::{ExactState, RowState, row_states};
-use crate::engine::{BasePoint, BaseTrajectory, MOST_TRAJECTORY_STEPS, RowTerms};
+use crate::engine::{
+    BasePoint, BaseTrajectory, BatchRow, MOST_TRAJECTORY_STEPS, RowBatch, RowTerms, WhiskerSide,
+};
 use crate::numerics::chebyshev::{CHEBYSHEV_COUNT as NODES, CHEBYSHEV_POINTS, taylor_at_points};
 use crate::numerics::nearest_turn;
 use crate::rod::Rest;
 use crate::sheet::Sheet;
-use crate::shooting::batch::Method;
 use rayon::prelude::*;
 
-/// Cells of one row for an engine.
-#[derive(Clone, Copy, Debug)]
-pub struct RowOfCells<'a> {
-    /// Index of the sheet.
-    pub sheet: u32,
-    /// Index of the row in the sheet.
-    pub row: usize,
-    /// Push angles: growing magnitudes, in radians.
-    pub pushes: &'a [f64],
-    /// Index of the row's first cell among all cells of the call.
-    pub first: u32,
-}
-
-/// Returns the base points of each row, `[row][base point]`, for its cells from first touch on.
+/// Returns the base points of each row of `batch`, `[row][base point]`, for its cells from first touch on.
 ///
 /// A row has none if it has no span from first touch, if a trajectory takes more than [`MOST_TRAJECTORY_STEPS`], or if it has fewer cells
 /// than base points.
 #[must_use]
-pub fn base_points(method: Method, sheets: &[&Sheet], rows: &[RowOfCells]) -> Vec<Vec<BasePoint>> {
-    let wanted = rows.par_iter().map(|row| {
-        let has_many = row.pushes.len() > NODES;
-        has_many.then(|| wanted_states(sheets[row.sheet as usize], row.row))?
+pub fn base_points(batch: &RowBatch) -> Vec<Vec<BasePoint>> {
+    let wanted = batch.rows.par_iter().map(|row| {
+        let has_many = row.count() > NODES;
+        has_many.then(|| wanted_states(&batch.sides[row.side].sheet, row.row))?
     });
     let wanted: Vec<Option<(f64, [RowState; NODES])>> = wanted.collect();
     let flat = wanted.iter().flatten().flat_map(|(_, states)| states);
-    let found = row_states(method, &flat.copied().collect::<Vec<_>>());
+    let found = row_states(batch.method, &flat.copied().collect::<Vec<_>>());
     let mut found = found.chunks(NODES);
-    let rows = rows.iter().zip(wanted);
+    let rows = batch.rows.iter().zip(wanted);
     let rows = rows.map(|(row, wanted)| {
         let (w_end, _) = wanted?;
         let found: Option<Vec<ExactState>> = found.next()?.iter().copied().collect();
         Some((row, w_end, found?))
     });
-    let rows: Vec<Option<(&RowOfCells, f64, Vec<ExactState>)>> = rows.collect();
+    let rows: Vec<Option<(&BatchRow, f64, Vec<ExactState>)>> = rows.collect();
     let expanded = rows.into_par_iter().map(|row| {
         let (row, w_end, found) = row?;
-        let sheet = sheets[row.sheet as usize];
+        let side = &batch.sides[row.side];
         let is_short = |at: &ExactState| {
-            let steps = method.resolution.steps(&sheet.rod, at.tau, at.load);
-            steps <= MOST_TRAJECTORY_STEPS
+            let resolution = batch.method.resolution;
+            resolution.steps(&side.sheet.rod, at.tau, at.load) <= MOST_TRAJECTORY_STEPS
         };
         let is_short = found.iter().all(is_short);
-        is_short.then(|| expand(sheet, row, w_end, &found))
+        is_short.then(|| expand(side, row, w_end, &found))
     });
     expanded.map(Option::unwrap_or_default).collect()
 }
@@ -79,7 +67,8 @@ fn wanted_states(sheet: &Sheet, row: usize) -> Option<(f64, [RowState<'_>; NODES
 }
 
 /// Returns the base points at the states `found` of a row, each with the cells nearest to it.
-fn expand(sheet: &Sheet, row: &RowOfCells, w_end: f64, found: &[ExactState]) -> Vec<BasePoint> {
+fn expand(side: &WhiskerSide, row: &BatchRow, w_end: f64, found: &[ExactState]) -> Vec<BasePoint> {
+    let (sheet, columns) = (&side.sheet, &side.columns);
     let last = sheet.crossings[row.row][0].push;
     let sign = sheet.side.sign();
     let touch = sheet.rows[row.row].touch;
@@ -114,7 +103,7 @@ fn expand(sheet: &Sheet, row: &RowOfCells, w_end: f64, found: &[ExactState]) -> 
             }
             None => last,
         };
-        let to = from + row.pushes[from..].partition_point(|push| *push < until);
+        let to = from + columns.magnitudes[from..].partition_point(|push| *push < until);
         if to > from {
             let ExactState {
                 tau,
@@ -122,14 +111,15 @@ fn expand(sheet: &Sheet, row: &RowOfCells, w_end: f64, found: &[ExactState]) -> 
                 variation,
             } = found[m];
             base_points.push(BasePoint {
-                rod: row.sheet,
+                // Sides of a group are few.
+                rod: row.side as u32,
                 tau,
                 load,
                 push,
                 state: variation,
                 load_per_w: w_end / (tau * tau),
                 row: row_here,
-                cells: row.first + from as u32..row.first + to as u32,
+                cells: columns.first + from as u32..columns.first + to as u32,
                 trajectory: BaseTrajectory::default(),
             });
         }

@@ -8,7 +8,7 @@ mod near_fold;
 mod newton;
 mod row_states;
 
-pub use base_points::{RowOfCells, base_points};
+pub use base_points::base_points;
 
 use crate::sheet::{Guess, Sheet};
 use crate::shooting::FullState;
