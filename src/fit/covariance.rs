@@ -72,3 +72,40 @@ impl Covariance {
         Some((self.matrix[i][j] / deviations).clamp(-1.0, 1.0))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn determined(jacobian: &[Vec<f64>]) -> Vec<bool> {
+        let covariance = Covariance::new(jacobian);
+        let all = 0..jacobian.len();
+        all.map(|i| covariance.deviation(i).is_some()).collect()
+    }
+
+    /// Differences that are less exact than 1e-6 do not tell a short column from none, or two parallel ones apart.
+    #[test]
+    fn a_faint_column_or_direction_is_not_determined() {
+        for (size, is_seen) in [(2e-6, true), (0.5e-6, false)] {
+            let short = [vec![1.0, 0.0], vec![0.0, size]];
+            assert_eq!(determined(&short), [true, is_seen], "{size}");
+            // The singular values of two unit vectors are their half sum and half difference.
+            let parallel = [vec![1.0, 0.0], vec![1.0, 2.0 * size]];
+            assert_eq!(determined(&parallel), [is_seen; 2], "{size}");
+        }
+    }
+
+    /// The residuals stay as they are if the parameters change by `(part, 1, -1)`.
+    #[test]
+    fn a_parameter_with_a_part_in_a_free_direction_is_not_determined() {
+        for (part, is_determined) in [(2e-3, false), (0.5e-3, true)] {
+            let jacobian = [vec![1.0, 0.0], vec![0.0, 1.0], vec![part, 1.0]];
+            // The direction is of length 1.41.
+            assert_eq!(
+                determined(&jacobian),
+                [is_determined, false, false],
+                "{part}"
+            );
+        }
+    }
+}

@@ -159,3 +159,92 @@ impl fmt::Display for NotAFit {
 fn rounded(number: f64) -> String {
     digits(format!("{number:.2e}").parse().unwrap_or(number))
 }
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a failure fails the test")]
+mod tests {
+    use super::*;
+
+    fn cone() -> Scene {
+        Scene::read("scenes/cone.toml").unwrap()
+    }
+
+    /// One point for each pair of a distance in mm and an angle in degrees, on the convex side.
+    fn points(all: &[[f64; 2]], sd_deg: Option<f64>) -> MeasuredPoints {
+        let (name, sd) = sd_deg.map_or(("", String::new()), |sd| (",sd_deg", format!(",{sd}")));
+        let mut text = format!("side,distance_mm,push_angle_deg{name}\n");
+        for [distance_mm, angle_deg] in all {
+            text += &format!("cb,{distance_mm},{angle_deg}{sd}\n");
+        }
+        MeasuredPoints::parse(&text, "points.csv").unwrap()
+    }
+
+    fn compared(points: &MeasuredPoints) -> Comparison {
+        let SweptWhisker { whisker, pole, .. } = cone().first_whisker();
+        points.beside(&whisker, &pole)
+    }
+
+    /// The verdict on points `off_deg` away from the theory of the cone.
+    fn verdict(
+        off_deg: f64,
+        sd_deg: Option<f64>,
+        chi_square: f64,
+        freedom: usize,
+    ) -> Option<NotAFit> {
+        let places = [8.0, 10.0, 12.0].map(|distance_mm| [distance_mm, 20.0]);
+        let theory = compared(&points(&places, None));
+        let places = theory
+            .rows
+            .iter()
+            .map(|row| [row.distance_mm, row.predicted_deg.unwrap() + off_deg]);
+        let near = points(&places.collect::<Vec<_>>(), sd_deg);
+        NotAFit::new(&near, &cone(), &compared(&near), chi_square, freedom)
+    }
+
+    #[test]
+    fn a_fit_is_within_five_degrees() {
+        assert_eq!(verdict(4.9, None, 1.0, 2), None);
+        assert_eq!(verdict(5.1, None, 1.0, 2).unwrap().largest_rms_deg, 5.0);
+    }
+
+    #[test]
+    fn a_fit_is_within_a_third_of_the_range() {
+        let small = points(&[[8.0, 2.0], [10.0, 6.0], [12.0, 9.0]], None);
+        let why = NotAFit::new(&small, &cone(), &compared(&small), 1.0, 2).unwrap();
+        assert_eq!(why.largest_rms_deg, 3.0);
+    }
+
+    #[test]
+    fn residuals_of_a_fit_are_at_most_twenty_deviations() {
+        assert_eq!(verdict(1.0, Some(0.1), 399.0 * 7.0, 7), None);
+        let why = verdict(1.0, Some(0.1), 401.0 * 7.0, 7).unwrap();
+        assert_eq!(why.reduced_chi_square, Some(401.0));
+    }
+
+    /// The reduced chi-square of 50 degrees of freedom has the standard deviation 0.2.
+    #[test]
+    fn deviations_explain_residuals_up_to_five_of_their_own() {
+        assert!(is_explained(50.0 * 1.99, 50) && !is_explained(50.0 * 2.01, 50));
+        assert_eq!(verdict(20.0, Some(20.0), 50.0 * 1.99, 50), None);
+        assert!(verdict(20.0, Some(20.0), 50.0 * 2.01, 50).is_some());
+    }
+
+    #[test]
+    fn angles_below_a_turn_beside_predicted_tens_are_radians() {
+        for (angle, cause) in [(6.2, Some(LikelyCause::Radians)), (6.4, None)] {
+            let found = LikelyCause::of(&points(&[[10.0, 0.3], [12.0, angle]], None), &cone());
+            assert_eq!(found, cause, "{angle}");
+        }
+        let mut counts = [0; 2];
+        for i in 0..20 {
+            let places = points(&[[15.0 + 0.2 * f64::from(i), 0.1]], None);
+            let Some(predicted) = compared(&places).rows[0].predicted_deg else {
+                continue;
+            };
+            let is_radians = LikelyCause::of(&places, &cone()) == Some(LikelyCause::Radians);
+            assert_eq!(is_radians, predicted >= 10.0, "{predicted}");
+            counts[usize::from(is_radians)] += usize::from((5.0..20.0).contains(&predicted));
+        }
+        assert!(counts.iter().all(|count| *count > 0), "{counts:?}");
+    }
+}
