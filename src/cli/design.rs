@@ -102,7 +102,7 @@ pub fn run(args: &DesignArgs, files: &mut Files) -> Result<(), Failure> {
     })?;
     if let Some(picture) = picture {
         let plot = designs(args.parameter, &target, &found);
-        picture.save(title(&scene, &[distance]), plot)?;
+        picture.plot(title(&scene, &[distance]), plot)?;
     }
     if found.values.is_empty() {
         let why = unreached(args.parameter, &target, &found);

@@ -1,10 +1,12 @@
 //! Inputs and outputs of a command. All are declared here, so that no output destroys an input or another output.
 
 use super::failure::{Failure, message};
+use serde::Serialize;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
+use whiskmap::paper::TableRows;
 use whiskmap::scene::Scene;
-use whiskmap::store::{FileId, Output, TemporaryFiles};
+use whiskmap::store::{FileId, Output, TableFile, TemporaryFiles};
 
 /// Path that stands for standard input or output.
 pub const STDOUT: &str = "-";
@@ -57,19 +59,19 @@ impl Files {
     ///
     /// # Errors
     /// If the output is an input, is inside one, is another output, or cannot be written.
-    pub fn output(&mut self, option: &str, path: &Path) -> Result<Output, Failure> {
-        if path == Path::new(STDOUT) {
-            let output = Output::stdout();
-            self.claim(option, path, output.id(), &[])?;
-            return Ok(output);
-        }
-        let advice = "name a file that can be written";
-        let output = Output::create(path, &self.temporary);
-        let output = output.map_err(impossible(option, path, advice))?;
+    pub fn output(&mut self, option: &str, path: &Path) -> Result<OutputFile, Failure> {
+        let output = if path == Path::new(STDOUT) {
+            Output::stdout()
+        } else {
+            let advice = "name a file that can be written";
+            let output = Output::create(path, &self.temporary);
+            output.map_err(impossible(option, path, advice))?
+        };
         output.remove_leftovers();
         let folders = output.target().map(FileId::of_folders);
         self.claim(option, path, output.id(), &folders.unwrap_or_default())?;
-        Ok(output)
+        let path = path.to_owned();
+        Ok(OutputFile { output, path })
     }
 
     /// Declares the store of `option`, a folder that need not exist.
@@ -152,12 +154,56 @@ fn impossible(option: &str, path: &Path, advice: &str) -> impl FnOnce(io::Error)
     move |error| Failure::Input(format!("{option} {}: {error}; {advice}", path.display()))
 }
 
-/// Writes the whole file at `path`.
-pub fn write(mut output: Output, path: &Path, text: &str) -> Result<(), Failure> {
-    let written = output.write_all(text.as_bytes());
-    written
-        .and_then(|()| output.finish())
-        .map_err(unwritten(path))
+/// Open output of a command, and its path.
+pub struct OutputFile {
+    pub output: Output,
+    pub path: PathBuf,
+}
+
+impl OutputFile {
+    /// Writes `bytes` as the whole file. Returns the path of a regular file.
+    pub fn write(mut self, bytes: &[u8]) -> Result<Option<PathBuf>, Failure> {
+        let is_regular = self.output.is_regular();
+        let written = self.output.write_all(bytes);
+        written
+            .and_then(|()| self.output.finish())
+            .map_err(unwritten(&self.path))?;
+        Ok(Some(self.path).filter(|_| is_regular))
+    }
+
+    /// Begins a table.
+    pub fn table(self) -> OutputTable {
+        OutputTable {
+            is_regular: self.output.is_regular(),
+            table: TableFile::new(self.output),
+            path: self.path,
+        }
+    }
+}
+
+/// Open table of a command.
+pub struct OutputTable {
+    table: TableFile,
+    path: PathBuf,
+    is_regular: bool,
+}
+
+impl OutputTable {
+    /// Appends rows.
+    pub fn rows<R: Serialize>(&mut self, rows: impl IntoIterator<Item = R>) -> Result<(), Failure> {
+        self.table.rows(rows).map_err(unwritten(&self.path))
+    }
+
+    /// Appends the rows that `write` makes.
+    pub fn write(&mut self, write: &TableRows) -> Result<(), Failure> {
+        write(&mut self.table).map_err(unwritten(&self.path))
+    }
+
+    /// Finishes the table. Returns the path of a regular file.
+    pub fn finish(self) -> Result<Option<PathBuf>, Failure> {
+        self.table.finish().map_err(unwritten(&self.path))?;
+        Ok(Some(self.path).filter(|_| self.is_regular))
+    }
 }
 
 /// Returns a converter of errors from writing the file at `path`.

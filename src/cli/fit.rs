@@ -3,7 +3,7 @@
 use super::arguments::parameter;
 use super::data;
 use super::failure::{Failure, message};
-use super::files::{Files, STDOUT, write};
+use super::files::{Files, OutputFile, STDOUT};
 use super::pole::check_single;
 use clap::Args;
 use serde_json::{Map, Value, json};
@@ -12,7 +12,6 @@ use std::path::{Path, PathBuf};
 use whiskmap::fit::{Estimate, Fit, FitError, fit};
 use whiskmap::measured::MeasuredPoints;
 use whiskmap::scene::{Parameter, digits};
-use whiskmap::store::Output;
 
 #[derive(Debug, Args)]
 #[command(after_help = "\
@@ -56,8 +55,8 @@ pub fn run(args: &FitArgs, files: &mut Files) -> Result<(), Failure> {
         let output = path.as_deref().map(|path| files.output(option, path));
         output.transpose()
     };
-    let toml = open("--output", &args.output)?.zip(args.output.as_deref());
-    let json = open("--json", &args.json)?.zip(args.json.as_deref());
+    let toml = open("--output", &args.output)?;
+    let json = open("--json", &args.json)?;
     let found = fit(&scene, &points, &args.free).map_err(|why| match why {
         FitError::Lacking { .. } | FitError::Twice(..) | FitError::Held { .. } => {
             Failure::Input(format!("--free {why}"))
@@ -67,10 +66,10 @@ pub fn run(args: &FitArgs, files: &mut Files) -> Result<(), Failure> {
     data::name_left_out(&points, &found.comparison);
     warn(&points, &found);
     let toml = toml.filter(|_| found.not_a_fit.is_none());
-    let json = json.map(|place| (place, format!("{:#}\n", document(&found))));
+    let json = json.map(|file| (file, format!("{:#}\n", document(&found))));
     let values = found.estimates.iter();
     let values: Vec<_> = values.map(|own| (own.parameter, own.value)).collect();
-    let toml = toml.map(|place| Ok::<_, Failure>((place, scene.to_toml_with(&values)?)));
+    let toml = toml.map(|file| Ok::<_, Failure>((file, scene.to_toml_with(&values)?)));
     let toml = toml.transpose()?;
     let outputs = [toml, json].into_iter().flatten().collect();
     let printed = print(&scene.title, &found, outputs);
@@ -88,20 +87,16 @@ pub fn run(args: &FitArgs, files: &mut Files) -> Result<(), Failure> {
     }
 }
 
-/// Output, its path and its text.
-type WrittenFile<'a> = ((Output, &'a Path), String);
-
-/// Writes the outputs. Prints the table and their names on standard output, unless an output is written there.
-fn print(title: &str, fit: &Fit, outputs: Vec<WrittenFile>) -> Result<(), Failure> {
-    let mut paths = outputs.iter().map(|((_, path), _)| *path);
+/// Writes the outputs with their texts. Prints the table and their names on standard output, unless an output is written there.
+fn print(title: &str, fit: &Fit, outputs: Vec<(OutputFile, String)>) -> Result<(), Failure> {
+    let mut paths = outputs.iter().map(|(file, _)| &file.path);
     let is_streamed = paths.any(|path| path == Path::new(STDOUT));
     if !is_streamed {
         table(title, fit)?;
     }
-    for ((output, path), text) in outputs {
-        let is_regular = output.is_regular();
-        write(output, path, &text)?;
-        if is_regular && !is_streamed {
+    for (file, text) in outputs {
+        let regular = file.write(text.as_bytes())?;
+        if let Some(path) = regular.filter(|_| !is_streamed) {
             writeln!(io::stdout(), "{}", path.display())?;
         }
     }

@@ -5,8 +5,8 @@ use super::disk;
 use super::engine::{EngineArgs, bound_deg};
 use super::estimate::MapFormat;
 use super::failure::{Failure, message};
-use super::files::Files;
-use super::outputs::save;
+use super::files::{Files, OutputFile, unwritten};
+use super::outputs::PictureFile;
 use super::sharded::{self, RunArgs};
 use super::summary::{compute, report};
 use super::tolerance::ToleranceArgs;
@@ -19,10 +19,9 @@ use whiskmap::engine::{Engine, EngineDescription};
 use whiskmap::numerics::ArithmeticClass;
 use whiskmap::plan::{Channels, Plan};
 use whiskmap::refine::{GOAL, TOLERANCE};
-use whiskmap::render;
-use whiskmap::render::MapOptions;
+use whiskmap::render::{self, MapOptions, PictureFormat};
 use whiskmap::scene::Scene;
-use whiskmap::store::{MapDescription, MapWriter, StoredMap};
+use whiskmap::store::{MapDescription, MapWriter, Output, StoredMap};
 
 #[derive(Debug, Args)]
 #[command(after_help = "\
@@ -93,16 +92,16 @@ pub fn run(args: &MapArgs, files: &mut Files) -> Result<(), Failure> {
         return sharded::fill(&path, &args.run, files, &scene, plan, &about, &mut engine);
     }
     let file = args.output.join(format!("{}.exr", scene.name));
+    let is_regular = files.output("--output", &file)?.output.is_regular();
     let picture = (!args.no_png).then(|| file.with_extension("png"));
-    let is_regular = files.output("--output", &file)?.is_regular();
     if let Some(picture) = &picture {
         files.output("--output", picture)?;
-        if !is_regular {
-            return Err(Failure::Input(format!(
-                "--output {}: is no regular file, so no picture can be drawn of it; give --no-png",
-                file.display()
-            )));
-        }
+    }
+    if picture.is_some() && !is_regular {
+        return Err(Failure::Input(format!(
+            "--output {}: is no regular file, so no picture can be drawn of it; give --no-png",
+            file.display()
+        )));
     }
     if !args.run.force {
         disk::check(&args.output, MapFormat::Exr, &scene, &plan, plan.cells)?;
@@ -117,16 +116,20 @@ pub fn run(args: &MapArgs, files: &mut Files) -> Result<(), Failure> {
     let keep = |panels: Vec<_>| writer.write_panels(&panels);
     let summary = compute(&scene, &plan, engine, plan.cells, keep)?;
     writer.finish(summary.engine_cells, summary.audit)?;
-    if let Some(picture) = &picture {
-        let regimes = render::map(&StoredMap::open(&file)?.into(), &MapOptions::default())?;
-        save(
-            &regimes,
-            picture,
-            render::PictureFormat::Png,
-            files.temporary(),
+    let mut written = vec![file];
+    if let Some(path) = picture {
+        let regimes = render::map(
+            &StoredMap::open(&written[0])?.into(),
+            &MapOptions::default(),
         )?;
+        let output = Output::create(&path, files.temporary()).map_err(unwritten(&path))?;
+        written.push(path.clone());
+        PictureFile {
+            file: OutputFile { output, path },
+            format: PictureFormat::Png,
+        }
+        .write(&regimes)?;
     }
-    let written: Vec<PathBuf> = [Some(file), picture].into_iter().flatten().collect();
     report(&scene, &summary, start, &written)
 }
 

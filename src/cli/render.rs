@@ -3,7 +3,7 @@
 use super::arguments::whole;
 use super::failure::Failure;
 use super::files::{Files, STDOUT};
-use super::outputs::{save, warn_of_boxes};
+use super::outputs::PictureFile;
 use super::selection::{SelectionArgs, channels, with_marks};
 use clap::Args;
 use std::io::{IsTerminal, Write};
@@ -88,24 +88,16 @@ pub fn run(args: &RenderArgs, files: &mut Files) -> Result<(), Failure> {
             width: args.width,
         },
     )?;
-    let mut out = std::io::stdout().lock();
-    if let Some((path, format)) = target {
-        save(&picture, &path, format, files.temporary())?;
-        writeln!(out, "{}", path.display())?;
-    } else {
-        warn_of_boxes(&picture);
-        out.write_all(&picture.encode(PictureFormat::Png)?)?;
-        out.flush()?;
+    let path = target.file.path.clone();
+    target.write(&picture)?;
+    if path != Path::new(STDOUT) {
+        writeln!(std::io::stdout(), "{}", path.display())?;
     }
     Ok(())
 }
 
-/// Opens the output, and returns its path and format; `None` is standard output.
-fn target(
-    args: &RenderArgs,
-    map: &MapSlice,
-    files: &mut Files,
-) -> Result<Option<(PathBuf, PictureFormat)>, Failure> {
+/// Opens the output; on standard output, a picture is PNG.
+fn target(args: &RenderArgs, map: &MapSlice, files: &mut Files) -> Result<PictureFile, Failure> {
     let path = args.output.clone().unwrap_or_else(|| {
         let chosen = map.readable();
         let chosen = chosen.map(|(name, value)| format!("{name}={value}"));
@@ -117,16 +109,13 @@ fn target(
         let path = path.display();
         Err(Failure::Input(format!("--output {path}: {why}")))
     };
-    if path == Path::new(STDOUT) {
-        return if std::io::stdout().is_terminal() {
-            refuse("standard output is a terminal; redirect it to a file or a program")
-        } else {
-            Ok(None)
-        };
+    let is_stdout = path == Path::new(STDOUT);
+    if is_stdout && std::io::stdout().is_terminal() {
+        return refuse("standard output is a terminal; redirect it to a file or a program");
     }
-    files.output("--output", &path)?;
-    match PictureFormat::of(&path) {
-        Some(format) => Ok(Some((path, format))),
+    let file = files.output("--output", &path)?;
+    match PictureFormat::of(&path).or(is_stdout.then_some(PictureFormat::Png)) {
+        Some(format) => Ok(PictureFile { file, format }),
         None => refuse("must end in .png or .svg, or be - for PNG on standard output"),
     }
 }

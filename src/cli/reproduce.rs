@@ -2,8 +2,8 @@
 
 use super::data;
 use super::failure::Failure;
-use super::files::{Files, unwritten};
-use super::outputs::save;
+use super::files::Files;
+use super::outputs::PictureFile;
 use clap::Args;
 use std::io::Write;
 use std::path::PathBuf;
@@ -11,7 +11,6 @@ use whiskmap::measured::{MeasuredAngle, MeasuredPoint};
 use whiskmap::paper::{self, FIG4_WHISKER, FIG5_LEFT, FIG5_RIGHT, Measurements, POLE};
 use whiskmap::render::PictureFormat;
 use whiskmap::scene::Whisker;
-use whiskmap::store::{Output, TableFile};
 
 #[derive(Debug, Args)]
 #[command(after_help = "\
@@ -77,30 +76,34 @@ pub fn run(args: &ReproduceArgs, files: &mut Files) -> Result<(), Failure> {
     let folder = &args.folder;
     files.folder("DIR", folder)?;
     let figures = paper::figures(&measured).map_err(Failure::State)?;
-    let picture = |name: &str, ending| folder.join(name).with_extension(ending);
-    let table = |name: &str| folder.join(name).with_extension("csv");
-    for figure in &figures {
-        let pictures = ["png", "svg"].map(|ending| picture(figure.name, ending));
-        let tables = figure.tables.iter().map(|(name, _)| table(name));
-        for path in tables.chain(pictures) {
-            files.output("DIR", &path)?;
-        }
+    let mut open =
+        |name: &str, ending| files.output("DIR", &folder.join(name).with_extension(ending));
+    let mut opened = Vec::new();
+    for figure in figures {
+        let tables = figure.tables.iter().map(|(name, _)| open(name, "csv"));
+        let tables = tables.collect::<Result<Vec<_>, _>>()?;
+        let mut picture = |ending, format| {
+            let file = open(figure.name, ending)?;
+            Ok::<_, Failure>(PictureFile { file, format })
+        };
+        let pictures = [
+            picture("png", PictureFormat::Png)?,
+            picture("svg", PictureFormat::Svg)?,
+        ];
+        opened.push((figure, tables, pictures));
     }
     let mut out = std::io::stdout().lock();
-    for figure in figures {
-        for (ending, format) in [("png", PictureFormat::Png), ("svg", PictureFormat::Svg)] {
-            let path = picture(figure.name, ending);
-            save(&figure.chart.picture(), &path, format, files.temporary())?;
+    for (figure, tables, pictures) in opened {
+        for picture in pictures {
+            let path = picture.file.path.clone();
+            picture.write(&figure.chart.picture())?;
             writeln!(out, "{}", path.display())?;
         }
-        for (name, write) in &figure.tables {
-            let path = table(name);
-            let output = Output::create(&path, files.temporary());
-            let written = output.map(TableFile::new).and_then(|mut table| {
-                write(&mut table)?;
-                table.finish()
-            });
-            written.map_err(unwritten(&path))?;
+        for ((_, rows), file) in figure.tables.iter().zip(tables) {
+            let path = file.path.clone();
+            let mut table = file.table();
+            table.write(rows)?;
+            table.finish()?;
             writeln!(out, "{}", path.display())?;
         }
     }

@@ -4,7 +4,7 @@ mod plot;
 mod tables;
 
 use super::failure::{Failure, message};
-use super::files::{Files, STDOUT, write};
+use super::files::{Files, STDOUT};
 use super::outputs::open;
 use clap::Args;
 use plot::plot;
@@ -66,13 +66,13 @@ pub fn run(args: &BenchArgs, files: &mut Files) -> Result<(), Failure> {
             "grid: no cell of the sample has a state; give push angles and distances that keep the contact".to_owned(),
         )
     })?;
-    if let Some((output, path)) = output.zip(json) {
+    if let Some(file) = output {
         let text = serde_json::to_string_pretty(&report).unwrap_or_default() + "\n";
-        write(output, path, &text)?;
+        file.write(text.as_bytes())?;
     }
     if let Some(picture) = picture {
         let title = format!("What accuracy costs: {}", report.scene);
-        picture.save(title, plot(&report.rows))?;
+        picture.plot(title, plot(&report.rows))?;
     }
     if json != Some(Path::new(STDOUT)) {
         tables(&report)?;

@@ -18,7 +18,7 @@ pub fn array(
     let [channel] = channels else {
         return refuse(path, "an array has one channel; give one --channel");
     };
-    let mut file = BufWriter::new(files.output("--output", path)?);
+    let mut file = BufWriter::new(files.output("--output", path)?.output);
     for (number, whisker) in slice.whiskers().enumerate() {
         let (kind, bytes): (_, Vec<u8>) = match slice.read_panel(channel, whisker)? {
             ChannelValues::F32(values) => (
