@@ -1,6 +1,7 @@
 //! Slid distance of a contact that slides all along a push, toward the tip or toward the base, as a piecewise polynomial.
 //!
-//! The row span's parameter `w` may turn back along a row with friction, so the variable is the push angle.
+//! A row whose parameter `w` turns back has no [`RowSpan`](crate::sheet::RowSpan), so the variable is the push angle, which grows along
+//! every stable row.
 
 use super::sliding::{rate, slid};
 use crate::numerics::newton_form::{Polynomial, through_runs};
@@ -28,14 +29,8 @@ impl SlidingLimit {
     /// Limits of `levels`, one each; `None` where the continuation fails. All levels have one method, and their trajectories share
     /// batches.
     pub fn of(levels: &[LevelCurve]) -> Vec<Option<Self>> {
-        let touches: Vec<_> = levels.iter().map(LevelCurve::touch).collect();
-        let starts = levels.iter().zip(&touches);
-        let starts = starts.filter_map(|(level, touch)| Some((level, (*touch)?)));
-        let mut followed = continuations(starts.collect(), false, NODE_MISS).into_iter();
-        let continued: Vec<Option<Continuation>> = touches
-            .iter()
-            .map(|touch| touch.as_ref().and_then(|_| followed.next()?))
-            .collect();
+        let starts = levels.iter().map(|level| Some((level, level.touch()?)));
+        let continued = continuations(&starts.collect::<Vec<_>>(), false, NODE_MISS);
         let pairs = levels.iter().zip(&continued);
         let nodes = pairs.flat_map(|(level, continued)| {
             let nodes = continued.iter().flat_map(|curve| &curve.nodes);

@@ -1,4 +1,5 @@
-//! Extremum of a function near zero, between samples.
+//! Extremum of a function near zero, between samples. The function has no sign change to bracket, so the golden section brackets its
+//! extremum by three values.
 
 /// Steps of the golden section. They leave 1e-8 of the interval, in which a smooth function is flat to rounding.
 const STEPS: u32 = 40;

@@ -45,9 +45,12 @@ impl LevelCurve {
     /// continuation fails.
     #[must_use]
     pub fn continuation(&self, start: CurveNode, past_fold: bool) -> Option<Continuation> {
-        continuations(vec![(self, start)], past_fold, ON_CURVE).pop()?
+        continuations(&[Some((self, start))], past_fold, ON_CURVE).pop()?
     }
 }
+
+/// Level curve with the node from which it is followed, or `None` for a curve that is left out.
+pub type CurveStart<'a> = Option<(&'a LevelCurve, CurveNode)>;
 
 /// Follows several curves at once, each as [`LevelCurve::continuation`] does; their trajectories share batches.
 ///
@@ -55,22 +58,23 @@ impl LevelCurve {
 /// curve is followed again with twice the steps.
 #[must_use]
 pub fn continuations(
-    starts: Vec<(&LevelCurve, CurveNode)>,
+    starts: &[CurveStart],
     past_fold: bool,
     miss: f64,
 ) -> Vec<Option<Continuation>> {
-    let mut ended = follow_with_retry(&starts, past_fold, miss);
-    let is_steep =
-        |found: &Option<Continuation>| found.as_ref().is_some_and(Continuation::is_steep);
-    let steep: Vec<usize> = (0..starts.len()).filter(|i| is_steep(&ended[*i])).collect();
-    let finer: Vec<LevelCurve> = steep.iter().map(|i| starts[*i].0.finer()).collect();
-    let again = finer
-        .iter()
-        .zip(&steep)
-        .map(|(level, i)| (level, starts[*i].1));
-    let again = follow_with_retry(&again.collect::<Vec<_>>(), past_fold, miss);
-    for (i, found) in steep.into_iter().zip(again) {
-        ended[i] = found.or(ended[i].take());
+    let mut ended = follow_with_retry(starts, past_fold, miss);
+    let pairs = starts.iter().zip(&ended);
+    let finer = pairs.map(|(start, found)| {
+        let is_steep = found.as_ref()?.is_steep();
+        is_steep.then(|| start.map(|(level, _)| level.finer()))?
+    });
+    let finer: Vec<Option<LevelCurve>> = finer.collect();
+    let again = finer.iter().zip(starts);
+    let again = again.map(|(level, start)| Some((level.as_ref()?, (*start)?.1)));
+    let again: Vec<CurveStart> = again.collect();
+    let again = follow_with_retry(&again, past_fold, miss);
+    for (ended, again) in ended.iter_mut().zip(again) {
+        *ended = again.or(ended.take());
     }
     ended
 }
@@ -78,32 +82,33 @@ pub fn continuations(
 /// Follows all curves, and those that fail once more with nodes to rounding. Where curves meet, nodes with an error of `miss` can lead to
 /// another curve.
 fn follow_with_retry(
-    starts: &[(&LevelCurve, CurveNode)],
+    starts: &[CurveStart],
     past_fold: bool,
     miss: f64,
 ) -> Vec<Option<Continuation>> {
-    let mut ended = follow(starts.to_vec(), past_fold, miss);
-    let has_failed = |i: &usize| ended[*i].is_none() && miss > ON_CURVE;
-    let failed: Vec<usize> = (0..starts.len()).filter(has_failed).collect();
-    let again = failed.iter().map(|i| starts[*i]).collect();
-    for (i, found) in failed.iter().zip(follow(again, past_fold, ON_CURVE)) {
-        ended[*i] = found;
+    let mut ended = follow(starts, past_fold, miss);
+    if miss > ON_CURVE {
+        let failed = starts.iter().zip(&ended);
+        let failed = failed.map(|(start, found)| start.filter(|_| found.is_none()));
+        let again = follow(&failed.collect::<Vec<_>>(), past_fold, ON_CURVE);
+        for (ended, again) in ended.iter_mut().zip(again) {
+            *ended = ended.take().or(again);
+        }
     }
     ended
 }
 
-fn follow(
-    starts: Vec<(&LevelCurve, CurveNode)>,
-    past_fold: bool,
-    miss: f64,
-) -> Vec<Option<Continuation>> {
+fn follow(starts: &[CurveStart], past_fold: bool, miss: f64) -> Vec<Option<Continuation>> {
     let mut ended = vec![None; starts.len()];
-    let Some((first, _)) = starts.first() else {
+    let Some((first, _)) = starts.iter().flatten().next() else {
         return ended;
     };
     let newton = BatchNewton::new(first.method, u32::MAX);
-    let stepper = |(index, (level, start))| Stepper::new(index, level, start, miss);
-    let mut open: Vec<Stepper> = starts.into_iter().enumerate().map(stepper).collect();
+    let steppers = starts.iter().enumerate().filter_map(|(index, start)| {
+        let (level, node) = (*start)?;
+        Some(Stepper::new(index, level, node, miss))
+    });
+    let mut open: Vec<Stepper> = steppers.collect();
     while !open.is_empty() {
         // Each stepper runs until the chord to its next node may meet an edge, or until it fails. So edge Newtons share batches, too.
         let predicted: Vec<DVec2> = open.iter().map(|stepper| stepper.predicted).collect();

@@ -205,25 +205,17 @@ fn ends_of_pieces(
     starts: &[Option<CurveNode>],
     backward: bool,
 ) -> Vec<Option<PieceEnd>> {
-    let started: Vec<(usize, CurveNode)> = starts
-        .iter()
-        .enumerate()
-        .filter_map(|(i, start)| Some((i, (*start)?)))
-        .collect();
-    let levels: Vec<LevelCurve> = started
-        .iter()
-        .map(|(i, _)| match backward {
-            true => rows[*i].level.backward(),
-            false => rows[*i].level.clone(),
-        })
-        .collect();
-    let curves = levels.iter().zip(started.iter().map(|(_, start)| *start));
-    let continued = continuations(curves.collect(), false, NODE_MISS);
-    let mut ends = vec![None; starts.len()];
-    for ((level, (i, _)), piece) in levels.iter().zip(&started).zip(continued) {
-        ends[*i] = piece.and_then(|piece| end_of_piece(level, piece));
-    }
-    ends
+    let level = |row: &ContinuedRow| match backward {
+        true => row.level.backward(),
+        false => row.level.clone(),
+    };
+    let levels: Vec<LevelCurve> = rows.iter().map(level).collect();
+    let starts = levels.iter().zip(starts);
+    let starts = starts.map(|(level, start)| Some((level, (*start)?)));
+    let continued = continuations(&starts.collect::<Vec<_>>(), false, NODE_MISS);
+    let ends = levels.iter().zip(continued);
+    ends.map(|(level, piece)| end_of_piece(level, piece?))
+        .collect()
 }
 
 /// Returns the crossing at which `piece` ends, and its nodes.

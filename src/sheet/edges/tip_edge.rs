@@ -75,40 +75,55 @@ const LAST_STEP_TO_EXTREMUM: f64 = 1e-7;
 pub(super) struct DistanceExtremum {
     /// Index of the sample before the extremum.
     after: usize,
-    /// Predicted signed load `f/rho^2`.
-    load: f64,
-    /// Loads that bracket the root of `dlnD/dload`.
-    loads: Bracket,
+    /// Predicted load, in parts of the corner's.
+    part: f64,
+    /// Parts that bracket the root of `dlnD/dload`.
+    parts: Bracket,
     /// Second derivatives of `(ln D, phi)` by the load.
     by_load_load: DVec2,
 }
 
 impl DistanceExtremum {
-    /// Returns the load of the extremum and the map there. The polynomials usually determine the second derivatives so well that one
+    /// Returns the extremum between two loads in parts of `corner`, with the derivatives of `(ln D, phi)` by the load, as the secant
+    /// predicts it. Returns `None` if `dlnD/dload` does not change its sign. A slope of exactly 0, as of a straight whisker at first touch,
+    /// is at a sample already.
+    fn between(after: usize, corner: f64, ends: [(f64, DVec2); 2]) -> Option<Self> {
+        let [(from, slope), (to, slope_there)] = ends;
+        let by_part = (slope_there - slope) / (to - from);
+        (slope.x * slope_there.x < 0.0).then(|| Self {
+            after,
+            part: from - slope.x / by_part.x,
+            parts: Bracket::new([from, to], [slope.x, slope_there.x]),
+            by_load_load: by_part / corner,
+        })
+    }
+
+    /// Returns the part of the extremum and the map there. The polynomials usually determine the second derivatives so well that one
     /// trajectory suffices; otherwise Newton's method computes its own.
-    fn polished(&self, case: SheetCase, tau: f64) -> (f64, ShootingMap) {
-        let (load, by_load_load) = (self.load, self.by_load_load);
-        let last_step = LAST_STEP_TO_EXTREMUM * (self.loads.above - self.loads.below).abs();
-        let map_at =
-            |load| Batch::new(case.method).shoot_at::<ShootingMap>(case.rod, [(tau, load)])[0];
-        let map = map_at(load);
-        let step = -map.by_load.x / by_load_load.x;
+    fn polished(&self, case: SheetCase, corner: &FoldPoint) -> (f64, ShootingMap) {
+        let (part, by_load_load) = (self.part, self.by_load_load);
+        let (batch, at) = (Batch::new(case.method), |part| {
+            [(corner.tau, part * corner.load)]
+        });
+        let last_step = LAST_STEP_TO_EXTREMUM * (self.parts.above - self.parts.below).abs();
+        let map: ShootingMap = batch.shoot_at(case.rod, at(part))[0];
+        let step = -map.by_load.x / (by_load_load.x * corner.load);
         if step.abs() <= last_step {
             let here = SecondVariation {
                 map,
                 by_load_load,
                 ..SecondVariation::default()
             };
-            return (load + step, here.extrapolated(DVec2::new(0.0, step)).map);
+            let moved = DVec2::new(0.0, step * corner.load);
+            return (part + step, here.extrapolated(moved).map);
         }
-        let newton = |load| {
-            let here: SecondVariation =
-                Batch::new(case.method).shoot_at(case.rod, [(tau, load)])[0];
+        let newton = |part| {
+            let here: SecondVariation = batch.shoot_at(case.rod, at(part))[0];
             let slope = here.map.by_load.x;
-            (slope, load - slope / here.by_load_load.x)
+            (slope, part - slope / (here.by_load_load.x * corner.load))
         };
-        let load = self.loads.newton(load, |_| last_step, newton).x;
-        (load, map_at(load))
+        let part = self.parts.newton(part, |_| last_step, newton).x;
+        (part, batch.shoot_at(case.rod, at(part))[0])
     }
 }
 
@@ -144,41 +159,28 @@ impl<'a> TipLoads<'a> {
     fn samples(&self, extrema: &[DistanceExtremum]) -> Vec<EdgeSample> {
         let mut samples: Vec<EdgeSample> = Vec::new();
         for (m, part) in self.parts[..self.parts.len() - 1].iter().enumerate() {
-            let sample = |place: f64, load: f64, map: &ShootingMap| EdgeSample {
+            let sample = |place: f64, map: &ShootingMap| EdgeSample {
                 place,
                 tau: self.corner.tau,
-                load,
+                load: place * self.corner.load,
                 ln_distance: libm::log(map.pole.length()),
                 phi: nearest_turn(map.pole.to_angle(), self.phis[m]),
             };
-            samples.push(sample(*part, part * self.corner.load, &self.maps[m]));
+            samples.push(sample(*part, &self.maps[m]));
             for extremum in extrema.iter().filter(|extremum| extremum.after == m) {
-                let (load, map) = extremum.polished(self.case, self.corner.tau);
-                samples.push(sample(load / self.corner.load, load, &map));
+                let (part, map) = extremum.polished(self.case, self.corner);
+                samples.push(sample(part, &map));
             }
         }
         samples
     }
 
-    /// Returns the extrema: `dlnD/dload` changes its sign between two loads.
+    /// Returns the extrema between the loads.
     fn extrema(&self) -> Vec<DistanceExtremum> {
-        let slope = |m: usize| self.maps[m].by_load;
-        let load = |m: usize| self.parts[m] * self.corner.load;
-        let turns = |m: &usize| slope(*m).x * slope(m + 1).x < 0.0;
-        let between = |m: usize| {
-            let [from, to] = [slope(m), slope(m + 1)];
-            let by_load_load = (to - from) / (load(m + 1) - load(m));
-            DistanceExtremum {
-                after: m,
-                load: load(m) - from.x / by_load_load.x,
-                loads: Bracket::new([load(m), load(m + 1)], [from.x, to.x]),
-                by_load_load,
-            }
-        };
-        (0..self.parts.len() - 1)
-            .filter(turns)
-            .map(between)
-            .collect()
+        let slope = |m: usize| (self.parts[m], self.maps[m].by_load);
+        let corner = self.corner.load;
+        let between = |m| DistanceExtremum::between(m, corner, [slope(m), slope(m + 1)]);
+        (0..self.parts.len() - 1).filter_map(between).collect()
     }
 }
 
@@ -227,37 +229,29 @@ impl TipEdge {
         }
     }
 
-    /// Returns the extrema: sign changes of `dlnD/dload`. Three places from sample to sample are tested, because two extrema may be
-    /// close.
+    /// Returns the extrema between the Lobatto loads. Three places from load to load are tested, because two extrema may be close.
     pub(super) fn extrema(&self) -> Vec<DistanceExtremum> {
-        let slope = &self.by_load[0];
+        let slope = |part| (part, DVec2::from(self.by_load.map(|by| by.at(part).0)));
         let mut extrema = Vec::new();
-        let (mut from, mut at_from) = (0.0, slope.at(0.0).0);
+        let mut from = slope(0.0);
         for (after, pair) in LOBATTO_NODES.windows(2).enumerate() {
             for third in [1.0, 2.0, 3.0] {
-                let to = pair[0] + third / 3.0 * (pair[1] - pair[0]);
-                let at_to = slope.at(to).0;
-                // A slope of exactly 0, as of a straight whisker at first touch, is at a sample already.
-                if at_from * at_to < 0.0 {
-                    let near = from + at_from / (at_from - at_to) * (to - from);
-                    let parts = Bracket::new([from, to], [at_from, at_to]);
+                let to = slope(pair[0] + third / 3.0 * (pair[1] - pair[0]));
+                let found = DistanceExtremum::between(after, self.corner, [from, to]);
+                extrema.extend(found.map(|extremum| {
                     let problem = RootProblem {
                         target: 0.0,
-                        near,
-                        bracket: parts,
+                        near: extremum.part,
+                        bracket: extremum.parts,
                     };
-                    let part = slope.solve(&problem, LAST_STEP_ALONG_EDGE);
-                    extrema.push(DistanceExtremum {
-                        after,
-                        load: self.corner * part,
-                        loads: Bracket {
-                            below: self.corner * parts.below,
-                            above: self.corner * parts.above,
-                        },
+                    let part = self.by_load[0].solve(&problem, LAST_STEP_ALONG_EDGE);
+                    DistanceExtremum {
+                        part,
                         by_load_load: self.by_load_load(part),
-                    });
-                }
-                (from, at_from) = (to, at_to);
+                        ..extremum
+                    }
+                }));
+                from = to;
             }
         }
         extrema

@@ -2,7 +2,8 @@
 //!
 //! [`Bracket::newton`] is the root finder: Newton's method, Halley's or any other that proposes a next place, safeguarded by
 //! bisection. [`Bracket::bisect`] needs values alone, [`Bracket::halve`] signs alone. [`illinois`] is regula falsi, for
-//! functions without slopes whose values are expensive.
+//! functions without slopes whose values are expensive. Searches whose values come in batches hold one bracket each and call
+//! [`Bracket::shrink`] or [`Bracket::next`].
 
 /// Largest number of iterations: more than bisection needs between any two numbers of ordinary size.
 const MOST_ITERATIONS: usize = 200;
