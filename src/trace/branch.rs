@@ -115,26 +115,23 @@ impl Branch {
             (Some(_), Edge::Tip) => BranchMark::Tip,
             (None, _) => BranchMark::PullOff,
         };
-        let on_curve = guesses.iter().zip(corrected).enumerate();
-        let marked: Vec<(CurveNode, Option<BranchMark>)> = on_curve
-            .map(|(i, ((near, _), corrected))| {
-                // The ends and the fold are more accurate than corrected points.
-                let exact = match i {
-                    0 => Some((nodes[0], BranchMark::FirstTouch)),
-                    _ if i == last => Some((nodes[last_node], end_mark)),
-                    _ if Some(i) == fold_at => fold.map(|fold| (nodes[fold], BranchMark::SlipOff)),
-                    _ => None,
-                };
-                let near = &nodes[*near];
-                Ok(match exact {
-                    Some((node, mark)) => (node, Some(mark)),
-                    None => {
-                        let (point, full) = corrected.ok_or_else(|| self.failed())?;
-                        (self.level.node(point, &full, near.push, near.angle), None)
-                    }
-                })
-            })
-            .collect::<Result<_, NoState>>()?;
+        let mut marked = Vec::with_capacity(targets.len());
+        for (i, ((near, _), corrected)) in guesses.iter().zip(corrected).enumerate() {
+            // The ends and the fold are more accurate than corrected points.
+            let exact = match i {
+                0 => Some((nodes[0], BranchMark::FirstTouch)),
+                _ if i == last => Some((nodes[last_node], end_mark)),
+                _ if Some(i) == fold_at => fold.map(|fold| (nodes[fold], BranchMark::SlipOff)),
+                _ => None,
+            };
+            marked.push(if let Some((node, mark)) = exact {
+                (node, Some(mark))
+            } else {
+                let (point, full) = corrected.ok_or_else(|| self.failed())?;
+                let CurveNode { push, angle, .. } = nodes[*near];
+                (self.level.node(point, &full, push, angle), None)
+            });
+        }
         let stable = fold_at.map_or(marked.len(), |fold| fold + 1);
         let states = marked.iter().map(|(node, _)| (node.point, node.push));
         let states: Vec<(DVec2, f64)> = states.collect();

@@ -101,18 +101,6 @@ impl LevelCurve {
         self.scale(node.point) * self.direction(node)
     }
 
-    /// Returns the node that the corrector has reached, or `None` if it does not lie in the direction `along`.
-    pub(super) fn next(
-        &self,
-        from: &CurveNode,
-        along: DVec2,
-        (point, full): (DVec2, FullState),
-    ) -> Option<CurveNode> {
-        let turned = (point - from.point) / self.scale(from.point);
-        let node = self.node(point, &full, from.push, from.angle);
-        (turned.dot(along) > 0.5 * turned.length()).then_some(node)
-    }
-
     /// Returns the scale of `(tau, load)`: the changes after which the state changes by about its own size.
     pub(super) fn scale(&self, point: DVec2) -> DVec2 {
         let s = arclength(&self.rod, point.x);

@@ -100,8 +100,11 @@ impl<'a> Stepper<'a> {
 
     /// Returns the next node at a point of the curve, if the point lies ahead and not too far away.
     fn next(&self, point: DVec2, full: FullState) -> Option<CurveNode> {
-        let next = self.level.next(self.last(), self.along, (point, full))?;
-        self.fits(&next).then_some(next)
+        let (level, last) = (self.level, self.last());
+        let moved = (point - last.point) / level.scale(last.point);
+        let is_ahead = moved.dot(self.along) > 0.5 * moved.length();
+        let next = level.node(point, &full, last.push, last.angle);
+        (is_ahead && self.fits(&next)).then_some(next)
     }
 
     /// Predicts the next node by the polynomial through up to three nodes and their tangents.
