@@ -3,6 +3,7 @@
 //! The trials of all intervals share batches. So each interval halves its [`Bracket`] here, and not in [`Bracket::bisect`].
 
 use crate::numerics::Bracket;
+use crate::sheet::edges::edge_newton::EdgeIterate;
 use crate::sheet::edges::predictor::EdgeSample;
 use crate::sheet::fold::first_folds;
 use crate::sheet::row::Edge;
@@ -10,9 +11,6 @@ use crate::sheet::samples::SheetCase;
 use crate::shooting::SecondVariation;
 use crate::shooting::batch::Batch;
 use glam::DVec2;
-
-/// Point `(tau, load)` of an edge, and the pole and derivatives there.
-pub type EdgePoint = (DVec2, SecondVariation);
 
 /// Number of halvings: more than the bits of a mantissa.
 const MOST_EDGE_HALVINGS: usize = 64;
@@ -39,7 +37,7 @@ pub struct EdgeBisection {
     largest: f64,
     /// Number of halvings that are left.
     left: usize,
-    found: Option<EdgePoint>,
+    found: Option<EdgeIterate>,
 }
 
 impl EdgeBisection {
@@ -71,15 +69,20 @@ impl EdgeBisection {
 
     /// Halves the bracket at a trial. Returns false if the bisection ends, without a result if there is no point at the trial or the
     /// distance leaps over the target.
-    fn halve(&mut self, point: Option<EdgePoint>) -> bool {
-        let Some((_, here)) = &point else {
+    fn halve(&mut self, trial: Option<(DVec2, SecondVariation)>) -> bool {
+        let Some((point, here)) = trial else {
             return false;
         };
+        let miss = libm::log(here.map.pole.length()) - self.target;
         if self.left == 0 {
-            self.found = point;
+            self.found = Some(EdgeIterate {
+                point,
+                here,
+                residual: miss.abs(),
+                has_converged: true,
+            });
             return false;
         }
-        let miss = libm::log(here.map.pole.length()) - self.target;
         self.parts.shrink(self.part, miss);
         self.largest = self.largest.max(miss.abs());
         self.ends[usize::from((miss <= 0.0) != (self.ends[0] <= 0.0))] = miss;
@@ -92,7 +95,7 @@ impl EdgeBisection {
 
 /// Returns the point of each interval at which `ln D` is the target, or the closer end if both are on the same side of it. An entry is
 /// `None` where a fold is missing, or the distance leaps over the target.
-pub fn bisect(case: SheetCase, mut all: Vec<EdgeBisection>) -> Vec<Option<EdgePoint>> {
+pub fn bisect(case: SheetCase, mut all: Vec<EdgeBisection>) -> Vec<Option<EdgeIterate>> {
     for edge in [Edge::Fold, Edge::Tip] {
         let open = all.iter_mut().filter(|search| search.edge == edge);
         let mut open: Vec<&mut EdgeBisection> = open.collect();
@@ -114,7 +117,7 @@ pub fn bisect(case: SheetCase, mut all: Vec<EdgeBisection>) -> Vec<Option<EdgePo
 
 /// Returns the fold at the contact of each trial. Bisections for several distances between the same samples share their trials as long as
 /// all of them are on the same side.
-fn folds(case: SheetCase, trials: &[DVec2]) -> Vec<Option<EdgePoint>> {
+fn folds(case: SheetCase, trials: &[DVec2]) -> Vec<Option<(DVec2, SecondVariation)>> {
     let mut contacts: Vec<f64> = trials.iter().map(|trial| trial.x).collect();
     contacts.sort_by(f64::total_cmp);
     contacts.dedup();

@@ -6,7 +6,7 @@
 
 use crate::numerics::nearest_turn;
 use crate::sheet::edges::Edges;
-use crate::sheet::edges::bisection::{EdgeBisection, EdgePoint, bisect};
+use crate::sheet::edges::bisection::{EdgeBisection, bisect};
 use crate::sheet::edges::edge_newton::{
     EdgeIterate, EdgeProblem, EdgeStart, edge_newton, edge_newton_predicted,
 };
@@ -110,19 +110,17 @@ fn correct(case: SheetCase, rows: &[Row], candidates: &[CrossingCandidate]) -> V
         })
         .collect();
     let iterates = edge_newton_predicted(method, &problems);
-    let crossing = |c: &CrossingCandidate, (point, here): EdgePoint, residual: f64| {
-        let phi = nearest_turn(here.map.pole.to_angle(), c.predicted.phi);
+    let reached = |(c, iterate): (&CrossingCandidate, &EdgeIterate)| {
+        let map = &iterate.here.map;
+        let phi = nearest_turn(map.pole.to_angle(), c.predicted.phi);
         Crossing {
             edge: c.edge,
-            tau: point.x,
-            load: point.y,
+            tau: iterate.point.x,
+            load: iterate.point.y,
             push: side.sign() * (phi - rows[c.row].touch),
-            residual,
-            slope: c.edge.slope(&here.map),
+            residual: iterate.residual,
+            slope: c.edge.slope(map),
         }
-    };
-    let reached = |(c, iterate): (&CrossingCandidate, &EdgeIterate)| {
-        crossing(c, (iterate.point, iterate.here), iterate.residual)
     };
     let mut corrected: Vec<Crossing> = candidates.iter().zip(&iterates).map(reached).collect();
     let has_failed =
@@ -137,21 +135,16 @@ fn correct(case: SheetCase, rows: &[Row], candidates: &[CrossingCandidate]) -> V
         )
     });
     let bisected = bisect(case, between.collect());
-    for (i, point) in failed.into_iter().zip(bisected) {
+    for (i, bisected) in failed.into_iter().zip(bisected) {
         let c = &candidates[i];
-        let row = &rows[c.row];
-        let bisected = point.map(|point| {
-            let (_, here) = point;
-            let residual = libm::log(row.pole_distance / here.map.pole.length()).abs();
-            crossing(c, point, residual)
-        });
+        let bisected = bisected.map(|iterate| reached((c, &iterate)));
         // Where the first fold jumps from contact to contact, there is nothing between the samples. The result of Newton's method may be
         // on another sheet, so continuation must decide.
         corrected[i] = bisected.filter(Crossing::is_sound).unwrap_or(Crossing {
             edge: c.edge,
             tau: c.predicted.tau,
             load: c.predicted.load,
-            push: side.sign() * (c.predicted.phi - row.touch),
+            push: side.sign() * (c.predicted.phi - rows[c.row].touch),
             residual: f64::INFINITY,
             slope: f64::NAN,
         });
