@@ -56,16 +56,10 @@ pub struct Sheet {
     /// continuation of a piece failed.
     pub crossings: Vec<Vec<Crossing>>,
     method: Method,
-    guesses: Guesses,
-}
-
-/// Source of the guesses for cells.
-#[derive(Clone, Debug)]
-enum Guesses {
-    /// Certified samples of the whole sheet.
-    Sampled(Box<SheetSamples>),
-    /// Spans made by continuation, `[row][piece]`; the samples are missing or not certified.
-    Continued(Vec<Vec<RowSpan>>),
+    /// Samples of the whole sheet, if they are certified.
+    samples: Option<SheetSamples>,
+    /// Spans made by continuation, `[row][piece]`: the source of guesses without samples.
+    continued: Vec<Vec<RowSpan>>,
 }
 
 impl Sheet {
@@ -134,17 +128,8 @@ impl Sheet {
             rows,
             crossings,
             method,
-            guesses: match samples.filter(|_| is_certified) {
-                Some(samples) => Guesses::Sampled(Box::new(samples)),
-                None => Guesses::Continued(continued),
-            },
-        }
-    }
-
-    fn samples(&self) -> Option<&SheetSamples> {
-        match &self.guesses {
-            Guesses::Sampled(samples) => Some(samples),
-            Guesses::Continued(_) => None,
+            samples: samples.filter(|_| is_certified),
+            continued,
         }
     }
 
@@ -158,7 +143,7 @@ impl Sheet {
     /// Returns true if all rows are followed by continuation, because the samples of the sheet are not certified.
     #[must_use]
     pub fn is_continued(&self) -> bool {
-        self.samples().is_none()
+        self.samples.is_none()
     }
 
     /// Returns the level curve `D = const` of the row with index `row`.
@@ -176,18 +161,18 @@ impl Sheet {
     /// Distance from the tip, in `tau`, within which the integration cannot distinguish a contact from one at the tip.
     #[must_use]
     pub fn tip_blur(&self) -> f64 {
-        self.samples()
-            .map_or(0.0, |samples| 2.0 * samples.edges.tip_error)
+        let samples = self.samples.as_ref();
+        samples.map_or(0.0, |samples| 2.0 * samples.edges.tip_error)
     }
 
     /// Returns the stable pieces of `row`: from the certified lattice, or else from the row's continuation.
     #[must_use]
     pub fn spans(&self, row: usize) -> Cow<'_, [RowSpan]> {
-        match &self.guesses {
-            Guesses::Sampled(samples) => Cow::Owned(vec![
-                samples.lattice.span(&samples.contacts, &self.rows[row]),
-            ]),
-            Guesses::Continued(rows) => Cow::Borrowed(&rows[row]),
+        match &self.samples {
+            Some(SheetSamples {
+                lattice, contacts, ..
+            }) => Cow::Owned(vec![lattice.span(contacts, &self.rows[row])]),
+            None => Cow::Borrowed(&self.continued[row]),
         }
     }
 
@@ -212,7 +197,7 @@ impl Sheet {
     #[must_use]
     pub fn is_stable(&self, tau: f64, load: f64, map: &ShootingMap) -> bool {
         let load = self.side.sign() * load;
-        let samples = self.samples();
+        let samples = self.samples.as_ref();
         let is_loaded = samples.is_none_or(|samples| samples.is_below_fold(tau, load));
         let scale = map.by_tau.length() * map.by_load.length();
         is_loaded && map.det() > -1e-7 * scale

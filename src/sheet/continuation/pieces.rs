@@ -95,35 +95,26 @@ type PieceEnd = (Crossing, Vec<CurveNode>);
 
 fn from_touch(rows: &[ContinuedRow]) -> Vec<StablePieces> {
     let at_touch = |row: &ContinuedRow| row.crossings.iter().copied().find(Crossing::is_at_touch);
-    let starts: Vec<Option<CurveNode>> = rows
-        .iter()
-        .map(|row| {
-            let is_continued = row.touches && at_touch(row).is_none();
-            is_continued.then(|| row.level.touch()).flatten()
-        })
-        .collect();
+    let start = |row: &ContinuedRow| {
+        let is_continued = row.touches && at_touch(row).is_none();
+        is_continued.then(|| row.level.touch())?
+    };
+    let starts: Vec<Option<CurveNode>> = rows.iter().map(start).collect();
     let ends = ends_of_pieces(rows, &starts, false);
-    rows.iter()
-        .zip(ends)
-        .map(|(row, end)| {
-            if !row.touches {
-                return StablePieces {
-                    pieces: Vec::new(),
-                    are_complete: true,
-                };
-            }
-            let end = at_touch(row).map(|end| (end, Vec::new())).or(end);
-            let piece = end.map(|(end, nodes)| StablePiece {
-                begin: None,
-                end,
-                nodes,
-            });
-            StablePieces {
-                are_complete: piece.is_some(),
-                pieces: piece.into_iter().collect(),
-            }
-        })
-        .collect()
+    let pieces = rows.iter().zip(ends).map(|(row, end)| {
+        let at_touch = at_touch(row).filter(|_| row.touches);
+        let end = at_touch.map(|end| (end, Vec::new())).or(end);
+        let piece = end.map(|(end, nodes)| StablePiece {
+            begin: None,
+            end,
+            nodes,
+        });
+        StablePieces {
+            are_complete: piece.is_some() || !row.touches,
+            pieces: piece.into_iter().collect(),
+        }
+    });
+    pieces.collect()
 }
 
 /// Adds to `found` the piece of each row that begins or ends at its crossing, unless the piece is already there.
@@ -168,25 +159,21 @@ fn through_crossings(
     let behind = ends_of_pieces(rows, &back, true);
     for (i, found) in found.iter_mut().enumerate() {
         let Some(entry) = entries[i] else { continue };
-        let piece = match (&ahead[i], &behind[i]) {
-            (Some((end, nodes)), _) => Some((Some(entry), *end, nodes)),
-            (None, Some((begin, nodes))) if !same(&entry, begin) => {
-                let is_new = !found.have_end(begin);
-                is_new.then_some((Some(*begin), entry, nodes))
+        let (begin, end, nodes) = match (&ahead[i], &behind[i]) {
+            (Some((end, nodes)), _) => (entry, *end, nodes),
+            (None, Some((begin, nodes))) if !same(&entry, begin) && !found.have_end(begin) => {
+                (*begin, entry, nodes)
             }
-            (None, Some(_)) => None,
-            (None, None) => {
-                found.are_complete = false;
-                None
+            (None, behind) => {
+                found.are_complete &= behind.is_some();
+                continue;
             }
         };
-        found
-            .pieces
-            .extend(piece.map(|(begin, end, nodes)| StablePiece {
-                begin,
-                end,
-                nodes: nodes.clone(),
-            }));
+        found.pieces.push(StablePiece {
+            begin: Some(begin),
+            end,
+            nodes: nodes.clone(),
+        });
     }
 }
 

@@ -96,21 +96,19 @@ fn folds_down_to(case: SheetCase, nearest: &Row, spacing: f64) -> Option<Vec<Fol
     let rod = case.rod;
     let tau_tip = rod.tau_tip();
     let u_tip = u_of(rod, tau_tip);
-    let mut near = tau_tip;
-    let mut tau = |from_end: usize| {
-        let inward = from_end as f64 - BEYOND_TIP as f64;
-        near = if from_end == BEYOND_TIP {
-            tau_tip
-        } else {
-            tau_of(rod, u_tip - spacing * inward, near)
-        };
-        near
-    };
     let reach = nearest.pole_distance - rod.pole.abs();
     let range = (u_tip - u_of(rod, rod.tau(reach.min(1.0)))).min(LONGEST_RANGE);
     let count = (range / spacing) as usize + BEYOND_TIP + BEYOND_NEAREST + 2;
-    let taus: Vec<f64> = (0..count).map(&mut tau).collect();
-    let folds = first_folds(case, &taus);
+    let taus = (0..count).scan(tau_tip, |tau, from_end| {
+        let inward = from_end as f64 - BEYOND_TIP as f64;
+        *tau = if from_end == BEYOND_TIP {
+            tau_tip
+        } else {
+            tau_of(rod, u_tip - spacing * inward, *tau)
+        };
+        Some(*tau)
+    });
+    let folds = first_folds(case, &taus.collect::<Vec<_>>());
     let mut folds: Vec<FoldPoint> = folds.into_iter().collect::<Option<_>>()?;
     folds.reverse();
     Some(folds)
