@@ -9,9 +9,10 @@ use crate::rod::Effects;
 use crate::shooting::{Nystrom8, REST_TANGENT, REST_TERMS};
 
 /// Pieces of the shader that solves cells of rows as differences from base points.
-const CELLS: [&str; 6] = [
+const CELLS: [&str; 7] = [
     include_str!("../../../shaders/numbers.wgsl"),
     include_str!("../../../shaders/difference.wgsl"),
+    include_str!("../../../shaders/path.wgsl"),
     include_str!("../../../shaders/intrinsic.wgsl"),
     include_str!("../../../shaders/nystrom8.wgsl"),
     include_str!("../../../shaders/row.wgsl"),
