@@ -28,22 +28,24 @@ impl Cpu {
         let begun = Instant::now();
         let flat: Vec<CellTarget> = targets.iter().flatten().flatten().copied().collect();
         let refined = refine(batch.method, &batch.sheets(), &flat);
-        let mut rest = refined.as_slice();
+        let mut cells = vec![Cell::new(Outcome::OffSheet, 0); batch.cells()];
+        let (mut rest, mut rest_into) = (refined.as_slice(), cells.as_mut_slice());
         let rows = batch.rows.iter().zip(&targets).map(|(row, targets)| {
             let count = targets.iter().flatten().count();
-            (row, targets, rest.split_off(..count).unwrap_or_default())
+            let refined = rest.split_off(..count).unwrap_or_default();
+            let into = rest_into.split_off_mut(..row.count()).unwrap_or_default();
+            (row, targets, refined, into)
         });
         let rows: Vec<_> = rows.collect();
-        let cells = rows
-            .into_par_iter()
-            .flat_map_iter(|(row, targets, refined)| {
+        rows.into_par_iter()
+            .for_each(|(row, targets, refined, into)| {
                 let mut refined = refined.iter();
-                row.each().zip(targets).map(move |(cell, target)| {
+                for ((cell, target), into) in row.each().zip(targets).zip(into) {
                     let found = target.and_then(|_| refined.next());
-                    solved(batch, row, cell, found)
-                })
+                    *into = solved(batch, row, cell, found);
+                }
             });
-        let cells = Cells::of(batch, &cells.collect::<Vec<_>>());
+        let cells = Cells::of(batch, &cells);
         self.refinement += begun.elapsed();
         cells
     }
