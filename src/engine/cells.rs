@@ -3,7 +3,6 @@
 use super::RowBatch;
 use crate::plan::STATE_CHANNELS;
 use glam::DVec2;
-use rayon::prelude::*;
 use std::ops::Range;
 use std::slice;
 
@@ -107,6 +106,51 @@ impl CellRun<'_> {
     }
 }
 
+/// Some cells of [`Cells`], to be written.
+pub(super) struct CellsMut<'a> {
+    pub outcome: &'a mut [Outcome],
+    pub steps: &'a mut [u32],
+    pub residual: &'a mut [f32],
+    pub values: [&'a mut [f32]; STATE_CHANNELS.len()],
+    pub points: &'a mut [DVec2],
+}
+
+impl CellsMut<'_> {
+    /// Replaces the cell at `index`.
+    pub fn set(&mut self, index: usize, cell: &Cell) {
+        self.outcome[index] = cell.outcome;
+        self.steps[index] = cell.steps;
+        self.residual[index] = cell.residual;
+        for (column, value) in self.values.iter_mut().zip(cell.values) {
+            if let Some(own) = column.get_mut(index) {
+                *own = value;
+            }
+        }
+        if let Some(point) = self.points.get_mut(index) {
+            *point = cell.point;
+        }
+    }
+}
+
+impl<'a> CellsMut<'a> {
+    /// Removes the first `count` cells and returns them.
+    fn split_off(&mut self, count: usize) -> Self {
+        Self {
+            outcome: split_off(&mut self.outcome, count),
+            steps: split_off(&mut self.steps, count),
+            residual: split_off(&mut self.residual, count),
+            values: self.values.each_mut().map(|own| split_off(own, count)),
+            points: split_off(&mut self.points, count),
+        }
+    }
+}
+
+/// Removes the first `count` elements of a column and returns them; nothing of an empty column.
+fn split_off<'a, T>(column: &mut &'a mut [T], count: usize) -> &'a mut [T] {
+    let count = count.min(column.len());
+    column.split_off_mut(..count).unwrap_or_default()
+}
+
 /// The cells of a [`RowBatch`], in its order, as columns.
 #[derive(Clone, Debug, Default)]
 pub struct Cells {
@@ -142,17 +186,21 @@ impl Cells {
         }
     }
 
-    /// The columns of `cells`, which are those of `batch` in order.
-    #[must_use]
-    pub fn of(batch: &RowBatch, cells: &[Cell]) -> Self {
-        let [_, values, points] = lengths(batch).map(|length| &cells[..length]);
-        Self {
-            outcome: cells.par_iter().map(|cell| cell.outcome).collect(),
-            steps: cells.par_iter().map(|cell| cell.steps).collect(),
-            residual: cells.par_iter().map(|cell| cell.residual).collect(),
-            values: std::array::from_fn(|i| values.par_iter().map(|cell| cell.values[i]).collect()),
-            points: points.par_iter().map(|cell| cell.point).collect(),
+    fn all_mut(&mut self) -> CellsMut<'_> {
+        CellsMut {
+            outcome: &mut self.outcome,
+            steps: &mut self.steps,
+            residual: &mut self.residual,
+            values: self.values.each_mut().map(Vec::as_mut_slice),
+            points: &mut self.points,
         }
+    }
+
+    /// The cells of each row of `batch`, to be written side by side.
+    pub(super) fn rows_mut(&mut self, batch: &RowBatch) -> Vec<CellsMut<'_>> {
+        let mut rest = self.all_mut();
+        let rows = batch.rows.iter();
+        rows.map(|row| rest.split_off(row.count())).collect()
     }
 
     /// Number of cells.
@@ -199,16 +247,6 @@ impl Cells {
 
     /// Replaces the cell at `index`.
     pub fn set(&mut self, index: usize, cell: &Cell) {
-        self.outcome[index] = cell.outcome;
-        self.steps[index] = cell.steps;
-        self.residual[index] = cell.residual;
-        for (column, value) in self.values.iter_mut().zip(cell.values) {
-            if let Some(own) = column.get_mut(index) {
-                *own = value;
-            }
-        }
-        if let Some(point) = self.points.get_mut(index) {
-            *point = cell.point;
-        }
+        self.all_mut().set(index, cell);
     }
 }

@@ -28,24 +28,27 @@ impl Cpu {
         let begun = Instant::now();
         let flat: Vec<CellTarget> = targets.iter().flatten().flatten().copied().collect();
         let refined = refine(batch.method, &batch.sheets(), &flat);
-        let mut cells = vec![Cell::new(Outcome::OffSheet, 0); batch.cells()];
-        let (mut rest, mut rest_into) = (refined.as_slice(), cells.as_mut_slice());
-        let rows = batch.rows.iter().zip(&targets).map(|(row, targets)| {
+        let mut cells = Cells::new(batch, Outcome::OffSheet);
+        let mut rest = refined.as_slice();
+        let rows = batch.rows.iter().zip(&targets).zip(cells.rows_mut(batch));
+        let rows = rows.map(|((row, targets), into)| {
             let count = targets.iter().flatten().count();
-            let refined = rest.split_off(..count).unwrap_or_default();
-            let into = rest_into.split_off_mut(..row.count()).unwrap_or_default();
-            (row, targets, refined, into)
+            (
+                row,
+                targets,
+                rest.split_off(..count).unwrap_or_default(),
+                into,
+            )
         });
         let rows: Vec<_> = rows.collect();
         rows.into_par_iter()
-            .for_each(|(row, targets, refined, into)| {
+            .for_each(|(row, targets, refined, mut into)| {
                 let mut refined = refined.iter();
-                for ((cell, target), into) in row.each().zip(targets).zip(into) {
+                for ((index, cell), target) in row.each().enumerate().zip(targets) {
                     let found = target.and_then(|_| refined.next());
-                    *into = solved(batch, row, cell, found);
+                    into.set(index, &solved(batch, row, cell, found));
                 }
             });
-        let cells = Cells::of(batch, &cells);
         self.refinement += begun.elapsed();
         cells
     }
