@@ -88,7 +88,7 @@ pub enum NewtonOutcome {
 pub struct NewtonIterate<S> {
     /// Contact coordinate and signed load, `(tau, load)`.
     pub point: DVec2,
-    /// State at `point`.
+    /// State of the trajectory at `point`.
     pub state: S,
     /// Number of Newton steps, including the extrapolated one.
     pub steps: u32,

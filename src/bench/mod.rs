@@ -101,7 +101,7 @@ const STAGES: [&str; 4] = ["upload", "dispatch", "waiting", "readback"];
 pub struct Rung {
     /// The integrator of the engine.
     pub integrator: &'static str,
-    /// Its steps at the fold of a cylinder, fewer under less load.
+    /// Steps of a trajectory at the fold of a cylinder; fewer under less load.
     pub steps: u32,
 }
 
@@ -123,7 +123,7 @@ fn medians(runs: &[StageTimes]) -> StageTimes {
 /// An engine and its peak rate.
 #[derive(Clone, Debug, Serialize)]
 pub struct Engine {
-    /// Name in the rows.
+    /// Name of the engine, as in [`Measurement::engine`].
     pub name: String,
     /// Threads of the CPU engine.
     pub threads: Option<usize>,
@@ -140,17 +140,17 @@ pub struct Engine {
 pub struct Report {
     /// Title of the scene.
     pub scene: String,
-    /// States that every engine solved.
+    /// Number of states that every engine solved.
     pub states: usize,
     /// Timed runs of each row.
     pub runs: usize,
-    /// The engines.
+    /// The engines that were measured.
     pub engines: Vec<Engine>,
-    /// The rows, engine by engine.
+    /// Measurements, engine by engine.
     pub rows: Vec<Measurement>,
     /// Detachment curves, from coarse to fine steps.
     pub detachments: Vec<Detachments>,
-    /// Cells of each whole map.
+    /// Number of cells of each whole map.
     pub map_cells: usize,
     /// Whole maps: of the CPU engine on all threads, then of each GPU engine.
     pub maps: Vec<WholeMap>,

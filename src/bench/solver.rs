@@ -16,9 +16,9 @@ const MOST_STEPS: u32 = 4;
 /// Last state computed for a target.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
-    /// `tau` of the contact.
+    /// Contact coordinate `tau`.
     pub tau: f64,
-    /// Signed load.
+    /// Signed load `f/rho^2`, dimensionless.
     pub load: f64,
     /// Distance of the pole from the wanted place at the last trajectory, in whisker lengths.
     pub residual: f64,

@@ -51,12 +51,12 @@ pub fn whisker_sides(scene: &Scene) -> Vec<(SweptWhisker, Side)> {
     scene.whiskers().flat_map(both).collect()
 }
 
-/// Distribution of an error over all states.
+/// Distribution of the magnitude of an error over all states, in the unit of the field that contains it.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Spread {
-    /// Largest error.
+    /// Largest error of all states; infinite if one is NaN.
     pub worst: f64,
-    /// Largest error of the best 99 %.
+    /// Largest error of the best 99 % of the states.
     pub p99: f64,
 }
 

@@ -3,17 +3,17 @@
 use serde::Serialize;
 use std::time::Instant;
 
-/// Largest spread of a timing that is not noisy.
+/// Largest [`Timing::spread`] of a timing that is not noisy.
 pub const NOISY: f64 = 0.2;
 
 /// Times of several runs, in seconds.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Timing {
-    /// The median of the runs.
+    /// Median time of the runs, in seconds.
     pub median: f64,
-    /// The fastest run.
+    /// Time of the fastest run, in seconds.
     pub fastest: f64,
-    /// The slowest run.
+    /// Time of the slowest run, in seconds.
     pub slowest: f64,
     /// Difference of the slowest and the fastest run, over the median.
     pub spread: f64,

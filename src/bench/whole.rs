@@ -28,7 +28,7 @@ pub struct WholeMap {
     pub stages_ms: StageTimes,
     /// CPU microseconds of the process per cell; 0 where the system has no such clock. A software adapter's threads are included.
     pub host_us_per_cell: f64,
-    /// Part of guesses and refinement in all stages, which an engine could still compute.
+    /// Stage times of guesses and refinement over the sum of all stage times, from 0 to 1: the part that an engine can take over.
     pub device_can_take: f64,
     /// Cells that fell back to the CPU.
     pub fallback: u64,
@@ -37,9 +37,9 @@ pub struct WholeMap {
 /// Comparison of engines by their times for whole maps.
 #[derive(Clone, Debug, Serialize)]
 pub struct Verdict {
-    /// The faster one of the CPU engine and the fastest GPU engine.
+    /// Name of the faster one of the CPU engine and the fastest GPU engine.
     pub faster: String,
-    /// The other one.
+    /// Name of the slower one of the two.
     pub slower: String,
     /// The medians' ratio, at least 1.
     pub times: f64,

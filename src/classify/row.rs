@@ -18,13 +18,13 @@ pub struct PushSpan {
 }
 
 impl PushSpan {
-    /// Returns true if `push` lies in the interval or on one of its ends.
+    /// Returns true if `push`, a magnitude in radians, lies in the interval or within [`TIE`] of one of its ends.
     #[must_use]
     pub fn contains(&self, push: f64) -> bool {
         self.from - TIE <= push && push <= self.to + TIE
     }
 
-    /// Distance from `push` to the detachment, in degrees; 0 beyond it.
+    /// Distance from `push`, a magnitude in radians, to the detachment, in degrees; 0 beyond it.
     #[must_use]
     pub fn margin_deg(&self, push: f64) -> f32 {
         (self.to - push).max(0.0).to_degrees() as f32
@@ -71,7 +71,7 @@ impl RowBoundary {
         }
     }
 
-    /// Span that contains `push`, in radians; `None` if there is none.
+    /// Span that contains the push angle `push`, a magnitude in radians; `None` if there is none.
     #[must_use]
     pub fn span(&self, push: f64) -> Option<&PushSpan> {
         self.spans().iter().find(|span| span.contains(push))
@@ -83,8 +83,8 @@ impl RowBoundary {
         self.spans.as_deref().unwrap_or_default()
     }
 
-    /// Returns true if every push angle from `from` to `to`, in radians, gets the same verdict, that is, if no span of the row begins
-    /// or ends there.
+    /// Returns true if every push angle from `from` to `to` gets the same verdict: no span of the row begins or ends there. Push angles
+    /// are magnitudes in radians.
     #[must_use]
     pub fn is_one_verdict(&self, from: f64, to: f64) -> bool {
         let is_apart = |end: f64| end + TIE < from || to < end - TIE;
@@ -104,7 +104,7 @@ impl RowBoundary {
         self.spans.as_ref().filter(|_| self.touches)?.first()
     }
 
-    /// Regime and final status of the cell at `push`, in radians, that was solved with `status`. The final status is an unresolved one
+    /// Regime and final status of the cell at `push`, a magnitude in radians, that was solved with `status`. The final status is unresolved
     /// if cell and boundary contradict each other.
     #[must_use]
     pub fn classify(&self, push: f64, status: Status) -> (Regime, Status) {

@@ -13,7 +13,7 @@ use whiskmap::store::{MapWriter, ZarrStore};
 
 /// Estimated cost of a map without its files.
 pub struct MapCost {
-    /// Wall seconds on all threads.
+    /// Elapsed seconds of the map with all threads at work, scaled from samples.
     pub seconds: f64,
     /// Newton steps per cell, each one trajectory.
     pub steps_per_cell: f64,
@@ -24,7 +24,7 @@ pub struct FileCost {
     pub format: MapFormat,
     /// Bytes on disk.
     pub bytes: f64,
-    /// Wall seconds on all threads to pack them.
+    /// Elapsed seconds to pack the files with all threads at work, scaled from samples.
     pub seconds: f64,
 }
 

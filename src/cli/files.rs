@@ -189,7 +189,10 @@ pub struct OutputTable {
 }
 
 impl OutputTable {
-    /// Appends rows.
+    /// Appends `rows` to the CSV table.
+    ///
+    /// # Errors
+    /// The output cannot be written; the message names the file.
     pub fn rows<R: Serialize>(&mut self, rows: impl IntoIterator<Item = R>) -> Result<(), Failure> {
         self.table.rows(rows).map_err(unwritten(&self.path))
     }

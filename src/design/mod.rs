@@ -46,11 +46,11 @@ pub struct DesignEnd {
 /// Solutions of a design, and the ends over the whole range of the parameter.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Design {
-    /// Solutions in growing order; empty if no value reaches the target, or if every value has the same push angle.
+    /// Solutions in the unit of the parameter, growing; empty if no value reaches the target, or if every value has the same push angle.
     pub values: Vec<f64>,
-    /// The least and the greatest value that the scene accepts.
+    /// The least and the greatest value that the scene accepts, in the unit of the parameter.
     pub range: [f64; 2],
-    /// Ends over that range, in growing order of the values.
+    /// Ends of pushes at values over [`Design::range`], in growing order of the values.
     pub ends: Vec<DesignEnd>,
 }
 

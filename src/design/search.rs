@@ -46,7 +46,7 @@ impl DesignSearch<'_> {
         self.miss(&self.end(value))
     }
 
-    /// Ends over the range, and on both sides of each change of kind.
+    /// Ends of pushes at values over the `range` of the parameter, in its unit, and on both sides of each change of kind.
     pub fn scan(&self, range: [f64; 2]) -> Vec<DesignEnd> {
         let scanned: Vec<DesignEnd> = samples(range)
             .into_par_iter()
@@ -80,7 +80,7 @@ impl DesignSearch<'_> {
         [before, after]
     }
 
-    /// The solutions within a part of the range where every end has the kind of the target.
+    /// Values of the parameter, in its unit, at which a push ends at the target, within a `piece` where every end has the target's kind.
     pub fn solutions(&self, piece: &[DesignEnd]) -> Vec<f64> {
         let mut places: Vec<[f64; 2]> = piece
             .iter()

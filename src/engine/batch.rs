@@ -28,30 +28,30 @@ pub type RowTerms = [f64; 7];
 pub struct BasePoint {
     /// Index of the whisker side in the batch.
     pub rod: u32,
-    /// `tau` of the contact.
+    /// Contact coordinate `tau`.
     pub tau: f64,
-    /// Signed load.
+    /// Signed load `f/rho^2`, dimensionless.
     pub load: f64,
     /// Signed push angle since first touch, in radians.
     pub push: f64,
     /// The state with its first derivatives, in the frame of the contact.
     pub state: FirstVariation,
-    /// Signed load per unit of the row parameter `w`, which is `load tau^2` over its value at the end of the row.
+    /// Signed load `f/rho^2` per unit of the row parameter `w`, which here is `load tau^2` over its value at the end of the row.
     pub load_per_w: f64,
-    /// Taylor polynomials of the row in `w`, less its value here.
+    /// Taylor coefficients of the row in `w`, less its value here: `[power][term]`.
     pub row: [RowTerms; POWERS],
-    /// Its cells: indices among the columns of all sides.
+    /// Cells of the base point: indices among the columns of all sides.
     pub cells: Range<u32>,
-    /// Its trajectory, and its place in a batch.
+    /// Trajectory of the base point, and its place in a batch.
     pub trajectory: BaseTrajectory,
 }
 
 /// Trajectory of a base point, and its place in a batch.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct BaseTrajectory {
-    /// Steps of the trajectory.
+    /// Number of steps of the trajectory.
     pub steps: u32,
-    /// Angle by which bending has turned the base, in radians.
+    /// Angle by which bending has turned the base since the contact, in radians.
     pub bent: f64,
     /// Index of the first cell of the base point among the cells of the batch.
     pub first_cell: usize,
@@ -59,23 +59,23 @@ pub struct BaseTrajectory {
     pub values: Values,
 }
 
-/// Cells of a row.
+/// The cells of one row to solve.
 #[derive(Clone, Debug)]
 pub struct BatchRow {
     /// Index of the whisker side in the batch.
     pub side: usize,
-    /// Row of the side's sheet.
+    /// Index of the row in the side's sheet.
     pub row: usize,
     /// The cells to solve: growing, disjoint ranges of the side's columns.
     pub cells: Vec<Range<usize>>,
-    /// Index of the first of them among the cells of the batch.
+    /// Index of the row's first cell among the cells of the batch.
     pub first: usize,
-    /// Indices of the base points; empty where the row has none.
+    /// Indices of the row's base points in the batch; empty where the row has none.
     pub base_points: Range<usize>,
 }
 
 impl BatchRow {
-    /// Number of cells.
+    /// Number of cells of the row in the batch.
     #[must_use]
     pub fn count(&self) -> usize {
         self.cells.iter().map(Range::len).sum()
@@ -90,11 +90,11 @@ impl BatchRow {
 /// Cells of some rows, for an [`Engine`](super::Engine).
 #[derive(Clone, Debug)]
 pub struct RowBatch {
-    /// Effects and resolution.
+    /// Integration method of the trajectories: effects and resolution.
     pub method: Method,
-    /// The whisker sides.
+    /// The whisker sides: `[side]`.
     pub sides: Arc<[WhiskerSide]>,
-    /// The rows.
+    /// The rows, in the order of their cells: `[row]`.
     pub rows: Vec<BatchRow>,
     /// Signed push angles of the columns of all sides, in radians.
     pub pushes: Arc<[f64]>,
@@ -104,7 +104,7 @@ pub struct RowBatch {
     pub has_points: bool,
     /// Base points of all rows; none before [`RowBatch::with_base_points`].
     pub base_points: Vec<BasePoint>,
-    /// Starts of the steps of their trajectories, one trajectory after the other.
+    /// Starts of the steps of the base points' trajectories, one trajectory after the other.
     pub starts: Vec<StepStart>,
 }
 
@@ -225,7 +225,7 @@ impl RowBatch {
         self.sides.iter().map(|side| &side.sheet).collect()
     }
 
-    /// Number of cells.
+    /// Number of cells of all rows of the batch.
     #[must_use]
     pub fn cells(&self) -> usize {
         self.rows.last().map_or(0, |last| last.first + last.count())

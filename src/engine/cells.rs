@@ -39,7 +39,7 @@ pub enum Outcome {
 pub struct Cell {
     /// Result of the engine.
     pub outcome: Outcome,
-    /// Newton steps taken.
+    /// Newton steps that the engine took for the cell.
     pub steps: u32,
     /// Bound on the distance of the pole from its place, in whisker lengths; NaN without a state.
     pub residual: f32,
@@ -78,15 +78,15 @@ impl Cell {
 /// Adjacent cells of [`Cells`] with one outcome.
 #[derive(Clone, Copy, Debug)]
 pub struct CellRun<'a> {
-    /// Their outcome.
+    /// Outcome of every cell of the run.
     pub outcome: Outcome,
-    /// Newton steps taken.
+    /// Newton steps that the engine took for each cell: `[cell]`.
     pub steps: &'a [u32],
-    /// Bounds on the residuals.
+    /// Bounds on the distance of the pole from its place, in whisker lengths: `[cell]`; NaN without a state.
     pub residual: &'a [f32],
-    /// Channel values; empty if the batch wants none.
+    /// Channel values in map units: `[channel][cell]`, in the order of [`STATE_CHANNELS`]; empty if the batch wants none.
     pub values: [&'a [f32]; STATE_CHANNELS.len()],
-    /// `(tau, load)` of the contacts; empty if the batch wants none.
+    /// `(tau, load)` of the contacts: `[cell]`; empty if the batch wants none.
     pub points: &'a [DVec2],
 }
 
@@ -154,15 +154,16 @@ fn split_off<'a, T>(column: &mut &'a mut [T], count: usize) -> &'a mut [T] {
 /// The cells of a [`RowBatch`], in its order, as columns.
 #[derive(Clone, Debug, Default)]
 pub struct Cells {
-    /// Result of the engine for each cell.
+    /// Result of the engine for each cell: `[cell]`.
     pub outcome: Vec<Outcome>,
-    /// Newton steps taken.
+    /// Newton steps that the engine took for each cell: `[cell]`.
     pub steps: Vec<u32>,
-    /// Bounds on the distance of the pole from its place, in whisker lengths; NaN without a state.
+    /// Bounds on the distance of the pole from its place, in whisker lengths: `[cell]`; NaN without a state.
     pub residual: Vec<f32>,
-    /// Channel values in map units, a column per name in [`STATE_CHANNELS`], unspecified without a solution; empty if the batch wants none.
+    /// Channel values in map units: `[channel][cell]`, in the order of [`STATE_CHANNELS`]. They are unspecified without a solution;
+    /// empty if the batch wants none.
     pub values: [Vec<f32>; STATE_CHANNELS.len()],
-    /// `(tau, load)` of contacts, unspecified without a solution; empty if the batch wants none.
+    /// `(tau, load)` of the contacts: `[cell]`. They are unspecified without a solution, and empty if the batch wants none.
     pub points: Vec<DVec2>,
 }
 
@@ -224,7 +225,7 @@ impl Cells {
             && self.points.len() == points
     }
 
-    /// The cells in `range`, of which all have the outcome of the first.
+    /// The cells with the indices `range` as one run. All of them must have the outcome of the first.
     #[must_use]
     pub fn run(&self, range: Range<usize>) -> CellRun<'_> {
         CellRun {

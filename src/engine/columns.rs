@@ -11,7 +11,7 @@ pub struct Column {
     pub index: usize,
     /// Signed push angle, in radians.
     pub push: f64,
-    /// `(cos, sin)` of the push angle.
+    /// `(cos, sin)` of the signed push angle.
     pub turn: DVec2,
 }
 
@@ -20,9 +20,9 @@ pub struct Column {
 pub struct SideColumns {
     /// The side of the pole.
     pub side: Side,
-    /// The columns.
+    /// The columns by growing magnitude of the push angle: `[column]`.
     pub columns: Vec<Column>,
-    /// Magnitudes of the push angles, in radians.
+    /// Magnitudes of the push angles of the columns, in radians: `[column]`.
     pub magnitudes: Vec<f64>,
     /// Number of columns on the sides before.
     pub first: u32,

@@ -12,9 +12,9 @@ use std::time::{Duration, Instant};
 #[derive(Debug, Default)]
 pub struct Cpu {
     submitted: VecDeque<Arc<RowBatch>>,
-    /// Wall time spent on guesses.
+    /// Wall time spent on guesses, summed over all batches.
     pub guesses: Duration,
-    /// Wall time spent on Newton's method.
+    /// Wall time spent on Newton's method, summed over all batches.
     pub refinement: Duration,
 }
 

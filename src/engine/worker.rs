@@ -28,7 +28,7 @@ pub struct Worker {
     submitted: VecDeque<Arc<RowBatch>>,
     /// Why the engine is disabled, if it failed.
     pub failure: Option<EngineError>,
-    /// Busy time of the engine.
+    /// Wall time in which the engine worked on batches, summed over all responses.
     pub busy: Duration,
 }
 

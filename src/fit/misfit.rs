@@ -13,7 +13,8 @@ pub(super) struct Misfit<'a> {
     scene: &'a Scene,
     pub points: &'a MeasuredPoints,
     free: &'a [Parameter],
-    /// Powers of 2, so that nothing is rounded by them.
+    /// Unit of each free parameter: a power of 2 near its natural size, so that nothing is rounded by it. Parameters in this module are
+    /// over their units: `[parameter]`.
     pub units: Vec<f64>,
 }
 
@@ -31,7 +32,7 @@ impl<'a> Misfit<'a> {
         }
     }
 
-    /// The values of the parameters in the scene, which gives them all.
+    /// The scene's values of the free parameters, each over its unit; the scene must give them all.
     pub fn start(&self) -> Vec<f64> {
         let values = self.free.iter().zip(&self.units);
         values
@@ -39,22 +40,23 @@ impl<'a> Misfit<'a> {
             .collect()
     }
 
-    /// The least and the greatest value of each parameter that `scene` accepts, with the other parameters fixed.
+    /// The least and the greatest value of each parameter that `scene` accepts, over its unit, with the other parameters fixed:
+    /// `[parameter][end]`.
     pub fn ranges(&self, scene: &Scene) -> Vec<[f64; 2]> {
         let free = self.free.par_iter().zip(&self.units);
         free.map(|(own, unit)| own.range(scene).map(|end| end / unit))
             .collect()
     }
 
-    /// The scene with these parameters.
+    /// The scene with these values of the free parameters, each over its unit.
     pub fn scene(&self, parameters: &[f64]) -> Result<Scene, SceneError> {
         let values = self.free.iter().zip(&self.units).zip(parameters);
         let values: Vec<_> = values.map(|((own, unit), x)| (*own, unit * x)).collect();
         self.scene.with_parameters(&values)
     }
 
-    /// Predicted less measured angles over their standard deviations; `None` where the scene refuses the parameters, or a
-    /// point is out of reach or never detaches.
+    /// Predicted less measured angles over their standard deviations, dimensionless: `[point]`; `None` where the scene refuses the
+    /// parameters, or a point is out of reach or never detaches.
     pub fn residuals(&self, parameters: &[f64]) -> Option<Vec<f64>> {
         let scene = self.scene(parameters).ok()?;
         let SweptWhisker { whisker, pole, .. } = scene.first_whisker();
@@ -67,7 +69,8 @@ impl<'a> Misfit<'a> {
         Some(residuals)
     }
 
-    /// Derivatives of the residuals, a column for each parameter; `None` where neither side has one. `here` are the residuals.
+    /// Derivatives of the residuals by the parameters over their units, `[parameter][point]`; `None` where neither side has one. `here` are
+    /// the residuals at `parameters`.
     pub fn jacobian(&self, parameters: &[f64], here: &[f64]) -> Option<Vec<Vec<f64>>> {
         let columns = (0..self.free.len()).into_par_iter().map(|i| {
             let beside = |step: f64| {

@@ -8,9 +8,9 @@ const ORTHOGONAL: f64 = 1e-14;
 
 /// Directions `v` in the space of columns, with the images `A v` of each. Images are orthogonal to each other.
 pub(super) struct Svd {
-    /// Unit directions.
+    /// Unit directions `v` in the space of columns: `[direction][column]`.
     pub directions: Vec<Vec<f64>>,
-    /// `A v` for each direction; its length is the singular value.
+    /// `A v` for each direction: `[direction][row]`; its length is the singular value.
     pub images: Vec<Vec<f64>>,
 }
 
@@ -66,12 +66,12 @@ fn rotate(columns: &mut [Vec<f64>], [i, j]: [usize; 2], [cos, sin]: [f64; 2]) {
     }
 }
 
-/// Scalar product.
+/// Scalar product of `a` and `b`, which have the same length.
 pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// Euclidean length.
+/// Euclidean length of `a`.
 pub(super) fn norm(a: &[f64]) -> f64 {
     dot(a, a).sqrt()
 }

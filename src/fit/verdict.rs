@@ -27,7 +27,7 @@ const TENS_DEG: f64 = 10.0;
 /// Why the best values are not a fit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NotAFit {
-    /// Root mean square of the residuals.
+    /// Root mean square of the residuals, measured less predicted angles, in degrees.
     pub rms_deg: f64,
     /// Largest RMS of a fit, in degrees: 5, or a third of the range of the measured angles and 0.
     pub largest_rms_deg: f64,

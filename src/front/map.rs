@@ -15,7 +15,7 @@ use std::sync::atomic::Ordering;
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Map {
-    /// The axes.
+    /// Axes of the map: push angles in degrees, distances in mm, and the sweep.
     pub grid: Grid,
     /// The cells of each whisker, in the order of [`SceneData::whiskers`](crate::scene::SceneData::whiskers).
     pub panels: Vec<Panel>,
@@ -27,17 +27,17 @@ pub struct Map {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct MapCell {
-    /// Index of the whisker.
+    /// Index of the whisker in [`Map::panels`].
     pub whisker: usize,
-    /// Index of the distance.
+    /// Index of the distance in the grid.
     pub distance: usize,
-    /// Index of the push angle.
+    /// Index of the push angle in the grid.
     pub push_angle: usize,
-    /// Distance of the pole at first touch, in mm.
+    /// Distance from the base to the contact at first touch, in mm.
     pub distance_mm: f64,
     /// Push angle since first touch, in degrees; positive concave backward, negative concave forward.
     pub push_angle_deg: f64,
-    /// The regime.
+    /// Regime of the cell.
     pub regime: Regime,
 }
 

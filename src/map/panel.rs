@@ -8,18 +8,19 @@ use std::ops::Range;
 /// `row * push_angles + column`; row 0 is the first distance, column 0 the first push angle.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Panel {
-    /// [`Regime`] codes.
+    /// [`Regime`] codes: `[distance][push_angle]`.
     pub regime: Vec<u32>,
-    /// [`Status`] codes.
+    /// [`Status`] codes: `[distance][push_angle]`.
     pub status: Vec<u32>,
-    /// One vector per name in [`STATE_CHANNELS`]; NaN without contact, empty if the channel is not computed.
+    /// Channel values in map units: `[channel][distance][push_angle]`, a vector per name in [`STATE_CHANNELS`]. NaN without contact; empty
+    /// if the channel is not computed.
     pub state: [Vec<f32>; STATE_CHANNELS.len()],
-    /// Distance of the solution's pole centre from the wanted one, relative to the whisker's length; that of
-    /// the last state computed where a cell is unresolved, NaN where there is no contact.
+    /// Distance of the pole's centre from the wanted one, in whisker lengths: `[distance][push_angle]`. In an unresolved cell it belongs to
+    /// the last state computed. NaN without contact.
     pub residual: Vec<f32>,
-    /// Push angle left until detachment; NaN where there is no contact.
+    /// Push angle left until detachment, in degrees: `[distance][push_angle]`; NaN without contact.
     pub margin_deg: Vec<f32>,
-    /// Newton steps taken, engine and refinement together.
+    /// Newton steps of each cell, engine and refinement together: `[distance][push_angle]`.
     pub newton_steps: Vec<u32>,
 }
 
@@ -128,7 +129,7 @@ impl Panel {
 pub(super) struct RowMut<'a> {
     pub regime: &'a mut [u32],
     pub status: &'a mut [u32],
-    /// Empty if the channel is not computed.
+    /// Channel values of the row in map units: `[channel][push_angle]`; empty if the channel is not computed.
     pub state: [&'a mut [f32]; STATE_CHANNELS.len()],
     pub residual: &'a mut [f32],
     pub margin_deg: &'a mut [f32],

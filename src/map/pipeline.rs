@@ -102,7 +102,7 @@ impl<'a> Pipeline<'a> {
         Some(panels)
     }
 
-    /// Ends the run.
+    /// Ends the run. Returns its counts and times.
     pub fn finish(self) -> Summary {
         let mut summary = self.summary;
         summary.stages.0[Stage::Guesses as usize] = self.cpu.guesses;

@@ -8,11 +8,11 @@ use rayon::prelude::*;
 
 /// A state of a row.
 pub struct FoundState {
-    /// Column of the panel.
+    /// Index of the state's column in the panel.
     pub column: usize,
     /// Contact if a push from first touch reaches the state.
     pub regime: Regime,
-    /// `(tau, load)`.
+    /// Contact coordinate and signed load, `(tau, load)` with `load = f/rho^2`.
     pub point: DVec2,
     /// Magnitude of the push angle, in radians.
     pub push: f64,

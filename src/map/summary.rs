@@ -35,7 +35,8 @@ impl EngineCells {
         self.near_edge + self.outside_trust + self.missed + self.not_finite
     }
 
-    /// Counts an outcome of the engine.
+    /// Counts one cell that the engine returned with this `outcome`. [`EngineCells::add_others`] counts the cells without
+    /// a base point.
     pub(super) fn count(&mut self, outcome: Outcome) {
         match outcome {
             Outcome::Solved => self.solved += 1,
@@ -81,19 +82,19 @@ const AT_ONCE: usize = 2048;
 /// Counts and times of a run.
 #[derive(Clone, Debug, Default)]
 pub struct Summary {
-    /// Cells per regime, in the order of [`Regime::ALL`].
+    /// Number of cells of each regime, in the order of [`Regime::ALL`].
     pub regimes: [u64; Regime::ALL.len()],
-    /// Cells with a state.
+    /// Number of cells with a state.
     pub refined: u64,
-    /// Newton steps over all cells.
+    /// Number of Newton steps, summed over all cells.
     pub steps: u64,
     /// Largest residual of a cell with a state, in whisker lengths.
     pub worst_residual: f64,
-    /// Cells whose own verdict contradicts the boundary of their row.
+    /// Number of cells whose own verdict contradicts the boundary of their row.
     pub disagreements: u64,
-    /// Cells with a state whose contact slides toward the base, against the friction assumed.
+    /// Number of cells with a state whose contact slides toward the base, against the friction assumed.
     pub toward_base: u64,
-    /// Cells with a state whose contact sticks.
+    /// Number of cells with a state whose contact sticks.
     pub sticking: u64,
     /// Outcomes of the engine's cells.
     pub engine_cells: EngineCells,

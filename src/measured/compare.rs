@@ -33,7 +33,7 @@ row! {
 /// Measured points with the predictions for one whisker and pole.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Comparison {
-    /// The points, in the order of their file.
+    /// Measured points with their predictions, in the order of the file: `[point]`.
     pub rows: Vec<ComparedPoint>,
 }
 

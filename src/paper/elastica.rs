@@ -15,7 +15,7 @@ pub struct Elastica {
     pub push: f64,
     /// Arclength of the contact over its distance from the base.
     pub arc_over_distance: f64,
-    /// `F d^2/(E I)`.
+    /// Load `F d^2/(E I)`, dimensionless; `d` is the distance of the contact from the base.
     pub load: f64,
     /// `dpush/dbeta`: 0 at the fold.
     slope: f64,

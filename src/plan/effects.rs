@@ -6,7 +6,7 @@ use crate::scene::{Parameter, Scene, SceneData, SweptWhisker, Whisker};
 /// An effect of the scene.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Effect {
-    /// Name for users.
+    /// Name of the effect, as printed.
     pub name: &'static str,
     /// Whether the effect changes anything in this scene.
     pub on: bool,

@@ -50,7 +50,7 @@ pub struct Plan {
     pub whiskers: usize,
     /// Effects of the scene, and resolution of the refinement.
     pub method: Method,
-    /// Sides of the push angles; first touch belongs to CB.
+    /// Sides of the whisker that the push angles need; first touch belongs to CB.
     pub sides: Vec<Side>,
     /// Cells of all panels.
     pub cells: usize,

@@ -61,7 +61,7 @@ impl CellTarget {
 /// Refined cell: its last state and the outcome.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Refined {
-    /// Last state computed.
+    /// Last state computed for the cell.
     pub state: ContactState,
     /// Number of Newton steps taken.
     pub steps: u32,
@@ -110,7 +110,7 @@ impl ContactState {
 /// Outcome of the refinement of a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RefineOutcome {
-    /// Stable state.
+    /// Found a stable state.
     Solved,
     /// Stable state of a longer whisker: the contact lies beyond the tip.
     BeyondTip,

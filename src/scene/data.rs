@@ -15,11 +15,11 @@ pub struct SceneData {
     pub whisker: Whisker,
     /// The pole, the first one of a sweep.
     pub pole: Pole,
-    /// The sweep.
+    /// Push angles, distances and sweep axes of the map.
     pub grid: Grid,
     /// Standard deviations of the numbers, if the scene gives them.
     pub uncertainty: Option<Deviations>,
-    /// Stem of the output files.
+    /// Name of the scene: the stem of its output files.
     pub name: String,
     /// The scene as TOML.
     pub text: SceneText,

@@ -9,7 +9,7 @@ use super::parameter::Parameter;
 /// Largest ratio of the moduli at tip and base, and of base and tip. Measured ratios lie between 0.7 and 1.4.
 pub(super) const STIFFEST_TIP: f64 = 20.0;
 
-/// Largest arc stretch.
+/// Largest accepted arc stretch, a ratio.
 pub(super) const MOST_STRETCH: f64 = 2.0;
 
 /// The limits of a parameter, whatever the other numbers are. Other numbers narrow some of them.

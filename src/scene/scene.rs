@@ -174,7 +174,7 @@ impl Parameter {
         given.map(Self::name).collect::<Vec<_>>().join(", ")
     }
 
-    /// The least and the greatest value that the scene accepts around its own, with all other numbers fixed.
+    /// The least and the greatest value that the scene accepts around its own, in the unit of the parameter, with all other numbers fixed.
     ///
     /// Both are NaN if the scene does not give the parameter.
     #[must_use]

@@ -42,7 +42,7 @@ pub struct Whisker {
 }
 
 impl SweptWhisker {
-    /// The rod of the whisker with its pole on `side`.
+    /// The rod of the swept whisker with its pole on `side`, without units: lengths are in whisker lengths.
     #[must_use]
     pub fn rod(&self, side: Side) -> Rod {
         self.whisker.rod(&self.pole, side)

@@ -43,13 +43,13 @@ pub fn rows_per_batch(rows: usize) -> usize {
 /// The stable sheet of one whisker on one side of the pole, with the rows of a map.
 #[derive(Clone, Debug)]
 pub struct Sheet {
-    /// Whisker and pole.
+    /// Whisker and pole, without units.
     pub rod: Rod,
     /// Whisker side.
     pub side: Side,
     /// Tip of the whisker: `[tau, radius / base radius]`.
     pub tip: [f64; 2],
-    /// Rows of the map, one for each distance.
+    /// Rows of the map, one for each distance: `[row]`.
     pub rows: Vec<Row>,
     /// Crossings of the sheet's edges, `[row][crossing]`. The end of a push from first touch comes first, if the row has one. The ends of
     /// every other piece follow, in the direction of growing push angles. An unknown crossing ([`Crossing::unknown`]) comes last if the

@@ -109,7 +109,7 @@ pub const STEEP: f64 = 20.0;
 const SOUND: f64 = 1e-10;
 
 impl Crossing {
-    /// Returns true if the crossing is found. Otherwise it is only near the level curve.
+    /// Returns true if the crossing is found: its residual is at most 1e-10. Otherwise it is only near the level curve.
     #[must_use]
     pub fn is_sound(&self) -> bool {
         self.residual <= SOUND

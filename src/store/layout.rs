@@ -77,7 +77,7 @@ impl AtlasLayout {
         self.distances.div_ceil(self.block_height())
     }
 
-    /// Indices of a panel's tile; a single panel has none.
+    /// Indices `(column, row)` of the tile of a `panel` in the atlas; `None` if there is only one panel.
     pub(super) fn tile(&self, panel: usize) -> Option<Vec2<usize>> {
         (self.panels() > 1).then_some(Vec2(panel % self.columns, panel / self.columns))
     }
@@ -160,7 +160,7 @@ pub(super) fn parts(channels: Channels) -> Vec<(&'static str, Vec<&'static str>)
     sorted.collect()
 }
 
-/// Type of the samples of a channel.
+/// Type of the samples of the channel `name`: `U32` for codes and counts, `F32` for all others.
 pub(super) fn sample_type(name: &str) -> SampleType {
     match name {
         "regime" | "status" | "newton_steps" => SampleType::U32,

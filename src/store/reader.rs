@@ -14,20 +14,17 @@ use std::io::{self, BufReader, Seek, SeekFrom};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-/// The values of a channel.
+/// Values of a channel: `[distance][push_angle]` of one panel, or of several panels one after the other.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ChannelValues {
-    /// Quantities; NaN where there is none.
+    /// Quantities in map units; NaN where there is none.
     F32(Vec<f32>),
     /// Codes and counts.
     U32(Vec<u32>),
 }
 
 impl ChannelValues {
-    /// The value of a cell.
-    ///
-    /// # Panics
-    /// There is no such cell.
+    /// The value of the cell with this index; a code or a count as a whole number.
     #[must_use]
     pub fn value(&self, cell: usize) -> f64 {
         match self {
@@ -36,7 +33,7 @@ impl ChannelValues {
         }
     }
 
-    /// All values.
+    /// All values in the order of the cells; a code or a count as a whole number.
     pub fn values(&self) -> impl Iterator<Item = f64> + '_ {
         let cells = match self {
             Self::F32(values) => values.len(),
@@ -52,7 +49,7 @@ impl ChannelValues {
 pub struct StoredMap {
     /// Title of the scene, one line.
     pub title: String,
-    /// The axes.
+    /// Axes of the stored map: push angles in degrees, distances in mm, and the sweep.
     pub grid: Grid,
     /// Numbers of panels and cells.
     pub layout: AtlasLayout,

@@ -8,7 +8,7 @@ use serde_json::Value;
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// A map or a store.
+/// A stored map that is open for reading: an EXR file or a Zarr store.
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum MapSource {
@@ -42,7 +42,7 @@ impl MapSource {
         }
     }
 
-    /// The axes.
+    /// Axes of the stored map: push angles in degrees, distances in mm, and the sweep.
     #[must_use]
     pub fn grid(&self) -> &Grid {
         match self {

@@ -8,7 +8,7 @@ use crate::shooting::shape::{RodPoint, profile};
 use glam::DVec2;
 use serde::Serialize;
 
-/// Shape of a whisker at its pole, in the frame of the pole: the origin is at the base, the first axis along the base's tangent at
+/// Shape of a whisker at its pole, in mm in the frame of the pole: the origin is at the base, the first axis along the base's tangent at
 /// first touch. A push rotates the base and leaves the pole.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WhiskerShape {

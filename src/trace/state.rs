@@ -9,13 +9,13 @@ use crate::shooting::{FullState, Reading};
 pub struct StateAtPush {
     /// Contact coordinate `tau`.
     pub tau: f64,
-    /// Signed load, dimensionless.
+    /// Signed load `f/rho^2`, dimensionless.
     pub load: f64,
     /// Requested push angle, signed, in radians.
     pub push: f64,
     /// Whether the state is stable.
     pub stable: bool,
-    /// Result of the trajectory.
+    /// Pole, pose of the base, force and energy of the state, in the frame of the contact and without units.
     pub full: FullState,
 }
 

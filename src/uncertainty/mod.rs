@@ -94,7 +94,7 @@ impl Draws {
         })
     }
 
-    /// Number of whiskers.
+    /// Number of random whiskers.
     #[must_use]
     pub fn len(&self) -> usize {
         self.drawn.len()

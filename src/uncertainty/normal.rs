@@ -17,7 +17,7 @@ impl Normal {
         }
     }
 
-    /// The next number.
+    /// Next number of the stream: mean 0, standard deviation 1.
     pub fn draw(&mut self) -> f64 {
         // The first is in (0, 1], whose logarithm is finite.
         let [radius, turn] = [1.0, 0.0].map(|shift| (self.bits() as f64 + shift) / STEPS);

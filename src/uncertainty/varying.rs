@@ -6,9 +6,9 @@ use crate::scene::{Deviations, Parameter, Scene, SceneError};
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Varying {
     source: VaryingSource,
-    /// Value in the scene.
+    /// Value in the scene, in the unit of the parameter or, for a row of the profile, in micrometres.
     pub value: f64,
-    /// Its standard deviation, more than 0.
+    /// Standard deviation of the value, in the same unit, more than 0.
     pub deviation: f64,
 }
 

@@ -30,7 +30,7 @@ pub trait Scalar: Real + Pod + Into<f64> {}
 
 impl<T: Real + Pod + Into<f64>> Scalar for T {}
 
-/// A number in the shaders' scalar, and what rounding leaves.
+/// `[high, low]`: `number` rounded to the shaders' scalar, and the rounded remainder.
 pub fn halves<T: Scalar>(number: f64) -> [T; 2] {
     let high = T::of(number);
     [high, T::of(number - high.into())]

@@ -9,16 +9,16 @@ use super::stamps::Stamps;
 use std::time::{Duration, Instant};
 use wgpu::BufferUsages as Usage;
 
-/// Times of the stages of submissions.
+/// Wall times of the stages of submissions, each summed over all submissions.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Times {
-    /// Packing and submitting.
+    /// Time to pack and submit on the CPU.
     pub upload: Duration,
-    /// The shader, by the device's own clock; 0 where it has none.
+    /// Run time of the shader by the device's own clock; 0 if the device has none.
     pub dispatch: Duration,
-    /// Waiting for the device.
+    /// Time in which the engine's thread waited for the device.
     pub waiting: Duration,
-    /// Unpacking, after the wait.
+    /// Time to read the cells back and unpack them, after the wait.
     pub readback: Duration,
 }
 
@@ -36,7 +36,7 @@ pub struct Buffers {
 /// A submission on the device.
 #[derive(Debug)]
 pub struct Flight {
-    /// Number of cells.
+    /// Number of cells of the submission.
     pub cells: usize,
     /// End of its base points in the batch.
     base_points_end: usize,

@@ -12,7 +12,8 @@ pub const WORKGROUP: u32 = 32;
 /// Alignment of a buffer range in groups: every device takes multiples of 256 bytes.
 const ALIGNED: usize = 256 / size_of::<[u32; 4]>();
 
-/// Push angles as bytes: each as two numbers.
+/// Signed push angles, in radians, as bytes for the shaders. Each is two numbers of `precision`, `[high, low]` of [`halves`], which
+/// together hold the angle.
 pub fn pushes(precision: Precision, pushes: &[f64]) -> Vec<u8> {
     fn bytes<T: Scalar>(pushes: &[f64]) -> Vec<u8> {
         let pushes: Vec<[T; 2]> = pushes.iter().map(|push| halves(*push)).collect();
@@ -33,11 +34,11 @@ pub struct Packed {
     pub base_points_end: usize,
     /// Groups of cells of one base point; those of a dispatch begin at a multiple of [`ALIGNED`].
     pub groups: Vec<[u32; 4]>,
-    /// Groups of each dispatch.
+    /// Ranges of [`Packed::groups`]: one for each dispatch.
     pub dispatches: Vec<Range<usize>>,
-    /// The base points.
+    /// Bytes of the base points ([`GpuBasePoint`]), one after the other.
     pub base_points: Vec<u8>,
-    /// Starts of the steps of their trajectories, with equal room in each dispatch.
+    /// Bytes of the starts of the steps ([`GpuStart`]) of the base points' trajectories, with equal room in each dispatch.
     pub starts: Vec<u8>,
 }
 

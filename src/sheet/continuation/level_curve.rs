@@ -74,7 +74,7 @@ impl LevelCurve {
         }
     }
 
-    /// Returns the node with the state `full` at `point`. Its angles are continued from `push` and `angle`.
+    /// Returns the node with the state `full` at `point`, `(tau, load)`. Its angles are continued from `push` and `angle`, in radians.
     #[must_use]
     pub fn node(&self, point: DVec2, full: &FullState, push: f64, angle: f64) -> CurveNode {
         let phi = full.map.pole.to_angle();
@@ -115,7 +115,7 @@ impl LevelCurve {
         DVec3::new(node.push, node.angle, s)
     }
 
-    /// Returns the distance of two nodes in the coordinates of [`LevelCurve::place`].
+    /// Returns the Euclidean distance of two nodes in the coordinates of [`LevelCurve::place`]: radians and whisker lengths count alike.
     #[must_use]
     pub fn length(&self, from: &CurveNode, to: &CurveNode) -> f64 {
         self.place(from).distance(self.place(to))

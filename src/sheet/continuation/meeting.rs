@@ -35,7 +35,7 @@ pub enum Meeting {
 }
 
 impl Chord<'_> {
-    /// Returns true if the chord may meet an edge.
+    /// Returns true if the chord between the two nodes may meet the fold or the tip edge.
     pub fn may_meet(&self) -> bool {
         self.crossed().iter().any(Option::is_some)
     }

@@ -44,7 +44,7 @@ pub struct Stepper<'a> {
     pub nodes: Vec<CurveNode>,
     /// Index of the node at the first fold.
     pub fold: Option<usize>,
-    /// CurveNode after the last one, if the chord to it may meet an edge.
+    /// Node after the last one, if the chord to it may meet an edge.
     pub candidate: Option<CurveNode>,
     step: f64,
     /// Step lengths from node to node, up to the last node, since the last edge.
@@ -53,7 +53,7 @@ pub struct Stepper<'a> {
     miss: f64,
     /// Unit direction at the last node, in parts of the scale.
     along: DVec2,
-    /// Predicted next node, at which the corrector starts.
+    /// Predicted `(tau, load)` of the next node, at which the corrector starts.
     pub predicted: DVec2,
     corrector: Corrector<'a>,
     /// Number of trajectories of the corrector for this node.

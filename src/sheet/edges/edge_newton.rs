@@ -104,8 +104,8 @@ pub enum EdgeStart {
     /// All trajectories have the method's resolution: for good starts, and for whiskers that coil up under friction, where the coarse
     /// resolution fails.
     Fine,
-    /// All trajectories have the method's resolution and share padded blocks: for the batches of a sheet, which do not depend on row
-    /// batches.
+    /// All trajectories have the method's resolution, as with [`EdgeStart::Fine`]. All open problems share padded blocks
+    /// of SIMD lanes: only for the batches of a sheet, whose problems do not depend on row batches.
     Shared,
 }
 

@@ -31,7 +31,7 @@ pub struct Edges {
     tip_edge: Option<TipEdge>,
     /// True if the changes along the fold between samples agree with the slopes there.
     fold_is_certified: bool,
-    /// Difference in `tau` between the tip of the resting whisker by integration and by its shape at rest.
+    /// Magnitude of the difference in `tau` between the tip of the resting whisker by integration and by its shape at rest.
     pub tip_error: f64,
 }
 

@@ -31,7 +31,7 @@ const LONGEST_RANGE: f64 = 68.0;
 /// Contact nodes with their first folds, from the base outward.
 #[derive(Clone, Debug)]
 pub struct ContactNodes {
-    /// First fold of each contact node.
+    /// First fold of each contact node, from the base outward: `[node]`.
     pub folds: Vec<FoldPoint>,
     /// Index of the contact node at the tip.
     pub tip: usize,

@@ -57,7 +57,7 @@ pub(super) struct ZarrArray {
     pub(super) kind: ValueKind,
     /// The metadata as they are written.
     pub(super) metadata: Value,
-    /// Number of dimensions.
+    /// Number of dimensions of the array, sweep axes included.
     pub(super) dimensions: usize,
     /// Values of a block's file.
     pub(super) values: usize,

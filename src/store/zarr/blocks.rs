@@ -15,11 +15,11 @@ const CELLS_OF_A_CHUNK: usize = 1 << 20;
 /// The blocks of a sweep. They depend on its grid alone, so that any number of processes agree on them.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Blocks {
-    /// Values of each sweep axis.
+    /// Number of values of each sweep axis: `[axis]`.
     pub(super) axes: Vec<usize>,
-    /// Values of each sweep axis in a block; the last block of an axis may have fewer.
+    /// Number of values of each sweep axis in a block: `[axis]`; the last block of an axis may have fewer.
     pub(super) shape: Vec<usize>,
-    /// Distances and push angles of a panel.
+    /// Numbers of distances and of push angles of a panel.
     pub(super) panel: [usize; 2],
 }
 
@@ -45,7 +45,7 @@ impl Blocks {
         }
     }
 
-    /// Number of blocks.
+    /// Number of blocks of the sweep.
     pub(super) fn count(&self) -> usize {
         self.blocks_per_axis().product()
     }

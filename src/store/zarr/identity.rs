@@ -29,7 +29,7 @@ impl StoreIdentity {
         Self(XxHash3_128::oneshot(text.as_bytes()))
     }
 
-    /// 32 hexadecimal digits.
+    /// The identity as 32 hexadecimal digits.
     pub(super) fn text(self) -> String {
         format!("{:032x}", self.0)
     }

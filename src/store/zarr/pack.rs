@@ -12,12 +12,12 @@ use serde_json::Map;
 use std::borrow::Cow;
 use std::path::Path;
 
-/// A packed panel: the chunks of each array.
+/// The values of one panel as bytes of chunks: `[array][chunk][byte]`, in the order of the store's arrays.
 #[derive(Debug)]
 pub struct PackedPanel(Vec<Vec<Vec<u8>>>);
 
 impl ZarrStore {
-    /// Packs a panel.
+    /// Compresses the values of one panel into the chunks of each array.
     #[must_use]
     pub fn pack(&self, panel: &Panel) -> PackedPanel {
         let arrays = self.arrays.par_iter();

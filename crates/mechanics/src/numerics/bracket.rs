@@ -20,9 +20,9 @@ pub struct Bracket {
 /// Result of a search for a root.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Root {
-    /// Place of the root.
+    /// Place of the root, in the unit of the bracket.
     pub x: f64,
-    /// Last step toward the root.
+    /// Last step toward the root, in the unit of the bracket.
     pub step: f64,
     /// Number of evaluations of the function.
     pub iterations: usize,
@@ -84,9 +84,9 @@ impl Bracket {
         self.newton(self.middle(), |_| 0.0, iterate).x
     }
 
-    /// Halves the bracket until its ends are at most `width` apart or neighbouring numbers. `is_below` decides which end
-    /// moves to the middle; its first error ends the search and is returned. It serves where a function is known by its
-    /// sign alone.
+    /// Halves the bracket until its ends are at most `width` apart or neighbouring numbers. `is_below(middle)` returns true if the
+    /// function is negative there: [`Bracket::below`] then moves to the middle, otherwise [`Bracket::above`]. Its first error ends the
+    /// search and is returned. It serves where a function is known by its sign alone.
     ///
     /// # Errors
     ///

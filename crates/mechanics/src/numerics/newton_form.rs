@@ -63,9 +63,9 @@ impl<const N: usize> Polynomial<N> {
 /// A target value of a polynomial, and where to search for it.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct RootProblem {
-    /// The value to reach.
+    /// Value that the polynomial is to have, in the unit of its values.
     pub target: f64,
-    /// Place to start from, if the bracket contains it.
+    /// Argument to start from, if the bracket contains it, in the unit of the nodes.
     pub near: f64,
     /// Two places between whose values the target lies.
     pub bracket: Bracket,

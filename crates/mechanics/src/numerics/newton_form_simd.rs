@@ -12,7 +12,7 @@ const ITERATIONS: usize = 3;
 /// Divided differences of the polynomials in all lanes.
 #[derive(Clone, Copy, Debug)]
 pub enum Terms<'a, const N: usize> {
-    /// All lanes share one polynomial.
+    /// All lanes share one polynomial: `[term]`.
     Same(&'a [f64; N]),
     /// Each lane has its own polynomial: `[term][lane]`.
     Each(&'a [LaneNumbers; N]),
@@ -44,11 +44,11 @@ impl<const N: usize> Terms<'_, N> {
 /// Polynomials on common nodes: one to solve, and `M` others to evaluate at its root.
 #[derive(Clone, Copy, Debug)]
 pub struct SimdRoots<'a, const N: usize, const M: usize> {
-    /// The nodes of all polynomials.
+    /// Interpolation nodes of all polynomials: `[term]`.
     pub nodes: &'a [f64; N],
     /// The polynomial to solve.
     pub terms: Terms<'a, N>,
-    /// The polynomials to evaluate at the root.
+    /// The polynomials to evaluate at the root: `[other]`.
     pub others: [Terms<'a, N>; M],
 }
 

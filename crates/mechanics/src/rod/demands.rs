@@ -74,7 +74,7 @@ impl Demands {
         Self { by_reach, pieces }
     }
 
-    /// The reach of contacts at arclength `s`.
+    /// The reach of contacts at arclength `s`, in whisker lengths.
     #[must_use]
     pub fn reach(s: f64) -> u32 {
         ((-REACHES_PER_OCTAVE * libm::log2(s)) as u32).min(REACHES - 1)

@@ -21,7 +21,7 @@ pub struct Piece {
 }
 
 impl Piece {
-    /// Radius at arclength `s` over the base radius.
+    /// Radius at arclength `s`, in whisker lengths, over the base radius.
     #[must_use]
     pub fn radius(&self, s: f64) -> f64 {
         let x = s - self.from;
@@ -29,7 +29,7 @@ impl Piece {
         x.mul_add(x.mul_add(x.mul_add(c3, c2), c1), c0)
     }
 
-    /// Derivative of the radius over the base radius, by the arclength.
+    /// Derivative of the radius over the base radius by the arclength, at arclength `s`. Arclengths are in whisker lengths.
     #[must_use]
     pub fn slope(&self, s: f64) -> f64 {
         let x = s - self.from;
@@ -64,8 +64,8 @@ pub struct RadiusProfile {
 const SLOPE_SAMPLES: u32 = 256;
 
 impl RadiusProfile {
-    /// The profile through `rows` of `[arclength, radius]`, over the whisker's length and base radius. The whisker's arclength is
-    /// `stretch` times its arclength in the plane of contact.
+    /// The profile through `rows` of `[arclength, radius]`: the real arclength in whisker lengths, and the radius over the base
+    /// radius. `stretch` is the real arclength over the arclength in the plane of contact, at least 1.
     #[must_use]
     pub fn new(rows: &[[f64; 2]], stretch: f64) -> Self {
         let rows: Vec<[f64; 2]> = rows.iter().map(|[s, r]| [s / stretch, *r]).collect();
@@ -136,7 +136,7 @@ impl RadiusProfile {
         s * flat - lever
     }
 
-    /// Share of each piece from the base on in the compliance at arclength `s`.
+    /// Share of each piece, from the base on, in the compliance at arclength `s`, in whisker lengths: `[piece]`. The sum is 1.
     pub(super) fn shares_at(&self, s: f64) -> impl Iterator<Item = f64> {
         let last = self.piece(s);
         let [flat, lever] = self.up_to(last, s);
@@ -169,7 +169,7 @@ impl RadiusProfile {
         })
     }
 
-    /// Index of the piece on which the arclength `s` lies. A row belongs to the piece that it ends.
+    /// Index of the piece on which the arclength `s`, in whisker lengths, lies. A row belongs to the piece that it ends.
     #[must_use]
     pub fn piece(&self, s: f64) -> usize {
         self.pieces
@@ -177,7 +177,7 @@ impl RadiusProfile {
             .saturating_sub(1)
     }
 
-    /// Radius at arclength `s` over the base radius.
+    /// Radius at arclength `s`, in whisker lengths, over the base radius.
     #[must_use]
     pub fn radius(&self, s: f64) -> f64 {
         self.pieces[self.piece(s)].radius(s)

@@ -52,15 +52,16 @@ pub struct Rod {
     pub taper: f64,
     /// Parabola coefficient `A* = A L_w`, at least 0.
     pub bend: f64,
-    /// Slope `t0 = -2 A x0` of the parabola at the base.
+    /// Slope `t0 = -2 A x0` of the parabola at the base, dimensionless.
     pub slope: f64,
-    /// Pole radius with the sign of the side: the pole's centre is at `-pole e2` from the contact.
+    /// Pole radius in whisker lengths, with the sign of the side: the pole's centre is at `-pole e2` from the contact.
     pub pole: f64,
-    /// Gradient `g` of the modulus `E_base (1 + g s)`, larger than -1.
+    /// Gradient `g` of the modulus `E_base (1 + g s)` per whisker length, larger than -1.
     pub gradient: f64,
     /// Coulomb's friction coefficient, friction over normal force, with the sign of the side.
     pub friction: f64,
-    /// Coefficients `[k0, k1]` of an Euler spiral with curvature `k0 + k1 s` at rest, in place of the parabola.
+    /// Coefficients `[k0, k1]` of an Euler spiral with curvature `k0 + k1 s` at rest, in radians per whisker length, in place of the
+    /// parabola; `s` is in whisker lengths.
     pub spiral: Option<[f64; 2]>,
     /// Measured radii in place of a linear taper. `taper` is then only the scale of the coordinates.
     pub profile: Option<Arc<RadiusProfile>>,
@@ -99,7 +100,7 @@ pub(crate) fn arclength_at(taper: f64, tau: f64) -> f64 {
 }
 
 impl Rod {
-    /// Bending stiffness at arclength `s` over the bending stiffness at the base.
+    /// Bending stiffness at arclength `s`, in whisker lengths, over the bending stiffness at the base.
     #[must_use]
     pub fn stiffness(&self, s: f64) -> f64 {
         let radius = match &self.profile {
@@ -132,7 +133,7 @@ impl Rod {
         }
     }
 
-    /// Young's modulus at arclength `s` over the modulus at the base.
+    /// Young's modulus at arclength `s`, in whisker lengths, over the modulus at the base.
     #[must_use]
     pub fn modulus(&self, s: f64) -> f64 {
         1.0 + self.gradient * s
@@ -148,7 +149,7 @@ impl Rod {
         DVec2::new(1.0, self.friction).normalize()
     }
 
-    /// Vector from the contact to the pole's centre, in the axes of [`Rod::contact_tangent`].
+    /// Vector from the contact to the pole's centre, in whisker lengths and in the axes of [`Rod::contact_tangent`].
     #[must_use]
     pub fn to_pole(&self) -> DVec2 {
         -self.pole * self.contact_tangent().perp()

@@ -14,9 +14,9 @@ pub struct Contact<T> {
     pub tangent: [T; 2],
     /// Bending stiffness over the bending stiffness at the base.
     pub stiffness: T,
-    /// Curvature at rest.
+    /// Curvature at rest, in radians per whisker length.
     pub curvature: T,
-    /// Derivative of the curvature at rest by the arclength.
+    /// Derivative of the curvature at rest by the arclength, in radians per squared whisker length.
     pub curvature_slope: T,
 }
 

@@ -25,9 +25,9 @@ fn over(a: DVec2, b: DVec2) -> DVec2 {
 pub struct ShootingMap {
     /// Centre of the pole in the frame of the base, in whisker lengths.
     pub pole: DVec2,
-    /// Derivative `d(ln D, phi)/dtau` at fixed load.
+    /// Derivative `d(ln D, phi)/dtau` at fixed load; `phi` in radians.
     pub by_tau: DVec2,
-    /// Derivative `d(ln D, phi)/dload` at fixed `tau`.
+    /// Derivative `d(ln D, phi)/dload` at fixed `tau`; `phi` in radians.
     pub by_load: DVec2,
 }
 
@@ -47,13 +47,15 @@ impl ShootingMap {
         ) / self.det()
     }
 
-    /// Newton's step `(tau, load)` toward `wanted`, [`limited`], from the contact at arclength `s` under `load`.
+    /// Newton's step `(tau, load)` toward the pole's centre `wanted`, in whisker lengths in the frame of the base. It is [`limited`]. The
+    /// iterate has its contact at arclength `s`, in whisker lengths, under the `load = f/rho^2`.
     #[must_use]
     pub fn newton_step(&self, wanted: DVec2, s: f64, load: f64) -> DVec2 {
         limited(self.solve(self.residual(wanted)), s, load).0
     }
 
-    /// Residual `P_wanted/P - 1` as a complex number. Its length is the pole's distance from the wanted place, relative to `D`.
+    /// Residual `P_wanted/P - 1` as a complex number, dimensionless. Its length is the pole's distance from the place `wanted`, relative to
+    /// `D`. `wanted` is in whisker lengths in the frame of the base.
     #[must_use]
     pub fn residual(&self, wanted: DVec2) -> DVec2 {
         over(wanted - self.pole, self.pole)
@@ -76,27 +78,28 @@ pub struct FullState {
     pub energy: f64,
 }
 
-/// Derivative of a state by a coordinate of the sheet.
+/// Derivative of a [`FullState`] by one coordinate of the sheet: `tau` at fixed load, or the load `f/rho^2` at fixed `tau`. Each
+/// field has the unit of the state's value per unit of the coordinate.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StateDerivative {
-    /// Derivative of the angle of the base's tangent.
+    /// Derivative of the angle of the base's tangent, in radians.
     pub angle: f64,
-    /// Derivative of the position of the base.
+    /// Derivative of the position of the base, in whisker lengths.
     pub position: DVec2,
-    /// Derivative of the force.
+    /// Derivative of the force at the contact, in `E I_base/L_w^2`.
     pub force: f64,
-    /// Derivative of the energy.
+    /// Derivative of the bending energy, in `E I_base/L_w`.
     pub energy: f64,
 }
 
-/// A state with its derivatives by contact and load.
+/// A state with its first derivatives by the contact coordinate `tau` and by the load `f/rho^2`, in the frame of [`FullState`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FirstVariation {
-    /// The state.
+    /// The state at `(tau, load)`.
     pub full: FullState,
     /// Derivative by `tau` at fixed load.
     pub by_tau: StateDerivative,
-    /// Derivative by the load at fixed `tau`.
+    /// Derivative by the load `f/rho^2` at fixed `tau`.
     pub by_load: StateDerivative,
 }
 

@@ -65,7 +65,7 @@ pub type TrajectoryState<T, I, S> = (<I as Intrinsic<T>>::State, (Planar<T>, Car
 /// Equations of the rod, its rest shape and its derivatives.
 #[derive(Clone, Copy, Debug)]
 pub struct RodSystem<T, I, C> {
-    /// Force `f`.
+    /// Signed force `f` at the contact, in `E I_base/L_w^2`.
     pub force: T,
     /// Curvature at rest.
     pub intrinsic: I,

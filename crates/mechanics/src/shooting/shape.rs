@@ -11,11 +11,11 @@ use glam::DVec2;
 /// lengths.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RodPoint {
-    /// Arclength from the base.
+    /// Arclength from the base, in whisker lengths.
     pub arclength: f64,
-    /// Position.
+    /// Position in the frame of the contact, in whisker lengths.
     pub position: DVec2,
-    /// Unit tangent.
+    /// Unit tangent in the frame of the contact.
     pub tangent: DVec2,
     /// Curvature `dtheta/ds`, in radians per whisker length.
     pub curvature: f64,

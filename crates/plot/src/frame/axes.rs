@@ -6,9 +6,9 @@ use crate::picture::font::{FittedText, fitted};
 use crate::picture::palette::INK;
 use crate::picture::{Anchor, Area, Pen, Picture};
 
-/// Width of frames and ticks.
+/// Width of the lines of frames and ticks, in pixels.
 pub const FRAME: f64 = 1.5;
-/// Room below a body.
+/// Height of the room below a body for ticks and label, in pixels.
 pub const BELOW: f64 = 112.0;
 /// From the frame to the middle of the lower label, and from the left end of the room to the middle of the upright label.
 const X_LABEL: f64 = 76.0;

@@ -4,20 +4,20 @@ use crate::picture::font::{self, FittedText, fitted};
 use crate::picture::palette::{Fill, INK, Rgb, WHITE};
 use crate::picture::{Anchor, Area, DASHES, Pen, Picture};
 
-/// Sizes of text.
+/// Font sizes in pixels: of titles, labels, ticks and names in a legend.
 pub const TITLE: f64 = 31.0;
 pub const LABEL: f64 = 23.0;
 pub const TICK: f64 = 20.0;
 pub const NAME: f64 = 18.0;
 
-/// Size of the body of a plot or a heat map that stands alone, and the least room to its left and right.
+/// Width and height of the body of a plot or a heat map that stands alone, in pixels. Then the least room to its left and right.
 pub const ALONE: [f64; 2] = [1280.0, 880.0];
 pub const SIDES: [f64; 2] = [136.0, 48.0];
-/// Height of a picture's title, and the middle of its line.
+/// Height of a picture's title, and the middle of its line, in pixels.
 pub const HEAD_ROOM: f64 = 74.0;
 pub const TITLE_LINE: f64 = 46.0;
 
-/// Width of the lines of charts, and radius of their dots.
+/// Width of the lines of charts, and radius of their dots, in pixels.
 pub const LINE: f64 = 3.0;
 pub const DOT: f64 = 8.0;
 /// Height of the line of letter and title.
@@ -102,7 +102,7 @@ pub struct Heading {
     entries: Vec<(LegendEntry, usize, f64)>,
     /// Height of the line of letter and title.
     head: f64,
-    /// Height of the heading, with the room below.
+    /// Height of the heading with the room below, in pixels.
     pub height: f64,
 }
 

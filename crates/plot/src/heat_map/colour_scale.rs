@@ -8,7 +8,7 @@ use crate::frame::units;
 use crate::picture::palette::{self, Fill, INK};
 use crate::picture::{Anchor, Area, Pen, Picture};
 
-/// Room for the colour bar to the right of the picture's body.
+/// Width of the room for the colour bar, to the right of the picture's body, in pixels.
 pub const BAR_ROOM: f64 = 190.0;
 
 /// How quantities become colours.

@@ -47,7 +47,7 @@ pub struct HeatMap {
     pub x: CellAxis,
     /// Upright axis of each panel.
     pub y: CellAxis,
-    /// What panels beside each other and above each other differ in; `None` for a single column or row.
+    /// Axes `[x, y]` along which panels differ: from column to column and from row to row; `None` for a single column or row.
     pub panel_axes: [Option<PanelAxis>; 2],
     /// How cells are coloured.
     pub shading: Shading,

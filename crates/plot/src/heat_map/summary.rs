@@ -13,7 +13,7 @@ pub struct ValueSummary {
     pub(super) extent: Option<[f64; 2]>,
     /// Smallest and largest finite value above 0.
     pub(super) positive: Option<[f64; 2]>,
-    /// How many finite values are not above 0.
+    /// Number of finite values that are at most 0.
     pub(super) not_positive: u64,
     /// Whether there are values that are not finite.
     pub(super) has_blanks: bool,

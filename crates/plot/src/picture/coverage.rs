@@ -71,7 +71,8 @@ fn distance(point: DVec2, ends: [[f64; 2]; 2]) -> f64 {
     (away - nearest * along).length()
 }
 
-/// Cuts a polyline into dashes along its whole length, around its corners.
+/// Cuts a polyline `[x, y]` into dashes `[dash][point]` along its whole length, around its corners. Dashes and gaps have the lengths
+/// [`DASHES`], in the unit of `points`; the gaps are left out.
 pub fn dashes(points: &[[f64; 2]]) -> Vec<Vec<[f64; 2]>> {
     let [on, off] = DASHES;
     let mut dashes = Vec::new();

@@ -11,7 +11,7 @@ static FONT: LazyLock<FontRef<'static>> = LazyLock::new(|| {
     FontRef::try_from_slice(include_bytes!("../../fonts/DejaVuSans.ttf")).expect("DejaVu Sans")
 });
 
-/// A text that fits its room, and its size.
+/// A text that fits its room, and its font size in pixels.
 pub type FittedText = (String, f64);
 
 /// The font with an em of this many pixels.

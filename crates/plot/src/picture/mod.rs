@@ -78,13 +78,13 @@ pub enum Anchor {
 /// Something drawn. Coordinates and sizes of all but rasters are in the picture's own units.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Primitive {
-    /// A line through points.
+    /// Points `[x, y]` of a line, and its pen.
     Polyline(Vec<[f64; 2]>, Pen),
-    /// Corners and fill of an area.
+    /// Corners `[x, y]` of an area, and its fill.
     Polygon(Vec<[f64; 2]>, Rgb),
-    /// Centre, radius and fill of a circle, and an outline about its edge.
+    /// Centre `[x, y]`, radius and fill of a circle, and an outline about its edge.
     Circle([f64; 2], f64, Rgb, Option<Pen>),
-    /// A line of text, its point and its size.
+    /// A line of text, its point `[x, y]`, the size of its font, and its anchor.
     Text(String, [f64; 2], f64, Anchor),
     /// Upper left corner and size in pixels, all of them inside the picture, and their colours row by row.
     Raster([usize; 2], [usize; 2], Vec<Rgb>),

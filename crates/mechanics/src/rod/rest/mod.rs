@@ -67,7 +67,7 @@ impl Rest {
         }
     }
 
-    /// Point and unit tangent at arclength `s`.
+    /// Point and unit tangent at arclength `s`, in whisker lengths, in the frame of the base.
     #[must_use]
     pub fn at_arclength(&self, s: f64) -> (DVec2, DVec2) {
         match &self.form {
@@ -91,7 +91,7 @@ impl Rest {
         (s, point, tangent)
     }
 
-    /// The point at `distance` from the base.
+    /// Point of the whisker at rest at the straight `distance` from the base, both in whisker lengths, in the frame of the base.
     #[must_use]
     pub fn point_at_distance(&self, distance: f64) -> DVec2 {
         match &self.form {
@@ -100,21 +100,22 @@ impl Rest {
         }
     }
 
-    /// Arclength of the contact and centre of the pole when it first touches the whisker at `distance` from the base.
+    /// Arclength of the contact and centre of the pole when it first touches the whisker at `distance` from the base: all in whisker
+    /// lengths, the centre in the frame of the base.
     #[must_use]
     pub fn touch_at_distance(&self, distance: f64) -> (f64, DVec2) {
         let (s, point, tangent) = self.at_distance(distance);
         (s, point - self.pole * tangent.perp())
     }
 
-    /// Centre of the pole when it first touches the whisker at `distance` from the base.
+    /// Centre of the pole when it first touches the whisker at `distance` from the base, both in whisker lengths, in the frame of the base.
     #[must_use]
     pub fn pole_at_distance(&self, distance: f64) -> DVec2 {
         self.touch_at_distance(distance).1
     }
 
-    /// Distance of the first touch from the base when the pole's centre is `pole_distance` from the base: the inverse of
-    /// [`Rest::pole_at_distance`], which grows with the distance in every valid scene.
+    /// Distance of the first touch from the base when the pole's centre is `pole_distance` from the base, both in whisker lengths. It is
+    /// the inverse of the length of [`Rest::pole_at_distance`], which grows with the distance in every valid scene.
     #[must_use]
     pub fn distance_of_pole(&self, pole_distance: f64) -> f64 {
         let radius = self.pole.abs();

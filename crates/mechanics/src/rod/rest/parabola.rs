@@ -65,12 +65,12 @@ impl Parabola {
         t + d * (1.0 + e * tail)
     }
 
-    /// Curvature at arclength `s`, `2 A cos^3`.
+    /// Curvature `2 A cos^3` at arclength `s` (whisker lengths), in radians per whisker length.
     pub fn curvature(&self, s: f64) -> f64 {
         2.0 * self.bend / (1.0 + self.slope_at(s).powi(2)).sqrt().powi(3)
     }
 
-    /// Arclength at the abscissa `x` of the parabola.
+    /// Arclength at the abscissa `x` of the parabola, both in whisker lengths from the base.
     pub fn arclength_at(&self, x: f64) -> f64 {
         if self.bend == 0.0 {
             return x * (1.0 + self.slope * self.slope).sqrt();

@@ -26,12 +26,12 @@ pub struct SpiralRest {
 }
 
 impl SpiralRest {
-    /// The spiral whose curvature is `k0 + k1 s`.
+    /// The spiral whose curvature is `k0 + k1 s` at arclength `s` (whisker lengths), in radians per whisker length.
     pub fn new([k0, k1]: [f64; 2]) -> Self {
         Self { k0, k1 }
     }
 
-    /// Curvature at arclength `s`.
+    /// Curvature at arclength `s` (whisker lengths), in radians per whisker length; 0 beyond the tip.
     pub fn curvature(&self, s: f64) -> f64 {
         if s > 1.0 {
             0.0
@@ -66,7 +66,8 @@ impl SpiralRest {
         (point + (s - bent) * tangent, tangent)
     }
 
-    /// Arclength at which the chord from the base is `chord`. The chord grows along the spiral in every valid scene.
+    /// Arclength at which the chord from the base is `chord`, both in whisker lengths. The chord grows along the spiral in
+    /// every valid scene.
     pub fn arclength_of_chord(&self, chord: f64) -> f64 {
         let reach = self.at_arclength(1.0).0.length();
         // The function is the chord less the length, which falls.

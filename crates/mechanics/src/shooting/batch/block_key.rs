@@ -60,7 +60,7 @@ impl Default for BlockKeys {
 }
 
 impl BlockKeys {
-    /// The index of `key`. A new key is appended.
+    /// Index of `key` in [`BlockKeys::all`]. A new key is appended.
     #[inline]
     pub fn index(&mut self, key: BlockKey) -> usize {
         let likely = &mut self.likely[key.steps as usize % 64];

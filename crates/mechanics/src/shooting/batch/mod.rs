@@ -30,7 +30,7 @@ pub struct InitialCondition<'a> {
     pub rod: &'a Rod,
     /// `tau` of the contact.
     pub tau: f64,
-    /// Signed load.
+    /// Signed load `f/rho^2` at the contact, dimensionless.
     pub load: f64,
 }
 

@@ -20,7 +20,7 @@ pub struct StepStart {
     pub arclength: f64,
     /// Unit tangent.
     pub tangent: DVec2,
-    /// Position across the force, in whisker lengths.
+    /// Position along the first axis, across the force, from the contact, in whisker lengths.
     pub across: f64,
     /// Angle by which bending has turned the rod since the contact, in radians.
     pub bent: f64,
@@ -28,8 +28,9 @@ pub struct StepStart {
     pub rest: DVec2,
 }
 
-/// StepStarts of the `steps` of each trajectory, one trajectory after the other, and the angle by which bending has turned the rod at
-/// each base. The rods are cones with a constant modulus.
+/// Starts of the steps of each trajectory, one trajectory after the other, and the angle by which bending has turned each base. Angles
+/// are in radians: `[trajectory]`. The trajectory `i` starts at `conditions[i]` and takes `steps[i]` steps. The rods are cones with a
+/// constant modulus.
 #[must_use]
 pub fn step_starts(conditions: &[InitialCondition], steps: &[u32]) -> (Vec<StepStart>, Vec<f64>) {
     let unit = Unit::detect();

@@ -23,9 +23,9 @@ const ITERATIONS: usize = 2;
 pub struct BackwardCompliance<'a, T> {
     /// The material.
     pub material: &'a Measured<T>,
-    /// The arclength where the step begins.
+    /// Arclength where the step begins, in whisker lengths.
     pub from: T,
-    /// The length of the step.
+    /// Length of the step, in whisker lengths.
     pub length: T,
 }
 

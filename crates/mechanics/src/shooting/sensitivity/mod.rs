@@ -15,7 +15,7 @@ use crate::shooting::contact::Contact;
 use crate::shooting::{Carried, Planar, Sensitivity};
 use std::marker::PhantomData;
 
-/// Derivatives of `theta, X, Y`.
+/// Derivatives of `[theta, X, Y]`: the angle of the tangent in radians, and the position in whisker lengths.
 pub type Triple<T> = [T; 3];
 
 /// A set of derivatives: its start values, and its results at the base.
