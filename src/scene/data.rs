@@ -43,7 +43,10 @@ impl SceneData {
                 Parameter::ArcStretch => whisker.arc_stretch = value,
                 Parameter::PoleRadiusMm => pole.radius_mm = value,
                 Parameter::Friction => pole.friction = value,
-                _ => {}
+                // It needs both radii.
+                Parameter::Taper => {}
+                // They are no axes of a sweep.
+                Parameter::YoungsModulusGpa | Parameter::SpiralPerMm | Parameter::SpiralPerMm2 => {}
             }
         }
         if let Some(taper) = place.value(Parameter::Taper) {
