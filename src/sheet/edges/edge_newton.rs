@@ -164,6 +164,7 @@ pub fn edge_newton_predicted(method: Method, problems: &[EdgeProblem]) -> Vec<Ed
     let Some(first) = problems.first() else {
         return Vec::new();
     };
+    debug_assert!(problems.iter().all(|own| std::ptr::eq(own.rod, first.rod)));
     let starts = problems.iter().map(|problem| problem.start);
     let maps: Vec<ShootingMap> = Batch::new(method).padded().shoot_at(first.rod, starts);
     let mut open = Vec::new();
@@ -178,7 +179,9 @@ pub fn edge_newton_predicted(method: Method, problems: &[EdgeProblem]) -> Vec<Ed
         };
         let (step, length) = problem.step(problem.start, &here);
         let there = problem.start + step;
-        if problem.second.is_none() || length > LAST_EDGE_STEP {
+        // A length of NaN is not short.
+        let is_last = problem.second.is_some() && length <= LAST_EDGE_STEP;
+        if !is_last {
             // A long step, or one without second derivatives, can end far from the edge.
             let is_good = problem.second.is_some() && length < SECOND_OFF;
             let start = if is_good { there } else { problem.start };
