@@ -123,7 +123,7 @@ pub fn through_runs<const F: usize, const N: usize>(
 }
 
 /// Replaces `values` at growing `nodes` by divided differences, `levels` times at most. Calls `take` with each level, the values as level 0.
-/// Of two equal nodes `2 i` and `2 i + 1`, the difference is `slopes[i]`.
+/// Of two equal nodes `2 i` and `2 i + 1`, the difference is `slopes[i]`; without slopes it is not finite.
 #[inline]
 fn divide<const F: usize>(
     levels: usize,
@@ -140,7 +140,7 @@ fn divide<const F: usize>(
         let count = nodes.len() - level;
         for i in 0..count {
             let apart = nodes[i + level] - nodes[i];
-            if apart == 0.0 {
+            if apart == 0.0 && !slopes.is_empty() {
                 values[i] = slopes[i / 2];
                 continue;
             }
