@@ -58,7 +58,7 @@ pub struct Sheet {
     method: Method,
     /// Samples of the whole sheet, if they are certified.
     samples: Option<SheetSamples>,
-    /// Spans made by continuation, `[row][piece]`: the source of guesses without samples.
+    /// Spans made by continuation, `[row][piece]`: the source of guesses without samples. Empty with samples, so that they take no memory.
     continued: Vec<Vec<RowSpan>>,
 }
 
@@ -121,6 +121,7 @@ impl Sheet {
             .flatten_iter()
             .collect();
         let tip = rod.tau_tip();
+        let samples = samples.filter(|_| is_certified);
         Self {
             rod: rod.clone(),
             side,
@@ -128,8 +129,11 @@ impl Sheet {
             rows,
             crossings,
             method,
-            samples: samples.filter(|_| is_certified),
-            continued,
+            continued: match samples {
+                Some(_) => Vec::new(),
+                None => continued,
+            },
+            samples,
         }
     }
 
