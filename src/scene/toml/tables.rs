@@ -161,8 +161,13 @@ impl<'de> DeserializeSeed<'de> for KeyReader<'_> {
         let known = self.0.iter().find(|(own, _)| *own == name);
         known.copied().ok_or_else(|| {
             let names = self.0.iter().map(|(own, _)| format!("`{own}`"));
-            let names = names.collect::<Vec<_>>().join(", ");
-            D::Error::custom(format!("unknown field `{name}`, expected one of {names}"))
+            let names: Vec<String> = names.collect();
+            let expected = match &names[..] {
+                [only] => only.clone(),
+                [one, other] => format!("{one} or {other}"),
+                _ => format!("one of {}", names.join(", ")),
+            };
+            D::Error::custom(format!("unknown field `{name}`, expected {expected}"))
         })
     }
 }
