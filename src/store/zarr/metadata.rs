@@ -178,3 +178,15 @@ pub(super) fn group<'a>(
         },
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A channel that is missing here would be missing in every store.
+    #[test]
+    fn every_channel_of_a_map_has_a_line() {
+        let names = CHANNELS.iter().map(|(name, ..)| *name);
+        assert!(names.eq(Channels::ALL.names()));
+    }
+}
