@@ -74,7 +74,7 @@ pub enum DesignError {
     Fixed {
         /// The parameter of the design.
         parameter: Parameter,
-        /// Its own value.
+        /// The only value of the parameter that the scene accepts.
         value: f64,
     },
     /// The scene accepts no pole at the distance.

@@ -83,7 +83,7 @@ mod tests {
         all.map(|i| covariance.deviation(i).is_some()).collect()
     }
 
-    /// Differences that are less exact than 1e-6 do not tell a short column from none, or two parallel ones apart.
+    /// With differences that are less exact than 1e-6, a short column is like none, and two nearly parallel columns are like one.
     #[test]
     fn a_faint_column_or_direction_is_not_determined() {
         for (size, is_seen) in [(2e-6, true), (0.5e-6, false)] {

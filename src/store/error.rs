@@ -37,9 +37,9 @@ pub enum StoreError {
         path: PathBuf,
         /// The attribute.
         name: &'static str,
-        /// Its value in the store.
+        /// Value of the attribute in the store.
         there: String,
-        /// Its value in this run.
+        /// Value of the attribute in this run.
         here: String,
     },
     /// A folder with blocks of another store, whose metadata are missing or damaged.
@@ -97,7 +97,7 @@ pub enum StoreError {
         index: usize,
         /// The channel.
         channel: &'static str,
-        /// Its length.
+        /// Number of cells of the channel.
         cells: usize,
         /// Distances times push angles.
         expected: usize,
