@@ -92,7 +92,7 @@ pub struct ContactState {
     pub tau: f64,
     /// Signed load `f/rho^2`.
     pub load: f64,
-    /// Pole, shape and derivatives of the state.
+    /// The state: pole with first derivatives, pose of the base, force and energy.
     pub full: FullState,
     /// Distance of the pole from its target, in whisker lengths; an upper bound if the last step is extrapolated.
     pub residual: f64,

@@ -20,7 +20,7 @@ pub const ON_CURVE: f64 = 1e-14;
 pub struct CurveNode {
     /// Contact coordinate and signed load, `(tau, load)`.
     pub point: DVec2,
-    /// Pole, shape and derivatives at `point`.
+    /// State at `point`: pole with first derivatives, pose of the base, force and energy.
     pub full: FullState,
     /// Signed push angle since first touch, in radians, continuous along the curve.
     pub push: f64,

@@ -57,7 +57,8 @@ pub struct StablePieces {
 }
 
 impl StablePieces {
-    /// Returns the crossings at which the pieces begin and end, in order.
+    /// Returns the crossings at which the pieces begin and end, piece by piece. First touch is no crossing: a piece that begins there has
+    /// only an end.
     pub fn ends(&self) -> impl Iterator<Item = Crossing> {
         let ends = |piece: &StablePiece| [piece.begin, Some(piece.end)];
         self.pieces.iter().flat_map(ends).flatten()

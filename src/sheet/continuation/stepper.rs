@@ -61,7 +61,7 @@ pub struct Stepper<'a> {
 }
 
 impl<'a> Stepper<'a> {
-    /// Starts at `start`; nodes may miss the curve by `miss` in `ln D`.
+    /// Creates the stepper of curve `index` of the batch, whose first node is `start`. Nodes may miss the curve by `miss` in `ln D`.
     pub fn new(index: usize, level: &'a LevelCurve, start: CurveNode, miss: f64) -> Self {
         let mut stepper = Self {
             index,
