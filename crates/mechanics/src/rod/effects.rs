@@ -54,7 +54,8 @@ impl Effects {
         })
     }
 
-    /// These effects and all effects of `rod`. No kernel has two rest shapes: the rod's own replaces another one.
+    /// These effects and all effects of `rod`. No kernel has two rest shapes: a parabola or spiral of `rod` replaces the rest shape of this
+    /// set.
     #[inline]
     #[must_use]
     pub fn and(self, rod: &Rod) -> Self {

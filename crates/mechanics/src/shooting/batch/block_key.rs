@@ -7,7 +7,8 @@ use std::sync::Arc;
 /// Common properties of the trajectories of a block.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct BlockKey {
-    /// Effects of the kernel: those of the method and of the rod. A profile counts only if it is the rod's own.
+    /// Effects of the kernel: those of the method and of the rod. A profile counts only if it is the rod's own. Beyond `beta tau = 1.5` on
+    /// a straight cone, [`Effects::reaching`] adds `gradient`.
     pub effects: Effects,
     /// Address of the profile; 0 without one.
     profile: usize,
