@@ -43,9 +43,11 @@ pub struct Cell {
     pub steps: u32,
     /// Bound on the distance of the pole from its place, in whisker lengths; NaN without a state.
     pub residual: f32,
-    /// Channel values in map units, in the order of [`STATE_CHANNELS`]; NaN without a solution.
+    /// Channel values in map units, in the order of [`STATE_CHANNELS`]. They are unspecified without a solution, and NaN if the batch wants
+    /// none.
     pub values: [f32; STATE_CHANNELS.len()],
-    /// `(tau, load)` of the contact; NaN where unknown.
+    /// Contact coordinate and signed load `f/rho^2`, `(tau, load)`. They are unspecified without a solution, and NaN if the batch wants
+    /// none.
     pub point: DVec2,
 }
 
@@ -84,9 +86,10 @@ pub struct CellRun<'a> {
     pub steps: &'a [u32],
     /// Bounds on the distance of the pole from its place, in whisker lengths: `[cell]`; NaN without a state.
     pub residual: &'a [f32],
-    /// Channel values in map units: `[channel][cell]`, in the order of [`STATE_CHANNELS`]; empty if the batch wants none.
+    /// Channel values in map units: `[channel][cell]`, in the order of [`STATE_CHANNELS`]. They are unspecified without a solution, and
+    /// empty if the batch wants none.
     pub values: [&'a [f32]; STATE_CHANNELS.len()],
-    /// `(tau, load)` of the contacts: `[cell]`; empty if the batch wants none.
+    /// `(tau, load)` of the contacts: `[cell]`. They are unspecified without a solution, and empty if the batch wants none.
     pub points: &'a [DVec2],
 }
 
