@@ -25,7 +25,8 @@ pub struct Panel {
 }
 
 impl Panel {
-    /// A panel of unresolved cells with the channels of a state among `channels`.
+    /// Creates a panel of unresolved cells: residual and margin are NaN. A channel in [`STATE_CHANNELS`] is NaN if it is one of `channels`,
+    /// and otherwise empty.
     #[must_use]
     pub fn unresolved(cells: usize, channels: Channels) -> Self {
         let mut panel = Self::unwritten(cells, channels);

@@ -210,7 +210,8 @@ impl MapSlice {
         sweep.chain(inside.map(|(_, size)| size)).collect()
     }
 
-    /// A channel of one whisker of the part: `[distance][push angle]`.
+    /// Reads a channel of a whisker of the part: `[distance][push_angle]`. `whisker` is an index in the part, whose first sweep axis varies
+    /// fastest.
     ///
     /// # Errors
     /// There is no such channel or whisker, or it is missing or damaged.
@@ -237,7 +238,8 @@ impl MapSlice {
         })
     }
 
-    /// The `channels` of one whisker of the part; other channels are those of an unresolved whisker.
+    /// Reads the `channels` of a whisker of the part; all other channels are those of [`Panel::unresolved`]. `whisker` is an index in the
+    /// part, whose first sweep axis varies fastest.
     ///
     /// # Errors
     /// An error of [`MapSlice::read_panel`].
