@@ -65,7 +65,7 @@ impl SceneData {
         (0..self.whisker_count()).map(|index| self.whisker(index))
     }
 
-    /// Whisker `index` of the sweep.
+    /// Whisker `index` of the sweep, in the order of [`Self::whiskers`]. Indices are taken modulo [`Self::whisker_count`].
     #[must_use]
     pub fn whisker(&self, index: usize) -> SweptWhisker {
         self.whisker_at(self.grid.place(index))

@@ -14,9 +14,9 @@ pub(super) const FARTHEST: f64 = 10.0;
 /// Axes of a sweep. Every list of values is strictly increasing and not empty.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Grid {
-    /// Push angles: rotations of the base since first touch in degrees, negative CF, positive CB.
+    /// Push angles, the rotations of the base since first touch, in degrees: `[push_angle]`; negative CF, positive CB.
     pub push_angle_deg: Vec<f64>,
-    /// Distances from the base to the contact at first touch, in millimetres.
+    /// Distances from the base to the contact at first touch, in millimetres: `[distance]`.
     pub distance_mm: Vec<f64>,
     /// Axes along which whiskers differ, in the order of the scene. Of two axes, a curvature is the second.
     pub sweep: Vec<SweepAxis>,
@@ -62,7 +62,8 @@ impl Grid {
         self.sweep.iter().map(|axis| axis.values.len()).product()
     }
 
-    /// Index of whisker `index` on each axis. The first axis varies fastest.
+    /// Indices of whisker `index` on the sweep axes: `[axis]`. The first axis varies fastest; `index` is taken modulo
+    /// [`Self::whisker_count`].
     #[must_use]
     pub fn indices(&self, index: usize) -> Vec<usize> {
         let mut rest = index;
@@ -75,7 +76,7 @@ impl Grid {
         .collect()
     }
 
-    /// The values of whisker `index` on the axes.
+    /// Values of whisker `index` on the sweep axes; `index` is taken modulo [`Self::whisker_count`].
     #[must_use]
     pub fn place(&self, index: usize) -> SweepPlace {
         let axes = self.sweep.iter().zip(self.indices(index));

@@ -29,7 +29,7 @@ const DEEPEST_WAIST: f64 = 4.0;
 pub(super) struct Radii {
     pub base_radius_um: f64,
     pub tip_radius_um: f64,
-    /// Rows of arclength and radius as fractions of the length and the base radius.
+    /// Rows of arclength and radius, as fractions of the length and the base radius: `[row][arclength, radius]`.
     pub profile: Option<Vec<[f64; 2]>>,
 }
 

@@ -31,8 +31,8 @@ pub struct Whisker {
     pub curvature: Option<Curvature>,
     /// Intrinsic curvature as an Euler spiral, in place of the parabola.
     pub euler_spiral: Option<EulerSpiral>,
-    /// Measured radii in place of those that fall linearly: rows of arclength and radius over the whisker's length and
-    /// base radius, from (0, 1) to (1, tip radius).
+    /// Measured radii in place of those that fall linearly: `[row][arclength, radius]`, over the whisker's length and base radius. Rows go
+    /// from `[0, 1]` to `[1, tip radius]`.
     pub profile: Option<Vec<[f64; 2]>>,
     /// Young's modulus at the arclength `length_mm` over that at the base; linear in the arclength.
     pub modulus_tip_to_base: f64,

@@ -57,9 +57,9 @@ impl<'de> Deserialize<'de> for ListedRows {
 /// Rows of a CSV file.
 pub(super) struct CsvRows {
     pub path: PathBuf,
-    /// Arclength in millimetres and radius in micrometres; at most one row more than a scene may have.
+    /// Arclength in millimetres and radius in micrometres: `[row][arclength, radius]`. There is at most one row more than a scene may have.
     pub values: Vec<[f64; 2]>,
-    /// Line of each row, from 1.
+    /// Line number of each row of the file, from 1: `[row]`.
     pub lines: Vec<usize>,
     /// Message that names unused columns.
     pub note: Option<String>,
