@@ -19,7 +19,7 @@ pub struct MapOptions<'a> {
     /// Whether the colour scale is logarithmic. Values at or below 0 are blank; without a range, the colour bar starts at the 1st
     /// percentile of the positive values.
     pub log: bool,
-    /// Ends of the colour bar, in the channel's unit; values beyond them take the colours of the ends.
+    /// Ends `[low, high]` of the colour bar, in the channel's unit; values beyond them take the colours of the ends.
     pub range: Option<[f64; 2]>,
     /// Width in pixels; `None` for the width at which all text can be read.
     pub width: Option<u32>,

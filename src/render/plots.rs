@@ -24,7 +24,7 @@ pub type CurveAxis = PlotAxis<Detachment, Option<f64>>;
 /// An axis of a branch.
 pub type BranchAxis = PlotAxis<BranchPoint, f64>;
 
-/// A detachment curve to draw, and how.
+/// Detachments to draw with one stroke and one name, as a line for each whisker, side and kind of detachment.
 #[derive(Clone, Copy, Debug)]
 pub struct DrawnCurve<'a> {
     /// Detachments, one whisker and side after the other, each in order of increasing distance.
@@ -112,7 +112,7 @@ pub fn measured(points: &[ComparedPoint]) -> Vec<Dot> {
     dots.collect()
 }
 
-/// A shape to draw, and how.
+/// A whisker shape to draw, with its colour, stroke and name in the legend.
 #[derive(Clone, Debug)]
 pub struct DrawnShape {
     /// The whisker and its pole.

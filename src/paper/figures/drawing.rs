@@ -39,7 +39,7 @@ pub fn sections(whisker: &Whisker, count: usize) -> Vec<OutlineSection> {
     (0..=last).map(|i| at(i as f64 / last as f64)).collect()
 }
 
-/// The closed outline around sections, with radii [`MAGNIFIED`].
+/// The closed outline of a whisker through its `sections`: `[point][x, y]` in mm. Radii are multiplied by [`MAGNIFIED`].
 pub fn outline(sections: &[OutlineSection]) -> Vec<[f64; 2]> {
     let places: Vec<DVec2> = sections
         .iter()
@@ -56,7 +56,7 @@ pub fn outline(sections: &[OutlineSection]) -> Vec<[f64; 2]> {
     left.chain(right).chain([side(0, 1.0)]).collect()
 }
 
-/// An arc around the origin, between two angles in radians.
+/// An arc around the origin, between two angles in radians: `[point][x, y]` in the unit of `radius`.
 pub fn arc(radius: f64, [from, to]: [f64; 2]) -> Vec<[f64; 2]> {
     const STEPS: u32 = 24;
     let angle = |step: u32| (to - from).mul_add(f64::from(step) / f64::from(STEPS), from);

@@ -47,7 +47,7 @@ impl Window {
         }
     }
 
-    /// Converts a point to the picture.
+    /// Converts a point `[x, y]` in data units to pixels of the picture, which shows the window in `body`.
     pub fn place(&self, body: Area, [x, y]: [f64; 2]) -> [f64; 2] {
         body.point(fraction(self.x, x), fraction(self.y, y))
     }
@@ -74,7 +74,7 @@ impl Window {
         corners(disc).into_iter().all(|corner| self.holds(corner))
     }
 
-    /// The parts of a polyline inside the window.
+    /// The parts of a polyline inside the window, in data units: `[part][point]`.
     pub fn clipped(&self, points: &[[f64; 2]]) -> Vec<Vec<[f64; 2]>> {
         let mut parts: Vec<Vec<[f64; 2]>> = Vec::new();
         for pair in points.windows(2) {

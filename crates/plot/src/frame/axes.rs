@@ -36,7 +36,7 @@ impl Axes {
         }
     }
 
-    /// The room that the labels take to the left of the body and to its right.
+    /// Room that the labels take beside the body, in pixels: `[left, right]`.
     pub fn sides(&self) -> [f64; 2] {
         let widest = self.y_ticks.iter().map(|tick| tick.width);
         let widest = widest.fold(0.0, f64::max);

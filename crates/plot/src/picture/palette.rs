@@ -16,7 +16,7 @@ pub const BLUE: Rgb = rgb(0x1c6cc4);
 pub const GREY: Rgb = rgb(0x9aa1a8);
 pub const SHADE_LIGHT: Rgb = rgb(0xdbe4ee);
 pub const SHADE_DARK: Rgb = rgb(0xa9bdd2);
-/// Cells without a value, and discs of charts.
+/// Cells without a value, and light discs of charts; dark discs are [`GREY`].
 pub const BLANK: Rgb = rgb(0xdcddde);
 
 /// The fill of a cell or a legend's swatch: one colour, or stripes of two.
