@@ -130,7 +130,7 @@ const WIDE: usize = 2048;
 /// Timed rounds of [`compare`]: a single one may be disturbed.
 const ROUNDS: f64 = 3.0;
 
-/// Estimates the seconds of `plan` on the CPU alone, and with `engine`, scaled by cells.
+/// Estimates the seconds of `plan`, scaled by cells: `[on the CPU alone, with engine]`.
 ///
 /// Samples are timed in turn, as dense as `seconds` in all allow; the fastest of each counts. A first sample, in which `engine`
 /// compiles, does not count.

@@ -32,7 +32,7 @@ impl<'a> Misfit<'a> {
         }
     }
 
-    /// The scene's values of the free parameters, each over its unit; the scene must give them all.
+    /// The scene's values of the free parameters, each over its unit: `[parameter]`. The scene must give them all.
     pub fn start(&self) -> Vec<f64> {
         let values = self.free.iter().zip(&self.units);
         values

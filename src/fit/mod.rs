@@ -85,7 +85,7 @@ pub enum FitError {
     Held {
         /// The parameter.
         parameter: Parameter,
-        /// The least and the greatest value.
+        /// The least and the greatest value that the scene allows, in the parameter's unit.
         range: [f64; 2],
     },
     /// The scene refuses the values.
