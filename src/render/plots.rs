@@ -31,7 +31,7 @@ pub struct DrawnCurve<'a> {
     pub rows: &'a [Detachment],
     /// Solid or dashed.
     pub stroke: Stroke,
-    /// Name of the whisker in the legend; may be empty.
+    /// Name of the whisker, before the kind of detachment in the legend; may be empty.
     pub name: &'a str,
 }
 

@@ -62,7 +62,7 @@ pub struct HeatMap {
 pub struct PanelAxis {
     /// Name of the axis, with its unit.
     pub label: String,
-    /// Values on the axis, in the unit of `label`: one for each column of panels from the left, or for each row of panels from below.
+    /// Values on the axis, in the unit of `label`: one for each column of panels from the left, or for each row from below.
     pub values: Vec<f64>,
 }
 

@@ -13,10 +13,11 @@ pub const WHITE: Rgb = rgb(0xffffff);
 /// Text, frames, and black lines of charts.
 pub const INK: Rgb = rgb(0x222b33);
 pub const BLUE: Rgb = rgb(0x1c6cc4);
+/// Grey ink of charts, squares that an inset enlarges, and dark discs.
 pub const GREY: Rgb = rgb(0x9aa1a8);
 pub const SHADE_LIGHT: Rgb = rgb(0xdbe4ee);
 pub const SHADE_DARK: Rgb = rgb(0xa9bdd2);
-/// Cells without a value, and light discs of charts; dark discs are [`GREY`].
+/// Cells without a value, and light discs of charts.
 pub const BLANK: Rgb = rgb(0xdcddde);
 
 /// The fill of a cell or a legend's swatch: one colour, or stripes of two.
