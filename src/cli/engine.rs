@@ -5,7 +5,7 @@ use super::failure::Failure;
 use clap::{Args, ValueEnum};
 use std::env;
 use whiskmap::engine::gpu::{AdapterReport, Gpu, Precision, adapters, named, preferred};
-use whiskmap::engine::{Engine, EngineDescription, EngineError, on_gpu};
+use whiskmap::engine::{Engine, EngineDescription, EngineError, Spectral, on_gpu};
 use whiskmap::plan::Plan;
 use whiskmap::scene::Scene;
 
@@ -13,8 +13,10 @@ use whiskmap::scene::Scene;
 enum EngineChoice {
     /// The faster engine on a sample of the scene
     Auto,
-    /// f64 on all cores
+    /// f64 on all cores: a trajectory for each cell
     Cpu,
+    /// f64 on all cores: certified polynomials along rows, trajectories where there are none
+    Spectral,
     /// Compute shaders on an adapter, also a software adapter
     Gpu,
 }
@@ -53,18 +55,21 @@ impl EngineArgs {
         tolerance_deg: Option<f64>,
     ) -> Result<OpenEngine, Failure> {
         let why = match (self.engine, self.precision, &self.adapter) {
-            (EngineChoice::Cpu, Some(Precision::F32), _) => {
-                "--precision f32: the CPU engine computes in f64; allowed with --engine gpu"
-                    .to_owned()
+            (EngineChoice::Cpu | EngineChoice::Spectral, Some(Precision::F32), _) => {
+                "--precision f32: the CPU computes in f64; allowed with --engine gpu".to_owned()
             }
             (EngineChoice::Auto, Some(Precision::F32), _) => {
                 "--precision f32: --engine auto may select the CPU engine, which computes in f64; allowed with --engine gpu"
                     .to_owned()
             }
-            (EngineChoice::Cpu, _, Some(adapter)) => format!(
-                "--adapter {adapter}: the CPU engine has none; allowed with --engine gpu and --engine auto"
+            (EngineChoice::Cpu | EngineChoice::Spectral, _, Some(adapter)) => format!(
+                "--adapter {adapter}: the CPU has none; allowed with --engine gpu and --engine auto"
             ),
             (EngineChoice::Cpu, ..) => return Ok((None, "selected by --engine".to_owned())),
+            (EngineChoice::Spectral, ..) => {
+                let spectral = Box::new(Spectral::default());
+                return Ok((Some(spectral), "selected by --engine".to_owned()));
+            }
             (EngineChoice::Gpu | EngineChoice::Auto, ..) => {
                 return self.open_gpu_or_auto(scene, plan, tolerance_deg);
             }

@@ -165,6 +165,13 @@ impl RowBatch {
         rows.flat_map(|(whole, part)| part.each().map(|cell| whole.first + cell).zip(part.first..))
     }
 
+    /// Returns true if an engine can solve some of the cells: there are base points or spectral sheets.
+    #[must_use]
+    pub fn is_for_engine(&self) -> bool {
+        let has_sheet = |row: &BatchRow| self.sides[row.side].spectral.is_some();
+        !self.base_points.is_empty() || self.rows.iter().any(has_sheet)
+    }
+
     /// Adds base points to all rows that have them, with trajectories in the steps of `resolution`.
     #[must_use]
     pub fn with_base_points(mut self, resolution: Resolution) -> Self {

@@ -10,6 +10,7 @@ mod cpu;
 #[cfg(feature = "gpu")]
 pub mod gpu;
 mod side;
+mod spectral;
 mod worker;
 
 pub use batch::{
@@ -19,6 +20,7 @@ pub use cells::{Cell, CellRun, Cells, Outcome};
 pub use columns::{Column, SideColumns};
 pub use cpu::Cpu;
 pub use side::{FORCE, Values, WhiskerSide};
+pub use spectral::{Spectral, SpectralSheet};
 pub use worker::Worker;
 
 use crate::rod::Effects;
@@ -49,7 +51,7 @@ impl fmt::Display for Precision {
 /// Name and hardware of an engine, as printed and stored.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct EngineDescription {
-    /// `cpu f64`, `gpu f32` or `gpu f64`.
+    /// `cpu f64`, `spectral f64`, `gpu f32` or `gpu f64`.
     pub engine: String,
     /// SIMD unit of the processor, or adapter with driver.
     pub adapter: String,
@@ -63,6 +65,16 @@ impl EngineDescription {
     }
 }
 
+/// What row batches carry for an engine.
+#[non_exhaustive]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum EngineInput {
+    /// Base points with trajectories in the steps of this resolution. The engine works on a thread of its own.
+    BasePoints(Resolution),
+    /// The spectral sheets of whisker sides. The engine works on the threads of the current pool.
+    SpectralSheets,
+}
+
 /// Solves the cells of row batches, on any thread.
 pub trait Engine: Send {
     /// Name and hardware.
@@ -71,9 +83,9 @@ pub trait Engine: Send {
     /// Maximum residual bound of a solved cell, in whisker lengths.
     fn residual_bound(&self) -> f64;
 
-    /// Resolution of the trajectories of base points where the CPU integrates with `resolution`.
-    fn resolution(&self, resolution: Resolution) -> Resolution {
-        resolution
+    /// What batches carry for this engine where the CPU integrates with `resolution`.
+    fn input(&self, resolution: Resolution) -> EngineInput {
+        EngineInput::BasePoints(resolution)
     }
 
     /// Takes a batch, and starts on it without waiting for a device.

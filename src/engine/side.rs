@@ -1,10 +1,11 @@
 //! One side of one whisker, and the channel values of its states in map units.
 
-use super::{BasePoint, Cell, Outcome, SideColumns};
+use super::{BasePoint, Cell, Outcome, SideColumns, SpectralSheet};
 use crate::plan::STATE_CHANNELS;
 use crate::refine::ContactState;
-use crate::rod::Units;
-use crate::sheet::Sheet;
+use crate::rod::{Units, arclength};
+use crate::sheet::{Crossing, Row, Sheet};
+use crate::shooting::batch::Method;
 use crate::shooting::{FullState, Reader, Reading};
 use glam::DVec2;
 use std::sync::Arc;
@@ -24,6 +25,8 @@ pub struct WhiskerSide {
     pub sheet: Sheet,
     /// Channel values of a difference of 1 in whisker lengths, radians, `E I_base/L_w^2` and `E I_base/L_w`.
     pub unit_values: Values,
+    /// Expansions of the rows, if an engine needs them.
+    pub spectral: Option<SpectralSheet>,
     reader: Reader,
 }
 
@@ -36,8 +39,16 @@ impl WhiskerSide {
             unit_values: values(&reader.of_one(sheet.side.sign())),
             columns,
             sheet,
+            spectral: None,
             reader,
         }
+    }
+
+    /// This side with the spectral sheet by `method`.
+    #[must_use]
+    pub fn with_spectral_sheet(self, method: Method) -> Self {
+        let spectral = Some(SpectralSheet::new(method, &self));
+        Self { spectral, ..self }
     }
 
     /// Returns true if the contact has friction.
@@ -48,8 +59,27 @@ impl WhiskerSide {
 
     /// The values of a state of `row` at the signed `push`, in radians.
     fn values(&self, row: usize, tau: f64, full: &FullState, push: f64) -> Values {
-        let touch = self.sheet.rows[row].touch;
-        values(&self.reader.read(tau, full, touch, push))
+        self.values_at(&self.sheet.rows[row], tau, full, push)
+    }
+
+    /// The values of a state of any `row` of this whisker at the signed `push`, in radians.
+    #[must_use]
+    pub fn values_at(&self, row: &Row, tau: f64, full: &FullState, push: f64) -> Values {
+        values(&self.reader.read(tau, full, row.touch, push))
+    }
+
+    /// Sizes of the values along a row with this `end`: components of the force are as large as the force, moment and energy as the force
+    /// and its lever, angles as a radian.
+    #[must_use]
+    pub fn sizes(&self, end: &Crossing) -> Values {
+        let rod = &self.sheet.rod;
+        let [length, radian, force, ..] = self.unit_values;
+        let arc = arclength(rod, end.tau) * length;
+        let force = (end.load * rod.radius(end.tau).powi(2) * force).abs();
+        let moment = force * arc;
+        [
+            arc, radian, force, force, force, moment, radian, arc, moment,
+        ]
     }
 
     /// The values at a base point of `row`.

@@ -1,4 +1,5 @@
-//! An engine on a thread of its own: while it solves one batch, the next one waits there, so that a device never waits for the host.
+//! The connection to an engine. A device's engine has a thread of its own: while it solves one batch, the next one waits there, so that
+//! the device never waits for the host. An engine of the CPU works on the threads of the current pool, where it is called.
 //!
 //! After its first failure an engine gets no further batch.
 
@@ -6,7 +7,7 @@ use super::{Cells, Engine, EngineError, RowBatch};
 use std::collections::VecDeque;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
-use std::thread::{self, ScopedJoinHandle};
+use std::thread;
 use std::time::{Duration, Instant};
 
 /// Batches that an engine has at once: it prepares one while it solves another.
@@ -19,11 +20,21 @@ struct Response {
     busy: Duration,
 }
 
-/// Handle to the thread of an engine.
-pub struct Worker {
+/// Way to an engine.
+enum Connection<'e> {
+    /// The engine has a thread of its own.
+    Thread {
+        requests: Sender<Arc<RowBatch>>,
+        responses: Receiver<Response>,
+    },
+    /// The engine is called when its cells are collected.
+    Call(&'e mut (dyn Engine + 'e)),
+}
+
+/// Handle to an engine.
+pub struct Worker<'e> {
     /// None without an engine, and after its failure.
-    requests: Option<Sender<Arc<RowBatch>>>,
-    responses: Receiver<Response>,
+    connection: Option<Connection<'e>>,
     /// The batches submitted and not collected.
     submitted: VecDeque<Arc<RowBatch>>,
     /// Why the engine is disabled, if it failed.
@@ -32,23 +43,36 @@ pub struct Worker {
     pub busy: Duration,
 }
 
-impl Worker {
-    /// Calls `work` with a worker for `engine`, whose thread ends before this returns.
-    pub fn with<R>(engine: Option<&mut dyn Engine>, work: impl FnOnce(Self) -> R) -> R {
+impl<'e> Worker<'e> {
+    /// Calls `work` with a worker for `engine`, whose thread ends before this returns. Without `has_thread`, the engine works where it is
+    /// called.
+    pub fn with<R>(
+        engine: Option<&'e mut (dyn Engine + 'e)>,
+        has_thread: bool,
+        work: impl FnOnce(Self) -> R,
+    ) -> R {
+        let worker = |connection| Self {
+            connection,
+            submitted: VecDeque::new(),
+            failure: None,
+            busy: Duration::ZERO,
+        };
+        let Some(engine) = engine else {
+            return work(worker(None));
+        };
+        if !has_thread {
+            return work(worker(Some(Connection::Call(engine))));
+        }
         thread::scope(|scope| {
             let (requests, requested) = channel();
             let (respond, responses) = channel();
-            let serve = |engine| scope.spawn(move || serve(engine, &requested, &respond));
-            let thread = engine.map(serve);
-            let done = work(Self {
-                requests: thread.is_some().then_some(requests),
+            let thread = scope.spawn(move || serve(engine, &requested, &respond));
+            let done = work(worker(Some(Connection::Thread {
+                requests,
                 responses,
-                submitted: VecDeque::new(),
-                failure: None,
-                busy: Duration::ZERO,
-            });
+            })));
             // A panic of the thread is in `failure` by now, or no cells were collected after it.
-            let _ = thread.map(ScopedJoinHandle::join);
+            let _ = thread.join();
             done
         })
     }
@@ -56,23 +80,37 @@ impl Worker {
     /// Returns true if there is an engine that has not failed.
     #[must_use]
     pub const fn is_working(&self) -> bool {
-        self.requests.is_some()
+        self.connection.is_some()
     }
 
     /// Submits a batch; nothing without a working engine.
     pub fn submit(&mut self, batch: Arc<RowBatch>) {
-        let Some(requests) = &self.requests else {
-            return;
-        };
-        // If the thread has ended, its last response is the failure, or `collect` finds none.
-        let _ = requests.send(Arc::clone(&batch));
+        match &self.connection {
+            None => return,
+            // If the thread has ended, its last response is the failure, or `collect` finds none.
+            Some(Connection::Thread { requests, .. }) => {
+                let _ = requests.send(Arc::clone(&batch));
+            }
+            Some(Connection::Call(_)) => {}
+        }
         self.submitted.push_back(batch);
     }
 
     /// Waits for the cells of the oldest batch submitted; `None` if there is no such batch or the engine failed.
     pub fn collect(&mut self) -> Option<Cells> {
         let batch = self.submitted.pop_front()?;
-        let Ok(response) = self.responses.recv() else {
+        let response = match self.connection.as_mut()? {
+            Connection::Thread { responses, .. } => responses.recv().ok(),
+            Connection::Call(engine) => {
+                let begun = Instant::now();
+                let taken = engine.submit(Arc::clone(&batch));
+                Some(Response {
+                    cells: taken.and_then(|()| engine.collect()),
+                    busy: begun.elapsed(),
+                })
+            }
+        };
+        let Some(response) = response else {
             let ended = "the engine's thread has panicked".to_owned();
             return self.disable(EngineError::Device(ended));
         };
@@ -94,7 +132,7 @@ impl Worker {
     }
 
     fn disable(&mut self, failure: EngineError) -> Option<Cells> {
-        self.requests = None;
+        self.connection = None;
         self.submitted.clear();
         self.failure = Some(failure);
         None
@@ -214,13 +252,14 @@ mod tests {
     #[test]
     fn a_panic_of_an_engine_is_a_failure() {
         let mut engine = counting(1, true);
-        let (collected, is_working, failure) = Worker::with(Some(&mut engine), |mut worker| {
-            let collected = [(); 3].map(|()| {
-                worker.submit(nothing());
-                worker.collect().is_some()
+        let (collected, is_working, failure) =
+            Worker::with(Some(&mut engine), true, |mut worker| {
+                let collected = [(); 3].map(|()| {
+                    worker.submit(nothing());
+                    worker.collect().is_some()
+                });
+                (collected, worker.is_working(), worker.failure)
             });
-            (collected, worker.is_working(), worker.failure)
-        });
         assert_eq!((collected, is_working), ([true, false, false], false));
         let failure = failure.map(|failure| failure.to_string());
         let wanted = "GPU: the engine's thread has panicked";

@@ -1,7 +1,7 @@
 //! Audit of an engine: a sample of its solved cells is compared with the CPU engine.
 
 use super::summary::Audit;
-use crate::engine::{BatchRow, Cell, Cells, Outcome, RowBatch, Values, WhiskerSide};
+use crate::engine::{BatchRow, Cell, Cells, Outcome, RowBatch};
 use crate::sheet::Sheet;
 use std::ops::Range;
 
@@ -90,12 +90,14 @@ fn holds(batch: &RowBatch, row: &BatchRow, cell: usize, theirs: &Cell, ours: &Ce
         Outcome::Solved | Outcome::AtTip => {}
         _ => return false,
     }
+    if !batch.has_values {
+        return true;
+    }
     let side = &batch.sides[row.side];
     let push = side.columns.columns[cell].push;
     let of_row = &batch.base_points[row.base_points.clone()];
     let ours = ours.values.map(f64::from);
-    let values = of_row.iter().map(|base| base.trajectory.values);
-    let sizes = sizes(side, values.chain([ours]));
+    let sizes = side.sizes(&side.sheet.crossings[row.row][0]);
     let miss = f64::from(theirs.residual).min(LARGEST_MISS);
     let miss_angle = miss / side.sheet.rows[row.row].pole_distance;
     let column = side.columns.first + cell as u32;
@@ -107,19 +109,6 @@ fn holds(batch: &RowBatch, row: &BatchRow, cell: usize, theirs: &Cell, ours: &Ce
         });
         (ours[i] - f64::from(theirs.values[i])).abs() <= TOLERANCE * sizes[i] + by_miss
     })
-}
-
-/// Sizes of the values of a row: components of the force are as large as the force, moment and energy as the force and its lever, angles
-/// as a radian.
-fn sizes(side: &WhiskerSide, row: impl Iterator<Item = Values>) -> Values {
-    let largest = |[arc, _, force, .., distance, _]: Values| [arc, force, distance, force * arc];
-    let [arc, force, distance, moment] = row.map(largest).fold([0.0; 4], |largest, own| {
-        std::array::from_fn(|i| f64::max(largest[i], own[i].abs()))
-    });
-    let [_, radian, ..] = side.unit_values;
-    [
-        arc, radian, force, force, force, moment, radian, distance, moment,
-    ]
 }
 
 #[cfg(test)]

@@ -10,7 +10,7 @@ mod sliding;
 mod stages;
 mod summary;
 
-use crate::engine::{Engine, Worker};
+use crate::engine::{Engine, EngineInput, Worker};
 use crate::plan::Plan;
 pub use crate::plan::{Channels, STATE_CHANNELS};
 use crate::scene::Scene;
@@ -25,7 +25,7 @@ pub use summary::{Audit, EngineCells, Summary};
 /// Computes the panels of `scene` according to `plan`, on the threads of the current pool; call it within
 /// `rayon::ThreadPool::install`, or every stage of every row batch wakes the pool up.
 ///
-/// `engine` solves cells on a thread of its own, some batches ahead; the CPU engine solves all others, and everything after a failure.
+/// `engine` solves cells, a GPU's on a thread of its own, some batches ahead; the CPU engine solves all others, and everything after a failure.
 /// `on_progress(n)` is called after `n` more cells are finished; if it breaks, the run ends there and
 /// [`Summary::is_cancelled`] is set. `keep` gets the finished panels in the order of the sweep, while the
 /// next ones are computed: it holds at most one group of them.
@@ -40,11 +40,12 @@ pub fn run<E: Send>(
     keep: &mut (dyn FnMut(Vec<Panel>) -> Result<(), E> + Send),
 ) -> Result<Summary, E> {
     let (start, cpu_start) = (Instant::now(), process_seconds());
-    let resolution = engine.as_ref();
-    let resolution = resolution.map(|own| own.resolution(plan.method.resolution));
+    let input = engine.as_ref();
+    let input = input.map(|own| own.input(plan.method.resolution));
+    let has_thread = input != Some(EngineInput::SpectralSheets);
     let mut packing = StageTimes::default();
-    let mut summary = Worker::with(engine, |worker| {
-        let mut pipeline = Pipeline::new(scene, plan, worker, resolution);
+    let mut summary = Worker::with(engine, has_thread, |worker| {
+        let mut pipeline = Pipeline::new(scene, plan, worker, input);
         let mut keep = |panels| packing.time(Stage::Packing, || keep(panels));
         let mut finished: Option<Vec<Panel>> = None;
         for _ in plan.groups() {

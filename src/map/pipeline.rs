@@ -8,11 +8,10 @@ use super::panel::Panel;
 use super::rows;
 use super::stages::Stage;
 use super::summary::{EngineCells, Summary};
-use crate::engine::{Cells, Cpu, RowBatch, SideColumns, WhiskerSide, Worker, on_gpu};
+use crate::engine::{Cells, Cpu, EngineInput, RowBatch, SideColumns, WhiskerSide, Worker, on_gpu};
 use crate::plan::{CELLS_IN_FLIGHT, Plan};
 use crate::scene::{Scene, SweptWhisker};
 use crate::sheet::Sheet;
-use crate::shooting::Resolution;
 use rayon::prelude::*;
 use std::collections::VecDeque;
 use std::ops::{ControlFlow, Range};
@@ -26,7 +25,7 @@ const CELLS_PER_THREAD: usize = 8192;
 const AHEAD: usize = 2;
 
 /// A run: its batches and results.
-pub struct Pipeline<'a> {
+pub struct Pipeline<'a, 'e> {
     scene: &'a Scene,
     plan: &'a Plan,
     rows_at_once: usize,
@@ -39,20 +38,20 @@ pub struct Pipeline<'a> {
     begun: Option<(Arc<[WhiskerSide]>, usize)>,
     /// The batches made and not completed, each with whether it is the last one of its group.
     queue: VecDeque<(Arc<RowBatch>, bool)>,
-    worker: Worker,
+    worker: Worker<'e>,
     cpu: Cpu,
-    /// Resolution of base points for the engine, if there is one.
-    resolution: Option<Resolution>,
+    /// What batches carry for the engine, if there is one.
+    input: Option<EngineInput>,
     summary: Summary,
 }
 
-impl<'a> Pipeline<'a> {
-    /// A run before its first batch; base points for the engine of `worker` are in the steps of `resolution`.
+impl<'a, 'e> Pipeline<'a, 'e> {
+    /// A run before its first batch; batches carry the `input` of the engine of `worker`.
     pub fn new(
         scene: &'a Scene,
         plan: &'a Plan,
-        worker: Worker,
-        resolution: Option<Resolution>,
+        worker: Worker<'e>,
+        input: Option<EngineInput>,
     ) -> Self {
         let push_angle_deg = &scene.grid.push_angle_deg;
         let cells = (CELLS_PER_THREAD * rayon::current_num_threads()).min(CELLS_IN_FLIGHT);
@@ -67,7 +66,10 @@ impl<'a> Pipeline<'a> {
         Self {
             scene,
             plan,
-            rows_at_once: resolution.map_or(rows_on_cpu, |_| plan.rows_at_once),
+            rows_at_once: match input {
+                Some(EngineInput::BasePoints(_)) => plan.rows_at_once,
+                _ => rows_on_cpu,
+            },
             columns: columns.collect(),
             pushes: pushes.into(),
             groups: Box::new(plan.groups()),
@@ -75,7 +77,7 @@ impl<'a> Pipeline<'a> {
             queue: VecDeque::new(),
             worker,
             cpu: Cpu::default(),
-            resolution,
+            input,
             summary: Summary::default(),
         }
     }
@@ -109,7 +111,7 @@ impl<'a> Pipeline<'a> {
         summary.stages.0[Stage::Refinement as usize] = self.cpu.refinement;
         summary.device_seconds = self.worker.busy.as_secs_f64();
         summary.engine_failure = self.worker.failure;
-        if self.resolution.is_none() {
+        if self.input.is_none() {
             summary.engine_cells = EngineCells::default();
         }
         summary
@@ -123,15 +125,17 @@ impl<'a> Pipeline<'a> {
             && let Some((batch, is_last)) = self.next_batch()
         {
             let batch = Arc::new(batch);
-            if !batch.base_points.is_empty() {
+            if batch.is_for_engine() {
                 self.worker.submit(Arc::clone(&batch));
             }
             self.queue.push_back((batch, is_last));
         }
         let (batch, is_last) = self.queue.pop_front()?;
         let begun = Instant::now();
-        let is_submitted = !batch.base_points.is_empty();
-        let cells = is_submitted.then(|| self.worker.collect()).flatten();
+        let cells = batch
+            .is_for_engine()
+            .then(|| self.worker.collect())
+            .flatten();
         self.summary.waiting_seconds += begun.elapsed().as_secs_f64();
         self.complete(&batch, cells, panels);
         Some((batch.cells(), is_last))
@@ -157,7 +161,9 @@ impl<'a> Pipeline<'a> {
         let mut batch = RowBatch::new(method, Arc::clone(&sides), Arc::clone(&self.pushes), rows);
         batch.has_values = self.plan.channels.has_state();
         let is_for_engine = self.worker.is_working() && on_gpu(method.effects).is_ok();
-        if let Some(resolution) = self.resolution.filter(|_| is_for_engine) {
+        if let Some(EngineInput::BasePoints(resolution)) = self.input
+            && is_for_engine
+        {
             let times = &mut self.summary.stages;
             batch = times.time(Stage::BasePoints, || batch.with_base_points(resolution));
         }
@@ -171,12 +177,17 @@ impl<'a> Pipeline<'a> {
         let of_whisker = |swept| self.columns.iter().map(move |columns| (swept, columns));
         let pairs: Vec<(&SweptWhisker, &Arc<SideColumns>)> =
             whiskers.iter().flat_map(of_whisker).collect();
+        let (grid, method, input) = (&self.scene.grid, self.plan.method, self.input);
         let sides = pairs.into_par_iter().map(|(swept, columns)| {
             let rod = swept.rod(columns.side);
-            let distances = self.scene.grid.distance_mm.iter();
+            let distances = grid.distance_mm.iter();
             let distances: Vec<f64> = distances.map(|d| d / swept.whisker.length_mm).collect();
-            let sheet = Sheet::new(self.plan.method, &rod, columns.side, &distances);
-            WhiskerSide::new(Arc::clone(columns), swept.whisker.units(), sheet)
+            let sheet = Sheet::new(method, &rod, columns.side, &distances);
+            let side = WhiskerSide::new(Arc::clone(columns), swept.whisker.units(), sheet);
+            match input {
+                Some(EngineInput::SpectralSheets) => side.with_spectral_sheet(method),
+                _ => side,
+            }
         });
         sides.collect::<Vec<_>>().into()
     }

@@ -10,7 +10,7 @@ use crate::engine::{
 use crate::numerics::chebyshev::{CHEBYSHEV_COUNT as NODES, CHEBYSHEV_POINTS, taylor_at_points};
 use crate::numerics::nearest_turn;
 use crate::rod::Rest;
-use crate::sheet::Sheet;
+use crate::sheet::{RowSpan, Sheet};
 use rayon::prelude::*;
 
 /// Returns the base points of each row of `batch`, `[row][base point]`, for its cells from first touch on.
@@ -21,9 +21,11 @@ use rayon::prelude::*;
 pub fn base_points(batch: &RowBatch) -> Vec<Vec<BasePoint>> {
     let wanted = batch.rows.par_iter().map(|row| {
         let has_many = row.count() > NODES;
-        has_many.then(|| wanted_states(&batch.sides[row.side].sheet, row.row))?
+        let span =
+            has_many.then(|| SpanFromTouch::new(&batch.sides[row.side].sheet, row.row))??;
+        Some((span.w_end, span.states(&*CHEBYSHEV_POINTS).collect()))
     });
-    let wanted: Vec<Option<(f64, [RowState; NODES])>> = wanted.collect();
+    let wanted: Vec<Option<(f64, Vec<RowState>)>> = wanted.collect();
     let flat = wanted.iter().flatten().flat_map(|(_, states)| states);
     let found = row_states(batch.method, &flat.copied().collect::<Vec<_>>());
     let mut found = found.chunks(NODES);
@@ -47,23 +49,46 @@ pub fn base_points(batch: &RowBatch) -> Vec<Vec<BasePoint>> {
     expanded.map(Option::unwrap_or_default).collect()
 }
 
-/// Returns the signed row parameter `load tau^2` at the end of a row that goes from first touch to a sound end in one span, and
-/// approximate states at the Chebyshev points of the row parameter.
-fn wanted_states(sheet: &Sheet, row: usize) -> Option<(f64, [RowState<'_>; NODES])> {
-    let end = sheet.crossings[row].first()?;
-    // On a lattice, a row with more crossings may be in several pieces.
-    let is_one = sheet.is_continued() || sheet.crossings[row].len() == 1;
-    let is_simple = sheet.touches(row) && is_one && end.is_sound() && !end.is_at_touch();
-    let spans = sheet.spans(row);
-    let span = spans.first()?;
-    let w_end = end.load * end.tau * end.tau;
-    let state = |point: f64| {
-        let w = point * w_end;
-        let [_, tau] = span.at(w.abs());
-        RowState { sheet, row, w, tau }
-    };
-    let is_whole = is_simple && span.begins_at_touch() && span.reaches(w_end.abs());
-    is_whole.then(|| (w_end, CHEBYSHEV_POINTS.map(state)))
+/// Span of a row from first touch to a sound end.
+pub struct SpanFromTouch<'a> {
+    sheet: &'a Sheet,
+    row: usize,
+    span: RowSpan,
+    /// Signed row parameter `load tau^2` at the end.
+    w_end: f64,
+}
+
+impl<'a> SpanFromTouch<'a> {
+    /// The span of `row`; `None` if the row does not go from first touch to a sound end in one span.
+    pub fn new(sheet: &'a Sheet, row: usize) -> Option<Self> {
+        let end = sheet.crossings[row].first()?;
+        // On a lattice, a row with more crossings may be in several pieces.
+        let is_one = sheet.is_continued() || sheet.crossings[row].len() == 1;
+        let is_simple = sheet.touches(row) && is_one && end.is_sound() && !end.is_at_touch();
+        let span = sheet.spans(row).first()?.clone();
+        let w_end = end.load * end.tau * end.tau;
+        let is_whole = is_simple && span.begins_at_touch() && span.reaches(w_end.abs());
+        is_whole.then_some(Self {
+            sheet,
+            row,
+            span,
+            w_end,
+        })
+    }
+
+    /// Approximate states at `parts` of the row parameter's end.
+    pub fn states(&self, parts: &[f64]) -> impl Iterator<Item = RowState<'a>> {
+        parts.iter().map(|part| {
+            let w = part * self.w_end;
+            let [_, tau] = self.span.at(w.abs());
+            RowState {
+                sheet: self.sheet,
+                row: self.row,
+                w,
+                tau,
+            }
+        })
+    }
 }
 
 /// Returns the base points at the states `found` of a row, each with the cells nearest to it.

@@ -8,7 +8,7 @@ mod near_fold;
 mod newton;
 mod row_states;
 
-pub use base_points::base_points;
+pub use base_points::{SpanFromTouch, base_points};
 
 use crate::sheet::{Guess, Sheet};
 use crate::shooting::FullState;
@@ -18,15 +18,13 @@ use near_fold::FoldVerdict;
 use newton::newton;
 pub use newton::{LARGEST_Q, LEFT_BY_STEP, ROUNDING};
 use rayon::prelude::*;
+pub use row_states::{ExactState, row_states};
 
 /// Residual, in whisker lengths, at which a state is accepted without another step.
 pub const GOAL: f64 = 1e-12;
 
 /// Residual, in whisker lengths, up to which a state is accepted when steps no longer help.
 pub const TOLERANCE: f64 = 1e-11;
-
-/// Relative difference of `tau` from the tip's within which a contact counts as at the tip, in addition to the residual.
-const TIP_TIE: f64 = 1e-12;
 
 /// Maximum number of Newton steps before the fold is computed.
 const STEPS: u32 = 8;
@@ -102,8 +100,7 @@ impl ContactState {
     /// Returns true if the contact is at the tip of the rod of `sheet`, to the accuracy of residual and resolution.
     #[must_use]
     pub fn is_at_tip(&self, sheet: &Sheet) -> bool {
-        let [tau, radius] = sheet.tip;
-        (self.tau - tau).abs() <= TIP_TIE * tau + self.residual / radius + sheet.tip_blur()
+        sheet.is_at_tip(self.tau, self.residual)
     }
 }
 

@@ -33,12 +33,16 @@ use edges::crossings::crossings;
 use rayon::prelude::*;
 use samples::{SheetCase, SheetSamples};
 use std::borrow::Cow;
+use std::sync::Arc;
 
 /// Number of rows, of `rows` in total, that one batch of continuations follows: 32 to 128. Each thread gets a batch, and lanes stay full
 /// although continuations end at different times. Results do not depend on it.
 pub fn rows_per_batch(rows: usize) -> usize {
     rows.div_ceil(rayon::current_num_threads()).clamp(32, 128)
 }
+
+/// Relative difference of `tau` from the tip's within which a contact counts as at the tip, in addition to the residual.
+const TIP_TIE: f64 = 1e-12;
 
 /// The stable sheet of one whisker on one side of the pole, with the rows of a map.
 #[derive(Clone, Debug)]
@@ -57,7 +61,7 @@ pub struct Sheet {
     pub crossings: Vec<Vec<Crossing>>,
     method: Method,
     /// Samples of the whole sheet, if they are certified.
-    samples: Option<SheetSamples>,
+    samples: Option<Arc<SheetSamples>>,
     /// Spans made by continuation, `[row][piece]`: the source of guesses without samples. Empty with samples, so that they take no memory.
     continued: Vec<Vec<RowSpan>>,
 }
@@ -133,7 +137,7 @@ impl Sheet {
                 Some(_) => Vec::new(),
                 None => continued,
             },
-            samples,
+            samples: samples.map(Arc::new),
         }
     }
 
@@ -169,10 +173,36 @@ impl Sheet {
         samples.map_or(0.0, |samples| 2.0 * samples.edges.tip_error)
     }
 
+    /// Returns this sheet with other rows, which are not continued; `None` without certified samples.
+    #[must_use]
+    pub fn with_rows(&self, rows: Vec<Row>) -> Option<Self> {
+        let samples = self.samples.clone()?;
+        let case = SheetCase {
+            method: self.method,
+            rod: &self.rod,
+            side: self.side,
+        };
+        Some(Self {
+            crossings: crossings(case, &samples.edges, &rows),
+            continued: Vec::new(),
+            rows,
+            samples: Some(samples),
+            rod: self.rod.clone(),
+            ..*self
+        })
+    }
+
+    /// Returns true if the contact at `tau` of a state with this `residual`, in whisker lengths, is at the tip.
+    #[must_use]
+    pub fn is_at_tip(&self, tau: f64, residual: f64) -> bool {
+        let [tip, radius] = self.tip;
+        (tau - tip).abs() <= TIP_TIE * tip + residual / radius + self.tip_blur()
+    }
+
     /// Returns the stable pieces of `row`: from the certified lattice, or else from the row's continuation.
     #[must_use]
     pub fn spans(&self, row: usize) -> Cow<'_, [RowSpan]> {
-        match &self.samples {
+        match self.samples.as_deref() {
             Some(SheetSamples {
                 lattice, contacts, ..
             }) => Cow::Owned(vec![lattice.span(contacts, &self.rows[row])]),

@@ -6,7 +6,7 @@ use crate::random_rods::{Random, rod};
 use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::Arc;
-use whiskmap::engine::{Cells, Engine, RowBatch, SideColumns, WhiskerSide};
+use whiskmap::engine::{Cells, Engine, EngineInput, RowBatch, SideColumns, WhiskerSide};
 use whiskmap::rod::{Effects, Rod, Side, Units};
 use whiskmap::sheet::Sheet;
 use whiskmap::shooting::batch::Method;
@@ -65,7 +65,7 @@ impl RandomRows {
             let is_ours = |columns: &&Arc<SideColumns>| columns.side.sign() == rod.pole.signum();
             let columns = columns.iter().find(is_ours).unwrap();
             let sheet = Sheet::new(method, rod, columns.side, distances);
-            WhiskerSide::new(Arc::clone(columns), NO_UNITS, sheet)
+            WhiskerSide::new(Arc::clone(columns), NO_UNITS, sheet).with_spectral_sheet(method)
         });
         Self {
             method,
@@ -79,13 +79,16 @@ impl RandomRows {
         ROWS * self.sides.len()
     }
 
-    /// Some of the rows, with base points for `engine`, values and points.
+    /// Some of the rows, with the input of `engine`, values and points.
     pub fn part(&self, engine: &dyn Engine, rows: Range<usize>) -> RowBatch {
         let rows = rows.map(|i| (i / ROWS, i % ROWS));
         let (sides, pushes) = (Arc::clone(&self.sides), Arc::clone(&self.pushes));
         let mut batch = RowBatch::new(self.method, sides, pushes, rows);
         batch.has_points = true;
-        batch.with_base_points(engine.resolution(self.method.resolution))
+        match engine.input(self.method.resolution) {
+            EngineInput::BasePoints(resolution) => batch.with_base_points(resolution),
+            _ => batch,
+        }
     }
 
     /// All rows.

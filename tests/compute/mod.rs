@@ -8,7 +8,7 @@ use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::Arc;
 use whiskmap::engine::gpu::{Gpu, Precision};
-use whiskmap::engine::{Cells, Engine, EngineDescription, EngineError, RowBatch};
+use whiskmap::engine::{Cells, Engine, EngineDescription, EngineError, EngineInput, RowBatch};
 use whiskmap::map::{self, EngineCells, Panel, STATE_CHANNELS, Summary};
 use whiskmap::plan::Plan;
 use whiskmap::scene::{Parameter, Scene};
@@ -120,8 +120,8 @@ impl<F: Call> Engine for Watched<F> {
         self.gpu.residual_bound()
     }
 
-    fn resolution(&self, resolution: Resolution) -> Resolution {
-        self.gpu.resolution(resolution)
+    fn input(&self, resolution: Resolution) -> EngineInput {
+        self.gpu.input(resolution)
     }
 
     fn submit(&mut self, batch: Arc<RowBatch>) -> Result<(), EngineError> {

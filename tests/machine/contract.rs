@@ -4,7 +4,7 @@ use crate::cells::{RandomRows, places, solve};
 use crate::compute::{compute, open};
 use crate::random_rods::USUAL;
 use std::sync::Arc;
-use whiskmap::engine::gpu::{Precision, adapters, preferred};
+use whiskmap::engine::gpu::{Gpu, Precision, adapters, preferred};
 use whiskmap::engine::{BasePoint, Cells, Cpu, Engine, Outcome, RowBatch};
 use whiskmap::plan::STATE_CHANNELS;
 use whiskmap::scene::Scene;
@@ -164,16 +164,11 @@ fn effects_that_a_whisker_lacks_do_no_harm(precision: Precision) {
 }
 
 /// The batch with one base point changed.
-fn spoilt(
-    batch: &RowBatch,
-    engine: &dyn Engine,
-    number: usize,
-    spoil: fn(&mut BasePoint),
-) -> RowBatch {
+fn spoilt(batch: &RowBatch, gpu: &Gpu, number: usize, spoil: fn(&mut BasePoint)) -> RowBatch {
     let mut batch = batch.clone();
     let mut base_points = batch.base_points.clone();
     spoil(&mut base_points[number]);
-    let resolution = engine.resolution(batch.method.resolution);
+    let resolution = gpu.resolution(batch.method.resolution);
     batch.set_base_points(base_points, resolution);
     batch
 }

@@ -49,7 +49,7 @@ mod strangers;
 use libtest_mimic::{Arguments, Completion, Trial};
 use std::process::ExitCode;
 use whiskmap::engine::gpu::{Gpu, Precision};
-use whiskmap::engine::{Cpu, Engine, EngineError};
+use whiskmap::engine::{Cpu, Engine, EngineError, Spectral};
 
 /// A test by what it needs.
 #[derive(Clone, Copy)]
@@ -60,7 +60,7 @@ pub enum MachineTest {
     Adapter(fn()),
     /// For each precision, an adapter that computes in it.
     Precision(fn(Precision)),
-    /// For each engine, its adapter; the CPU engine needs none.
+    /// For each engine, its adapter; engines of the CPU need none.
     Engine(fn(&mut dyn Engine)),
     /// The library of a Vulkan driver, which a driver that fails calls.
     #[cfg(target_os = "linux")]
@@ -107,8 +107,14 @@ fn main() -> ExitCode {
                 vec![trial(&arguments, name, missing, run)]
             }
             MachineTest::Engine(run) => {
-                let cpu = format!("{name}::cpu");
-                let cpu = trial(&arguments, &cpu, None, move || run(&mut Cpu::default()));
+                let on_cpu = [
+                    trial(&arguments, &format!("{name}::cpu"), None, move || {
+                        run(&mut Cpu::default());
+                    }),
+                    trial(&arguments, &format!("{name}::spectral"), None, move || {
+                        run(&mut Spectral::default());
+                    }),
+                ];
                 let gpus = [Precision::F32, Precision::F64].iter().zip(&missing);
                 let gpus = gpus.map(|(&precision, missing)| {
                     let name = format!("{name}::{precision}");
@@ -116,7 +122,7 @@ fn main() -> ExitCode {
                         run(&mut compute::open(precision));
                     })
                 });
-                std::iter::once(cpu).chain(gpus).collect()
+                on_cpu.into_iter().chain(gpus).collect()
             }
             MachineTest::Precision(run) => [Precision::F32, Precision::F64]
                 .iter()

@@ -25,7 +25,7 @@ pub use adapters::{AdapterReport, adapters, named, preferred};
 pub use flight::Times;
 pub use guard::DRIVER_CALL;
 
-use super::{Cells, Engine, EngineDescription, EngineError, RowBatch};
+use super::{Cells, Engine, EngineDescription, EngineError, EngineInput, RowBatch};
 use crate::rod::Effects;
 use crate::shooting::Resolution;
 use cells::CELL_BYTES;
@@ -166,6 +166,12 @@ impl Gpu {
     pub const fn device(&self) -> &wgpu::Device {
         &self.device.handle
     }
+
+    /// Resolution of the trajectories of base points where the CPU integrates with `resolution`.
+    #[must_use]
+    pub fn resolution(&self, resolution: Resolution) -> Resolution {
+        self.precision.resolution(resolution)
+    }
 }
 
 impl Engine for Gpu {
@@ -184,8 +190,8 @@ impl Engine for Gpu {
         self.precision.goal()
     }
 
-    fn resolution(&self, resolution: Resolution) -> Resolution {
-        self.precision.resolution(resolution)
+    fn input(&self, resolution: Resolution) -> EngineInput {
+        EngineInput::BasePoints(self.resolution(resolution))
     }
 
     fn submit(&mut self, batch: Arc<RowBatch>) -> Result<(), EngineError> {

@@ -2,11 +2,14 @@
 
 mod bracket;
 pub mod chebyshev;
+pub mod expansion;
 pub mod gauss;
+pub mod inverse;
 pub mod newton_form;
 pub mod newton_form_simd;
 mod real;
 mod simd;
+pub mod tensor;
 mod vector;
 
 pub use bracket::{Bracket, Root, illinois};

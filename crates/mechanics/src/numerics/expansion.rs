@@ -1,0 +1,176 @@
+//! Expansions in Chebyshev polynomials on `[0, 1]`, through values at Chebyshev points of the first kind.
+//!
+//! With `y = 2 x - 1`, `f(x) = c_0 + c_1 T_1(y) + ... + c_(N-1) T_(N-1)(y)` is the polynomial through `N` values. The coefficients of
+//! an analytic function fall geometrically, and the error is about the first coefficient left out (L. N. Trefethen, *Approximation
+//! Theory and Approximation Practice*, SIAM 2013, chapters 3 and 8). Clenshaw's recurrence evaluates it. On the interval it is as stable
+//! as the barycentric formula (J.-P. Berrut and L. N. Trefethen, SIAM Review 46, 501, 2004), and gives derivatives as well.
+
+use crate::numerics::{Lanes, Real, SimdTask, Unit};
+use std::f64::consts::FRAC_PI_2;
+use std::sync::OnceLock;
+
+/// The largest number of points of an expansion.
+pub const MOST_POINTS: usize = 40;
+
+/// Number of last coefficients that [`Chebyshev::tail`] looks at: an odd or even function has every other coefficient 0.
+const TAIL: usize = 3;
+
+/// Points and transform for one number of points.
+struct ChebyshevGrid {
+    points: Vec<f64>,
+    /// `[j][k]`: weight of the value at the point `j` in the coefficient `k`.
+    transform: Vec<[f64; MOST_POINTS]>,
+}
+
+/// Grids of 1, 2, ... points, each computed at its first use.
+static GRIDS: [OnceLock<ChebyshevGrid>; MOST_POINTS] = [const { OnceLock::new() }; MOST_POINTS];
+
+impl ChebyshevGrid {
+    fn of(count: usize) -> &'static Self {
+        GRIDS[count - 1].get_or_init(|| Self::new(count))
+    }
+
+    fn new(count: usize) -> Self {
+        // Angles are whole multiples of this part of a right angle, at most a full turn.
+        let angle = |multiple: usize| FRAC_PI_2 * multiple as f64 / count as f64;
+        let point = |j: usize| libm::sin(0.5 * angle(2 * j + 1)).powi(2);
+        let weight = |j: usize, k: usize| {
+            let cos = libm::cos(angle(k * (2 * j + 1) % (4 * count)));
+            let sign = if k.is_multiple_of(2) { 1.0 } else { -1.0 };
+            let each = if k == 0 { 1.0 } else { 2.0 };
+            sign * each * cos / count as f64
+        };
+        let row = |j| std::array::from_fn(|k| if k < count { weight(j, k) } else { 0.0 });
+        Self {
+            points: (0..count).map(point).collect(),
+            transform: (0..count).map(row).collect(),
+        }
+    }
+}
+
+/// The `count` Chebyshev points of the first kind on `[0, 1]`, growing: `sin^2((2 j + 1) pi/(4 count))`.
+///
+/// # Panics
+///
+/// If `count` is 0 or larger than [`MOST_POINTS`].
+#[must_use]
+pub fn chebyshev_points(count: usize) -> &'static [f64] {
+    &ChebyshevGrid::of(count).points
+}
+
+/// Expansion of `D` functions on `[0, 1]` in Chebyshev polynomials.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Chebyshev<const D: usize> {
+    /// Coefficients `[k][function]` of the polynomials `T_k(2 x - 1)`.
+    pub coefficients: Vec<[f64; D]>,
+}
+
+impl<const D: usize> Chebyshev<D> {
+    /// The expansion through `values` `[point][function]` at the [`chebyshev_points`], one value for each point.
+    ///
+    /// # Panics
+    ///
+    /// If there are no values, or more than [`MOST_POINTS`].
+    #[must_use]
+    pub fn through(values: &[[f64; D]]) -> Self {
+        let transform = &ChebyshevGrid::of(values.len()).transform;
+        let mut coefficients = Unit::detect().run(Transform { values, transform });
+        coefficients.truncate(values.len());
+        Self { coefficients }
+    }
+
+    /// Size of the last coefficients of each function: an estimate of the expansion's error where coefficients still fall.
+    /// A single point gives 0.
+    #[must_use]
+    pub fn tail(&self) -> [f64; D] {
+        let last = self.coefficients.iter().skip(1).rev().take(TAIL);
+        last.fold([0.0; D], |mut tail, coefficients| {
+            for (tail, coefficient) in tail.iter_mut().zip(coefficients) {
+                *tail = tail.max(coefficient.abs());
+            }
+            tail
+        })
+    }
+
+    /// Values of the functions at `x`.
+    #[must_use]
+    pub fn at(&self, x: f64) -> [f64; D] {
+        self.values(0, x)
+    }
+
+    /// Values of up to `N` functions from `first` on at `x`, by Clenshaw's recurrence; 0 beyond the last function.
+    #[inline(always)]
+    pub(super) fn values<T: Real, const N: usize>(&self, first: usize, x: T) -> [T; N] {
+        let y = T::of(2.0).mul_add(x, T::of(-1.0));
+        let (mut later, mut latest) = ([T::of(0.0); N], [T::of(0.0); N]);
+        for (power, coefficients) in self.coefficients.iter().enumerate().rev() {
+            let factor = if power == 0 { y } else { y + y };
+            for i in 0..N.min(D - first) {
+                let rest = T::of(coefficients[first + i]) - latest[i];
+                latest[i] = later[i];
+                later[i] = factor.mul_add(latest[i], rest);
+            }
+        }
+        later
+    }
+
+    /// Taylor coefficients of one function around `x`, by Clenshaw's recurrence with truncated power series in place of
+    /// numbers.
+    #[inline(always)]
+    pub(super) fn series<T: Real, const P: usize>(&self, function: usize, x: T) -> [T; P] {
+        let (zero, two) = (T::of(0.0), T::of(2.0));
+        let y = two.mul_add(x, T::of(-1.0));
+        let (mut later, mut latest) = ([zero; P], [zero; P]);
+        // `factor y b + c - d`, where `y` grows by twice the distance from `x`.
+        let combine = |factor: T, b: [T; P], c: f64, d: [T; P]| {
+            let mut sum = [zero; P];
+            for power in (0..P).rev() {
+                let rest = if power == 0 {
+                    T::of(c) - d[0]
+                } else {
+                    (two * factor).mul_add(b[power - 1], -d[power])
+                };
+                sum[power] = (factor * y).mul_add(b[power], rest);
+            }
+            sum
+        };
+        for coefficients in self.coefficients.iter().skip(1).rev() {
+            let sum = combine(two, later, coefficients[function], latest);
+            (later, latest) = (sum, later);
+        }
+        let constant = self
+            .coefficients
+            .first()
+            .map_or(0.0, |first| first[function]);
+        combine(T::of(1.0), later, constant, latest)
+    }
+}
+
+/// Coefficients from values: plain loops, which a compiler turns into vectors of any unit, without fused products.
+struct Transform<'a, const D: usize> {
+    values: &'a [[f64; D]],
+    transform: &'a [[f64; MOST_POINTS]],
+}
+
+impl<const D: usize> SimdTask for Transform<'_, D> {
+    type Output = Vec<[f64; D]>;
+
+    #[inline(always)]
+    fn run<T: Lanes>(self) -> Vec<[f64; D]> {
+        let mut columns = [[0.0; MOST_POINTS]; D];
+        for (values, weights) in self.values.iter().zip(self.transform) {
+            for (column, value) in columns.iter_mut().zip(values) {
+                for (coefficient, weight) in column.iter_mut().zip(weights) {
+                    *coefficient += weight * value;
+                }
+            }
+        }
+        let mut coefficients = vec![[0.0; D]; MOST_POINTS];
+        for (k, row) in coefficients.iter_mut().enumerate() {
+            for (coefficient, column) in row.iter_mut().zip(&columns) {
+                *coefficient = column[k];
+            }
+        }
+        coefficients
+    }
+}

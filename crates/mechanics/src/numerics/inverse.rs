@@ -1,0 +1,224 @@
+//! Inverse of a growing Chebyshev expansion, with further functions at the same place, side by side in SIMD lanes.
+//!
+//! The first function grows on `[0, 1]` and may be flat at 1, as the push angle of a row is at a fold. Near a flat end it is a
+//! parabola, and the place is linear in the square root of what is left to the end. So starts are interpolated in this root, and
+//! each step solves the quadratic Taylor polynomial (E. Halley's irrational method, 1694). Its error is cubed by each step.
+
+use crate::numerics::expansion::Chebyshev;
+use crate::numerics::{Lanes, SimdTask, Unit, WIDTH};
+
+/// Intervals between tabulated starts: their interpolation leaves an error of 1e-3 or less, two steps then 1e-24.
+const INTERVALS: usize = 2 * WIDTH;
+
+/// Number of steps from an interpolated start.
+const STEPS: usize = 2;
+
+/// Functions that are evaluated together: as many as registers hold.
+const TOGETHER: usize = 4;
+
+/// Tabulated value of the first function.
+#[derive(Clone, Copy, Debug, Default)]
+struct InverseStart {
+    value: f64,
+    /// Square root of what is left to the value at 1.
+    root: f64,
+}
+
+/// Functions on `[0, 1]`, the first of which grows.
+#[derive(Clone, Debug)]
+pub struct Inverse<const D: usize> {
+    /// The functions.
+    pub functions: Chebyshev<D>,
+    starts: [InverseStart; INTERVALS + 1],
+}
+
+/// Values of the functions at the places of a block of targets.
+#[derive(Clone, Copy, Debug)]
+pub struct InverseBlock<const D: usize> {
+    /// Places in `[0, 1]`, one in each lane.
+    pub places: [f64; WIDTH],
+    /// Values `[function][lane]`. Where the first differs from the target, the steps have not converged.
+    pub values: [[f64; WIDTH]; D],
+}
+
+impl<const D: usize> Inverse<D> {
+    /// Tabulates the first function. Returns `None` if it does not grow from one start to the next.
+    #[must_use]
+    pub fn new(functions: Chebyshev<D>) -> Option<Self> {
+        let values = Unit::detect().run(Table(&functions));
+        let last = values[INTERVALS];
+        let start = |value: f64| InverseStart {
+            value,
+            root: (last - value).max(0.0).sqrt(),
+        };
+        let grows = values.windows(2).all(|pair| pair[0] < pair[1]);
+        grows.then(|| Self {
+            functions,
+            starts: values.map(start),
+        })
+    }
+
+    /// Value of the first function at 1.
+    #[must_use]
+    pub const fn last(&self) -> f64 {
+        self.starts[INTERVALS].value
+    }
+
+    /// Approximate place of a target. `after` is the index of a start at or before the target; it moves along with growing targets.
+    fn near(&self, target: f64, after: &mut usize) -> f64 {
+        while *after + 2 < self.starts.len() && target > self.starts[*after + 1].value {
+            *after += 1;
+        }
+        let [from, to] = [self.starts[*after], self.starts[*after + 1]];
+        let root = (self.last() - target).max(0.0).sqrt();
+        (*after as f64 + (from.root - root) / (from.root - to.root)) / INTERVALS as f64
+    }
+
+    /// Calls `take` for each [`WIDTH`] of the growing `targets` with the index of the first of them, their number, and the values there.
+    pub fn solve(&self, targets: &[f64], mut take: impl FnMut(usize, usize, &InverseBlock<D>)) {
+        let unit = Unit::detect();
+        let mut after = 0;
+        for (block, chunk) in targets.chunks(WIDTH).enumerate() {
+            let mut task = Steps {
+                functions: &self.functions,
+                targets: [self.last(); WIDTH],
+                starts: [1.0; WIDTH],
+            };
+            for (lane, target) in chunk.iter().enumerate() {
+                task.targets[lane] = target.min(self.last());
+                task.starts[lane] = self.near(*target, &mut after);
+            }
+            take(block * WIDTH, chunk.len(), &unit.run(task));
+        }
+    }
+}
+
+/// Values of the first function at the starts.
+struct Table<'a, const D: usize>(&'a Chebyshev<D>);
+
+impl<const D: usize> SimdTask for Table<'_, D> {
+    type Output = [f64; INTERVALS + 1];
+
+    #[inline(always)]
+    fn run<T: Lanes>(self) -> Self::Output {
+        let mut values = [0.0; INTERVALS + 1];
+        for from in (0..=INTERVALS).step_by(T::LANES) {
+            let places = std::array::from_fn(|lane| (from + lane) as f64 / INTERVALS as f64);
+            let [found] = self.0.series::<T, 1>(0, T::pack(places));
+            for (value, found) in values[from..].iter_mut().zip(&found.unpack()[..T::LANES]) {
+                *value = *found;
+            }
+        }
+        values
+    }
+}
+
+/// Steps toward the targets of a block.
+struct Steps<'a, const D: usize> {
+    functions: &'a Chebyshev<D>,
+    targets: [f64; WIDTH],
+    starts: [f64; WIDTH],
+}
+
+impl<const D: usize> SimdTask for Steps<'_, D> {
+    type Output = InverseBlock<D>;
+
+    #[inline(always)]
+    fn run<T: Lanes>(self) -> InverseBlock<D> {
+        let mut block = InverseBlock {
+            places: [0.0; WIDTH],
+            values: [[0.0; WIDTH]; D],
+        };
+        let lanes = |numbers: &[f64; WIDTH], from: usize| {
+            let mut lanes = [0.0; WIDTH];
+            lanes[..T::LANES].copy_from_slice(&numbers[from..from + T::LANES]);
+            T::pack(lanes)
+        };
+        for from in (0..WIDTH).step_by(T::LANES) {
+            let target: T = lanes(&self.targets, from);
+            let mut place = lanes(&self.starts, from);
+            for _ in 0..STEPS {
+                let [value, slope, half] = self.functions.series::<T, 3>(0, place);
+                place = place + quadratic_step(target - value, slope, half);
+            }
+            let here = from..from + T::LANES;
+            block.places[here.clone()].copy_from_slice(&place.unpack()[..T::LANES]);
+            for first in (0..D).step_by(TOGETHER) {
+                let found = self.functions.values::<T, TOGETHER>(first, place);
+                for (values, found) in block.values[first..].iter_mut().zip(found) {
+                    values[here.clone()].copy_from_slice(&found.unpack()[..T::LANES]);
+                }
+            }
+        }
+        block
+    }
+}
+
+/// The smaller root `d` of `slope d + half d^2 = rest`; the vertex of the parabola where there is no root.
+#[inline(always)]
+fn quadratic_step<T: Lanes>(rest: T, slope: T, half: T) -> T {
+    let discriminant = slope.mul_add(slope, T::of(4.0) * half * rest);
+    // Zero where negative.
+    let clipped = T::of(0.5) * (discriminant + (discriminant * discriminant).sqrt());
+    // A flat function at its target takes no step.
+    (rest + rest) / (slope + clipped.sqrt() + T::of(f64::MIN_POSITIVE))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::numerics::expansion::chebyshev_points;
+    use std::f64::consts::FRAC_PI_2;
+
+    /// The sine up to its flat top, and a function that is not flat there.
+    fn arc(count: usize) -> Inverse<5> {
+        let values: Vec<[f64; 5]> = chebyshev_points(count)
+            .iter()
+            .map(|x| {
+                let x = FRAC_PI_2 * x;
+                [x.sin(), x, x.cos(), 1.0, (-x).exp()]
+            })
+            .collect();
+        Inverse::new(Chebyshev::through(&values)).expect("the sine grows")
+    }
+
+    #[test]
+    fn a_flat_end_is_inverted() {
+        let inverse = arc(24);
+        let targets: Vec<f64> = (0..=1000).map(|i| f64::from(i) / 1000.0).collect();
+        let mut count = 0;
+        inverse.solve(&targets, |from, len, block| {
+            for lane in 0..len {
+                let target = targets[from + lane];
+                let x = target.asin();
+                let [sine, angle, cosine, one, decay] = block.values.map(|values| values[lane]);
+                assert!((sine - target).abs() < 1e-14, "{target}");
+                // The angle is as uncertain as the square root of rounding at the top.
+                let error = 3e-15 / x.cos().max(3e-8);
+                assert!((angle - x).abs() < error, "{target} {angle}");
+                assert!((block.places[lane] * FRAC_PI_2 - angle).abs() < 1e-14);
+                assert!((cosine - angle.cos()).abs() < 1e-14 && (one - 1.0).abs() < 1e-14);
+                assert!((decay - (-angle).exp()).abs() < 1e-14, "{target}");
+                count += 1;
+            }
+        });
+        assert_eq!(count, targets.len());
+    }
+
+    #[test]
+    fn targets_beyond_the_end_are_put_there() {
+        arc(24).solve(&[0.5, 1.5], |_, len, block| {
+            assert_eq!(len, 2);
+            assert!((block.places[1] - 1.0).abs() < 1e-6 && block.values[0][1] <= 1.0 + 1e-15);
+        });
+    }
+
+    #[test]
+    fn a_falling_function_has_no_inverse() {
+        let falling: Vec<[f64; 1]> = chebyshev_points(8)
+            .iter()
+            .map(|x| [x * (0.9 - x)])
+            .collect();
+        assert!(Inverse::new(Chebyshev::through(&falling)).is_none());
+    }
+}

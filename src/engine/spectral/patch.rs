@@ -1,0 +1,174 @@
+//! Patches: the expansions of many rows of one whisker side as a tensor.
+//!
+//! Rows that end at the fold are a patch in the logarithm of `tau` at first touch, rows that end at the tip in the load there. In these
+//! coordinates every number is analytic, the fold and the turning point of the distance along the tip included.
+
+use super::certificate::{Check, bounds};
+use super::row::{ExactRow, FUNCTIONS, RowExpansion, Weights, largest};
+use crate::engine::WhiskerSide;
+use crate::numerics::expansion::{Chebyshev, chebyshev_points};
+use crate::numerics::tensor::ChebyshevTensor;
+use crate::rod::{Rest, arclength};
+use crate::sheet::{Edge, Row, Sheet};
+use crate::shooting::ShootingMap;
+use crate::shooting::batch::{Batch, InitialCondition, Method};
+
+/// Number of states of a patch: of rows, and of states along each.
+#[derive(Clone, Copy, Debug)]
+pub struct PatchSize {
+    /// Number of rows with exact states.
+    pub rows: usize,
+    /// Number of states along each.
+    pub states: usize,
+}
+
+/// Interval of rows that end at one edge.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RowInterval {
+    /// The edge.
+    pub edge: Edge,
+    /// Coordinates of the first and of the last row.
+    pub ends: [f64; 2],
+}
+
+impl RowInterval {
+    /// Coordinate of a row of `sheet`, with the edge where it ends; `None` if it has no simple span from first touch.
+    pub fn coordinate(sheet: &Sheet, row: usize) -> Option<(Edge, f64)> {
+        let [end] = &sheet.crossings[row][..] else {
+            return None;
+        };
+        let is_simple = sheet.touches(row) && end.is_sound() && !end.is_at_touch();
+        let coordinate = match end.edge {
+            Edge::Fold => libm::log(sheet.rod.tau(sheet.rows[row].contact)),
+            Edge::Tip => end.load,
+        };
+        (is_simple && !sheet.is_continued()).then_some((end.edge, coordinate))
+    }
+
+    /// Rows at parts of the interval.
+    fn rows(&self, method: Method, sheet: &Sheet, parts: &[f64]) -> Vec<Row> {
+        let (rod, rest) = (&sheet.rod, Rest::new(&sheet.rod));
+        let [from, to] = self.ends;
+        let coordinates = parts.iter().map(|part| from + part * (to - from));
+        match self.edge {
+            Edge::Fold => {
+                let contacts = coordinates.map(|ln_tau| arclength(rod, libm::exp(ln_tau)));
+                let distances = contacts.map(|contact| rest.at_arclength(contact).0.length());
+                distances
+                    .map(|distance| Row::new(&rest, distance))
+                    .collect()
+            }
+            Edge::Tip => {
+                let tau = rod.tau_tip();
+                let at_tip = coordinates.map(|load| InitialCondition { rod, tau, load });
+                let maps: Vec<ShootingMap> = Batch::new(method).shoot(&at_tip.collect::<Vec<_>>());
+                let distances = maps
+                    .iter()
+                    .map(|map| rest.distance_of_pole(map.pole.length()));
+                distances
+                    .map(|distance| Row::new(&rest, distance))
+                    .collect()
+            }
+        }
+    }
+}
+
+/// Certified expansions of all rows of an interval.
+#[derive(Clone, Debug)]
+pub struct Patch {
+    interval: RowInterval,
+    tensor: ChebyshevTensor<FUNCTIONS>,
+    weights: Weights,
+    residual: f64,
+}
+
+/// Places of the certificate in each direction: between the Chebyshev points of every size.
+const CHECKS: usize = 8;
+
+impl Patch {
+    /// Computes the states of `size` and certifies the expansions through them.
+    ///
+    /// # Errors
+    /// If a state is not found, or if the bound exceeds `most`, in whisker lengths. The error is the expected one from row to row: NaN
+    /// without states.
+    pub fn new(
+        method: Method,
+        side: &WhiskerSide,
+        interval: RowInterval,
+        size: PatchSize,
+        most: f64,
+    ) -> Result<Self, f64> {
+        let rows = interval.rows(method, &side.sheet, chebyshev_points(size.rows));
+        let sheet = side.sheet.with_rows(rows).ok_or(f64::NAN)?;
+        let all: Vec<usize> = (0..size.rows).collect();
+        let found: Option<Vec<ExactRow>> = ExactRow::all(method, &sheet, &all, size.states)
+            .into_iter()
+            .collect();
+        let found = found.ok_or(f64::NAN)?;
+        let is_apart = |row: &ExactRow| row.end.edge != interval.edge;
+        if found.iter().any(is_apart) {
+            return Err(f64::NAN);
+        }
+        let expansions: Vec<Chebyshev<FUNCTIONS>> =
+            found.iter().map(|row| row.expansion(side)).collect();
+        let weights: Vec<Weights> = found.iter().map(|row| row.weights(side)).collect();
+        let weights = weights.iter().fold([0.0; FUNCTIONS], |most, row| {
+            std::array::from_fn(|i| f64::max(most[i], row[i]))
+        });
+        let tensor = ChebyshevTensor::through(&expansions);
+        let by_rows = largest(&tensor.tail_in_x(), &weights);
+        let tails = expansions.iter().map(|row| largest(&row.tail(), &weights));
+        let by_decay = tails.fold(by_rows, f64::max);
+        let mut patch = Self {
+            interval,
+            tensor,
+            weights,
+            residual: by_decay,
+        };
+        if by_decay <= most {
+            patch.residual = patch.certified(method, side);
+        }
+        if patch.residual <= most {
+            Ok(patch)
+        } else {
+            Err(by_rows)
+        }
+    }
+
+    /// Bound on the residual from trajectories between the states.
+    fn certified(&self, method: Method, side: &WhiskerSide) -> f64 {
+        // Even parts of the interval are not Chebyshev points.
+        let places: [f64; CHECKS] = std::array::from_fn(|i| (i as f64 + 0.37) / CHECKS as f64);
+        let rows = self.interval.rows(method, &side.sheet, &places);
+        let expansions = places.map(|place| self.tensor.at(place));
+        let checks = rows.iter().zip(&expansions).map(|(row, functions)| Check {
+            row: *row,
+            functions,
+            weights: &self.weights,
+            places: &places,
+        });
+        let bounds = bounds(
+            method,
+            side,
+            &checks.collect::<Vec<_>>(),
+            &[self.residual; CHECKS],
+        );
+        bounds.into_iter().fold(0.0, f64::max)
+    }
+
+    /// The expansions of `row` of the sheet; `None` if the row is outside the interval, or contradicts its end.
+    pub fn row(&self, sheet: &Sheet, row: usize) -> Option<RowExpansion> {
+        let (edge, coordinate) = RowInterval::coordinate(sheet, row)?;
+        let [from, to] = self.interval.ends;
+        let part = (coordinate - from) / (to - from);
+        let is_inside = edge == self.interval.edge && (0.0..=1.0).contains(&part);
+        let expansion = is_inside.then(|| self.tensor.at(part))?;
+        RowExpansion::new(
+            expansion,
+            &self.weights,
+            self.residual,
+            &sheet.rows[row],
+            &sheet.crossings[row][0],
+        )
+    }
+}
