@@ -12,7 +12,7 @@ use whiskmap::sheet::Sheet;
 use whiskmap::shooting::batch::Method;
 
 /// Rows of a whisker, and columns of each side.
-const ROWS: usize = 4;
+pub const ROWS: usize = 4;
 const COLUMNS: usize = 64;
 
 /// The largest push angle, in radians.
@@ -28,13 +28,26 @@ const NO_UNITS: Units = Units {
 /// Rows of random whiskers, each on the side of its pole.
 pub struct RandomRows {
     method: Method,
+    /// Rows of each whisker.
+    rows: usize,
     sides: Arc<[WhiskerSide]>,
     pushes: Arc<[f64]>,
 }
 
 impl RandomRows {
-    /// The rows of `count` random whiskers, which are `changed` first.
+    /// Some rows of `count` random whiskers, which are `changed` first.
     pub fn new(
+        effects: Effects,
+        count: usize,
+        seed: u64,
+        changed: impl Fn(&mut Rod, &mut Random),
+    ) -> Self {
+        Self::many(ROWS, effects, count, seed, changed)
+    }
+
+    /// So many rows of each of `count` random whiskers, which are `changed` first.
+    pub fn many(
+        rows: usize,
         effects: Effects,
         count: usize,
         seed: u64,
@@ -45,10 +58,10 @@ impl RandomRows {
             let mut rod = rod(effects, &mut random);
             changed(&mut rod, &mut random);
             let nearest = f64::max(0.15, 1.5 * rod.pole.abs());
-            let distances = [(); ROWS].map(|()| random.between(nearest, 1.0));
+            let distances = (0..rows).map(|_| random.between(nearest, 1.0)).collect();
             (rod, distances)
         });
-        let whiskers: Vec<(Rod, [f64; ROWS])> = whiskers.collect();
+        let whiskers: Vec<(Rod, Vec<f64>)> = whiskers.collect();
         let method = Method::fine().with_effects(effects);
         let part = |i: usize| i as f64 / COLUMNS as f64;
         let magnitudes = (1..=COLUMNS).map(|i| (LARGEST_PUSH * part(i).powi(2)).to_degrees());
@@ -69,6 +82,7 @@ impl RandomRows {
         });
         Self {
             method,
+            rows,
             sides: sides.collect::<Vec<_>>().into(),
             pushes: pushes.into(),
         }
@@ -76,12 +90,12 @@ impl RandomRows {
 
     /// Number of rows.
     pub fn len(&self) -> usize {
-        ROWS * self.sides.len()
+        self.rows * self.sides.len()
     }
 
     /// Some of the rows, with the input of `engine`, values and points.
     pub fn part(&self, engine: &dyn Engine, rows: Range<usize>) -> RowBatch {
-        let rows = rows.map(|i| (i / ROWS, i % ROWS));
+        let rows = rows.map(|i| (i / self.rows, i % self.rows));
         let (sides, pushes) = (Arc::clone(&self.sides), Arc::clone(&self.pushes));
         let mut batch = RowBatch::new(self.method, sides, pushes, rows);
         batch.has_points = true;

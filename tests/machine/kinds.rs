@@ -1,6 +1,6 @@
 //! Random whiskers of every kind.
 
-use crate::cells::RandomRows;
+use crate::cells::{self, RandomRows};
 use crate::effect_sets;
 use crate::random_rods::Random;
 use whiskmap::rod::{Effects, Rod};
@@ -50,12 +50,17 @@ fn slender(rod: &mut Rod, random: &mut Random) {
     rod.taper = 1.0 - 10_f64.powf(random.between(-6.0, -2.0));
 }
 
-/// Rows of `count` whiskers of every kind.
+/// Some rows of `count` whiskers of every kind.
 pub fn every_kind(count: usize) -> impl Iterator<Item = (String, RandomRows)> {
+    rows_of_every_kind(cells::ROWS, count)
+}
+
+/// So many rows of each of `count` whiskers of every kind.
+pub fn rows_of_every_kind(rows: usize, count: usize) -> impl Iterator<Item = (String, RandomRows)> {
     (1..)
         .zip(kinds())
         .map(move |(seed, (name, effects, changed))| {
-            let rows = RandomRows::new(effects, count, seed, changed);
+            let rows = RandomRows::many(rows, effects, count, seed, changed);
             let Effects {
                 taper,
                 curvature,

@@ -42,6 +42,7 @@ mod program;
 mod random;
 #[path = "../random_rods/mod.rs"]
 mod random_rods;
+mod spectral;
 mod states;
 #[cfg(unix)]
 mod strangers;
@@ -85,6 +86,7 @@ fn main() -> ExitCode {
         hard_cases::TESTS,
         maps::TESTS,
         pipeline::TESTS,
+        spectral::TESTS,
         states::TESTS,
         #[cfg(unix)]
         strangers::TESTS,

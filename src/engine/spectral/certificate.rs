@@ -3,15 +3,13 @@
 use super::row::{FUNCTIONS, Numbers, Weights, largest};
 use crate::engine::WhiskerSide;
 use crate::numerics::expansion::Chebyshev;
+use crate::refine::GOAL;
 use crate::sheet::Row;
 use crate::shooting::FirstVariation;
 use crate::shooting::batch::{Batch, InitialCondition, Method};
 
 /// Factor by which a bound exceeds the largest error seen: the error between a few places may be larger than there.
 const MARGIN: f64 = 4.0;
-
-/// Smallest bound, in whisker lengths: rounding of trajectories.
-const LEAST: f64 = 1e-13;
 
 /// Places of a row between its points, and the expansions there.
 pub struct Check<'a> {
@@ -26,7 +24,7 @@ pub struct Check<'a> {
 }
 
 /// Returns a bound on the errors of each check's expansions, in whisker lengths, from trajectories at its places and the error
-/// `by_decay` that the coefficients left out are expected to make.
+/// `by_decay` that the coefficients left out are expected to make; at least [`GOAL`], the residual of refined states.
 pub fn bounds(method: Method, side: &WhiskerSide, checks: &[Check], by_decay: &[f64]) -> Vec<f64> {
     let at = |check: &Check| -> Vec<Numbers> {
         check
@@ -63,7 +61,7 @@ pub fn bounds(method: Method, side: &WhiskerSide, checks: &[Check], by_decay: &[
         });
         // NaN is not below any bound.
         let larger = |a: f64, b: f64| if b <= a { a } else { b };
-        (MARGIN * misses.fold(*by_decay, larger)).max(LEAST)
+        (MARGIN * misses.fold(*by_decay, larger)).max(GOAL)
     });
     bounds.collect()
 }
