@@ -172,3 +172,72 @@ impl Patch {
         )
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::sheet::MOST;
+    use super::*;
+    use crate::engine::SideColumns;
+    use crate::rod::Side;
+    use crate::scene::Scene;
+    use std::sync::Arc;
+
+    /// Error of a coefficient, as a part of the largest coefficient of its function.
+    const SPOIL: f64 = 1e-6;
+
+    /// Coefficients between two spoiled ones: coprime to the sizes, so that all functions and all powers are among them.
+    const STRIDE: usize = 5;
+
+    /// The cone of the paper with more rows at the tip than its map has.
+    fn cone() -> WhiskerSide {
+        let scene = Scene::parse(include_str!("../../../scenes/cone.toml"), "cone.toml").unwrap();
+        let swept = scene.whisker(0);
+        let columns = Arc::new(SideColumns::new(&[1.0, 2.0], Side::Cb, 0));
+        let (rod, units) = (swept.rod(columns.side), swept.whisker.units());
+        let distances: Vec<f64> = (0..200).map(|i| 0.4 + 0.003 * f64::from(i)).collect();
+        let sheet = Sheet::new(Method::fine(), &rod, columns.side, &distances);
+        WhiskerSide::new(columns, units, sheet)
+    }
+
+    /// The interval of all rows that end at `edge`.
+    fn interval(side: &WhiskerSide, edge: Edge) -> RowInterval {
+        let rows = 0..side.sheet.rows.len();
+        let places = rows.filter_map(|row| RowInterval::coordinate(&side.sheet, row));
+        let own = places.filter(|(own, _)| *own == edge);
+        let ends = own.fold([f64::INFINITY, -f64::INFINITY], |[from, to], (_, at)| {
+            [from.min(at), to.max(at)]
+        });
+        RowInterval { edge, ends }
+    }
+
+    /// A single wrong coefficient of any power of any function exceeds the bound, although all others decay.
+    #[test]
+    fn a_spoiled_coefficient_is_refused() {
+        let (method, side) = (Method::fine(), cone());
+        for edge in [Edge::Fold, Edge::Tip] {
+            let size = PatchSize {
+                rows: 24,
+                states: 32,
+            };
+            let sound = Patch::new(method, &side, interval(&side, edge), size, MOST);
+            let sound = sound.unwrap_or_else(|error| panic!("{edge:?}: {error:e}"));
+            assert!(sound.certified(method, &side) <= 4.0 * sound.residual);
+            let largest = sound.tensor.in_y.iter().flat_map(|own| &own.coefficients);
+            let largest = largest.fold([0.0; FUNCTIONS], |most, own| {
+                std::array::from_fn(|i| f64::max(most[i], own[i].abs()))
+            });
+            let all = size.rows * size.states * FUNCTIONS;
+            for place in (0..all).step_by(STRIDE) {
+                let (power, function) = (place / FUNCTIONS, place % FUNCTIONS);
+                let (in_y, in_x) = (power / size.rows, power % size.rows);
+                let mut patch = sound.clone();
+                patch.tensor.in_y[in_y].coefficients[in_x][function] += SPOIL * largest[function];
+                let bound = patch.certified(method, &side);
+                assert!(
+                    bound > MOST,
+                    "{edge:?}: function {function}, powers {in_x} and {in_y}: {bound:e}"
+                );
+            }
+        }
+    }
+}

@@ -11,7 +11,7 @@ use crate::numerics::{Lanes, SimdTask, Unit};
 #[derive(Clone, Debug)]
 pub struct ChebyshevTensor<const D: usize> {
     /// Coefficients `[power in y]`, each an expansion in `x`.
-    in_y: Vec<Chebyshev<D>>,
+    pub in_y: Vec<Chebyshev<D>>,
 }
 
 impl<const D: usize> ChebyshevTensor<D> {
