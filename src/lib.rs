@@ -74,7 +74,9 @@ pub use classify::{Regime, Status};
 pub use engine::Precision;
 #[cfg(feature = "fit")]
 pub use front::fit;
-pub use front::{Error, Map, MapCell, Options, branch, curve, for_each_panel, map, shape};
+pub use front::{
+    Error, Map, MapCell, MapEngine, Options, branch, curve, for_each_panel, map, shape,
+};
 pub use map::{Panel, Summary};
 pub use plan::{Channel, Channels};
 pub use rod::Side;

@@ -8,7 +8,7 @@ use std::sync::Arc;
 use whiskmap::map::{Panel, STATE_CHANNELS};
 use whiskmap::refine::TOLERANCE;
 use whiskmap::scene::{Parameter, Scene};
-use whiskmap::{Channel, Error, Options};
+use whiskmap::{Channel, Error, MapEngine, Options};
 
 #[test]
 fn shipped_scenes_have_no_doubtful_cell() {
@@ -165,6 +165,20 @@ fn channels_have_the_names_of_files() {
         assert_eq!(bits(map.channel(0, channel).unwrap()), bits(values));
     }
     assert!(map.channel(1, Channel::Force).is_none());
+}
+
+/// The spectral engine solves most cells of a map in memory, with the regimes of the CPU engine.
+#[test]
+fn options_select_the_engine() {
+    let scene = Scene::read("scenes/cone.toml").unwrap().thinned(96, 1);
+    let mut options = Options::default();
+    assert_eq!(options.engine, MapEngine::Cpu);
+    let wanted = whiskmap::map(&scene, options.clone()).unwrap();
+    options.engine = MapEngine::Spectral;
+    let map = whiskmap::map(&scene, options).unwrap();
+    assert_eq!(wanted.summary.engine_cells.solved, 0);
+    assert!(map.summary.engine_cells.solved * 10 > map.summary.refined * 8);
+    assert!(map.panels[0].regimes().eq(wanted.panels[0].regimes()));
 }
 
 /// A view has the values of its channel at distance and push angle, in this order.

@@ -23,8 +23,8 @@ pub struct WholeMap {
     pub engine: String,
     /// Seconds from the plan to the last panel packed.
     pub seconds: Timing,
-    /// Wall milliseconds by stage, medians of the runs: `sheets`, `base_points`, `guesses`, `refinement` and `classification` in sequence;
-    /// beside them `packing`, `device` (the busy engine) and `waiting` for it.
+    /// Wall milliseconds by stage, medians of the runs: `sheets`, `base_points`, `expansions`, `guesses`, `refinement` and `classification`
+    /// in sequence; beside them `packing`, `device` (the busy engine) and `waiting` for it.
     pub stages_ms: StageTimes,
     /// CPU microseconds of the process per cell; 0 where the system has no such clock. A software adapter's threads are included.
     pub host_us_per_cell: f64,
@@ -189,7 +189,13 @@ fn summed_up(engine: String, cells: usize, samples: &[Sample]) -> WholeMap {
     let stages_ms = medians(&stages_ms);
     let sum = |names: &[&str]| names.iter().filter_map(|name| stages_ms.get(*name)).sum();
     let for_devices: f64 = sum(&["guesses", "refinement"]);
-    let for_cpus: f64 = sum(&["sheets", "base_points", "classification", "packing"]);
+    let for_cpus: f64 = sum(&[
+        "sheets",
+        "base_points",
+        "expansions",
+        "classification",
+        "packing",
+    ]);
     WholeMap {
         engine,
         seconds: Timing::of(samples.iter().map(|run| run.seconds)),

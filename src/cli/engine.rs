@@ -1,7 +1,7 @@
 //! Selection of the engine.
 
 use super::estimate::{compare, estimate};
-use super::failure::Failure;
+use super::failure::{Failure, message};
 use clap::{Args, ValueEnum};
 use std::env;
 use whiskmap::engine::gpu::{AdapterReport, Gpu, Precision, adapters, named, preferred};
@@ -15,7 +15,7 @@ enum EngineChoice {
     Auto,
     /// f64 on all cores: a trajectory for each cell
     Cpu,
-    /// f64 on all cores: certified polynomials along rows, trajectories where there are none
+    /// f64 on all cores: certified polynomials along rows, a trajectory for each other cell
     Spectral,
     /// Compute shaders on an adapter, also a software adapter
     Gpu,
@@ -67,6 +67,11 @@ impl EngineArgs {
             ),
             (EngineChoice::Cpu, ..) => return Ok((None, "selected by --engine".to_owned())),
             (EngineChoice::Spectral, ..) => {
+                if plan.method.effects.profile {
+                    message(
+                        "warning: --engine spectral: a whisker with measured radii has no expansions; the CPU engine solves every cell",
+                    );
+                }
                 let spectral = Box::new(Spectral::default());
                 return Ok((Some(spectral), "selected by --engine".to_owned()));
             }

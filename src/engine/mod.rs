@@ -134,7 +134,7 @@ pub enum EngineError {
     #[error("GPU: {0}")]
     Device(String),
     /// Audited cells differ from the CPU's.
-    #[error("GPU: {differing} of {cells} audited cells differ by more than the tolerance")]
+    #[error("{differing} of {cells} audited cells of the engine differ by more than the tolerance")]
     FailedAudit {
         /// Cells that differ.
         differing: u64,

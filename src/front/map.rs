@@ -1,10 +1,10 @@
 //! Regime maps in memory.
 
-use super::{Error, Options, resolution};
+use super::{Error, MapEngine, Options, resolution};
 use crate::classify::Regime;
 #[cfg(feature = "gpu")]
 use crate::engine::gpu::Gpu;
-use crate::engine::{Engine, EngineError, Precision};
+use crate::engine::{Engine, EngineError, Precision, Spectral};
 use crate::map::{self as stages, Panel, Summary};
 use crate::plan::{Channel, Plan};
 use crate::scene::{Grid, Scene};
@@ -197,7 +197,11 @@ fn run<E: From<Error> + Send>(
     mut each: impl FnMut(usize, Panel) -> Result<(), E> + Send,
 ) -> Result<Summary, E> {
     plan.method.resolution = resolution(scene, &options, &plan.sides)?;
-    let mut engine = options.gpu.map(open).transpose().map_err(Error::from)?;
+    let mut engine: Option<Box<dyn Engine>> = match options.engine {
+        MapEngine::Cpu => None,
+        MapEngine::Spectral => Some(Box::new(Spectral::default())),
+        MapEngine::Gpu(precision) => Some(open(precision).map_err(Error::from)?),
+    };
     let engine = engine.as_mut().map(|engine| &mut **engine as _);
     let (mut done, all) = (0, plan.cells);
     let mut on_progress = |cells| {

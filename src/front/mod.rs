@@ -20,11 +20,11 @@ use std::sync::atomic::AtomicBool;
 /// Accuracy, engine, progress and cancellation of a computation.
 ///
 /// ```
-/// use whiskmap::{Options, Precision};
+/// use whiskmap::{MapEngine, Options};
 ///
 /// let mut options = Options::default();
 /// options.tolerance_deg = Some(1e-6);
-/// options.gpu = Some(Precision::F32);
+/// options.engine = MapEngine::Spectral;
 /// options.on_progress = Some(std::sync::Arc::new(|done, all| eprintln!("{done} of {all} cells")));
 /// ```
 #[derive(Clone, Default)]
@@ -32,12 +32,26 @@ use std::sync::atomic::AtomicBool;
 pub struct Options {
     /// Maximum push-angle error, in degrees. Without it, the finest steps are used.
     pub tolerance_deg: Option<f64>,
-    /// Solves maps on the preferred GPU in this precision; an error without the feature `gpu`.
-    pub gpu: Option<Precision>,
+    /// Engine that solves the cells of maps.
+    pub engine: MapEngine,
     /// Called with the number of finished cells and of all cells of a map, on the thread that computes it.
     pub on_progress: Option<Arc<dyn Fn(usize, usize) + Send + Sync>>,
     /// If true, a map ends with [`Error::Cancelled`] after the current row batch.
     pub cancel: Option<Arc<AtomicBool>>,
+}
+
+/// Engine that solves the cells of a map.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum MapEngine {
+    /// A trajectory for each cell, in `f64` on all cores.
+    #[default]
+    Cpu,
+    /// Certified polynomials along rows, in `f64` on all cores. Rows without a certificate fall back to the CPU engine, and so do all rows
+    /// with measured radii.
+    Spectral,
+    /// The preferred GPU in this precision; an error without the feature `gpu`.
+    Gpu(Precision),
 }
 
 /// Failure of a computation. An unresolved cell is no error.

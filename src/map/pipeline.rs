@@ -106,15 +106,25 @@ impl<'a, 'e> Pipeline<'a, 'e> {
 
     /// Ends the run. Returns its counts and times.
     pub fn finish(self) -> Summary {
+        let is_stage = self.engine_is_stage();
         let mut summary = self.summary;
         summary.stages.0[Stage::Guesses as usize] = self.cpu.guesses;
         summary.stages.0[Stage::Refinement as usize] = self.cpu.refinement;
-        summary.device_seconds = self.worker.busy.as_secs_f64();
+        let busy = self.worker.busy;
+        match is_stage {
+            true => summary.stages.0[Stage::Expansions as usize] = busy,
+            false => summary.device_seconds = busy.as_secs_f64(),
+        }
         summary.engine_failure = self.worker.failure;
         if self.input.is_none() {
             summary.engine_cells = EngineCells::default();
         }
         summary
+    }
+
+    /// Returns true if the engine works on the threads of the pool, as a stage of its own.
+    fn engine_is_stage(&self) -> bool {
+        self.input == Some(EngineInput::SpectralSheets)
     }
 
     /// Submits the next batches, and completes the first of the queue. Returns the number of its cells, and whether the `panels` are
@@ -136,7 +146,9 @@ impl<'a, 'e> Pipeline<'a, 'e> {
             .is_for_engine()
             .then(|| self.worker.collect())
             .flatten();
-        self.summary.waiting_seconds += begun.elapsed().as_secs_f64();
+        if !self.engine_is_stage() {
+            self.summary.waiting_seconds += begun.elapsed().as_secs_f64();
+        }
         self.complete(&batch, cells, panels);
         Some((batch.cells(), is_last))
     }

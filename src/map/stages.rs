@@ -6,10 +6,12 @@ use std::time::{Duration, Instant};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Stage {
-    /// Folds, lattices and exact row boundaries.
+    /// Folds, lattices, exact row boundaries, and the expansions of a spectral engine.
     Sheets,
     /// Base points of rows and the trajectories that an engine gets with them.
     BasePoints,
+    /// Cells of the spectral engine.
+    Expansions,
     /// Guesses from the lattice.
     Guesses,
     /// Newton's method in `f64`.
@@ -22,9 +24,10 @@ pub enum Stage {
 
 impl Stage {
     /// Every stage with its name, in order.
-    pub const ALL: [(Self, &str); 6] = [
+    pub const ALL: [(Self, &str); 7] = [
         (Self::Sheets, "sheets"),
         (Self::BasePoints, "base points"),
+        (Self::Expansions, "expansions"),
         (Self::Guesses, "guesses"),
         (Self::Refinement, "refinement"),
         (Self::Classification, "classification"),

@@ -108,7 +108,7 @@ pub struct Summary {
     pub wall_seconds: f64,
     /// CPU seconds of the process during the run, over all its threads; `None` where the system has no such clock.
     pub cpu_seconds: Option<f64>,
-    /// Busy seconds of the engine, beside the stages.
+    /// Busy seconds of an engine with a thread of its own, beside the stages.
     pub device_seconds: f64,
     /// Seconds of [`Self::device_seconds`] for which the threads waited for the engine.
     pub waiting_seconds: f64,

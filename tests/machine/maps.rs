@@ -1,15 +1,18 @@
 //! Whole maps: every engine with the same answer.
 
 use crate::compute::{
-    assert_close, assert_identical, assert_no_load_at_touch, compute, open, shipped, works,
+    assert_close, assert_identical, assert_no_load_at_touch, compute, compute_as, open, shipped,
+    works,
 };
 use whiskmap::engine::gpu::Precision;
-use whiskmap::engine::on_gpu;
+use whiskmap::engine::{Engine, on_gpu};
 use whiskmap::map::EngineCells;
 use whiskmap::plan::Plan;
 use whiskmap::scene::{Parameter, Scene};
 
 tests! {
+    Engine:
+        a_map_of_regimes_passes_its_audit;
     Precision:
         engines_agree_on_every_cell,
         first_touch_is_without_a_load,
@@ -62,4 +65,16 @@ fn what_an_engine_cannot_is_done_by_the_cpu(precision: Precision) {
         assert_eq!(summary.engine_cells, only);
         assert_identical(&cpu, &panels);
     }
+}
+
+/// Without stored states an engine returns no values, and the audit compares outcomes alone.
+fn a_map_of_regimes_passes_its_audit(engine: &mut dyn Engine) {
+    let cone = Scene::read("scenes/cone.toml").unwrap().thinned(96, 1);
+    let mut plan = Plan::new(&cone).unwrap();
+    plan.channels = "regime".parse().unwrap();
+    let (summary, panels) = compute_as(&cone, &plan, Some(engine));
+    assert!(summary.engine_failure.is_none());
+    assert!(summary.engine_cells.solved > 0 && summary.audit.cells > 0);
+    let (_, wanted) = compute(&cone, None);
+    assert!(panels[0].regime == wanted[0].regime);
 }

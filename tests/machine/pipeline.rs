@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 use std::sync::mpsc;
 use std::time::Duration;
 use whiskmap::engine::gpu::{Gpu, Precision};
-use whiskmap::engine::{Engine, EngineError};
+use whiskmap::engine::{Engine, EngineError, Spectral};
 use whiskmap::map::{self, Panel, Stage, Summary};
 use whiskmap::plan::Plan;
 use whiskmap::scene::Scene;
@@ -14,7 +14,8 @@ use whiskmap::store::MapWriter;
 
 tests! {
     Nothing:
-        stages_are_one_sequence;
+        stages_are_one_sequence,
+        the_spectral_engine_is_a_stage;
     Adapter:
         a_batch_is_solved_while_the_previous_one_is_completed,
         outcomes_do_not_depend_on_threads,
@@ -158,6 +159,21 @@ fn stages_are_one_sequence_beside_an_engine() {
     }
 }
 
+/// The engine's seconds are those of its stage, not beside the others.
+fn the_spectral_engine_is_a_stage() {
+    let (scene, plan) = in_batches();
+    let (summary, _) = compute_as(&scene, &plan, Some(&mut Spectral::default()));
+    let expansions = summary.stage_seconds(Stage::Expansions);
+    assert!(expansions > 0.0 && summary.stage_seconds(Stage::BasePoints) == 0.0);
+    assert_eq!(
+        (summary.device_seconds, summary.waiting_seconds),
+        (0.0, 0.0)
+    );
+    let all = Stage::ALL.map(|(stage, _)| summary.stage_seconds(stage));
+    let sequence = all.iter().sum::<f64>() - summary.stage_seconds(Stage::Packing);
+    assert!(sequence <= summary.wall_seconds + 1e-9, "{all:?}");
+}
+
 /// Asserts that every stage takes time, and that no second counts for two stages.
 fn stages_follow_each_other(engine: Option<&mut dyn Engine>) {
     let (scene, plan) = in_batches();
@@ -174,7 +190,11 @@ fn stages_follow_each_other(engine: Option<&mut dyn Engine>) {
         &mut keep,
     );
     for (stage, name) in Stage::ALL {
-        let has_worked = has_engine || stage != Stage::BasePoints;
+        let has_worked = match stage {
+            Stage::BasePoints => has_engine,
+            Stage::Expansions => false,
+            _ => true,
+        };
         assert_eq!(summary.stage_seconds(stage) > 0.0, has_worked, "{name}");
     }
     let beside = summary.stage_seconds(Stage::Packing);

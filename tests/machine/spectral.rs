@@ -1,14 +1,25 @@
-//! Cells of the spectral engine beside trajectories and the CPU engine.
+//! Cells and maps of the spectral engine beside trajectories and the CPU engine.
 
 use crate::cells::{places, solve};
+use crate::compute::{assert_identical, compute, shipped, works};
 use crate::kinds::rows_of_every_kind;
-use whiskmap::engine::{Cpu, Outcome, Spectral};
+use crate::random_rods::Random;
+use std::sync::Arc;
+use whiskmap::engine::{Cpu, Outcome, SideColumns, Spectral, WhiskerSide};
+use whiskmap::map::{EngineCells, Panel};
+use whiskmap::plan::Plan;
+use whiskmap::rod::Side;
+use whiskmap::scene::{Parameter, Scene};
+use whiskmap::sheet::Sheet;
 use whiskmap::shooting::ShootingMap;
 use whiskmap::shooting::batch::{Batch, InitialCondition};
 
 tests! {
     Nothing:
-        states_and_values_are_within_their_bounds;
+        states_and_values_are_within_their_bounds,
+        maps_of_shipped_scenes_are_those_of_the_cpu,
+        maps_of_random_sweeps_are_those_of_the_cpu,
+        measured_radii_fall_back;
 }
 
 /// Rows that are expanded alone, and rows in patches. At the contact and load of each solved cell, a trajectory meets the pole to its
@@ -59,4 +70,146 @@ fn states_and_values_are_within_their_bounds() {
         }
         assert!(solved > all * 9 / 10, "{rows} rows: {solved} of {all}");
     }
+}
+
+/// Error of a channel value, as a part of its size along the row.
+const VALUE_ERROR: f64 = 1e-9;
+
+/// Asserts that both maps of `scene` have the same regimes and statuses, and values up to [`VALUE_ERROR`] and the rounding to `f32`.
+fn assert_same_map(scene: &Scene, wanted: &[Panel], found: &[Panel]) {
+    let title = &scene.title;
+    let grid = &scene.grid;
+    let plan = Plan::new(scene).unwrap();
+    assert_eq!(wanted.len(), found.len(), "{title}");
+    for (whisker, (wanted, found)) in wanted.iter().zip(found).enumerate() {
+        assert!(wanted.regime == found.regime, "{title}: {whisker}");
+        assert!(wanted.status == found.status, "{title}: {whisker}");
+        let swept = scene.whisker(whisker);
+        let distances = grid.distance_mm.iter();
+        let distances: Vec<f64> = distances.map(|d| d / swept.whisker.length_mm).collect();
+        for side in Side::BOTH {
+            let columns = Arc::new(SideColumns::new(&grid.push_angle_deg, side, 0));
+            let sheet = Sheet::new(plan.method, &swept.rod(side), side, &distances);
+            let side = WhiskerSide::new(columns, swept.whisker.units(), sheet);
+            for row in 0..distances.len() {
+                let Some(end) = side.sheet.crossings[row].first() else {
+                    continue;
+                };
+                let sizes = side.sizes(end);
+                let cells = grid.push_angle_deg.iter().enumerate();
+                let own = cells.filter(|(_, push)| Side::of_push(**push) == side.sheet.side);
+                for (column, push) in own {
+                    let cell = row * grid.push_angle_deg.len() + column;
+                    for (channel, size) in sizes.into_iter().enumerate() {
+                        let values = [wanted, found].map(|own| own.state[channel][cell]);
+                        let [wanted, found] = values.map(f64::from);
+                        let apart = (wanted - found).abs();
+                        let rounding = f64::from(f32::EPSILON) * wanted.abs();
+                        assert!(
+                            values[0].to_bits() == values[1].to_bits()
+                                || apart <= VALUE_ERROR * size + rounding,
+                            "{title}, whisker {whisker}, row {row}, {push} deg, channel {channel}: {wanted} {found}"
+                        );
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Computes `scene` by both engines, compares the maps, and returns the outcomes of the engine's cells.
+fn compare(scene: &Scene) -> EngineCells {
+    let (_, wanted) = compute(scene, None);
+    let (summary, found) = compute(scene, Some(&mut Spectral::default()));
+    assert!(summary.engine_failure.is_none(), "{}", scene.title);
+    assert_eq!(summary.audit.differing, 0, "{}", scene.title);
+    assert_same_map(scene, &wanted, &found);
+    summary.engine_cells
+}
+
+/// Part of the cells with a state that the engine solves at least, with a formula for the radius. Measured 0.74 or more: on small grids
+/// many rows have fewer cells than an expansion has states.
+const SOLVED: f64 = 0.7;
+
+fn maps_of_shipped_scenes_are_those_of_the_cpu() {
+    for scene in shipped() {
+        let scene = scene.thinned(192, 2);
+        let cells = compare(&scene);
+        let has_profile = Plan::new(&scene).unwrap().method.effects.profile;
+        let others = cells.fallback() + cells.without_base_point;
+        let part = cells.solved as f64 / (cells.solved + others).max(1) as f64;
+        assert!(
+            has_profile || part > SOLVED,
+            "{}: {part} {cells:?}",
+            scene.title
+        );
+    }
+}
+
+/// A sweep over two tapers and two curvatures with random other parameters: enough rows for patches, or a few long ones.
+fn random_sweep(seed: u64) -> Scene {
+    let mut random = Random(seed);
+    let mut between = |low: f64, high: f64| random.between(low, high);
+    let length = between(5.0, 60.0);
+    let base_um = length * between(0.8, 3.0);
+    let friction = between(-0.5, 0.5).max(0.0);
+    let pole = length * between(0.0, 0.03);
+    let modulus = if between(0.0, 1.0) < 0.3 {
+        between(0.5, 2.0)
+    } else {
+        1.0
+    };
+    let tapers = [between(0.0, 0.6), between(0.6, 1.0)];
+    let curvatures = [between(0.0, 0.3), between(0.3, 1.2)].map(|bend| bend / length);
+    let (pushes, distances) = if between(0.0, 1.0) < 0.5 {
+        (96, 64)
+    } else {
+        (160, 9)
+    };
+    let push = between(30.0, 110.0);
+    let nearest = length * between(0.1, 0.3);
+    let text = format!(
+        "title = \"sweep {seed}\"\n[whisker]\nlength_mm = {length}\nbase_radius_um = {base_um}\nyoungs_modulus_gpa = 3\n\
+         modulus_gradient.tip_to_base = {modulus}\n[pole]\nradius_mm = {pole}\n[contact]\nfriction = {friction}\n[grid]\n\
+         push_angle_deg = {{ from = -{push}, to = {push}, count = {pushes} }}\n\
+         distance_mm = {{ from = {nearest}, to = {length}, count = {distances} }}\n\
+         taper = {tapers:?}\ncurvature_per_mm = {curvatures:?}\n"
+    );
+    Scene::parse(&text, "sweep").unwrap_or_else(|error| panic!("{text}{error}"))
+}
+
+/// Number of random sweeps.
+const SWEEPS: u64 = 40;
+
+fn maps_of_random_sweeps_are_those_of_the_cpu() {
+    let (mut solved, mut others) = (0, 0);
+    for seed in 0..SWEEPS {
+        let cells = compare(&random_sweep(seed));
+        solved += cells.solved;
+        others += cells.fallback() + cells.without_base_point;
+    }
+    let part = solved as f64 / (solved + others) as f64;
+    assert!(part > SOLVED, "{part}");
+}
+
+/// Along a row, states are not analytic where the contact passes a measured radius: the CPU solves every cell, and the engine does not fail.
+fn measured_radii_fall_back() {
+    let measured = Scene::read("scenes/measured.toml").unwrap().thinned(96, 1);
+    let graded = measured.with(Parameter::ModulusTipToBase, 1.5).unwrap();
+    for scene in [measured, graded] {
+        let (_, wanted) = compute(&scene, None);
+        let (summary, found) = compute(&scene, Some(&mut Spectral::default()));
+        let without_base_point = summary.engine_cells.without_base_point;
+        let only = EngineCells {
+            without_base_point,
+            ..EngineCells::default()
+        };
+        assert!(without_base_point > 0);
+        assert_eq!(summary.engine_cells, only);
+        assert!(summary.engine_failure.is_none() && summary.audit.cells == 0);
+        assert_identical(&wanted, &found);
+    }
+    let cone = Scene::read("scenes/cone.toml").unwrap().thinned(96, 1);
+    let (summary, _) = compute(&cone, Some(&mut Spectral::default()));
+    works(&summary, SOLVED).unwrap();
 }

@@ -61,7 +61,8 @@ struct PlacedRow {
 }
 
 impl SpectralSheet {
-    /// Expands the rows of `side` where that takes fewer states than their cells.
+    /// Expands the rows of `side` where that takes fewer states than their cells; no row with measured radii. States are not analytic where
+    /// the contact passes from one measured radius to the next, so the decay of coefficients bounds no error there.
     #[must_use]
     pub fn new(method: Method, side: &WhiskerSide) -> Self {
         let count = side.sheet.rows.len();
@@ -69,6 +70,9 @@ impl SpectralSheet {
             patches: Vec::new(),
             rows: vec![RowSource::Missing; count],
         };
+        if method.effects.profile {
+            return sheet;
+        }
         for edge in [Edge::Fold, Edge::Tip] {
             let places = (0..count).filter_map(|row| {
                 let (own, coordinate) = RowInterval::coordinate(&side.sheet, row)?;
