@@ -62,9 +62,12 @@ impl EngineArgs {
                 "--precision f32: --engine auto may select the CPU engine, which computes in f64; allowed with --engine gpu"
                     .to_owned()
             }
-            (EngineChoice::Cpu | EngineChoice::Spectral, _, Some(adapter)) => format!(
-                "--adapter {adapter}: the CPU has none; allowed with --engine gpu and --engine auto"
-            ),
+            (EngineChoice::Cpu | EngineChoice::Spectral, _, Some(adapter)) => {
+                let name = if self.engine == EngineChoice::Cpu { "CPU" } else { "spectral" };
+                format!(
+                    "--adapter {adapter}: the {name} engine has none; allowed with --engine gpu and --engine auto"
+                )
+            }
             (EngineChoice::Cpu, ..) => return Ok((None, "selected by --engine".to_owned())),
             (EngineChoice::Spectral, ..) => {
                 if plan.method.effects.profile {

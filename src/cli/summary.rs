@@ -75,6 +75,10 @@ fn print(scene: &Scene, summary: &Summary, seconds: f64, files: &[PathBuf]) -> i
             "not certified by the engine, and refined in f64",
         ),
         (
+            engine.without_base_point,
+            "without a base point or an expansion, and refined in f64",
+        ),
+        (
             engine.on_cpu_instead,
             "solved by the CPU in f64 after the engine had failed",
         ),

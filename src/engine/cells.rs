@@ -30,7 +30,7 @@ pub enum Outcome {
     OutsideTrust,
     /// Not certified: the bound on the residual is too large.
     Missed,
-    /// Not computed: the row has no base point there.
+    /// Not computed: the row has no base point there, or no expansion.
     NoBasePoint,
 }
 

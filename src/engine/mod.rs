@@ -1,7 +1,7 @@
-//! Engines: the CPU and the GPU solve the cells of row batches under one contract.
+//! Engines solve the cells of row batches under one contract: by trajectories or expansions on the CPU, or on the GPU.
 //!
 //! An [`Engine`] takes a [`RowBatch`] and returns [`Cells`]: for each cell channel values in map units, a bound on the residual, and an
-//! [`Outcome`]. Cells that the GPU cannot certify fall back to the CPU engine, which also audits a sample of all others.
+//! [`Outcome`]. Cells that an engine cannot certify fall back to the CPU engine, which also audits a sample of all others.
 
 mod batch;
 mod cells;

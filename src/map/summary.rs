@@ -21,7 +21,7 @@ pub struct EngineCells {
     pub missed: u64,
     /// Fallback: numbers that are not finite.
     pub not_finite: u64,
-    /// Cells that the engine did not get: their row has no base point there.
+    /// Cells that the engine did not get: their row has no base point there, or no expansion.
     #[serde(rename = "without_reference")]
     pub without_base_point: u64,
     /// Cells that the CPU solved because the engine had failed.

@@ -1,6 +1,11 @@
 //! Selection of engine and adapter by `map`.
 
+#[cfg(unix)]
+use super::store::{SWEEP, assert_same};
 use super::{Place, Run, SCENE};
+use std::fs;
+use std::path::Path;
+use whiskmap::store::StoredMap;
 
 fn said(run: &Run) -> &str {
     assert_eq!(run.code, Some(0), "{run:?}");
@@ -31,4 +36,86 @@ fn the_cpu_engine_has_no_adapter_and_no_other_precision() {
     map(&["--engine", "cpu", "--adapter", "0"]).assert_refused(&adapter);
     said(&map(&["--precision", "f64", "--no-png"]));
     assert!(!place.path("outputs/scene.png").exists());
+}
+
+/// The small map with enough columns for expansions of its rows.
+fn wide() -> Place {
+    Place::with(&SCENE.replace("to = 70, count = 24", "to = 70, count = 160"))
+}
+
+#[test]
+fn the_spectral_engine_has_the_regimes_of_the_cpu_engine() {
+    let place = wide();
+    let map = |engine: &str, folder: &str| {
+        let run = place.run(&["map", "scene.toml", "--engine", engine, "-o", folder]);
+        let settled = said(&run).to_owned();
+        (run, settled)
+    };
+    map("cpu", "cpu");
+    let (run, line) = map("spectral", "spectral");
+    assert!(line.starts_with("spectral f64 on "), "{line}");
+    assert!(line.ends_with("(selected by --engine)"), "{line}");
+    let solved = run.count("solved by the engine");
+    let others = run.count("without a base point or an expansion, and refined in f64");
+    assert!(solved > 4 * others && others > 0, "{run:?}");
+    assert!(run.count("of the engine's cells audited in f64") > 0);
+    assert!(run.out.contains(", expansions "), "{run:?}");
+    assert!(!run.out.contains("waited for"), "{run:?}");
+    let [cpu, spectral] = ["cpu", "spectral"]
+        .map(|folder| StoredMap::open(&place.path(&format!("{folder}/scene.exr"))).unwrap());
+    assert_eq!(cpu.counts.regimes, spectral.counts.regimes);
+    assert_eq!(spectral.attribute("engine").unwrap(), "spectral f64");
+}
+
+#[test]
+fn the_spectral_engine_has_no_adapter_and_no_other_precision() {
+    let place = Place::with(SCENE);
+    let map = |arguments: &[&str]| {
+        let spectral = ["map", "scene.toml", "--engine", "spectral"];
+        place.run(&[&spectral, arguments].concat())
+    };
+    map(&["--precision", "f32"]).assert_refused(&["--precision f32", "f64", "--engine gpu"]);
+    map(&["--adapter", "0"]).assert_refused(&["--adapter 0", "spectral engine", "--engine gpu"]);
+}
+
+#[test]
+fn measured_radii_warn_that_every_cell_falls_back() {
+    let place = Place::with(SCENE);
+    let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
+    let text = |name: &str| fs::read_to_string(scenes.join(name)).unwrap();
+    place.write("measured.csv", &text("measured.csv"));
+    let small = text("measured.toml").replace("count = 512", "count = 40");
+    place.write("measured.toml", &small);
+    let run = place.run(&["map", "measured.toml", "--engine", "spectral", "--no-png"]);
+    assert_eq!(run.code, Some(0), "{run:?}");
+    let warning = "warning: --engine spectral: a whisker with measured radii has no expansions; the CPU engine solves every cell";
+    assert!(run.err.starts_with(warning), "{run:?}");
+    assert!(!run.out.contains("solved by the engine"), "{run:?}");
+}
+
+/// Shards and a resumed run write the bytes of a single run; a store keeps its engine.
+#[cfg(unix)]
+#[test]
+fn a_store_by_the_spectral_engine_is_resumed_with_the_same_bytes() {
+    let place = Place::with(SWEEP);
+    let map = |engine: &str, folder: &str, options: &[&str]| {
+        let map = ["map", "scene.toml", "--format=zarr", engine, "-o", folder];
+        place.run(&[&map, options].concat())
+    };
+    let spectral = |folder: &str, options: &[&str]| {
+        let run = map("--engine=spectral", folder, options);
+        assert_eq!(run.code, Some(0), "{run:?}");
+        assert!(run.err.starts_with("engine: spectral f64 ("), "{run:?}");
+        run
+    };
+    let run = spectral("whole", &[]);
+    assert!(run.count("solved by the engine") > 0, "{run:?}");
+    for shard in ["0/2", "1/2"] {
+        spectral("parts", &["--shard", shard, "--resume", "--threads", "1"]);
+    }
+    assert_same(&place, "whole", "parts");
+    fs::remove_file(place.path("parts/scene.zarr/regime/c.0.0.0.0.0")).unwrap();
+    map("--engine=cpu", "parts", &["--resume"]).assert_refused(&["engine", "spectral f64"]);
+    spectral("parts", &["--resume"]);
+    assert_same(&place, "whole", "parts");
 }
