@@ -66,12 +66,12 @@ fn write(side: &WhiskerSide, row: &BatchRow, expansion: &RowExpansion, into: Cel
             for lane in 0..count {
                 let miss = (found[lane] - pushes[from + lane]).abs() * distance;
                 let bound = expansion.residual + miss;
-                outcome[from + lane] = if !(bound <= sheet::MOST) {
-                    Outcome::Missed
-                } else if sheet.is_at_tip(tau[lane], bound) {
-                    Outcome::NearEdge
-                } else {
-                    Outcome::Solved
+                // NaN is not below any bound.
+                let is_certified = bound <= sheet::MOST;
+                outcome[from + lane] = match sheet.is_at_tip(tau[lane], bound) {
+                    _ if !is_certified => Outcome::Missed,
+                    true => Outcome::NearEdge,
+                    false => Outcome::Solved,
                 };
                 residual[from + lane] = bound as f32;
             }

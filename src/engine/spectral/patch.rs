@@ -174,6 +174,11 @@ impl Patch {
 }
 
 #[cfg(test)]
+#[allow(
+    clippy::unwrap_used,
+    clippy::panic,
+    reason = "a test fails by panicking"
+)]
 mod tests {
     use super::super::sheet::MOST;
     use super::*;

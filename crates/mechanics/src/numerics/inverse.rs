@@ -165,13 +165,14 @@ fn quadratic_step<T: Lanes>(rest: T, slope: T, half: T) -> T {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 mod tests {
     use super::*;
     use crate::numerics::expansion::chebyshev_points;
     use std::f64::consts::FRAC_PI_2;
 
     /// The sine up to its flat top, and a function that is not flat there.
-    fn arc(count: usize) -> Inverse<5> {
+    fn arc(count: usize) -> Option<Inverse<5>> {
         let values: Vec<[f64; 5]> = chebyshev_points(count)
             .iter()
             .map(|x| {
@@ -179,12 +180,12 @@ mod tests {
                 [x.sin(), x, x.cos(), 1.0, (-x).exp()]
             })
             .collect();
-        Inverse::new(Chebyshev::through(&values)).expect("the sine grows")
+        Inverse::new(Chebyshev::through(&values))
     }
 
     #[test]
     fn a_flat_end_is_inverted() {
-        let inverse = arc(24);
+        let inverse = arc(24).unwrap();
         let targets: Vec<f64> = (0..=1000).map(|i| f64::from(i) / 1000.0).collect();
         let mut count = 0;
         inverse.solve(&targets, |from, len, block| {
@@ -207,7 +208,7 @@ mod tests {
 
     #[test]
     fn targets_beyond_the_end_are_put_there() {
-        arc(24).solve(&[0.5, 1.5], |_, len, block| {
+        arc(24).unwrap().solve(&[0.5, 1.5], |_, len, block| {
             assert_eq!(len, 2);
             assert!((block.places[1] - 1.0).abs() < 1e-6 && block.values[0][1] <= 1.0 + 1e-15);
         });
