@@ -8,7 +8,7 @@ use crate::refine::GOAL;
 use crate::rod::Side;
 use crate::scene::Scene;
 use crate::shooting::Resolution;
-use sample::Sample;
+use sample::SceneSample;
 
 /// A resolution and its estimated error.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,7 +34,7 @@ const SAFETY: f64 = 4.0;
 /// # Errors
 /// If there is none, the finest rung with its estimate.
 pub fn cheapest(scene: &Scene, sides: &[Side], tolerance_deg: f64) -> Result<Accuracy, Accuracy> {
-    let sample = Sample::new(scene, sides);
+    let sample = SceneSample::new(scene, sides);
     let lengths = scene.corner_whiskers().map(|own| own.whisker.length_mm);
     let left = GOAL * lengths.fold(0.0, f64::max) / scene.grid.distance_mm[0];
     let mut tried = Accuracy {

@@ -16,7 +16,7 @@ const DISTANCES: usize = 64;
 const WHISKERS: usize = 4;
 
 /// States to integrate at several resolutions.
-pub struct Sample {
+pub struct SceneSample {
     effects: Effects,
     /// Rods with points of their sheets.
     rods: Vec<(Rod, Vec<Point>)>,
@@ -29,7 +29,7 @@ struct Point {
     edge: Option<Edge>,
 }
 
-impl Sample {
+impl SceneSample {
     /// Returns a sample of `scene`, with states at a coarse resolution.
     pub fn new(scene: &Scene, sides: &[Side]) -> Self {
         let whiskers = whiskers(scene);

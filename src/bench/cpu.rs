@@ -4,7 +4,7 @@ use super::peak::peak;
 use super::solver::{Hit, Solver};
 use super::task::{Task, places};
 use super::timing::timed;
-use super::{Engine, Measurement, Report, Rung, pool};
+use super::{BenchEngine, Measurement, Report, Rung, pool};
 use crate::engine::EngineError;
 use crate::numerics::Unit;
 use crate::shooting::Resolution;
@@ -42,7 +42,7 @@ pub fn measure(
             solver(Resolution::FINE).solve(task.effects, &task.rods, &task.targets[..1])
         });
         let first_result_s = start.elapsed().as_secs_f64();
-        let mut engine = Engine {
+        let mut engine = BenchEngine {
             name,
             threads: Some(threads),
             adapter: unit.to_string(),
@@ -66,7 +66,7 @@ pub fn measure(
 }
 
 /// Measures a row of `engine` on the threads of the current pool.
-fn row(task: &Task, runs: usize, engine: &Engine, solver: Solver) -> Measurement {
+fn row(task: &Task, runs: usize, engine: &BenchEngine, solver: Solver) -> Measurement {
     let Ok((seconds, hits)) = timed(runs, || {
         let hits = solver.solve(task.effects, &task.rods, &task.targets);
         Ok::<Vec<Hit>, Infallible>(hits)

@@ -2,7 +2,7 @@
 
 use super::task::{Task, whisker_sides};
 use super::timing::{median, timed};
-use super::{Engine, Measurement, Report, Rung};
+use super::{BenchEngine, Measurement, Report, Rung};
 use crate::engine::gpu::{Gpu, Precision, adapters};
 use crate::engine::{
     Engine as _, EngineError, Outcome, RowBatch, SideColumns, WhiskerSide, on_gpu,
@@ -159,7 +159,7 @@ fn measure_one(
     run()?;
     let (seconds, points) = timed(runs, run)?;
     let (targets, points): (Vec<usize>, Vec<(f64, f64)>) = points.into_iter().unzip();
-    let engine = Engine {
+    let engine = BenchEngine {
         name: one.name.clone(),
         threads: None,
         adapter: gpu.describe().adapter,

@@ -62,7 +62,7 @@ pub struct Measurement {
 
 impl Measurement {
     fn new(
-        engine: &Engine,
+        engine: &BenchEngine,
         rung: Rung,
         seconds: Timing,
         stages_ms: [f64; 4],
@@ -122,7 +122,7 @@ fn medians(runs: &[StageTimes]) -> StageTimes {
 
 /// An engine and its peak rate.
 #[derive(Clone, Debug, Serialize)]
-pub struct Engine {
+pub struct BenchEngine {
     /// Name of the engine, as in [`Measurement::engine`].
     pub name: String,
     /// Threads of the CPU engine.
@@ -145,7 +145,7 @@ pub struct Report {
     /// Timed runs of each row.
     pub runs: usize,
     /// The engines that were measured.
-    pub engines: Vec<Engine>,
+    pub engines: Vec<BenchEngine>,
     /// Measurements, engine by engine.
     pub rows: Vec<Measurement>,
     /// Detachment curves, from coarse to fine steps.

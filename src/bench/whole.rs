@@ -93,7 +93,7 @@ impl Verdict {
 }
 
 /// Times of one run: wall and CPU seconds, and milliseconds by stage.
-struct Sample {
+struct MapRun {
     seconds: f64,
     host: f64,
     stages_ms: StageTimes,
@@ -118,7 +118,7 @@ pub fn measure(
     let pool = pool(threads)?;
     report.map_cells = plan.cells;
     let cpu = named(&format!("cpu {}", Unit::detect()), Some(threads));
-    let mut engines: Vec<(String, Option<Gpu>, Vec<Sample>)> = vec![(cpu, None, Vec::new())];
+    let mut engines: Vec<(String, Option<Gpu>, Vec<MapRun>)> = vec![(cpu, None, Vec::new())];
     if on_gpu(plan.method.effects).is_ok() {
         let measured = |one: &Candidate| report.engines.iter().any(|own| own.name == one.name);
         for one in candidates().into_iter().filter(measured) {
@@ -152,7 +152,7 @@ pub fn measure(
 }
 
 /// Computes one map.
-fn run(scene: &Scene, plan: &Plan, gpu: Option<&mut Gpu>) -> Result<Sample, EngineError> {
+fn run(scene: &Scene, plan: &Plan, gpu: Option<&mut Gpu>) -> Result<MapRun, EngineError> {
     let engine = gpu.map(|gpu| gpu as &mut dyn Engine);
     let mut keep = |panels: Vec<Panel>| {
         black_box(MapWriter::sample(&scene.grid, plan.channels, &panels));
@@ -174,7 +174,7 @@ fn run(scene: &Scene, plan: &Plan, gpu: Option<&mut Gpu>) -> Result<Sample, Engi
         ("waiting", summary.waiting_seconds),
     ];
     let stages = stages.into_iter().chain(engine);
-    Ok(Sample {
+    Ok(MapRun {
         seconds: summary.wall_seconds,
         host: summary.cpu_seconds.unwrap_or_default(),
         stages_ms: stages
@@ -184,7 +184,7 @@ fn run(scene: &Scene, plan: &Plan, gpu: Option<&mut Gpu>) -> Result<Sample, Engi
     })
 }
 
-fn summed_up(engine: String, cells: usize, samples: &[Sample]) -> WholeMap {
+fn summed_up(engine: String, cells: usize, samples: &[MapRun]) -> WholeMap {
     let stages_ms: Vec<StageTimes> = samples.iter().map(|run| run.stages_ms.clone()).collect();
     let stages_ms = medians(&stages_ms);
     let sum = |names: &[&str]| names.iter().filter_map(|name| stages_ms.get(*name)).sum();

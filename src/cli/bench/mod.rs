@@ -27,7 +27,7 @@ push angle, of the contact's arclength in whisker lengths, and of its force. * m
 worst push-angle error. Times are medians of at least 5 runs after one that does not count. +- is the difference of the slowest \
 and the fastest run; ! marks rows in which it is more than 20 %.
 
-Then every engine computes whole maps in turn, packed but not written: at most 1024 x 1024 cells (--quick: 256 x 256) and two \
+Then the CPU engine and the GPUs compute whole maps in turn, packed but not written: at most 1024 x 1024 cells (--quick: 256 x 256) and two \
 values per sweep axis. host is the CPU time per cell of all threads, including those of a software adapter. for devices is the \
 part of the stages, guesses and refinement, that a device could still compute. Stages are wall milliseconds. points are the base \
 points of rows, which only a GPU engine needs. device and packing overlap the other stages; waiting is for the device. The \
