@@ -1,7 +1,7 @@
 //! Audit of an engine: a sample of its solved cells is compared with the CPU engine.
 
 use super::summary::Audit;
-use crate::engine::{BatchRow, Cell, Cells, Outcome, RowBatch};
+use crate::engine::{BatchRow, Cell, Cells, Outcome, RowBatch, Values, WhiskerSide};
 use crate::sheet::Sheet;
 use std::ops::Range;
 
@@ -97,7 +97,11 @@ fn holds(batch: &RowBatch, row: &BatchRow, cell: usize, theirs: &Cell, ours: &Ce
     let push = side.columns.columns[cell].push;
     let of_row = &batch.base_points[row.base_points.clone()];
     let ours = ours.values.map(f64::from);
-    let sizes = side.sizes(&side.sheet.crossings[row.row][0]);
+    let at_end = side.sheet.crossings[row.row]
+        .first()
+        .map(|end| side.sizes(end));
+    let values = of_row.iter().map(|base| base.trajectory.values);
+    let sizes = sizes(side, values.chain(at_end).chain([ours]));
     let miss = f64::from(theirs.residual).min(LARGEST_MISS);
     let miss_angle = miss / side.sheet.rows[row.row].pole_distance;
     let column = side.columns.first + cell as u32;
@@ -109,6 +113,18 @@ fn holds(batch: &RowBatch, row: &BatchRow, cell: usize, theirs: &Cell, ours: &Ce
         });
         (ours[i] - f64::from(theirs.values[i])).abs() <= TOLERANCE * sizes[i] + by_miss
     })
+}
+
+/// Sizes of the values of a row ([`WhiskerSide::sizes`]): the largest of `row`, which are values or sizes.
+fn sizes(side: &WhiskerSide, row: impl Iterator<Item = Values>) -> Values {
+    let largest = |[arc, _, force, .., distance, _]: Values| [arc, force, distance, force * arc];
+    let [arc, force, distance, moment] = row.map(largest).fold([0.0; 4], |largest, own| {
+        std::array::from_fn(|i| f64::max(largest[i], own[i].abs()))
+    });
+    let [_, radian, ..] = side.unit_values;
+    [
+        arc, radian, force, force, force, moment, radian, distance, moment,
+    ]
 }
 
 #[cfg(test)]
