@@ -20,7 +20,7 @@ struct Response {
     busy: Duration,
 }
 
-/// Way to an engine.
+/// Connection to an engine.
 enum Connection<'e> {
     /// The engine has a thread of its own.
     Thread {
@@ -81,6 +81,12 @@ impl<'e> Worker<'e> {
     #[must_use]
     pub const fn is_working(&self) -> bool {
         self.connection.is_some()
+    }
+
+    /// Returns true if the engine solves batches while the caller goes on.
+    #[must_use]
+    pub const fn has_thread(&self) -> bool {
+        matches!(self.connection, Some(Connection::Thread { .. }))
     }
 
     /// Submits a batch; nothing without a working engine.

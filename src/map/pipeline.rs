@@ -67,8 +67,9 @@ impl<'a, 'e> Pipeline<'a, 'e> {
             scene,
             plan,
             rows_at_once: match input {
-                Some(EngineInput::BasePoints(_)) => plan.rows_at_once,
-                _ => rows_on_cpu,
+                // After a failed audit, the bytes depend on where a batch ends.
+                Some(_) => plan.rows_at_once,
+                None => rows_on_cpu,
             },
             columns: columns.collect(),
             pushes: pushes.into(),
@@ -130,7 +131,7 @@ impl<'a, 'e> Pipeline<'a, 'e> {
     /// Submits the next batches, and completes the first of the queue. Returns the number of its cells, and whether the `panels` are
     /// complete; `None` without a further batch.
     fn advance(&mut self, panels: &mut Vec<Panel>) -> Option<(usize, bool)> {
-        let ahead = if self.worker.is_working() { AHEAD } else { 0 };
+        let ahead = if self.worker.has_thread() { AHEAD } else { 0 };
         while self.queue.len() <= ahead
             && let Some((batch, is_last)) = self.next_batch()
         {
@@ -189,7 +190,8 @@ impl<'a, 'e> Pipeline<'a, 'e> {
         let of_whisker = |swept| self.columns.iter().map(move |columns| (swept, columns));
         let pairs: Vec<(&SweptWhisker, &Arc<SideColumns>)> =
             whiskers.iter().flat_map(of_whisker).collect();
-        let (grid, method, input) = (&self.scene.grid, self.plan.method, self.input);
+        let (grid, method) = (&self.scene.grid, self.plan.method);
+        let input = self.input.filter(|_| self.worker.is_working());
         let sides = pairs.into_par_iter().map(|(swept, columns)| {
             let rod = swept.rod(columns.side);
             let distances = grid.distance_mm.iter();

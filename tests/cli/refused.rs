@@ -235,7 +235,11 @@ fn arguments_out_of_range() {
     place.run(&shape).assert_refused(&[turned]);
     map(&["--channels", "regme,force_un"])
         .assert_refused(&["out of regime, status,", "; did you mean `regime`?"]);
-    map(&["--engine", "abacus"]).assert_refused(&["'abacus'", "--engine", "auto, cpu, spectral, gpu"]);
+    map(&["--engine", "abacus"]).assert_refused(&[
+        "'abacus'",
+        "--engine",
+        "auto, cpu, spectral, gpu",
+    ]);
     place.run(&["map"]).assert_refused(&["<SCENE>"]);
     for file in ["scene.exr", "scene.png"] {
         assert!(!place.path("outputs").join(file).exists());

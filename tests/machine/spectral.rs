@@ -5,10 +5,10 @@ use crate::compute::{assert_identical, compute, shipped, works};
 use crate::kinds::rows_of_every_kind;
 use crate::random_rods::Random;
 use std::sync::Arc;
-use whiskmap::engine::{Cpu, Outcome, SideColumns, Spectral, WhiskerSide};
+use whiskmap::engine::{Cpu, FORCE, Outcome, SideColumns, Spectral, WhiskerSide};
 use whiskmap::map::{EngineCells, Panel};
 use whiskmap::plan::Plan;
-use whiskmap::rod::Side;
+use whiskmap::rod::{Rest, Side};
 use whiskmap::scene::{Parameter, Scene};
 use whiskmap::sheet::Sheet;
 use whiskmap::shooting::ShootingMap;
@@ -19,6 +19,7 @@ tests! {
         states_and_values_are_within_their_bounds,
         maps_of_shipped_scenes_are_those_of_the_cpu,
         maps_of_random_sweeps_are_those_of_the_cpu,
+        small_values_next_to_reach_are_exact,
         measured_radii_fall_back;
 }
 
@@ -72,7 +73,8 @@ fn states_and_values_are_within_their_bounds() {
     }
 }
 
-/// Error of a channel value, as a part of its size along the row.
+/// Error of a channel value, as a part of its largest along the row. Components of the force are as large as the force, contact and chord
+/// angles as a radian.
 const VALUE_ERROR: f64 = 1e-9;
 
 /// Asserts that both maps of `scene` have the same regimes and statuses, and values up to [`VALUE_ERROR`] and the rounding to `f32`.
@@ -95,7 +97,16 @@ fn assert_same_map(scene: &Scene, wanted: &[Panel], found: &[Panel]) {
                 let Some(end) = side.sheet.crossings[row].first() else {
                     continue;
                 };
-                let sizes = side.sizes(end);
+                let mut sizes = side.sizes(end);
+                let width = grid.push_angle_deg.len();
+                let largest = |channel: usize| {
+                    let values = &wanted.state[channel][row * width..(row + 1) * width];
+                    let values = values.iter().map(|value| f64::from(value.abs()));
+                    values.fold(0.0, f64::max)
+                };
+                let force = largest(FORCE);
+                sizes[FORCE..FORCE + 3].fill(force);
+                (sizes[FORCE + 3], sizes[FORCE + 6]) = (largest(FORCE + 3), largest(FORCE + 6));
                 let cells = grid.push_angle_deg.iter().enumerate();
                 let own = cells.filter(|(_, push)| Side::of_push(**push) == side.sheet.side);
                 for (column, push) in own {
@@ -190,6 +201,35 @@ fn maps_of_random_sweeps_are_those_of_the_cpu() {
     }
     let part = solved as f64 / (solved + others) as f64;
     assert!(part > SOLVED, "{part}");
+}
+
+/// In rows that end just before the tip's reach, force and energy are many orders smaller than in all other rows.
+fn small_values_next_to_reach_are_exact() {
+    for curvature in [0.0, 0.01] {
+        let whisker = format!(
+            "title = \"reach\"\nwhisker.length_mm = 50\nwhisker.base_radius_um = 100\nwhisker.tip_radius_um = 30\n\
+             whisker.youngs_modulus_gpa = 3\nwhisker.curvature.parabola_per_mm = {curvature}\n"
+        );
+        let scene = |grid: &str| Scene::parse(&format!("{whisker}{grid}"), "reach").unwrap();
+        let one = scene("[grid]\npush_angle_deg = [1]\ndistance_mm = [10]\n");
+        let rest = Rest::new(&one.whisker(0).rod(Side::Cb));
+        let reach = 50.0 * rest.at_arclength(1.0).0.length();
+        let far = (0..120).map(|i| reach * (0.6 + 0.4 * f64::from(i) / 120.0));
+        let near = (3..10).map(|k| reach * (1.0 - 10_f64.powi(-k)));
+        let distances: Vec<f64> = far.chain(near).collect();
+        let halves = (0..60).map(|i| 10_f64.powf(-9.0 + 0.18 * f64::from(i)));
+        let pushes: Vec<f64> = halves.flat_map(|push| [-push, push]).collect();
+        let mut pushes: Vec<f64> = pushes
+            .into_iter()
+            .filter(|push| push.abs() < 80.0)
+            .collect();
+        pushes.extend((1..60).flat_map(|i| [-f64::from(i), f64::from(i)]));
+        pushes.sort_by(f64::total_cmp);
+        pushes.dedup();
+        let grid = format!("[grid]\npush_angle_deg = {pushes:?}\ndistance_mm = {distances:?}\n");
+        let cells = compare(&scene(&grid));
+        assert!(cells.solved > 5000, "{cells:?}");
+    }
 }
 
 /// Along a row, states are not analytic where the contact passes a measured radius: the CPU solves every cell, and the engine does not fail.

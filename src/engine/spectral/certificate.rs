@@ -1,6 +1,6 @@
 //! The certificate of expansions: the decay of their last coefficients, and trajectories between their points.
 
-use super::row::{FUNCTIONS, Numbers, Weights, largest};
+use super::row::{FUNCTIONS, Numbers, Weights, larger, largest};
 use crate::engine::WhiskerSide;
 use crate::numerics::expansion::Chebyshev;
 use crate::refine::GOAL;
@@ -24,7 +24,7 @@ pub struct Check<'a> {
 }
 
 /// Returns a bound on the errors of each check's expansions, in whisker lengths, from trajectories at its places and the error
-/// `by_decay` that the coefficients left out are expected to make; at least [`GOAL`], the residual of refined states.
+/// `by_decay` that the coefficients left out are expected to make; at least [`GOAL`], the residual of refined states. NaN if a number is.
 pub fn bounds(method: Method, side: &WhiskerSide, checks: &[Check], by_decay: &[f64]) -> Vec<f64> {
     let at = |check: &Check| -> Vec<Numbers> {
         check
@@ -57,11 +57,9 @@ pub fn bounds(method: Method, side: &WhiskerSide, checks: &[Check], by_decay: &[
             for ((error, value), exact) in errors[3..].iter_mut().zip(values).zip(exact) {
                 *error = value - exact;
             }
-            miss.max(largest(&errors, check.weights))
+            larger(miss, largest(&errors, check.weights))
         });
-        // NaN is not below any bound.
-        let larger = |a: f64, b: f64| if b <= a { a } else { b };
-        (MARGIN * misses.fold(*by_decay, larger)).max(GOAL)
+        larger(MARGIN * misses.fold(*by_decay, larger), GOAL)
     });
     bounds.collect()
 }

@@ -21,6 +21,9 @@ use row::{FUNCTIONS, RowExpansion};
 use std::collections::VecDeque;
 use std::sync::Arc;
 
+/// Distance beyond the ends of a row, in parts of its end's row parameter, that rounding explains.
+const OUTSIDE: f64 = 1e-6;
+
 /// The spectral engine. It works where it is called, on the threads of the current pool: [`Engine::submit`] keeps a batch,
 /// [`Engine::collect`] solves it.
 #[derive(Debug, Default)]
@@ -67,7 +70,8 @@ fn write(side: &WhiskerSide, row: &BatchRow, expansion: &RowExpansion, into: Cel
                 let miss = (found[lane] - pushes[from + lane]).abs() * distance;
                 let bound = expansion.residual + miss;
                 // NaN is not below any bound.
-                let is_certified = bound <= sheet::MOST;
+                let is_inside = (-OUTSIDE..=1.0 + OUTSIDE).contains(&block.places[lane]);
+                let is_certified = is_inside && bound <= sheet::MOST;
                 outcome[from + lane] = match sheet.is_at_tip(tau[lane], bound) {
                     _ if !is_certified => Outcome::Missed,
                     true => Outcome::NearEdge,

@@ -20,8 +20,8 @@ pub type Numbers = [f64; FUNCTIONS];
 /// Weights that convert errors of [`Numbers`] to whisker lengths.
 pub type Weights = [f64; FUNCTIONS];
 
-/// Error of a value, as a part of its size along the row, that counts as an error of one whisker length: values may be ten times less
-/// accurate than states.
+/// Error in whisker lengths that an error as large as the value's size along the row counts as: values may be ten times less accurate
+/// than states.
 const VALUE_WEIGHT: f64 = 0.1;
 
 /// Weighted coefficient below which an expansion ends: below the rounding of the states.
@@ -85,7 +85,7 @@ impl ExactRow {
         let maps = self.states.iter().map(|state| &state.variation.full.map);
         let steepest = |slope: fn(&ShootingMap) -> f64| maps.clone().map(slope).fold(0.0, f64::max);
         let distance = self.row.pole_distance;
-        let values = side.sizes(&self.end).map(|size| VALUE_WEIGHT / size);
+        let values = value_weights(side, &self.end);
         numbers(
             distance,
             distance * steepest(|map| map.by_tau.length()),
@@ -95,6 +95,25 @@ impl ExactRow {
     }
 }
 
+/// Weights of channel values along a row with this `end`. The energy is at most the moment times the push angle, in radians, and the chord
+/// angle at most about the push angle.
+pub fn value_weights(side: &WhiskerSide, end: &Crossing) -> Values {
+    let push = end.push.min(1.0);
+    let [arc, angle, force, x, y, moment, chord, distance, energy] = side.sizes(end);
+    let sizes = [
+        arc,
+        angle,
+        force,
+        x,
+        y,
+        moment,
+        push * chord,
+        distance,
+        push * energy,
+    ];
+    sizes.map(|size| VALUE_WEIGHT / size)
+}
+
 fn numbers(push: f64, tau: f64, load: f64, values: &Values) -> Numbers {
     let mut numbers = [push; FUNCTIONS];
     (numbers[1], numbers[2]) = (tau, load);
@@ -102,13 +121,16 @@ fn numbers(push: f64, tau: f64, load: f64, values: &Values) -> Numbers {
     numbers
 }
 
-/// Largest of the weighted `errors`, in whisker lengths.
+/// The larger of two errors; NaN if either is.
+pub fn larger(a: f64, b: f64) -> f64 {
+    if a.is_nan() || a >= b { a } else { b }
+}
+
+/// Largest of the weighted `errors`, in whisker lengths; NaN if one is.
 pub fn largest(errors: &Numbers, weights: &Weights) -> f64 {
-    let weighted = errors
-        .iter()
-        .zip(weights)
-        .map(|(error, weight)| error.abs() * weight);
-    weighted.fold(0.0, f64::max)
+    let weighted = errors.iter().zip(weights);
+    let weighted = weighted.map(|(error, weight)| error.abs() * weight);
+    weighted.fold(0.0, larger)
 }
 
 /// A certified row.
@@ -121,8 +143,8 @@ pub struct RowExpansion {
 }
 
 impl RowExpansion {
-    /// Shortens the expansions to what rounding leaves. Returns `None` if the push angle does not grow along them, or if they end
-    /// elsewhere than the row, whose end is computed apart.
+    /// Shortens the expansions to what rounding leaves. Returns `None` if a coefficient is not finite, if the push angle does not grow along
+    /// them, or if they end elsewhere than the row, whose end is computed apart.
     pub fn new(
         mut functions: Chebyshev<FUNCTIONS>,
         weights: &Weights,
@@ -135,6 +157,10 @@ impl RowExpansion {
             && functions.coefficients.last().is_some_and(is_rounding)
         {
             functions.coefficients.pop();
+        }
+        let mut coefficients = functions.coefficients.iter().flatten();
+        if !coefficients.all(|coefficient| coefficient.is_finite()) {
+            return None;
         }
         let inverse = Inverse::new(functions)?;
         let off = (inverse.last() - end.push).abs() * row.pole_distance;

@@ -113,7 +113,8 @@ impl SpectralSheet {
         };
         let cells: usize = rows.iter().map(|own| cells(side, own.row)).sum();
         let pays = |size: PatchSize| size.rows < rows.len() && size.rows * size.states < cells;
-        if !pays(USUAL) || interval.ends[0] >= interval.ends[1] {
+        let is_wide = interval.ends[0] < interval.ends[1];
+        if !pays(USUAL) || !is_wide {
             return;
         }
         let mut found = Patch::new(method, side, interval, USUAL, MOST);
@@ -122,7 +123,10 @@ impl SpectralSheet {
         }
         if let Ok(patch) = found {
             for own in rows {
-                self.rows[own.row] = RowSource::Patch(self.patches.len());
+                // A row that the patch refuses is expanded alone.
+                if patch.row(side, own.row).is_some() {
+                    self.rows[own.row] = RowSource::Patch(self.patches.len());
+                }
             }
             self.patches.push(patch);
         } else if halvings > 0 {
@@ -137,7 +141,7 @@ impl SpectralSheet {
     #[must_use]
     pub fn row(&self, side: &WhiskerSide, row: usize) -> Option<RowExpansion> {
         match &self.rows[row] {
-            RowSource::Patch(patch) => self.patches[*patch].row(&side.sheet, row),
+            RowSource::Patch(patch) => self.patches[*patch].row(side, row),
             RowSource::Own(own) => Some(RowExpansion::clone(own)),
             RowSource::Missing => None,
         }

@@ -80,13 +80,18 @@ impl<const D: usize> Chebyshev<D> {
     }
 
     /// Size of the last coefficients of each function: an estimate of the expansion's error where coefficients still fall.
-    /// A single point gives 0.
+    /// A single point gives 0. NaN for a function with a coefficient that is.
     #[must_use]
     pub fn tail(&self) -> [f64; D] {
         let last = self.coefficients.iter().skip(1).rev().take(TAIL);
         last.fold([0.0; D], |mut tail, coefficients| {
             for (tail, coefficient) in tail.iter_mut().zip(coefficients) {
-                *tail = tail.max(coefficient.abs());
+                let size = coefficient.abs();
+                *tail = if tail.is_nan() || *tail >= size {
+                    *tail
+                } else {
+                    size
+                };
             }
             tail
         })
