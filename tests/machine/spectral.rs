@@ -96,12 +96,12 @@ fn assert_same_map(scene: &Scene, wanted: &[Panel], found: &[Panel]) {
             let columns = Arc::new(SideColumns::new(&grid.push_angle_deg, side, 0));
             let sheet = Sheet::new(plan.method, &swept.rod(side), side, &distances);
             let side = WhiskerSide::new(columns, swept.whisker.units(), sheet);
-            for row in 0..distances.len() {
+            for (row, distance) in distances.iter().enumerate() {
                 let Some(end) = side.sheet.crossings[row].first() else {
                     continue;
                 };
                 // Next to the tip's reach, the residual is a large part of what is left.
-                let left = (1.0 - distances[row] / reach).abs();
+                let left = (1.0 - distance / reach).abs();
                 let error = f64::max(VALUE_ERROR, 4.0 * GOAL / left);
                 let mut sizes = side.sizes(end);
                 let width = grid.push_angle_deg.len();
