@@ -83,7 +83,7 @@ impl<'e> Worker<'e> {
         self.connection.is_some()
     }
 
-    /// Returns true if the engine solves batches while the caller goes on.
+    /// Returns true if the engine has a thread of its own, and so solves batches in parallel with the caller.
     #[must_use]
     pub const fn has_thread(&self) -> bool {
         matches!(self.connection, Some(Connection::Thread { .. }))

@@ -9,6 +9,7 @@
 //! `fold/` finds the first folds of sampled contacts, `lattice/` makes guesses, and `edges/` computes where a row leaves the sheet.
 //! `continuation/` follows a row from state to state where the lattice or the edges are not certified.
 
+mod case;
 mod certificate;
 mod continuation;
 mod edges;
@@ -28,10 +29,11 @@ pub use span::{Guess, RowSpan, SpanNode};
 use crate::rod::{Rest, Rod, Side};
 use crate::shooting::ShootingMap;
 use crate::shooting::batch::Method;
+use case::SheetCase;
 use continuation::pieces::{ContinuedRow, stable_pieces};
 use edges::crossings::crossings;
 use rayon::prelude::*;
-use samples::{SheetCase, SheetSamples};
+use samples::SheetSamples;
 use std::borrow::Cow;
 use std::sync::Arc;
 

@@ -1,42 +1,14 @@
 //! Samples of a sheet: contact nodes, lattice and edges, with their certificate.
 
-use crate::rod::{Rod, Side};
+use crate::sheet::case::SheetCase;
 use crate::sheet::edges::Edges;
 use crate::sheet::fold::contact_nodes::{ContactNodes, NARROW_SPACING, SPACING};
 use crate::sheet::lattice::Lattice;
 use crate::sheet::row::Row;
-use crate::shooting::batch::{Batch, Method, OutputSet};
 
 /// Largest negative load, relative to the fold load, that counts as unloaded. At the soft tip of a strongly curved cone, rounding of
 /// first touch (1e-13 of the length) is a load of 1e-8.
 const UNLOADED: f64 = 1e-6;
-
-/// Whisker side to sample, with the integration method.
-#[derive(Clone, Copy, Debug)]
-pub struct SheetCase<'a> {
-    /// Integration method of the trajectories.
-    pub method: Method,
-    /// Whisker and pole.
-    pub rod: &'a Rod,
-    /// Whisker side.
-    pub side: Side,
-}
-
-impl SheetCase<'_> {
-    /// Returns the case at the coarse resolution.
-    pub const fn coarsely(self) -> Self {
-        let method = self.method.coarsely();
-        Self { method, ..self }
-    }
-
-    /// Computes the outputs at `points` `(tau, load)` in padded blocks ([`Batch::padded`]).
-    pub fn shoot<O: OutputSet>(
-        &self,
-        points: impl IntoIterator<Item = impl Into<(f64, f64)>>,
-    ) -> Vec<O> {
-        Batch::new(self.method).padded().shoot_at(self.rod, points)
-    }
-}
 
 /// Samples of the sheet: contact nodes, lattice and edges.
 #[derive(Clone, Debug)]

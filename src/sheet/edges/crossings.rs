@@ -5,6 +5,7 @@
 //! rounding. Each crossing is predicted and then corrected.
 
 use crate::numerics::nearest_turn;
+use crate::sheet::case::SheetCase;
 use crate::sheet::edges::Edges;
 use crate::sheet::edges::bisection::{EdgeBisection, bisect};
 use crate::sheet::edges::edge_newton::{
@@ -12,7 +13,6 @@ use crate::sheet::edges::edge_newton::{
 };
 use crate::sheet::edges::predictor::{EdgeSample, Prediction};
 use crate::sheet::row::{Crossing, Edge, REACH_SLACK, Row};
-use crate::sheet::samples::SheetCase;
 use glam::DVec2;
 
 /// Row with two samples of an edge between which it crosses.

@@ -8,13 +8,13 @@ mod tip_edge;
 
 use crate::numerics::nearest_turn;
 use crate::rod::{Rest, arclength};
+use crate::sheet::case::SheetCase;
 use crate::sheet::certificate::is_as_steep_as;
 use crate::sheet::edges::predictor::{EdgeSample, FoldEdge, Prediction};
 use crate::sheet::edges::tip_edge::{SampledTipEdge, TipEdge};
 use crate::sheet::fold::contact_nodes::ContactNodes;
 use crate::sheet::lattice::Lattice;
 use crate::sheet::row::Edge;
-use crate::sheet::samples::SheetCase;
 
 /// Sampled edges of a sheet.
 #[derive(Clone, Debug)]

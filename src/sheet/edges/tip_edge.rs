@@ -6,10 +6,10 @@
 use crate::numerics::chebyshev::{CHEBYSHEV_COUNT, LOBATTO_NODES};
 use crate::numerics::newton_form::{Polynomial, RootProblem, through_nodes};
 use crate::numerics::{Bracket, nearest_turn};
+use crate::sheet::case::SheetCase;
 use crate::sheet::edges::predictor::{EdgeSample, LAST_STEP_ALONG_EDGE, Prediction, place_between};
 use crate::sheet::fold::FoldPoint;
 use crate::sheet::lattice::directions;
-use crate::sheet::samples::SheetCase;
 use crate::shooting::batch::Batch;
 use crate::shooting::{SecondVariation, ShootingMap};
 use glam::DVec2;

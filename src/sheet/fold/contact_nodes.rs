@@ -6,10 +6,10 @@
 
 use crate::numerics::newton_form::{stencil, through_runs};
 use crate::rod::Rod;
+use crate::sheet::case::SheetCase;
 use crate::sheet::fold::coordinate::{Hermite, STENCIL, slope_of_u, tau_of, u_of};
 use crate::sheet::fold::{FoldPoint, first_folds};
 use crate::sheet::row::Row;
-use crate::sheet::samples::SheetCase;
 use crate::shooting::ShootingMap;
 use glam::DVec2;
 

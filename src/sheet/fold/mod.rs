@@ -7,7 +7,7 @@ use crate::newton::{BatchNewton, LaneSharing, NewtonProblem, NewtonStep};
 use crate::numerics::Bracket;
 use crate::numerics::newton_form::{RootProblem, stencil, through_nodes};
 use crate::rod::{Rod, arclength};
-use crate::sheet::samples::SheetCase;
+use crate::sheet::case::SheetCase;
 use crate::shooting::{SecondVariation, ShootingMap};
 use glam::DVec2;
 

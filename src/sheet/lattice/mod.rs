@@ -11,10 +11,10 @@ use crate::numerics::nearest_turn;
 use crate::numerics::newton_form::through_runs;
 use crate::numerics::newton_form_simd::LaneNumbers;
 use crate::rod::Side;
+use crate::sheet::case::SheetCase;
 use crate::sheet::certificate::stays_positive;
 use crate::sheet::fold::contact_nodes::ContactNodes;
 use crate::sheet::fold::coordinate::TERMS;
-use crate::sheet::samples::SheetCase;
 use crate::shooting::ShootingMap;
 
 /// Trajectories by contact node and load, with polynomials between them.

@@ -123,7 +123,7 @@ pub fn through_runs<const F: usize, const N: usize>(
 }
 
 /// Replaces `values` at growing `nodes` by divided differences, `levels` times at most. Calls `take` with each level, the values as level 0.
-/// Of two equal nodes `2 i` and `2 i + 1`, the difference is `slopes[i]`; without slopes it is not finite.
+/// The difference at two equal nodes `2 i` and `2 i + 1` is `slopes[i]`. Without slopes it is not finite.
 #[inline]
 fn divide<const F: usize>(
     levels: usize,

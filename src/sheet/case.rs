@@ -1,0 +1,31 @@
+//! The whisker side that a sheet is computed for.
+
+use crate::rod::{Rod, Side};
+use crate::shooting::batch::{Batch, Method, OutputSet};
+
+/// Whisker side to sample, with the integration method.
+#[derive(Clone, Copy, Debug)]
+pub struct SheetCase<'a> {
+    /// Integration method of the trajectories.
+    pub method: Method,
+    /// Whisker and pole.
+    pub rod: &'a Rod,
+    /// Whisker side.
+    pub side: Side,
+}
+
+impl SheetCase<'_> {
+    /// Returns the case at the coarse resolution.
+    pub const fn coarsely(self) -> Self {
+        let method = self.method.coarsely();
+        Self { method, ..self }
+    }
+
+    /// Computes the outputs at `points` `(tau, load)` in padded blocks ([`Batch::padded`]).
+    pub fn shoot<O: OutputSet>(
+        &self,
+        points: impl IntoIterator<Item = impl Into<(f64, f64)>>,
+    ) -> Vec<O> {
+        Batch::new(self.method).padded().shoot_at(self.rod, points)
+    }
+}
