@@ -71,8 +71,9 @@ impl EngineDescription {
 pub enum EngineInput {
     /// Base points with trajectories in the steps of this resolution. The engine works on a thread of its own.
     BasePoints(Resolution),
-    /// The spectral sheets of whisker sides. The engine works on the threads of the current pool.
-    SpectralSheets,
+    /// The spectral sheets of whisker sides, with at most this residual, in whisker lengths. The engine works on the threads of the current
+    /// pool.
+    SpectralSheets(f64),
 }
 
 /// Solves the cells of row batches, on any thread.

@@ -73,11 +73,15 @@ pub fn compare(batch: &RowBatch, cells: &Cells, rest: &RowBatch, found: &Cells) 
     let rows = batch.rows.iter().zip(&rest.rows);
     let rows = rows.flat_map(|(row, part)| part.each().map(move |cell| (row, cell)));
     for ((row, cell), (index, from)) in rows.zip(batch.places_in(rest)) {
-        if cells.outcome[index] == Outcome::Solved && found.outcome[from] != Outcome::OffSheet {
-            let holds = holds(batch, row, cell, &cells.get(index), &found.get(from));
-            audit.cells += 1;
-            audit.differing += u64::from(!holds);
-        }
+        let holds = match (cells.outcome[index], found.outcome[from]) {
+            (Outcome::OffSheet, ours) => !matches!(ours, Outcome::Solved | Outcome::AtTip),
+            (Outcome::Solved, ours) if ours != Outcome::OffSheet => {
+                holds(batch, row, cell, &cells.get(index), &found.get(from))
+            }
+            _ => continue,
+        };
+        audit.cells += 1;
+        audit.differing += u64::from(!holds);
     }
     audit
 }

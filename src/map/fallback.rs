@@ -27,7 +27,7 @@ pub fn complete(
             let mut without = 0;
             for (index, from) in batch.places_in(&rest) {
                 let before = cells.outcome[index];
-                if before != Outcome::Solved {
+                if !is_final(before) {
                     let is_on_sheet = found.outcome[from] != Outcome::OffSheet;
                     without += u64::from(before == Outcome::NoBasePoint && is_on_sheet);
                     cells.set(index, &found.get(from));
@@ -46,6 +46,11 @@ pub fn complete(
     (cells, audit)
 }
 
+/// Returns true if the CPU only audits cells with this outcome of an engine.
+const fn is_final(outcome: Outcome) -> bool {
+    matches!(outcome, Outcome::Solved | Outcome::OffSheet)
+}
+
 /// The cells that the CPU solves: those that are not certified, and the sample of the audit.
 fn rest(batch: &RowBatch, cells: &Cells) -> RowBatch {
     let rows = batch.rows.par_iter().map(|row| {
@@ -54,12 +59,12 @@ fn rest(batch: &RowBatch, cells: &Cells) -> RowBatch {
         let sample = AuditSample::new(&side.sheet, row.row, side.columns.len());
         let mut wanted: Vec<Range<usize>> = Vec::new();
         let mut from = 0;
-        for run in outcomes.chunk_by(|a, b| (*a == Outcome::Solved) == (*b == Outcome::Solved)) {
+        for run in outcomes.chunk_by(|a, b| is_final(*a) == is_final(*b)) {
             let cells = from..from + run.len();
             from = cells.end;
-            match run[0] {
-                Outcome::Solved => wanted.extend(sample.of(cells).map(|cell| cell..cell + 1)),
-                _ => wanted.push(cells),
+            match is_final(run[0]) {
+                true => wanted.extend(sample.of(cells).map(|cell| cell..cell + 1)),
+                false => wanted.push(cells),
             }
         }
         wanted

@@ -125,7 +125,7 @@ impl<'a, 'e> Pipeline<'a, 'e> {
 
     /// Returns true if the engine works on the threads of the pool, as a stage of its own.
     fn engine_is_stage(&self) -> bool {
-        self.input == Some(EngineInput::SpectralSheets)
+        matches!(self.input, Some(EngineInput::SpectralSheets(_)))
     }
 
     /// Submits the next batches, and completes the first of the queue. Returns the number of its cells, and whether the `panels` are
@@ -199,7 +199,7 @@ impl<'a, 'e> Pipeline<'a, 'e> {
             let sheet = Sheet::new(method, &rod, columns.side, &distances);
             let side = WhiskerSide::new(Arc::clone(columns), swept.whisker.units(), sheet);
             match input {
-                Some(EngineInput::SpectralSheets) => side.with_spectral_sheet(method),
+                Some(EngineInput::SpectralSheets(most)) => side.with_spectral_sheet(method, most),
                 _ => side,
             }
         });

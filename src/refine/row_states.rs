@@ -37,8 +37,22 @@ pub struct ExactState {
     pub variation: FirstVariation,
 }
 
-/// Longest Newton step whose end is extrapolated. The error it leaves is below rounding: all cells of a base point inherit it.
-const EXTRAPOLATED_ROW_STEP: f64 = 3e-8;
+/// Accuracy and starts of row states.
+#[derive(Clone, Copy, Debug)]
+pub struct RowStateGoal {
+    /// Longest Newton step whose end is extrapolated. A step of this length leaves an error of at most [`LEFT_BY_STEP`](super::LEFT_BY_STEP) times its square.
+    pub longest_step: f64,
+    /// True if the first trajectories are coarse: starts are farther from the states than `longest_step`.
+    pub is_coarse_first: bool,
+}
+
+impl RowStateGoal {
+    /// States that are exact to rounding, as base points are: all cells of a base point inherit its error.
+    pub const EXACT: Self = Self {
+        longest_step: 3e-8,
+        is_coarse_first: false,
+    };
+}
 
 /// Maximum number of trajectories for each state.
 const ROW_STATE_TRAJECTORIES: u32 = 8;
@@ -46,6 +60,7 @@ const ROW_STATE_TRAJECTORIES: u32 = 8;
 struct RowProblem<'a> {
     state: RowState<'a>,
     ln_distance: f64,
+    longest_step: f64,
     derivatives: FirstVariation,
 }
 
@@ -70,7 +85,7 @@ impl<'a> NewtonProblem<'a> for RowProblem<'a> {
         let step = DVec2::new(miss.perp_dot(by_load), by_tau.perp_dot(miss));
         let step = step / by_tau.perp_dot(by_load);
         let (step, length) = limited(step, arclength(self.rod(), at.x), at.y);
-        if length <= EXTRAPOLATED_ROW_STEP {
+        if length <= self.longest_step {
             NewtonStep::Extrapolate(step)
         } else {
             NewtonStep::Shoot(at + step)
@@ -79,22 +94,34 @@ impl<'a> NewtonProblem<'a> for RowProblem<'a> {
 }
 
 /// Finds the `states`, one result for each. A result is `None` where Newton's method fails, or leads off the stable sheet.
-pub fn row_states(method: Method, states: &[RowState]) -> Vec<Option<ExactState>> {
+pub fn row_states(
+    method: Method,
+    states: &[RowState],
+    goal: RowStateGoal,
+) -> Vec<Option<ExactState>> {
     let chunks = states.par_chunks(chunk_size(states.len()));
     chunks
-        .flat_map_iter(|states| solve(method, states))
+        .flat_map_iter(|states| solve(method, states, goal))
         .collect()
 }
 
-fn solve<'a>(method: Method, states: &[RowState<'a>]) -> Vec<Option<ExactState>> {
+fn solve<'a>(
+    method: Method,
+    states: &[RowState<'a>],
+    goal: RowStateGoal,
+) -> Vec<Option<ExactState>> {
     let problem = |state: &RowState<'a>| RowProblem {
         ln_distance: libm::log(state.sheet.rows[state.row].pole_distance),
         state: *state,
+        longest_step: goal.longest_step,
         derivatives: FirstVariation::default(),
     };
     let mut problems: Vec<RowProblem> = states.iter().map(problem).collect();
     let start = |state: &RowState| DVec2::new(state.tau, state.w / (state.tau * state.tau));
-    let newton = BatchNewton::new(method, ROW_STATE_TRAJECTORIES);
+    let newton = BatchNewton {
+        coarse_rounds: u32::from(goal.is_coarse_first),
+        ..BatchNewton::new(method, ROW_STATE_TRAJECTORIES)
+    };
     let iterates = newton.solve(&mut problems, states.iter().map(start));
     let exact = problems.iter().zip(iterates).map(|(problem, iterate)| {
         let reached = ContactState {

@@ -24,32 +24,60 @@ use std::sync::Arc;
 /// Distance beyond the ends of a row, in parts of its end's row parameter, that rounding explains.
 const OUTSIDE: f64 = 1e-6;
 
+/// Push angle beyond the end of a row, in radians, from which on cells have no state. Nearer cells fall back to the CPU engine, whose
+/// outcome tells at which edge they are.
+const BEYOND: f64 = 0.02;
+
 /// The spectral engine. It works where it is called, on the threads of the current pool: [`Engine::submit`] keeps a batch,
 /// [`Engine::collect`] solves it.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct Spectral {
+    /// Maximum bound on the residual of a solved cell, in whisker lengths.
+    most: f64,
     submitted: VecDeque<Arc<RowBatch>>,
 }
 
+impl Default for Spectral {
+    /// An engine with a residual of at most 1e-10 whisker lengths.
+    fn default() -> Self {
+        Self::new(sheet::MOST)
+    }
+}
+
 impl Spectral {
+    /// An engine with a residual of at most `most` whisker lengths.
+    #[must_use]
+    pub fn new(most: f64) -> Self {
+        Self {
+            most,
+            submitted: VecDeque::new(),
+        }
+    }
+
     /// Solves the cells of `batch` whose side has a [`SpectralSheet`].
     #[must_use]
-    pub fn solve(batch: &RowBatch) -> Cells {
+    pub fn solve(&self, batch: &RowBatch) -> Cells {
         let mut cells = Cells::new(batch, Outcome::NoBasePoint);
         let rows: Vec<_> = batch.rows.iter().zip(cells.rows_mut(batch)).collect();
         rows.into_par_iter().for_each(|(row, into)| {
             let side = &batch.sides[row.side];
             let sheet = side.spectral.as_ref();
             if let Some(expansion) = sheet.and_then(|sheet| sheet.row(side, row.row)) {
-                write(side, row, &expansion, into);
+                write(side, row, &expansion, self.most, into);
             }
         });
         cells
     }
 }
 
-/// Writes the cells of `row` before its end.
-fn write(side: &WhiskerSide, row: &BatchRow, expansion: &RowExpansion, into: CellsMut) {
+/// Writes the cells of `row` before its end, and those without a state.
+fn write(
+    side: &WhiskerSide,
+    row: &BatchRow,
+    expansion: &RowExpansion,
+    most: f64,
+    into: CellsMut,
+) {
     let sheet = &side.sheet;
     let end = sheet.crossings[row.row][0].push;
     let distance = sheet.rows[row.row].pole_distance;
@@ -62,6 +90,9 @@ fn write(side: &WhiskerSide, row: &BatchRow, expansion: &RowExpansion, into: Cel
         points,
         ..
     } = into;
+    let beyond = row.each().skip(pushes.len());
+    let beyond = beyond.filter(|cell| side.columns.magnitudes[*cell] <= end + BEYOND);
+    outcome[pushes.len() + beyond.count()..].fill(Outcome::OffSheet);
     expansion
         .inverse
         .solve(&pushes, |from, count, block: &InverseBlock<FUNCTIONS>| {
@@ -71,7 +102,7 @@ fn write(side: &WhiskerSide, row: &BatchRow, expansion: &RowExpansion, into: Cel
                 let bound = expansion.residual + miss;
                 // NaN is not below any bound.
                 let is_inside = (-OUTSIDE..=1.0 + OUTSIDE).contains(&block.places[lane]);
-                let is_certified = is_inside && bound <= sheet::MOST;
+                let is_certified = is_inside && bound <= most;
                 outcome[from + lane] = match sheet.is_at_tip(tau[lane], bound) {
                     _ if !is_certified => Outcome::Missed,
                     true => Outcome::NearEdge,
@@ -100,11 +131,11 @@ impl Engine for Spectral {
     }
 
     fn residual_bound(&self) -> f64 {
-        sheet::MOST
+        self.most
     }
 
     fn input(&self, _: Resolution) -> EngineInput {
-        EngineInput::SpectralSheets
+        EngineInput::SpectralSheets(self.most)
     }
 
     fn submit(&mut self, batch: Arc<RowBatch>) -> Result<(), EngineError> {
@@ -114,6 +145,6 @@ impl Engine for Spectral {
 
     fn collect(&mut self) -> Result<Cells, EngineError> {
         let batch = self.submitted.pop_front();
-        Ok(batch.map_or_else(Cells::default, |batch| Self::solve(&batch)))
+        Ok(batch.map_or_else(Cells::default, |batch| self.solve(&batch)))
     }
 }

@@ -3,10 +3,12 @@
 //! Rows that end at the fold are a patch in the logarithm of `tau` at first touch, rows that end at the tip in the load there. In these
 //! coordinates every number is analytic, the fold and the turning point of the distance along the tip included.
 
-use super::certificate::{Check, bounds};
-use super::row::{ExactRow, FUNCTIONS, RowExpansion, Weights, larger, largest, value_weights};
+use super::certificate::{Check, MARGIN, bounds};
+use super::row::{
+    ExactRow, FUNCTIONS, RowExpansion, StateStarts, Weights, larger, largest, value_weights,
+};
 use crate::engine::WhiskerSide;
-use crate::numerics::expansion::{Chebyshev, chebyshev_points};
+use crate::numerics::expansion::{Chebyshev, MOST_POINTS, chebyshev_points};
 use crate::numerics::tensor::ChebyshevTensor;
 use crate::rod::{Rest, arclength};
 use crate::sheet::{Edge, Row, Sheet};
@@ -20,6 +22,52 @@ pub struct PatchSize {
     pub rows: usize,
     /// Number of states along each.
     pub states: usize,
+}
+
+/// Part of the bound that the coefficients left out are expected to take. At most `1 / MARGIN` is allowed.
+const LEFT_OUT: f64 = 0.1;
+
+/// Last coefficients that count as the tail of an expansion: the first of them is as large as the tail.
+const TAIL: usize = 3;
+
+impl PatchSize {
+    /// Size of the first patch over an interval: the decay of its coefficients shows how many more are needed.
+    pub const FIRST: Self = Self {
+        rows: 12,
+        states: 16,
+    };
+
+    /// Size of most certified patches.
+    pub const USUAL: Self = Self {
+        rows: 24,
+        states: 28,
+    };
+
+    /// Number of states.
+    pub const fn count(self) -> usize {
+        self.rows * self.states
+    }
+
+    /// Size whose expansions are expected to keep the bound `most`, where this size leaves out `tails` from row to row and along rows, in
+    /// whisker lengths; `None` above [`MOST_POINTS`].
+    pub fn enough(self, tails: [f64; 2], most: f64) -> Option<Self> {
+        let enough = |count, tail| points_enough(count, tail, LEFT_OUT * most);
+        Some(Self {
+            rows: enough(self.rows, tails[0])?,
+            states: enough(self.states, tails[1])?,
+        })
+    }
+}
+
+/// Number of points whose tail is expected to be `goal`, where that of `count` points is `tail`: coefficients fall geometrically, from about
+/// one whisker length on. `None` above [`MOST_POINTS`].
+pub fn points_enough(count: usize, tail: f64, goal: f64) -> Option<usize> {
+    if tail <= goal {
+        return Some(count);
+    }
+    let more = (count - TAIL) as f64 * libm::log(goal) / libm::log(tail);
+    let enough = TAIL + 1 + more.max(0.0) as usize;
+    (tail < 1.0 && enough <= MOST_POINTS).then(|| enough.max(count + 1))
 }
 
 /// Interval of rows that end at one edge.
@@ -87,29 +135,42 @@ pub struct Patch {
 /// Places of the certificate in each direction: between the Chebyshev points of every size.
 const CHECKS: usize = 8;
 
+/// Expansions of a patch that are not accurate enough.
+pub struct RefusedPatch {
+    tensor: ChebyshevTensor<FUNCTIONS>,
+    /// Errors from row to row, and along rows, in whisker lengths.
+    pub tails: [f64; 2],
+}
+
 impl Patch {
-    /// Computes the states of `size` and certifies the expansions through them.
+    /// Computes the states of `size` and certifies the expansions through them. The refused patch of a smaller size gives starts.
     ///
     /// # Errors
-    /// If a state is not found, or if the bound exceeds `most`, in whisker lengths. The error is the expected one from row to row: NaN
-    /// without states.
+    /// If the bound exceeds `most`, in whisker lengths, the expansions; `None` if a state is not found.
     pub fn new(
         method: Method,
         side: &WhiskerSide,
         interval: RowInterval,
         size: PatchSize,
         most: f64,
-    ) -> Result<Self, f64> {
-        let rows = interval.rows(method, &side.sheet, chebyshev_points(size.rows));
-        let sheet = side.sheet.with_rows(rows).ok_or(f64::NAN)?;
+        smaller: Option<&RefusedPatch>,
+    ) -> Result<Self, Option<RefusedPatch>> {
+        let parts = chebyshev_points(size.rows);
+        let rows = interval.rows(method, &side.sheet, parts);
+        let sheet = side.sheet.with_rows(rows).ok_or(None)?;
         let all: Vec<usize> = (0..size.rows).collect();
-        let found: Option<Vec<ExactRow>> = ExactRow::all(method, &sheet, &all, size.states)
-            .into_iter()
-            .collect();
-        let found = found.ok_or(f64::NAN)?;
+        let expansions: Vec<Chebyshev<FUNCTIONS>> = smaller.map_or_else(Vec::new, |smaller| {
+            parts.iter().map(|part| smaller.tensor.at(*part)).collect()
+        });
+        let starts = smaller.map_or(StateStarts::Spans, |smaller| {
+            StateStarts::Expansions(&expansions, smaller.tails[0].max(smaller.tails[1]))
+        });
+        let found = ExactRow::all(method, &sheet, &all, size.states, starts);
+        let found: Option<Vec<ExactRow>> = found.into_iter().collect();
+        let found = found.ok_or(None)?;
         let is_apart = |row: &ExactRow| row.end.edge != interval.edge;
         if found.iter().any(is_apart) {
-            return Err(f64::NAN);
+            return Err(None);
         }
         let expansions: Vec<Chebyshev<FUNCTIONS>> =
             found.iter().map(|row| row.expansion(side)).collect();
@@ -118,9 +179,12 @@ impl Patch {
             std::array::from_fn(|i| f64::max(most[i], row[i]))
         });
         let tensor = ChebyshevTensor::through(&expansions);
-        let by_rows = largest(&tensor.tail_in_x(), &weights);
         let tails = expansions.iter().map(|row| largest(&row.tail(), &weights));
-        let by_decay = tails.fold(by_rows, larger);
+        let tails = [
+            largest(&tensor.tail_in_x(), &weights),
+            tails.fold(0.0, larger),
+        ];
+        let by_decay = larger(tails[0], tails[1]);
         let mut patch = Self {
             interval,
             tensor,
@@ -128,14 +192,19 @@ impl Patch {
             residual: by_decay,
             most,
         };
-        if by_decay <= most {
+        let mut tails = tails;
+        if MARGIN * by_decay <= most {
             patch.residual = patch.certified(method, side);
+            if patch.residual <= most {
+                return Ok(patch);
+            }
+            // Between the states, the error is larger than the last coefficients.
+            tails = [patch.residual / MARGIN; 2];
         }
-        if patch.residual <= most {
-            Ok(patch)
-        } else {
-            Err(by_rows)
-        }
+        Err(Some(RefusedPatch {
+            tensor: patch.tensor,
+            tails,
+        }))
     }
 
     /// Bound on the residual from trajectories between the states.
@@ -172,8 +241,7 @@ impl Patch {
         let mut weights = own.iter().zip(&self.weights[FUNCTIONS - own.len()..]);
         let is_large = weights.all(|(own, weight)| self.residual * own <= self.most * weight);
         let expansion = (is_inside && is_large).then(|| self.tensor.at(part))?;
-        let row = &sheet.rows[row];
-        RowExpansion::new(expansion, &self.weights, self.residual, row, end)
+        RowExpansion::new(expansion, &self.weights, self.residual, sheet, row)
     }
 }
 

@@ -5,8 +5,8 @@ use crate::numerics::expansion::{Chebyshev, chebyshev_points};
 use crate::numerics::inverse::Inverse;
 use crate::numerics::nearest_turn;
 use crate::plan::STATE_CHANNELS;
-use crate::refine::{ExactState, SpanFromTouch, row_states};
-use crate::sheet::{Crossing, Row, Sheet};
+use crate::refine::{ExactState, RowState, RowStateGoal, SpanFromTouch, row_states};
+use crate::sheet::{Crossing, Edge, Row, Sheet};
 use crate::shooting::ShootingMap;
 use crate::shooting::batch::Method;
 use rayon::prelude::*;
@@ -38,17 +38,51 @@ pub struct ExactRow {
     pub states: Vec<ExactState>,
 }
 
+/// Newton starts of the states of rows.
+#[derive(Clone, Copy)]
+pub enum StateStarts<'a> {
+    /// The spans of the rows.
+    Spans,
+    /// Expansions of each row, and their largest error in whisker lengths.
+    Expansions(&'a [Chebyshev<FUNCTIONS>], f64),
+}
+
+/// Longest Newton step of a state whose end is extrapolated: it leaves an error of 5e-12 ([`LEFT_BY_STEP`](crate::refine::LEFT_BY_STEP)),
+/// a twentieth of the bound that expansions must keep.
+const LONGEST_STEP: f64 = 5e-7;
+
 impl ExactRow {
-    /// Computes `count` states of each of `rows` of a sheet. An entry is `None` for a row without a simple span from first touch, or
-    /// if Newton's method fails for a state.
-    pub fn all(method: Method, sheet: &Sheet, rows: &[usize], count: usize) -> Vec<Option<Self>> {
-        let spans = rows.par_iter();
-        let spans: Vec<_> = spans.map(|row| SpanFromTouch::new(sheet, *row)).collect();
-        let states = spans
-            .iter()
-            .flatten()
-            .flat_map(|span| span.states(chebyshev_points(count)));
-        let found = row_states(method, &states.collect::<Vec<_>>());
+    /// Computes `count` states of each row of `sheet` from `starts`. An entry is `None` for a row without a simple span from first touch,
+    /// or if Newton's method fails for a state.
+    pub fn all(
+        method: Method,
+        sheet: &Sheet,
+        rows: &[usize],
+        count: usize,
+        starts: StateStarts,
+    ) -> Vec<Option<Self>> {
+        let points = chebyshev_points(count);
+        let spans = rows.par_iter().enumerate().map(|(i, row)| {
+            let span = SpanFromTouch::new(sheet, *row)?;
+            let states = span.states(points).zip(points).map(|(state, place)| match starts {
+                StateStarts::Spans => state,
+                StateStarts::Expansions(rows, _) => RowState {
+                    tau: rows[i].at(*place)[1],
+                    ..state
+                },
+            });
+            Some(states.collect())
+        });
+        let spans: Vec<Option<Vec<RowState>>> = spans.collect();
+        let goal = RowStateGoal {
+            longest_step: LONGEST_STEP,
+            is_coarse_first: match starts {
+                StateStarts::Spans => true,
+                StateStarts::Expansions(_, error) => error > LONGEST_STEP,
+            },
+        };
+        let flat: Vec<RowState> = spans.iter().flatten().flatten().copied().collect();
+        let found = row_states(method, &flat, goal);
         let mut found = found.chunks(count);
         let rows = rows.iter().zip(&spans).map(|(row, span)| {
             span.as_ref()?;
@@ -142,15 +176,20 @@ pub struct RowExpansion {
     pub residual: f64,
 }
 
+/// Largest slope of the push angle at a fold, over its value there: where the expansions end a thousandth of the row before the fold, the
+/// slope is about twice as large.
+const FOLD_SLOPE: f64 = 1e-3;
+
 impl RowExpansion {
-    /// Shortens the expansions to what rounding leaves. Returns `None` if a coefficient is not finite, if the push angle does not grow along
-    /// them, or if they end elsewhere than the row, whose end is computed apart.
+    /// Shortens the expansions of `row` to what rounding leaves. Returns `None` if a coefficient is not finite, if the push angle does not
+    /// grow along them, or if they contradict the end of the row, which is computed apart: they must end at its push angle, and be flat
+    /// there at a fold, or have their contact at the tip.
     pub fn new(
         mut functions: Chebyshev<FUNCTIONS>,
         weights: &Weights,
         residual: f64,
-        row: &Row,
-        end: &Crossing,
+        sheet: &Sheet,
+        row: usize,
     ) -> Option<Self> {
         let is_rounding = |term: &Numbers| largest(term, weights) < ROUNDING;
         while functions.coefficients.len() > 1
@@ -162,8 +201,14 @@ impl RowExpansion {
         if !coefficients.all(|coefficient| coefficient.is_finite()) {
             return None;
         }
+        let end = &sheet.crossings[row][0];
+        let [push, tau, ..] = functions.at(1.0);
+        let is_at_edge = match end.edge {
+            Edge::Fold => functions.slope(0, 1.0) <= FOLD_SLOPE * push,
+            Edge::Tip => sheet.is_at_tip(tau, residual),
+        };
+        let off = (push - end.push).abs() * sheet.rows[row].pole_distance;
         let inverse = Inverse::new(functions)?;
-        let off = (inverse.last() - end.push).abs() * row.pole_distance;
-        (off <= residual).then_some(Self { inverse, residual })
+        (off <= residual && is_at_edge).then_some(Self { inverse, residual })
     }
 }

@@ -2,30 +2,17 @@
 
 use super::certificate::{Check, bounds};
 use super::patch::{Patch, PatchSize, RowInterval};
-use super::row::{ExactRow, FUNCTIONS, RowExpansion, Weights, largest};
+use super::row::{ExactRow, FUNCTIONS, RowExpansion, StateStarts, Weights, largest};
 use crate::engine::WhiskerSide;
 use crate::numerics::expansion::Chebyshev;
 use crate::sheet::Edge;
 use crate::shooting::batch::Method;
 
-/// Maximum bound on the residual of an expanded state, in whisker lengths.
+/// Maximum bound on the residual of an expanded state, in whisker lengths, where no tolerance is given.
 pub const MOST: f64 = 1e-10;
 
-/// Size of the first patch over an interval: enough for most whiskers.
-const USUAL: PatchSize = PatchSize {
-    rows: 24,
-    states: 32,
-};
-
-/// Size of the patch that follows a usual one whose coefficients nearly decay.
-const LARGE: PatchSize = PatchSize {
-    rows: 40,
-    states: 40,
-};
-
-/// Expected error of a usual patch from row to row, in whisker lengths, above which the interval is halved at once: 16 more rows divide the
-/// error by less than this over [`MOST`].
-const HOPELESS: f64 = 1e-6;
+/// Cells whose refinement takes as long as the trajectories of a state.
+const CELLS_PER_STATE: f64 = 1.2;
 
 /// Number of times that an interval of rows is halved.
 const HALVINGS: u32 = 3;
@@ -52,6 +39,8 @@ enum RowSource {
 pub struct SpectralSheet {
     patches: Vec<Patch>,
     rows: Vec<RowSource>,
+    /// Maximum bound on the residual of an expanded state, in whisker lengths.
+    most: f64,
 }
 
 /// A row with its coordinate.
@@ -61,14 +50,16 @@ struct PlacedRow {
 }
 
 impl SpectralSheet {
-    /// Expands the rows of `side` where that takes fewer states than their cells; no row with measured radii. States are not analytic where
-    /// the contact passes from one measured radius to the next, so the decay of coefficients bounds no error there.
+    /// Expands the rows of `side` up to a residual of `most` whisker lengths where that takes fewer trajectories than their cells; no row
+    /// with measured radii. States are not analytic where the contact passes from one measured radius to the next, so the decay of
+    /// coefficients bounds no error there.
     #[must_use]
-    pub fn new(method: Method, side: &WhiskerSide) -> Self {
+    pub fn new(method: Method, side: &WhiskerSide, most: f64) -> Self {
         let count = side.sheet.rows.len();
         let mut sheet = Self {
             patches: Vec::new(),
             rows: vec![RowSource::Missing; count],
+            most,
         };
         if method.effects.profile {
             return sheet;
@@ -82,17 +73,17 @@ impl SpectralSheet {
             places.sort_by(|a, b| a.coordinate.total_cmp(&b.coordinate));
             sheet.cover(method, side, edge, &places, HALVINGS);
         }
+        let is_missing = |source: &RowSource| matches!(source, RowSource::Missing);
         let alone = |row: &usize| {
-            matches!(sheet.rows[*row], RowSource::Missing)
-                && cells(side, *row) > STATES[0] + ROW_CHECKS.len()
+            is_missing(&sheet.rows[*row]) && pays(STATES[0] + ROW_CHECKS.len(), cells(side, *row))
         };
         let mut alone: Vec<usize> = (0..count).filter(alone).collect();
         for states in STATES {
-            for (row, found) in alone.iter().zip(expand(method, side, &alone, states)) {
+            for (row, found) in alone.iter().zip(expand(method, side, &alone, states, most)) {
                 sheet.rows[*row] =
                     found.map_or(RowSource::Missing, |found| RowSource::Own(Box::new(found)));
             }
-            alone.retain(|row| matches!(sheet.rows[*row], RowSource::Missing));
+            alone.retain(|row| is_missing(&sheet.rows[*row]));
         }
         sheet
     }
@@ -111,17 +102,13 @@ impl SpectralSheet {
             edge,
             ends: [first.coordinate, last.coordinate],
         };
-        let cells: usize = rows.iter().map(|own| cells(side, own.row)).sum();
-        let pays = |size: PatchSize| size.rows < rows.len() && size.rows * size.states < cells;
+        let cells = rows.iter().map(|own| cells(side, own.row)).sum();
+        let pays = |size: PatchSize| size.rows < rows.len() && pays(size.count(), cells);
         let is_wide = interval.ends[0] < interval.ends[1];
-        if !pays(USUAL) || !is_wide {
+        if !pays(PatchSize::USUAL) || !is_wide {
             return;
         }
-        let mut found = Patch::new(method, side, interval, USUAL, MOST);
-        if matches!(found, Err(by_rows) if by_rows < HOPELESS) && pays(LARGE) {
-            found = Patch::new(method, side, interval, LARGE, MOST);
-        }
-        if let Ok(patch) = found {
+        if let Some(patch) = smallest_patch(method, side, interval, self.most, pays) {
             for own in rows {
                 // A row that the patch refuses is expanded alone.
                 if patch.row(side, own.row).is_some() {
@@ -148,6 +135,33 @@ impl SpectralSheet {
     }
 }
 
+/// Returns true if the trajectories of some `states` take less time than those of the `cells` that they replace.
+fn pays(states: usize, cells: usize) -> bool {
+    CELLS_PER_STATE * (states as f64) < cells as f64
+}
+
+/// The certified patch over `interval` with the fewest states, found from small to large while the next size `pays`.
+fn smallest_patch(
+    method: Method,
+    side: &WhiskerSide,
+    interval: RowInterval,
+    most: f64,
+    pays: impl Fn(PatchSize) -> bool,
+) -> Option<Patch> {
+    let (mut size, mut smaller) = (PatchSize::FIRST, None);
+    loop {
+        match Patch::new(method, side, interval, size, most, smaller.as_ref()) {
+            Ok(patch) => return Some(patch),
+            Err(refused) => {
+                let refused = refused?;
+                let next = size.enough(refused.tails, most);
+                size = next.filter(|next| pays(*next))?;
+                smaller = Some(refused);
+            }
+        }
+    }
+}
+
 /// Number of cells of a row from first touch to its end.
 fn cells(side: &WhiskerSide, row: usize) -> usize {
     let end = side.sheet.crossings[row]
@@ -162,8 +176,9 @@ fn expand(
     side: &WhiskerSide,
     rows: &[usize],
     states: usize,
+    most: f64,
 ) -> Vec<Option<RowExpansion>> {
-    let exact = ExactRow::all(method, &side.sheet, rows, states);
+    let exact = ExactRow::all(method, &side.sheet, rows, states, StateStarts::Spans);
     let found: Vec<&ExactRow> = exact.iter().flatten().collect();
     let functions: Vec<Chebyshev<FUNCTIONS>> =
         found.iter().map(|row| row.expansion(side)).collect();
@@ -185,14 +200,12 @@ fn expand(
         &checks.collect::<Vec<_>>(),
         &decays.collect::<Vec<_>>(),
     );
-    let mut certified = found.iter().zip(functions).zip(weights).zip(bounds).map(
-        |(((row, functions), weights), bound)| {
-            (bound <= MOST)
-                .then(|| RowExpansion::new(functions, &weights, bound, &row.row, &row.end))?
-        },
-    );
-    exact
-        .iter()
-        .map(|row| row.as_ref().and_then(|_| certified.next()?))
-        .collect()
+    let mut certified = functions.into_iter().zip(weights).zip(bounds);
+    let expansions = rows.iter().zip(&exact).map(|(row, exact)| {
+        exact.as_ref()?;
+        let ((functions, weights), bound) = certified.next()?;
+        let expansion = || RowExpansion::new(functions, &weights, bound, &side.sheet, *row);
+        (bound <= most).then(expansion)?
+    });
+    expansions.collect()
 }

@@ -103,6 +103,13 @@ impl<const D: usize> Chebyshev<D> {
         self.values(0, x)
     }
 
+    /// Derivative of one function at `x`.
+    #[must_use]
+    pub fn slope(&self, function: usize, x: f64) -> f64 {
+        let [_, slope] = self.series(function, x);
+        slope
+    }
+
     /// Values of up to `N` functions from `first` on at `x`, by Clenshaw's recurrence; 0 beyond the last function.
     #[inline(always)]
     pub(super) fn values<T: Real, const N: usize>(&self, first: usize, x: T) -> [T; N] {

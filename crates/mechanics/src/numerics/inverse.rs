@@ -59,8 +59,7 @@ impl<const D: usize> Inverse<D> {
     }
 
     /// Value of the first function at 1.
-    #[must_use]
-    pub const fn last(&self) -> f64 {
+    const fn last(&self) -> f64 {
         self.starts[INTERVALS].value
     }
 
