@@ -5,10 +5,10 @@
 
 use super::certificate::{Check, MARGIN, bounds};
 use super::row::{
-    ExactRow, FUNCTIONS, RowExpansion, StateStarts, Weights, larger, largest, value_weights,
+    ExactRow, ExpansionTail, FUNCTIONS, RowExpansion, StateStarts, Weights, larger, value_weights,
 };
 use crate::engine::WhiskerSide;
-use crate::numerics::expansion::{Chebyshev, MOST_POINTS, chebyshev_points};
+use crate::numerics::expansion::{Chebyshev, MOST_POINTS, TAIL, chebyshev_points};
 use crate::numerics::tensor::ChebyshevTensor;
 use crate::rod::{Rest, arclength};
 use crate::sheet::{Edge, Row, Sheet};
@@ -26,9 +26,6 @@ pub struct PatchSize {
 
 /// Part of the bound that the coefficients left out are expected to take. At most `1 / MARGIN` is allowed.
 const LEFT_OUT: f64 = 0.1;
-
-/// Last coefficients that count as the tail of an expansion: the first of them is as large as the tail.
-const TAIL: usize = 3;
 
 impl PatchSize {
     /// Size of the first patch over an interval: the decay of its coefficients shows how many more are needed.
@@ -48,26 +45,20 @@ impl PatchSize {
         self.rows * self.states
     }
 
-    /// Size whose expansions are expected to keep the bound `most`, where this size leaves out `tails` from row to row and along rows, in
-    /// whisker lengths; `None` above [`MOST_POINTS`].
-    pub fn enough(self, tails: [f64; 2], most: f64) -> Option<Self> {
-        let enough = |count, tail| points_enough(count, tail, LEFT_OUT * most);
+    /// Next size with more rows and more states along each; `None` if there is none.
+    fn larger(self) -> Option<Self> {
+        let [rows, states] = [self.rows, self.states].map(|count| count + TAIL);
+        (rows.max(states) <= MOST_POINTS).then_some(Self { rows, states })
+    }
+
+    /// Size whose expansions are expected to keep the bound `most`, where those of this size have these `tails` from row to row and along
+    /// rows; `None` if there is none.
+    fn enough(self, tails: [ExpansionTail; 2], most: f64) -> Option<Self> {
         Some(Self {
-            rows: enough(self.rows, tails[0])?,
-            states: enough(self.states, tails[1])?,
+            rows: tails[0].points(self.rows, LEFT_OUT * most)?,
+            states: tails[1].points(self.states, LEFT_OUT * most)?,
         })
     }
-}
-
-/// Number of points whose tail is expected to be `goal`, where that of `count` points is `tail`: coefficients fall geometrically, from about
-/// one whisker length on. `None` above [`MOST_POINTS`].
-pub fn points_enough(count: usize, tail: f64, goal: f64) -> Option<usize> {
-    if tail <= goal {
-        return Some(count);
-    }
-    let more = (count - TAIL) as f64 * libm::log(goal) / libm::log(tail);
-    let enough = TAIL + 1 + more.max(0.0) as usize;
-    (tail < 1.0 && enough <= MOST_POINTS).then(|| enough.max(count + 1))
 }
 
 /// Interval of rows that end at one edge.
@@ -138,8 +129,10 @@ const CHECKS: usize = 8;
 /// Expansions of a patch that are not accurate enough.
 pub struct RefusedPatch {
     tensor: ChebyshevTensor<FUNCTIONS>,
-    /// Errors from row to row, and along rows, in whisker lengths.
-    pub tails: [f64; 2],
+    /// Expected error, in whisker lengths.
+    error: f64,
+    /// Size of a patch that is expected to be accurate enough; `None` if there is none.
+    pub enough: Option<PatchSize>,
 }
 
 impl Patch {
@@ -163,7 +156,7 @@ impl Patch {
             parts.iter().map(|part| smaller.tensor.at(*part)).collect()
         });
         let starts = smaller.map_or(StateStarts::Spans, |smaller| {
-            StateStarts::Expansions(&expansions, smaller.tails[0].max(smaller.tails[1]))
+            StateStarts::Expansions(&expansions, smaller.error)
         });
         let found = ExactRow::all(method, &sheet, &all, size.states, starts);
         let found: Option<Vec<ExactRow>> = found.into_iter().collect();
@@ -179,31 +172,32 @@ impl Patch {
             std::array::from_fn(|i| f64::max(most[i], row[i]))
         });
         let tensor = ChebyshevTensor::through(&expansions);
-        let tails = expansions.iter().map(|row| largest(&row.tail(), &weights));
-        let tails = [
-            largest(&tensor.tail_in_x(), &weights),
-            tails.fold(0.0, larger),
-        ];
-        let by_decay = larger(tails[0], tails[1]);
+        let along = expansions
+            .iter()
+            .map(|row| ExpansionTail::new(&row.tails(), &weights));
+        let from_row_to_row = ExpansionTail::new(&tensor.tails_in_x(), &weights);
+        let along = along.reduce(ExpansionTail::larger).ok_or(None)?;
+        let error = larger(from_row_to_row.last, along.last);
         let mut patch = Self {
             interval,
             tensor,
             weights,
-            residual: by_decay,
+            residual: error,
             most,
         };
-        let mut tails = tails;
-        if MARGIN * by_decay <= most {
+        let mut enough = size.enough([from_row_to_row, along], most);
+        if MARGIN * error <= most {
             patch.residual = patch.certified(method, side);
             if patch.residual <= most {
                 return Ok(patch);
             }
             // Between the states, the error is larger than the last coefficients.
-            tails = [patch.residual / MARGIN; 2];
+            enough = size.larger();
         }
         Err(Some(RefusedPatch {
             tensor: patch.tensor,
-            tails,
+            error,
+            enough,
         }))
     }
 

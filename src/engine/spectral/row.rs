@@ -1,7 +1,7 @@
 //! Expansions of one row: push angle, contact, load and channel values as functions of the row parameter.
 
 use crate::engine::{Values, WhiskerSide};
-use crate::numerics::expansion::{Chebyshev, chebyshev_points};
+use crate::numerics::expansion::{Chebyshev, MOST_POINTS, TAIL, chebyshev_points};
 use crate::numerics::inverse::Inverse;
 use crate::numerics::nearest_turn;
 use crate::plan::STATE_CHANNELS;
@@ -165,6 +165,43 @@ pub fn largest(errors: &Numbers, weights: &Weights) -> f64 {
     let weighted = errors.iter().zip(weights);
     let weighted = weighted.map(|(error, weight)| error.abs() * weight);
     weighted.fold(0.0, larger)
+}
+
+/// Weighted sizes of the last coefficients of expansions, in whisker lengths.
+#[derive(Clone, Copy, Debug)]
+pub struct ExpansionTail {
+    /// Largest of the last coefficients: the expected error.
+    pub last: f64,
+    /// Largest of as many coefficients before.
+    before: f64,
+}
+
+impl ExpansionTail {
+    /// The weighted [`tails`](Chebyshev::tails) of expansions.
+    pub fn new(tails: &[Numbers; 2], weights: &Weights) -> Self {
+        let [last, before] = tails.each_ref().map(|tail| largest(tail, weights));
+        Self { last, before }
+    }
+
+    /// The larger tail of two expansions.
+    pub fn larger(self, other: Self) -> Self {
+        Self {
+            last: larger(self.last, other.last),
+            before: larger(self.before, other.before),
+        }
+    }
+
+    /// Number of points whose last coefficients are expected to be `goal`, where those of `count` points are this tail, if they go on to
+    /// fall at the same rate; `None` above [`MOST_POINTS`].
+    pub fn points(self, count: usize, goal: f64) -> Option<usize> {
+        if self.last <= goal {
+            return Some(count);
+        }
+        let falls = libm::log(self.before / self.last) / TAIL as f64;
+        let more = libm::log(self.last / goal) / falls;
+        let is_possible = falls > 0.0 && more <= (MOST_POINTS - count) as f64;
+        is_possible.then(|| (count + more as usize + 1).min(MOST_POINTS))
+    }
 }
 
 /// A certified row.

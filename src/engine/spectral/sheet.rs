@@ -2,7 +2,7 @@
 
 use super::certificate::{Check, bounds};
 use super::patch::{Patch, PatchSize, RowInterval};
-use super::row::{ExactRow, FUNCTIONS, RowExpansion, StateStarts, Weights, largest};
+use super::row::{ExactRow, ExpansionTail, FUNCTIONS, RowExpansion, StateStarts, Weights};
 use crate::engine::WhiskerSide;
 use crate::numerics::expansion::Chebyshev;
 use crate::sheet::Edge;
@@ -154,8 +154,7 @@ fn smallest_patch(
             Ok(patch) => return Some(patch),
             Err(refused) => {
                 let refused = refused?;
-                let next = size.enough(refused.tails, most);
-                size = next.filter(|next| pays(*next))?;
+                size = refused.enough.filter(|next| pays(*next))?;
                 smaller = Some(refused);
             }
         }
@@ -193,7 +192,7 @@ fn expand(
     let decays = functions
         .iter()
         .zip(&weights)
-        .map(|(row, weights)| largest(&row.tail(), weights));
+        .map(|(row, weights)| ExpansionTail::new(&row.tails(), weights).last);
     let bounds = bounds(
         method,
         side,

@@ -12,8 +12,8 @@ use std::sync::OnceLock;
 /// The largest number of points of an expansion.
 pub const MOST_POINTS: usize = 40;
 
-/// Number of last coefficients that [`Chebyshev::tail`] looks at: an odd or even function has every other coefficient 0.
-const TAIL: usize = 3;
+/// Number of coefficients in a group of [`Chebyshev::tails`]: an odd or even function has every other coefficient 0.
+pub const TAIL: usize = 3;
 
 /// Points and transform for one number of points.
 struct ChebyshevGrid {
@@ -79,22 +79,22 @@ impl<const D: usize> Chebyshev<D> {
         Self { coefficients }
     }
 
-    /// Size of the last coefficients of each function: an estimate of the expansion's error where coefficients still fall.
-    /// A single point gives 0. NaN for a function with a coefficient that is.
+    /// Sizes of the last coefficients of each function, the largest of the last [`TAIL`] and of as many before: `[group][function]`. The
+    /// last ones estimate the expansion's error where coefficients still fall; the ratio of both is the rate at which they fall. A single
+    /// point gives 0. NaN for a function with a coefficient that is.
     #[must_use]
-    pub fn tail(&self) -> [f64; D] {
-        let last = self.coefficients.iter().skip(1).rev().take(TAIL);
-        last.fold([0.0; D], |mut tail, coefficients| {
-            for (tail, coefficient) in tail.iter_mut().zip(coefficients) {
+    pub fn tails(&self) -> [[f64; D]; 2] {
+        let mut tails = [[0.0_f64; D]; 2];
+        let last = self.coefficients.iter().skip(1).rev().take(2 * TAIL);
+        for (i, coefficients) in last.enumerate() {
+            for (tail, coefficient) in tails[i / TAIL].iter_mut().zip(coefficients) {
                 let size = coefficient.abs();
-                *tail = if tail.is_nan() || *tail >= size {
-                    *tail
-                } else {
-                    size
-                };
+                if !(tail.is_nan() || *tail >= size) {
+                    *tail = size;
+                }
             }
-            tail
-        })
+        }
+        tails
     }
 
     /// Values of the functions at `x`.

@@ -48,12 +48,14 @@ impl<const D: usize> ChebyshevTensor<D> {
         Chebyshev { coefficients }
     }
 
-    /// Sum over `y` of the last coefficients in `x` of each function ([`Chebyshev::tail`]): an estimate of the error in `x`.
+    /// Sums over the powers of `y` of the last coefficients in `x` ([`Chebyshev::tails`]), `[group][function]`: they estimate the error in `x`.
     #[must_use]
-    pub fn tail_in_x(&self) -> [f64; D] {
-        let tails = self.in_y.iter().map(Chebyshev::tail);
-        tails.fold([0.0; D], |sum, tail| {
-            std::array::from_fn(|i| sum[i] + tail[i])
+    pub fn tails_in_x(&self) -> [[f64; D]; 2] {
+        let tails = self.in_y.iter().map(Chebyshev::tails);
+        tails.fold([[0.0; D]; 2], |sum, tails| {
+            std::array::from_fn(|group| {
+                std::array::from_fn(|i| sum[group][i] + tails[group][i])
+            })
         })
     }
 }
@@ -109,6 +111,6 @@ mod tests {
                 );
             }
         }
-        assert!(tensor.tail_in_x().iter().all(|tail| *tail < 1e-12));
+        assert!(tensor.tails_in_x()[0].iter().all(|tail| *tail < 1e-12));
     }
 }
