@@ -25,7 +25,10 @@ pub struct PatchSize {
 }
 
 /// Part of the bound that the coefficients left out are expected to take. At most `1 / MARGIN` is allowed.
-const LEFT_OUT: f64 = 0.1;
+const LEFT_OUT: f64 = 0.15;
+
+/// Expected error, in whisker lengths, above which coefficients do not yet fall at their final rate.
+const HOPELESS: f64 = 0.01;
 
 impl PatchSize {
     /// Size of the first patch over an interval: the decay of its coefficients shows how many more are needed.
@@ -54,6 +57,9 @@ impl PatchSize {
     /// Size whose expansions are expected to keep the bound `most`, where those of this size have these `tails` from row to row and along
     /// rows; `None` if there is none.
     fn enough(self, tails: [ExpansionTail; 2], most: f64) -> Option<Self> {
+        if larger(tails[0].last, tails[1].last) > HOPELESS {
+            return None;
+        }
         Some(Self {
             rows: tails[0].points(self.rows, LEFT_OUT * most)?,
             states: tails[1].points(self.states, LEFT_OUT * most)?,

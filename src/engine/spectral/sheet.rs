@@ -140,7 +140,11 @@ fn pays(states: usize, cells: usize) -> bool {
     CELLS_PER_STATE * (states as f64) < cells as f64
 }
 
-/// The certified patch over `interval` with the fewest states, found from small to large while the next size `pays`.
+/// Sizes of patches that are tried over an interval: the first, and two that are expected to be enough. If they are not, states are too
+/// inexact for the bound, or not analytic.
+const TRIES: usize = 3;
+
+/// A certified patch over `interval` with as few states as possible, found from small to large while the next size `pays`.
 fn smallest_patch(
     method: Method,
     side: &WhiskerSide,
@@ -149,7 +153,7 @@ fn smallest_patch(
     pays: impl Fn(PatchSize) -> bool,
 ) -> Option<Patch> {
     let (mut size, mut smaller) = (PatchSize::FIRST, None);
-    loop {
+    for _ in 0..TRIES {
         match Patch::new(method, side, interval, size, most, smaller.as_ref()) {
             Ok(patch) => return Some(patch),
             Err(refused) => {
@@ -159,6 +163,7 @@ fn smallest_patch(
             }
         }
     }
+    None
 }
 
 /// Number of cells of a row from first touch to its end.
