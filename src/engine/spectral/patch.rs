@@ -25,10 +25,10 @@ pub struct PatchSize {
 }
 
 /// Part of the bound that the coefficients left out are expected to take. At most `1 / MARGIN` is allowed.
-const LEFT_OUT: f64 = 0.15;
+const LEFT_OUT: f64 = 0.1;
 
 /// Expected error, in whisker lengths, above which coefficients do not yet fall at their final rate.
-const HOPELESS: f64 = 0.01;
+const HOPELESS: f64 = 1.0;
 
 impl PatchSize {
     /// Size of the first patch over an interval: the decay of its coefficients shows how many more are needed.

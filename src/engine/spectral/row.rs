@@ -167,6 +167,9 @@ pub fn largest(errors: &Numbers, weights: &Weights) -> f64 {
     weighted.fold(0.0, larger)
 }
 
+/// Factor by which more points are taken than the rate at the last coefficients calls for.
+const SAFETY: f64 = 1.1;
+
 /// Weighted sizes of the last coefficients of expansions, in whisker lengths.
 #[derive(Clone, Copy, Debug)]
 pub struct ExpansionTail {
@@ -198,7 +201,7 @@ impl ExpansionTail {
             return Some(count);
         }
         let falls = libm::log(self.before / self.last) / TAIL as f64;
-        let more = libm::log(self.last / goal) / falls;
+        let more = SAFETY * libm::log(self.last / goal) / falls;
         let is_possible = falls > 0.0 && more <= (MOST_POINTS - count) as f64;
         is_possible.then(|| (count + more as usize + 1).min(MOST_POINTS))
     }
