@@ -1,5 +1,6 @@
 //! Expansions of one row: push angle, contact, load and channel values as functions of the row parameter.
 
+use super::patch::RowInterval;
 use crate::engine::{Values, WhiskerSide};
 use crate::numerics::expansion::{Chebyshev, MOST_POINTS, TAIL, chebyshev_points};
 use crate::numerics::inverse::Inverse;
@@ -62,16 +63,19 @@ impl ExactRow {
         starts: StateStarts,
     ) -> Vec<Option<Self>> {
         let points = chebyshev_points(count);
-        let spans = rows.par_iter().enumerate().map(|(i, row)| {
-            let span = SpanFromTouch::new(sheet, *row)?;
-            let states = span.states(points).zip(points).map(|(state, place)| match starts {
-                StateStarts::Spans => state,
-                StateStarts::Expansions(rows, _) => RowState {
+        let spans = rows.par_iter().enumerate().map(|(i, row)| match starts {
+            StateStarts::Spans => Some(SpanFromTouch::new(sheet, *row)?.states(points).collect()),
+            StateStarts::Expansions(rows, _) => {
+                RowInterval::coordinate(sheet, *row)?;
+                let end = &sheet.crossings[*row][0];
+                let state = |place: &f64| RowState {
+                    sheet,
+                    row: *row,
+                    w: place * end.load * end.tau * end.tau,
                     tau: rows[i].at(*place)[1],
-                    ..state
-                },
-            });
-            Some(states.collect())
+                };
+                Some(points.iter().map(state).collect())
+            }
         });
         let spans: Vec<Option<Vec<RowState>>> = spans.collect();
         let goal = RowStateGoal {
