@@ -71,13 +71,7 @@ impl Spectral {
 }
 
 /// Writes the cells of `row` before its end, and those without a state.
-fn write(
-    side: &WhiskerSide,
-    row: &BatchRow,
-    expansion: &RowExpansion,
-    most: f64,
-    into: CellsMut,
-) {
+fn write(side: &WhiskerSide, row: &BatchRow, expansion: &RowExpansion, most: f64, into: CellsMut) {
     let sheet = &side.sheet;
     let end = sheet.crossings[row.row][0].push;
     let distance = sheet.rows[row.row].pole_distance;

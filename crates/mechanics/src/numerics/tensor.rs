@@ -53,9 +53,7 @@ impl<const D: usize> ChebyshevTensor<D> {
     pub fn tails_in_x(&self) -> [[f64; D]; 2] {
         let tails = self.in_y.iter().map(Chebyshev::tails);
         tails.fold([[0.0; D]; 2], |sum, tails| {
-            std::array::from_fn(|group| {
-                std::array::from_fn(|i| sum[group][i] + tails[group][i])
-            })
+            std::array::from_fn(|group| std::array::from_fn(|i| sum[group][i] + tails[group][i]))
         })
     }
 }
