@@ -25,7 +25,7 @@ pub struct WhiskerSide {
     pub sheet: Sheet,
     /// Channel values of a difference of 1 in whisker lengths, radians, `E I_base/L_w^2` and `E I_base/L_w`.
     pub unit_values: Values,
-    /// Expansions of the rows, if an engine needs them.
+    /// Expansions of the rows, if an engine needs them and rows have any.
     pub spectral: Option<SpectralSheet>,
     reader: Reader,
 }
@@ -47,7 +47,7 @@ impl WhiskerSide {
     /// This side with a spectral sheet by `method`, whose states have a residual of at most `most` whisker lengths.
     #[must_use]
     pub fn with_spectral_sheet(self, method: Method, most: f64) -> Self {
-        let spectral = Some(SpectralSheet::new(method, &self, most));
+        let spectral = SpectralSheet::new(method, &self, most);
         Self { spectral, ..self }
     }
 

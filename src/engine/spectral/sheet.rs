@@ -13,7 +13,7 @@ pub const MOST: f64 = 1e-10;
 
 /// Cells whose refinement takes as long as a state of a patch, with its trajectories, its expansions and the attempts that fail. Measured on
 /// `scenes/morphology.toml`: 0.86 ms for a certified patch of 750 states, 0.48 us for a cell (two shared cores of an AMD EPYC).
-const CELLS_PER_STATE: usize = 2;
+const CELLS_PER_STATE: usize = 3;
 
 /// Cells whose refinement takes as long as the expansions of a row from its patch. Measured on the same sweep: about 4 us.
 const CELLS_PER_ROW: usize = 8;
@@ -56,9 +56,9 @@ struct PlacedRow {
 impl SpectralSheet {
     /// Expands the rows of `side` up to a residual of `most` whisker lengths where that takes fewer trajectories than their cells; no row
     /// with measured radii. States are not analytic where the contact passes from one measured radius to the next, so the decay of
-    /// coefficients bounds no error there.
+    /// coefficients bounds no error there. `None` without an expanded row.
     #[must_use]
-    pub fn new(method: Method, side: &WhiskerSide, most: f64) -> Self {
+    pub fn new(method: Method, side: &WhiskerSide, most: f64) -> Option<Self> {
         let count = side.sheet.rows.len();
         let mut sheet = Self {
             patches: Vec::new(),
@@ -66,7 +66,7 @@ impl SpectralSheet {
             most,
         };
         if method.effects.profile {
-            return sheet;
+            return None;
         }
         for edge in [Edge::Fold, Edge::Tip] {
             let places = (0..count).filter_map(|row| {
@@ -90,7 +90,8 @@ impl SpectralSheet {
             }
             alone.retain(|row| is_missing(&sheet.rows[*row]));
         }
-        sheet
+        let is_empty = sheet.rows.iter().all(is_missing);
+        (!is_empty).then_some(sheet)
     }
 
     /// Covers neighbouring rows with patches.
