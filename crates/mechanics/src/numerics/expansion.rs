@@ -48,7 +48,7 @@ impl ChebyshevGrid {
     }
 }
 
-/// The `count` Chebyshev points of the first kind on `[0, 1]`, growing: `sin^2((2 j + 1) pi/(4 count))`.
+/// Returns the `count` Chebyshev points of the first kind on `[0, 1]`, growing: `sin^2((2 j + 1) pi/(4 count))`.
 ///
 /// # Panics
 ///
@@ -61,12 +61,12 @@ pub fn chebyshev_points(count: usize) -> &'static [f64] {
 /// Expansion of `D` functions on `[0, 1]` in Chebyshev polynomials.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Chebyshev<const D: usize> {
-    /// Coefficients `[k][function]` of the polynomials `T_k(2 x - 1)`.
+    /// Coefficients `[k][function]` of the polynomials `T_k(2 x - 1)` of a Chebyshev expansion, in the units of the functions.
     pub coefficients: Vec<[f64; D]>,
 }
 
 impl<const D: usize> Chebyshev<D> {
-    /// The expansion through `values` `[point][function]` at the [`chebyshev_points`], one value for each point.
+    /// Creates the expansion through `values` `[point][function]` at the [`chebyshev_points`], one value for each point.
     ///
     /// # Panics
     ///
@@ -79,8 +79,8 @@ impl<const D: usize> Chebyshev<D> {
         Self { coefficients }
     }
 
-    /// Size of the last coefficients of each function: an estimate of the expansion's error where coefficients still fall.
-    /// A single point gives 0. NaN for a function with a coefficient that is.
+    /// Returns the size of the last coefficients of each function: an estimate of the expansion's error where coefficients still fall. A
+    /// single point gives 0. NaN for a function that has a NaN coefficient.
     #[must_use]
     pub fn tail(&self) -> [f64; D] {
         let last = self.coefficients.iter().skip(1).rev().take(TAIL);
@@ -97,13 +97,14 @@ impl<const D: usize> Chebyshev<D> {
         })
     }
 
-    /// Values of the functions at `x`.
+    /// Returns the values `[function]` of an expansion at `x` in `[0, 1]`.
     #[must_use]
     pub fn at(&self, x: f64) -> [f64; D] {
         self.values(0, x)
     }
 
-    /// Values of up to `N` functions from `first` on at `x`, by Clenshaw's recurrence; 0 beyond the last function.
+    /// Returns the values of up to `N` functions of an expansion at `x`, from function `first` on, by Clenshaw's recurrence; 0 beyond the
+    /// last function.
     #[inline(always)]
     pub(super) fn values<T: Real, const N: usize>(&self, first: usize, x: T) -> [T; N] {
         let y = T::of(2.0).mul_add(x, T::of(-1.0));
@@ -119,8 +120,8 @@ impl<const D: usize> Chebyshev<D> {
         later
     }
 
-    /// Taylor coefficients of one function around `x`, by Clenshaw's recurrence with truncated power series in place of
-    /// numbers.
+    /// Returns the Taylor coefficients `[power]` of one function of an expansion around `x`, by Clenshaw's recurrence with truncated
+    /// power series in place of numbers.
     #[inline(always)]
     pub(super) fn series<T: Real, const P: usize>(&self, function: usize, x: T) -> [T; P] {
         let (zero, two) = (T::of(0.0), T::of(2.0));

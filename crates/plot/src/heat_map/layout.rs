@@ -1,4 +1,4 @@
-//! The layout of a heat map: one panel, or a contact sheet of many.
+//! Layout of a heat map: one panel, or a contact sheet of many.
 
 use super::colour_scale::BAR_ROOM;
 use super::{HeatMap, PanelAxis, PanelCells, Shading};
@@ -15,7 +15,7 @@ const PANEL: f64 = 560.0;
 /// From one note to the next.
 const NOTE: f64 = 34.0;
 
-/// The panels of a heat map laid out.
+/// A heat map with the positions of its panels, in pixels.
 pub struct HeatMapLayout {
     /// Columns and rows of panels.
     counts: [usize; 2],
@@ -85,7 +85,7 @@ impl HeatMapLayout {
         }
     }
 
-    /// Draws all panels, one by one, and what stands around them.
+    /// Draws all panels of the heat map, one by one, then headings, axes and the colour bar.
     pub fn draw<E>(
         &self,
         map: &HeatMap,

@@ -132,12 +132,12 @@ macro_rules! unit {
         pub struct $token(());
 
         impl $token {
-            /// The token, where the processor has all features of the unit.
+            /// Returns the token of the SIMD unit if the processor has all its features, otherwise `None`.
             pub fn detect() -> Option<Self> {
                 ($($detected!($feature))&&+).then_some(Self(()))
             }
 
-            /// Runs `task` in lanes of this unit.
+            /// Runs a computation in lanes of this SIMD unit.
             pub fn run<K: SimdTask>(self, task: K) -> K::Output {
                 #[target_feature(enable = $enabled)]
                 fn run<K: SimdTask>(task: K) -> K::Output {
