@@ -1,4 +1,4 @@
-//! The ranges: what makes a scene valid everywhere after.
+//! Checks of a scene: the ranges in which all later modules are valid.
 //!
 //! Ranges are wide; they keep units from being mixed up and f32 from overflowing, and they hold wherever
 //! the geometry of first touch is one-to-one. Lengths are measured in lengths of the whisker.
@@ -27,7 +27,7 @@ pub const LONGEST_TITLE: usize = 1000;
 const LONGEST_NAME: usize = 200;
 
 impl SceneBuilder {
-    /// The data of the scene, with this text.
+    /// Checks the description and returns the data of the scene, with `text` as its TOML.
     pub(super) fn checked(&self, text: SceneText) -> Result<SceneData, SceneFault> {
         check_title(&self.title)?;
         let lengths_mm = sweep::lengths_mm(self)?;

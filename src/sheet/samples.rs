@@ -10,7 +10,7 @@ use crate::sheet::row::Row;
 /// first touch (1e-13 of the length) is a load of 1e-8.
 const UNLOADED: f64 = 1e-6;
 
-/// Samples of the sheet: contact nodes, lattice and edges.
+/// Samples of a sheet: contact nodes, lattice and edges.
 #[derive(Clone, Debug)]
 pub struct SheetSamples {
     pub contacts: ContactNodes,

@@ -1,4 +1,4 @@
-//! From a file, or text, to a checked scene.
+//! Reading of scene files and texts into checked scenes.
 
 use std::collections::BTreeMap;
 use std::fs::File;

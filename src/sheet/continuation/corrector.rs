@@ -63,8 +63,9 @@ impl<'a> NewtonProblem<'a> for Corrector<'a> {
     }
 }
 
-/// Moves each point onto its level curve, to its tolerance in `ln D`. Returns `(tau, load)` and the state of each point, or `None` where
-/// the corrector fails. The method of the first curve applies to all of them. Results do not depend on the other points.
+/// Moves each point `(tau, load)` onto its level curve, to its tolerance in `ln D`. Returns `(tau, load)` and the state of each point,
+/// `[point]`, or `None` where the corrector fails. The method of the first curve applies to all of them. Results do not depend on the
+/// other points.
 pub fn correct(points: &[(&LevelCurve, DVec2, f64)]) -> Vec<Option<(DVec2, FullState)>> {
     let Some((first, ..)) = points.first() else {
         return Vec::new();

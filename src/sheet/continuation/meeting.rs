@@ -20,11 +20,11 @@ pub struct Chord<'a> {
     pub level: &'a LevelCurve,
     pub from: CurveNode,
     pub to: CurveNode,
-    /// True if the nodes belong to the stable part.
+    /// True if both nodes of the chord belong to the stable part of the level curve.
     pub is_stable: bool,
 }
 
-/// Edge between two nodes of a level curve.
+/// Edge of the sheet between two nodes of a level curve, if any.
 pub enum Meeting {
     /// No edge lies between the nodes.
     None,

@@ -36,7 +36,7 @@ pub struct Edges {
 }
 
 impl Edges {
-    /// Samples both edges; `lattice` provides the whole turns of the pole's direction.
+    /// Samples both edges of the sheet; `lattice` provides the whole turns of the pole's direction.
     pub fn new(case: SheetCase, contacts: &ContactNodes, lattice: &Lattice) -> Self {
         let rod = case.rod;
         let fold: Vec<EdgeSample> = contacts.folds[..=contacts.tip]
@@ -96,7 +96,7 @@ impl Edges {
         }
     }
 
-    /// Returns true if no crossing is hidden between the samples.
+    /// Returns true if no crossing is hidden between the samples of the edges.
     pub fn are_certified(&self) -> bool {
         self.fold_is_certified && self.tip_edge.is_some()
     }

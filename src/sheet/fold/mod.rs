@@ -14,16 +14,16 @@ use glam::DVec2;
 /// Point of the fold edge.
 #[derive(Clone, Copy, Debug)]
 pub struct FoldPoint {
-    /// Contact coordinate `tau`.
+    /// Contact coordinate `tau` of the fold point, dimensionless.
     pub tau: f64,
-    /// Signed load `f/rho^2` at the fold.
+    /// Signed load `f/rho^2` at the fold point, dimensionless.
     pub load: f64,
-    /// Pole and its first and second derivatives at the fold.
+    /// Pole and its first and second derivatives at the fold point.
     pub variation: SecondVariation,
 }
 
 impl FoldPoint {
-    /// Returns the row parameter `|load| tau^2`.
+    /// Returns the row parameter `|load| tau^2` of the fold point, dimensionless.
     pub fn q(&self) -> f64 {
         self.load.abs() * self.tau * self.tau
     }
