@@ -15,14 +15,14 @@ use whiskmap::store::{MapWriter, ZarrStore};
 pub struct MapCost {
     /// Elapsed seconds of the map with all threads at work, scaled from samples.
     pub seconds: f64,
-    /// Newton steps per cell, each one trajectory.
+    /// Newton steps per cell of the map, each one trajectory.
     pub steps_per_cell: f64,
 }
 
 /// Estimated cost of the files of a map.
 pub struct FileCost {
     pub format: MapFormat,
-    /// Bytes on disk.
+    /// Size of the files on disk, in bytes.
     pub bytes: f64,
     /// Elapsed seconds to pack the files with all threads at work, scaled from samples.
     pub seconds: f64,

@@ -1,4 +1,4 @@
-//! `whiskmap shape`.
+//! Command `whiskmap shape`.
 
 use super::arguments::{angle, column_help, side, whole};
 use super::failure::{Failure, message};

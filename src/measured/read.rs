@@ -1,4 +1,4 @@
-//! Reader of measured points.
+//! Reader of CSV files of measured points.
 
 use super::{MeasuredAngle, MeasuredPoint, MeasuredPoints};
 use crate::input::{CsvError, CsvTable};

@@ -1,4 +1,4 @@
-//! The picture of a stored map: the regimes, or any channel.
+//! Pictures of stored maps: the regimes, or any channel.
 
 use super::RenderError;
 use super::boundary::stretches;
@@ -11,17 +11,18 @@ use whiskmap_plot::{
     ScaleOptions, Shading, ValueSummary,
 };
 
-/// How to draw a map.
+/// Options of the picture of a map: channel, colour scale and width.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct MapOptions<'a> {
-    /// Name of the channel. `None` draws the regimes, with the detachment boundary over them.
+    /// Name of the drawn channel. `None` draws the regimes, with the detachment boundary over them.
     pub channel: Option<&'a str>,
-    /// Whether the colour scale is logarithmic. Values at or below 0 are blank; without a range, the colour bar starts at the 1st
-    /// percentile of the positive values.
+    /// True if the colour scale of the map is logarithmic. Values at or below 0 are blank; without a range, the colour bar starts at the
+    /// 1st percentile of the positive values.
     pub log: bool,
-    /// Ends `[low, high]` of the colour bar, in the channel's unit; values beyond them take the colours of the ends.
+    /// Ends `[low, high]` of the colour bar, in the channel's unit; values beyond them take the colours of the ends. `None` for the
+    /// extent of the values.
     pub range: Option<[f64; 2]>,
-    /// Width in pixels; `None` for the width at which all text can be read.
+    /// Width of the picture in pixels; `None` for the width at which all text can be read.
     pub width: Option<u32>,
 }
 
