@@ -1,4 +1,4 @@
-//! The spectral sheet of a whisker side: which row is expanded through its own states, and which belongs to a patch.
+//! Spectral sheet of a whisker side: which row is expanded through its own states, and which belongs to a patch.
 
 use super::certificate::{Check, bounds};
 use super::patch::{Patch, PatchSize, RowInterval};
@@ -47,7 +47,7 @@ enum RowSource {
     Missing,
 }
 
-/// Certified expansions of the rows of a whisker side.
+/// Spectral sheet: certified expansions of the rows of a whisker side.
 #[derive(Clone, Debug)]
 pub struct SpectralSheet {
     patches: Vec<Patch>,
@@ -137,7 +137,7 @@ impl SpectralSheet {
         }
     }
 
-    /// The expansions of `row` of `side`; `None` if the row has none.
+    /// Returns the expansions of `row` of `side`; `None` if the row has none.
     #[must_use]
     pub fn row(&self, side: &WhiskerSide, row: usize) -> Option<RowExpansion> {
         match &self.rows[row] {
