@@ -89,7 +89,7 @@ pub enum NewtonOutcome {
 pub struct NewtonIterate<S> {
     /// Contact coordinate and signed load of the iterate, `(tau, load)`, dimensionless.
     pub point: DVec2,
-    /// State of the trajectory at `point`.
+    /// State of the last iterate: of the trajectory at `point`, or extrapolated from it.
     pub state: S,
     /// Number of Newton steps to the iterate, including the extrapolated one.
     pub steps: u32,

@@ -13,7 +13,7 @@ use sample::SceneSample;
 /// Accuracy of a resolution: its estimated error for a scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Accuracy {
-    /// Resolution of the trajectories.
+    /// Resolution whose error is estimated.
     pub resolution: Resolution,
     /// Estimated error of the quantities in [`BOUNDED`] over the whole scene, in degrees.
     pub error_deg: f64,

@@ -29,7 +29,7 @@ pub struct Hit {
 /// Settings with which the CPU solves targets.
 #[derive(Clone, Copy, Debug)]
 pub struct Solver {
-    /// SIMD unit that integrates.
+    /// SIMD unit that integrates the solver's trajectories.
     pub unit: Unit,
     /// Resolution of the solver's trajectories.
     pub resolution: Resolution,

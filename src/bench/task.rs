@@ -35,7 +35,7 @@ fn key(rod: u32, pole: DVec2) -> (u32, [u64; 2]) {
 pub struct Work {
     /// Number of trajectories that the engine integrated.
     pub trajectories: f64,
-    /// Number of floating-point operations.
+    /// Number of floating-point operations of the engine's trajectories.
     pub operations: f64,
 }
 

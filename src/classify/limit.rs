@@ -93,8 +93,8 @@ impl SlidingLimit {
     }
 }
 
-/// Polynomial of the slid distance between two knots. Its variable `x` grows from 0 to 1. It is the fraction of the interval or, if the
-/// second knot is a fold, 1 minus the square root of the fraction that is left.
+/// Polynomial of the slid distance between two knots. Its variable `x` grows from 0 to 1. It is the fraction of the interval. If the
+/// second knot is a fold, it is 1 minus the square root of the fraction that is left.
 #[derive(Clone, Debug)]
 struct LimitSegment {
     /// Push angles of the knots, in radians.

@@ -23,7 +23,7 @@ macro_rules! named {
         pub enum $kind { $($(#[$inner])* $variant = $code,)* }
 
         impl $kind {
-            /// All variants of the enum, in the order of their codes.
+            /// All regimes or statuses, in the order of their codes.
             pub const ALL: [Self; [$($code),*].len()] = [$(Self::$variant),*];
 
             /// Returns the code of the regime or status in files.

@@ -48,9 +48,9 @@ impl Sliding {
 /// Returns the sliding rate of the contact: derivative of the slid distance, in whisker lengths, by the direction `phi` of the pole,
 /// times `det J`. The rate is finite at the fold.
 ///
-/// The contact moves along the whisker by `ds` and along the pole's rim by `-pole dpsi`, where `psi` is the angle of the whisker's
-/// tangent at the contact in the frame of the pole. The difference is sliding; the rest is rolling. Along `D = const`,
-/// with `J` the Jacobian of `(ln D, phi)`, `det J d(tau, load)/dphi = (-dlnD/dload, dlnD/dtau)`.
+/// The contact moves along the whisker by `ds` and along the pole's rim by `-pole dpsi`. Here, `psi` is the angle of the whisker's
+/// tangent at the contact in the frame of the pole. The difference is sliding; the rest is rolling. Along `D = const`, with `J` the
+/// Jacobian of `(ln D, phi)`, `det J d(tau, load)/dphi = (-dlnD/dload, dlnD/dtau)`.
 pub(super) fn rate(variation: &FirstVariation, rod: &Rod, tau: f64) -> f64 {
     let map = &variation.full.map;
     let along = DVec2::new(-map.by_load.x, map.by_tau.x);

@@ -55,7 +55,7 @@ impl Files {
         self.inputs.extend(id.map(|id| (path.to_owned(), id)));
     }
 
-    /// Opens the output of `option`.
+    /// Opens the output file of the command-line option `option`.
     ///
     /// # Errors
     /// If the output is an input, is inside one, is another output, or cannot be written.

@@ -39,7 +39,7 @@ pub struct DesignEnd {
     pub value: f64,
     /// Kind of the end: how the push ends at this value.
     pub kind: DetachmentKind,
-    /// Push angle of the detachment at this value, in degrees; `None` without a detachment.
+    /// Push angle of the detachment at this value of the parameter, in degrees; `None` without a detachment.
     pub push_angle_deg: Option<f64>,
 }
 
@@ -65,7 +65,7 @@ pub enum DesignError {
     /// The scene does not give the parameter of the design.
     #[error("{}: must be one of {given}, which the scene has; it has no {}", .parameter.name(), .parameter.key())]
     Lacking {
-        /// The parameter of the design.
+        /// Parameter of the design that the scene does not give.
         parameter: Parameter,
         /// Names of the parameters that the scene gives.
         given: String,
@@ -73,7 +73,7 @@ pub enum DesignError {
     /// The scene accepts no other value of the design's parameter.
     #[error("{}: the scene accepts no value but {} for {}, with all other numbers fixed", .parameter.name(), digits(*.value), .parameter.key())]
     Fixed {
-        /// The parameter of the design.
+        /// Parameter of the design that has only one accepted value.
         parameter: Parameter,
         /// The only value of the parameter that the scene accepts.
         value: f64,

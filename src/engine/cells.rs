@@ -44,10 +44,10 @@ pub struct Cell {
     /// Bound on the distance of the cell's pole from its target, in whisker lengths; NaN without a state.
     pub residual: f32,
     /// Channel values of the cell in map units, in the order of [`STATE_CHANNELS`]. They are unspecified without a solution, and NaN if
-    /// the batch wants none.
+    /// the batch requests none.
     pub values: [f32; STATE_CHANNELS.len()],
     /// Contact coordinate and signed load `f/rho^2` of the cell, `(tau, load)`, dimensionless. They are unspecified without a solution,
-    /// and NaN if the batch wants none.
+    /// and NaN if the batch requests none.
     pub point: DVec2,
 }
 
@@ -87,10 +87,10 @@ pub struct CellRun<'a> {
     /// Bounds on the distance of the pole from its target, in whisker lengths, for each cell of the run: `[cell]`; NaN without a state.
     pub residual: &'a [f32],
     /// Channel values of the run in map units: `[channel][cell]`, in the order of [`STATE_CHANNELS`]. They are unspecified without a
-    /// solution, and empty if the batch wants none.
+    /// solution, and empty if the batch requests none.
     pub values: [&'a [f32]; STATE_CHANNELS.len()],
     /// Contacts and signed loads `(tau, load)` of the run: `[cell]`. They are unspecified without a solution, and empty if the batch
-    /// wants none.
+    /// requests none.
     pub points: &'a [DVec2],
 }
 
@@ -164,15 +164,15 @@ pub struct Cells {
     pub steps: Vec<u32>,
     /// Bound on the distance of each cell's pole from its target, in whisker lengths: `[cell]`; NaN without a state.
     pub residual: Vec<f32>,
-    /// Channel values in map units: `[channel][cell]`, in the order of [`STATE_CHANNELS`]. They are unspecified without a solution;
-    /// empty if the batch wants none.
+    /// Channel values in map units: `[channel][cell]`, in the order of [`STATE_CHANNELS`]. They are unspecified without a solution; empty
+    /// if the batch requests none.
     pub values: [Vec<f32>; STATE_CHANNELS.len()],
     /// Contact and signed load `(tau, load)` of each cell: `[cell]`. They are unspecified without a solution, and empty if the batch
-    /// wants none.
+    /// requests none.
     pub points: Vec<DVec2>,
 }
 
-/// Lengths of the columns that `batch` wants: of every cell, of channel values, and of points.
+/// Lengths of the columns that `batch` requests: of every cell, of channel values, and of points.
 fn lengths(batch: &RowBatch) -> [usize; 3] {
     let cells = batch.cells();
     [true, batch.has_values, batch.has_points].map(|is_wanted| if is_wanted { cells } else { 0 })
@@ -221,7 +221,7 @@ impl Cells {
         self.outcome.is_empty()
     }
 
-    /// Returns true if every column has the length that `batch` wants.
+    /// Returns true if every column has the length that `batch` requests.
     #[must_use]
     pub fn fit(&self, batch: &RowBatch) -> bool {
         let [cells, values, points] = lengths(batch);

@@ -18,7 +18,7 @@ pub struct Column {
 /// Columns of a map on one side of the pole, by growing magnitude of the push angle.
 #[derive(Clone, Debug)]
 pub struct SideColumns {
-    /// Side of the pole.
+    /// Side of the pole on which the columns lie.
     pub side: Side,
     /// Columns of the side by growing magnitude of the push angle: `[column]`.
     pub columns: Vec<Column>,

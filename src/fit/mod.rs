@@ -1,8 +1,8 @@
 //! Fits of parameters of a scene to measured detachments, by nonlinear least squares.
 //!
-//! The misfit is the sum of squares of measured less predicted angles, each over its standard deviation. Levenberg and
-//! Marquardt's method (`least_squares`) minimises it inside the limits of the scene (`bounded`). Angles are continuous where
-//! slip-off turns into pull-off, their derivatives are not: the trust region gets over that.
+//! The misfit is the sum of squares of measured less predicted angles, each over its standard deviation. Levenberg and Marquardt's method
+//! (`least_squares`) minimises it inside the limits of the scene (`bounded`). Angles are continuous where slip-off turns into pull-off,
+//! but their derivatives are not: the trust region limits steps there.
 
 mod bounded;
 mod covariance;

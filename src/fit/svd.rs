@@ -11,7 +11,7 @@ const ORTHOGONAL: f64 = 1e-14;
 pub(super) struct Svd {
     /// Unit directions `v` in the space of columns: `[direction][column]`.
     pub directions: Vec<Vec<f64>>,
-    /// Images `A v` of the directions: `[direction][row]`; the length of an image is a singular value.
+    /// Images `A v` of the directions `v` under the decomposed matrix: `[direction][row]`; the length of an image is a singular value.
     pub images: Vec<Vec<f64>>,
 }
 

@@ -1,7 +1,7 @@
 //! Pipeline of the row batches of a run, in order. An engine solves the next ones while the threads of the pool complete and classify
 //! one.
 //!
-//! Cells are collected in order, and the audit of a batch ends before those of the next one are used, so that the bytes do not depend on
+//! Cells are collected in order, and the audit of a batch ends before the cells of the next one are used. So the bytes do not depend on
 //! the speed of a thread.
 
 use super::fallback::complete;

@@ -1,9 +1,9 @@
 //! Elastica: a straight cylinder pushed by a point, in closed form.
 //!
-//! Seen from the contact, the tangent has turned by `psi` where `psi'^2 = 2 f sin psi`, so that with lengths in
-//! `1/sqrt(2f)` the base, at the turning angle `beta`, is at `X = 2 sqrt(sin beta)`, `Y = int sqrt(sin)`, and
-//! `s = int 1/sqrt(sin)`. With `u = sqrt(sin psi)` both are lemniscatic integrals, here in Carlson's symmetric forms
-//! (B. C. Carlson, "Numerical computation of real or complex elliptic integrals", Numer. Algorithms 10, 1995).
+//! Seen from the contact, the tangent has turned by `psi` where `psi'^2 = 2 f sin psi`. Lengths are in `1/sqrt(2f)`. The base, at the
+//! turning angle `beta`, is at `X = 2 sqrt(sin beta)`, `Y = int sqrt(sin)` and the arclength `s = int 1/sqrt(sin)`. With `u = sqrt(sin
+//! psi)` both integrals are lemniscatic, here in Carlson's symmetric forms (B. C. Carlson, "Numerical computation of real or complex
+//! elliptic integrals", Numer. Algorithms 10, 1995).
 
 use crate::numerics::Bracket;
 use std::f64::consts::{FRAC_PI_2, PI};

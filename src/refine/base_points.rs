@@ -15,8 +15,8 @@ use rayon::prelude::*;
 
 /// Returns the base points of each row of a batch, `[row][base point]`, for its cells from first touch on.
 ///
-/// A row has none if it has no span from first touch, if a trajectory takes more than [`MOST_TRAJECTORY_STEPS`], or if it has fewer cells
-/// than base points.
+/// A row has no base points if it has no span from first touch, or fewer cells than base points. It also has none if a trajectory takes
+/// more than [`MOST_TRAJECTORY_STEPS`].
 #[must_use]
 pub fn base_points(batch: &RowBatch) -> Vec<Vec<BasePoint>> {
     let wanted = batch.rows.par_iter().map(|row| {

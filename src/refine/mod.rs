@@ -35,7 +35,7 @@ const STEPS_NEAR_FOLD: u32 = 30;
 /// Target of Newton's method for one cell: a guess and the pole to reach.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CellTarget {
-    /// Index of the rod and its sheet in the call.
+    /// Index of the target's rod and sheet among those of the call.
     pub rod: u32,
     /// Guess for the cell's contact coordinate `tau`, dimensionless.
     pub tau: f64,

@@ -30,8 +30,7 @@ pub struct MapOptions<'a> {
 /// sweep axis to the right and the second upwards.
 ///
 /// # Errors
-/// The map has more than two sweep axes, it lacks the channel, the channel cannot have the requested colour scale, or the map is
-/// damaged.
+/// The map has more than two sweep axes, lacks the channel, or is damaged. Or the channel cannot have the requested colour scale.
 pub fn map(map: &MapSlice, options: &MapOptions<'_>) -> Result<Picture, RenderError> {
     let grid = map.grid();
     if grid.sweep.len() > 2 {

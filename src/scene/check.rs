@@ -150,9 +150,9 @@ fn grid(scene: &SceneBuilder, [shortest, longest]: [f64; 2]) -> Result<Grid, Sce
     })
 }
 
-/// Checks the pole. Where its rim touches the whisker at rest, the centre is `D` away from the base, and `D^2` grows along the
-/// whisker `1 -+ r kappa` times as fast as the chord's square (the sign is the side). So with `r` below the
-/// whisker's smallest radius of curvature, first touch is one-to-one and the base stays outside the pole.
+/// Checks the pole. Where its rim touches the whisker at rest, the centre is at a distance `D` from the base. Along the whisker, `D^2`
+/// grows `1 -+ r kappa` times as fast as the chord's square (the sign is the side). So with `r` below the whisker's smallest radius of
+/// curvature, first touch is one-to-one and the base stays outside the pole.
 fn pole(numbers: &Numbers, whisker: &Whisker, grid: &Grid) -> Result<Pole, SceneFault> {
     let sharpest = 1.0 / whisker.sharpest_bend_per_mm();
     let nearest = grid.distance_mm[0];

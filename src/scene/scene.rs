@@ -44,7 +44,7 @@ impl SceneBuilder {
     /// Checks the description and builds the scene.
     ///
     /// # Errors
-    /// A number that is missing, out of its range or at odds with another one, by the key that it has in a scene file.
+    /// If a number is missing, out of its range, or contradicts another one. The error names its key in a scene file.
     pub fn build(mut self) -> Result<Scene, SceneError> {
         let refused = |fault| SceneError::of_fault("", "", fault);
         if let Some(taper) = self.numbers.get(Parameter::Taper) {

@@ -61,9 +61,9 @@ impl SceneNumber {
 impl SceneData {
     /// Returns warnings about numbers that look like another unit: one line each, with key, value, unit and the expected range.
     ///
-    /// These are radii below 1e-5 or above 0.1 of the length, a Young's modulus outside 0.1 to 100 GPa, and forces outside
-    /// 1e-6 to 1e9 uN. All values of sweep axes count; of measured radii the largest one does. A message names another unit
-    /// only if the number in that unit is as expected.
+    /// The numbers are radii below 1e-5 or above 0.1 of the length, moduli outside 0.1 to 100 GPa, and forces outside 1e-6 to 1e9 uN. All
+    /// values of sweep axes count; of measured radii the largest one does. A message names another unit only if the number in that unit
+    /// is as expected.
     ///
     /// The force is `E I / L^2` with the second moment of area at the base: a cylinder bends by 1 radian under twice that
     /// force across its tip, to first order.

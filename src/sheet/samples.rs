@@ -21,8 +21,8 @@ pub struct SheetSamples {
 }
 
 impl SheetSamples {
-    /// Samples the sheet from the tip down to the row `nearest` to the base, and again at a narrow spacing if the samples are not certified.
-    /// Returns `None` if some contact has no fold, or no stable state at first touch.
+    /// Samples the sheet from the tip down to the row `nearest` to the base. If the samples are not certified, it samples again at a
+    /// narrow spacing. Returns `None` if some contact has no fold, or no stable state at first touch.
     pub fn new(case: SheetCase, nearest: &Row) -> Option<Self> {
         let sampled = |spacing| {
             let contacts = ContactNodes::new(case, nearest, spacing)?;

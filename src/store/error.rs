@@ -7,10 +7,10 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum StoreError {
-    /// The file system refused to read.
+    /// The file system refused to read the file at this path.
     #[error("cannot read {file}: {1}", file = .0.display())]
     Read(PathBuf, io::Error),
-    /// The file system refused to write.
+    /// The file system refused to write the file at this path.
     #[error("cannot write {file}: {1}", file = .0.display())]
     Write(PathBuf, io::Error),
     /// The map cannot be expressed as EXR, such as an atlas wider than 2^30 pixels.

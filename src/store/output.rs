@@ -39,8 +39,8 @@ impl Output {
     /// Creates an output for the file at `path`; until it is finished, its bytes are in one of the temporary `files`.
     ///
     /// # Errors
-    /// `path` leads to a folder, or to a file that is read-only or whose owner cannot be kept, or through a link that must not be
-    /// followed; or its folder does not exist or is not writable.
+    /// `path` leads to a folder, to a read-only file, or to a file whose owner cannot be kept. Or it leads through a link that must not
+    /// be followed, or its folder does not exist or is not writable.
     pub fn create(path: &Path, files: &TemporaryFiles) -> io::Result<Self> {
         Ok(Self(match OutputTarget::of(path)? {
             OutputTarget::Regular(target, replaced) => Destination::Regular {

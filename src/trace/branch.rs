@@ -94,8 +94,8 @@ impl Branch {
         &self.level.row
     }
 
-    /// Returns `count` points of the branch, at least 3, with the fold as one of them. They are evenly spaced on each side of the fold,
-    /// in push angle, contact angle (both in radians) and arclength of the contact (in whisker lengths).
+    /// Returns `count` points of the branch, at least 3, with the fold as one of them. They are evenly spaced on each side of the fold.
+    /// Lengths are measured in push angle and contact angle (radians), and arclength of the contact (whisker lengths).
     ///
     /// # Errors
     /// The corrector fails at a point between two nodes of the continuation.
@@ -168,7 +168,7 @@ impl Branch {
         stable.iter().map(sliding).chain(unstable).collect()
     }
 
-    /// Returns the state `full` of the branch, with its contact at `tau` and the push angle `push` in radians, in mm, deg, uN and nN m.
+    /// Returns the state `full` of the branch in mm, deg, uN and nN m. Its contact is at `tau`, and its push angle is `push` in radians.
     pub(super) fn reading(&self, tau: f64, full: &FullState, push: f64) -> Reading {
         let LevelCurve { rod, row, .. } = &self.level;
         Reader::new(self.units, rod).read(tau, full, row.touch, push)

@@ -80,11 +80,11 @@ row! {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum NoCorner {
-    /// Every push that begins ends at the fold, as with a perfect cone and with whiskers that bend away from the pole.
+    /// No corner exists: every push that begins ends at the fold, as with a perfect cone and with whiskers that bend away from the pole.
     AlwaysSlipsOff,
-    /// Every push that begins ends at the tip.
+    /// No corner exists: every push that begins ends at the tip.
     AlwaysPullsOff,
-    /// The fold with the contact at the tip, or an end next to it, was not found.
+    /// No corner was found: the fold with the contact at the tip, or an end next to it, is missing.
     NotFound,
 }
 

@@ -1,7 +1,7 @@
 //! Patches: the expansions of many rows of one whisker side as a tensor.
 //!
-//! Rows that end at the fold are a patch in the logarithm of `tau` at first touch, rows that end at the tip in the load there. In these
-//! coordinates every number is analytic, the fold and the turning point of the distance along the tip included.
+//! For rows that end at the fold, the coordinate of a patch is the logarithm of `tau` at first touch. For rows that end at the tip, it is
+//! the load there. In these coordinates every number is analytic, the fold and the turning point of the distance along the tip included.
 
 use super::certificate::{Check, bounds};
 use super::row::{ExactRow, FUNCTIONS, RowExpansion, Weights, larger, largest, value_weights};

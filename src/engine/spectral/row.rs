@@ -143,8 +143,8 @@ pub struct RowExpansion {
 }
 
 impl RowExpansion {
-    /// Shortens the expansions to what rounding leaves. Returns `None` if a coefficient is not finite, if the push angle does not grow along
-    /// them, or if they end elsewhere than the row, whose end is computed apart.
+    /// Shortens the expansions to what rounding leaves. Returns `None` if a coefficient is not finite, or if the push angle does not grow
+    /// along them. It also returns `None` if they do not end at the row's end, which is computed independently.
     pub fn new(
         mut functions: Chebyshev<FUNCTIONS>,
         weights: &Weights,

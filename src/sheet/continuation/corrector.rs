@@ -7,7 +7,7 @@ use crate::sheet::continuation::level_curve::LevelCurve;
 use crate::shooting::{FirstVariation, FullState};
 use glam::DVec2;
 
-/// Maximum number of trajectories for each point.
+/// Maximum number of the corrector's trajectories for each point.
 pub const CORRECTOR_TRAJECTORIES: u32 = 12;
 
 /// Step length, in parts of the scale and in `ln D`, whose end is extrapolated if the point may miss the curve by [`NODE_MISS`]. The

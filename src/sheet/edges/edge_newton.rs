@@ -12,7 +12,7 @@ use glam::DVec2;
 /// Newton problem for one point of an edge.
 #[derive(Clone, Copy, Debug)]
 pub struct EdgeProblem<'a> {
-    /// Whisker and pole of the problem.
+    /// Whisker and pole of the edge problem.
     pub rod: &'a Rod,
     /// Edge of the sheet on which the point lies.
     pub edge: Edge,

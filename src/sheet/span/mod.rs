@@ -79,7 +79,7 @@ impl RowSpan {
     /// Creates the row span through states of a lattice.
     ///
     /// A row leaves the lattice between two loads. Where the states end before first touch or before the fold, the span is extended to
-    /// the row parameters of the next load, `beyond`, unless the push angle turns in between.
+    /// the row parameters of the next load, `beyond`. It is not extended if the push angle turns in between.
     pub fn on_lattice(sign: f64, nodes: Vec<SpanNode>, beyond: [Option<f64>; 2]) -> Self {
         let mut span = Self::new(sign, nodes, PUSH_MARGIN);
         let count = span.ends.len();

@@ -3,7 +3,7 @@
 use crate::numerics::newton_form::{Polynomial, RootProblem};
 use crate::numerics::{Lanes, SimdTask, Unit, WIDTH};
 
-/// One number for each lane.
+/// Numbers of all lanes: `[lane]`.
 pub type LaneNumbers = [f64; WIDTH];
 
 /// Iterations of Newton's method. The last step of each lane shows if they suffice.

@@ -18,8 +18,8 @@ const BEYOND_TIP: f64 = 1.5;
 /// Demand of one piece of a profile for contacts of one reach, dimensionless. It only counts steps, so `f32` suffices.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Demand {
-    /// Part of the bending to resolve, dimensionless. It is the root of the piece's share in the compliance times its share in the length to
-    /// the contact, and at least half of its share in the compliance. On a uniform rod it is about the share in the length.
+    /// Part of the bending to resolve, dimensionless. It is the root of the product of the piece's shares in the compliance and in the
+    /// length to the contact. It is at least half of its share in the compliance. On a uniform rod it is about the share in the length.
     pub bending: f32,
     /// Roughness of the piece, dimensionless: the change of `ln radius` over the piece, times the fifth root of the product of its two
     /// shares. Collocation at five nodes depends on the compliance to fifth order (`benches/NOTES.md`).

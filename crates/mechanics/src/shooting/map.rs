@@ -3,8 +3,8 @@
 
 use glam::DVec2;
 
-/// Longest Newton step of the shooting map, relative to the arclength `s` of the contact and to the load plus `1/s^2`, the load's scale
-/// on the sheet.
+/// Longest Newton step of the shooting map, relative to the contact's arclength `s` and to the load plus `1/s^2`. The latter is the
+/// load's scale on the sheet.
 pub const LONGEST_STEP: f64 = 0.25;
 
 /// Shortens a Newton `step` in `(tau, load)` as a whole to [`LONGEST_STEP`]. Returns it with its relative length before. Near a fold the

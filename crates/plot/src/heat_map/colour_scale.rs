@@ -63,7 +63,7 @@ impl ColourScale {
     /// Chooses a colour scale for the summarised values.
     ///
     /// # Errors
-    /// The range is not two finite numbers in increasing order, or the scale is logarithmic and its range begins at or below 0, or no
+    /// The range is not two finite numbers in increasing order. Or the scale is logarithmic, and its range begins at or below 0, or no
     /// value is above 0.
     pub fn new(summary: &ValueSummary, options: ScaleOptions) -> Result<Self, ScaleError> {
         let log = options.log;

@@ -150,7 +150,7 @@ impl Picture {
         })
     }
 
-    /// Returns the width and height of the picture in pixels.
+    /// Returns the size of the picture in pixels: `[width, height]`.
     #[must_use]
     pub fn pixels(&self) -> [usize; 2] {
         self.size

@@ -109,8 +109,8 @@ impl Rest {
         (s, point - self.pole * tangent.perp())
     }
 
-    /// Returns the centre of the pole when it first touches the whisker at `distance` from the base, both in whisker lengths, in the
-    /// frame of the base.
+    /// Returns the centre of the pole when it first touches the whisker at `distance` from the base. Both are in whisker lengths, the
+    /// centre in the frame of the base.
     #[must_use]
     pub fn pole_at_distance(&self, distance: f64) -> DVec2 {
         self.touch_at_distance(distance).1

@@ -37,7 +37,7 @@ pub struct InitialCondition<'a> {
 /// Integration method of trajectories: the resolution, and effects that every kernel has.
 #[derive(Clone, Copy, Debug)]
 pub struct Method {
-    /// Resolution of the integration.
+    /// Resolution of the method: it determines the integration steps.
     pub resolution: Resolution,
     /// Effects that every kernel has beside those of the rod.
     pub effects: Effects,

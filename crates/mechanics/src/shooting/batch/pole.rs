@@ -1,8 +1,8 @@
 //! Position of the pole in the frame of the base, with derivatives, in lanes.
 //!
-//! Let the complex number `w` be the vector from the base to the pole's centre in the axes of the contact, and `theta` the angle of
-//! the base's tangent. `G = ln w - i theta` has the real part `ln D` and the imaginary part `phi`. Its derivatives need no
-//! trigonometry: `G_i = w_i/w - i theta_i`, `G_ij = w_ij/w - w_i w_j/w^2 - i theta_ij`.
+//! Let the complex number `w` be the vector from the base to the pole's centre in the axes of the contact. Let `theta` be the angle of
+//! the base's tangent. `G = ln w - i theta` has the real part `ln D` and the imaginary part `phi`. Its derivatives need no trigonometry:
+//! `G_i = w_i/w - i theta_i`, `G_ij = w_ij/w - w_i w_j/w^2 - i theta_ij`.
 
 use crate::numerics::{Lanes, Real, WIDTH};
 use crate::shooting::ShootingMap;
