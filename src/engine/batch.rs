@@ -19,8 +19,9 @@ pub const MOST_TRAJECTORY_STEPS: u32 = 512;
 /// Base points per rayon task.
 const CHUNK: usize = 64;
 
-/// Numbers of a state that are expanded along a row: `[push angle, tau, direction, ...]`. The direction is that of the resting whisker's
-/// point at the distance of the contact. The last four are the derivatives of `(ln D, phi)` by `tau` and by load.
+/// Seven numbers of a state that are expanded along a row. They are the push angle (radians), `tau`, a direction (radians), and the
+/// derivatives of `(ln D, phi)` by `tau` and by load. The direction is that of the resting whisker's point at the distance of the
+/// contact.
 pub type RowTerms = [f64; 7];
 
 /// Base point: an exact state of a row, with the Taylor expansion of the row around it.

@@ -85,7 +85,7 @@ pub enum FitError {
     Held {
         /// Free parameter without a range.
         parameter: Parameter,
-        /// The least and the greatest value that the scene allows, in the parameter's unit.
+        /// Values `[least, greatest]` of the parameter that the scene allows, in its unit.
         range: [f64; 2],
     },
     /// The scene refuses values of the fit.

@@ -16,7 +16,7 @@ use rayon::prelude::*;
 /// Target of a search for a state of a row at a row parameter.
 #[derive(Clone, Copy, Debug)]
 pub struct RowState<'a> {
-    /// Sheet of the whisker side on which the state lies.
+    /// Stable sheet on which the state lies.
     pub sheet: &'a Sheet,
     /// Index of the state's row in the sheet.
     pub row: usize,

@@ -37,9 +37,9 @@ pub enum StoreError {
         path: PathBuf,
         /// Name of the attribute in which store and run differ.
         name: &'static str,
-        /// Value of the attribute in the store.
+        /// Value of the differing attribute in the store.
         there: String,
-        /// Value of the attribute in this run.
+        /// Value of the differing attribute in this run.
         here: String,
     },
     /// The folder has blocks of another store, whose metadata are missing or damaged.

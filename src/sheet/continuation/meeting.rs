@@ -26,11 +26,11 @@ pub struct Chord<'a> {
 
 /// Edge of the sheet between two nodes of a level curve, if any.
 pub enum Meeting {
-    /// No edge lies between the nodes.
+    /// No edge of the sheet lies between the nodes of the level curve.
     None,
-    /// First edge between the nodes, and the node on it.
+    /// First edge of the sheet between the nodes of the level curve, and the node on it.
     Edge(Edge, CurveNode),
-    /// An edge lies between the nodes, but Newton's method has not found it from there.
+    /// An edge of the sheet lies between the nodes of the level curve, but Newton's method has not found it from there.
     Unclear,
 }
 

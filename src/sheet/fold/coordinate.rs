@@ -61,5 +61,6 @@ pub const STENCIL: usize = 6;
 /// Number of terms of a [`Hermite`] polynomial: a value and a slope for each node.
 pub const TERMS: usize = 2 * STENCIL;
 
-/// Function of the contact as a polynomial of the number of nodes, whole or fractional, from the first node of a stencil.
+/// Polynomial of a function of the contact between contact nodes. Its variable is the number of nodes, whole or fractional, from the
+/// first node of a stencil.
 pub type Hermite = Polynomial<TERMS>;

@@ -85,7 +85,7 @@ pub enum Primitive {
     Polygon(Vec<[f64; 2]>, Rgb),
     /// A filled circle: centre `[x, y]`, radius and colour, and the pen of its outline; `None` without an outline.
     Circle([f64; 2], f64, Rgb, Option<Pen>),
-    /// A line of text, its point `[x, y]`, its font size, and its anchor.
+    /// A text of one line: its point `[x, y]`, its font size, and its anchor.
     Text(String, [f64; 2], f64, Anchor),
     /// A raster of pixels: upper left corner and size in pixels, all inside the picture, and their colours row by row.
     Raster([usize; 2], [usize; 2], Vec<Rgb>),

@@ -26,7 +26,7 @@ pub trait Lanes: Real {
     /// Half as many lanes of the same unit, in one register: faster where the values in flight do not fit into all registers.
     type Narrow: Lanes;
 
-    /// Number of lanes of the type.
+    /// Number of lanes of the SIMD type.
     const LANES: usize;
 
     /// Loads the first numbers of an array into the lanes.

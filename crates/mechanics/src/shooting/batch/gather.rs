@@ -11,7 +11,7 @@ use crate::shooting::{
 /// One initial condition for each lane.
 pub type Conditions<'a> = [&'a InitialCondition<'a>; WIDTH];
 
-/// Returns one number of each condition. (`map` of an array is not inlined into functions for a SIMD unit.)
+/// Returns one number of each initial condition: `[lane]`. (`map` of an array is not inlined into functions for a SIMD unit.)
 #[inline(always)]
 pub fn numbers(conditions: &Conditions, number: impl Fn(&InitialCondition) -> f64) -> [f64; WIDTH] {
     let mut numbers = [0.0; WIDTH];
@@ -21,7 +21,7 @@ pub fn numbers(conditions: &Conditions, number: impl Fn(&InitialCondition) -> f6
     numbers
 }
 
-/// Returns one number of each condition, in lanes.
+/// Returns one number of each initial condition, in lanes.
 #[inline(always)]
 pub fn lanes<T: Lanes>(conditions: &Conditions, number: impl Fn(&InitialCondition) -> f64) -> T {
     T::pack(numbers(conditions, number))
