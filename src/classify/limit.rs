@@ -100,7 +100,7 @@ struct LimitSegment {
     /// Push angles of the knots, in radians.
     from: f64,
     to: f64,
-    /// Whether the second knot is a fold.
+    /// True if the second knot is a fold.
     is_to_fold: bool,
     /// Slid distance, with a value and a slope at each knot.
     cubic: Polynomial<4>,

@@ -34,11 +34,11 @@ impl PushSpan {
 /// Boundary of one row: the push angles that lie on the stable sheet.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RowBoundary {
-    /// Whether the whisker at rest reaches the pole. The first span then begins at first touch.
+    /// True if the whisker at rest reaches the pole. The first span then begins at first touch.
     touches: bool,
     /// Spans, first the one from first touch, if any; `None` if the crossings contradict each other.
     spans: Option<Vec<PushSpan>>,
-    /// Whether `spans` holds all spans of the row.
+    /// True if `spans` holds all spans of the row.
     is_complete: bool,
 }
 

@@ -41,7 +41,7 @@ pub struct Pipeline<'a, 'e> {
     queue: VecDeque<(Arc<RowBatch>, bool)>,
     worker: Worker<'e>,
     cpu: Cpu,
-    /// What batches carry for the engine, if there is one.
+    /// Data that batches carry for the engine, if there is one.
     input: Option<EngineInput>,
     summary: Summary,
 }

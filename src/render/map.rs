@@ -104,7 +104,7 @@ fn codes(
     Ok((Shading::Codes { fills, other }, legend))
 }
 
-/// Whether any panel shows a stretch of the detachment boundary.
+/// Returns true if any panel shows a stretch of the detachment boundary.
 fn has_boundary(map: &MapSlice) -> Result<bool, RenderError> {
     if !map.channels().contains(&"margin_deg") {
         return Ok(false);
@@ -163,7 +163,7 @@ fn quantities(
     Ok((Shading::Quantities(scale), marks.into_iter().collect()))
 }
 
-/// Whether the states in `channel` include some whose friction is not the assumed one.
+/// Returns true if the states in `channel` include some whose friction is not the assumed one.
 fn has_marks(map: &MapSlice, channel: &str) -> Result<bool, RenderError> {
     let is_marked = STATE_CHANNELS.contains(&channel) && map.channels().contains(&"status");
     Ok(is_marked && map.codes("status")?.into_iter().any(is_mark))

@@ -119,7 +119,7 @@ fn euler_spiral(
     Ok(Some(EulerSpiral { per_mm, per_mm2 }))
 }
 
-/// Whether the distance from the base grows along a spiral of curvature `k0 + k1 s`, by the midpoint rule.
+/// Returns true if the distance from the base grows along a spiral of curvature `k0 + k1 s`, by the midpoint rule.
 fn chord_grows(k0: f64, k1: f64) -> bool {
     let step = 1.0 / f64::from(CHORDS);
     let mut point = DVec2::ZERO;

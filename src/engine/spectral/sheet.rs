@@ -36,7 +36,7 @@ const STATES: [usize; 2] = [32, 40];
 /// Places at which a row that is expanded alone is checked.
 const ROW_CHECKS: [f64; 2] = [0.237, 0.761];
 
-/// Where the expansions of a row are.
+/// Place of the expansions of a row.
 #[derive(Clone, Debug)]
 enum RowSource {
     /// In a patch with this index.

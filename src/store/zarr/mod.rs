@@ -42,7 +42,7 @@ pub struct ZarrStore {
     path: PathBuf,
     attributes: Map<String, Value>,
     identity: StoreIdentity,
-    /// Whether the store may exist when it is begun.
+    /// True if the store may exist when it is begun.
     may_exist: bool,
     blocks: Blocks,
     arrays: Vec<ZarrArray>,

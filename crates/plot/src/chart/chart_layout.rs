@@ -13,7 +13,7 @@ const AMONG: [f64; 2] = [760.0, 520.0];
 const SIDES_AMONG: [f64; 2] = [116.0, 40.0];
 /// Room above where the chart has no title.
 const ABOVE: f64 = 24.0;
-/// From one line of the caption to the next.
+/// Distance between lines of the caption, in pixels.
 const CAPTION_LINE: f64 = 28.0;
 
 /// A chart with the positions of its title, caption and plots, in pixels.

@@ -8,17 +8,21 @@ use crate::picture::palette::{BLANK, BLUE, GREY, INK, Rgb};
 use crate::picture::{Anchor, Area, Pen, Picture, font};
 use glam::DVec2;
 
-/// Radius of a point of a line that has no neighbour, and of the smallest disc.
+/// Radius of a point of a line that has no neighbour, in pixels.
 const POINT: f64 = 5.0;
+/// Radius of the smallest disc, in pixels.
 const DISC: f64 = 3.0;
 /// Side of an inset, as a fraction of the height of the body.
 const INSET: f64 = 0.5;
-/// From a point to the middle of the text above it, and from an arrow to the text behind it.
+/// Distance of a text's middle above its point, in pixels.
 const ABOVE: f64 = 20.0;
+/// Distance of a text behind its arrow, in pixels.
 const BEHIND: f64 = 6.0;
-/// Width of arrows, length of their heads, and half the angle between the strokes of a head.
+/// Width of arrows, in pixels.
 const ARROW: f64 = 2.5;
+/// Length of the heads of arrows, in pixels.
 const HEAD: f64 = 13.0;
+/// Half the angle between the strokes of an arrow's head, in radians.
 const HALF_ANGLE: f64 = 0.45;
 
 pub const fn colour(ink: Ink) -> Rgb {

@@ -8,11 +8,11 @@ use crate::frame::ticks::{self, Tick};
 use crate::picture::font::{self, fitted};
 use crate::picture::{Anchor, Area, Picture};
 
-/// Largest width and height of all panels of a contact sheet together.
+/// Largest width and height of all panels of a contact sheet together, in pixels.
 const SHEET: [f64; 2] = [1720.0, 1500.0];
-/// Largest width and height of a panel of a contact sheet.
+/// Largest width and height of a panel of a contact sheet, in pixels.
 const PANEL: f64 = 560.0;
-/// From one note to the next.
+/// Distance between notes, in pixels.
 const NOTE: f64 = 34.0;
 
 /// A heat map with the positions of its panels, in pixels.
@@ -21,8 +21,9 @@ pub struct HeatMapLayout {
     counts: [usize; 2],
     /// Width and height of all panels together.
     size: [f64; 2],
-    /// From one panel to the next, and the gap between them.
+    /// Distance from one panel to the next along x and y, in pixels.
     pitch: [f64; 2],
+    /// Gap between panels, in pixels.
     gap: f64,
     axes: Axes,
     /// Notes on the axes of the panels, where the axes of the picture are those of the contact sheet.

@@ -77,7 +77,7 @@ pub struct PanelCells {
     pub curves: Vec<Vec<[f64; 2]>>,
 }
 
-/// How the cells of a heat map are coloured.
+/// Colouring of the cells of a heat map: codes or quantities.
 #[derive(Clone, Debug)]
 pub enum Shading {
     /// Cells contain codes: whole numbers from 0, each with its fill.

@@ -128,7 +128,7 @@ pub fn polygon(corners: &[[f64; 2]], [width, height]: [usize; 2]) -> Vec<([usize
     pixels
 }
 
-/// Where the sides of a polygon cross a horizontal line, from left to right.
+/// Points at which the sides of a polygon cross a horizontal line, from left to right.
 fn crossings(corners: &[[f64; 2]], at: f64) -> Vec<f64> {
     let next = corners.iter().cycle().skip(1);
     let sides = corners.iter().zip(next);
