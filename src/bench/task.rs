@@ -89,7 +89,7 @@ pub struct Errors {
     pub angle_deg: Spread,
     /// Error of the contact's arclength, in whisker lengths. Near the fold it is the square root of the angle's.
     pub arc_length: Spread,
-    /// Error of the force, dimensionless: relative to the force plus the one of `q = 1`.
+    /// Error of the force, dimensionless: over the sum of the force and the force of a load with `q = 1`.
     pub force: Spread,
 }
 

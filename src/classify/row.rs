@@ -3,7 +3,8 @@
 use super::{Regime, Status};
 use crate::sheet::{Crossing, Edge};
 
-/// Push angles closer to a boundary than this, in radians, count as on it. Both verdicts are correct there.
+/// Tie: largest distance of a push angle from a boundary, in radians, at which the angle counts as on it. Both verdicts are correct
+/// there.
 pub const TIE: f64 = 1e-10;
 
 /// Push span: interval of push angles (magnitudes, in radians) on the stable sheet, at one distance.

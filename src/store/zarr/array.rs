@@ -30,7 +30,7 @@ impl ValueKind {
         }
     }
 
-    /// Returns the size of a value in bytes.
+    /// Returns the size in bytes of a value of this kind.
     pub(super) const fn size(self) -> usize {
         match self {
             Self::Code => 1,

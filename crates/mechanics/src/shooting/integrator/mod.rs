@@ -16,7 +16,7 @@ pub trait Integrator: Copy + Send + Sync + 'static {
     /// Nodes of the method's stages in the unit step, `[stage]`. The last ones are at its end.
     const NODES: [f64; STAGES];
 
-    /// Returns the state one step after `state` at the section `from`.
+    /// Returns the state of the rod one integration step after `state` at the section `from`.
     fn step<T: Real, I: Intrinsic<T>, C: Material<T>, S: Sensitivity<T>>(
         system: &RodSystem<T, I, C>,
         scales: &Scales<T>,
