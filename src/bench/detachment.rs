@@ -24,7 +24,7 @@ pub struct Detachments {
     pub angle_deg: Spread,
 }
 
-/// Measures the detachments of a scene at every resolution of the ladder.
+/// Measures the detachments of a scene at every resolution of the ladder, `[rung]`.
 pub fn measure(scene: &Scene, runs: usize) -> Vec<Detachments> {
     let sides = whisker_sides(scene);
     let curves = |resolution: Resolution| -> Vec<Detachment> {

@@ -22,7 +22,7 @@ pub struct Candidate {
     pub precision: Precision,
 }
 
-/// Returns the GPU engines to measure: every adapter in `f32` and, if supported, in `f64`.
+/// Returns the GPU engines to measure, `[engine]`: every adapter in `f32` and, if supported, in `f64`.
 pub fn candidates() -> Vec<Candidate> {
     let all = adapters();
     let mut candidates = Vec::new();

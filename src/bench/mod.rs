@@ -145,11 +145,11 @@ pub struct Report {
     pub states: usize,
     /// Number of timed runs of each measurement.
     pub runs: usize,
-    /// Engines that were measured.
+    /// Engines that were measured, `[engine]`.
     pub engines: Vec<BenchEngine>,
-    /// Measurements of the report, engine by engine.
+    /// Measurements of the report, engine by engine, `[measurement]`.
     pub rows: Vec<Measurement>,
-    /// Measurements of detachment curves, from coarse to fine steps.
+    /// Measurements of detachment curves, from coarse to fine steps, `[rung]`.
     pub detachments: Vec<Detachments>,
     /// Number of cells of each whole map.
     pub map_cells: usize,

@@ -78,7 +78,7 @@ impl RowBoundary {
         self.spans().iter().find(|span| span.contains(push))
     }
 
-    /// Returns the push spans of the row, first the one from first touch, if any; empty if the boundary is unknown.
+    /// Returns the push spans of the row, first the one from first touch, if any, `[span]`; empty if the boundary is unknown.
     #[must_use]
     pub fn spans(&self) -> &[PushSpan] {
         self.spans.as_deref().unwrap_or_default()

@@ -56,7 +56,7 @@ impl MapFormat {
 /// Approximate number of cells of the packed sample. It has many lines, because denser cells pack better.
 const PACKED_CELLS: usize = 1 << 18;
 
-/// Estimates the cost of the files of `plan` in these `formats`, from a packed sample.
+/// Estimates the cost of the files of `plan` in these `formats`, from a packed sample, `[format]`.
 pub fn files(scene: &Scene, plan: &Plan, formats: &[MapFormat]) -> Result<Vec<FileCost>, Failure> {
     let whiskers = scene.thinned(1, SAMPLE_VALUES).whisker_count();
     let lines = (PACKED_CELLS / whiskers).isqrt().max(1);

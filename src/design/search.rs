@@ -80,8 +80,8 @@ impl DesignSearch<'_> {
         [before, after]
     }
 
-    /// Returns the values of the parameter, in its unit, at which a push ends at the target. They lie within a `piece` where every end
-    /// has the target's kind.
+    /// Returns the values of the parameter, in its unit, at which a push ends at the target, `[solution]`. They lie within a `piece`
+    /// where every end has the target's kind.
     pub fn solutions(&self, piece: &[DesignEnd]) -> Vec<f64> {
         let mut places: Vec<[f64; 2]> = piece
             .iter()

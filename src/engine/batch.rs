@@ -68,7 +68,7 @@ pub struct BatchRow {
     pub side: usize,
     /// Index of the row in the side's sheet.
     pub row: usize,
-    /// Cells of the row to solve: growing, disjoint ranges of the side's columns.
+    /// Cells of the row to solve, `[range]`: growing, disjoint ranges of the side's columns.
     pub cells: Vec<Range<usize>>,
     /// Index of the row's first cell among the cells of the batch.
     pub first: usize,
@@ -104,9 +104,9 @@ pub struct RowBatch {
     pub has_values: bool,
     /// True if the engine is to return `(tau, load)` of the cells.
     pub has_points: bool,
-    /// Base points of all rows of the batch; none before [`RowBatch::with_base_points`].
+    /// Base points of all rows of the batch, `[base_point]`; none before [`RowBatch::with_base_points`].
     pub base_points: Vec<BasePoint>,
-    /// Starts of the integration steps of the base points' trajectories, one trajectory after the other.
+    /// Starts of the integration steps of the base points' trajectories, one trajectory after the other, `[step]`.
     pub starts: Vec<StepStart>,
 }
 

@@ -43,8 +43,8 @@ pub struct Cell {
     pub steps: u32,
     /// Bound on the distance of the cell's pole from its target, in whisker lengths; NaN without a state.
     pub residual: f32,
-    /// Channel values of the cell in map units, in the order of [`STATE_CHANNELS`]. They are unspecified without a solution, and NaN if
-    /// the batch requests none.
+    /// Channel values of the cell in map units, in the order of [`STATE_CHANNELS`], `[channel]`. They are unspecified without a solution,
+    /// and NaN if the batch requests none.
     pub values: [f32; STATE_CHANNELS.len()],
     /// Contact coordinate and signed load `f/rho^2` of the cell, `(tau, load)`, dimensionless. They are unspecified without a solution,
     /// and NaN if the batch requests none.

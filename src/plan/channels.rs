@@ -4,7 +4,7 @@ use crate::input::did_you_mean;
 use std::fmt;
 use std::str::FromStr;
 
-/// Names of the channels of a state.
+/// Names of the channels of a state, `[channel]`.
 pub const STATE_CHANNELS: [&str; 9] = [
     "arc_length_mm",
     "contact_angle_deg",
@@ -46,7 +46,7 @@ pub enum Channel {
 }
 
 impl Channel {
-    /// All channels of a map, those of a state in the order of [`STATE_CHANNELS`] first.
+    /// All channels of a map, those of a state in the order of [`STATE_CHANNELS`] first, `[channel]`.
     pub const ALL: [Self; STATE_CHANNELS.len() + 2] = [
         Self::ArcLength,
         Self::ContactAngle,

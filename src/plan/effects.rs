@@ -27,7 +27,7 @@ pub enum Cost {
     Taper,
 }
 
-/// Returns every effect of `scene`; `kernels` are the effects in the kernels of the run.
+/// Returns every effect of `scene`, `[effect]`; `kernels` are the effects in the kernels of the run.
 #[must_use]
 pub fn effects(scene: &Scene, kernels: Effects) -> Vec<Effect> {
     let SceneData { whisker, pole, .. } = &**scene;

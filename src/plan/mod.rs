@@ -50,11 +50,11 @@ pub struct Plan {
     pub whiskers: usize,
     /// Integration method of the run: effects of the scene, and resolution of the refinement.
     pub method: Method,
-    /// Sides of the whisker that the push angles of the run need; first touch belongs to CB.
+    /// Sides of the whisker that the push angles of the run need, `[side]`; first touch belongs to CB.
     pub sides: Vec<Side>,
     /// Number of cells of all panels of the run.
     pub cells: usize,
-    /// Whiskers that the run computes, as ranges of their indices in the sweep.
+    /// Whiskers that the run computes, as ranges of their indices in the sweep, `[part]`.
     pub parts: Vec<Range<usize>>,
     /// Channels that the run computes.
     pub channels: Channels,
@@ -173,7 +173,7 @@ impl Plan {
         Ok(Self { bytes, ..plan })
     }
 
-    /// Returns the whisker sides that the push angles of `scene` need.
+    /// Returns the whisker sides that the push angles of `scene` need, `[side]`.
     #[must_use]
     pub fn sides(scene: &Scene) -> Vec<Side> {
         let pushes = &scene.grid.push_angle_deg;

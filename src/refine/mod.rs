@@ -151,8 +151,8 @@ fn refine_chunk(method: Method, sheets: &[&Sheet], targets: &[CellTarget], cells
     }
 }
 
-/// Returns the targets of the cells of `sheet` at those of the signed push angles, in degrees, that are on its side. They are sorted by
-/// row, then by magnitude of the push angle; `rod` is the index of the sheet's rod.
+/// Returns the targets of the cells of `sheet` at those of the signed push angles, in degrees, that are on its side, `[target]`. They are
+/// sorted by row, then by magnitude of the push angle; `rod` is the index of the sheet's rod.
 #[must_use]
 pub fn cell_targets(sheet: &Sheet, rod: u32, pushes_deg: &[f64]) -> Vec<CellTarget> {
     let sign = sheet.side.sign();

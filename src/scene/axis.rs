@@ -21,7 +21,7 @@ pub(super) const NOT_GROWING: &str = "must be greater than the value before it";
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub enum AxisValues {
-    /// List of all values of an axis, in the axis' unit.
+    /// List of all values of an axis, in the axis' unit, `[value]`.
     List(Vec<f64>),
     /// Range of `count` values of an axis from `from` to `to`; a range of one value needs no `to`.
     Range {
@@ -84,7 +84,8 @@ impl AxisValues {
         }
     }
 
-    /// Returns the values of the axis `key`, in its unit, if they are within the limits, strictly increasing, and at least one.
+    /// Returns the values of the axis `key`, in its unit, if they are within the limits, strictly increasing, and at least one,
+    /// `[value]`.
     pub(super) fn checked(&self, key: &str, limits: &NumberLimits) -> Result<Vec<f64>, SceneFault> {
         match self {
             Self::List(list) if (1..=MOST_VALUES).contains(&list.len()) => {

@@ -18,7 +18,7 @@ pub struct Grid {
     pub push_angle_deg: Vec<f64>,
     /// Distances from the base to the contact at first touch, in millimetres: `[distance]`.
     pub distance_mm: Vec<f64>,
-    /// Sweep axes, along which whiskers differ, in the order of the scene. Of two axes, a curvature is the second.
+    /// Sweep axes, along which whiskers differ, in the order of the scene, `[axis]`. Of two axes, a curvature is the second.
     pub sweep: Vec<SweepAxis>,
 }
 
@@ -27,12 +27,12 @@ pub struct Grid {
 pub struct SweepAxis {
     /// Parameter that differs along the sweep axis.
     pub parameter: Parameter,
-    /// Values of the parameter along the sweep axis, in its unit.
+    /// Values of the parameter along the sweep axis, in its unit, `[value]`.
     pub values: Vec<f64>,
 }
 
 impl Grid {
-    /// Returns the values of the sweep axis of `parameter`, in its unit; `None` without such an axis.
+    /// Returns the values of the sweep axis of `parameter`, in its unit, `[value]`; `None` without such an axis.
     #[must_use]
     pub fn axis(&self, parameter: Parameter) -> Option<&[f64]> {
         let mut axes = self.sweep.iter();

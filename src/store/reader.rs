@@ -17,9 +17,9 @@ use std::path::{Path, PathBuf};
 /// Values of a channel: `[distance][push_angle]` of one panel, or of several panels one after the other.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ChannelValues {
-    /// Quantities of a channel in map units; NaN where there is none.
+    /// Quantities of a channel in map units, `[cell]`; NaN where there is none.
     F32(Vec<f32>),
-    /// Codes or counts of a channel.
+    /// Codes or counts of a channel, `[cell]`.
     U32(Vec<u32>),
 }
 
@@ -114,7 +114,7 @@ impl StoredMap {
         header::parse(&self.meta, name).map_err(StoreError::at(&self.path, StoreError::NotAMap))
     }
 
-    /// Returns the names of all channels of the map, part by part.
+    /// Returns the names of all channels of the map, part by part, `[channel]`.
     #[must_use]
     pub fn channels(&self) -> Vec<&'static str> {
         let parts = layout::parts(self.channels).into_iter();

@@ -151,7 +151,7 @@ impl MapSlice {
             .collect()
     }
 
-    /// Returns the names of all channels of the slice.
+    /// Returns the names of all channels of the slice, `[channel]`.
     #[must_use]
     pub fn channels(&self) -> Vec<&'static str> {
         self.stored.channels()
@@ -187,7 +187,7 @@ impl MapSlice {
         })
     }
 
-    /// Returns names and values of all sweep axes of the whole map or store, for a whisker of the slice.
+    /// Returns names and values of all sweep axes of the whole map or store, for a whisker of the slice, `[axis]`.
     #[must_use]
     pub fn place(&self, whisker: usize) -> Vec<(&'static str, f64)> {
         let place = self.stored.grid().place(self.in_whole(whisker));
@@ -197,7 +197,7 @@ impl MapSlice {
             .collect()
     }
 
-    /// Returns the sizes of the axes of the slice that are not fixed: the sweep axes, then distance and push angle.
+    /// Returns the sizes of the axes of the slice that are not fixed, `[axis]`: the sweep axes, then distance and push angle.
     #[must_use]
     pub fn shape(&self) -> Vec<usize> {
         let sweep = self.grid.sweep.iter().map(|axis| axis.values.len());

@@ -52,7 +52,7 @@ impl MapSource {
         }
     }
 
-    /// Returns the names of all channels of the stored map.
+    /// Returns the names of all channels of the stored map, `[channel]`.
     #[must_use]
     pub fn channels(&self) -> Vec<&'static str> {
         match self {

@@ -12,7 +12,7 @@ use serde::Serialize;
 /// first touch. A push rotates the base and leaves the pole.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WhiskerShape {
-    /// Points of the whisker's shape, from the base to the tip.
+    /// Points of the whisker's shape, from the base to the tip, `[point]`.
     pub points: Vec<ShapePoint>,
     /// Centre of the pole in front of the whisker, `[x, y]` in mm.
     pub pole_mm: [f64; 2],

@@ -20,7 +20,7 @@ enum VaryingSource {
     Row(usize),
 }
 
-/// Returns the numbers of `scene` whose `deviations` are not 0.
+/// Returns the numbers of `scene` whose `deviations` are not 0, `[number]`.
 pub(super) fn varying(scene: &Scene, deviations: &Deviations) -> Vec<Varying> {
     let parameters = deviations.parameters.iter().filter_map(|own| {
         let (parameter, deviation) = *own;

@@ -32,7 +32,7 @@ pub struct Packed {
     pub cells: usize,
     /// Index after the last packed base point in the batch.
     pub base_points_end: usize,
-    /// Groups of cells of one base point; those of a dispatch begin at a multiple of [`ALIGNED`].
+    /// Groups of cells of one base point, `[group]`; those of a dispatch begin at a multiple of [`ALIGNED`].
     pub groups: Vec<[u32; 4]>,
     /// Ranges of [`Packed::groups`]: one for each dispatch.
     pub dispatches: Vec<Range<usize>>,

@@ -14,10 +14,11 @@ use rayon::prelude::*;
 /// Number of functions that are expanded along a row.
 pub const FUNCTIONS: usize = 3 + STATE_CHANNELS.len();
 
-/// Numbers of a state: magnitude of the push angle since first touch in radians, `tau`, signed load, and the channel values in map units.
+/// Numbers of a state, `[function]`: magnitude of the push angle since first touch in radians, `tau`, signed load, and the channel values
+/// in map units.
 pub type Numbers = [f64; FUNCTIONS];
 
-/// Weights that convert errors of [`Numbers`] to whisker lengths.
+/// Weights that convert errors of [`Numbers`] to whisker lengths, `[function]`.
 pub type Weights = [f64; FUNCTIONS];
 
 /// Error in whisker lengths that an error as large as the value's size along the row counts as: values may be ten times less accurate
@@ -34,7 +35,7 @@ pub struct ExactRow {
     pub row: Row,
     /// Crossing at which the row ends.
     pub end: Crossing,
-    /// Exact states of the row, by growing push angle.
+    /// Exact states of the row, by growing push angle, `[state]`.
     pub states: Vec<ExactState>,
 }
 

@@ -12,11 +12,11 @@ use serde::Serialize;
 /// Measured detachments, by push angle, for the panels of the paper that show them; each list may be empty.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Measurements {
-    /// Measured detachments of Fig. 4D: slip-offs (the whisker's) are open circles, others (the hair's) filled circles.
+    /// Measured detachments of Fig. 4D, `[point]`: slip-offs (the whisker's) are open circles, others (the hair's) filled circles.
     pub fig4d: Vec<MeasuredPoint>,
-    /// Measured detachments of Fig. 5C, left: open circles.
+    /// Measured detachments of Fig. 5C, left, as open circles: `[point]`.
     pub fig5c_left: Vec<MeasuredPoint>,
-    /// Measured detachments of Fig. 5C, right: open circles.
+    /// Measured detachments of Fig. 5C, right, as open circles: `[point]`.
     pub fig5c_right: Vec<MeasuredPoint>,
 }
 

@@ -22,7 +22,7 @@ pub struct OutlineSection {
     pub radius_um: f64,
 }
 
-/// Returns `count` cross-sections of a whisker at rest, evenly spaced from base to tip.
+/// Returns `count` cross-sections of a whisker at rest, evenly spaced from base to tip, `[section]`.
 pub fn sections(whisker: &Whisker, count: usize) -> Vec<OutlineSection> {
     let rest = Rest::new(&whisker.rod(&Pole::smooth(0.0), Side::Cb));
     let at = |s: f64| {

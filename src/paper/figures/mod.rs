@@ -23,7 +23,7 @@ pub struct Figure {
     pub name: &'static str,
     /// Chart of the figure, one plot for each panel.
     pub chart: Chart,
-    /// Tables of the figure: the stem of the file's name, and the function that writes the rows.
+    /// Tables of the figure, `[table]`: the stem of the file's name, and the function that writes the rows.
     pub tables: Vec<(String, TableRows)>,
 }
 
@@ -47,7 +47,7 @@ impl FigurePanel {
     }
 }
 
-/// Computes every figure of the paper that shows theory, with measured detachments where the paper shows them.
+/// Computes every figure of the paper that shows theory, with measured detachments where the paper shows them, `[figure]`.
 ///
 /// # Errors
 /// A branch cannot be followed.

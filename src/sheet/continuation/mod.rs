@@ -20,7 +20,7 @@ pub const NODE_MISS: f64 = 1e-8;
 /// Part of a level curve that a continuation has followed.
 #[derive(Clone, Debug)]
 pub struct Continuation {
-    /// Nodes of the continuation, from its start to its end.
+    /// Nodes of the continuation, from its start to its end, `[node]`.
     pub nodes: Vec<CurveNode>,
     /// Index of the continuation's node at the fold; `None` if the tip comes first.
     pub fold: Option<usize>,

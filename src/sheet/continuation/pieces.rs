@@ -18,7 +18,7 @@ pub struct StablePiece {
     pub begin: Option<Crossing>,
     /// Crossing at which the stable piece ends.
     pub end: Crossing,
-    /// Nodes of the stable piece, in this direction or the opposite one.
+    /// Nodes of the stable piece, in this direction or the opposite one, `[node]`.
     pub nodes: Vec<CurveNode>,
 }
 
@@ -50,7 +50,7 @@ pub struct ContinuedRow<'a> {
 /// Stable pieces of a row found by continuation. The piece from first touch comes first.
 #[derive(Clone, Debug, Default)]
 pub struct StablePieces {
-    /// Stable pieces that were followed; empty where the continuation from first touch failed.
+    /// Stable pieces that were followed, `[piece]`; empty where the continuation from first touch failed.
     pub pieces: Vec<StablePiece>,
     /// True if `pieces` are all stable pieces: no continuation has failed.
     pub are_complete: bool,

@@ -41,7 +41,7 @@ pub struct Stepper<'a> {
     /// Index of the stepper's level curve among those followed in the same batch.
     pub index: usize,
     level: &'a LevelCurve,
-    /// Nodes of the continuation, from the start to the last one found.
+    /// Nodes of the continuation, from the start to the last one found, `[node]`.
     pub nodes: Vec<CurveNode>,
     /// Index of the continuation's node at the first fold; `None` before it is found.
     pub fold: Option<usize>,

@@ -157,8 +157,9 @@ pub fn edge_newton(method: Method, start: EdgeStart, problems: &[EdgeProblem]) -
     ended.collect()
 }
 
-/// Solves all `problems` of one rod from predictions. With predicted second derivatives, most problems need a single trajectory with
-/// first derivatives. Toward the tip, second derivatives by the load are enough. This is one step of another kernel, not a loop.
+/// Solves all `problems` of one rod from predictions, `[problem]`. With predicted second derivatives, most problems need a single
+/// trajectory with first derivatives. Toward the tip, second derivatives by the load are enough. This is one step of another kernel, not
+/// a loop.
 #[must_use]
 pub fn edge_newton_predicted(method: Method, problems: &[EdgeProblem]) -> Vec<EdgeIterate> {
     let Some(first) = problems.first() else {

@@ -19,13 +19,13 @@ use crate::sheet::row::Edge;
 /// Sampled edges of a sheet.
 #[derive(Clone, Debug)]
 pub struct Edges {
-    /// Samples of the fold edge, from the base to the corner.
+    /// Samples of the fold edge, from the base to the corner, `[sample]`.
     pub fold: Vec<EdgeSample>,
     fold_edge: FoldEdge,
     /// True if the distance grows along the fold from the base to the tip, so that no row crosses it twice. Where the first fold jumps
     /// from contact to contact, the samples do not show all of the fold.
     pub fold_grows: bool,
-    /// Samples of the tip edge, from first touch to the corner.
+    /// Samples of the tip edge, from first touch to the corner, `[sample]`.
     pub tip: Vec<EdgeSample>,
     /// Polynomials of the tip edge; `None` where the edge needs more samples than polynomials have nodes.
     tip_edge: Option<TipEdge>,

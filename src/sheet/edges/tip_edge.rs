@@ -34,7 +34,7 @@ const MANY_TIP_INTERVALS: usize = 256;
 /// Sampled tip edge, without the corner.
 #[derive(Clone, Debug)]
 pub struct SampledTipEdge {
-    /// Samples of the tip edge by load, including extrema of the distance.
+    /// Samples of the tip edge by load, including extrema of the distance, `[sample]`.
     pub samples: Vec<EdgeSample>,
     /// Polynomials of the tip edge through the samples at Lobatto points and the corner; `None` if they are not certified.
     pub edge: Option<TipEdge>,
@@ -229,8 +229,8 @@ impl TipEdge {
         }
     }
 
-    /// Returns the extrema of the distance between the Lobatto loads of the tip edge. Three places from load to load are tested, because
-    /// two extrema may be close.
+    /// Returns the extrema of the distance between the Lobatto loads of the tip edge, `[extremum]`. Three places from load to load are
+    /// tested, because two extrema may be close.
     pub(super) fn extrema(&self) -> Vec<DistanceExtremum> {
         let slope = |part| (part, DVec2::from(self.by_load.map(|by| by.at(part).0)));
         let mut extrema = Vec::new();

@@ -42,9 +42,9 @@ pub struct ContactNodes {
     least_q: f64,
     /// Derivatives of `ln tau` and `ln(|load| tau^2)` of the folds by node index.
     slopes: Vec<[f64; 2]>,
-    /// Polynomials of `ln tau` of the folds, indexed by the first node of the stencil.
+    /// Polynomials of `ln tau` of the folds, indexed by the first node of the stencil, `[stencil]`.
     pub ln_tau: Vec<Hermite>,
-    /// Polynomials of `ln(|load| tau^2)` of the folds, indexed by the first node of the stencil.
+    /// Polynomials of `ln(|load| tau^2)` of the folds, indexed by the first node of the stencil, `[stencil]`.
     pub ln_q: Vec<Hermite>,
 }
 

@@ -63,8 +63,8 @@ const MARCH_END: f64 = 1e4;
 /// Maximum number of trajectories for each fold; bisection alone would need 50.
 const POLISH_TRAJECTORIES: u32 = 60;
 
-/// Returns the first folds of `rod` at the contacts `taus`, in the same order. An entry is `None` where there is no fold up to
-/// [`MARCH_END`], or no stable state at first touch.
+/// Returns the first folds of `rod` at the contacts `taus`, in the same order, `[contact]`. An entry is `None` where there is no fold up
+/// to [`MARCH_END`], or no stable state at first touch.
 pub fn first_folds(case: SheetCase, taus: &[f64]) -> Vec<Option<FoldPoint>> {
     let rod = case.rod;
     let begin = if rod.profile.is_none() && rod.gradient >= 0.0 {

@@ -34,7 +34,7 @@ const CHANNELS: [(&str, ValueKind, Option<&str>, &str); 14] = [
     ("residual", Quantity, Some("1"), "distance from the wanted pole over the whisker's length"),
 ];
 
-/// Returns the arrays of a store that are filled block by block. The regimes, which mark a block as finished, are the last.
+/// Returns the arrays of a store that are filled block by block, `[array]`. The regimes, which mark a block as finished, are the last.
 pub(super) fn arrays(grid: &Grid, blocks: &Blocks, channels: Channels) -> Vec<ZarrArray> {
     let sweep = grid.sweep.iter().map(|axis| axis.parameter.axis());
     let sweep: Vec<&str> = sweep.collect();

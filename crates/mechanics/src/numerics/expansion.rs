@@ -103,8 +103,8 @@ impl<const D: usize> Chebyshev<D> {
         self.values(0, x)
     }
 
-    /// Returns the values of up to `N` functions of an expansion at `x`, from function `first` on, by Clenshaw's recurrence; 0 beyond the
-    /// last function.
+    /// Returns the values of up to `N` functions of an expansion at `x`, from function `first` on, by Clenshaw's recurrence,
+    /// `[function]`; 0 beyond the last function.
     #[inline(always)]
     pub(super) fn values<T: Real, const N: usize>(&self, first: usize, x: T) -> [T; N] {
         let y = T::of(2.0).mul_add(x, T::of(-1.0));

@@ -41,8 +41,8 @@ impl Piece {
 /// Measured radii along a whisker, over the base radius, by arclength in whisker lengths.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RadiusProfile {
-    /// Pieces of the profile, from the base on. The last one lies beyond the last row, with the slope of the cone from the first row to
-    /// the last.
+    /// Pieces of the profile, from the base on, `[piece]`. The last one lies beyond the last row, with the slope of the cone from the
+    /// first row to the last.
     pub pieces: Vec<Piece>,
     /// Upper bounds of the change of `ln radius` over each piece, `[piece]`: its steepest slope by `tau` times its length.
     pub changes: Vec<f64>,

@@ -22,7 +22,7 @@ impl Resolution {
     /// Resolution for signs and guesses: errors of states on the stable sheet are below 1e-6 whisker lengths.
     pub const COARSE: Self = Self::of(5);
 
-    /// Ladder of resolutions from cheap to exact. Errors of neighbours differ by factors of 6 to 26.
+    /// Ladder of resolutions from cheap to exact, `[rung]`. Errors of neighbours differ by factors of 6 to 26.
     pub const LADDER: [Self; 8] = [
         Self::of(3),
         Self::of(4),

@@ -225,9 +225,9 @@ impl Plot {
 pub struct Chart {
     /// Title of the chart; may be empty.
     pub title: String,
-    /// Caption of the chart: lines of text below the title.
+    /// Caption of the chart, `[line]`: lines of text below the title.
     pub caption: Vec<String>,
-    /// Plots of the chart, from left to right, then downwards.
+    /// Plots of the chart, from left to right, then downwards, `[plot]`.
     pub plots: Vec<Plot>,
     /// Number of plots in a row of the chart; 0 counts as 1.
     pub columns: usize,

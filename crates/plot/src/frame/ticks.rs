@@ -94,8 +94,8 @@ pub fn round([low, high]: [f64; 2], wanted: f64) -> Vec<f64> {
     multiples.map(|multiple| multiple as f64 * step).collect()
 }
 
-/// Returns at most `wanted` powers of ten in a range of positive numbers; where there are few, also their multiples by 2 and 5. The
-/// search begins at the smallest normal number.
+/// Returns at most `wanted` powers of ten in a range of positive numbers, `[value]`; where there are few, also their multiples by 2 and
+/// 5. The search begins at the smallest normal number.
 pub fn logarithmic([low, high]: [f64; 2], wanted: f64) -> Vec<f64> {
     let low = low.max(f64::MIN_POSITIVE);
     let powers = low.log10().floor() as i32..=high.log10().ceil() as i32;

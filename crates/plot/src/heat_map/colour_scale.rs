@@ -54,7 +54,7 @@ fn ends(range: &[f64; 2]) -> String {
 pub struct ColourScale {
     /// Ends `[low, high]` of the colour bar, in the unit of the values; `None` if no cell has a value.
     pub(super) range: Option<[f64; 2]>,
-    /// Legend entries for cells whose colour is not on the colour bar.
+    /// Legend entries for cells whose colour is not on the colour bar, `[entry]`.
     pub(super) legend: Vec<LegendEntry>,
     options: ScaleOptions,
 }

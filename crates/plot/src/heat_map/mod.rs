@@ -51,7 +51,7 @@ pub struct HeatMap {
     pub panel_axes: [Option<PanelAxis>; 2],
     /// Colouring of the cells of the heat map: by codes, or by a colour scale.
     pub shading: Shading,
-    /// Legend of the heat map; the entries of a [`ColourScale`] come before it.
+    /// Legend of the heat map, `[entry]`; the entries of a [`ColourScale`] come before it.
     pub legend: Vec<LegendEntry>,
     /// Width of the heat map in pixels; `None` for the width at which all text can be read.
     pub width: Option<u32>,

@@ -29,7 +29,7 @@ pub fn width(text: &str, size: f64) -> f64 {
         .sum()
 }
 
-/// Returns the outlines of a text in pixels. It begins at the origin, with y downwards from its baseline.
+/// Returns the outlines of a text in pixels, `[glyph]`. It begins at the origin, with y downwards from its baseline.
 pub fn outlines(text: &str, size: f64) -> Vec<OutlinedGlyph> {
     let font = sized(size);
     let mut x = 0.0;
