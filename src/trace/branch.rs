@@ -33,7 +33,7 @@ row! {
         pub stable: bool,
         /// Rotation of the base since first touch, in degrees: positive CB, negative CF.
         pub push_angle_deg: f64,
-        /// Angle at the base between the contact and the resting whisker as far away, in degrees.
+        /// Chord angle: from the resting whisker as far away to the contact, in degrees.
         pub push_chord_deg: f64,
         /// Arclength from the base to the contact, in mm.
         pub arc_length_mm: f64,
@@ -41,13 +41,13 @@ row! {
         pub contact_angle_deg: f64,
         /// Size of the force between pole and whisker, normal to both, in uN.
         pub force_un: f64,
-        /// Moment that the pole puts on the base, in nN m: positive turns it to the left.
+        /// Moment of the pole on the base, in nN m: positive turns it to the left.
         pub base_moment_nnm: f64,
         /// Determinant of d(D, phi)/d(s_obj, f) with f = F L^2/(E I_base): 0 at a fold.
         pub det: f64,
-        /// Mark of the state: first-touch; slip-off, pull-off (stable end); second-fold, tip (unstable end).
+        /// Mark: first-touch; slip-off, pull-off (stable); second-fold, tip (unstable).
         pub mark: Option<BranchMark>,
-        /// Sliding direction of the contact, with friction: tip; base or sticks (loads are inexact).
+        /// Sliding direction, with friction: tip; base or sticks (loads are inexact).
         pub sliding: Option<Sliding>,
     }
 }

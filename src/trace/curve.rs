@@ -32,13 +32,13 @@ row! {
         pub side: Side,
         /// Distance from the base to the contact at first touch, in mm.
         pub distance_mm: f64,
-        /// Distance from the base to the pole's centre, in mm; the push does not change it.
+        /// Distance from the base to the pole's centre, in mm, constant in a push.
         pub pole_distance_mm: f64,
         /// End of the push: slip-off, pull-off, out-of-reach or unresolved.
         pub kind: DetachmentKind,
         /// Rotation of the base since first touch, in degrees: positive CB, negative CF.
         pub push_angle_deg: Option<f64>,
-        /// Angle at the base between the contact and the resting whisker as far away, in degrees.
+        /// Chord angle: from the resting whisker as far away to the contact, in degrees.
         pub push_chord_deg: Option<f64>,
         /// Straight distance from the base to the contact, in mm.
         pub contact_distance_mm: Option<f64>,
@@ -48,15 +48,15 @@ row! {
         pub force_un: Option<f64>,
         /// Force that the pole puts on the base, along the base's tangent, in uN.
         pub base_force_x_un: Option<f64>,
-        /// Force that the pole puts on the base, across the base's tangent, to the left, in uN.
+        /// Force that the pole puts on the base, to the left of its tangent, in uN.
         pub base_force_y_un: Option<f64>,
-        /// Moment that the pole puts on the base, in nN m: positive turns it to the left.
+        /// Moment of the pole on the base, in nN m: positive turns it to the left.
         pub base_moment_nnm: Option<f64>,
         /// Angle of the tangent at the contact, from the base's tangent, in degrees.
         pub contact_angle_deg: Option<f64>,
         /// Remaining error of the detachment, relative to the distance of the pole.
         pub residual: Option<f64>,
-        /// Sliding direction of the contact, with friction: tip, or base (loads are inexact).
+        /// Sliding direction, with friction: tip, or base (loads are inexact).
         pub sliding: Option<Sliding>,
     }
 }

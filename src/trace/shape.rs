@@ -30,11 +30,11 @@ row! {
     pub struct ShapePoint {
         /// Arclength from the base to the point, in mm.
         pub arc_length_mm: f64,
-        /// Position of the point along the base's tangent at first touch, in mm; the base is at 0.
+        /// Position along the base's tangent at first touch, in mm; the base is at 0.
         pub x_mm: f64,
-        /// Position of the point across that tangent, to the left, in mm: the CF side of a curved whisker.
+        /// Position to the left of the base's tangent at first touch, in mm: the CF side.
         pub y_mm: f64,
-        /// Angle of the whisker's tangent, from the base's tangent at first touch, in degrees.
+        /// Angle of the tangent, from the base's tangent at first touch, in degrees.
         pub angle_deg: f64,
         /// Curvature of the bent whisker at the point, in 1/mm.
         pub curvature_per_mm: f64,

@@ -15,7 +15,7 @@ row! {
         pub distance_mm: f64,
         /// End of the scene's own push: slip-off, pull-off, out-of-reach or unresolved.
         pub kind: DetachmentKind,
-        /// Push angle at the end of the scene's own push, in degrees: positive CB, negative CF.
+        /// Push angle of the scene's detachment, in degrees: positive CB, negative CF.
         pub push_angle_deg: Option<f64>,
         /// Number of samples that slip off.
         pub slip_off: u64,
@@ -37,9 +37,9 @@ row! {
         pub p95_deg: Option<f64>,
         /// Mean push angle at detachment, in degrees.
         pub mean_deg: Option<f64>,
-        /// Standard deviation of the push angles at detachment, from the samples, in degrees.
+        /// Standard deviation of push angles at detachment, from samples, in degrees.
         pub sd_deg: Option<f64>,
-        /// Standard deviation of the push angle to first order, from derivatives alone, in degrees.
+        /// Standard deviation of the push angle to first order, in degrees.
         pub sd_first_order_deg: Option<f64>,
     }
 }
