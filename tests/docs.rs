@@ -203,14 +203,7 @@ fn is_fragment(summary: &str) -> bool {
 
 #[test]
 fn fragments_are_recognized() {
-    for text in [
-        "Of the rod.",
-        "That of `x`.",
-        "Those that do",
-        "The same",
-        "Whether it is",
-        "From one to the next.",
-    ] {
+    for text in ["Of the rod.", "That of `x`.", "Whether it is", "The same"] {
         assert!(is_fragment(text), "{text}");
     }
     for text in [
